@@ -1,19 +1,20 @@
 """Which space robots take up, and when: what two of them must not do at once.
 
-An occupation is a way along which a robot moves, or a place at which it acts or waits, with the
-earliest time at which it may come there and the latest at which it may still be there. Robots on the
-ground, before launching and after landing, and robots that stand at their homes take up none: how near
-homes are to each other is the operator's choice.
+An occupation is a path along which a robot moves, or a place at which it stands, acts or waits, with the
+earliest time at which it may come there and the latest at which it may still be there. A robot occupies
+its place from the first moment to the last: on the ground before it launches and after it has landed,
+at its home, and after its Stop for ever.
 """
 
 from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from itertools import pairwise
 from math import dist, hypot, inf
 
+from mmrs_core.analysis.columns import Column, column_over
 from mmrs_core.analysis.durations import Span
 from mmrs_core.analysis.figures import kinematics_of
 from mmrs_core.analysis.motion import Leg, motions
@@ -22,9 +23,6 @@ from mmrs_core.analysis.times import Times, times_of
 from mmrs_core.behaviour.program import Move, RobotProgram
 from mmrs_core.contributions.checks import CheckInput
 from mmrs_core.scene import Kinematics, Position
-
-HOME_SPOT = 0.1
-"""Metres from its home within which a robot that stands takes no room: nobody keeps away from homes."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,6 +37,8 @@ class Occupation:
             is commanded to be, unless its moves' kind says that it may be.
         certain: from when to when the robot is there in every run that makes the move, and where it
             is known; the first exceeds the second if never.
+        column: the one over its home, where its home is known.
+        leaves_by: the moves with whose begin a stand ends; none if it lasts for ever, or is no wait.
     """
 
     robot: str
@@ -50,6 +50,13 @@ class Occupation:
     end: float
     least: tuple[float, ...]
     certain: tuple[float, float]
+    column: Column | None
+    leaves_by: tuple[int, ...] = ()
+
+    @property
+    def stands(self) -> bool:
+        """Whether the robot stands at one place all the time."""
+        return len(self.points) == 1
 
     def between(self, first: float, last: float) -> tuple[Position, ...]:
         """Return the part of the way on which the robot may be at some time between two times.
@@ -60,9 +67,10 @@ class Occupation:
         whole = sum(self.least)
         ahead = min(whole, max(0.0, last - self.begin))
         behind = min(ahead, max(0.0, whole - max(0.0, self.end - first)))
-        return self._part(behind, ahead)
+        return self.stretch(behind, ahead)
 
-    def _part(self, behind: float, ahead: float) -> tuple[Position, ...]:
+    def stretch(self, behind: float, ahead: float) -> tuple[Position, ...]:
+        """Return the part of the path between two numbers of seconds at full speed from its begin."""
         passed = [self._at(behind)]
         time = 0.0
         for corner, seconds in zip(self.points[1:], self.least, strict=False):
@@ -83,7 +91,7 @@ class Occupation:
 
 
 def occupations_of(input: CheckInput, robot: RobotProgram) -> Iterator[Occupation]:
-    """Yield what one robot occupies.
+    """Yield what one robot occupies, from the first moment to the last.
 
     Raises:
         MissingFigureError: its kinematics are not known.
@@ -92,34 +100,41 @@ def occupations_of(input: CheckInput, robot: RobotProgram) -> Iterator[Occupatio
     states, times = states_of(input, robot), times_of(input)
     legs: dict[int, list[Leg]] = defaultdict(list)
     for leg in motions(input)[robot.id].legs:
-        legs[leg.move].append(replace(leg, radius=leg.radius + kinematics.turning_radius))
+        legs[leg.move].append(leg)
+    paths = (leg.points for of_move in legs.values() for leg in of_move)
+    column = column_over(robot.home, paths) if robot.home is not None else None
     for index in sorted(states.before):
-        if (robot.id, index) in times.earliest and not states.only_grounded(index):
+        if (robot.id, index) in times.earliest:
             for leg in legs[index]:
-                yield from _occupations(robot, leg, times, states, kinematics)
+                yield from _occupations(robot, leg, times, states, kinematics, column)
 
 
 def _occupations(
-    robot: RobotProgram, leg: Leg, times: Times, states: States, kinematics: Kinematics
+    robot: RobotProgram,
+    leg: Leg,
+    times: Times,
+    states: States,
+    kinematics: Kinematics,
+    column: Column | None,
 ) -> Iterator[Occupation]:
     """Yield where a robot stands before a movement, the movement, and where it stands after it."""
     duration = times.durations[robot.id].of[leg.move]
     begin = Span(times.earliest[robot.id, leg.move], times.latest.get((robot.id, leg.move), inf))
     leave, arrive = begin + duration.before, begin + duration.moved
+    circle = kinematics.turning_radius
     if len(leg.points) == 1:
         arrive = begin
-    elif leave.high > begin.low and not _at_home(robot, leg.points[0]):
-        yield _stand(robot, leg, begin, leave, waiting=False)
+    elif leave.high > begin.low:
+        around = 0.0 if states.before[leg.move] == {GROUNDED} else circle
+        yield _stand(robot, leg, (begin, leave), around, column, waiting=False)
     if len(leg.points) > 1:
-        yield _movement(robot, leg, (leave, arrive), duration.moved.low - duration.before.low, kinematics)
+        quickest = duration.moved.low - duration.before.low
+        yield _movement(robot, leg, (leave, arrive), quickest, kinematics, column)
     gone = _gone(robot, leg.move, times)
-    standing = states.after[leg.move] != {GROUNDED} and not _at_home(robot, leg.points[-1])
-    if standing and gone.high > arrive.low:
-        yield _stand(robot, leg, arrive, gone, waiting=True)
-
-
-def _at_home(robot: RobotProgram, place: Position) -> bool:
-    return robot.home is not None and dist(place, robot.home) <= HOME_SPOT
+    if gone.high > arrive.low:
+        still = leg.move == robot.start or leg.move not in robot.transitions
+        around = 0.0 if still or states.after[leg.move] == {GROUNDED} else circle
+        yield _stand(robot, leg, (arrive, gone), around, column, waiting=True)
 
 
 def _gone(robot: RobotProgram, move: int, times: Times) -> Span:
@@ -132,30 +147,59 @@ def _gone(robot: RobotProgram, move: int, times: Times) -> Span:
     return Span(max(earliest, times.earliest_end(robot.id, move)), latest)
 
 
-def _stand(robot: RobotProgram, leg: Leg, come: Span, go: Span, *, waiting: bool) -> Occupation:
-    place = leg.points[-1] if waiting else leg.points[0]
-    certain = (come.high, go.low) if leg.radius == 0.0 else (inf, -inf)
-    return Occupation(robot.id, leg.move, waiting, (place,), leg.radius, come.low, go.high, (), certain)
+def _stand(
+    robot: RobotProgram,
+    leg: Leg,
+    times: tuple[Span, Span],
+    around: float,
+    column: Column | None,
+    *,
+    waiting: bool,
+) -> Occupation:
+    """Return a stand, within which the robot may turn about a circle of the radius `around`."""
+    come, go = times
+    radius = leg.radius + around
+    transition = robot.transitions.get(leg.move) if waiting else None
+    return Occupation(
+        robot=robot.id,
+        move=leg.move,
+        waiting=waiting,
+        points=(leg.points[-1] if waiting else leg.points[0],),
+        radius=radius,
+        begin=come.low,
+        end=go.high,
+        least=(),
+        certain=(come.high, go.low) if radius == 0.0 else (inf, -inf),
+        column=column,
+        leaves_by=tuple(transition.ways) if transition is not None else (),
+    )
 
 
 def _movement(
-    robot: RobotProgram, leg: Leg, times: tuple[Span, Span], quickest: float, kinematics: Kinematics
+    robot: RobotProgram,
+    leg: Leg,
+    times: tuple[Span, Span],
+    quickest: float,
+    kinematics: Kinematics,
+    column: Column | None,
 ) -> Occupation:
     leave, arrive = times
     least = _least_seconds(leg.points, robot.moves[leg.move], kinematics)
     if quickest < sum(least):
         least = tuple(seconds * quickest / sum(least) for seconds in least)
-    pinned = leg.radius == 0.0 and arrive.high - leave.low <= sum(least) + 1e-6
+    radius = leg.radius + kinematics.turning_radius
+    pinned = radius == 0.0 and arrive.high - leave.low <= sum(least) + 1e-6
     return Occupation(
         robot=robot.id,
         move=leg.move,
         waiting=False,
         points=leg.points,
-        radius=leg.radius,
+        radius=radius,
         begin=leave.low,
         end=arrive.high,
         least=least,
         certain=(leave.low, arrive.high) if pinned else (inf, -inf),
+        column=column,
     )
 
 

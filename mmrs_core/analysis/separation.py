@@ -1,57 +1,38 @@
-"""Whether robots that are under way at the same time keep apart.
+"""Whether robots keep apart, in motion and where they stand, from the first moment to the last.
 
-Two occupations are apart if the ways are far enough from each other, if they never overlap in time, if
+Two occupations are apart if the paths are far enough from each other, if they never overlap in time, if
 one is over before the other begins because robots wait for each other, or if at every time the parts
-of the ways on which the robots may then be are far enough from each other. What then is left is
-violated where times are exact, and otherwise undecided. Times are those of the kinds of moves: where
-these reckon without wind and accelerations, so does this check, and only waits for each other are proof.
+of the paths on which the robots may then be are far enough from each other. What then is left is
+violated where both are certainly there at one time, however uncertain times are, and otherwise undecided.
+Times are those of the kinds of moves: where these reckon without wind and accelerations, so does this
+check, and only waits for each other are proof. Robots at homes that are nearer than that are excused as
+`columns` has it.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass
-from heapq import heappop, heappush
-from itertools import pairwise
-from math import inf
+from collections.abc import Iterator, Mapping
+from math import dist, inf
 
 import numpy as np
 import shapely
 
-from mmrs_core.analysis.distance import Floats, paired_distances
+from mmrs_core.analysis.encounters import (
+    Encounter,
+    Order,
+    apart,
+    certain_encounter,
+    nearest_encounter,
+    required,
+)
 from mmrs_core.analysis.figures import MissingFigureError
 from mmrs_core.analysis.motion import motions
 from mmrs_core.analysis.occupations import Occupation, occupations_of
-from mmrs_core.analysis.order import HappensBefore
-from mmrs_core.analysis.times import times_of
 from mmrs_core.analysis.verdicts import TOLERANCE, Gap, unknown, unknown_moves
 from mmrs_core.behaviour.program import RobotProgram
 from mmrs_core.contributions.checks import Check, CheckInput, Status, Verdict
-from mmrs_core.scene import Position
 
 NAME = "separation"
-
-FINEST = 0.01
-"""Seconds: stretches of time that are no longer are not divided further."""
-
-MOST_STRETCHES = 200
-"""So many stretches too near, none of them certain, are enough to leave it undecided."""
-
-
-@dataclass(frozen=True, slots=True)
-class Encounter:
-    """Two occupations that come too near, `apart` metres at a time; `needed` would do.
-
-    Attributes:
-        decided: whether both robots are certainly there at that time.
-    """
-
-    one: Occupation
-    other: Occupation
-    time: float
-    apart: float
-    needed: float
-    decided: bool
 
 
 def _run(input: CheckInput) -> Iterator[Verdict]:
@@ -71,13 +52,24 @@ def _run(input: CheckInput) -> Iterator[Verdict]:
             undecided = True
             yield unknown_moves(NAME, robot, gaps)
     needed = input.program.minimum_separation + 2.0 * input.program.position_error
-    encounters = _encounters(input, occupations, needed)
+    excused: dict[tuple[str, str], float] = {}
+    encounters = _encounters(input, occupations, needed, excused)
     worst = _worst(encounters)
     yield from (_verdict(input, encounter) for encounter in worst)
     if not worst and not undecided:
-        yield Verdict(
-            NAME, Status.SAFE, message=f"robots keep {needed:.2f} m apart wherever they may be at once"
-        )
+        words = f"robots keep {needed:.2f} m apart wherever they may be at once"
+        yield Verdict(NAME, Status.SAFE, message=words, caveat=_excuses(excused))
+
+
+def _excuses(excused: Mapping[tuple[str, str], float]) -> str:
+    """Return which robots are excused, and in what; empty if none is."""
+    if not excused:
+        return ""
+    pairs = ", ".join(f"{one} and {other} ({apart:.2f} m)" for (one, other), apart in excused.items())
+    return (
+        f"excused, since their homes are nearer: {pairs},"
+        " while one stands at its home and the other does, too, or is straight above its own"
+    )
 
 
 def _gaps(input: CheckInput, robot: RobotProgram) -> Iterator[list[Gap]]:
@@ -86,13 +78,20 @@ def _gaps(input: CheckInput, robot: RobotProgram) -> Iterator[list[Gap]]:
         yield gaps
 
 
-def _encounters(input: CheckInput, occupations: list[Occupation], needed: float) -> Iterator[Encounter]:
-    order: HappensBefore | None = None
+def _encounters(
+    input: CheckInput, occupations: list[Occupation], needed: float, excused: dict[tuple[str, str], float]
+) -> Iterator[Encounter]:
+    """Yield the encounters; add the robots that are excused, and how near their homes are, to `excused`."""
+    order: Order | None = None
     for i, j in _near(occupations, needed):
         one, other = occupations[i], occupations[j]
-        order = order or HappensBefore(input.program, times_of(input).dependencies)
-        if not _ordered(order, one, other):
-            yield from _meeting(one, other, needed)
+        if _excused(one, other, needed):
+            excused[one.robot, other.robot] = _between_homes(one, other)
+            continue
+        order = order or Order(input)
+        if not order.keeps_apart(one, other):
+            found = certain_encounter(one, other, needed, order) or nearest_encounter(one, other, needed)
+            yield from [found] if found is not None else []
 
 
 def _near(occupations: list[Occupation], needed: float) -> list[tuple[int, int]]:
@@ -110,8 +109,8 @@ def _near(occupations: list[Occupation], needed: float) -> list[tuple[int, int]]
     return [
         (i, j)
         for i, j in found
-        if _apart(occupations[i].points, occupations[j].points)
-        < _needed(occupations[i], occupations[j], needed)
+        if apart(occupations[i].points, occupations[j].points)
+        < required(occupations[i], occupations[j], needed)
     ]
 
 
@@ -119,81 +118,37 @@ def _may_meet(one: Occupation, other: Occupation) -> bool:
     return one.robot != other.robot and max(one.begin, other.begin) < min(one.end, other.end)
 
 
-def _needed(one: Occupation, other: Occupation, needed: float) -> float:
-    return needed + one.radius + other.radius - TOLERANCE
-
-
-def _ordered(order: HappensBefore, one: Occupation, other: Occupation) -> bool:
-    return order.is_over((one.robot, one.move), one.waiting, (other.robot, other.move)) or order.is_over(
-        (other.robot, other.move), other.waiting, (one.robot, one.move)
+def _excused(one: Occupation, other: Occupation, needed: float) -> bool:
+    """Return whether two robots, whose homes are too near, are only where their homes keep them."""
+    if one.radius or other.radius or not _between_homes(one, other) < needed - TOLERANCE:
+        return False
+    return (_at_home(one) and _over_home(other, one, needed)) or (
+        _at_home(other) and _over_home(one, other, needed)
     )
 
 
-def _meeting(one: Occupation, other: Occupation, needed: float) -> Iterator[Encounter]:
-    """Yield the nearest encounter that is certain, or else the nearest of all.
-
-    The time that both may be there is halved, always where the parts of the ways are nearest to each
-    other, until they are far enough apart or the time is short.
-    """
-    required = _needed(one, other, needed)
-    begin, end = _common_time(one, other)
-    pending = [(_apart(one.between(begin, end), other.between(begin, end)), begin, end)]
-    nearest: Encounter | None = None
-    left = MOST_STRETCHES if _certain_together(one, other) else 1
-    while pending and left and pending[0][0] < required:
-        apart, begin, end = heappop(pending)
-        if end - begin > FINEST:
-            middle = (begin + end) / 2
-            for half in ((begin, middle), (middle, end)):
-                heappush(pending, (_apart(one.between(*half), other.between(*half)), *half))
-            continue
-        decided = _certainly(one, begin, end) and _certainly(other, begin, end)
-        if decided:
-            apart = _apart_moving(one, other, begin, end)
-            if apart >= required:
-                continue
-        left -= 1
-        found = Encounter(one, other, begin, apart - one.radius - other.radius, needed, decided)
-        if decided:
-            yield found
-            return
-        nearest = nearest or found
-    if nearest is not None:
-        yield nearest
+def _between_homes(one: Occupation, other: Occupation) -> float:
+    if one.column is None or other.column is None:
+        return inf
+    return dist(one.column.home, other.column.home)
 
 
-def _apart_moving(one: Occupation, other: Occupation, begin: float, end: float) -> float:
-    """Return how near two robots come whose places are known at the begin and the end of a short time."""
-    first = np.subtract(one.between(begin, begin)[0], other.between(begin, begin)[0])
-    last = np.subtract(one.between(end, end)[0], other.between(end, end)[0])
-    return _apart((tuple(first), tuple(last)), ((0.0, 0.0, 0.0),))
+def _at_home(occupation: Occupation) -> bool:
+    column = occupation.column
+    return occupation.stands and column is not None and column.at_foot(occupation.points[0])
 
 
-def _common_time(one: Occupation, other: Occupation) -> tuple[float, float]:
-    """Return when both may be there; where there is no end, until both may have come everywhere."""
-    begin, end = max(one.begin, other.begin), min(one.end, other.end)
-    return begin, end if end < inf else begin + max(FINEST, sum(one.least), sum(other.least))
-
-
-def _certain_together(one: Occupation, other: Occupation) -> bool:
-    begin, end = (max(one.certain[0], other.certain[0]), min(one.certain[1], other.certain[1]))
-    return begin <= end + TOLERANCE
-
-
-def _certainly(occupation: Occupation, begin: float, end: float) -> bool:
-    return occupation.certain[0] - TOLERANCE <= begin and end <= occupation.certain[1] + TOLERANCE
-
-
-def _apart(one: tuple[Position, ...], other: tuple[Position, ...]) -> float:
-    p, q = _pieces(one)
-    c, d = _pieces(other)
-    return float(paired_distances(p[:, None], q[:, None], c[None], d[None]).min())
-
-
-def _pieces(points: tuple[Position, ...]) -> tuple[Floats, Floats]:
-    line = points if len(points) > 1 else points * 2
-    ends = np.array(list(pairwise(line)))
-    return ends[:, 0], ends[:, 1]
+def _over_home(occupation: Occupation, neighbour: Occupation, needed: float) -> bool:
+    """Return whether a robot is at its home, or in its column wherever it is too near to a neighbour."""
+    column = occupation.column
+    if column is None or _at_home(occupation):
+        return column is not None
+    if not column.contains(occupation.points):
+        return False
+    if occupation.stands:
+        return occupation.points[0][2] < column.ceiling
+    above = column.above_ceiling(occupation.points)
+    return not above or apart(above, neighbour.points) >= needed - TOLERANCE
 
 
 def _box(occupation: Occupation) -> tuple[float, float, float, float]:
@@ -234,7 +189,7 @@ def _words(occupation: Occupation) -> str:
 
 SEPARATION = Check(
     name=NAME,
-    title="Robots that are under way at the same time keep the minimum separation.",
+    title="Robots keep the minimum separation, in motion and where they stand.",
     run=_run,
     hint="let one task wait for the other, move the homes apart, or lower minimumSeparation",
 )

@@ -1,9 +1,10 @@
-"""Whether the moves of each robot form a way from its Start to its Stop."""
+"""Whether the moves of each robot form a way from its Start to its Stop, which no work lies beside."""
 
 from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterator
+from dataclasses import replace
 
 from mmrs_core.analysis.verdicts import for_each_robot, safe, violated
 from mmrs_core.behaviour.program import BEHAVIOUR, Program, RobotProgram, Transition
@@ -19,12 +20,13 @@ STOP: Name = (BEHAVIOUR, "Stop")
 def _judge(input: CheckInput, robot: RobotProgram) -> Iterator[Verdict]:
     faults = [*_ends(robot), *_names(robot), *_transitions(robot)]
     if not any(move is not None for _, move in faults):
-        faults += _dead_ends(robot)
+        faults += [*_dead_ends(robot), *_undone(robot)]
     faults += _strangers(input.program, robot)
     for message, move in faults:
         yield violated(NAME, robot, message, move)
     if not faults:
-        yield safe(NAME, robot, f"every move is on a way from Start to Stop{_never(robot)}")
+        found = safe(NAME, robot, "every move is on a path from Start to Stop")
+        yield replace(found, caveat=_never(robot))
 
 
 def _ends(robot: RobotProgram) -> Iterator[tuple[str, int | None]]:
@@ -87,15 +89,28 @@ def _strangers(program: Program, robot: RobotProgram) -> Iterator[tuple[str, int
                     yield f"'{move.id}' notifies '{owner}.{slot}', which is no slot of any robot", index
 
 
-def _never(robot: RobotProgram) -> str:
+def _undone(robot: RobotProgram) -> Iterator[tuple[str, int | None]]:
+    """Yield the moves with work, a task's or actions, that no transition leads to."""
+    for index in _unreached(robot):
+        move = robot.moves[index]
+        work = f"task '{move.task}' is" if move.task else "actions are"
+        if move.task or move.before or move.after:
+            yield f"{move.kind} '{move.id}' is never reached: its {work} not carried out there", index
+
+
+def _unreached(robot: RobotProgram) -> list[int]:
     reachable = reachable_moves(robot)
-    never = [move.id for index, move in enumerate(robot.moves) if index not in reachable]
-    return f"; never reached: {', '.join(never)}" if never else ""
+    return [index for index in range(len(robot.moves)) if index not in reachable]
+
+
+def _never(robot: RobotProgram) -> str:
+    never = [robot.moves[index].id for index in _unreached(robot)]
+    return f"never reached: {', '.join(never)}" if never else ""
 
 
 STRUCTURE = Check(
     name=NAME,
-    title="Every robot has one Start and one Stop, and every move is on a way to Stop.",
+    title="Every robot has one Start and one Stop, every move is on a way to Stop, and all work is reached.",
     run=for_each_robot(NAME, _judge),
     hint="add the transition that is missing, so that every move leads on to the Stop",
 )

@@ -16,7 +16,7 @@ from mmrs_core.errors import InvalidModelError, UnreadableError
 from mmrs_core.languages import behaviour as bl
 from mmrs_core.languages import context as contexts
 from mmrs_core.languages import robot as robots_language
-from mmrs_core.languages.codes import refusal
+from mmrs_core.languages.codes import explained, refusal
 from mmrs_core.languages.conformance import check_conformance
 from mmrs_core.languages.grounding.scenes import (
     areas_of,
@@ -27,7 +27,7 @@ from mmrs_core.languages.grounding.scenes import (
 )
 from mmrs_core.languages.grounding.values import children
 from mmrs_core.languages.model import Model
-from mmrs_core.languages.modelset import context_in, robot_files_in
+from mmrs_core.languages.modelset import context_in, robot_files_in, types_by_name
 from mmrs_core.languages.reading import read_model
 from mmrs_core.languages.registry import Registry
 from mmrs_core.pipeline import Place, program_of
@@ -147,18 +147,24 @@ def faults_of(workshop: Workshop, files: BehaviourFiles) -> tuple[Diagnostic, ..
     """
     contributions = workshop.contributions
     faults: list[Diagnostic] = []
+    told: list[Diagnostic] = []
     for model in files.models:
         faults += [*model.diagnostics, *check_conformance(model, contributions.languages)]
     if files.behaviour is None or len(files.models[0].roots) != 1:
         raise InvalidModelError(f"{files.file}: expected one behaviour in this file", in_order(faults))
-    if files.place is not None and files.context is None:
+    roots = [root for model in files.models for root in model.roots]
+    places = [root for root in roots if isinstance(root, contexts.Context)]
+    if files.place is not None and len(places) != 1:
         raise InvalidModelError(f"{files.place}: expected one context in this file", in_order(faults))
+    types_by_name((root for root in roots if isinstance(root, robots_language.Robot)), told)
+    faults += map(explained, told)
     faults += check_behaviour(
         files.behaviour,
         contributions.constraints,
         contributions.languages,
         robots=files.types,
         place=files.context,
+        files=files.models,
     )
     return in_order(faults)
 

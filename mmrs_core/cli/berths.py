@@ -165,41 +165,51 @@ def berths_of(settings: CliSettings, path: Path) -> list[Berth]:
     """Return the robots of a behaviour, or of a mission, with their homes.
 
     Raises:
-        UnsupportedError: they have no place on Earth.
+        UnsupportedError: they have no place on Earth, or no vehicle carries one of them.
         InvalidModelError: the models are not valid.
     """
     from mmrs_core.cli.behaviours import is_behaviour, load_behaviour
     from mmrs_core.cli.journey import Journey, Workshop
     from mmrs_core.languages.modelset import model_in
     from mmrs_core.mavlink.earth import degrees_of
-    from mmrs_core.mavlink.vehicles import class_of_type, vehicle_class
+    from mmrs_core.mavlink.vehicles import class_of_type, uncarried, vehicle_class
 
     workshop = Workshop(settings)
     found = model_in(path, "behaviour") if path.is_dir() else path
+    kinds = workshop.contributions.robot_kinds
     if found is not None and found.is_file() and is_behaviour(workshop, found):
         loaded = load_behaviour(workshop, found)
         frame = loaded.program.frame
         robots = loaded.program.robots
         types = [loaded.place.types.get(each.type_name) for each in robots]
         crew = [
-            (each.id, vehicle_class(each, type).name, each.home, _battery(each.payload, type))
+            (each.id, type, vehicle_class(each, type, kinds), each.home, _battery(each.payload, type))
             for each, type in zip(robots, types, strict=True)
         ]
     else:
         scene = Journey(workshop, path).grounded
         frame = scene.frame
         crew = [
-            (each.name, class_of_type(each.type).name, each.home, _battery(each.payload, each.type))
+            (
+                each.name,
+                each.type,
+                class_of_type(each.type, kinds),
+                each.home,
+                _battery(each.payload, each.type),
+            )
             for each in scene.robots
         ]
-    lost = [name for name, _, home, _ in crew if home is None]
+    if unknown := [why for name, type, *_ in crew if (why := uncarried(name, type, kinds))]:
+        raise UnsupportedError(f"{path}: no simulated vehicle for all of its robots", unknown)
+    lost = [name for name, _, _, home, _ in crew if home is None]
     if lost:
         raise UnsupportedError(f"{path}: no home for {', '.join(lost)}")
-    homes = [home[:2] for _, _, home, _ in crew if home is not None]
+    homes = [home[:2] for _, _, _, home, _ in crew if home is not None]
     places = degrees_of(homes, frame)
     return [
-        Berth(name, kind, place, *battery, (north, east))
-        for (name, kind, _, battery), place, (east, north) in zip(crew, places, homes, strict=True)
+        Berth(name, vehicle.name, place, *battery, (north, east))
+        for (name, _, vehicle, _, battery), place, (east, north) in zip(crew, places, homes, strict=True)
+        if vehicle is not None
     ]
 
 

@@ -173,7 +173,7 @@ def demonstrate(
         )
         files.append((f"code for {target}{lossy}", folder / "controllers" / target, len(rendered)))
     run = fly(workshop, program, place, {}, Chosen(manner.backend, manner.options, manner.own))
-    logs = write_logs(run, program, folder / LOGS, place.types)
+    logs = write_logs(run, program, folder / LOGS, place.types, workshop.contributions.robot_kinds)
     files.append(("what each robot did", folder / LOGS, len(logs)))
     pictures = write_pictures(picture_of(journey), folder)
     files += [("a page to look at", pictures[0], 1), ("the map alone", pictures[1], 1)]

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import typer
 
 from mmrs_core.cli.journey import RefusedError
-from mmrs_core.cli.output import report, say_json, tell
+from mmrs_core.cli.output import one_line, report, say_json, tell
 from mmrs_core.cli.settings import DEBUG, Settings
 from mmrs_core.errors import (
     InfeasibleError,
@@ -52,9 +52,9 @@ def ended_by(error: Exception, settings: Settings) -> int:
         tell("".join(traceback.format_exception(error)).rstrip())
     failure = failure_of(error)
     report(failure.diagnostics)
-    tell(failure.message if failure.message.startswith(_HELP) else f"mmrs: {failure.message}")
+    tell(failure.message if failure.message.startswith(_HELP) else f"mmrs: {one_line(failure.message)}")
     for detail in failure.details:
-        tell(f"  - {detail}")
+        tell(f"  - {one_line(detail)}")
     if settings.json:
         say_json({"error": failure})
     return failure.exit_code

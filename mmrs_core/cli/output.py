@@ -6,7 +6,8 @@ import json
 import os
 import sys
 from collections.abc import Callable, Iterable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
+from dataclasses import replace
 from typing import TYPE_CHECKING, TextIO
 from unicodedata import category
 
@@ -32,6 +33,15 @@ def printable(words: str) -> str:
     'a\\x1b[2Jb\\u202ec'
     """
     return "".join(map(_printable, words))
+
+
+def one_line(words: str) -> str:
+    r"""Return `printable` words on one line, however many lines a name in them has.
+
+    >>> one_line("a\nmmrs: done\tb")
+    'a\\nmmrs: done\\tb'
+    """
+    return printable(words).replace("\n", "\\n").replace("\t", "\\t")
 
 
 def _printable(character: str) -> str:
@@ -81,17 +91,26 @@ def say_file(text: bytes) -> None:
     except BrokenPipeError:
         _close(sys.stdout)
         raise typer.Exit(OUTPUT_CLOSED) from None
+    except OSError as error:
+        raise _unwritten(sys.stdout, error) from None
 
 
 def report(diagnostics: Iterable[Diagnostic]) -> None:
     """Print diagnostics to standard error, in colour where a person reads them."""
     for diagnostic in diagnostics:
-        words = printable(str(diagnostic))
+        words = str(_on_its_lines(diagnostic))
         severity = diagnostic.severity.value
         mark = f"{severity}: "
         if coloured(sys.stderr):
             words = words.replace(mark, f"\x1b[1;{_COLOURS[severity]}m{severity}:\x1b[0m ", 1)
         _write(sys.stderr, words + "\n")
+
+
+def _on_its_lines(fault: Diagnostic) -> Diagnostic:
+    """Return a fault none of whose fields begins a line of its own."""
+    place = replace(fault.place, file=one_line(fault.place.file), path=one_line(fault.place.path))
+    message, hint, expected = map(one_line, (fault.message, fault.hint, fault.expected))
+    return replace(fault, message=message, place=place, hint=hint, expected=expected)
 
 
 def coloured(stream: TextIO) -> bool:
@@ -143,6 +162,17 @@ def _write(stream: TextIO, words: str) -> None:
         encoding = stream.encoding or "ascii"
         stream.write(words.encode(encoding, "backslashreplace").decode(encoding))
         stream.flush()
+    except OSError as error:
+        raise _unwritten(stream, error) from None
+
+
+def _unwritten(stream: TextIO, error: OSError) -> OSError:
+    """Return an error that names its stream; what that holds back is dropped."""
+    with suppress(OSError, ValueError):
+        _close(stream)
+    return OSError(
+        error.errno, error.strerror, "standard output" if stream is sys.stdout else "standard error"
+    )
 
 
 def _close(stream: TextIO) -> None:

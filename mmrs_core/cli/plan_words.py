@@ -22,11 +22,16 @@ def plan_lines(scene: Scene, plan: Plan) -> Iterator[str]:
     )
     head = ("robot", "type", "tasks", "way", "time", "energy", "sorties")
     yield from table(head, [_row(scene, robot) for robot in plan.robots], widest=_WIDEST)
+    for robot in plan.robots:
+        if robot.idle:
+            yield f"  idle: {robot.robot} ({robot.idle})"
+    for left in plan.left_out:
+        yield f"  {left}"
     for note in plan.notes[:_MOST_NOTES]:
         yield f"  note: {note}"
-    left = len(plan.notes) - _MOST_NOTES
-    if left > 0:
-        yield f"  and {counted(left, 'more note')}"
+    more = len(plan.notes) - _MOST_NOTES
+    if more > 0:
+        yield f"  and {counted(more, 'more note')}"
 
 
 def plan_summary(scene: Scene, plan: Plan) -> Mapping[str, object]:
@@ -42,12 +47,17 @@ def plan_summary(scene: Scene, plan: Plan) -> Mapping[str, object]:
                 "busy": robot.busy,
                 "energy": robot.energy,
                 "sorties": robot.sorties,
+                "idle": robot.idle or None,
             }
             for robot in plan.robots
         ],
         "tasks": [
             {"name": task.name, "begin": plan.begins.get(task.name), "end": plan.ends.get(task.name)}
             for task in scene.tasks
+        ],
+        "leftOut": [
+            {"task": each.task, "amount": each.amount, "unit": each.unit, "where": each.where, "at": each.at}
+            for each in plan.left_out
         ],
         "notes": plan.notes,
     }

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from mmrs_core.analysis.constraints import check_behaviour
+from mmrs_core.analysis.constraints import check_planned
 from mmrs_core.cli.journey import Journey, require_safe
 from mmrs_core.cli.protection import files_of, refuse_handwritten, refuse_inputs, refuse_inside
 from mmrs_core.diagnostics import has_errors, in_order
@@ -43,13 +43,9 @@ def require_sound(journey: Journey, name: str) -> None:
         InvalidModelError: if it breaks a constraint, with all diagnostics.
     """
     require_safe(journey.program, journey.verdicts, name)
-    contributions, models = journey.workshop.contributions, journey.models
-    faults = check_behaviour(
-        journey.transformed[0],
-        contributions.constraints,
-        contributions.languages,
-        robots=models.robots,
-        place=models.context,
+    contributions = journey.workshop.contributions
+    faults = check_planned(
+        journey.transformed[0], journey.models, contributions.constraints, contributions.languages
     )
     if has_errors(faults):
         raise InvalidModelError(f"{name}: the behaviour that was planned is not valid", in_order(faults))

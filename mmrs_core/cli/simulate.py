@@ -63,7 +63,8 @@ def simulate(
     if output is not None:
         refuse_inputs((output / log_name(robot.id) for robot in loaded.program.robots), workshop.inputs)
     run = fly(workshop, loaded.program, loaded.place, conditions, chosen)
-    logs = write_logs(run, loaded.program, output, loaded.place.types) if output is not None else ()
+    types, kinds = loaded.place.types, workshop.contributions.robot_kinds
+    logs = write_logs(run, loaded.program, output, types, kinds) if output is not None else ()
     if json:
         say_json({"ending": run.ending, "tracks": run.tracks, "notes": run.notes, "logs": logs})
     else:

@@ -17,10 +17,11 @@ from mmrs_core.behaviour.steps import StepRecord
 from mmrs_core.cli.figures import clock, length
 from mmrs_core.cli.journey import Workshop
 from mmrs_core.cli.output import progress
+from mmrs_core.contributions.rules import RobotKind
 from mmrs_core.errors import MmrsError
 from mmrs_core.pipeline import Place, simulate
 from mmrs_core.runtime.run import Run
-from mmrs_core.scene import RobotType
+from mmrs_core.scene import Name, RobotType
 
 _HOLDS = {"yes": True, "true": True, "no": False, "false": False}
 
@@ -119,7 +120,11 @@ def fly(
 
 
 def write_logs(
-    run: Run, program: Program, folder: Path, types: Mapping[str, RobotType] | None = None
+    run: Run,
+    program: Program,
+    folder: Path,
+    types: Mapping[str, RobotType] | None = None,
+    kinds: Mapping[Name, RobotKind] | None = None,
 ) -> tuple[Path, ...]:
     """Write the log and the black box of every robot; return the logs.
 
@@ -136,7 +141,7 @@ def write_logs(
     with LogWriter(folder) as writer:
         for record in run.records:
             writer.write(record)
-    write_boxes(run, program, types or {}, folder)
+    write_boxes(run, program, types or {}, folder, kinds or {})
     return tuple(folder / name for name in names if (folder / name).exists())
 
 

@@ -26,18 +26,21 @@ def verdict_line(verdict: Verdict) -> str:
     """
     margin = "" if verdict.margin is None else f"margin {quantity(verdict.margin, verdict.unit)}"
     told = [verdict.message] if verdict.message else [verdict.robot, verdict.move, verdict.area]
-    return f"{verdict.property}: {', '.join(filter(None, (verdict.status.value, *told, margin)))}"
+    found = ", ".join(filter(None, (verdict.status.value, *told, margin)))
+    return f"{verdict.property}: {found}{f'; {verdict.caveat}' if verdict.caveat else ''}"
 
 
 def verdict_table(verdicts: Iterable[Verdict]) -> Iterator[str]:
-    """Yield a line for each property, the least margin with it; all that is not safe in full."""
+    """Yield a line for each property, the least margin with it; in full what is not safe or has a caveat."""
     by_property: dict[str, list[Verdict]] = {}
     for verdict in verdicts:
         by_property.setdefault(verdict.property, []).append(verdict)
     width = max((len(name) for name in by_property), default=0)
     for name, found in by_property.items():
         yield f"  {name:<{width}}  {_summary(found)}"
-        yield from (f"    - {verdict_line(each)}" for each in found if each.status in _SPELT_OUT)
+        yield from (
+            f"    - {verdict_line(each)}" for each in found if each.status in _SPELT_OUT or each.caveat
+        )
 
 
 _SPELT_OUT = (Status.VIOLATED, Status.UNKNOWN)

@@ -33,6 +33,7 @@ class Verdict:
         move: identifier of the move where the margin is smallest; area: name of the area it is to.
         message: what was found, for people; for unknown: what is missing.
         place: where that move, or else the robot, stands in the user's files.
+        caveat: what a safe verdict excuses or leaves out, so that it is always shown.
     """
 
     property: str
@@ -44,6 +45,7 @@ class Verdict:
     area: str = ""
     message: str = ""
     place: Place = Place()
+    caveat: str = ""
 
 
 @dataclass(frozen=True, slots=True)

@@ -94,6 +94,8 @@ class RobotKind:
         policies: response by event, where the models say nothing; one for each event.
         barrier: the area that robots of a type keep out of because of an element of the context, such as
             water that is too deep for them; None where the element does not hinder them.
+        vehicle: class of vehicle that carries it out there, as ``mmrs sitl --kind`` names it; empty where
+            none of these does: targets and backends then refuse its robots by the name of the kind.
     """
 
     name: str
@@ -104,6 +106,7 @@ class RobotKind:
     travel: Callable[[tuple[Position, ...]], tuple[MoveSpec, ...]]
     policies: Mapping[PolicyEvent, PolicyResponse] = field(default_factory=dict)
     barrier: Callable[[RobotType, Part], Area | None] | None = None
+    vehicle: str = ""
 
 
 @dataclass(frozen=True, slots=True)

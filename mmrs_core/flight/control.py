@@ -7,7 +7,8 @@ robots, readable by its user only. An order is one line::
 
 without `robots` it is for all of them; ``answer`` has `question` and `answer` beside. There is one line of
 answer for each robot, as soon as it has obeyed or refused, with the seconds that it took, then
-``{"done": true}``. Run this module to give orders: ``python -m mmrs_flight.control hold --log logs``.
+``{"done": true}``; or one ``{"error": "…"}``. Whoever gives no order in time, or one without the token, is
+hung up on. Run this module to give orders: ``python -m mmrs_flight.control hold --log logs``.
 """
 
 from __future__ import annotations
@@ -26,7 +27,8 @@ from errno import EEXIST
 from pathlib import Path
 from typing import Any
 
-from .orders.calling import network
+from .callers import Callers
+from .orders.calling import network, object_in
 from .orders.ordering import PATTERN
 from .orders.orders import ANSWER, ORDERS, STATUS, Inbox, Order, Receipt
 
@@ -35,9 +37,15 @@ ANSWER_SECONDS = 30.0
 """Longest time that a robot has for an answer; a client may ask for less with `seconds`."""
 
 LONGEST_LINE = 65_536
-IDLE_SECONDS = 60.0
+GREETING_SECONDS = 5.0
+"""Longest time from the connection, or from the last answer, to the end of an order's line."""
+
+DEAF_SECONDS = 60.0
+"""How long a client may leave its answers unread."""
+
+SORE_SECONDS = 0.2
 CONNECTIONS = 16
-"""How many people at once are heard."""
+"""How many clients at once are heard."""
 
 Status = Callable[[str], Mapping[str, object]]
 
@@ -49,7 +57,15 @@ class Taken(Exception):  # noqa: N818  # what the robot is
 class Control:
     """Listens for orders in threads of its own, and hands them to the robots' inboxes."""
 
-    def __init__(self, folder: Path, run: str, inboxes: Mapping[str, Inbox], status: Status) -> None:
+    def __init__(
+        self,
+        folder: Path,
+        run: str,
+        inboxes: Mapping[str, Inbox],
+        status: Status,
+        *,
+        greeting_seconds: float = GREETING_SECONDS,
+    ) -> None:
         """Begin to listen.
 
         Args:
@@ -57,6 +73,7 @@ class Control:
             run: identifier of the run.
             inboxes: by robot; all robots of this process.
             status: what there is to say of a robot, as JSON has it; called from any thread.
+            greeting_seconds: that a client has for the line of an order.
 
         Raises:
             Taken: another process runs one of these robots with its logs in that folder.
@@ -65,8 +82,10 @@ class Control:
         self._inboxes = dict(inboxes)
         self._status = status
         self._token = secrets.token_urlsafe(24)
-        self._free = threading.BoundedSemaphore(CONNECTIONS)
+        self._late = {"error": f"an order is one whole line within {greeting_seconds:g} s"}
         self._server = socket.create_server(("127.0.0.1", 0))
+        full = _written({"error": f"{CONNECTIONS} orders are being obeyed: give this one again"})
+        self._callers = Callers(self._server, CONNECTIONS, greeting_seconds, full)
         facts = {
             "port": self._server.getsockname()[1],
             "token": self._token,
@@ -82,51 +101,58 @@ class Control:
         except (OSError, Taken):
             self._server.close()
             raise
-        self._closing = False
+        self._closing = threading.Event()
         self._thread = threading.Thread(target=self._listen, name="control channel", daemon=True)
         self._thread.start()
 
     def close(self) -> None:
         """Listen no more, and take the announcement away."""
-        self._closing = True
+        self._closing.set()
         with suppress(OSError):
-            # Somebody who calls wakes the thread that waits for calls.
+            # A call wakes the thread that waits for calls.
             socket.create_connection(self._server.getsockname(), 1.0).close()
         self._thread.join()
         self._server.close()
         self._path.unlink(missing_ok=True)
 
     def _listen(self) -> None:
-        while True:
-            connection, _ = self._server.accept()
-            if self._closing or not self._free.acquire(blocking=False):
-                connection.close()
-                if self._closing:
-                    return
+        while not self._closing.is_set():
+            try:
+                caller = self._callers.take()
+            except OSError:
+                # The system has no more connections just now; the clients wait, and it may have some soon.
+                self._closing.wait(SORE_SECONDS)
                 continue
-            threading.Thread(target=self._serve, args=(connection,), name="orders", daemon=True).start()
+            if caller is not None:
+                threading.Thread(target=self._serve, args=(caller,), name="orders", daemon=True).start()
 
-    def _serve(self, connection: socket.socket) -> None:
+    def _serve(self, caller: socket.socket) -> None:
         try:
-            with connection, connection.makefile("rwb") as file:
-                connection.settimeout(IDLE_SECONDS)
-                while line := file.readline(LONGEST_LINE):
-                    for reply in self._replies(line):
-                        file.write(json.dumps(reply).encode("ascii") + b"\n")
-                        file.flush()
+            with caller, caller.makefile("rwb") as file:
+                caller.settimeout(DEAF_SECONDS)
+                while (line := file.readline(LONGEST_LINE)).endswith(b"\n"):
+                    try:
+                        given = self._proven(line)
+                    except ValueError as error:
+                        file.write(_written({"error": str(error)}))
+                        return
+                    with self._callers.served(caller):
+                        for reply in self._replies(given):
+                            file.write(_written(reply))
+                            file.flush()
+                file.write(_written(self._late))
         except OSError:
             # Whoever gave the order does not want to hear its end; the robots obey all the same.
             return
         finally:
-            self._free.release()
+            self._callers.leave(caller)
 
-    def _replies(self, line: bytes) -> Iterator[Mapping[str, object]]:
+    def _replies(self, given: Mapping[str, Any]) -> Iterator[Mapping[str, object]]:
         try:
-            given = self._understood(line)
+            order, robots, seconds = self._understood(given)
         except ValueError as error:
             yield {"error": str(error)}
             return
-        order, robots, seconds = given
         if order.name == STATUS:
             yield from ({"robot": robot, **self._status(robot)} for robot in robots)
         else:
@@ -148,18 +174,34 @@ class Control:
         for robot in sorted(missing):
             yield _line(robot, order, False, seconds, "no answer yet; it will still be obeyed")
 
-    def _understood(self, line: bytes) -> tuple[Order, list[str], float]:
-        given = _object(line)
-        if not hmac.compare_digest(str(given.get("token", "")).encode(), self._token.encode()):
+    def _proven(self, line: bytes) -> Mapping[str, Any]:
+        """Return an order of one who knows the token.
+
+        Raises:
+            ValueError: it is none.
+        """
+        given = object_in(line)
+        token = given.get("token")
+        known = self._token.encode()
+        if not isinstance(token, str) or not hmac.compare_digest(
+            token.encode("utf-8", "surrogatepass"), known
+        ):
             raise ValueError("token: is not that of this process")
-        robots = given.get("robots") or list(self._inboxes)
-        if not isinstance(robots, list) or not all(isinstance(robot, str) for robot in robots):
+        return given
+
+    def _understood(self, given: Mapping[str, Any]) -> tuple[Order, list[str], float]:
+        robots = given.get("robots", list(self._inboxes))
+        if not isinstance(robots, list) or not robots or not all(isinstance(robot, str) for robot in robots):
             raise ValueError("robots: is no list of names")
         unknown = [robot for robot in robots if robot not in self._inboxes]
         if unknown:
             known = ", ".join(map(ascii, self._inboxes))
             raise ValueError(f"{', '.join(map(ascii, unknown))}: no robot of this process, which has {known}")
         return _order(given), list(dict.fromkeys(robots)), _seconds(given.get("seconds", ANSWER_SECONDS))
+
+
+def _written(reply: Mapping[str, object]) -> bytes:
+    return json.dumps(reply).encode("ascii") + b"\n"
 
 
 def _line(robot: str, order: Order, confirmed: bool, seconds: float, why: str) -> Mapping[str, object]:
@@ -172,22 +214,13 @@ def _line(robot: str, order: Order, confirmed: bool, seconds: float, why: str) -
     }
 
 
-def _object(line: bytes) -> dict[str, Any]:
-    try:
-        given = json.loads(line)
-    except (ValueError, RecursionError) as error:
-        raise ValueError("an order is one line of JSON") from error
-    if not isinstance(given, dict):
-        raise ValueError("an order is an object of JSON")
-    return given
-
-
 def _order(given: Mapping[str, Any]) -> Order:
     name = given.get("order")
-    if name not in ORDERS:
-        raise ValueError(f"order: {name!r} is none of {', '.join(ORDERS)}")
+    if not isinstance(name, str) or name not in ORDERS:
+        shown = f"{name!r} is" if isinstance(name, str) else "is"
+        raise ValueError(f"order: {shown} none of {', '.join(ORDERS)}")
     if name != ANSWER:
-        return Order(str(name))
+        return Order(name)
     question, answer = given.get("question"), given.get("answer")
     if not isinstance(question, str) or not question or not isinstance(answer, bool):
         raise ValueError("answer: needs a question, and an answer that is true or false")
@@ -226,10 +259,11 @@ def _refuse_rivals(own: Path, robots: Collection[str]) -> None:
     """
     for path in sorted({*own.parent.glob(PATTERN)} - {own}):
         try:
-            facts = _object(path.read_bytes())
+            facts = object_in(path.read_bytes())
         except (OSError, ValueError):
             continue  # it is being written, by somebody who looks at ours then, or taken away
-        if shared := [robot for robot in robots if robot in facts.get("robots", ())]:
+        others = facts.get("robots")
+        if shared := [robot for robot in robots if isinstance(others, list) and robot in others]:
             own.unlink()
             names = f"{', '.join(map(ascii, shared))} {'is' if len(shared) == 1 else 'are'}"
             raise Taken(f"{names} run by process {facts.get('pid')} already ({path.name}): end that first")
@@ -238,9 +272,9 @@ def _refuse_rivals(own: Path, robots: Collection[str]) -> None:
 def _was_left(path: Path) -> bool:
     """Return whether an announcement is that of a process that is not there any more."""
     try:
-        port = int(json.loads(path.read_text("ascii"))["port"])
+        port = int(object_in(path.read_bytes())["port"])
         socket.create_connection(("127.0.0.1", port), 1.0).close()
-    except (ValueError, KeyError, TypeError):
+    except (ValueError, KeyError, TypeError, OverflowError):
         return False  # it may be being written right now
     except OSError:
         return True

@@ -22,7 +22,7 @@ from .program import Robot
 from .records.log import read
 from .screen import bear_all_characters, say, unfailing
 from .session import Shared, Vehicles, run_robot
-from .slots import BusSlots, LocalSlots, recorded_of, shared_slots, strangers_of
+from .slots import BusSlots, LocalSlots, recorded_of, shared_slots, strangers_of, team_of
 from .steps.ending import FAILED, INTERRUPTED, LINK, OK
 from .steps.resuming import slots_of
 
@@ -109,9 +109,8 @@ def _slots(
     if options.bus.used:
         from .bus.carriers.over_zenoh import Endpoints, ZenohCarrier
 
-        fleet = {robot.id for robot in robots} | {*robots[0].fleet} | {*strangers_of(robots)}
         reached = Endpoints(options.bus.listen, options.bus.connect, options.bus.file)
-        zenoh = ZenohCarrier(robots[0].mission, options.run, sorted(fleet), reached, plan=robots[0].plan)
+        zenoh = ZenohCarrier(robots[0].mission, options.run, team_of(robots), reached, plan=robots[0].plan)
         carrier = rehearsal.wrap_carrier(zenoh, [robot.id for robot in robots])
         try:
             bus = shared_slots(robots, options.run, options.log, carrier, _recorded(robots, options))

@@ -227,6 +227,7 @@ def shared_slots(
         [member_of(robot) for robot in robots],
         run,
         plan=robots[0].plan,
+        team=team_of(robots),
         carrier=carrier,
         journals=lambda robot: FileJournal(paths[robot]) if robot in paths else NoJournal(),
         recorded=recorded,
@@ -245,6 +246,11 @@ def strangers_of(robots: Sequence[Robot]) -> tuple[str, ...]:
     """Return the robots of other processes that these robots wait for or notify, by name."""
     members = [member_of(robot) for robot in robots]
     return tuple(sorted({each for member in members for each in member.contacts} - {r.id for r in robots}))
+
+
+def team_of(robots: Sequence[Robot]) -> tuple[str, ...]:
+    """Return all robots of the mission that these robots are of, by name."""
+    return tuple(sorted({robot.id for robot in robots} | {*robots[0].fleet} | {*strangers_of(robots)}))
 
 
 def recorded_of(robot: Robot, lines: Iterable[Mapping[str, Any]]) -> Recorded:

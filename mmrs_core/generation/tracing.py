@@ -18,7 +18,7 @@ from jinja2.parser import Parser
 from mmrs_core.contributions.targets import TracedStep
 
 MARK = "\ufdd0"
-_TOKEN = re.compile(f"{MARK}(?:({MARK})|(\\[.*?\\]);|(;))", re.DOTALL)
+_TOKEN = re.compile(f"{MARK}(?:({MARK})|(\\[[^;{MARK}]*);|(;))")
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,7 +44,9 @@ class Serves(Extension):
 
     def _marked(self, steps: TracedStep | Sequence[TracedStep], caller: Callable[[], str]) -> str:
         every: list[TracedStep] = [steps] if isinstance(steps, TracedStep) else list(_several(steps))
-        return f"{MARK}{json.dumps([asdict(step) for step in every])};{caller()}{MARK};"
+        # a semicolon ends the mark, so that none may stand within it
+        words = json.dumps([asdict(step) for step in every]).replace(";", "\\u003b")
+        return f"{MARK}{words};{caller()}{MARK};"
 
 
 def _several(steps: object) -> Sequence[TracedStep]:

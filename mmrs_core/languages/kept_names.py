@@ -8,7 +8,7 @@ from html import unescape
 from mmrs_core.languages.element import Unknown
 from mmrs_core.languages.json_form.unknown import UnknownObject, stated
 
-_ATTRIBUTE = re.compile(r"""([\w:.-]+)\s*=\s*("[^"]*"|'[^']*')""")
+_ATTRIBUTE = re.compile(r"""\s([\w:.-]+)\s*=\s*("[^"]*"|'[^']*')""")
 _TAG = re.compile(r"""<[^\s/>]+(?:\s+[\w:.-]+\s*=\s*(?:"[^"]*"|'[^']*'))*""")
 
 

@@ -52,6 +52,10 @@ class Enumeration:
         known = ", ".join(literal.literal for literal in self.literals)
         raise ValueError(f"{shown(text)}: not a literal of {self.name} ({known})")
 
+    def meant(self, text: str) -> str:
+        """Return a hint that names the literal most like a text that is none, or an empty text."""
+        return nearest(text, (literal.literal for literal in self.literals))
+
     def render(self, value: object) -> str:
         """Return the literal of a name, which must be one."""
         return next(literal.literal for literal in self.literals if literal.name == value)

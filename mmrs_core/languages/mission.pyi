@@ -40,6 +40,8 @@ class Mission(NamedElement):
     """How far a robot may be from where it believes to be, in metres; added to every clearance."""
     minimumSeparation: float | None
     """Smallest distance allowed between two robots, in metres; absent: not checked."""
+    largestGap: float | None
+    """Largest distance that is meant from a place of the mission or its context to the next one, in metres; absent: 100000. What lies farther off is an error."""
     reserve: float
     """Part of a robot's lifetime and energy that a plan must leave unused, from 0 to 1."""
     policies: list[robot.Policy]
@@ -60,6 +62,7 @@ class Mission(NamedElement):
         transitAltitude: float | None = ...,
         positionError: float | None = ...,
         minimumSeparation: float | None = ...,
+        largestGap: float | None = ...,
         reserve: float | None = ...,
         policies: Iterable[robot.Policy] | None = ...,
         acceptedUnknowns: Iterable[str] | None = ...,

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -13,6 +13,7 @@ from mmrs_core.errors import UnreadableError
 from mmrs_core.languages import behaviour, context, mission, robot
 from mmrs_core.languages.codes import explained, refusal
 from mmrs_core.languages.conformance import check_conformance
+from mmrs_core.languages.crowds import crowds
 from mmrs_core.languages.element import Element, Unknown, metaclass_of, place_of
 from mmrs_core.languages.model import Model
 from mmrs_core.languages.reading import Reading
@@ -112,8 +113,9 @@ def read_project(
 ) -> tuple[ModelSet | None, tuple[Diagnostic, ...]]:
     """Return the models of a project and the faults of their files.
 
-    There are no models if there is no mission among them, or a file cannot be read at all: then whatever
-    the others say is checked by itself, and not against each other.
+    There are no models if there is no mission among them, the mission or its place holds more than can be
+    worked through, or a file cannot be read at all: then whatever the others say is checked by itself, and
+    not against each other.
 
     Args:
         mission: the project's folder, or the mission's file.
@@ -140,7 +142,10 @@ def read_project(
     found = _single(drafts[0], registry.metaclass("urn:mmrs:mission:1.0", "Mission"), faults)
     where = registry.metaclass("urn:mmrs:context:1.0", "Context")
     place = _single(drafts[1], where, faults) if context_file else None
-    types = _robot_types(drafts[len(files) - len(robot_files) :], registry, faults)
+    crowded = [fault for root in (found, place) if root is not None for fault in crowds(root)]
+    if crowded:
+        return None, tuple(map(explained, (*faults, *crowded)))
+    types = types_by_name(_robot_roots(drafts[len(files) - len(robot_files) :], registry, faults), faults)
     if found is None:
         return None, tuple(map(explained, faults))
     return ModelSet(found, place or None, types, models), tuple(map(explained, faults))  # type: ignore[arg-type]
@@ -185,11 +190,10 @@ def _single(draft: Draft, metaclass: Metaclass, faults: list[Diagnostic]) -> Ele
     return chosen
 
 
-def _robot_types(
-    drafts: Sequence[Draft], registry: Registry, faults: list[Diagnostic]
-) -> Mapping[str, robot.Robot]:
+def types_by_name(roots: Iterable[robot.Robot], faults: list[Diagnostic]) -> Mapping[str, robot.Robot]:
+    """Return the first type of robot of each name, after a fault for every other of that name."""
     types: dict[str, robot.Robot] = {}
-    for root in _robot_roots(drafts, registry, faults):
+    for root in roots:
         name = root.name or ""
         if name in types:
             first = place_of(types[name])

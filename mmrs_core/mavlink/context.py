@@ -10,7 +10,7 @@ from mmrs_core.contributions.targets import TargetInput
 from mmrs_core.contributions.wiring import Wiring, Wirings
 from mmrs_core.errors import UnsupportedError
 from mmrs_core.mavlink.earth import degrees_of, metres
-from mmrs_core.mavlink.vehicles import VehicleClass, speed_of, vehicle_class
+from mmrs_core.mavlink.vehicles import VehicleClass, speed_of, uncarried, vehicle_class
 from mmrs_core.mavlink.wiring import wiring_of
 from mmrs_core.scene import Frame, Point, Position, RobotType
 
@@ -64,16 +64,23 @@ def context_of(
         geographic: whether degrees are needed at all.
 
     Raises:
-        UnsupportedError: degrees are needed, and the behaviour is local.
+        UnsupportedError: degrees are needed, and the behaviour is local; or no vehicle carries the robot.
     """
     type = input.types.get(robot.type_name)
-    vehicle = vehicle_class(robot, type)
+    vehicle = vehicle_class(robot, type, input.robot_kinds)
+    if vehicle is None:
+        raise UnsupportedError(vehicleless(robot, input))
     points = tuple(dict.fromkeys([*_points(robot), *more])) if geographic else ()
     frame = input.program.frame
     home = robot.home[2] if robot.home is not None else 0.0
     zero = frame.surface if vehicle.dives else home
     degrees = dict(zip(points, degrees_of(points, frame), strict=True)) if geographic else {}
     return RobotContext(robot, type, vehicle, frame, zero, degrees, input.device_actions)
+
+
+def vehicleless(robot: RobotProgram, input: TargetInput) -> str:
+    """Return why no vehicle carries a robot; empty where one does."""
+    return uncarried(robot.id, input.types.get(robot.type_name), input.robot_kinds)
 
 
 def homeless(robot: RobotProgram) -> str:
@@ -97,7 +104,8 @@ def neighbours_of(robot: RobotProgram, input: TargetInput) -> tuple[tuple[str, P
     if input.program.frame.is_local:
         return ()
     kinds = {
-        each.id: vehicle_class(each, input.types.get(each.type_name)).name for each in input.program.robots
+        each.id: vehicle_class(each, input.types.get(each.type_name), input.robot_kinds)
+        for each in input.program.robots
     }
     return tuple(
         (each.id, each.home)

@@ -10,15 +10,17 @@ from pathlib import Path
 from mmrs_core.behaviour.program import Program, RobotProgram
 from mmrs_core.contributions.targets import FileSpec, Target, TargetInput, TracedStep
 from mmrs_core.flight.conditions import is_standard
+from mmrs_core.flight.options import FIRST_PORT, PORT_STEP
 from mmrs_core.generation.escaping import file_stems
 from mmrs_core.mavlink.actions import action_losses
 from mmrs_core.mavlink.capabilities import OF_CONTROLLERS
-from mmrs_core.mavlink.context import RobotContext, context_of, homeless, require_home
-from mmrs_core.mavlink.earth import at_a_pole
+from mmrs_core.mavlink.context import RobotContext, context_of, homeless, require_home, vehicleless
+from mmrs_core.mavlink.earth import at_a_pole, degrees_of
 from mmrs_core.mavlink.fencing import fence_faults
 from mmrs_core.mavlink.movements import losses_of
 from mmrs_core.mavlink.program import deciding, robot_view, seeking, trace_of
 from mmrs_core.mavlink.safety import areas_of, policies_of
+from mmrs_core.mavlink.vehicles import PX4, autopilot_of
 from mmrs_core.resources import shipped
 from mmrs_core.scene import Policy
 
@@ -52,17 +54,39 @@ def files(input: TargetInput) -> Iterator[FileSpec]:
         yield FileSpec(
             f"{module}.py", "robot.py.jinja", {"robot": robot_view(robot, input)}, trace=trace_of(robot)
         )
-    yield from fleet_files(input.program, modules)
+    yield from fleet_files(input.program, modules, tuple(_rehearsal(input)))
     for path in sorted(RUNTIME_SOURCES.rglob("*.py")):
         yield FileSpec(f"{RUNTIME}/{path.relative_to(RUNTIME_SOURCES).as_posix()}", path.name, source=path)
 
 
-def fleet_files(program: Program, modules: Sequence[str]) -> Iterator[FileSpec]:
+def _rehearsal(input: TargetInput) -> Iterator[str]:
+    """Yield the arguments of a simulated vehicle for each robot: where its controller expects one.
+
+    A local behaviour has no place on the Earth, and its robots count from wherever their vehicles are.
+    """
+    frame = input.program.frame
+    for number, robot in enumerate(input.program.robots):
+        context = context_of(robot, input, geographic=False)
+        given = (
+            f"--port {FIRST_PORT + PORT_STEP * number} --system {number + 1} --kind {context.vehicle.name}"
+        )
+        if autopilot_of(context.type) == PX4:
+            given += f" --firmware {PX4}"
+        if not frame.is_local:
+            ((latitude, longitude),) = degrees_of([require_home(robot)[:2]], frame)
+            given += f" --home={latitude:.7f},{longitude:.7f}"
+        yield given
+
+
+def fleet_files(
+    program: Program, modules: Sequence[str], rehearsal: Sequence[str] = ()
+) -> Iterator[FileSpec]:
     """Yield what controllers of a mission share: fleet, README, conditions and objects where there are any.
 
     Args:
         program: of the mission.
         modules: names of the controllers, in the order of its robots.
+        rehearsal: arguments of the simulated vehicle of each robot.
     """
     conditions, objects = deciding(program), seeking(program)
     common = {
@@ -75,6 +99,8 @@ def fleet_files(program: Program, modules: Sequence[str]) -> Iterator[FileSpec]:
         "standard_conditions": [name for name in conditions if is_standard(name)],
         "own_conditions": [name for name in conditions if not is_standard(name)],
         "objects": objects,
+        "rehearsal": rehearsal,
+        "local": program.frame.is_local,
     }
     yield FileSpec("fleet.py", "fleet.py.jinja", common)
     yield FileSpec("README.md", "README.md.jinja", common)
@@ -90,6 +116,9 @@ def refusals(input: TargetInput) -> Iterator[str]:
     """Yield what no controller can do."""
     yield from at_a_pole(input.program.frame)
     for robot in input.program.robots:
+        if unknown := vehicleless(robot, input):
+            yield unknown
+            continue
         yield from _refused(robot, input)
 
 

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 from mmrs_core.behaviour.program import Move, RobotProgram
-from mmrs_core.contributions.rules import most_specific
+from mmrs_core.contributions.rules import RobotKind, most_specific, robot_kind_of
 from mmrs_core.scene import Capability, Name, RobotType
 
 TAKE_OFF = ("urn:mmrs:multicopter:1.0", "TakeOff")
@@ -94,21 +94,42 @@ AUTOPILOTS: Mapping[str, int] = {ARDUPILOT: 3, PX4: 12}
 
 CLASSES: Mapping[Name, VehicleClass] = {
     ("urn:mmrs:multicopter:1.0", "Drone"): COPTER,
-    ("urn:mmrs:auv:1.0", "AUVMovement"): SUB,
+    ("urn:mmrs:auv:1.1", "AUVMovement"): SUB,
     ("urn:mmrs:robot:1.0", "Robot"): ROVER,
 }
 
 
-def vehicle_class(robot: RobotProgram, type: RobotType | None) -> VehicleClass:
-    """Return what a robot is by its type, or, where that is missing, by what it does."""
-    found = class_of_type(type) if type is not None else ROVER
+VEHICLES: Mapping[str, VehicleClass] = {each.name: each for each in CLASSES.values()}
+
+
+def vehicle_class(
+    robot: RobotProgram, type: RobotType | None, kinds: Mapping[Name, RobotKind]
+) -> VehicleClass | None:
+    """Return what a robot is by its type, or, where that is missing, by what it does; None: no vehicle."""
+    found = class_of_type(type, kinds) if type is not None else ROVER
     if found is not ROVER:
         return found
     return COPTER if any(move.is_a(TAKE_OFF) for move in robot.moves) else ROVER
 
 
-def class_of_type(type: RobotType) -> VehicleClass:
-    """Return what robots of a type are, whatever they do."""
+def class_of_type(type: RobotType, kinds: Mapping[Name, RobotKind]) -> VehicleClass | None:
+    """Return what robots of a type are, whatever they do; None where their kind names no vehicle."""
+    kind = robot_kind_of(type, kinds)
+    return VEHICLES.get(kind.vehicle) if kind is not None else _by_metaclass(type)
+
+
+def uncarried(robot: str, type: RobotType | None, kinds: Mapping[Name, RobotKind]) -> str:
+    """Return why no vehicle carries a robot, with the name of its kind; empty where one does."""
+    kind = robot_kind_of(type, kinds) if type is not None else None
+    if kind is None or kind.vehicle in VEHICLES:
+        return ""
+    known = ", ".join(sorted(VEHICLES))
+    named = f"names vehicle '{kind.vehicle}'" if kind.vehicle else "names no vehicle"
+    return f"robot '{robot}': is of kind '{kind.name}', which {named}; known are {known} (RobotKind.vehicle)"
+
+
+def _by_metaclass(type: RobotType) -> VehicleClass:
+    """Return what robots of a type are where the kinds of robot are not at hand."""
     for metaclasses in (type.metaclasses, type.capability_metaclasses):
         found = most_specific(metaclasses, CLASSES)
         if found is not None and CLASSES[found] is not ROVER:

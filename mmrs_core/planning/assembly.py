@@ -5,7 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from mmrs_core.planning.crew import Crew, homebound_of
+from mmrs_core.planning.idleness import why_idle
 from mmrs_core.planning.jobs import Job, is_control
+from mmrs_core.planning.left_out import left_out
 from mmrs_core.planning.schedule import Schedule, signal_name
 from mmrs_core.planning.states import State
 from mmrs_core.scene import Await, Branch, Plan, RobotPlan, Scene, Serve, Signal, Step
@@ -36,6 +38,7 @@ def assemble(crew: Crew, jobs: Sequence[Job], schedule: Schedule) -> Plan:
         makespan=max((state.time for state in finished.values()), default=0.0),
         begins={name: begin for name, (begin, _) in spans.items()},
         ends={name: end for name, (_, end) in spans.items()},
+        left_out=left_out(crew.scene, steps),
         notes=(*_of_no_return(crew, schedule), *_of_calm(crew.scene), *_NOTES),
     )
 
@@ -65,7 +68,7 @@ def _robot_plan(
     crew: Crew, name: str, steps: Mapping[str, tuple[Step, ...]], finished: Mapping[str, State]
 ) -> RobotPlan:
     if name not in finished:
-        return RobotPlan(name, ())
+        return RobotPlan(name, (), idle=why_idle(crew, name))
     end = finished[name]
     kinematics = crew.pilots[name].kinematics
     energy = kinematics.power * kinematics.draw * end.busy if kinematics.power > 0.0 else None

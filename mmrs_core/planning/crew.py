@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from copy import copy
+from dataclasses import replace
 
 from mmrs_core.errors import UnreachableError
 from mmrs_core.planning.jobs import is_control
@@ -52,6 +54,7 @@ class Crew:
         fine: bool = False,
         homebound: frozenset[str] | None = None,
         altitudes: Mapping[str, float] | None = None,
+        from_homes: float | None = None,
     ) -> None:
         """Lay everything out.
 
@@ -60,10 +63,11 @@ class Crew:
             fine: whether works are divided as finely as can be, for missions that barely fit.
             homebound: names of the robots that always keep enough to go home; None: see `homebound_of`.
             altitudes: of transit, by robot; None: the scene's for all.
+            from_homes: metres that robots keep from the homes of others; None: see `Spaces`.
         """
         self.scene, self.fine = scene, fine
         self.homebound = homebound_of(scene) if homebound is None else homebound
-        spaces, aloft = Spaces(scene), altitudes or {}
+        spaces, aloft = Spaces(scene, from_homes=from_homes), altitudes or {}
         fluid = scene.minimum_separation is None
         self.pilots: Mapping[str, Pilot] = {
             robot.name: Pilot(
@@ -119,6 +123,13 @@ class Crew:
                 self.refusals[task, name] = str(error)
         return tuple(able)
 
+    def asking(self, wanted: Mapping[str, int]) -> Crew:
+        """Return the same crew, materials and all, where tasks want so many robots."""
+        tasks = [replace(task, wanted=wanted.get(task.name, task.wanted)) for task in self.scene.tasks]
+        other = copy(self)
+        other.scene = replace(self.scene, tasks=tuple(tasks))
+        return other
+
     def forwards(self, task: str, robot: str) -> Material | None:
         """Return the material of a task for a robot; None if it cannot do the task."""
         return self._materials.get((task, robot, False))
@@ -143,6 +154,19 @@ class Crew:
         found = {name for team in self.teams[task] for name in team}
         return tuple(name for name in self.pilots if name in found)
 
+    def sharers(self, task: str) -> int:
+        """Return how many robots may share a task at most; 1 where it is indivisible."""
+        return 1 if self.whole(task) else max((len(team) for team in self.teams[task]), default=0)
+
+    def whole(self, task: str) -> bool:
+        """Return whether one robot must do all of a task."""
+        materials = [self.forwards(task, name) for name in self.able(task)]
+        return any(each is not None and each.whole for each in materials)
+
+    def sharing_with(self, task: str, robot: str) -> tuple[str, ...]:
+        """Return the robots that can share a task with one, itself included."""
+        return next((team for team in self.teams[task] if robot in team), ())
+
     def shortfalls(self) -> Iterator[str]:
         """Yield what makes tasks impossible whatever the plan: nobody able, or too few."""
         for task in self.scene.tasks:
@@ -152,12 +176,22 @@ class Crew:
             if not largest:
                 yield f"task '{task.name}' can be done by no robot ({self.why_not(task.name)})"
             elif task.wanted is not None and task.wanted > largest:
-                others = self.why_not(task.name)
+                others = "; ".join(each for each in (self.sorts(task.name), self.why_not(task.name)) if each)
                 rest = f" ({others})" if others else ""
                 yield (
                     f"task '{task.name}' wants {task.wanted} robots, {largest} can share it:"
                     f" {task.wanted - largest} short{rest}"
                 )
+
+    def sorts(self, task: str) -> str:
+        """Return which robots can share a task among themselves only; empty where all can."""
+        teams = [" and ".join(team) for team in self.teams[task] if team]
+        apart = ", ".join(teams[:-1]) + f" cannot share it with {teams[-1]}" if len(teams) > 1 else ""
+        return (
+            f"{apart}: sensors or clearances differ, so that their work is laid out otherwise"
+            if apart
+            else ""
+        )
 
     def why_not(self, task: str) -> str:
         """Return why robots cannot do a task, robot by robot."""

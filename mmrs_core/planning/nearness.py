@@ -5,13 +5,15 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
+from math import dist
 from typing import TypeAlias
 
 import numpy as np
 import shapely
 from numpy.typing import NDArray
 
-from mmrs_core.planning.timeline import Ride
+from mmrs_core.planning.timeline import Ride, Spot
+from mmrs_core.scene import Position
 
 Floats: TypeAlias = NDArray[np.float64]
 Indices: TypeAlias = NDArray[np.intp]
@@ -26,16 +28,27 @@ class Track:
         places: (n, 2, 3) ends of each piece, equal for a stay.
         least: (n,) seconds that it takes along the piece at least.
         radii: (n,) metres from the piece within which it may be.
+        spots: (n,) where each piece is, seen from the robot's home (see `Spot`).
+        home: of the robot.
     """
 
     times: Floats
     places: Floats
     least: Floats
     radii: Floats
+    spots: Indices
+    home: Position
 
     def pick(self, pieces: Indices) -> Track:
         """Return some pieces only."""
-        return Track(self.times[pieces], self.places[pieces], self.least[pieces], self.radii[pieces])
+        kept = self.times[pieces], self.places[pieces], self.least[pieces], self.radii[pieces]
+        return Track(*kept, self.spots[pieces], self.home)
+
+    def box(self) -> Floats:
+        """Return the lowest and the highest coordinates (2, 3) at which the robot may be."""
+        radii = self.radii[:, None, None]
+        low, high = (self.places - radii).min(axis=(0, 1)), (self.places + radii).max(axis=(0, 1))
+        return np.stack([low, high])
 
     def cut(self, longest: float) -> Track:
         """Return the same in pieces no longer than so many metres, each within its own span of time."""
@@ -47,14 +60,14 @@ class Track:
         start, way = self.places[of, 0], (self.places[:, 1] - self.places[:, 0])[of]
         ends = [start + share[:, None] * way for share in (low, high)]
         times = [self.times[of, 0] + self.least[of] * low, self.times[of, 1] - self.least[of] * (1.0 - high)]
-        return Track(
-            np.stack(times, axis=1), np.stack(ends, axis=1), self.least[of] / parts[of], self.radii[of]
-        )
+        least = self.least[of] / parts[of]
+        times_of_each, places = np.stack(times, axis=1), np.stack(ends, axis=1)
+        return Track(times_of_each, places, least, self.radii[of], self.spots[of], self.home)
 
 
-def track_of(rides: Sequence[Ride]) -> Track:
-    """Return rides as pieces, one for each leg or stay."""
-    times, places, least, radii = [], [], [], []
+def track_of(rides: Sequence[Ride], home: Position) -> Track:
+    """Return the rides of a robot as pieces, one for each leg or stay."""
+    times, places, least, radii, spots = [], [], [], [], []
     for ride in rides:
         points = ride.points if len(ride.points) > 1 else ride.points * 2
         seconds = ride.least or (0.0,)
@@ -64,12 +77,15 @@ def track_of(rides: Sequence[Ride]) -> Track:
             places.append(leg)
             least.append(each)
             radii.append(ride.radius)
+            spots.append(ride.spot)
             before += each
     return Track(
         np.array(times, dtype=np.float64).reshape(-1, 2),
         np.array(places, dtype=np.float64).reshape(-1, 2, 3),
         np.array(least, dtype=np.float64),
         np.array(radii, dtype=np.float64),
+        np.array(spots, dtype=np.intp),
+        home,
     )
 
 
@@ -80,17 +96,22 @@ class Nearness:
     Attributes:
         one, two: (n, 2) seconds between which each robot may be on its piece.
         distance: (n,) metres at the nearest.
+        at_home: (n,) whether one of the robots then stands at its home.
     """
 
     one: Floats
     two: Floats
     distance: Floats
+    at_home: NDArray[np.bool_]
 
 
 def near_pairs(
     one: Track, two: Track, least: float, *, finest: float, spare: float | None = None
 ) -> Nearness:
     """Return the pairs of pieces that come within a distance of each other, in space.
+
+    Homes that are nearer to each other are the operator's choice: a robot that stands at such a home is
+    no hindrance to the other one at its own, nor in the column over it.
 
     Args:
         one: track of a robot.
@@ -101,17 +122,30 @@ def near_pairs(
             seconds of overlapping.
     """
     i, j = _pairs(one, two, least)
+    counts = ~_excused(one, two, least, i, j)
     if spare is not None:
-        together = _overlap(one.times[i], two.times[j], spare)
-        i, j = i[together], j[together]
+        counts &= _overlap(one.times[i], two.times[j], spare)
+    i, j = i[counts], j[counts]
     first, second = one.pick(np.unique(i)).cut(finest), two.pick(np.unique(j)).cut(finest)
     i, j = _pairs(first, second, least)
+    counts = ~_excused(first, second, least, i, j)
     if spare is not None:
-        together = _overlap(first.times[i], second.times[j], spare)
-        i, j = i[together], j[together]
+        counts &= _overlap(first.times[i], second.times[j], spare)
+    i, j = i[counts], j[counts]
     apart = legs_apart(first.places[i], second.places[j]) - first.radii[i] - second.radii[j]
     near = apart < least
-    return Nearness(first.times[i[near]], second.times[j[near]], apart[near])
+    i, j = i[near], j[near]
+    at_home = (first.spots[i] == Spot.HOME) | (second.spots[j] == Spot.HOME)
+    return Nearness(first.times[i], second.times[j], apart[near], at_home)
+
+
+def _excused(one: Track, two: Track, least: float, i: Indices, j: Indices) -> NDArray[np.bool_]:
+    """Return (n,): which pairs of pieces are one at a home and one at or over a neighbouring home."""
+    if dist(one.home, two.home) >= least:
+        return np.zeros(len(i), dtype=np.bool_)
+    spots = np.stack([one.spots[i], two.spots[j]])
+    found: NDArray[np.bool_] = (spots.min(axis=0) > Spot.ELSEWHERE) & (spots.max(axis=0) == Spot.HOME)
+    return found
 
 
 def _overlap(one: Floats, two: Floats, spare: float) -> NDArray[np.bool_]:

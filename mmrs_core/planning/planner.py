@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import replace
 
 from mmrs_core.errors import InfeasibleError
 from mmrs_core.planning.assembly import assemble
 from mmrs_core.planning.crew import Crew
 from mmrs_core.planning.jobs import Job, jobs_of
+from mmrs_core.planning.numbers import askings
 from mmrs_core.planning.schedule import Decisions, Shortfall, schedule
 from mmrs_core.planning.search import broken_times, find_decisions
-from mmrs_core.planning.separation import TooNearError, separated, stacked_altitudes
+from mmrs_core.planning.separation import TooNearError, distance_to_keep, separated, stacked_altitudes
 from mmrs_core.scene import Plan, Scene
 
 
@@ -19,7 +21,8 @@ def plan(scene: Scene, *, seed: int = 0) -> Plan:
 
     Every task is done exactly once, by robots that can do it, in the order of the dependencies; no
     sortie takes more than a charge less the reserve allows, waits included; every leg keeps its
-    clearance. The same scene and seed give the same plan.
+    clearance. The same scene and seed give the same plan. Where a task does not say how many robots it
+    wants, numbers are tried too (see `askings`): in a small mission none that is asked for ends it sooner.
 
     Args:
         scene: expanded: kinematics and works are known.
@@ -31,13 +34,48 @@ def plan(scene: Scene, *, seed: int = 0) -> Plan:
     jobs = jobs_of(scene)
     crew = Crew(scene)
     _refuse([*crew.shortfalls(), *_shared_choices(scene, jobs)], "no plan")
-    shortage = InfeasibleError("no plan")
-    for each in _crews(crew):
+    crews = _Remembered(_crews(crew))
+    found, refusal = None, InfeasibleError("no plan")
+    for wanted in ({}, *askings(crew, jobs)):
         try:
-            return _plan_with(each, jobs, seed)
+            made = _plan_asking(crews, wanted, jobs, seed)
+        except InfeasibleError as error:
+            refusal = refusal if wanted else error
+            continue
+        if found is None or _cost(made) < _cost(found):
+            found = made
+    if found is None:
+        raise refusal
+    return found
+
+
+def _cost(made: Plan) -> tuple[float, float]:
+    """Return (makespan, seconds of all robots), rounded so that only a real gain counts."""
+    return (round(made.makespan, 3), round(sum(each.busy for each in made.robots), 3))
+
+
+def _plan_asking(crews: Iterable[Crew], wanted: Mapping[str, int], jobs: Sequence[Job], seed: int) -> Plan:
+    """Return the plan of the first crew that is not short where tasks want so many robots."""
+    shortage = InfeasibleError("no plan")
+    for each in crews:
+        try:
+            return _plan_with(each.asking(wanted) if wanted else each, jobs, seed)
         except _ShortError as error:
             shortage = InfeasibleError(str(error), error.reasons)
     raise shortage
+
+
+class _Remembered:
+    """Crews that are made when they are first asked for, and kept."""
+
+    def __init__(self, crews: Iterator[Crew]) -> None:
+        self._coming, self._made = crews, list[Crew]()
+
+    def __iter__(self) -> Iterator[Crew]:
+        yield from self._made
+        for each in self._coming:
+            self._made.append(each)
+            yield each
 
 
 class _ShortError(InfeasibleError):
@@ -63,7 +101,7 @@ def _plan_with(crew: Crew, jobs: Sequence[Job], seed: int) -> Plan:
     try:
         return _plan_of(crew, jobs, seed)
     except TooNearError as error:
-        for told, in_turns in _told_otherwise(crew):
+        for told, in_turns in _told_otherwise(crew, at_home=error.at_home):
             try:
                 return _plan_of(told, jobs, seed, in_turns=in_turns)
             except InfeasibleError:
@@ -71,12 +109,23 @@ def _plan_with(crew: Crew, jobs: Sequence[Job], seed: int) -> Plan:
         raise InfeasibleError(str(error), error.reasons) from error
 
 
-def _told_otherwise(crew: Crew) -> Iterator[tuple[Crew, bool]]:
-    """Yield (crew, whether its robots fly one after the other) that may help where robots come too near."""
-    altitudes = stacked_altitudes(crew.scene)
+def _told_otherwise(crew: Crew, *, at_home: bool) -> Iterator[tuple[Crew, bool]]:
+    """Yield (crew, whether its robots fly one after the other) that may help where robots come too near.
+
+    Robots may transit one above the other, keep away from where others stand at home, end at home where
+    they need not, or take turns.
+    """
+    altitudes, least = stacked_altitudes(crew.scene), distance_to_keep(crew.scene)
     if altitudes:
         yield Crew(crew.scene, fine=crew.fine, homebound=crew.homebound, altitudes=altitudes), False
-    yield Crew(crew.scene, fine=crew.fine, homebound=frozenset(crew.pilots)), True
+    if at_home:
+        yield Crew(crew.scene, fine=crew.fine, homebound=crew.homebound, from_homes=least), False
+    team = tuple(replace(robot, return_home=True) for robot in crew.scene.robots)
+    if team != crew.scene.robots:
+        yield Crew(replace(crew.scene, robots=team), fine=crew.fine, from_homes=least), False
+    everyone = frozenset(crew.pilots)
+    yield Crew(crew.scene, fine=crew.fine, homebound=everyone), True
+    yield Crew(crew.scene, fine=crew.fine, homebound=everyone, from_homes=least), True
 
 
 def _plan_of(crew: Crew, jobs: Sequence[Job], seed: int, *, in_turns: bool = False) -> Plan:
@@ -152,6 +201,8 @@ def _general(crew: Crew, job: Job) -> str:
     wanted = f" by exactly {task.wanted} {robots}" if task.wanted is not None else ""
     short = "; ".join(crew.short_of_charge(task.name))
     alone = f"; too long for some: {short}" if short else ""
+    apart = crew.sorts(task.name) if task.wanted is not None else ""
+    alone += f"; {apart}" if apart else ""
     return (
         f"task '{task.name}' takes {whole:.0f} s and cannot be done{wanted}, after what comes before,"
         f" by the robots that can do it ({charges}{alone}){_short_of_charges(crew, task.name, whole)}"

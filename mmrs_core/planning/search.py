@@ -61,7 +61,26 @@ def find_decisions(
         idle += 1
         if isinstance(found, Shortfall) and cost == least:
             best, found = other, result
+    return _with_better_numbers(crew, jobs, best, found)
+
+
+def _with_better_numbers(
+    crew: Crew, jobs: Sequence[Job], best: Decisions, found: Schedule | Shortfall
+) -> tuple[Decisions, Schedule | Shortfall]:
+    """Return decisions in which each task in turn has the number of robots that helps most."""
+    sizes = {job.name: crew.sharers(job.name) for job in jobs if job.tasks() and job.choice is None}
+    tries = [(name, size) for name, most in sizes.items() for size in range(1, most + 1) if most > 1]
+    for name, size in tries if len(tries) * len(jobs) * len(crew.pilots) <= _EFFORT else ():
+        other = replace(best, teams={**best.teams, name: size})
+        result = schedule(crew, jobs, other)
+        if cost_of(crew, result) < _slightly_less(cost_of(crew, found)):
+            best, found = other, result
     return best, found
+
+
+def first_cost(crew: Crew, jobs: Sequence[Job]) -> Cost:
+    """Return the cost of what a search begins with, as a hint of what it may find."""
+    return cost_of(crew, schedule(crew, jobs, Decisions(_first_order(crew, jobs))))
 
 
 def _only_ones(crew: Crew, jobs: Sequence[Job]) -> list[str]:

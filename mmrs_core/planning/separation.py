@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
-from itertools import combinations
-from math import ceil
 
 import numpy as np
 
 from mmrs_core.errors import InfeasibleError
 from mmrs_core.planning.nearness import Nearness, Track, near_pairs, track_of
 from mmrs_core.planning.schedule import Decisions
-from mmrs_core.planning.timeline import rides_of
+from mmrs_core.planning.timeline import Spot, rides_of
 from mmrs_core.scene import Plan, Scene
 
 _ROUNDS = 60
@@ -29,17 +27,26 @@ _PARTS = 8
 
 
 class TooNearError(InfeasibleError):
-    """Robots cannot be kept apart."""
+    """Robots cannot be kept apart.
+
+    Attributes:
+        at_home: whether one of those that come too near first stands at its home.
+    """
+
+    def __init__(self, encounter: Encounter | None, least: float) -> None:
+        super().__init__(_words(encounter, least))
+        self.at_home = encounter is not None and encounter.at_home
 
 
 @dataclass(frozen=True, slots=True)
 class Encounter:
-    """Two robots that may come too near to each other: when, and to how many metres."""
+    """Two robots that may come too near to each other: when, to how many metres, and if one is at home."""
 
     first: str
     second: str
     time: float
     distance: float
+    at_home: bool
 
 
 def distance_to_keep(scene: Scene) -> float | None:
@@ -56,7 +63,7 @@ def distance_to_keep(scene: Scene) -> float | None:
 def separated(scene: Scene, decisions: Decisions, planned: Callable[[Decisions], Plan | None]) -> Plan:
     """Return the plan of decisions, with robots' starts delayed until all keep apart.
 
-    Robots at home, before they leave it and after they came back, are not counted.
+    Robots on the ground and at home count as all others do, but for neighbouring homes (see `near_pairs`).
 
     Args:
         scene: with or without a minimum separation.
@@ -81,7 +88,7 @@ def separated(scene: Scene, decisions: Decisions, planned: Callable[[Decisions],
         if better is None:
             break
         decisions, found = better
-    raise TooNearError(_words(first_encounter(scene, found, least), least))
+    raise TooNearError(first_encounter(scene, found, least), least)
 
 
 def _resolved(
@@ -118,14 +125,14 @@ def _is_progress(before: Encounter, after: Encounter) -> bool:
 
 
 def _shift(fixed: Track, late: Track, least: float) -> float:
-    """Return by how many whole seconds a track must come later to keep apart from another."""
+    """Return by how many whole seconds a track must come later to keep apart from another; inf: never."""
     pairs = near_pairs(fixed, late, least, finest=_finest(least))
     begins = pairs.one[:, 0] - pairs.two[:, 1] - _SPARE
     ends = pairs.one[:, 1] - pairs.two[:, 0] + _SPARE
     shift = 1.0
     for i in np.argsort(begins).tolist():
         if begins[i] < shift < ends[i]:
-            shift = float(ceil(ends[i]))
+            shift = float(np.ceil(ends[i]))
     return shift
 
 
@@ -136,17 +143,18 @@ def _finest(least: float) -> float:
 def _words(encounter: Encounter | None, least: float) -> str:
     if encounter is None:
         return "no plan keeps robots apart"
+    at_home = ", one of them at its home" if encounter.at_home else ""
     return (
         f"robots '{encounter.first}' and '{encounter.second}' come within {encounter.distance:.1f} m"
-        f" after {encounter.time:.0f} s, {least:g} m are required: {least - encounter.distance:.1f} m short;"
-        " starting later does not help"
+        f" after {encounter.time:.0f} s{at_home}, {least:g} m are required:"
+        f" {least - encounter.distance:.1f} m short; starting later does not help"
     )
 
 
 def tracks_of(scene: Scene, plan: Plan) -> dict[str, Track]:
-    """Return the tracks of all robots that have something to do."""
+    """Return the tracks of all robots, those without work included."""
     robots = {robot.name: robot for robot in scene.robots}
-    return {name: track_of(rides) for name, rides in rides_of(plan, robots).items()}
+    return {name: track_of(rides, robots[name].home) for name, rides in rides_of(plan, robots).items()}
 
 
 def first_encounter(scene: Scene, plan: Plan, least: float) -> Encounter | None:
@@ -158,18 +166,31 @@ def earliest_encounter(tracks: Mapping[str, Track], least: float) -> Encounter |
     """Return the same of tracks."""
     found: Iterable[Encounter | None] = (
         _met(one, two, near_pairs(tracks[one], tracks[two], least, finest=_finest(least), spare=_SPARE))
-        for one, two in combinations(tracks, 2)
+        for one, two in _neighbours(tracks, least)
     )
     return min((each for each in found if each is not None), key=lambda each: each.time, default=None)
+
+
+def _neighbours(tracks: Mapping[str, Track], least: float) -> Iterator[tuple[str, str]]:
+    """Yield the pairs of tracks whose boxes come within a distance, one of which at least leaves home."""
+    names = [name for name, track in tracks.items() if len(track.times)]
+    boxes = np.array([tracks[name].box() for name in names]).reshape(-1, 2, 3)
+    low, high = boxes[:, 0], boxes[:, 1]
+    leaves = np.array([bool((tracks[name].spots != Spot.HOME).any()) for name in names])
+    for i, name in enumerate(names):
+        near = (low[i] < high[i + 1 :] + least).all(axis=1) & (low[i + 1 :] < high[i] + least).all(axis=1)
+        for j in np.flatnonzero(near & (leaves[i] | leaves[i + 1 :])).tolist():
+            yield name, names[i + 1 + j]
 
 
 def _met(one: str, two: str, pairs: Nearness) -> Encounter | None:
     if not len(pairs.distance):
         return None
     times = np.maximum(pairs.one[:, 0], pairs.two[:, 0])
-    time = float(times.min())
-    nearest = float(pairs.distance[times <= time + 1.0].min())
-    return Encounter(one, two, time, max(0.0, nearest))
+    time = max(0.0, float(times.min()))
+    soon = times <= time + 1.0
+    nearest, at_home = float(pairs.distance[soon].min()), bool(pairs.at_home[soon].any())
+    return Encounter(one, two, time, max(0.0, nearest), at_home)
 
 
 def stacked_altitudes(scene: Scene) -> dict[str, float]:

@@ -26,6 +26,8 @@ _ANGLES = 8
 _SHIFTED = 3
 _SHIFTS = (0.0, 0.5, 1.0)
 _REPAIRS = 4
+_MOST_PRODUCTS = 1_000_000
+"""Of directions and edges that are weighed at once."""
 _LEFT_OUT = 1e-5
 """Share of the target that swaths may leave out: a hundredth of what is promised."""
 
@@ -105,11 +107,19 @@ def sweep_angles(pieces: Sequence[Polygon]) -> list[float]:
         ]
     )
     directions = np.unique(np.round(np.arctan2(edges[:, 1], edges[:, 0]) % pi, 6) % pi)
-    across = np.abs(
-        np.outer(np.sin(directions), edges[:, 0]) - np.outer(np.cos(directions), edges[:, 1])
-    ).sum(axis=1)
+    at_once = max(1, _MOST_PRODUCTS // len(edges))  # all of a border of many vertices would fill the memory
+    across = np.concatenate(
+        [_across(directions[i : i + at_once], edges) for i in range(0, len(directions), at_once)]
+    )
     best = directions[np.argsort(across, kind="stable")][: _ANGLES - 2].tolist()
     return list(dict.fromkeys([*best, 0.0, pi / 2]))
+
+
+def _across(directions: Floats, edges: Floats) -> Floats:
+    """Return for each direction how far the edges reach across it, in all."""
+    products = np.outer(np.sin(directions), edges[:, 0]) - np.outer(np.cos(directions), edges[:, 1])
+    across: Floats = np.abs(products).sum(axis=1)
+    return across
 
 
 def _near(closed: BaseGeometry | None, pieces: Sequence[Polygon], width: float) -> BaseGeometry:

@@ -3,15 +3,17 @@
 A robot need not go steadily along a way: it speeds up, slows down, and may be quicker than planned
 wherever it need not turn, or takes the shorter arm of a choice. All that is certain is when it may
 begin at the earliest, when it has come to the end at the latest, and that it is nowhere faster than
-commanded.
+commanded. Robots on the ground and at home take up their places too, from before the first moment
+until after the last.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from enum import IntEnum
 from itertools import groupby, pairwise
-from math import dist, hypot
+from math import dist, hypot, inf
 
 from mmrs_core.errors import InternalError
 from mmrs_core.planning.layers import Rates
@@ -32,15 +34,27 @@ from mmrs_core.scene import (
 )
 
 
+class Spot(IntEnum):
+    """Where a ride is, seen from the robot's own home."""
+
+    ELSEWHERE = 0
+    COLUMN = 1
+    """Upright over its home: part of a launch or a recovery."""
+    HOME = 2
+    """A stay at its home."""
+
+
 @dataclass(frozen=True, slots=True)
 class Ride:
-    """A way, or a stay at one place, while a robot is away from home.
+    """A way, or a stay at one place.
 
     Attributes:
         points: at least one; several: straight legs between them.
-        early: seconds at which it may begin; late: by which it has ended.
+        early: seconds at which it may begin, -inf where the robot is from the start; late: by which it
+            has ended, inf where it stays for ever.
         least: seconds of each leg at even speed, which the robot does not exceed.
         radius: metres from the way within which the robot may be.
+        spot: whether it is at or over the robot's own home.
     """
 
     points: tuple[Position, ...]
@@ -48,19 +62,18 @@ class Ride:
     late: float
     least: tuple[float, ...] = ()
     radius: float = 0.0
+    spot: Spot = Spot.ELSEWHERE
 
 
 def rides_of(plan: Plan, robots: Mapping[str, Robot]) -> dict[str, tuple[Ride, ...]]:
-    """Return the rides of every robot that has something to do, all arms of choices included.
+    """Return the rides of every robot, all arms of choices included.
 
-    Robots on the ground, and robots that stand at their homes, take up no space.
+    Whatever a robot does last, it then stays where it is for ever; robots without steps stay at home.
     """
     walks = {
-        each.robot: _Walk(robots[each.robot], rates_of_robot(robots[each.robot]))
-        for each in plan.robots
-        if each.steps
+        each.robot: _Walk(robots[each.robot], rates_of_robot(robots[each.robot])) for each in plan.robots
     }
-    left = {each.robot: list(each.steps) for each in plan.robots if each.steps}
+    left = {each.robot: list(each.steps) for each in plan.robots}
     given: dict[str, float] = {}
     while any(left.values()):
         before = sum(map(len, left.values()))
@@ -69,6 +82,8 @@ def rides_of(plan: Plan, robots: Mapping[str, Robot]) -> dict[str, tuple[Ride, .
                 walks[name].add(steps.pop(0), given)
         if sum(map(len, left.values())) == before:
             raise InternalError("robots of a plan wait for each other for ever")
+    for walk in walks.values():
+        walk.stay_for_ever()
     return {name: tuple(walk.rides) for name, walk in walks.items()}
 
 
@@ -84,6 +99,7 @@ class _Walk:
 
     Attributes:
         now: seconds; here: where it is; radius: how far from there it may be.
+        gone: whether it has gone anywhere yet.
     """
 
     robot: Robot
@@ -92,11 +108,10 @@ class _Walk:
     now: float = 0.0
     here: Position = (0.0, 0.0, 0.0)
     radius: float = 0.0
-    grounded: bool = True
+    gone: bool = False
 
     def __post_init__(self) -> None:
         self.here = self.robot.home
-        self.grounded = kinematics_of(self.robot).launches
 
     def may_begin(self, step: Step, given: Mapping[str, float]) -> bool:
         return not isinstance(step, Await) or all(signal in given for signal in step.signals)
@@ -113,11 +128,18 @@ class _Walk:
         elif isinstance(step, Transit):
             self._transit(step)
         elif isinstance(step, Launch | Recover):
-            self.grounded = False
-            self._ride((self.here, (step.at[0], step.at[1], step.up)), step.end - step.begin, step.end)
-            self.grounded = isinstance(step, Recover)
+            self._upright(step)
         else:
             self._stay(step.end - step.begin, step.end)
+
+    def stay_for_ever(self) -> None:
+        self._stay(0.0, inf)
+
+    def _upright(self, step: Launch | Recover) -> None:
+        column = self.here, (step.at[0], step.at[1], step.up)
+        over_home = all(dist(point[:2], self.robot.home[:2]) <= NEAR for point in column)
+        spot = Spot.COLUMN if over_home else Spot.ELSEWHERE
+        self._ride(column, step.end - step.begin, step.end, spot=spot)
 
     def _await(self, step: Await, given: Mapping[str, float]) -> None:
         own = self.now + (0.0 if step.until is None else max(0.0, step.until - step.begin))
@@ -163,16 +185,24 @@ class _Walk:
         self._stay(max(0.0, certain), step.end)
 
     def _ride(
-        self, points: tuple[Position, ...], seconds: float, late: float, rates: Rates | None = None
+        self,
+        points: tuple[Position, ...],
+        seconds: float,
+        late: float,
+        rates: Rates | None = None,
+        *,
+        spot: Spot = Spot.ELSEWHERE,
     ) -> None:
         least = tuple((rates or self.rates).leg(one, two) for one, two in pairwise(points))
-        self.rides.append(Ride(points, self.now, late, least, self.radius))
-        self.now, self.here = self.now + seconds, points[-1]
+        self.rides.append(Ride(points, self.now, late, least, self.radius, spot))
+        self.now, self.here, self.gone = self.now + seconds, points[-1], True
 
     def _stay(self, seconds: float, late: float) -> None:
         """Stay for so long at least; what comes next may begin then, or as late as `late`."""
-        if not self.grounded and self.here != self.robot.home and late > self.now:
-            self.rides.append(Ride((self.here,), self.now, late, (), self.radius))
+        if late > self.now:
+            spot = Spot.HOME if dist(self.here, self.robot.home) <= NEAR else Spot.ELSEWHERE
+            early = self.now if self.gone else -inf
+            self.rides.append(Ride((self.here,), early, late, (), self.radius, spot))
         self.now += seconds
 
 

@@ -2,16 +2,22 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from itertools import pairwise
-from math import inf
+from math import dist, inf
 
 from mmrs_core.errors import InternalError, UnreachableError
 from mmrs_core.geometry.ground import ground_height
 from mmrs_core.planning.layers import Rates
 from mmrs_core.planning.paths import Space
 from mmrs_core.planning.strokes import length_of, rates_of
-from mmrs_core.scene import Kinematics, Position, Robot, Scene
+from mmrs_core.scene import Area, AreaUse, Kinematics, Position, Robot, Scene
+
+_SPECK = 0.01
+"""Metres: half the side of the square that stands for a home."""
+
+_SQUARE = ((-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0))
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,20 +42,38 @@ class Way:
 class Spaces:
     """The spaces of a scene's robots; robots of one clearance, band, speed and surroundings share theirs."""
 
-    def __init__(self, scene: Scene) -> None:
-        self._scene = scene
+    def __init__(self, scene: Scene, *, from_homes: float | None = None) -> None:
+        """Make none yet.
+
+        Args:
+            scene: expanded.
+            from_homes: metres that robots keep from the homes of others, but for homes that are nearer to
+                their own; None: homes are free space.
+        """
+        self._scene, self._from_homes = scene, from_homes
         self._spaces: dict[tuple[float, float, float, Rates, frozenset[int]], Space] = {}
 
     def of(self, robot: Robot) -> Space:
         """Return the space of a robot whose kinematics are known."""
         kinematics = kinematics_of(robot)
         rates = rates_of(kinematics, kinematics.cruise)
-        areas = tuple(self._scene.kept_from(robot))
+        areas = (*self._scene.kept_from(robot), *self._homes_kept_from(robot))
         alike = frozenset(map(id, areas))
         key = (robot.clearance, kinematics.floor, kinematics.ceiling, rates, alike)
         if key not in self._spaces:
             self._spaces[key] = Space(areas, *key[:3], rates=rates)
         return self._spaces[key]
+
+    def _homes_kept_from(self, robot: Robot) -> Iterator[Area]:
+        """Yield others' homes as small areas."""
+        if self._from_homes is None:
+            return
+        safety = max(0.0, self._from_homes - robot.clearance)
+        for other in self._scene.robots:
+            east, north, up = other.home
+            if other is not robot and dist(other.home, robot.home) >= self._from_homes:
+                corners = tuple((east + dx * _SPECK, north + dy * _SPECK) for dx, dy in _SQUARE)
+                yield Area(f"home of {other.name}", AreaUse.FORBIDDEN, corners, up, up, safety)
 
 
 def kinematics_of(robot: Robot) -> Kinematics:

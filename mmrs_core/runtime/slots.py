@@ -149,6 +149,7 @@ def node_of(
         [members[robot] for robot in robots],
         run,
         plan=program.fingerprint,
+        team=tuple(members),
         carrier=carrier,
         journals=lambda robot: FileJournal(paths[robot]),
         recorded=recorded,

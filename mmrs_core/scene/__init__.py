@@ -13,6 +13,7 @@ from mmrs_core.scene.plans import (
     Await,
     Branch,
     Launch,
+    LeftOut,
     Plan,
     Recharge,
     Recover,
@@ -45,7 +46,7 @@ from mmrs_core.scene.values import (
     TravelMode,
     Value,
 )
-from mmrs_core.scene.works import ActionAt, Coverage, Look, Stroke, Work
+from mmrs_core.scene.works import ActionAt, Coverage, Gap, Look, Stroke, Work
 
 __all__ = [
     "ActionAt",
@@ -61,8 +62,10 @@ __all__ = [
     "Device",
     "DeviceAction",
     "Frame",
+    "Gap",
     "Kinematics",
     "Launch",
+    "LeftOut",
     "Look",
     "Metaclasses",
     "Name",

@@ -114,6 +114,7 @@ class RobotPlan:
         steps: in order; empty for a robot that is not needed.
         length: metres travelled; busy: seconds from launch to the last recovery; energy: joules,
             None where nothing is known of its power; sorties: how many times it leaves home.
+        idle: why it has nothing to do; empty for a robot that has.
     """
 
     robot: str
@@ -122,6 +123,34 @@ class RobotPlan:
     busy: float = 0.0
     energy: float | None = 0.0
     sorties: int = 0
+    idle: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class LeftOut:
+    """What is not done of a task, since robots must keep away from there.
+
+    Attributes:
+        task: its name.
+        amount: metres of a line, square metres of an area.
+        unit: "m" or "m²".
+        where: in words.
+        at: middle of a stretch of a line; None for areas.
+    """
+
+    task: str
+    amount: float
+    unit: str
+    where: str
+    at: Position | None = None
+
+    def __str__(self) -> str:
+        """Return it in one line.
+
+        >>> str(LeftOut("road", 4.5, "m", "from 118.0 m along the line, too near to 'mast'"))
+        "task 'road' leaves out 4.5 m from 118.0 m along the line, too near to 'mast'"
+        """
+        return f"task '{self.task}' leaves out {self.amount:.1f} {self.unit} {self.where}"
 
 
 @dataclass(frozen=True, slots=True)
@@ -133,6 +162,7 @@ class Plan:
         makespan: seconds until the last robot has finished.
         begins, ends: by task, seconds after the mission's start.
         notes: assumptions that people must know, such as flat terrain.
+        left_out: what is not done of tasks, since it cannot be reached.
     """
 
     robots: tuple[RobotPlan, ...]
@@ -140,3 +170,4 @@ class Plan:
     begins: Mapping[str, float]
     ends: Mapping[str, float]
     notes: tuple[str, ...] = ()
+    left_out: tuple[LeftOut, ...] = ()

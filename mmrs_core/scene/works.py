@@ -84,6 +84,24 @@ class Coverage:
 
 
 @dataclass(frozen=True, slots=True)
+class Gap:
+    """A stretch of a line that a work leaves out, since it is too near to an area.
+
+    Attributes:
+        line: which line, such as "the line" or "row 3".
+        begin: where it begins, metres along that line; length: of it, metres.
+        at: its middle, (east, north, up).
+        area: names of what it is too near to.
+    """
+
+    line: str
+    begin: float
+    length: float
+    at: Position
+    area: str
+
+
+@dataclass(frozen=True, slots=True)
 class Work:
     """What a task is made of for one kind of robot; says nothing of who, when, or how to get there.
 
@@ -94,6 +112,7 @@ class Work:
         rule: name of the rule that made it.
         entry: where the first share begins before its first stroke; None: at the first stroke.
         coverage: for works over an area.
+        gaps: what is left out of lines, since it cannot be followed.
     """
 
     strokes: tuple[Stroke, ...]
@@ -102,3 +121,4 @@ class Work:
     ordered: bool = True
     entry: Position | None = None
     coverage: Coverage | None = None
+    gaps: tuple[Gap, ...] = ()

@@ -10,8 +10,8 @@ from mmrs_core.sitl import Settings, SimulatedVehicle
 SIGNAL_SECONDS = 0.5
 
 
-def main() -> int:
-    """Run the vehicle and return the exit code."""
+def parser_of_arguments() -> argparse.ArgumentParser:
+    """Return what reads the command line."""
     parser = argparse.ArgumentParser(prog="python -m mmrs_core.sitl", description=__doc__)
     add = parser.add_argument
     add("--port", type=int, default=14_550, help="UDP port of the ground station")
@@ -21,6 +21,12 @@ def main() -> int:
     add("--home", default="42.37,13.35", metavar="LATITUDE,LONGITUDE")
     add("--system", type=int, default=1)
     add("--speedup", type=float, default=1.0)
+    return parser
+
+
+def main() -> int:
+    """Run the vehicle and return the exit code."""
+    parser = parser_of_arguments()
     given = parser.parse_args()
     try:
         latitude, longitude = map(float, given.home.split(","))

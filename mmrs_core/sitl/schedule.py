@@ -14,6 +14,8 @@ _PATTERN = re.compile(
     r"(?:@(?P<begin>[0-9.]+)(?:\+(?P<lasts>[0-9.]+))?)?"
 )
 EVERYBODY = "all"
+_LONGEST = 1000
+"""Characters of a fault; robots' names may hold its signs, so that a longer text would take long to read."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,6 +51,8 @@ def planned(text: str) -> Planned:
     Raises:
         ValueError: it is not written so, or there is no such fault.
     """
+    if len(text) > _LONGEST:
+        raise ValueError(f"{text[:40]}…: is longer than {_LONGEST} characters")
     found = _PATTERN.fullmatch(text.strip())
     if found is None:
         raise ValueError(f"{text}: is not [ROBOT:]FAULT[=VALUE,…][@SECONDS[+SECONDS]]")

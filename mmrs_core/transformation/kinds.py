@@ -242,6 +242,7 @@ PLAIN_ROBOT = RobotKind(
         "LOG_FAILED": "HOLD",
         "GROUND_LOST": "CONTINUE",
     },
+    vehicle="rover",
 )
 
 _Seconds = Callable[[Move, tuple[Position, ...], Kinematics, str], tuple[float, float]]

@@ -23,13 +23,10 @@ PLUGINS = {
 def registry():
     """Return the core's languages and those of the plug-ins in this checkout, as when all are installed."""
     return registry_with(
-        MetamodelSource(
-            f"urn:mmrs:{language}:1.0",
-            ROOT / "plugins" / name / f"mmrs_{name}" / "metamodels" / f"{language}.ecore",
-            f"mmrs-{name}",
-        )
+        MetamodelSource(etree.parse(file).getroot().get("nsURI"), file, f"mmrs-{name}")
         for name, languages in PLUGINS.items()
         for language in languages
+        for file in [ROOT / "plugins" / name / f"mmrs_{name}" / "metamodels" / f"{language}.ecore"]
     )
 
 

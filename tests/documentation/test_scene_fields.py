@@ -28,6 +28,7 @@ TOLD = {
         scene.ActionAt,
         scene.Look,
         scene.Coverage,
+        scene.Gap,
         scene.Scene,
         MoveSpec,
     ),

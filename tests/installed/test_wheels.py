@@ -55,12 +55,22 @@ def test_wheels_find_their_metamodels_templates_and_examples(site, tmp_path):
     assert {f"urn:mmrs:{name}:1.0" for name in ("mission", "context", "robot", "behaviour")} <= set(
         found["packages"]
     )
-    assert {"urn:mmrs:multicopter:1.0", "urn:mmrs:auv:1.0", "urn:mmrs:survey:1.0"} <= set(found["packages"])
+    assert {"urn:mmrs:multicopter:1.0", "urn:mmrs:auv:1.1", "urn:mmrs:survey:1.0"} <= set(found["packages"])
     assert "carbon-dioxide" in found["examples"]
     assert "flyaq-2015.toml" in found["migrations"]
     assert found["templates"]
     assert all(Path(folder).is_relative_to(site) for folder in found["templates"])
     assert found["missing"] == []
+
+
+def test_wheels_carry_the_licence_and_name_it(site):
+    licence = (ROOT / "LICENSE").read_bytes()
+    described = sorted(site.glob("mmrs_*.dist-info"))
+    assert len(described) == len(PROJECTS)
+    assert [(each / "licenses" / "LICENSE").read_bytes() == licence for each in described] == [True] * len(
+        PROJECTS
+    )
+    assert all("License-Expression: Apache-2.0\n" in (each / "METADATA").read_text() for each in described)
 
 
 def test_an_installed_example_validates_from_another_directory(site, tmp_path):

@@ -14,7 +14,7 @@ from random import Random
 
 from ada_centres import FLAGS, write
 from dives import dive
-from mmrs_auv.targets.ada.bus import HEARD, SPOKEN
+from mmrs_auv.targets.ada.bus import HEARD, LIMITS, SPOKEN
 from mmrs_auv.vessel.api import Craft, State
 from mmrs_auv.vessel.eyes import CAMERAS, Detection, to_datagram
 from mmrs_auv.vessel.sheet import Sheet
@@ -169,6 +169,7 @@ class Compared:
     def __post_init__(self) -> None:
         self.craft = Craft(self.sheet, Codec(self.sheet))
         self._tell(f"v {bits(depth_step(self.sheet.max_depth))}")
+        self._tell(f"l {bits(self.sheet.extra.get('position.lost', LIMITS['POSITION_LOST']))}")
 
     def go(self, mode: str, place: Sequence[float], heading: float | None, speed: float) -> None:
         north, east, depth = place
@@ -247,7 +248,7 @@ def _state(state: State, request: int) -> str:
     ]  # fmt: skip
     emergency = 0 if state.emergency is None else max(1, REASONS.index(state.emergency))
     answer = PROGRESS.index(state.devices.get(request, "NONE"))
-    flags = f"{state.trusted} {state.leak}".upper()
+    flags = f"{state.trusted} {state.leak} {state.position_lost}".upper()
     words = f"{flags} {PROGRESS.index(state.progress)} {emergency} {request} {answer}"
     return f"{numbers} {[state.silent, state.age]} {words}"
 

@@ -20,10 +20,10 @@ from mmrs_core.analysis.constraints import (
     shapes,
     slots,
 )
-from mmrs_core.analysis.constraints.checking import check_behaviour, check_constraints
+from mmrs_core.analysis.constraints.checking import check_behaviour, check_constraints, check_planned
 from mmrs_core.contributions.constraints import Constraint
 
-__all__ = ["CONSTRAINTS", "check_behaviour", "check_constraints"]
+__all__ = ["CONSTRAINTS", "check_behaviour", "check_constraints", "check_planned"]
 
 _THEMES = (
     names,

@@ -22,6 +22,16 @@ def _upside_down(obstacle: Element, models: ModelSet) -> Iterator[Finding]:
         yield finding(obstacle, f"its minHeight of {low:g} m is not below its maxHeight of {high:g} m")
 
 
+_TALL = 1000.0
+"""Metres above the origin that no building reaches: the tallest has 828 m."""
+
+
+def _too_tall(obstacle: Element, models: ModelSet) -> Iterator[Finding]:
+    high = number(obstacle, "maxHeight")
+    if high is not None and high > _TALL:
+        yield finding(obstacle, f"its maxHeight is {high:g} m, higher than any building")
+
+
 def _emergencies(models: ModelSet) -> Iterator[DrawnArea]:
     return (area for area in sketch_of(models).areas if area.use is AreaUse.EMERGENCY)
 
@@ -94,6 +104,14 @@ CONSTRAINTS = (
         (CONTEXT, "Obstacle"),
         _upside_down,
         "swap them, or leave out the one that is not known",
+    ),
+    Constraint(
+        "CTX017",
+        "An obstacle is not higher than any building.",
+        (CONTEXT, "Obstacle"),
+        _too_tall,
+        "give metres above the origin, not feet or centimetres; leave maxHeight out where there is no limit",
+        Severity.WARNING,
     ),
     Constraint(
         "CTX010",

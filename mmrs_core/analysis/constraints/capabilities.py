@@ -10,8 +10,8 @@ from mmrs_core.analysis.constraints.sketch import DrawnRobot, sketch_of
 from mmrs_core.contributions.constraints import Constraint, Finding
 from mmrs_core.diagnostics import Severity
 from mmrs_core.languages.element import Element, Unknown, is_set, metaclass_of, place_of
-from mmrs_core.languages.grounding.frame import coordinates_of
-from mmrs_core.languages.grounding.values import child, children, number, text, texts
+from mmrs_core.languages.grounding.frame import coordinates_of, is_geographic, origin_of
+from mmrs_core.languages.grounding.values import child, children, number, text, texts, value
 from mmrs_core.languages.kept_names import kept_name
 from mmrs_core.languages.modelset import ModelSet
 from mmrs_core.languages.naming import nearest
@@ -160,6 +160,20 @@ def _unmeasured(robot: Element, models: ModelSet) -> Iterator[Finding]:
         )
 
 
+_SENSORS = ("gyro", "accelerometer", "magnetometer", "barometer", "pressuremeter")
+"""By which a robot type shows that its sensors are listed, so that the receiver is left out on purpose."""
+
+
+def _without_satellites(robot: Element, models: ModelSet) -> Iterator[Finding]:
+    robot_type, origin = models.robots.get(text(robot, "type")), origin_of(models.mission)
+    if robot_type is None or origin is None or not is_geographic(origin):
+        return
+    if not value(robot_type, "gps") and any(value(robot_type, each) is True for each in _SENSORS):
+        yield finding(
+            robot, f"the mission is geographic, but its type {text(robot, 'type')!r} has sensors and no gps"
+        )
+
+
 def called_type(robot_type: Element | None) -> str:
     """Return what messages call a robot type."""
     return called(robot_type) if robot_type is not None else "its type"
@@ -237,6 +251,14 @@ CONSTRAINTS = (
         (MISSION, "Robot"),
         _unmeasured,
         "add a movement capability for that payload to the robot type",
+    ),
+    Constraint(
+        "MML014",
+        "Robots of a geographic mission find their positions by satellites.",
+        (MISSION, "Robot"),
+        _without_satellites,
+        'write gps="true" if the robot type has a receiver, or give all places as relative coordinates',
+        Severity.WARNING,
     ),
     Constraint(
         "MML069",

@@ -10,7 +10,6 @@ from mmrs_core.contributions.constraints import Constraint, Finding
 from mmrs_core.geometry.frames import known_crs
 from mmrs_core.languages.element import Element, path_of, root_of
 from mmrs_core.languages.grounding.frame import (
-    Reference,
     circles_among,
     coordinates_of,
     frame_of,
@@ -44,14 +43,11 @@ def _altitude_or_depth(coordinate: Element, models: ModelSet) -> Iterator[Findin
         yield finding(coordinate, f"has both an altitude ({altitude:g} m) and a depth ({depth:g} m)")
 
 
-def _altitude_of_origin(mission: Element, models: ModelSet) -> Iterator[Finding]:
-    yield from _without_base(mission, origin_of(mission), mission)
+def _altitude_of_origin(model: Element, models: ModelSet) -> Iterator[Finding]:
+    """Yield coordinates of a mission or behaviour, and of its context, that the origin has no height for."""
+    yield from _without_base(model, origin_of(model), model)
     if models.context is not None:
-        yield from _without_base(mission, origin_of(mission), models.context)
-
-
-def _altitude_of_behaviour_origin(behaviour: Element, models: ModelSet) -> Iterator[Finding]:
-    yield from _without_base(behaviour, origin_of(behaviour), behaviour)
+        yield from _without_base(model, origin_of(model), models.context)
 
 
 def _without_base(model: Element, origin: Element | None, root: Element) -> Iterator[Finding]:
@@ -66,51 +62,28 @@ def _without_base(model: Element, origin: Element | None, root: Element) -> Iter
         yield finding(given[0], f"has an altitude{others}, but the origin {path_of(origin)} has none")
 
 
-def _circles(mission: Element, models: ModelSet) -> Iterator[Finding]:
-    reference = reference_in(models.context)
-    yield from _each_circle([*coordinates_of(mission), *coordinates_of(models.context)], reference)
-
-
-def _circles_of_behaviour(behaviour: Element, models: ModelSet) -> Iterator[Finding]:
-    yield from _each_circle([*coordinates_of(behaviour)], lambda each: child(each, "reference"))
-
-
-def _each_circle(coordinates: list[Element], reference: Reference) -> Iterator[Finding]:
-    for circle in circles_among(coordinates, reference):
+def _circles(model: Element, models: ModelSet) -> Iterator[Finding]:
+    coordinates = [*coordinates_of(model), *coordinates_of(models.context)]
+    for circle in circles_among(coordinates, reference_in(models.context)):
         way = " → ".join(path_of(each) for each in (*circle, circle[0]))
         yield finding(circle[0], f"counts from itself: {way}")
 
 
-def _local_or_geographic(mission: Element, models: ModelSet) -> Iterator[Finding]:
-    origin = origin_of(mission)
-    if origin is not None and is_relative(origin):
-        yield from _mixed([*coordinates_of(mission), *coordinates_of(models.context)])
-
-
-def _local_or_geographic_behaviour(behaviour: Element, models: ModelSet) -> Iterator[Finding]:
-    origin = origin_of(behaviour)
-    if origin is not None and is_relative(origin):
-        yield from _mixed([*coordinates_of(behaviour)])
-
-
-def _mixed(coordinates: list[Element]) -> Iterator[Finding]:
+def _local_or_geographic(model: Element, models: ModelSet) -> Iterator[Finding]:
+    origin = origin_of(model)
+    if origin is None or not is_relative(origin):
+        return
+    coordinates = [*coordinates_of(model), *coordinates_of(models.context)]
     geographic = [each for each in coordinates if is_geographic(each)]
     if geographic:
         others = f", as {len(geographic) - 1} more are" if len(geographic) > 1 else ""
         yield finding(geographic[0], f"is geographic{others}, but the origin is relative")
 
 
-def _origin(mission: Element, models: ModelSet) -> Iterator[Finding]:
-    origin = origin_of(mission)
+def _origin(model: Element, models: ModelSet) -> Iterator[Finding]:
+    origin = origin_of(model)
     if origin is not None:
-        for message in origin_faults(mission, origin, frame_of(mission, models.context)):
-            yield finding(origin, message)
-
-
-def _origin_of_behaviour(behaviour: Element, models: ModelSet) -> Iterator[Finding]:
-    origin = origin_of(behaviour)
-    if origin is not None:
-        for message in origin_faults(behaviour, origin, frame_of(behaviour, None)):
+        for message in origin_faults(model, origin, frame_of(model, models.context)):
             yield finding(origin, message)
 
 
@@ -211,28 +184,28 @@ CONSTRAINTS = (
         "BL019",
         "Where coordinates have altitudes, the origin has one.",
         (BEHAVIOUR, "Behaviour"),
-        _altitude_of_behaviour_origin,
+        _altitude_of_origin,
         _ALTITUDE_HINT,
     ),
     Constraint(
         "BL020",
         "Relative coordinates do not count from themselves.",
         (BEHAVIOUR, "Behaviour"),
-        _circles_of_behaviour,
+        _circles,
         _CIRCLE_HINT,
     ),
     Constraint(
         "BL021",
         "A behaviour with a relative origin has relative coordinates only.",
         (BEHAVIOUR, "Behaviour"),
-        _local_or_geographic_behaviour,
+        _local_or_geographic,
         "give the behaviour a geographic origin, or make all coordinates relative",
     ),
     Constraint(
         "BL050",
         "The origin is at height 0, and a relative one at x = y = z = 0.",
         (BEHAVIOUR, "Behaviour"),
-        _origin_of_behaviour,
+        _origin,
         "give the behaviour another origin, or set its surfaceHeight",
     ),
     Constraint(

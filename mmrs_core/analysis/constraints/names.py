@@ -82,6 +82,14 @@ def _legible(element: Element, models: ModelSet) -> Iterator[Finding]:
         yield finding(element, f"the name {fault}")
 
 
+def _legible_parts(robot: Element, models: ModelSet) -> Iterator[Finding]:
+    named = [(robot, "id", "identifier"), (robot, "typeName", "name of its type")]
+    named += [(move, "name", "name") for move in children(robot, "moves")]
+    for element, feature, word in named:
+        if (name := text(element, feature)) and (fault := unreadable(name)):
+            yield finding(element, f"the {word} {fault}")
+
+
 _RENAME = "give each its own name"
 _READABLE = "write a name with something to see, on one line, without tabs or marks that turn the text round"
 _ONE_POLICY = "keep one policy for each event"
@@ -165,6 +173,13 @@ CONSTRAINTS = (
     ),
     Constraint(
         "BL034", "The name of a slot can be read by people.", (BEHAVIOUR, "Slot"), _legible, _READABLE
+    ),
+    Constraint(
+        "BL053",
+        "The identifier and type of a robot, and the names of its moves, can be read by people.",
+        (BEHAVIOUR, "Robot"),
+        _legible_parts,
+        _READABLE,
     ),
     Constraint(
         "BL041",

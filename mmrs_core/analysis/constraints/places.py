@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
-from itertools import combinations
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from itertools import combinations, pairwise
 from math import dist, inf
 
-import numpy as np
 import shapely
 from shapely.geometry.base import BaseGeometry
 
@@ -15,7 +15,7 @@ from mmrs_core.analysis.constraints.findings import MISSION, called, finding
 from mmrs_core.analysis.constraints.sketch import DrawnArea, Sketch, polygon_of, sketch_of
 from mmrs_core.contributions.constraints import Constraint, Finding
 from mmrs_core.diagnostics import Severity
-from mmrs_core.geometry.segments import legs_of, prism_distance
+from mmrs_core.geometry.stretches import between, blocked_stretches, open_stretches
 from mmrs_core.languages.element import Element
 from mmrs_core.languages.grounding.values import child, children, number
 from mmrs_core.languages.modelset import ModelSet
@@ -91,35 +91,54 @@ def _positions(task: Element, feature: str, sketch: Sketch) -> list[Position]:
 
 
 def _line_inside(task: Element, models: ModelSet) -> Iterator[Finding]:
-    blocked = _blocked_legs(task, models)
-    for area, legs in blocked:
-        if legs.all():
-            yield finding(
-                task, f"every part of its line is too near to {called(area.element)} for every robot"
-            )
+    line = _line_of(task, models)
+    if line is not None and line.blocked and not line.left:
+        yield finding(task, f"every part of its line is too near to {line.areas} for every robot")
 
 
 def _line_through(task: Element, models: ModelSet) -> Iterator[Finding]:
-    for area, legs in _blocked_legs(task, models):
-        if legs.any() and not legs.all():
-            first = int(np.flatnonzero(legs)[0])
+    line = _line_of(task, models)
+    if line is not None and line.left:
+        for begin, end in line.blocked:
             yield finding(
                 task,
-                f"its line is too near to {called(area.element)} for every robot, behind its point {first}",
+                f"{end - begin:.1f} of its {line.length:.1f} m are too near to {line.areas} for every robot, "
+                f"from {begin:.1f} m along its line",
             )
 
 
-def _blocked_legs(task: Element, models: ModelSet) -> Iterator[tuple[DrawnArea, np.ndarray]]:
-    """Yield, by area, which legs of a line no robot that can do the task may follow."""
+@dataclass(frozen=True, slots=True)
+class _Line:
+    """What no robot that can do a task may follow of its line (from, to), and what is left, metres."""
+
+    length: float
+    blocked: list[tuple[float, float]]
+    left: list[tuple[float, float]]
+    areas: str
+
+
+def _line_of(task: Element, models: ModelSet) -> _Line | None:
     sketch = sketch_of(models)
     points, smallest = _positions(task, "points", sketch), _smallest_clearance(task, models)
     if not points or smallest is None:
-        return
-    legs = legs_of(points if len(points) > 1 else points * 2)
-    for area in sketch.kept_from:
-        ring = shapely.get_coordinates(area.shape.exterior)[:-1]
-        needed = area.safety_distance + smallest - EXACT
-        yield area, prism_distance(legs, ring, area.low, area.high) < needed
+        return None
+    found = {
+        called(area.element): stretches
+        for area in sketch.kept_from
+        if (stretches := _blocked(points, area, area.safety_distance + smallest))
+    }
+    length = sum(dist(a, b) for a, b in pairwise(points))
+    left = open_stretches(found.values(), length)
+    return _Line(length, between(left, length) if found else [], left, ", ".join(found))
+
+
+def _blocked(points: list[Position], area: DrawnArea, keep: float) -> list[tuple[float, float]]:
+    ring = [(east, north) for east, north in shapely.get_coordinates(area.shape.exterior)[:-1].tolist()]
+    return blocked_stretches(points, ring, area.low, area.high, keep, _all_within)
+
+
+def _all_within(ring: Sequence[tuple[float, float]], distance: float) -> BaseGeometry:
+    return shapely.buffer(shapely.Polygon(ring), distance, quad_segs=16)
 
 
 def _covered(task: Element, models: ModelSet) -> Iterator[Finding]:

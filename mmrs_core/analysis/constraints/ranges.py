@@ -77,6 +77,13 @@ CONSTRAINTS = (
         "give the distance in metres, or leave it out",
     ),
     _constraint(
+        "MML009",
+        "The largest gap of a mission is more than 0.",
+        (MISSION, "Mission"),
+        _positive("largestGap"),
+        "give the distance in metres, or leave it out",
+    ),
+    _constraint(
         "MML007",
         "The payload of a robot is not negative.",
         (MISSION, "Robot"),

@@ -1,7 +1,8 @@
-"""What of a mission can be drawn: places, areas, robots and the order of tasks, as far as they are known.
+"""What can be drawn of a mission, or of a behaviour without one.
 
-Models are checked before they are whole, so that everything here may be missing, and what is missing is
-left out: some other constraint or the metamodel says so.
+Places, areas, robots and the order of tasks are drawn as far as they are known: models are checked before
+they are whole, so that everything here may be missing, and what is missing is left out: some other
+constraint or the metamodel says so.
 """
 
 from __future__ import annotations
@@ -10,13 +11,14 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
 from dataclasses import dataclass
-from functools import cached_property
 from math import hypot, sqrt
 
 import shapely
 from shapely.geometry import Polygon
 
 from mmrs_core.analysis.constraints.order import Order
+from mmrs_core.analysis.constraints.spread import Spread, spread_of
+from mmrs_core.analysis.constraints.unread import drawn_once
 from mmrs_core.languages.element import Element
 from mmrs_core.languages.grounding.coordinates import Ground, ground_of
 from mmrs_core.languages.grounding.parts import heights_of, ring_of, use_of
@@ -66,34 +68,42 @@ class DrawnRobot:
 
 
 class Sketch:
-    """What can be drawn of a mission, its context and its team."""
+    """What can be drawn of a mission or behaviour, its context and its team."""
 
     def __init__(self, models: ModelSet) -> None:
         self._models = models
+        self._team = child(models.mission, "team")
+        alone = models.behaviour if self._team is None else None
+        self._framed: Element = alone if alone is not None else models.mission
 
-    @cached_property
+    @drawn_once
     def ground(self) -> Ground:
-        """Where the coordinates lie."""
-        return ground_of(self._models.mission, self._models.context)
+        """Where the coordinates lie; by a behaviour that stands for itself, if there is no mission."""
+        return ground_of(self._framed, self._models.context)
 
-    @cached_property
+    @drawn_once
     def program_ground(self) -> Ground:
         """Where the coordinates of the behaviour lie."""
         return ground_of(self._models.behaviour, self._models.context)
 
-    @cached_property
+    @drawn_once
     def order(self) -> Order:
         """What tasks wait for."""
         return Order(self._models.mission)
 
-    @cached_property
+    @drawn_once
+    def spread(self) -> Spread:
+        """What lies apart from everything else."""
+        return spread_of(self._models)
+
+    @drawn_once
     def areas(self) -> tuple[DrawnArea, ...]:
         """The areas that can be drawn."""
         context = self._models.context
         found = (each for feature in AREAS for each in children(context, feature))
         return tuple(area for each in found if (area := self._area(each)) is not None)
 
-    @cached_property
+    @drawn_once
     def kept_from(self) -> tuple[DrawnArea, ...]:
         """The areas that robots keep away from."""
         return tuple(area for area in self.areas if area.use is not AreaUse.EMERGENCY)
@@ -105,10 +115,11 @@ class Sketch:
         for area, sideways in zip(self.kept_from, aside, strict=True):
             yield area, hypot(float(sideways), area.off(position[2]))
 
-    @cached_property
+    @drawn_once
     def robots(self) -> tuple[DrawnRobot, ...]:
-        """The team."""
-        return tuple(self._robot(each) for each in children(child(self._models.mission, "team"), "robots"))
+        """The team; the robots of a behaviour that stands for itself."""
+        owner = self._framed if self._team is None else self._team
+        return tuple(self._robot(each) for each in children(owner, "robots"))
 
     def ring(self, owner: Element, feature: str) -> Ring | None:
         """Return the vertices of a ring, each once; None where one of them has no place."""
@@ -127,10 +138,10 @@ class Sketch:
         )
 
     def _robot(self, element: Element) -> DrawnRobot:
-        robot_type = self._models.robots.get(text(element, "type"))
+        robot_type = self._models.robots.get(text(element, "type") or text(element, "typeName"))
         size = child(robot_type, "size") if robot_type is not None else None
         half = half_diagonal(size) if size is not None else None
-        error = max(number(self._models.mission, "positionError") or 0.0, 0.0)
+        error = max(number(self._framed, "positionError") or 0.0, 0.0)
         home = child(element, "home")
         return DrawnRobot(
             element=element,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 from math import isfinite
 
 from mmrs_core.contributions.fixes import Edit, Fix, Wrong, referred_to, with_value, without
@@ -17,6 +18,25 @@ def exchanged(one: str, other: str) -> Callable[[Wrong], Iterator[Edit]]:
         if first is not None and second is not None:
             yield with_value(first, second.value)
             yield with_value(second, first.value)
+
+    return edits
+
+
+def _places_exchanged(wrong: Wrong) -> Iterator[Edit]:
+    """Exchange latitude and longitude in every place of an element."""
+    for tag in wrong.tag.everything():
+        yield from exchanged("latitude", "longitude")(replace(wrong, tag=tag))
+
+
+def _places_turned(name: str) -> Callable[[Wrong], Iterator[Edit]]:
+    """Return what gives a number the other sign in every place of an element."""
+
+    def edits(wrong: Wrong) -> Iterator[Edit]:
+        for tag in wrong.tag.everything():
+            attribute = tag.attribute(name)
+            if attribute is not None and _number(tag, name):
+                word = attribute.value.strip()
+                yield with_value(attribute, word[1:] if word.startswith("-") else f"-{word.lstrip('+')}")
 
     return edits
 
@@ -97,7 +117,9 @@ def _number(tag: Tag, name: str) -> float | None:
 FIXES = (
     Fix("RL017", "exchange min and max", exchanged("min", "max")),
     Fix("CTX007", "exchange minHeight and maxHeight", exchanged("minHeight", "maxHeight")),
-    Fix("MML027", "exchange latitude and longitude", exchanged("latitude", "longitude")),
+    Fix("MML027", "exchange latitude and longitude", _places_exchanged),
+    Fix("MML029", "give the latitude the other sign", _places_turned("latitude")),
+    Fix("MML030", "give the longitude the other sign", _places_turned("longitude")),
     Fix("MML005", "write the reserve as a part of the whole", as_part("reserve")),
     Fix("BL046", "write the reserve as a part of the whole", as_part("reserve")),
     Fix("CTX012", "turn the direction by a whole circle", _directions),

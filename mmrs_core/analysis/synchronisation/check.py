@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
+from dataclasses import replace
 from itertools import pairwise
 
 from mmrs_core.analysis.synchronisation.exploration import find_stuck
 from mmrs_core.analysis.synchronisation.fixpoint import must_fixpoint
-from mmrs_core.analysis.synchronisation.network import Network, Node, network_of
+from mmrs_core.analysis.synchronisation.network import Network, Node, groups_of, network_of
 from mmrs_core.analysis.synchronisation.search import (
     LIMIT,
     LimitExceededError,
@@ -20,6 +21,8 @@ from mmrs_core.behaviour.walk import moves_reaching_stop, reachable_moves
 from mmrs_core.contributions.checks import Check, CheckInput, Status, Verdict
 
 NAME = "synchronisation"
+MOST_NAMES = 8
+"""How many robots of a group a message names."""
 
 
 def verdicts_of(input: CheckInput, *, limit: int = LIMIT) -> Iterator[Verdict]:
@@ -29,11 +32,24 @@ def verdicts_of(input: CheckInput, *, limit: int = LIMIT) -> Iterator[Verdict]:
         input: of the check.
         limit: how many steps a search through the ways that Choices go may make.
     """
-    program = input.program
-    network = network_of(program)
+    network = network_of(input.program)
     if not network.awaited:
         yield Verdict(NAME, Status.SAFE, message="no robot waits for another")
         return
+    groups = groups_of(network)
+    for group in groups:
+        yield from _of_group(input.program, group, limit, "" if len(groups) == 1 else _names(group))
+
+
+def _names(group: Network) -> str:
+    """Return the robots of a group, as the beginning of a message."""
+    names = [net.robot for net in group.nets]
+    shown = names if len(names) <= MOST_NAMES else [*names[:MOST_NAMES], f"{len(names) - MOST_NAMES} more"]
+    return f"{', '.join(shown)}: "
+
+
+def _of_group(program: Program, network: Network, limit: int, names: str) -> Iterator[Verdict]:
+    """Yield the verdicts on robots that share slots, and share none with others."""
     orphaned = [
         verdict
         for slot in sorted(network.awaited - network.givers.keys())
@@ -43,6 +59,8 @@ def verdicts_of(input: CheckInput, *, limit: int = LIMIT) -> Iterator[Verdict]:
     named = {(verdict.robot, verdict.move) for verdict in orphaned}
     decided = _with_resets(program, network) if network.volatile else _monotone(program, network, limit)
     for verdict in decided:
+        if verdict.status is not Status.VIOLATED:
+            verdict = replace(verdict, message=names + verdict.message)
         if not orphaned or (verdict.status is Status.VIOLATED and (verdict.robot, verdict.move) not in named):
             yield verdict
 
@@ -64,7 +82,7 @@ def _monotone(program: Program, network: Network, limit: int) -> Iterator[Verdic
     if not any(net.chooses for net in network.nets):
         yield from _certainly_stuck(program, network, fixpoint.active, fixpoint.blocked)
         return
-    endless = _endless(program)
+    endless = _endless(program, network)
     if endless:
         yield _undecided(f"no way leads {endless} to Stop")
         return
@@ -151,9 +169,9 @@ def _violated(program: Program, robot: str, index: int, words: str) -> Verdict:
     return Verdict(NAME, Status.VIOLATED, robot, move=move.id, message=f"{robot}: {words}", place=move.place)
 
 
-def _endless(program: Program) -> str:
+def _endless(program: Program, network: Network) -> str:
     """Return the first move that is made and has no way to Stop, with its robot; empty if there is none."""
-    for robot in program.robots:
+    for robot in (program.robot(net.robot) for net in network.nets):
         lost = reachable_moves(robot) - moves_reaching_stop(robot)
         if lost:
             return f"from {_move(program, robot.id, min(lost))} of {robot.id}"
@@ -161,7 +179,7 @@ def _endless(program: Program) -> str:
 
 
 def _free(program: Program, network: Network, scope: str) -> Verdict:
-    endless = _endless(program)
+    endless = _endless(program, network)
     if endless:
         return _undecided(f"no way leads {endless} to Stop")
     words = f"every robot comes to its Stop {scope}; slots awaited: {len(network.awaited)}"

@@ -8,11 +8,11 @@ deadlocks: a robot is stuck in the reduced network exactly if it is in the behav
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from mmrs_core.behaviour.program import Program, RobotProgram, SlotId
-from mmrs_core.behaviour.walk import reachable_moves
+from mmrs_core.behaviour.walk import reachable, reachable_moves
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,15 +71,15 @@ class Network:
 
 def network_of(program: Program) -> Network:
     """Return the network of a behaviour; linear in its moves, actions and transitions."""
-    reachable = {robot.id: reachable_moves(robot) for robot in program.robots}
+    reached = {robot.id: reachable_moves(robot) for robot in program.robots}
     awaited = frozenset(
         (robot.id, slot)
         for robot in program.robots
-        for move in reachable[robot.id]
+        for move in reached[robot.id]
         if move in robot.transitions
         for slot in robot.transitions[move].waits
     )
-    nets = tuple(_net(robot, reachable[robot.id], awaited) for robot in program.robots)
+    nets = tuple(_net(robot, reached[robot.id], awaited) for robot in program.robots)
     volatile = frozenset(
         slot
         for net in nets
@@ -96,9 +96,43 @@ def network_of(program: Program) -> Network:
     return Network(nets, awaited, volatile, {slot: tuple(where) for slot, where in givers.items()})
 
 
-def _net(robot: RobotProgram, reachable: frozenset[int], awaited: frozenset[SlotId]) -> Net:
-    full = {move: _node(robot, move, awaited) for move in reachable}
-    kept = [move for move in sorted(reachable) if move == robot.stop or _matters(full[move])]
+def groups_of(network: Network) -> tuple[Network, ...]:
+    """Return a network for each group of robots that share slots, in order; lone robots are in none."""
+    number = {net.robot: index for index, net in enumerate(network.nets)}
+    neighbours: list[set[int]] = [set() for _ in network.nets]
+    for slot, where in network.givers.items():
+        for giver, _ in where:
+            neighbours[giver].add(number[slot[0]])
+            neighbours[number[slot[0]]].add(giver)
+    graph = tuple(tuple(sorted(each)) for each in neighbours)
+    waiting = {number[robot] for robot, _ in network.awaited}
+    found = []
+    while waiting:
+        group = reachable(graph, [min(waiting)])
+        waiting -= group
+        found.append(_part(network, sorted(group)))
+    return tuple(found)
+
+
+def _part(network: Network, group: Sequence[int]) -> Network:
+    """Return what is left of a network with some of its nets."""
+    renumbered = {old: new for new, old in enumerate(group)}
+    robots = {network.nets[old].robot for old in group}
+    return Network(
+        tuple(network.nets[old] for old in group),
+        frozenset(slot for slot in network.awaited if slot[0] in robots),
+        frozenset(slot for slot in network.volatile if slot[0] in robots),
+        {
+            slot: tuple((renumbered[net], node) for net, node in where)
+            for slot, where in network.givers.items()
+            if slot[0] in robots
+        },
+    )
+
+
+def _net(robot: RobotProgram, reached: frozenset[int], awaited: frozenset[SlotId]) -> Net:
+    full = {move: _node(robot, move, awaited) for move in reached}
+    kept = [move for move in sorted(reached) if move == robot.stop or _matters(full[move])]
     kept_moves = frozenset(kept)
     first = _next_kept(robot.start, full, kept_moves)
     order = [first, *(move for move in kept if move != first)]

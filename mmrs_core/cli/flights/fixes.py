@@ -16,7 +16,7 @@ from mmrs_core.behaviour.program import Program, RobotProgram
 from mmrs_core.cli.flights.values import Flags, Track
 from mmrs_core.geometry.frames import Floats, LocalFrame
 from mmrs_core.mavlink.earth import WGS84
-from mmrs_core.mavlink.vehicles import SUB, vehicle_class
+from mmrs_core.mavlink.vehicles import VEHICLES, vehicle_class
 from mmrs_core.scene import Frame, Position, RobotType
 
 if TYPE_CHECKING:
@@ -141,7 +141,8 @@ def zero_of(robot: RobotProgram, program: Program, robot_type: RobotType | None,
         vehicle: what the black box says that it was; empty where it says nothing.
     """
     home = robot.home if robot.home is not None else (0.0, 0.0, 0.0)
-    dives = vehicle == SUB.name if vehicle else vehicle_class(robot, robot_type).dives
+    known = VEHICLES.get(vehicle) if vehicle else vehicle_class(robot, robot_type, {})
+    dives = known is not None and known.dives
     return Zero(program.frame, home, program.frame.surface if dives else home[2])
 
 

@@ -13,10 +13,11 @@ from mmrs_core.cli.flights.fixes import zero_of
 from mmrs_core.cli.flights.gathering import SIMULATION
 from mmrs_core.cli.protection import ProtectedError
 from mmrs_core.contributions.execution import Sample
+from mmrs_core.contributions.rules import RobotKind
 from mmrs_core.mavlink.vehicles import vehicle_class
 from mmrs_core.resources import named
 from mmrs_core.runtime.run import Run
-from mmrs_core.scene import RobotType
+from mmrs_core.scene import Name, RobotType
 
 
 def box_name(robot: str) -> str:
@@ -44,7 +45,13 @@ def remove_boxes(folder: Path) -> None:
             part.unlink()
 
 
-def write_boxes(run: Run, program: Program, types: Mapping[str, RobotType], folder: Path) -> tuple[Path, ...]:
+def write_boxes(
+    run: Run,
+    program: Program,
+    types: Mapping[str, RobotType],
+    folder: Path,
+    kinds: Mapping[Name, RobotKind],
+) -> tuple[Path, ...]:
     """Write a black box for every robot whose way the simulation tells; return the paths.
 
     Places are metres from home; between two of them a robot went straight. There is no time of day.
@@ -54,7 +61,9 @@ def write_boxes(run: Run, program: Program, types: Mapping[str, RobotType], fold
     for robot in program.robots:
         if track := run.tracks.get(robot.id):
             path = folder / box_name(robot.id)
-            lines = _lines(name, robot, track, program, types.get(robot.type_name))
+            robot_type = types.get(robot.type_name)
+            vehicle = vehicle_class(robot, robot_type, kinds)
+            lines = _lines(name, robot, track, program, vehicle.name if vehicle is not None else "")
             with named(path):
                 path.write_text("".join(f"{line}\n" for line in lines), encoding="utf-8")
             written.append(path)
@@ -62,17 +71,16 @@ def write_boxes(run: Run, program: Program, types: Mapping[str, RobotType], fold
 
 
 def _lines(
-    run: str, robot: RobotProgram, track: Sequence[Sample], program: Program, robot_type: RobotType | None
+    run: str, robot: RobotProgram, track: Sequence[Sample], program: Program, vehicle: str
 ) -> Iterator[str]:
-    zero = zero_of(robot, program, robot_type)
-    full, kind = track[0].energy, vehicle_class(robot, robot_type).name
+    zero, full = zero_of(robot, program, None, vehicle), track[0].energy
     common = {"run": run, "robot": robot.id}
 
     def line(time: float, kind: str, **content: object) -> str:
         whole = {**common, "time": round(time, 6), "wall": "", "kind": kind, **content}
         return json.dumps(whole, ensure_ascii=False, separators=(",", ":"), allow_nan=False)
 
-    yield line(0.0, "start", link=SIMULATION, vehicle=kind, firmware="", home=None, versions={})
+    yield line(0.0, "start", link=SIMULATION, vehicle=vehicle, firmware="", home=None, versions={})
     for sample in track:
         east, north, up = sample.position
         place = {"north": north - zero.home[1], "east": east - zero.home[0], "height": up - zero.up}

@@ -26,7 +26,7 @@ def picture_of_plan(scene: Scene, plan: Plan, symbols: Mapping[Name, MapSymbol])
         things=things_of(scene.elements, symbols),
         handovers=tuple(_handovers(plan)),
         makespan=plan.makespan,
-        notes=plan.notes,
+        notes=(*map(str, plan.left_out), *plan.notes),
         surface=scene.frame.surface if any(_under_water(scene, robot) for robot in scene.robots) else None,
     )
 
@@ -57,7 +57,7 @@ def _robot_picture(scene: Scene, plan: RobotPlan, symbols: Mapping[Name, MapSymb
 def _summary(plan: RobotPlan) -> tuple[tuple[str, str], ...]:
     served = tuple(dict.fromkeys(step.task for step in flat(plan.steps) if isinstance(step, Serve)))
     return (
-        ("tasks", ", ".join(served) or "none"),
+        ("tasks", ", ".join(served) or f"none ({plan.idle})"),
         ("way", length(plan.length)),
         ("busy", clock(plan.busy)),
         ("energy", energy(plan.energy)),

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import re
 
-_PATH = re.compile(r"(?<![\w./:])(?:~|\.{1,2})?/(?:[^\s/'\":]+/)+([^\s/'\":]*)")
-_DRIVE = re.compile(r"\b[A-Za-z]:\\(?:[^\s\\'\":]+\\)*([^\s\\'\":]*)")
-_SECRET = re.compile(r"\b(?:[0-9a-fA-F]{32,}|[A-Za-z0-9+/_-]{40,}={0,2})\b")
+_PATH = re.compile(r"(?<![\w./:])(?:~|\.{1,2})?/[^\s/'\":]+/[^\s'\":]*")
+_DRIVE = re.compile(r"\b[A-Za-z]:\\[^\s'\":]*")
+_SECRET = re.compile(r"(?<!\w)[0-9a-fA-F]{32,}+(?!\w)|(?<![\w+/-])[A-Za-z0-9+/_-]{40,}+={0,2}")
 
 
 def without_secrets(words: str) -> str:
@@ -18,5 +18,5 @@ def without_secrets(words: str) -> str:
     'key …'
     """
     for path in (_PATH, _DRIVE):
-        words = path.sub(lambda found: found[1] or "…", words)
+        words = path.sub(lambda found: re.split(r"[/\\]", found[0])[-1] or "…", words)
     return _SECRET.sub("…", words)

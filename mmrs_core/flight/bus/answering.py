@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
+from .admission import Admission
 from .outgoing.outbox import Outbox
 from .owners.owners import Owners
 from .reading import Unreadable, request_in
@@ -17,10 +18,17 @@ class Answering:
     """Answers requests. Not thread-safe: whoever has it guards it, `told` apart."""
 
     def __init__(
-        self, owners: Owners, watching: Watching, outbox: Outbox, net: Net, now: Callable[[], float]
+        self,
+        owners: Owners,
+        watching: Watching,
+        outbox: Outbox,
+        net: Net,
+        now: Callable[[], float],
+        admission: Admission,
     ) -> None:
         """Answer for these owners; farewells change who is there, and to whom anything is still sent."""
         self._owners, self._watching, self._outbox = owners, watching, outbox
+        self._admission = admission
         self._net, self._now = net, now
         self._roster = Roster(now)
 
@@ -32,6 +40,8 @@ class Answering:
             return Answer("refused", why=f"not a request: {error}")
         if found.id.sender != sender:
             return Answer("refused", why=f"{sender!r} cannot speak for {found.id.sender!r}")
+        if (refusal := self._admission.refusal(found)) is not None:
+            return refusal
         if owner not in self._owners or sender in self._owners:
             return Answer("refused", why=f"{owner!r} is not to be asked here")
         return found

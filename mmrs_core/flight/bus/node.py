@@ -5,8 +5,9 @@ from __future__ import annotations
 import random
 import threading
 import time
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 
+from .admission import Admission
 from .answering import Answering
 from .carriers.carrier import Carrier, NoCarrier
 from .carriers.courier import Courier
@@ -40,6 +41,7 @@ class Node:
         run: str,
         *,
         plan: str = "",
+        team: Collection[str] = (),
         carrier: Carrier | None = None,
         journals: Callable[[str], Journal] = lambda robot: NoJournal(),
         recorded: Mapping[str, Recorded] | None = None,
@@ -55,6 +57,7 @@ class Node:
             members: the robots of this process.
             run: identifier of the run; nothing of other runs is heard.
             plan: what tells this plan of the mission from others; robots of others are refused.
+            team: all robots of the mission: nothing of others is heard; none: the carrier knows them.
             carrier: to robots of other processes; None: there are none.
             journals: what survives this process, by robot.
             recorded: by robot, what the logs say of those that are started again.
@@ -91,7 +94,8 @@ class Node:
         self._announcing = Announcing(
             self._run, self._members, self._owners, self._watching, self._outbox, now
         )
-        self._answering = Answering(self._owners, self._watching, self._outbox, self._net, now)
+        admission = Admission(self._run, team, lambda: self._owners.lamport, self._net.tell)
+        self._answering = Answering(self._owners, self._watching, self._outbox, self._net, now, admission)
         self._pacing = Pacing(self.lock, now, self._next_due, self.pump, self._net, threaded=threaded)
         self._changes = Changes(self.lock, self._net)
         carrying = carrier or NoCarrier()
@@ -116,6 +120,7 @@ class Node:
             self._courier,
             self._changes,
             self._net,
+            admission,
         )
         self._begin(given, settle)
         for robot in self._members:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import threading
 from collections.abc import Callable, Sequence
 
+from .admission import Admission
 from .answering import Answering
 from .carriers.courier import Courier
 from .changes import Changes
@@ -31,6 +32,7 @@ class Sending:
         courier: Courier,
         changes: Changes,
         net: Net,
+        admission: Admission,
     ) -> None:
         """Send nothing yet.
 
@@ -43,10 +45,12 @@ class Sending:
             courier: to those of others.
             changes: told when an answer has come.
             net: tells people of those who are refused.
+            admission: judges what robots of other processes answer.
         """
         self._lock, self._now = lock, now
         self._owners, self._outbox, self._answering = owners, outbox, answering
         self._courier, self._changes, self._net = courier, changes, net
+        self._admission = admission
 
     def begin(self, now: float) -> Work:
         """Return what is due now, having sent what is for this process; to be called with the lock."""
@@ -70,6 +74,8 @@ class Sending:
     def _taker(self, errand: Errand | Notice, message: Message) -> Callable[[Answer], None]:
         def take(answer: Answer) -> None:
             with self._lock:
+                if not self._admission.believes(message.owner, answer):
+                    return  # as good as none
                 errand.answered(message.owner, _round(message.request), answer, self._now())
                 if answer.what == "refused" and isinstance(message.request, Begin):
                     self._net.tell(f"{message.owner!r} refuses {message.sender!r}: {answer.why}")

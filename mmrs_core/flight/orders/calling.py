@@ -34,6 +34,21 @@ class Unreachable(Exception):  # noqa: N818  # reads as what it says of the robo
     """There is no process to give the order to, or it does not answer."""
 
 
+def object_in(line: str | bytes) -> dict[str, Any]:
+    """Return the object of JSON in a line.
+
+    Raises:
+        ValueError: there is none.
+    """
+    try:
+        given = json.loads(line)
+    except (ValueError, RecursionError) as error:
+        raise ValueError("an order is one line of JSON") from error
+    if not isinstance(given, dict):
+        raise ValueError("an order is an object of JSON")
+    return given
+
+
 def asked_at_once(
     requests: Sequence[Request], seconds: float
 ) -> Iterator[tuple[int, dict[str, Any] | Exception]]:

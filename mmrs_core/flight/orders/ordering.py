@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import json
 import sys
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -11,12 +10,13 @@ from pathlib import Path
 from typing import Any
 
 from ..screen import bear_all_characters
-from .calling import Unreachable, asked_at_once, network
+from .calling import Unreachable, asked_at_once, network, object_in
 from .orders import ANSWER, ORDERS, STATUS
 from .standing import lines_of
 
 PATTERN = "control*.json"
 USUAL_SECONDS = 10.0
+LARGEST_PORT = 65_535
 WORDS = {"yes": True, "no": False}
 
 
@@ -204,10 +204,13 @@ def _parser() -> argparse.ArgumentParser:
 
 def _read(path: Path) -> Iterator[Channel]:
     try:
-        facts = json.loads(path.read_text("ascii"))
+        facts = object_in(path.read_bytes())
         here = network()
         elsewhere = "" if facts.get("network", here) == here else str(facts["machine"])
-        yield Channel(int(facts["port"]), str(facts["token"]), tuple(map(str, facts["robots"])), elsewhere)
-    except (OSError, ValueError, KeyError, TypeError):
+        port = int(facts["port"])
+        if not 0 < port <= LARGEST_PORT:
+            return
+        yield Channel(port, str(facts["token"]), tuple(map(str, facts["robots"])), elsewhere)
+    except (OSError, ValueError, KeyError, TypeError, OverflowError):
         # It is being written, or taken away, right now; what was meant to be there will be in a moment.
         return

@@ -30,7 +30,7 @@ from mmrs_core.scene import (
 
 MULTICOPTER = "urn:mmrs:multicopter:1.0"
 ROBOT = "urn:mmrs:robot:1.0"
-AUV = "urn:mmrs:auv:1.0"
+AUV = "urn:mmrs:auv:1.1"
 MOVE = (BEHAVIOUR, "Move")
 PROBED = frozenset({BEHAVIOUR, MULTICOPTER})
 """Languages whose moves have probes of their own."""
@@ -97,7 +97,7 @@ DIVE = (replace(move("a", "GoTo"), target=Target((0.0, 30.0, -5.0)), speed=1.0),
 KINDS: dict[str, tuple[Metaclasses, Metaclasses, tuple[Move, ...]]] = {
     "copter": (((MULTICOPTER, "Drone"), (ROBOT, "Robot")), ((ROBOT, "MovementCapability"),), FLIGHT),
     "rover": (((ROBOT, "Robot"),), ((ROBOT, "MovementCapability"),), DRIVE),
-    "sub": (((ROBOT, "Robot"),), ((AUV, "AUVMovement"), (ROBOT, "MovementCapability")), DIVE),
+    "sub": (((AUV, "AUV"), (ROBOT, "Robot")), ((AUV, "AUVMovement"), (ROBOT, "MovementCapability")), DIVE),
 }
 """By kind of vehicle: metaclasses of its type, of its movement, and moves that it can make."""
 
@@ -119,19 +119,15 @@ def kind_of(vehicle: str, **properties: str) -> RobotType:
         ),
         batteries=(Battery(200_000.0, 3600.0),),
         devices={"device": device},
-        part=Part((metaclasses[0],), {"size": SIZE} if vehicle == "sub" else {}),
+        part=Part((metaclasses[0],), {"size": SIZE, "thrusters": THRUSTERS} if vehicle == "sub" else {}),
     )
 
 
 def _moving(vehicle: str) -> Part:
-    """Return how a vehicle moves; one under water has thrusters."""
+    """Return how a vehicle moves; one under water by all its thrusters."""
     if vehicle != "sub":
         return Part((), {})
-    pushes = {"T1": (0.3, 0.2, 1.0, 0.0), "T2": (0.3, -0.2, 1.0, 0.0), "T3": (0.3, 0.0, 0.0, 1.0)}
-    pushes["T4"] = (-0.3, 0.0, 0.0, 1.0)
-    return Part(
-        (*KINDS["sub"][1],), {"thrusters": tuple(_thruster(id, *each) for id, each in pushes.items())}
-    )
+    return Part((*KINDS["sub"][1],), {"thrusters": tuple(PUSHES)})
 
 
 def _thruster(id: str, forward: float, starboard: float, ahead: float, down: float) -> Part:
@@ -141,6 +137,13 @@ def _thruster(id: str, forward: float, starboard: float, ahead: float, down: flo
     return Part(((AUV, "Thruster"),), {"id": id, "maxDepth": 100.0, "mounting": mounting, **figures})
 
 
+PUSHES = {
+    "T1": (0.3, 0.2, 1.0, 0.0),
+    "T2": (0.3, -0.2, 1.0, 0.0),
+    "T3": (0.3, 0.0, 0.0, 1.0),
+    "T4": (-0.3, 0.0, 0.0, 1.0),
+}
+THRUSTERS = tuple(_thruster(id, *each) for id, each in PUSHES.items())
 SIZE = Part(
     ((AUV, "InWaterSize"),),
     {"length": 0.8, "width": 0.5, "height": 0.4, "weight": 30.0, "weightInWater": -0.3},

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from mmrs_core.errors import PluginError
-from mmrs_core.languages.evolution.migration import Migration
+from mmrs_core.languages.evolution.migration import Migration, Refer
 from mmrs_core.languages.evolution.renaming import Kind, Renaming, after
 from mmrs_core.languages.json_form.stream import TYPE, is_own
 from mmrs_core.languages.json_form.tree import Leaf, Node, Number
@@ -64,6 +64,8 @@ class Migrating:
         for step in self.steps:
             for node in list(every_node(roots)):
                 self._take(step, node)
+            if step.rewrite_holder is not None:
+                self._rewrite_holders(step.rewrite_holder, step.to_uri, roots)
 
     def _kind(self, node: Node) -> Kind:
         return class_of(node, self._languages)
@@ -124,6 +126,20 @@ class Migrating:
             node.members[TYPE] = "#".join(after(step, kind))
             if step.rewrite is not None:
                 self._rewrite(step.rewrite, node)
+
+    def _rewrite_holders(
+        self, rewrite: Callable[[Node, Refer], None], ns_uri: str, roots: Sequence[Node]
+    ) -> None:
+        """Rewrite the elements of other languages that hold some of the language that was just reached."""
+        addresses = {id(node): address for address, node in self.addresses.items()}
+
+        def refer(node: Node) -> Node:
+            return Node({"$ref": addresses[id(node)]}, node.line)
+
+        for node in list(every_node(roots)):
+            held = {self._kind(each)[0] for each in inside(node)}
+            if ns_uri in held and self._kind(node)[0] != ns_uri:
+                self._rewrite(lambda holder: rewrite(holder, refer), node)
 
     def _rewrite(self, rewrite: Callable[[Node], None], node: Node) -> None:
         try:
@@ -204,5 +220,10 @@ def every_node(roots: Sequence[Node]) -> Iterator[Node]:
     while pending:
         node = pending.pop()
         yield node
-        inside = (value if isinstance(value, list) else [value] for value in node.members.values())
-        pending.extend([each for values in inside for each in values if isinstance(each, Node)][::-1])
+        pending.extend(inside(node)[::-1])
+
+
+def inside(node: Node) -> list[Node]:
+    """Return the objects that stand directly in another."""
+    said = (value if isinstance(value, list) else [value] for value in node.members.values())
+    return [each for values in said for each in values if isinstance(each, Node)]

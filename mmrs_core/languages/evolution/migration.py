@@ -9,6 +9,9 @@ from types import MappingProxyType
 from mmrs_core.errors import PluginError
 from mmrs_core.languages.json_form.tree import Node
 
+Refer = Callable[[Node], Node]
+"""Returns a reference to an element of the model."""
+
 _NOTHING: Mapping[str, str] = MappingProxyType({})
 
 
@@ -28,6 +31,9 @@ class Migration:
         dropped: features that the newer version has no place for; a warning tells each value that is lost.
         rewrite: called with each element of the language after all that, outer ones before inner ones, to
             change its `members` in place; numbers and truth values are text there.
+        rewrite_holder: called, when the whole model has been through that, with each element of another
+            language that holds elements of this one, outer ones before inner ones, and with what makes
+            references to elements: to change what stands where.
     """
 
     from_uri: str
@@ -37,6 +43,7 @@ class Migration:
     values: Mapping[str, Mapping[str, str]] = field(default_factory=dict)
     dropped: frozenset[str] = frozenset()
     rewrite: Callable[[Node], None] | None = None
+    rewrite_holder: Callable[[Node, Refer], None] | None = None
 
     def __post_init__(self) -> None:
         """Refuse names of features that name no class.

@@ -141,8 +141,11 @@ class Beginnings:
             if found is None:
                 return None, event
             metaclass = found
-        if not isinstance(metaclass, Metaclass) or not self._may_be(start, metaclass, claimed is not None):
+        if not isinstance(metaclass, Metaclass):
             self._pass(event)
+            return None, event
+        if not self._may_be(start, metaclass, claimed is not None):
+            self._pass_or_keep(start, event, metaclass)
             return None, event
         return self._made(start, metaclass), event
 
@@ -165,7 +168,10 @@ class Beginnings:
             metaclass = self._types.metaclass(ns_uri, name, claimed, start.owner)
             if metaclass is not None:
                 return metaclass
-        self._pass(event)
+        if start.owner is not None:
+            self._keep(start, event, f"{ns_uri}#{name}")
+        else:
+            self._pass(event)
         return None
 
     def _may_be(self, start: Begun, metaclass: Metaclass, is_claimed: bool) -> bool:
@@ -201,6 +207,13 @@ class Beginnings:
         else:
             self._members.no_object(start.owner, feature, start.above)
 
+    def _pass_or_keep(self, start: Begun, event: Event, metaclass: Metaclass) -> None:
+        """Go to the end of an object; one of an abstract class holds its place among others."""
+        if metaclass.implementation is None and start.owner is not None:
+            self._keep(start, event, f"{metaclass.ns_uri}#{metaclass.name}")
+        else:
+            self._pass(event)
+
     def _pass(self, event: Event) -> None:
         """Go to the end of the object that is open, from an event in it."""
         while event[0] != END:
@@ -208,7 +221,7 @@ class Beginnings:
             event = next(self._events)
 
     def _keep(self, start: Begun, event: Event, claimed: str) -> None:
-        """Keep an object whose language is not installed, and go to its end."""
+        """Keep an object whose class is not known, or abstract, and go to its end."""
         xml = next((each[2] for each in start.said if each[1] == XML), None)
         scope = start.scope
         while event[0] != END:

@@ -13,7 +13,7 @@ from mmrs_core.languages.json_form.values import quoted
 from mmrs_core.languages.xmi.events import XSI
 from mmrs_core.languages.xmi.markup import Attribute, Markup, Tag, below_root
 
-_TOKEN = re.compile(rb'"[^"\\]*+(?:\\.[^"\\]*+)*+"|[{}\[\]:,]|[^\s{}\[\]:,"]+', re.DOTALL)
+_TOKEN = re.compile(rb'"[^"\\]*(?:\\.[^"\\]*)*"?|[{}\[\]:,]|[^\s{}\[\]:,"]+', re.DOTALL)
 _STEP = re.compile(r"([^/\[\]]+)(?:\[([0-9]+)\])?")
 _BARE = re.compile(r"true|false|-?(0|[1-9][0-9]*)(\.[0-9]+)?([eE][+-]?[0-9]+)?")
 _MARK = b"\xef\xbb\xbf"

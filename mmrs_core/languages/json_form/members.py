@@ -25,7 +25,7 @@ from mmrs_core.languages.json_form.stream import (
 )
 from mmrs_core.languages.json_form.tree import Words
 from mmrs_core.languages.json_form.values import is_character, parsed, takes_numbers
-from mmrs_core.languages.metaclass import Feature, Metaclass, is_null
+from mmrs_core.languages.metaclass import Enumeration, Feature, Metaclass, is_null
 from mmrs_core.languages.naming import nearest
 from mmrs_core.languages.references.documents import Draft, Pending
 from mmrs_core.languages.values.texts import words_of
@@ -117,10 +117,16 @@ class Members:
         self._draft.pending.append(made)
 
     def unfit(
-        self, element: Element, feature: Feature, reason: str, place: Place, code: str = "XMI005"
+        self,
+        element: Element,
+        feature: Feature,
+        reason: str,
+        place: Place,
+        code: str = "XMI005",
+        hint: str = "",
     ) -> None:
         """Report what cannot be the value of an attribute."""
-        self.fault(code, f"{feature.name}: {reason}", self._stream.line(place), element, broken=feature)
+        self.fault(code, f"{feature.name}: {reason}", self._stream.line(place), element, hint, feature)
 
     def fault(
         self,
@@ -175,7 +181,8 @@ class Members:
         try:
             found = parsed(kind, sort, text)
         except ValueError as fault:
-            self.unfit(element, feature, str(fault), place)
+            hint = kind.meant(text) if isinstance(kind, Enumeration) else ""
+            self.unfit(element, feature, str(fault), place, hint=hint)
             return
         if feature.many:
             getattr(element, feature.attribute).append(found)

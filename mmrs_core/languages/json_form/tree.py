@@ -9,8 +9,9 @@ from collections.abc import Callable, Iterable
 from mmrs_core.languages.json_form.stream import END, LIST, NUMBER, OBJECT, TYPE, WORD, Event, Place
 from mmrs_core.languages.json_form.text import Text
 
-_STRING = rb'"[^"\\]*+(?:\\.[^"\\]*+)*+"'
-_MEMBER = re.compile(rb"(" + _STRING + rb")\s*:|" + _STRING + rb"|[{}\[\]]", re.DOTALL)
+_STRING = rb'"[^"\\]*(?:\\.[^"\\]*)*"?'
+_MEMBER = re.compile(rb"(" + _STRING + rb")|[{}\[\]]", re.DOTALL)
+_COLON = re.compile(rb"\s*:")
 _WORDS = {"true": True, "false": False, "null": None}
 _SHORTEST_OBJECT = 40
 """A tree takes half a kilobyte for the smallest object."""
@@ -141,7 +142,7 @@ def _keys_of(text: bytes, begin: int) -> dict[str, int]:
     for match in _MEMBER.finditer(text, begin):
         token = match.group()
         if match[1] is not None:
-            if depth == 1:
+            if depth == 1 and _COLON.match(text, match.end()):
                 found[str(json.loads(match[1]))] = match.start()
         elif token in (b"{", b"["):
             depth += 1

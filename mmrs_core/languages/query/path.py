@@ -13,7 +13,7 @@ _INDEX = re.compile(r"\[\s*(-?[0-9]{1,9})\s*\]")
 _ALL = re.compile(r"\[\s*\*\s*\]")
 _CONDITION = re.compile(
     rf"""\[\s*(?P<names>{_WORD}(?:\.{_WORD})*)\s*
-         (?:(?P<sign><=|>=|!=|=|<|>)\s*(?P<value>'[^']*'|"[^"]*"|[^\]'"]*?)\s*)?\]""",
+         (?:(?P<sign><=|>=|!=|=|<|>)\s*+(?P<value>'[^']*'|"[^"]*"|[^\]'"]*+)\s*)?\]""",
     re.VERBOSE,
 )
 _FRAGMENT = re.compile(r"#?/(?P<root>[0-9]{0,9})(?P<steps>(?:/@[^/]+)*)")
@@ -126,7 +126,7 @@ def _with_selectors(step: Step, text: str, position: int) -> tuple[Step, int]:
                 wanted = "expected [2], [*], [name] or [name=value] here"
                 raise ValueError(_broken(text, position, wanted))
             names = tuple(_bare(name) for name in _NAME.findall(match["names"]))
-            selectors.append(Condition(names, match["sign"] or "", _bare(match["value"] or "")))
+            selectors.append(Condition(names, match["sign"] or "", _bare((match["value"] or "").rstrip())))
         position = match.end()
     return replace(step, selectors=tuple(selectors)), position
 

@@ -18,7 +18,7 @@ MOST_FAULTS = 10_000
 
 _STEP = re.compile(r"@(?P<name>[^\[]+?)(?:\.(?P<index>[0-9]{1,9})|\[(?P<keys>.*)\])?", re.DOTALL)
 _INDEX = re.compile(r"[0-9]{0,9}")
-_KEY = re.compile(r"""(?P<name>\w+)=(?:'(?P<single>[^']*)'|"(?P<double>[^"]*)"|(?P<null>null))""")
+_KEY = re.compile(r"""(?<!\w)(?P<name>\w+)=(?:'(?P<single>[^']*)'|"(?P<double>[^"]*)"|(?P<null>null))""")
 
 
 @dataclass(slots=True)

@@ -8,7 +8,7 @@ from decimal import Decimal
 from mmrs_core.languages.values.texts import collapsed, shown
 from mmrs_core.languages.values.whole import ascii_digits
 
-_DECIMAL = re.compile(r"[+-]?(?:\d+\.?(\d*)|\.(\d+))(?:[eE]([+-]?)0*(\d+))?")
+_DECIMAL = re.compile(r"[+-]?(?:\d+(?:\.(\d*))?|\.(\d+))(?:[eE]([+-]?)(\d+))?")
 _BITS = 31
 """Of the scale, which is the number of digits behind the point, and of the power of ten."""
 _LONGEST_POWER = 10
@@ -21,7 +21,7 @@ def parse_decimal(text: str) -> Decimal:
     found = _DECIMAL.fullmatch(text)
     if found is None:
         raise ValueError(f"{shown(text)}: not a decimal number")
-    power = found[4] or "0"
+    power = ascii_digits(found[4] or "").lstrip("0") or "0"
     if len(power) > _LONGEST_POWER:
         raise ValueError(f"{shown(text)}: the power of ten does not fit into {_BITS + 1} bits")
     exponent = int(f"{found[3] or ''}{power}")

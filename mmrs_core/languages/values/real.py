@@ -16,7 +16,7 @@ from mmrs_core.languages.values.texts import collapsed, shown
 LARGEST_SINGLE = float(2**128 - 2**103)
 """What rounds to a finite number of 32 bits; beyond it, Java's float is infinite."""
 
-_JAVA_REAL = re.compile(r"[+-]?(?:NaN|Infinity|(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?[fFdD]?)", re.ASCII)
+_JAVA_REAL = re.compile(r"[+-]?(?:NaN|Infinity|(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][+-]?\d+)?[fFdD]?)", re.ASCII)
 _JAVA_BITS = re.compile(r"[+-]?0[xX](?:[\da-fA-F]+\.?|[\da-fA-F]*\.[\da-fA-F]+)[pP][+-]?\d+[fFdD]?", re.ASCII)
 _JAVA_BLANKS = "".join(map(chr, range(33)))
 _SCHEMA_WORDS = {"INF": inf, "+INF": inf, "-INF": -inf}

@@ -16,7 +16,6 @@ _AT_ONCE = 4000
 _BITS_AT_ONCE = 2000
 _MOST_OF_64_BITS = 20
 _INTEGER = re.compile(r"[+-]?\d+")
-_LEADING = re.compile(r"([+-]?)0*(?=[0-9])")
 
 
 class LongInteger(int):
@@ -54,12 +53,17 @@ def parse_whole(text: str, bits: int | None) -> int:
     """
     if not _INTEGER.fullmatch(text):
         raise ValueError(f"{shown(text)}: not a whole number")
-    number = _LEADING.sub(r"\1", ascii_digits(text), count=1)
+    number = _without_leading_zeros(ascii_digits(text))
     if bits is None:
         return _read(number)
     if len(number) > _MOST_OF_64_BITS or not _fits(int(number), bits):
         raise ValueError(f"{shown(text)}: does not fit into {bits} bits")
     return int(number)
+
+
+def _without_leading_zeros(number: str) -> str:
+    sign = number[:1] if number[:1] in "+-" else ""
+    return sign + (number[len(sign) :].lstrip("0") or "0")
 
 
 def _fits(value: int, bits: int) -> bool:

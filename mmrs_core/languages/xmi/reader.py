@@ -5,7 +5,7 @@ from __future__ import annotations
 from mmrs_core.diagnostics import Severity
 from mmrs_core.languages.element import Element, Unknown, held, label_of
 from mmrs_core.languages.links import settle
-from mmrs_core.languages.metaclass import Feature, Metaclass
+from mmrs_core.languages.metaclass import Enumeration, Feature, Metaclass
 from mmrs_core.languages.missing import hint_for
 from mmrs_core.languages.naming import nearest
 from mmrs_core.languages.references.documents import Draft, Pending
@@ -93,8 +93,6 @@ class XmiReader:
             return
         metaclass = self._metaclass(ns_uri, name)
         element = self._make(metaclass, f"{ns_uri}#{name}")
-        if element is None:
-            return
         self._draft.roots.append(element)
         if metaclass is not None and not isinstance(element, Unknown):
             self._open.append((element, metaclass, None))
@@ -104,6 +102,7 @@ class XmiReader:
         element, metaclass, open_feature = frame
         if open_feature is not None:
             self._fault("XMI010", f"{tag}: an element inside a value of {open_feature.name}", element)
+            self._draft.broken.add((element, open_feature.name))
             self._ignored = 1
             return
         feature = metaclass.by_name.get(tag)
@@ -129,7 +128,8 @@ class XmiReader:
             self._refer(element, feature, identifier)
             self._open.append((element, metaclass, feature))
         else:
-            self._fault("XMI006", f"{feature.name}: a reference as an element needs an href", element)
+            message = f"{feature.name}: a reference as an element needs an href"
+            self._fault("XMI006", message, element, broken=feature)
             self._ignored = 1
 
     def _owns_href(self, feature: Feature, attributes: list[str]) -> bool:
@@ -165,8 +165,6 @@ class XmiReader:
             claimed = f"{ns_uri}#{name}"
             metaclass = self._metaclass(ns_uri, name, owner, prefix)
         element = self._make(metaclass, claimed, owner)
-        if element is None:
-            return
         if metaclass is not None and not isinstance(element, Unknown):
             self._open.append((element, metaclass, None))
             if not issubclass(metaclass.interface, feature.type.interface):
@@ -183,19 +181,16 @@ class XmiReader:
             self._fault("XMI009", f"{feature.name}: given more than once, takes one", owner)
         settle(owner, feature, element, occupied)
 
-    def _make(
-        self, metaclass: Metaclass | None, claimed: str, owner: Element | None = None
-    ) -> Element | None:
-        if metaclass is None:
+    def _make(self, metaclass: Metaclass | None, claimed: str, owner: Element | None = None) -> Element:
+        """Make an element; one of an unknown or abstract class is kept as it is, and holds its place."""
+        if metaclass is not None and metaclass.implementation is None:
+            self._fault("XMI003", f"{metaclass.name}: abstract; say which kind of it by xsi:type", owner)
+        if metaclass is None or metaclass.implementation is None:
             element: Element = Unknown.__new__(Unknown)
             assert isinstance(element, Unknown)
             element._mmrs_type = claimed
             self._kept = (element, self._document.offset)
             self._ignored = 1
-        elif metaclass.implementation is None:
-            self._fault("XMI003", f"{metaclass.name}: abstract; say which kind of it by xsi:type", owner)
-            self._ignored = 1
-            return None
         else:
             element = metaclass.implementation.__new__(metaclass.implementation)
         element._mmrs_line = self._document.line
@@ -267,7 +262,8 @@ class XmiReader:
         try:
             value = feature.type.parse(text)
         except ValueError as fault:
-            self._fault("XMI005", f"{feature.name}: {fault}", element, broken=feature)
+            hint = feature.type.meant(text) if isinstance(feature.type, Enumeration) else ""
+            self._fault("XMI005", f"{feature.name}: {fault}", element, hint, broken=feature)
             return
         if feature.many:
             getattr(element, feature.attribute).append(value)

@@ -9,14 +9,14 @@ from mmrs_core.behaviour.program import Action, Move, RobotProgram
 from mmrs_core.contributions.targets import TargetInput
 from mmrs_core.contributions.wiring import Sampled, Unwired
 from mmrs_core.mavlink.actions import DEVICE_ACTION
-from mmrs_core.mavlink.context import RobotContext, context_of, homeless
+from mmrs_core.mavlink.context import RobotContext, context_of, homeless, vehicleless
 from mmrs_core.mavlink.earth import at_a_pole, sea_level_of
 from mmrs_core.mavlink.movements import losses_of, mount_of, objects_of, on_gimbal
 from mmrs_core.mavlink.plans.diving import above_water
 from mmrs_core.mavlink.plans.flight import flown
 from mmrs_core.mavlink.plans.px4 import unknown_in
 from mmrs_core.mavlink.safety import explicit, policies_of
-from mmrs_core.mavlink.vehicles import PX4, autopilot_fault, autopilot_of, vehicle_class
+from mmrs_core.mavlink.vehicles import PX4, autopilot_fault, autopilot_of
 from mmrs_core.scene import Policy
 
 
@@ -26,6 +26,9 @@ def refusals(input: TargetInput) -> Iterator[str]:
         yield "behaviour: is local, its origin has no latitude and longitude"
     yield from at_a_pole(input.program.frame)
     for robot in input.program.robots:
+        if unknown := vehicleless(robot, input):
+            yield unknown
+            continue
         yield from _of_robot(robot, input)
         yield from above_water(robot, input)
 
@@ -71,7 +74,7 @@ def _of_robot(robot: RobotProgram, input: TargetInput) -> Iterator[str]:
 
 def _dives(robot: RobotProgram, input: TargetInput) -> bool:
     """Return whether a robot's heights count from the surface, wherever that is above the sea."""
-    return vehicle_class(robot, input.types.get(robot.type_name)).dives
+    return context_of(robot, input, geographic=False).vehicle.dives
 
 
 def _coming_round(robot: RobotProgram, context: RobotContext) -> Iterator[str]:

@@ -71,8 +71,14 @@ def draw_ring(
     except ValueError as fault:
         record.element(Category.DOUBTFUL, f"{fault}, so the robot only goes to the centre", node)
         return
-    rounds, speed = _rounds(circle, types.speeds(robot))
-    _tell_of(circle, rounds, speed, node, ring, record)
+    speeds = types.speeds(robot)
+    rounds, speed = _rounds(circle, speeds)
+    if node.text(ring.height):
+        reason = "the altitude of a circle counts from its centre here"
+        record.value(Category.CHANGED, reason, node, ring.height)
+    if circle.duration > 0.0:
+        category, reason = _pace(rounds, speed, robot.typeName if speeds is None else None)
+        record.value(category, reason, node, ring.duration)
     offsets = circle.offsets(rounds)
     moves = [first, *_further(first, len(offsets) - 1, robot, registry)]
     at = robot.moves.index(first) + 1
@@ -107,31 +113,35 @@ def _circle(node: SourceNode, ring: Ring, draft: Draft, altitude: float) -> Circ
 def _rounds(circle: Circle, speeds: Speeds | None) -> tuple[int, float | None]:
     """Return how many rounds last as long as the circle does, and at which speed they are flown.
 
-    None for a speed: at the robot's own, since no speed that it has makes the rounds last so long.
+    None for a speed: at the robot's own, since its speeds are not known, or none of them makes the rounds
+    last so long.
     """
-    if circle.duration <= 0.0 or not isfinite(circle.duration):
+    if circle.duration <= 0.0 or not isfinite(circle.duration) or speeds is None:
         return 1, None
-    fastest = speeds.around(circle.radius) if speeds is not None else 0.0
-    rounds = max(1, min(MOST_ROUNDS, int(circle.duration * fastest / circle.length)))
-    speed = rounds * circle.length / circle.duration
-    fits = speeds is None or speeds.slowest <= speed <= speeds.fastest
-    return rounds, round(speed, 3) or None if fits else None
+    usual = speeds.around(circle.radius)
+    rounds = max(1, min(MOST_ROUNDS, int(circle.duration * usual / circle.length)))
+    speed = round(rounds * circle.length / circle.duration, 3)
+    fits = speeds.slowest <= speed <= speeds.fastest_around(circle.radius)
+    return rounds, speed or None if fits else None
 
 
-def _tell_of(
-    circle: Circle, rounds: int, speed: float | None, node: SourceNode, ring: Ring, record: Record
-) -> None:
-    if node.text(ring.height):
-        reason = "the altitude of a circle counts from its centre here"
-        record.value(Category.CHANGED, reason, node, ring.height)
-    if circle.duration <= 0.0:
-        return
+def _pace(rounds: int, speed: float | None, unknown: str | None) -> tuple[Category, str]:
+    """Return what becomes of the time that a circle lasts, and why.
+
+    Args:
+        rounds: that are flown.
+        speed: at which; None: at the robot's own.
+        unknown: the name of the robot's type, where nothing says how fast that is.
+    """
     times = "once" if rounds == 1 else f"{rounds} times"
-    reason = f"a circle is flown by rounds here: {times} at {speed} m/s takes so long"
-    if speed is None:
-        reason = f"the robot goes round {times}, and no speed that it has makes that last so long"
-    category = Category.CHANGED if speed is not None else Category.LOST
-    record.value(category, reason, node, ring.duration)
+    if speed is not None:
+        return Category.CHANGED, f"a circle is flown by rounds here: {times} at {speed} m/s takes so long"
+    if unknown is not None:
+        reason = (
+            f"the speeds of robot type {unknown!r} are not known, so the robot goes round once at its own"
+        )
+        return Category.LOST, f"{reason}: migrate the type, too"
+    return Category.LOST, f"the robot goes round {times}, and no speed that it has makes that last so long"
 
 
 def _join(robot: bl.Robot, moves: Sequence[bl.GoTo]) -> None:

@@ -32,9 +32,13 @@ class Speeds:
 
     def around(self, radius: float) -> float:
         """Return the speed on a circle: the usual one, or the one that the largest acceleration allows."""
+        return min(self.usual, self.fastest_around(radius))
+
+    def fastest_around(self, radius: float) -> float:
+        """Return the largest speed on a circle: the robot's, or the one that its acceleration allows."""
         if self.acceleration is None:
-            return self.usual
-        return min(self.usual, sqrt(max(0.0, self.acceleration) * radius))
+            return self.fastest
+        return min(self.fastest, sqrt(max(0.0, self.acceleration) * radius))
 
 
 class RobotTypes:

@@ -13,7 +13,7 @@ from mmrs_core.migration.rules.classes import Classes
 from mmrs_core.migration.rules.mapping import DialectMapping
 from mmrs_core.migration.rules.notation import declared_structure
 from mmrs_core.migration.rules.rules_file import read_rules
-from mmrs_core.migration.rules.toml_places import line_of
+from mmrs_core.migration.rules.toml_places import TooMuchError, line_of, parsed
 from mmrs_core.migration.rules.toml_tables import Table
 from mmrs_core.migration.sources.documents import KnownDocument
 from mmrs_core.migration.sources.metamodels import Dialect
@@ -33,13 +33,15 @@ def read_mapping(path: Path, registry: Registry) -> DialectMapping:
     """
     try:
         text = read_bytes(path, LARGEST).decode()
-        value = tomllib.loads(text)
+        value = parsed(text)
     except UnicodeDecodeError as fault:
         raise UnreadableError(f"{path}: not TOML: {str(fault).lower()}") from None
     except tomllib.TOMLDecodeError as fault:
         line = _LINE.search(str(fault))
         place = f"{path}:{line[1]}" if line else str(path)
         raise UnreadableError(f"{place}: not TOML: {str(fault).lower()}") from None
+    except TooMuchError as fault:
+        raise UnreadableError(f"{path}:{fault.line}: {fault}") from None
     top = Table(str(path), value)
     if not value.get("rules"):
         raise top.fault("holds no rules, so it says of no class what becomes of it")

@@ -8,13 +8,14 @@ on the way is made; ``home:GeoCoordinate.latitude`` says of which class it is.
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 
 from mmrs_core.languages.element import Element, held, metaclass_of
 from mmrs_core.languages.metaclass import Feature, Metaclass
 from mmrs_core.migration.rules.classes import Classes
 
+_BREAK = re.compile(r"\.|\[[^\]]*")
 _STEP = re.compile(
     r"(?P<name>[^.\[\]=:]+)(?::(?P<kind>[^.\[\]=]+))?"
     r"(?:\[(?:(?P<index>\d{1,3})|(?P<key>[^=\]]+)=(?P<text>[^\]]*))\])?",
@@ -63,6 +64,16 @@ class FeaturePath:
         return made.feature(self.last)
 
 
+def _parts(text: str) -> Iterator[str]:
+    """Yield what stands between the points outside brackets."""
+    begin = 0
+    for found in _BREAK.finditer(text):
+        if found[0] == ".":
+            yield text[begin : found.start()]
+            begin = found.end()
+    yield text[begin:]
+
+
 def parse_path(text: str) -> tuple[Step, ...]:
     """Return the steps of a path.
 
@@ -73,7 +84,7 @@ def parse_path(text: str) -> tuple[Step, ...]:
     1
     """
     steps = []
-    for part in re.split(r"\.(?![^\[]*\])", text):
+    for part in _parts(text):
         match = _STEP.fullmatch(part)
         if match is None:
             raise ValueError(f"{text!r}: no path of features such as speed.max or batteries[1].voltage")

@@ -39,7 +39,7 @@ def largest_depth(robot_type: RobotType, payload: float, density: float) -> floa
     Raises:
         InfeasibleError: neither thrusters nor hull have a figure, or none holds for that payload.
     """
-    limits = [*_thruster_depths(capability_for(robot_type, payload).part)]
+    limits = [*_thruster_depths(robot_type, capability_for(robot_type, payload).part)]
     pressure = robot_type.part.attributes.get("maxOperatingPressure")
     if isinstance(pressure, (int, float)):
         limits.append((float(pressure) - ATMOSPHERE) / (density * GRAVITY))
@@ -48,10 +48,20 @@ def largest_depth(robot_type: RobotType, payload: float, density: float) -> floa
     return max(0.0, min(limits))
 
 
-def _thruster_depths(movement: Part) -> Iterator[float]:
-    thrusters = movement.attributes.get("thrusters")
-    for thruster in thrusters if isinstance(thrusters, tuple) else ():
-        depth = thruster.attributes.get("maxDepth") if isinstance(thruster, Part) else None
+def thrusters_of(robot_type: RobotType, movement: Part) -> tuple[Part, ...]:
+    """Return the thrusters by which a movement capability moves robots of a type, in its order."""
+    held, used = robot_type.part.attributes.get("thrusters"), movement.attributes.get("thrusters")
+    known = {each.attributes.get("id"): each for each in _listed(held) if isinstance(each, Part)}
+    return tuple(known[each] for each in _listed(used) if isinstance(each, str) and each in known)
+
+
+def _listed(value: object) -> tuple[object, ...]:
+    return value if isinstance(value, tuple) else ()
+
+
+def _thruster_depths(robot_type: RobotType, movement: Part) -> Iterator[float]:
+    for thruster in thrusters_of(robot_type, movement):
+        depth = thruster.attributes.get("maxDepth")
         if isinstance(depth, (int, float)):
             yield float(depth)
 
@@ -85,4 +95,5 @@ AUV_KIND = RobotKind(
         "LOG_FAILED": "SURFACE",
         "GROUND_LOST": "CONTINUE",
     },
+    vehicle="sub",
 )

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-AUV = "urn:mmrs:auv:1.0"
+AUV = "urn:mmrs:auv:1.1"
+VEHICLE = (AUV, "AUV")
 IN_WATER_SIZE = (AUV, "InWaterSize")
 AUV_MOVEMENT = (AUV, "AUVMovement")
 THRUSTER = (AUV, "Thruster")

@@ -14,6 +14,7 @@ from mmrs_core.contributions.rules import RobotKind, Rule
 from mmrs_core.contributions.symbols import MapSymbol
 from mmrs_core.contributions.targets import Target
 from mmrs_core.hookspecs import hookimpl
+from mmrs_core.languages.evolution.migration import Migration
 from mmrs_core.languages.registry import MetamodelSource
 
 
@@ -25,6 +26,14 @@ def mmrs_metamodels() -> tuple[MetamodelSource, ...]:
         MetamodelSource(names.AUV, folder / "auv.ecore", "mmrs-auv"),
         MetamodelSource(names.AUV_TASKS, folder / "auv-tasks.ecore", "mmrs-auv"),
     )
+
+
+@hookimpl
+def mmrs_migrations() -> tuple[Migration, ...]:
+    """Contribute the step from vehicles whose movements hold their thrusters."""
+    from mmrs_auv.migrations import MIGRATIONS
+
+    return MIGRATIONS
 
 
 @hookimpl

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from math import hypot
 
-from mmrs_auv.kinds import SEA_WATER, largest_depth
+from mmrs_auv.kinds import SEA_WATER, largest_depth, thrusters_of
 from mmrs_auv.names import AUV_MOVEMENT, IN_WATER_SIZE, MOUNTING
 from mmrs_auv.vessel.refusals import MOST_DEPTH, MOST_SPEED, SheetError, refuse
 from mmrs_auv.vessel.sheet import Sheet, Thruster, Vector, unknown
@@ -61,7 +61,7 @@ def sheet_of(
     size = _part(robot_type.part, "size")
     sheet = Sheet(
         robot=robot,
-        thrusters=tuple(_thruster(each) for each in _thrusters(capability.part)),
+        thrusters=tuple(_thruster(each) for each in thrusters_of(robot_type, capability.part)),
         length=_figure(size, "length"),
         width=_figure(size, "width"),
         height=_figure(size, "height"),
@@ -110,7 +110,7 @@ def _missing(robot_type: RobotType, payload: float) -> Iterator[str]:
         yield from (f"device '{name}': {wrong}" for wrong in _wrong_log(device))
     if not robot_type.batteries:
         yield "batteries: none"
-    thrusters = _thrusters(capability.part)
+    thrusters = thrusters_of(robot_type, capability.part)
     if not thrusters:
         yield "thrusters: none"
     for number, thruster in enumerate(thrusters):
@@ -161,11 +161,6 @@ def _extra(devices: tuple[Device, ...]) -> dict[str, float]:
             known = {LOG[key]: text for key, text in device.properties.items() if key in LOG}
             found |= {name: float(text) for name, text in known.items()}
     return found
-
-
-def _thrusters(movement: Part) -> tuple[Part, ...]:
-    found = movement.attributes.get("thrusters")
-    return tuple(each for each in found if isinstance(each, Part)) if isinstance(found, tuple) else ()
 
 
 def _part(part: Part, feature: str) -> Part | None:

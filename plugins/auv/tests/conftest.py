@@ -24,11 +24,11 @@ def vehicle() -> Callable[..., Robot]:
     """Make an underwater vehicle whose thrusters bear those depths and whose hull bears that pressure."""
 
     def make(depths: Iterable[float] = (), pressure: float | None = None) -> Robot:
-        thrusters = tuple(Part((), {"maxDepth": depth}) for depth in depths)
+        thrusters = tuple(Part((), {"id": str(each), "maxDepth": depth}) for each, depth in enumerate(depths))
         robot_type = sample_type(
             name="Diver",
-            attributes={"maxOperatingPressure": pressure},
-            movement=Part((AUV_MOVEMENT,), {"thrusters": thrusters}),
+            attributes={"maxOperatingPressure": pressure, "thrusters": thrusters},
+            movement=Part((AUV_MOVEMENT,), {"thrusters": tuple(map(str, range(len(thrusters))))}),
             speed=(0.0, 2.0),
         )
         return sample_robot(robot_type, home=(0.0, 0.0, -3.0), kinematics=None, travel_mode="SAFE")

@@ -14,8 +14,11 @@ from mmrs_core.testing.conformance import (
 )
 from mmrs_core.testing.scenes import sample_device, sample_robot, sample_scene, sample_type
 
-MOVEMENT = Part((AUV_MOVEMENT,), {"thrusters": (Part((), {"maxDepth": 50.0}),)})
-DIVER = sample_type(name="Diver", movement=MOVEMENT, speed=(0.0, 2.0), climb_rate=0.5)
+MOVEMENT = Part((AUV_MOVEMENT,), {"thrusters": ("T1",)})
+THRUSTERS = (Part((), {"id": "T1", "maxDepth": 50.0}),)
+DIVER = sample_type(
+    name="Diver", attributes={"thrusters": THRUSTERS}, movement=MOVEMENT, speed=(0.0, 2.0), climb_rate=0.5
+)
 LAKE = sample_scene(surface=-3.0, environment={"waterDensity": 1000.0, "currentSpeed": 0.5})
 
 

@@ -3,7 +3,7 @@ from __future__ import annotations
 import pytest
 from mmrs_auv import plugin
 from mmrs_auv.constraints import CONSTRAINTS
-from mmrs_auv.names import AUV_MOVEMENT, AUV_TASKS, IN_WATER_SIZE, MOUNTING, THRUSTER
+from mmrs_auv.names import AUV_MOVEMENT, AUV_TASKS, IN_WATER_SIZE, MOUNTING, THRUSTER, VEHICLE
 
 from mmrs_core.languages import context as ctx
 from mmrs_core.languages import mission as mml
@@ -30,14 +30,34 @@ def size(registry, **features):
 
 
 def vehicle(registry, *thrusters, **features):
-    moves = [movement(registry, *(thrusters or (thruster(registry),)))]
+    held = list(thrusters or (thruster(registry),))
+    moves = [movement(registry, *held)]
     whole = {"name": "Diver", "pressuremeter": True, "size": size(registry), "movementCapabilities": moves}
-    return registry.create(ROBOT_LANGUAGE, "Robot", **{**whole, **features})
+    return registry.create(*VEHICLE, **{**whole, "thrusters": held, **features})
 
 
 def mixed(registry):
     plain = registry.create(ROBOT_LANGUAGE, "MovementCapability")
-    return vehicle(registry, movementCapabilities=[movement(registry, thruster(registry)), plain])
+    held = thruster(registry)
+    return vehicle(registry, held, movementCapabilities=[movement(registry, held), plain])
+
+
+def twice(registry):
+    held = thruster(registry)
+    return vehicle(registry, held, movementCapabilities=[movement(registry, held, held)])
+
+
+def sharing(registry):
+    """Return two vehicles; the second moves by the thruster of the first."""
+    lender = vehicle(registry)
+    return [lender, vehicle(registry, movementCapabilities=[movement(registry, *lender.thrusters)])]
+
+
+def with_a_spare(registry):
+    used = thruster(registry)
+    return vehicle(
+        registry, used, thruster(registry, id="T2"), movementCapabilities=[movement(registry, used)]
+    )
 
 
 def plainly_sized(registry):
@@ -112,6 +132,8 @@ CASES = {
         lambda r: [vehicle(r, thruster(r, ("YAW", "HEAVE")))],
         lambda r: [vehicle(r, thruster(r, ("SWAY",)))],
     ),
+    "AUV032": Case(sharing, lambda r: [vehicle(r)]),
+    "AUV033": Case(lambda r: [with_a_spare(r)], lambda r: [vehicle(r)]),
     "AUV002": Case(lambda r: [vehicle(r, thruster(r, ("SURGE", "YAW")))], lambda r: [vehicle(r)]),
     "AUV003": Case(
         lambda r: [vehicle(r, thruster(r), thruster(r))],

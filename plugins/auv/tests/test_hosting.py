@@ -3,14 +3,17 @@ from __future__ import annotations
 import queue
 import threading
 import time
+from collections import deque
 from collections.abc import Sequence
 
 import pytest
 from mmrs_auv.testing import pool_sheet
 from mmrs_auv.vessel import hosting
+from mmrs_auv.vessel.control.actuators import Actuators
 from mmrs_auv.vessel.hosting import (
     LAG,
     SEEN_BASE,
+    Awake,
     Rehearsal,
     WireFault,
     clock_frame,
@@ -270,6 +273,64 @@ def test_a_node_speaks_in_time_however_much_others_say() -> None:
     host.join(5.0)
     assert not host.is_alive()
     assert len(wire.sent) > 10
+
+
+def test_a_clock_that_leaves_out_stalls_counts_what_a_node_can_catch_up_with() -> None:
+    real = iter([10.0, 10.05, 10.25, 10.95, 11.0])
+    awake = Awake(0.25, lambda: next(real))
+    assert [awake.now() for _ in range(4)] == pytest.approx([0.05, 0.25, 0.5, 0.55])
+    assert awake.stalled == pytest.approx(0.45)
+
+
+class Stalling(Wire):
+    """A port, and its clock, of a process that is commanded all the time and was stalled once."""
+
+    def __init__(self, seconds: float, stop: threading.Event) -> None:
+        super().__init__()
+        self.now, self.left, self._seconds, self._stop = 0.0, seconds, seconds, stop
+        self._codec, self._said, self._waiting = Codec(pool_sheet()), 0, deque[Frame]()
+
+    def clock(self) -> float:
+        self.now += 0.0001
+        return self.now
+
+    def receive(self, timeout: float) -> Frame | None:
+        if self._waiting:
+            return self._waiting.popleft()
+        if self.now >= self._said * 0.05:
+            self._said += 1
+            self._waiting.extend(self._words())
+            return self._waiting.popleft()
+        if timeout > 0.0:
+            self.now += timeout
+            if self.now > 2.0 and self.left:
+                self.now, self.left = self.now + self.left, 0.0
+        if self.now > 4.0 + self._seconds:
+            self._stop.set()
+        return None
+
+    def _words(self) -> list[Frame]:
+        encode = self._codec.encode
+        return [
+            encode("Depth", Depth=2.0, Uncertainty=0.1, Trusted=True),
+            encode("WrenchForce", Surge=5.0, Sway=0.0, Heave=0.0, Enable=True),
+            encode("WrenchMoment", Roll=0.0, Pitch=0.0, Yaw=0.0),
+        ]
+
+
+@pytest.mark.parametrize("seconds", [0.7, 3.0, 60.0])
+def test_a_process_that_was_stalled_does_not_take_that_for_silence_of_others(
+    seconds: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    actuators, stop = Actuators(pool_sheet(), Codec(pool_sheet())), threading.Event()
+    wire = Stalling(seconds, stop)
+    monkeypatch.setattr("time.monotonic", wire.clock)
+    serve(actuators, wire, "real", stop)
+    monkeypatch.undo()
+    assert wire.left == 0.0
+    assert actuators.emergency is None
+    assert 0x010 not in {frame.id for frame in wire.sent}
+    assert max(map(abs, actuators.thrusts)) > 1.0
 
 
 def test_a_host_says_which_message_has_two_senders() -> None:

@@ -67,19 +67,16 @@ def test_actions_have_numbers(types: Mapping[str, RobotType]) -> None:
 
 def test_all_that_is_missing_is_listed(types: Mapping[str, RobotType]) -> None:
     pool = types["Pool AUV"]
-    capability = pool.capabilities[0]
     bare = tuple(
         Part(each.metaclasses, {**each.attributes, "mounting": None, "maxThrust": None})
-        for each in capability.part.attributes["thrusters"]  # type: ignore[union-attr]
+        for each in pool.part.attributes["thrusters"]  # type: ignore[union-attr]
     )
-    movement = Part(capability.part.metaclasses, {**capability.part.attributes, "thrusters": bare})
     size = pool.part.attributes["size"]
     assert isinstance(size, Part)
     light = Part(size.metaclasses, {**size.attributes, "weightInWater": None})
     poor = replace(
         pool,
-        capabilities=(replace(capability, part=movement),),
-        part=Part(pool.part.metaclasses, {**pool.part.attributes, "size": light}),
+        part=Part(pool.part.metaclasses, {**pool.part.attributes, "size": light, "thrusters": bare}),
         batteries=(),
     )
     with pytest.raises(UnsupportedError) as refused:

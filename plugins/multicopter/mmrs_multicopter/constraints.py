@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from mmrs_core.contributions.constraints import Constraint, Finding
 from mmrs_core.diagnostics import Severity
 from mmrs_core.languages.element import Element, container_of, is_kind, label_of
-from mmrs_core.languages.grounding.values import child, number, text
+from mmrs_core.languages.grounding.values import child, children, number, text
 from mmrs_core.languages.modelset import ModelSet
 from mmrs_multicopter.heights import cut_transit, too_high, too_low
 from mmrs_multicopter.names import DRONE, DRONE_SIZE, GO_TO, LAND, TAKE_OFF
@@ -18,12 +18,25 @@ TEAM_MEMBER = ("urn:mmrs:mission:1.0", "Robot")
 FEWEST_PROPELLERS = 3
 SMALLEST_PROPELLER = 20.0
 """Millimetres under which a propeller's size was most likely given in inches or metres."""
+FASTEST = 40.0
+"""Metres per second, 144 km/h; beyond it the unit is suspect."""
 
 
 def _altitude_not_positive(drone: Element, models: ModelSet) -> Iterator[Finding]:
     highest = number(drone, "maxAltitude")
     if highest is not None and highest <= 0.0:
         yield Finding(drone, f"maxAltitude of '{label_of(drone)}' is {highest:g} m, it must be above 0")
+
+
+def _implausibly_fast(drone: Element, models: ModelSet) -> Iterator[Finding]:
+    for capability in children(drone, "movementCapabilities"):
+        speed = child(capability, "speed")
+        fastest = number(speed, "max") if speed is not None else None
+        if fastest is not None and fastest > FASTEST:
+            yield Finding(
+                capability,
+                f"largest speed of '{label_of(drone)}' is {fastest:g} m/s, faster than drones that work fly",
+            )
 
 
 def _not_upright(drone: Element, models: ModelSet) -> Iterator[Finding]:
@@ -208,6 +221,14 @@ CONSTRAINTS = (
         MISSION,
         cut_transit,
         "lower transitAltitude, or add a robot that flies higher",
+        Severity.WARNING,
+    ),
+    Constraint(
+        "MUL017",
+        "The speed of a drone is given in metres per second",
+        DRONE,
+        _implausibly_fast,
+        "divide by 3.6 if this was meant in kilometres per hour",
         Severity.WARNING,
     ),
 )

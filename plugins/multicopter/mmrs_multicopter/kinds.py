@@ -100,6 +100,7 @@ MULTICOPTER_KIND = RobotKind(
         "LOG_FAILED": "RETURN",
         "GROUND_LOST": "CONTINUE",
     },
+    vehicle="copter",
 )
 
 MOVE_KINDS = (

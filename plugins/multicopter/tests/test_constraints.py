@@ -21,6 +21,13 @@ def drone(registry, size=None, **features):
     return registry.create(*DRONE, **{"name": "Quad", "maxAltitude": 100.0, "size": whole, **features})
 
 
+def fast(registry, speed):
+    whole = registry.create(ROBOT_LANGUAGE, "Interval", min=0.0, max=speed)
+    return drone(
+        registry, movementCapabilities=[registry.create(ROBOT_LANGUAGE, "MovementCapability", speed=whole)]
+    )
+
+
 def plain(registry):
     return registry.create(ROBOT_LANGUAGE, "Robot", name="Quad")
 
@@ -87,6 +94,7 @@ CASES = {
         lambda r: [drone(r), mission(r, altitude=50.0, home_up=20.0, transit=121.0)],
         lambda r: [drone(r), mission(r, altitude=50.0, home_up=20.0, transit=120.0)],
     ),
+    "MUL017": Case(lambda r: [fast(r, 43.0)], lambda r: [fast(r, 40.0)]),
 }
 BY_CODE = {constraint.code: constraint for constraint in CONSTRAINTS}
 

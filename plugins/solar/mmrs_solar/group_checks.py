@@ -6,9 +6,9 @@ from collections import Counter
 from collections.abc import Iterator
 from math import atan2, cos, degrees, dist, radians
 
+from mmrs_core.analysis.constraints.sketch import sketch_of
 from mmrs_core.contributions.constraints import Finding
 from mmrs_core.languages.element import Element, is_kind, label_of
-from mmrs_core.languages.grounding.coordinates import ground_of
 from mmrs_core.languages.grounding.values import child, children, number
 from mmrs_core.languages.modelset import ModelSet
 from mmrs_solar.names import IRRADIANCE, PANEL_GROUP
@@ -27,7 +27,7 @@ def angle_outside(group: Element, models: ModelSet) -> Iterator[Finding]:
 
 def out_of_square(group: Element, models: ModelSet) -> Iterator[Finding]:
     """Yield panel groups whose first row has no length, or is not square to where its panels face."""
-    positions = ground_of(models.mission, models.context).positions
+    positions = sketch_of(models).ground.positions
     ends = [positions[each] for each in children(group, "points") if each in positions]
     azimuth = number(group, "azimuth")
     if len(ends) != 2 or azimuth is None:

@@ -9,7 +9,9 @@ from math import ceil, dist
 
 from mmrs_core.contributions.rules import Rule
 from mmrs_core.errors import InfeasibleError
-from mmrs_core.planning.places import refuse_blocked, refuse_heights
+from mmrs_core.geometry.stretches import LEAST
+from mmrs_core.planning.open_lines import open_lines
+from mmrs_core.planning.places import refuse_heights
 from mmrs_core.scene import Device, Look, Part, Position, Robot, Scene, Stroke, Task, Work
 from mmrs_core.scene.attributes import number, text
 from mmrs_solar.camera import RECORDING_KEYS, figures, optics_of
@@ -58,26 +60,28 @@ def row_inspection_work(task: Task, robot: Robot, scene: Scene) -> Work:
     """
     part, group = task.part, group_of(task.part, scene)
     how = _pass_of(part, group, robot)
-    strokes = []
-    for index, (row, begin, end) in enumerate(_ways(part, group, how)):
-        stroke = _stroke(part, how, *((begin, end) if index % 2 == 0 else (end, begin)))
-        what = f"the way along row {row}"
-        refuse_heights(robot, stroke.points)
-        refuse_blocked(robot, scene, stroke.points, what)
-        refuse_near(robot, group, stroke.points[-1], what)
-        strokes.append(stroke)
-    return Work(tuple(strokes), divisible=True, rule=RULE, ordered=False)
+    ways = []
+    for index, (row, *ends) in enumerate(_ways(part, group, how)):
+        begin, end = ends if index % 2 == 0 else ends[::-1]
+        points = (between(begin, end, -how.lead_in / dist(begin, end)), begin, end)
+        refuse_heights(robot, points)
+        refuse_near(robot, group, end, f"the way along row {row}")
+        ways.append((f"the way along row {row}", points))
+    found = open_lines(robot, scene, ways, least=how.lead_in + LEAST)
+    strokes = (_stroke(part, how, each[0], each[-1]) for each in found.parts)
+    return Work(tuple(strokes), divisible=True, rule=RULE, ordered=False, gaps=found.gaps)
 
 
-def _stroke(part: Part, how: Pass, begin: Position, end: Position) -> Stroke:
+def _stroke(part: Part, how: Pass, start: Position, end: Position) -> Stroke:
+    """Return the stroke from where the robot turns before it records."""
+    begin = between(start, end, how.lead_in / dist(start, end))
     length = dist(begin, end)
     actions = (
         recorded(part, how.camera, text(part, "startAction"), how.lead_in),
         recorded(part, how.camera, text(part, "stopAction"), how.lead_in + length),
     )
-    points = (between(begin, end, -how.lead_in / length), begin, end)
     look = Look(aim_beyond(between(begin, end, 0.5), how.view, length), how.camera.id)
-    return Stroke(points, actions, look, speed=how.speed)
+    return Stroke((start, begin, end), actions, look, speed=how.speed)
 
 
 def _pass_of(part: Part, group: Group, robot: Robot) -> Pass:

@@ -10,6 +10,7 @@ from mmrs_solar.names import THERMAL_ROW_TASK
 from mmrs_solar.row_inspection import passes_over, row_inspection_work
 
 from mmrs_core.errors import InfeasibleError
+from mmrs_core.planning.places import refuse_blocked
 from mmrs_core.testing.scenes import sample_task, square
 
 TILT = radians(30.0)
@@ -147,10 +148,25 @@ def test_long_rows_are_recorded_in_parts_that_meet(robot, scene, group):
     assert all(one[1] == pytest.approx(two[0]) for one, two in pairwise(spans))
 
 
-def test_a_row_too_near_to_an_obstacle_is_refused_with_both(robot, scene):
-    mast = square("mast", 50.0, 1.0, 2.0)
-    with pytest.raises(InfeasibleError, match=r"the way along row 3 comes .* too near to 'mast'"):
-        row_inspection_work(rows(firstRow=3), robot(), scene(mast))
+def test_a_row_that_touches_an_obstacle_is_recorded_as_far_as_it_is_clear(robot, scene):
+    whole = row_inspection_work(rows(firstRow=3), robot(), scene())
+    mast = scene(square("mast", 50.0, 1.0, 2.0))
+    work = row_inspection_work(rows(firstRow=3), robot(), mast)
+    assert len(work.strokes) > len(whole.strokes)
+    for stroke in work.strokes:
+        refuse_blocked(robot(), mast, stroke.points, "a part")
+        assert dist(*stroke.points[:2]) == pytest.approx(stroke.actions[0].at)
+    assert all(gap.area == "'mast'" for gap in work.gaps)
+    assert "the way along row 3" in {gap.line for gap in work.gaps}
+    done = sum(dist(stroke.points[0], stroke.points[-1]) for stroke in work.strokes)
+    asked = sum(dist(stroke.points[0], stroke.points[-1]) for stroke in whole.strokes)
+    assert done + sum(gap.length for gap in work.gaps) == pytest.approx(asked)
+
+
+def test_rows_of_which_nothing_is_left_are_refused_with_the_obstacle(robot, scene):
+    hall = square("hall", 50.0, 1.0, 200.0)
+    with pytest.raises(InfeasibleError, match=r"nothing is left of the way along row 3: .* 'hall'"):
+        row_inspection_work(rows(firstRow=3), robot(), scene(hall))
 
 
 def test_a_way_above_the_ceiling_is_refused(robot, scene):

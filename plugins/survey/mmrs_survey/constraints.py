@@ -14,6 +14,7 @@ from mmrs_survey.grid_checks import (
     nothing_seen,
     overlap_outside,
     overlap_unused,
+    resolution_coarse,
     resolution_unfounded,
     seen_twice,
 )
@@ -168,6 +169,14 @@ CONSTRAINTS = (
         MISSION,
         amount_over(MOST),
         "correct gridResolution, footprint, spacing or overlaps: lengths are in metres; or divide the area",
+        Severity.WARNING,
+    ),
+    Constraint(
+        "SUR020",
+        "A ground resolution is given in metres per pixel",
+        names.PHOTO_GRID_TASK,
+        resolution_coarse,
+        "write 0.02 for 2 cm per pixel",
         Severity.WARNING,
     ),
 )

@@ -14,6 +14,8 @@ from mmrs_survey.device_checks import devices_for
 FOOTPRINT = ("footprintWidth", "footprintLength")
 SEEN = (*FOOTPRINT, "groundResolution")
 OVERLAPS = ("frontOverlap", "sideOverlap")
+COARSE = 0.5
+"""Metres per pixel, as photos of satellites have; from it on the unit is suspect."""
 
 
 def seen_twice(task: Element, models: ModelSet) -> Iterator[Finding]:
@@ -72,6 +74,16 @@ def resolution_unfounded(task: Element, models: ModelSet) -> Iterator[Finding]:
     if devices and not any(_keys(device) >= set(IMAGE_KEYS) for device in devices):
         yield Finding(
             task, f"groundResolution of task '{label_of(task)}' goes with no camera of known image size"
+        )
+
+
+def resolution_coarse(task: Element, models: ModelSet) -> Iterator[Finding]:
+    """Yield ground resolutions as coarse as those of satellites."""
+    resolution = number(task, "groundResolution")
+    if resolution is not None and resolution >= COARSE:
+        yield Finding(
+            task,
+            f"groundResolution of task '{label_of(task)}' is {resolution:g} m per pixel, as from space",
         )
 
 

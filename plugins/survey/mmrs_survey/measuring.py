@@ -6,6 +6,7 @@ from mmrs_core.contributions.rules import Rule
 from mmrs_core.errors import InfeasibleError
 from mmrs_core.planning.coverage import Sweep, work_over
 from mmrs_core.planning.devices import device_for
+from mmrs_core.planning.open_lines import open_line
 from mmrs_core.planning.places import refuse_blocked, refuse_heights
 from mmrs_core.scene import ActionAt, Part, Position, Robot, Scene, Stroke, Task, Work
 from mmrs_core.scene.attributes import number, pairs, positions, ring, text
@@ -28,8 +29,9 @@ def measure_work(task: Task, robot: Robot, scene: Scene) -> Work:
     action = _action(part, robot)
     if spacing is None or len(points) == 1:
         return _at_points(points, action, robot, scene)
-    refuse_blocked(robot, scene, points, "the line")
-    return Work((_along(without_repeats(points), spacing, action),), divisible=True, rule=RULE)
+    found = open_line(robot, scene, without_repeats(points), "the line")
+    strokes = tuple(_along(each, spacing, action) for each in found.parts)
+    return Work(strokes, divisible=True, rule=RULE, gaps=found.gaps)
 
 
 def _height(part: Part, scene: Scene) -> float | None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from mmrs_core.contributions.rules import Rule
 from mmrs_core.errors import InfeasibleError
 from mmrs_core.planning.devices import device_for
+from mmrs_core.planning.open_lines import open_lines
 from mmrs_core.planning.places import refuse_blocked, refuse_heights
 from mmrs_core.scene import ActionAt, Part, Position, Robot, Scene, Stroke, Task, Work
 from mmrs_core.scene.attributes import flag, number, position, positions, text
@@ -18,10 +19,13 @@ def road_work(task: Task, robot: Robot, scene: Scene) -> Work:
     entry = at_altitude((position(task.part, "initialPosition"),), number(task.part, "altitude"))[0]
     refuse_heights(robot, (entry, *(point for line in lines for point in line)))
     refuse_blocked(robot, scene, (entry,), "the initial position")
-    for line in lines:
-        refuse_blocked(robot, scene, line, "the line")
-    strokes = tuple(_stroke(task.part, robot, line, free=len(lines) > 1) for line in lines)
-    return Work(strokes, divisible=True, rule="road", ordered=len(lines) == 1, entry=entry)
+    free, turned = len(lines) > 1, flag(task.part, "inverted")
+    called = [f"pass {number}" for number in range(1, len(lines) + 1)] if free else ["the line"]
+    drawn = lines if free or not turned else [line[::-1] for line in lines]
+    found = open_lines(robot, scene, zip(called, drawn, strict=True))
+    parts = [part[::-1] for part in found.parts[::-1]] if turned and not free else found.parts
+    strokes = tuple(_stroke(task.part, robot, line, free=free) for line in parts)
+    return Work(strokes, divisible=True, rule="road", ordered=not free, entry=entry, gaps=found.gaps)
 
 
 def _lines(part: Part) -> tuple[tuple[Position, ...], ...]:

@@ -133,6 +133,10 @@ CASES = {
         lambda r: [field(grid(r, gridResolution=0.1))],
         lambda r: [field(grid(r, gridResolution=10.0))],
     ),
+    "SUR020": Case(
+        lambda r: [grid(r, groundResolution=2.0)],
+        lambda r: [grid(r, groundResolution=0.49)],
+    ),
 }
 BY_CODE = {constraint.code: constraint for constraint in CONSTRAINTS}
 

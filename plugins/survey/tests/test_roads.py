@@ -11,6 +11,7 @@ from mmrs_survey.lines import cuts_between, even_distances, passes
 from mmrs_survey.roads import road_work
 
 from mmrs_core.errors import InfeasibleError
+from mmrs_core.planning.places import refuse_blocked
 
 LINE = ((0.0, 0.0, 5.0), (100.0, 0.0, 5.0), (100.0, 80.0, 9.0))
 
@@ -71,9 +72,47 @@ def test_a_corridor_that_is_seen_at_once_takes_one_pass(robot, scene, task):
     assert len(road_work(road(task, width=30.0), robot(), scene()).strokes) == 1
 
 
-def test_a_line_too_near_to_an_obstacle_is_refused_with_its_name(robot, scene, task):
-    with pytest.raises(InfeasibleError, match=r"the line comes 1\.50 m too near to 'block 0'"):
-        road_work(road(task), robot(), scene((50.0, 0.0, 5.0, 90.0)))
+def test_a_line_that_touches_an_obstacle_is_followed_as_far_as_it_is_clear(robot, scene, task):
+    work = road_work(road(task, photoDistance=10.0), robot(), scene((50.0, 0.0, 5.0, 90.0)))
+    keep = 6.0 + robot().clearance
+    one, two = work.strokes
+    assert one.points == ((0.0, 0.0, 20.0), (pytest.approx(50.0 - keep, abs=0.02), 0.0, 20.0))
+    assert two.points[0] == (pytest.approx(50.0 + keep, abs=0.02), 0.0, 20.0)
+    assert two.points[1:] == ((100.0, 0.0, 20.0), (100.0, 80.0, 20.0))
+    assert [each.actions[0].at for each in work.strokes] == [0.0, 0.0]
+    for stroke in work.strokes:
+        refuse_blocked(robot(), scene((50.0, 0.0, 5.0, 90.0)), stroke.points, "a part")
+
+
+@pytest.mark.parametrize("inverted", [False, True])
+def test_what_is_left_out_of_a_line_is_named_with_its_place_and_length(robot, scene, task, inverted):
+    work = road_work(road(task, inverted=inverted), robot(), scene((30.0, 0.0, 5.0, 90.0)))
+    (gap,) = work.gaps
+    keep = 6.0 + robot().clearance
+    assert gap.begin == pytest.approx(30.0 - keep, abs=0.02)
+    assert gap.length == pytest.approx(2.0 * keep, abs=0.04)
+    assert gap.at == (pytest.approx(30.0), 0.0, 20.0)
+    assert (gap.line, gap.area) == ("the line", "'block 0'")
+    assert work.strokes[0].points[0] == ((100.0, 80.0, 20.0) if inverted else (0.0, 0.0, 20.0))
+
+
+def test_parts_too_short_to_go_around_an_obstacle_for_are_left_out(robot, scene, task):
+    keep = 6.0 + robot().clearance
+    work = road_work(road(task), robot(), scene((keep + 0.5, 0.0, 5.0, 90.0)))
+    assert len(work.strokes) == 1
+    assert work.gaps[0].begin == 0.0
+
+
+def test_a_pass_of_which_nothing_is_left_is_left_out_as_a_whole(robot, scene, task):
+    asked = road(task, points=((0.0, 0.0, 0.0), (20.0, 0.0, 0.0)), width=90.0, footprintWidth=45.0)
+    work = road_work(asked, robot(), scene((10.0, 30.0, 15.0, 90.0)))
+    assert len(work.strokes) == 1
+    assert [(each.line, each.length) for each in work.gaps] == [("pass 2", pytest.approx(20.0))]
+
+
+def test_a_line_of_which_nothing_is_left_is_refused_with_the_obstacles_name(robot, scene, task):
+    with pytest.raises(InfeasibleError, match="nothing is left of the line: it is too near to 'block 0'"):
+        road_work(road(task), robot(), scene((55.0, 40.0, 60.0, 90.0)))
 
 
 def test_photos_without_a_device_are_refused(robot, scene, task):

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import pytest
+from lxml import etree
 
 from mmrs_core.languages.registry import MetamodelSource, registry_with
 
@@ -141,7 +142,9 @@ def every_metamodel(metamodels, foreign):
 @pytest.fixture(scope="session")
 def registry(foreign):
     """The core, the plug-ins' metamodels and the foreign ones."""
-    sources = [MetamodelSource(f"urn:mmrs:{file.stem}:1.0", file, file.stem) for file in plug_ins()]
+    sources = [
+        MetamodelSource(etree.parse(file).getroot().get("nsURI"), file, file.stem) for file in plug_ins()
+    ]
     return registry_with(
         [*sources, *(MetamodelSource(f"urn:test:{file.stem}", file, file.stem) for file in foreign)]
     )

@@ -96,7 +96,7 @@ def _open_hangar():
             if not program.frame.is_local:
                 ((latitude, longitude),) = degrees_of([robot.home[:2]], program.frame)
             port = free_port()
-            kind = vehicle_class(robot, types.get(robot.type_name)).name
+            kind = vehicle_class(robot, types.get(robot.type_name), {}).name
             given = Settings(kind, latitude, longitude, **settings)
             vehicle = SimulatedVehicle(port, given, speedup=speedup, loss=loss)
             vehicle.start()

@@ -24,7 +24,7 @@ LANGUAGES = (
     "urn:mmrs:robot:1.0",
     "urn:mmrs:behaviour:1.0",
     "urn:mmrs:multicopter:1.0",
-    "urn:mmrs:auv:1.0",
+    "urn:mmrs:auv:1.1",
     "urn:mmrs:auv-tasks:1.0",
     "urn:mmrs:rover:1.0",
     "urn:mmrs:survey:1.0",

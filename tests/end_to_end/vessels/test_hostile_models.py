@@ -28,13 +28,13 @@ def written(folder: Path, old: str, new: str) -> Path:
 @pytest.mark.parametrize(
     ("old", "new", "place", "said"),
     [
-        ('maxThrust="35.0"', 'maxThrust="NaN"', "pool-auv.xmi:30", "maxThrust is NaN"),
-        ('maxThrust="35.0"', 'maxThrust="INF"', "pool-auv.xmi:30", "maxThrust: 'INF': not a number"),
-        (FIGURES, 'operatingThrust="0" maxThrust="0"', "pool-auv.xmi:30", "maxThrust of thruster 'T1' is 0"),
-        (FIGURES, 'operatingThrust="-18" maxThrust="35"', "pool-auv.xmi:30", "of thruster 'T1' is -18"),
+        ('maxThrust="35.0"', 'maxThrust="NaN"', "pool-auv.xmi:34", "maxThrust is NaN"),
+        ('maxThrust="35.0"', 'maxThrust="INF"', "pool-auv.xmi:34", "maxThrust: 'INF': not a number"),
+        (FIGURES, 'operatingThrust="0" maxThrust="0"', "pool-auv.xmi:34", "maxThrust of thruster 'T1' is 0"),
+        (FIGURES, 'operatingThrust="-18" maxThrust="35"', "pool-auv.xmi:34", "of thruster 'T1' is -18"),
         ('maxThrust="35.0"', 'maxThrust="1e9"', "type 'Pool AUV'", "thruster 0 ('T1'): max_thrust: "),
         ('maxPower="230.0"', 'maxPower="9999"', "robot 'Naiad'", "max_power: 9999.0 is more than 6553.5"),
-        ('id="T2"', 'id="T1"', "pool-auv.xmi:36", "'T1' has the identifier of another"),
+        ('id="T2"', 'id="T1"', "pool-auv.xmi:40", "'T1' has the identifier of another"),
         ('id="T2"', 'id="T&quot;2"', "robot 'Naiad'", "thruster 1 ('T\"2'): id: 'T\"2' has '\"'"),
         ('id="T2"', 'id="T&#10;CM_ 2"', "robot 'Naiad'", "thruster 1 ('T\\nCM_ 2'): id: "),
     ],
@@ -55,6 +55,9 @@ def test_thirty_three_thrusters(tmp_path: Path, capsys: pytest.CaptureFixture[st
     block = one[one.index('<thrusters id="T1"') : one.index("</thrusters>")] + "</thrusters>"
     more = "".join(block.replace('id="T1"', f'id="M{number}"') for number in range(27))
     project = written(tmp_path, '<thrusters id="T1"', more + '<thrusters id="T1"')
+    file = project / "robots" / "pool-auv.xmi"
+    used = " ".join(f"//@thrusters.{number}" for number in range(6, 33))
+    file.write_text(file.read_text("utf-8").replace('thrusters="', f'thrusters="{used} '), "utf-8")
     assert run(["can", "dbc", str(project)]) == 1
     assert "thrusters: 33, there are identifiers for 32" in capsys.readouterr().err
 

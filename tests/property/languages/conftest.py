@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+from lxml import etree
 
 from mmrs_core.languages.registry import MetamodelSource, registry_with
 
@@ -15,6 +16,6 @@ PROJECT = Path(__file__).parents[3]
 def registry():
     """The core, the plug-ins' metamodels and a foreign one that uses what Ecore offers beyond ours."""
     files = sorted((PROJECT / "plugins").glob("*/mmrs_*/metamodels/*.ecore"))
-    sources = [MetamodelSource(f"urn:mmrs:{file.stem}:1.0", file, file.stem) for file in files]
+    sources = [MetamodelSource(etree.parse(file).getroot().get("nsURI"), file, file.stem) for file in files]
     zoo = PROJECT / "tests" / "fixtures" / "models" / "zoo.ecore"
     return registry_with([*sources, MetamodelSource("urn:test:zoo", zoo, "zoo")])

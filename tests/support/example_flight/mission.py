@@ -76,7 +76,7 @@ def margins(program: Program, place: pipeline.Place, robot_id: str, track: Track
         track: seconds, metres north, east and up of home; under water, up of the surface.
     """
     robot = next(each for each in program.robots if each.id == robot_id)
-    dives = vehicle_class(robot, place.types[robot.type_name]).dives
+    dives = vehicle_class(robot, place.types[robot.type_name], {}).dives
     zero = (*robot.home[:2], program.frame.surface if dives else robot.home[2])
     needed = place.types[robot.type_name].half_diagonal + program.position_error
     areas = [area for area in place.areas if area.use is not AreaUse.EMERGENCY]

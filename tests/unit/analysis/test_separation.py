@@ -99,8 +99,10 @@ def flights(second_waits):
     return separation(a, b, robot_kind=kind(launches=True))
 
 
-def test_robots_on_the_ground_are_not_counted():
-    assert [verdict.status for verdict in flights(second_waits=True)] == [Status.SAFE]
+def test_a_robot_may_stand_beside_the_home_that_another_leaves_upright_and_is_named_for_it():
+    (verdict,) = flights(second_waits=True)
+    assert verdict.status is Status.SAFE
+    assert "a and b (1.00 m)" in verdict.caveat
 
 
 def test_launching_side_by_side_is_violated():
@@ -120,10 +122,87 @@ def test_a_chain_of_waits_keeps_robots_apart():
     assert [verdict.status for verdict in separation(a, b, c, moves=uneven())] == [Status.SAFE]
 
 
-def test_robots_that_stand_at_their_homes_are_not_counted():
+def test_robots_that_stand_at_their_homes_are_excused():
+    a = robot("a", [hold("rest", 5.0)])
+    b = robot("b", [hold("idle", 500.0)], home=(0.0, 2.0, 0.0))
+    (verdict,) = separation(a, b)
+    assert (verdict.status, "a and b (2.00 m)" in verdict.caveat) == (Status.SAFE, True)
+
+
+def test_a_robot_that_moves_off_sideways_beside_the_home_of_another_is_violated():
     a = robot("a", [go("east", (40.0, 0.0, 0.0)), go("back", (0.0, 0.0, 0.0))])
     b = robot("b", [hold("idle", 500.0)], home=(0.0, 2.0, 0.0))
-    assert [verdict.status for verdict in separation(a, b)] == [Status.SAFE]
+    assert [verdict.status for verdict in separation(a, b)] == [Status.VIOLATED]
+
+
+FLYERS = {"robot_kind": kind(launches=True)}
+
+
+def flight(name, home, *places, at=10.0, before=0.0, slots=(), waits=None):
+    """Return a robot that takes off, goes to these places at one height and lands at the last one."""
+    moves = [hold("late", before), take_off("up", at)]
+    moves += [go(f"to {i}", (*place, at)) for i, place in enumerate(places)]
+    return robot(name, [*moves, land("down")], home=home, slots=slots, waits=waits or {})
+
+
+@pytest.mark.parametrize("moves", [None, uneven()], ids=["exact times", "uncertain times"])
+@pytest.mark.parametrize(
+    ("place", "at", "apart"),
+    [
+        pytest.param((30.0, 0.3), 10.0, 0.3, id="lands beside one that has landed"),
+        pytest.param((90.0, 0.0), 1.2, 1.2, id="flies low over one that has landed"),
+    ],
+)
+def test_a_robot_that_has_landed_keeps_its_place(place, at, apart, moves):
+    more = FLYERS | ({"moves": moves} if moves else {})
+    a = flight("a", (0.0, 0.0, 0.0), (30.0, 0.0))
+    b = flight("b", (0.0, 0.3 if at < 2 else 20.0, 0.0), (0.0, 0.0), place, at=at, before=500.0)
+    (verdict,) = separation(a, b, **more)
+    assert verdict.status is Status.VIOLATED
+    assert verdict.margin == pytest.approx(apart - 3.0, abs=1e-6)
+
+
+def test_a_robot_that_waits_to_launch_keeps_its_place():
+    a = flight("a", (30.0, 0.0, 0.0), before=500.0)
+    b = flight("b", (0.0, 0.0, 0.0), (30.0, 0.5))
+    (verdict,) = separation(a, b, **FLYERS)
+    assert (verdict.status, verdict.margin) == (Status.VIOLATED, pytest.approx(-2.5))
+
+
+def test_landing_at_the_home_of_another_that_is_there_is_not_excused():
+    a = flight("a", (1.0, 0.0, 0.0))
+    b = flight("b", (0.0, 0.0, 0.0), (20.0, 0.0), (1.0, 0.0), before=500.0)
+    assert [verdict.status for verdict in separation(a, b, **FLYERS)] == [Status.VIOLATED]
+
+
+def test_a_column_ends_where_its_robot_leaves_it_sideways():
+    """Level flight 2 m above the own home, 1 m beside a robot that waits there, is not straight up."""
+    a = flight("a", (1.0, 0.0, 0.0), before=500.0)
+    low = flight("b", (0.0, 0.0, 0.0), (20.0, 0.0), (0.0, 0.0), at=2.0)
+    high = flight("b", (0.0, 0.0, 0.0), (20.0, 0.0), (0.0, 0.0), at=4.0)
+    assert [verdict.status for verdict in separation(a, low, **FLYERS)] == [Status.VIOLATED]
+    assert [verdict.status for verdict in separation(a, high, **FLYERS)] == [Status.SAFE]
+
+
+def test_a_robot_that_certainly_hovers_in_the_way_is_violated_however_uncertain_times_are():
+    a = robot("a", [hold("look", 400.0)], home=(20.0, 0.0, 0.0))
+    b = robot("b", [hold("late", 10.0), go("east", (40.0, 0.0, 0.0))])
+    (verdict,) = separation(a, b, moves=uneven())
+    assert (verdict.status, verdict.margin) == (Status.VIOLATED, pytest.approx(-3.0))
+
+
+def test_a_robot_that_waits_for_the_one_that_passes_it_is_violated_though_no_time_is_certain():
+    leave = go("off", (20.0, 90.0, 0.0))
+    a = robot("a", [leave], waits={"start": ["go"]}, slots=["go"], home=(20.0, 0.0, 0.0))
+    b = robot("b", [hold("late", 10.0), go("east", (40.0, 0.0, 0.0), after=(notify("a.go"),))])
+    (verdict,) = separation(a, b, moves=uneven(0.01, 100.0))
+    assert (verdict.status, verdict.move) == (Status.VIOLATED, "start")
+
+
+def test_a_robot_that_may_have_gone_before_another_passes_is_undecided():
+    a = robot("a", [hold("look", 8.0), go("off", (20.0, 90.0, 0.0))], home=(20.0, 0.0, 0.0))
+    b = robot("b", [go("east", (40.0, 0.0, 0.0))])
+    assert [verdict.status for verdict in separation(a, b, moves=uneven())] == [Status.UNKNOWN]
 
 
 def test_the_nearest_approach_of_moving_robots_is_exact():

@@ -86,5 +86,19 @@ def test_a_move_that_is_never_reached_is_named_but_harmless():
     verdict = finding("structure", given(made))
     assert (verdict.status, verdict.message) == (
         Status.SAFE,
-        "a: every move is on a way from Start to Stop; never reached: dead",
+        "a: every move is on a path from Start to Stop",
     )
+
+
+def test_a_task_that_is_never_reached_is_violated():
+    lost = replace(go("photo", (1.0, 0.0, 0.0)), task="roof")
+    made = robot("a", [hold("one"), lost, hold("two")], jumps={"one": "two"})
+    verdict = finding("structure", given(made))
+    assert (verdict.status, verdict.move, verdict.place) == (Status.VIOLATED, "photo", lost.place)
+    assert verdict.message == ("a: GoTo 'photo' is never reached: its task 'roof' is not carried out there")
+
+
+def test_actions_that_are_never_reached_are_violated():
+    lost = hold("tell", after=(notify("a.done"),))
+    made = replace(robot("a", [hold("one"), lost, hold("two")], jumps={"one": "two"}), slots=("done",))
+    assert faults(made) == ["a: HoldPosition 'tell' is never reached: its actions are not carried out there"]

@@ -135,6 +135,29 @@ def test_a_slot_that_is_taken_back_only_when_it_was_used_is_safe():
     assert finding("synchronisation", given(*resetting(late=True))).status is Status.SAFE
 
 
+def token_pair(number):
+    """Return two robots that share slots with each other only, one of which is taken back."""
+    a, b = f"a{number}", f"b{number}"
+    getter = robot(a, [hold("h"), hold("i", before=(notify(f"{b}.done"),))], waits={"h": ["go"]})
+    moves = [hold("set", after=(notify(f"{a}.go"),)), hold("reset", after=(notify(f"{a}.go", active=False),))]
+    return getter, robot(b, moves, waits={"set": ["done"]}, slots=["done"])
+
+
+def test_robots_that_share_no_slots_are_judged_apart():
+    found = findings("synchronisation", given(*(each for i in range(9) for each in token_pair(i))))
+    assert [verdict.status for verdict in found] == [Status.SAFE] * 9
+    assert found[3].message.startswith("a3, b3: every robot comes to its Stop in any order of events")
+
+
+def test_a_robot_that_never_stops_leaves_others_decided():
+    lost = robot("lost", [hold("h"), hold("i")], waits={"h": ["never"]}, slots=["never"])
+    found = findings("synchronisation", given(lost, *token_pair(0)))
+    assert [(verdict.status, verdict.robot) for verdict in found] == [
+        (Status.VIOLATED, "lost"),
+        (Status.SAFE, ""),
+    ]
+
+
 def test_too_many_orders_of_events_are_no_answer():
     with pytest.raises(LimitExceededError):
         find_stuck(network_of(program(*resetting(late=True))), limit=2)

@@ -82,3 +82,8 @@ def test_json_is_one_object_even_for_an_error(capsys):
 def test_a_file_that_cannot_be_written_is_named(capsys):
     ended_by(PermissionError(13, "Permission denied", "out.xmi"), Settings())
     assert capsys.readouterr().err == "mmrs: out.xmi: permission denied\n"
+
+
+def test_messages_and_their_details_stay_on_their_lines(capsys):
+    ended_by(InfeasibleError("a\nmmrs: done", ["b\nmmrs: done"]), Settings())
+    assert "\nmmrs: done" not in capsys.readouterr().err

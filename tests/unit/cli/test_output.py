@@ -1,5 +1,6 @@
 """What reaches the terminal is safe to show, and goes to the right stream."""
 
+import errno
 import io
 import sys
 
@@ -117,3 +118,27 @@ def test_a_stream_of_few_letters_gets_codes_for_the_others(monkeypatch):
     monkeypatch.setattr(sys, "stdout", stream)
     output.say("più")
     assert stream.buffer.getvalue() == b"pi\\xf9\n"
+
+
+def test_a_name_of_several_lines_begins_no_line_of_its_own(capsys):
+    bad = "a\nmmrs: done\tb"
+    output.report([Diagnostic("MML001", Severity.ERROR, bad, Place(bad, 3, f"/{bad}"), bad, bad)])
+    shown = capsys.readouterr().err
+    assert "\nmmrs" not in shown
+    assert "\t" not in shown
+    assert len(shown.splitlines()) == 4
+
+
+class Full(Closed):
+    def write(self, text):
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+
+@pytest.mark.parametrize("name", ["stdout", "stderr"])
+def test_a_stream_on_a_full_disk_is_named(monkeypatch, tmp_path, name):
+    with (tmp_path / "x").open("wb") as file:
+        monkeypatch.setattr(sys, name, Full(file.fileno()))
+        with pytest.raises(
+            OSError, match=f"standard {name[3:].replace('out', 'output').replace('err', 'error')}"
+        ):
+            output.say("x") if name == "stdout" else output.tell("x")

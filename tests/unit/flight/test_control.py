@@ -16,7 +16,7 @@ import pytest
 from signals_elsewhere import broken_off
 from stalls import Stalls
 
-from mmrs_core.flight.control import Control, Taken
+from mmrs_core.flight.control import CONNECTIONS, Control, Taken
 from mmrs_core.flight.orders.calling import CALL_SECONDS, Unreachable, asked_at_once, network
 from mmrs_core.flight.orders.ordering import give, main
 from mmrs_core.flight.orders.orders import Inbox, Order
@@ -34,8 +34,9 @@ def opened(tmp_path):
     """Return a function that opens a channel; all are closed when the test is over."""
     with ExitStack() as stack:
 
-        def open_channel(inboxes, folder=tmp_path):
-            control = Control(folder, "run-0", inboxes, lambda robot: {"mode": "guided", "energy": 0.5})
+        def open_channel(inboxes, folder=tmp_path, **options):
+            status = {"mode": "guided", "energy": 0.5}
+            control = Control(folder, "run-0", inboxes, lambda robot: status, **options)
             stack.callback(control.close)
             return control
 
@@ -185,6 +186,63 @@ def test_only_its_user_may_read_the_token(tmp_path, opened, inboxes):
 def test_an_order_that_makes_no_sense_is_refused_in_words(tmp_path, opened, inboxes, content, complaint):
     opened(inboxes)
     assert complaint in ask(tmp_path, **content)["error"]
+
+
+@pytest.fixture
+def connected(tmp_path):
+    """Return a function that connects to the channel and says nothing."""
+    with ExitStack() as stack:
+
+        def connect():
+            port = json.loads((tmp_path / "control.json").read_text("ascii"))["port"]
+            return stack.enter_context(socket.create_connection(("127.0.0.1", port), 10.0))
+
+        yield connect
+
+
+def test_clients_that_say_nothing_keep_no_order_from_the_robots(tmp_path, opened, inboxes, robots, connected):
+    opened(inboxes, greeting_seconds=60.0)
+    robots(*inboxes.values())
+    for _ in range(3 * CONNECTIONS):
+        connected()
+    assert [reply["confirmed"] for reply in give(tmp_path, "land")] == [True, True]
+
+
+@pytest.mark.parametrize("begun", [b"", b'{"token": '])
+def test_a_client_that_gives_no_whole_order_in_time_is_hung_up_on(opened, inboxes, connected, begun):
+    opened(inboxes, greeting_seconds=0.1)
+    client = connected()
+    client.sendall(begun)
+    with client.makefile("rb") as file:
+        assert json.loads(file.readline()) == {"error": "an order is one whole line within 0.1 s"}
+        assert file.read() == b""
+
+
+def test_a_client_may_give_one_order_after_the_other(tmp_path, opened, inboxes, connected):
+    opened(inboxes)
+    token = json.loads((tmp_path / "control.json").read_text("ascii"))["token"]
+    with connected().makefile("rwb") as file:
+        for order in ("explode", "status"):
+            file.write(json.dumps({"token": token, "order": order}).encode() + b"\n")
+            file.flush()
+            said = json.loads(file.readline())
+    assert said["robot"] == "alpha"
+
+
+@pytest.mark.parametrize(
+    "facts",
+    [
+        '{"port": 99999999, "token": "", "robots": ["beta"]}',
+        '{"port": 7, "robots": 7}',
+        '{"port": 0, "robots": {"alpha": 1}}',
+        "[" * 9999,
+        "[1]",
+    ],
+)
+def test_an_announcement_of_any_shape_keeps_no_process_from_its_start(tmp_path, opened, inboxes, facts):
+    (tmp_path / "control-1.json").write_text(facts, "ascii")
+    opened(inboxes)
+    assert len(list(give(tmp_path, "status"))) == 2
 
 
 def test_processes_that_share_a_folder_are_all_heard(tmp_path, opened, inboxes, robots):

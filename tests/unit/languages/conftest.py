@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+from lxml import etree
 
 from mmrs_core.languages.reading import read_text
 from mmrs_core.languages.registry import MetamodelSource, core_registry, registry_with
@@ -31,7 +32,9 @@ def zoo():
 def everything():
     """The core with the metamodels of the plug-ins, which need not be installed."""
     files = sorted((PROJECT / "plugins").glob("*/mmrs_*/metamodels/*.ecore"))
-    return registry_with([MetamodelSource(f"urn:mmrs:{file.stem}:1.0", file, file.stem) for file in files])
+    return registry_with(
+        [MetamodelSource(etree.parse(file).getroot().get("nsURI"), file, file.stem) for file in files]
+    )
 
 
 @pytest.fixture(scope="session")

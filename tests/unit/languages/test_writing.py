@@ -53,7 +53,11 @@ def test_no_root_at_all_is_a_document_too(zoo):
 def test_the_schema_location_says_where_the_used_metamodels_lie(everything):
     land = everything.create("urn:mmrs:multicopter:1.0", "Land", name="l")
     robot = behaviour.Robot(id="r", moves=[land])
-    places = {f"urn:mmrs:{name}:1.0": f"../m/{name}.ecore" for name in ("behaviour", "multicopter", "auv")}
+    places = {
+        "urn:mmrs:behaviour:1.0": "../m/behaviour.ecore",
+        "urn:mmrs:multicopter:1.0": "../m/multicopter.ecore",
+        "urn:mmrs:auv:1.1": "../m/auv.ecore",
+    }
     text = to_xmi([behaviour.Behaviour(robots=[robot])], everything, schema_location=places).decode()
     located = "urn:mmrs:behaviour:1.0 ../m/behaviour.ecore urn:mmrs:multicopter:1.0 ../m/multicopter.ecore"
     assert f'xsi:schemaLocation="{located}"' in text

@@ -20,7 +20,7 @@ LAKE = Frame("EPSG:4326", 46.2, 6.1, 372.0, "MSL", surface=-3.0)
 DIVER = replace(
     quad(),
     metaclasses=(("urn:mmrs:robot:1.0", "Robot"),),
-    capability_metaclasses=(("urn:mmrs:auv:1.0", "AUVMovement"),),
+    capability_metaclasses=(("urn:mmrs:auv:1.1", "AUVMovement"),),
 )
 HOME = (0.0, 0.0, -3.5)
 

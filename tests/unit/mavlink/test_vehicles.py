@@ -28,7 +28,7 @@ DIVER = replace(
     quad(),
     metaclasses=(("urn:mmrs:robot:1.0", "Robot"),),
     capability_metaclasses=(
-        ("urn:mmrs:auv:1.0", "AUVMovement"),
+        ("urn:mmrs:auv:1.1", "AUVMovement"),
         ("urn:mmrs:robot:1.0", "MovementCapability"),
     ),
 )
@@ -37,12 +37,12 @@ CRAWLER = replace(quad(), metaclasses=(("urn:mmrs:robot:1.0", "Robot"),))
 
 @pytest.mark.parametrize(("type", "expected"), [(quad(), COPTER), (DIVER, SUB), (CRAWLER, ROVER)])
 def test_the_type_says_which_vehicle_a_robot_is(type, expected):
-    assert vehicle_class(robot_program("a", []), type) is expected
+    assert vehicle_class(robot_program("a", []), type, {}) is expected
 
 
 def test_without_a_type_what_takes_off_is_a_copter():
-    assert vehicle_class(robot_program("a", [take_off("up", 5.0)]), None) is COPTER
-    assert vehicle_class(robot_program("a", []), None) is ROVER
+    assert vehicle_class(robot_program("a", [take_off("up", 5.0)]), None, {}) is COPTER
+    assert vehicle_class(robot_program("a", []), None, {}) is ROVER
 
 
 @pytest.mark.parametrize(("mode", "speed"), [("SAFE", 4.0), ("NORMAL", 6.0), ("AGGRESSIVE", 8.0)])

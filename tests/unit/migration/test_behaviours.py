@@ -97,11 +97,25 @@ def test_rounds_last_as_long_as_the_circle(behaviour):
     assert sum(ways) / ring[1].speed == pytest.approx(30.0, abs=0.01)
 
 
-def test_without_its_robot_type_a_circle_is_one_round_that_lasts_as_long(migrated, model, flyaq, told):
+def test_without_its_robot_type_a_circle_is_one_round_at_no_speed_that_is_made_up(
+    migrated, model, flyaq, told
+):
     found = migrated(flyaq / "round.xmi")
     ring = [move for move in model(found, "behaviour.xmi").robots[0].moves if "around" in move.name]
-    assert len(ring) == 13
-    assert told(found, "once at 2.485 m/s takes so long")
+    assert [move.speed for move in ring] == [None] * 13
+    assert told(found, "LOST: the speeds of robot type 'Heron' are not known")
+
+
+def test_a_circle_too_tight_for_its_speed_is_flown_at_the_robots_own(
+    migrated, model, flyaq, changed, told, tmp_path
+):
+    heron = tmp_path / "Heron.xmi"
+    text = (flyaq / "Heron.xmi").read_text()
+    heron.write_text(text.replace('maxSpeed="10"', 'maxSpeed="10" maxAcceleration="3"'))
+    found = migrated(changed('duration="30.0"', 'duration="8.0"'), heron)
+    ring = [move for move in model(found, "behaviour.xmi").robots[0].moves if "around" in move.name]
+    assert [move.speed for move in ring] == [None] * 13
+    assert told(found, "LOST: the robot goes round once, and no speed that it has makes that last so long")
 
 
 def test_a_circle_longer_than_any_rounds_is_told(migrated, model, flyaq, changed, told):

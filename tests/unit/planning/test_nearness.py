@@ -1,12 +1,16 @@
+from dataclasses import replace
+from functools import partial
 from itertools import pairwise
+from math import inf
 
 import numpy as np
 import pytest
 
 from mmrs_core.planning.nearness import legs_apart, near_pairs, track_of
-from mmrs_core.planning.timeline import Ride
+from mmrs_core.planning.timeline import Ride, Spot
 
 WEST, EAST = (0.0, 0.0, 20.0), (100.0, 0.0, 20.0)
+FAR_HOME = (-1000.0, 0.0, 0.0)
 SOUTH, NORTH = (50.0, -50.0, 20.0), (50.0, 50.0, 20.0)
 
 
@@ -16,8 +20,12 @@ def ride(*points, early=0.0, slow=0.0, radius=0.0):
     return Ride(points, early, early + sum(least) + slow, least, radius)
 
 
+def track(*rides, home=FAR_HOME):
+    return track_of(rides, home)
+
+
 def near(one, two, least=5.0, **features):
-    return near_pairs(track_of([one]), track_of([two]), least, finest=0.5, **features)
+    return near_pairs(track(one), track(two), least, finest=0.5, **features)
 
 
 def apart(one, two):
@@ -71,7 +79,7 @@ def test_without_regard_to_time_ways_that_cross_are_near():
 
 
 def test_each_piece_has_its_own_span_of_time():
-    pieces = track_of([ride(WEST, EAST, slow=2.0)]).cut(10.0)
+    pieces = track(ride(WEST, EAST, slow=2.0)).cut(10.0)
     assert pieces.times[:, 0].tolist() == pytest.approx([float(k) for k in range(10)])
     assert pieces.times[:, 1].tolist() == pytest.approx([float(k + 3) for k in range(10)])
 
@@ -82,6 +90,34 @@ def test_a_place_that_is_not_certain_is_near_from_further_away():
 
 
 def test_a_robot_that_goes_nowhere_is_near_nobody():
-    assert (
-        len(near_pairs(track_of([]), track_of([ride(WEST, EAST)]), 5.0, finest=0.5, spare=0.0).distance) == 0
-    )
+    assert len(near_pairs(track(), track(ride(WEST, EAST)), 5.0, finest=0.5, spare=0.0).distance) == 0
+
+
+def stands(home, *, early=-inf, late=inf):
+    return Ride((home,), early, late, (), spot=Spot.HOME)
+
+
+def column(home, early):
+    return replace(ride(home, (home[0], home[1], 20.0), early=early), spot=Spot.COLUMN)
+
+
+@pytest.mark.parametrize(
+    ("one", "two", "metres", "counted"),
+    [
+        (stands, stands, 3.0, False),
+        (stands, partial(column, early=9.0), 3.0, False),
+        (partial(column, early=9.0), stands, 3.0, False),
+        (partial(column, early=9.0), partial(column, early=9.0), 3.0, True),
+        (stands, lambda home: Ride((home,), 0.0, inf), 3.0, True),
+    ],
+)
+def test_only_a_robot_at_home_and_one_at_or_over_a_neighbouring_home_are_excused(one, two, metres, counted):
+    here, there = (0.0, 0.0, 0.0), (metres, 0.0, 0.0)
+    first, second = track(one(here), home=here), track(two(there), home=there)
+    assert bool(len(near_pairs(first, second, 5.0, finest=0.5, spare=0.0).distance)) == counted
+
+
+def test_a_robot_that_stands_at_home_for_ever_is_near_at_any_time():
+    home = (50.0, 3.0, 19.0)
+    idle = track(stands(home), home=home)
+    assert len(near_pairs(idle, track(ride(WEST, EAST, early=1e6)), 5.0, finest=0.5, spare=0.0).distance) > 0

@@ -19,7 +19,7 @@ from sound_plans import sound, steps_of
 from mmrs_core.errors import InfeasibleError
 from mmrs_core.planning.planner import plan
 from mmrs_core.planning.separation import first_encounter
-from mmrs_core.scene import Await, Branch, Launch, Recover, Serve, Signal, Transit
+from mmrs_core.scene import Await, Branch, Coverage, Gap, Launch, Recover, Serve, Signal, Transit
 
 TWO = (robot("r1"), robot("r2", (20.0, 0.0, 0.0)))
 FIELD = ((100.0, 100.0), (300.0, 100.0), (300.0, 300.0), (100.0, 300.0))
@@ -390,3 +390,48 @@ def test_names_that_look_like_signals_stay_apart():
     found = sound(scene(team, works, after=[("a", "z"), ("a ended by b", "z")]))
     (wait,) = steps_of(found, "d", Await)
     assert len(set(wait.signals)) == 2
+
+
+def test_a_robot_without_work_has_a_reason_and_one_with_work_has_none():
+    works = {"a": visit((100.0, 0.0, 20.0)), "b": {"r1": visit((110.0, 0.0, 20.0))}}
+    found = sound(scene(TWO, works, after=[("a", "b")]))
+    busy, idle = found.robots
+    assert busy.idle == ""
+    assert "'a': one robot must do all of it" in idle.idle
+    assert "'b': has no work for it" in idle.idle
+
+
+def test_too_few_robots_of_one_sort_are_named_with_those_that_they_cannot_share_with():
+    works = {
+        "a": {
+            "r1": road((0.0, 50.0, 20.0), (90.0, 50.0, 20.0)),
+            "r2": road((0.0, 50.0, 20.0), (90.0, 60.0, 20.0)),
+        }
+    }
+    with pytest.raises(InfeasibleError, match="1 short \\(r1 cannot share it with r2: sensors or clearances"):
+        plan(scene(TWO, works, tasks={"a": task("a", wanted=2)}))
+
+
+def test_a_shared_task_that_takes_too_many_charges_names_who_cannot_share_it():
+    two = [with_kinematics(each, endurance=90.0, recharge=None) for each in TWO]
+    three = [*two, replace(two[0], name="r3")]
+    corners = tuple((float(50 * (i % 2)), 50.0, 20.0) for i in range(81))
+    line = road(*corners, cuts=tuple(range(50, 4000, 50)))
+    works = {"a": {"r1": line, "r2": line, "r3": replace(line, rule="other")}}
+    with pytest.raises(InfeasibleError, match="r1 and r2 cannot share it with r3"):
+        plan(scene(three, works, tasks={"a": task("a", wanted=2)}))
+
+
+def test_a_plan_names_what_it_leaves_out_of_a_line_once():
+    gap = Gap("the line", 40.0, 4.5, (142.2, 0.0, 20.0), "'mast'")
+    line = replace(road((100.0, 0.0, 20.0), (140.0, 0.0, 20.0)), gaps=(gap,))
+    (left,) = plan(scene(TWO, {"a": line})).left_out
+    assert (left.task, left.amount, left.unit, left.at) == ("a", 4.5, "m", gap.at)
+    assert left.where == "from 40.0 m along the line, about (142.2, 0.0), too near to 'mast'"
+
+
+def test_a_plan_names_the_share_of_an_area_that_it_leaves_out():
+    covered = Coverage(((0.0, 0.0), (9.0, 0.0), (9.0, 9.0)), (), (), 5.0, 0.0, unreachable=12.5)
+    work = replace(road((100.0, 0.0, 20.0), (140.0, 0.0, 20.0)), coverage=covered)
+    (left,) = plan(scene(TWO, {"a": work})).left_out
+    assert str(left) == "task 'a' leaves out 12.5 m² of its area, too near to what is kept away from"

@@ -1,15 +1,20 @@
 from dataclasses import replace
+from itertools import pairwise
+from math import dist
 
+import numpy as np
 import pytest
 from plain_scenes import control, road, robot, scene, task, visit
 from plan_replay import complaints
 
 from mmrs_core.errors import InfeasibleError
+from mmrs_core.planning.nearness import legs_apart
 from mmrs_core.planning.planner import plan
 from mmrs_core.planning.separation import distance_to_keep, first_encounter, stacked_altitudes
+from mmrs_core.scene import Policy, Transit
 
 
-def test_robots_at_home_meet_nobody():
+def test_robots_at_neighbouring_homes_meet_nobody():
     team = (robot("r1"), robot("r2", (1.0, 0.0, 0.0)))
     whole = scene(team, {"a": visit((100.0, 0.0, 20.0))})
     assert first_encounter(whole, plan(whole), 5.0) is None
@@ -68,6 +73,49 @@ def test_robots_that_wait_for_each_other_aloft_take_turns():
     assert complaints(whole, found) == []
     assert first_encounter(whole, found, 10.0) is None
     assert [each.sorties for each in found.robots] == [2, 2]
+
+
+def nearest(whole, found, name, place):
+    """Return how near a planned robot comes to a place."""
+    steps = next(each.steps for each in found.robots if each.robot == name)
+    legs = [leg for step in steps if isinstance(step, Transit) for leg in pairwise(step.route)]
+    return float(legs_apart(np.array(legs), np.array([(place, place)] * len(legs))).min())
+
+
+def test_no_robot_lands_beside_one_that_has_landed():
+    team = tuple(robot(f"r{k}", (-40.0, 20.0 * k, 0.0), returns=False) for k in range(2))
+    works = {"a": {"r0": visit((100.0, 0.0, 20.0))}, "b": {"r1": visit((100.3, 0.0, 20.0))}}
+    low = (Policy("BATTERY_LOW", "LAND"),)
+    whole = scene(team, works, after=[("a", "b")], minimum_separation=3.0, policies=low)
+    found = plan(whole)
+    assert complaints(whole, found) == []
+    assert first_encounter(whole, found, 3.0) is None
+    ends = [each.steps[-1].at for each in found.robots]
+    assert dist(ends[0][:2], ends[1][:2]) >= 3.0
+
+
+def test_a_way_leads_around_a_robot_that_stands_at_home_without_work():
+    team = (robot("r1"), robot("r2", (50.0, 0.0, 0.0)))
+    whole = scene(team, {"a": {"r1": visit((100.0, 0.0, 3.0))}}, minimum_separation=6.0)
+    found = plan(whole)
+    assert complaints(whole, found) == []
+    assert nearest(whole, found, "r1", team[1].home) >= 6.0
+
+
+def test_a_way_keeps_away_from_a_robot_that_waits_on_the_ground():
+    team = (robot("r1"), robot("r2", (50.0, 0.0, 0.0)))
+    works = {"a": {"r1": visit((100.0, 0.0, 3.0))}, "b": {"r2": visit((50.0, 80.0, 20.0))}}
+    whole = scene(team, works, after=[("a", "b")], minimum_separation=6.0)
+    found = plan(whole)
+    assert complaints(whole, found) == []
+    assert nearest(whole, found, "r1", team[1].home) >= 6.0
+
+
+def test_work_over_a_robot_that_stays_at_home_is_refused_with_both_robots_and_the_distance():
+    team = (robot("r1"), robot("r2", (50.0, 0.0, 0.0)))
+    whole = scene(team, {"a": {"r1": visit((50.0, 0.0, 4.0))}}, minimum_separation=6.0)
+    with pytest.raises(InfeasibleError, match=r"'r1' and 'r2' come within .*6\.001 m are required"):
+        plan(whole)
 
 
 @pytest.mark.thorough

@@ -1,14 +1,14 @@
 from dataclasses import replace
 from itertools import pairwise
-from math import dist
+from math import dist, inf
 
 import pytest
 from plain_scenes import CRAWLER, control, photo, road, robot, scene, visit, with_kinematics
 
 from mmrs_core.errors import InternalError
 from mmrs_core.planning.planner import plan
-from mmrs_core.planning.timeline import rides_of
-from mmrs_core.scene import Await, Look
+from mmrs_core.planning.timeline import Spot, rides_of
+from mmrs_core.scene import Await, Look, Policy
 
 SWIFT = with_kinematics(robot(), acceleration=2.0)
 
@@ -18,7 +18,7 @@ def rides_in(whole, name="r1"):
 
 
 def stays(rides):
-    return [ride for ride in rides if len(ride.points) == 1]
+    return [ride for ride in rides if len(ride.points) == 1 and ride.spot is not Spot.HOME]
 
 
 def test_a_robot_stands_still_for_actions_and_holds():
@@ -38,7 +38,8 @@ def test_rides_follow_each_other_without_gaps_in_time():
     whole = scene([SWIFT], {"a": road((0.0, 90.0, 20.0), (90.0, 90.0, 20.0), actions=(photo(40.0),))})
     rides = rides_in(whole)
     assert [one.late for one in rides[:-1]] == pytest.approx([two.early for two in rides[1:]])
-    assert rides[-1].late == pytest.approx(plan(whole).makespan)
+    assert rides[-2].late == pytest.approx(plan(whole).makespan)
+    assert rides[-1].late == inf
 
 
 def test_a_ride_leaves_open_where_speeding_up_and_slowing_down_is_done():
@@ -64,7 +65,8 @@ def test_a_wait_for_a_robot_that_may_be_early_may_end_early():
     works = {"a": {"r1": looking}, "b": {"r2": visit((30.0, 0.0, 20.0))}}
     whole = scene(team, works, after=[("a", "b")])
     found = plan(whole)
-    launch = rides_of(found, {each.name: each for each in team})["r2"][0]
+    waiting, launch, *_ = rides_of(found, {each.name: each for each in team})["r2"]
+    assert waiting.spot is Spot.HOME
     assert launch.early == pytest.approx(found.ends["a"] - 2.0)
 
 
@@ -95,14 +97,38 @@ def test_an_upright_and_a_level_leg_in_a_row_are_one_ride():
     assert [point[2] for point in between.points] == [20.0, 60.0, 60.0, 20.0]
 
 
-def test_a_robot_that_stands_at_home_is_nowhere():
+def test_a_robot_stands_at_home_from_before_the_start_until_it_leaves():
     rover = robot(kinematics=CRAWLER)
     team = (rover, robot("r2", (20.0, 0.0, 0.0)))
     works = {"a": {"r2": visit((300.0, 0.0, 20.0))}, "b": {"r1": visit((30.0, 0.0, 0.0))}}
     whole = scene(team, works, after=[("a", "b")])
     found = plan(whole)
-    first = rides_of(found, {each.name: each for each in team})["r1"][0]
-    assert first.early == pytest.approx(found.ends["a"])
+    waiting, leaving, *_ = rides_of(found, {each.name: each for each in team})["r1"]
+    assert (waiting.points, waiting.early, waiting.spot) == ((rover.home,), -inf, Spot.HOME)
+    assert waiting.late == leaving.early == pytest.approx(found.ends["a"])
+
+
+def test_a_robot_without_work_stands_at_home_for_ever():
+    team = (robot("r1"), robot("r2", (20.0, 0.0, 0.0)))
+    whole = scene(team, {"a": {"r1": visit((300.0, 0.0, 20.0))}})
+    (stay,) = rides_in(whole, "r2")
+    assert (stay.points, stay.early, stay.late) == (((20.0, 0.0, 0.0),), -inf, inf)
+
+
+@pytest.mark.parametrize(("returns", "end"), [(True, (0.0, 0.0, 0.0)), (False, (300.0, 0.0, 0.0))])
+def test_a_robot_stays_for_ever_where_it_has_landed(returns, end):
+    low = (Policy("BATTERY_LOW", "LAND"),)
+    whole = scene([robot(returns=returns)], {"a": visit((300.0, 0.0, 20.0))}, policies=low)
+    stay = rides_in(whole)[-1]
+    assert (stay.points, stay.late) == ((end,), inf)
+    assert (stay.spot is Spot.HOME) == returns
+
+
+def test_only_upright_rides_over_its_own_home_are_in_a_robots_column():
+    found = rides_in(scene([robot()], {"a": visit((300.0, 0.0, 20.0))}))
+    column = [ride for ride in found if ride.spot is Spot.COLUMN]
+    assert [len(ride.points) for ride in column] == [2, 2]
+    assert {point[:2] for ride in column for point in ride.points} == {(0.0, 0.0)}
 
 
 def test_an_object_may_be_anywhere_within_its_tolerance():

@@ -84,3 +84,8 @@ def test_a_line_may_name_a_robot_whose_name_has_blanks(vehicle, line):
 def test_a_line_that_says_nothing_is_refused(vehicle, line, complaint):
     with pytest.raises(ValueError, match=complaint):
         order(line, [("Drone1", vehicle)])
+
+
+def test_a_long_fault_is_refused_before_it_is_read():
+    with pytest.raises(ValueError, match="longer than 1000 characters"):
+        planned("a:" * 10_000 + "!")

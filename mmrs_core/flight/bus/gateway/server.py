@@ -14,16 +14,15 @@ import secrets
 import socket
 import threading
 from collections.abc import Callable, Mapping
-from contextlib import suppress
 from pathlib import Path
 from typing import IO, Any
 
-from ...clock import SIGNAL_SECONDS
+from ...callers import Callers
 from ..node import Node
 from ..owners.members import Recorded
 from ..reading import Unreadable, number_in, object_in, text_in
-from ..words import LARGEST
-from .session import Session, line_of
+from ..words import LARGEST, LONGEST
+from .session import Session
 
 FILE = "gateway.json"
 """Name of the file that says where a gateway listens, and with which token it is spoken to."""
@@ -33,6 +32,8 @@ HELLO_SECONDS = 5.0
 
 SORE_SECONDS = 0.2
 MOST_WAITING = 512
+MOST_CALLERS = 16
+"""How many programs are heard at once, one of them served; the first to connect gives way to the last."""
 
 LONGEST_SILENCE = 3600
 
@@ -47,7 +48,16 @@ class Gateway:
         token: that a program must say first.
     """
 
-    def __init__(self, robot: str, run: str, enter: Enter, folder: Path, port: int = 0) -> None:
+    def __init__(
+        self,
+        robot: str,
+        run: str,
+        enter: Enter,
+        folder: Path,
+        port: int = 0,
+        *,
+        hello_seconds: float = HELLO_SECONDS,
+    ) -> None:
         """Listen, and say where in a file that only this user can read.
 
         Args:
@@ -57,13 +67,16 @@ class Gateway:
                 started again says, None for one that begins.
             folder: for the file.
             port: to listen at; 0: any that is free.
+            hello_seconds: that a program has to say hello.
 
         Raises:
             OSError: the port is taken, or the file cannot be written.
         """
         self._robot, self._run, self._enter = robot, run, enter
         self._socket = socket.create_server(("127.0.0.1", port), backlog=MOST_WAITING)
-        self._socket.settimeout(SIGNAL_SECONDS)
+        self._hello_seconds = hello_seconds
+        full = _written({"is": "wrong", "why": f"{MOST_CALLERS} programs wait already"})
+        self._callers = Callers(self._socket, MOST_CALLERS, hello_seconds, full)
         self.port: int = self._socket.getsockname()[1]
         self.token = secrets.token_hex(16)
         self._file = folder / FILE
@@ -79,14 +92,13 @@ class Gateway:
         """
         while not self._closed.is_set():
             try:
-                connection, _ = self._socket.accept()
-            except TimeoutError:
-                continue
+                connection = self._callers.take()
             except OSError as error:
                 if not self._closed.wait(SORE_SECONDS):
                     say(f"{self._robot!r}: a program could not be let in: {error.strerror}")
                 continue
-            threading.Thread(target=self._let_in, args=(connection, say), daemon=True).start()
+            if connection is not None:
+                threading.Thread(target=self._let_in, args=(connection, say), daemon=True).start()
         with self._seat:
             return  # the program that was served has gone
 
@@ -108,18 +120,34 @@ class Gateway:
         connection.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
         with connection, connection.makefile("rb") as lines:
             try:
-                hello = self._hello(_first_line(connection, lines))
-                alive, recorded = _alive_in(hello), _recorded_in(hello)
-                if not self._seat.acquire(timeout=HELLO_SECONDS):
-                    raise Unreadable(f"another program speaks for {self._robot!r} already")
+                hello = self._hello(lines.readline(LONGEST + 1))
+                with self._callers.served(connection):
+                    self._seat_one(connection, lines, hello, say)
             except (OSError, ValueError) as error:
                 self._turn_away(connection, error, say)
-                return
-            try:
-                self._serve(connection, lines, alive, recorded, say)
             finally:
-                self._session = None
-                self._seat.release()
+                self._callers.leave(connection)
+
+    def _seat_one(
+        self,
+        connection: socket.socket,
+        lines: IO[bytes],
+        hello: Mapping[str, Any],
+        say: Callable[[str], None],
+    ) -> None:
+        """Serve a program once none is served any more.
+
+        Raises:
+            Unreadable: another still is, or the hello makes no sense.
+        """
+        alive, recorded = _alive_in(hello), _recorded_in(hello)
+        if not self._seat.acquire(timeout=HELLO_SECONDS):
+            raise Unreadable(f"another program speaks for {self._robot!r} already")
+        try:
+            self._serve(connection, lines, alive, recorded, say)
+        finally:
+            self._session = None
+            self._seat.release()
 
     def _serve(
         self,
@@ -154,6 +182,8 @@ class Gateway:
         Raises:
             Unreadable: it does not say hello as it should.
         """
+        if not line.endswith(b"\n") and len(line) <= LONGEST:
+            raise Unreadable(f"says no hello within {self._hello_seconds:g} s")
         content = object_in(line)
         if text_in(content, "do") != "hello":
             raise Unreadable("says something else before hello")
@@ -161,29 +191,6 @@ class Gateway:
         if not secrets.compare_digest(token, self.token.encode()):
             raise Unreadable("does not know the token")
         return content
-
-
-def _first_line(connection: socket.socket, lines: IO[bytes]) -> bytes:
-    """Return the first line.
-
-    Raises:
-        OSError: the connection broke.
-        Unreadable: no line was said in time, however much of one.
-    """
-    late = threading.Timer(HELLO_SECONDS, _hear_no_more, [connection])
-    late.start()
-    try:
-        line = line_of(lines)
-    finally:
-        late.cancel()
-    if not line.endswith(b"\n"):
-        raise Unreadable(f"says no hello within {HELLO_SECONDS:g} s")
-    return line
-
-
-def _hear_no_more(connection: socket.socket) -> None:
-    with suppress(OSError):  # it has gone already
-        connection.shutdown(socket.SHUT_RD)
 
 
 def _alive_in(content: Mapping[str, Any]) -> int | None:
@@ -227,9 +234,13 @@ def _time_in(content: Mapping[str, Any]) -> int:
 
 def _send(connection: socket.socket, content: Mapping[str, object]) -> None:
     try:
-        connection.sendall(json.dumps(content).encode() + b"\n")
+        connection.sendall(_written(content))
     except OSError:
         return  # it has gone already, and is turned away all the same
+
+
+def _written(content: Mapping[str, object]) -> bytes:
+    return json.dumps(content).encode() + b"\n"
 
 
 def _write_secret(path: Path, content: Mapping[str, object]) -> None:

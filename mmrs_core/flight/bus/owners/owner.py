@@ -17,6 +17,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
+from ..admission import STRANGE
 from ..reading import Unreadable
 from ..words import REACH, Answer, Begin, CommandId, Commit, Find, Prepare, SlotState, Withdraw
 from .journal import Journal
@@ -245,7 +246,7 @@ class Owner:
     def _fault(self, id: CommandId, names: Sequence[str], active: bool) -> str:
         """Return what is wrong with a command; empty if nothing is."""
         if id.run != self._run and not self._trusting:
-            return f"run {id.run!r}: this is run {self._run!r}"
+            return STRANGE
         if not self._trusting and not self._starts.admits(id):
             return f"{id.sender!r} was started before in this run: resume it from its log"
         for name in names:

@@ -77,8 +77,10 @@ class Owners:
         if isinstance(request, Prepare):
             return owner.prepare(request, now, here=here)
         if isinstance(request, Commit):
-            self.use(request.lamport)
-            return owner.commit(request)
+            answer = owner.commit(request)
+            if answer.what == "applied":
+                self.use(request.lamport)
+            return answer
         if isinstance(request, Withdraw):
             return owner.withdraw(request)
         return owner.begin(request)

@@ -164,6 +164,8 @@ def monitor(
         finally:
             for line in watched.summary():
                 tell(line)
+            if wrong := port.summary():
+                tell(f"errors of the bus: {wrong}")
     return 0
 
 

@@ -5,6 +5,13 @@ from __future__ import annotations
 from mmrs_auv.constraints.equipment import EQUIPMENT_CONSTRAINTS
 from mmrs_auv.constraints.mountings import MOUNTING_CONSTRAINTS
 from mmrs_auv.constraints.tasks import TASK_CONSTRAINTS
+from mmrs_auv.constraints.thrusters import THRUSTER_CONSTRAINTS
 from mmrs_auv.constraints.vehicles import VEHICLE_CONSTRAINTS
 
-CONSTRAINTS = (*VEHICLE_CONSTRAINTS, *MOUNTING_CONSTRAINTS, *EQUIPMENT_CONSTRAINTS, *TASK_CONSTRAINTS)
+CONSTRAINTS = (
+    *VEHICLE_CONSTRAINTS,
+    *MOUNTING_CONSTRAINTS,
+    *EQUIPMENT_CONSTRAINTS,
+    *TASK_CONSTRAINTS,
+    *THRUSTER_CONSTRAINTS,
+)

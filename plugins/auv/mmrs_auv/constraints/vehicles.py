@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 from mmrs_auv.constraints.depths import too_deep
 from mmrs_auv.kinds import GRAVITY
-from mmrs_auv.names import AUV_MOVEMENT, IN_WATER_SIZE, THRUSTER
+from mmrs_auv.names import AUV_MOVEMENT, IN_WATER_SIZE, THRUSTER, VEHICLE
 from mmrs_core.contributions.constraints import Constraint, Finding
 from mmrs_core.diagnostics import Severity
 from mmrs_core.languages.element import Element, is_kind, label_of
@@ -40,9 +40,9 @@ def _served(movement: Element) -> set[str]:
     }
 
 
-def _repeated_id(movement: Element, models: ModelSet) -> Iterator[Finding]:
+def _repeated_id(vehicle: Element, models: ModelSet) -> Iterator[Finding]:
     seen: set[str] = set()
-    for thruster in children(movement, "thrusters"):
+    for thruster in children(vehicle, "thrusters"):
         name = label_of(thruster)
         if name and name in seen:
             yield Finding(thruster, f"thruster '{name}' has the identifier of another one")
@@ -149,8 +149,8 @@ VEHICLE_CONSTRAINTS = (
     ),
     Constraint(
         "AUV003",
-        "The thrusters of a movement capability have different identifiers",
-        AUV_MOVEMENT,
+        "The thrusters of a vehicle have different identifiers",
+        VEHICLE,
         _repeated_id,
         "number the thrusters",
     ),

@@ -24,6 +24,7 @@ from mmrs_core.flight.objects import Locator, not_looked_for, where_expected
 from mmrs_core.flight.options import Options
 from mmrs_core.flight.program import Robot
 from mmrs_core.flight.records.blackbox import BlackBox
+from mmrs_core.flight.screen import say
 
 FAREWELL = 0.5
 """Real seconds in which the last goal is still repeated."""
@@ -70,6 +71,8 @@ def main(
                 time.sleep(FAREWELL)
                 connection.close()
                 port.close()
+                if wrong := port.summary():
+                    say(f"'{robot.id}': errors of the bus: {wrong}")
 
             stack.callback(let_go)
             patience, eyes = options.reach.patience, _eyes(robot.id, ports.get(robot.id), stack)

@@ -60,6 +60,9 @@ def main(words: Sequence[str] | None = None) -> int:
     except PortError as error:
         print(f"{given.part}: the bus is gone: {error}", file=sys.stderr)
         return 3
+    finally:
+        if wrong := port.summary():
+            print(f"{given.part}: errors of the bus: {wrong}", file=sys.stderr, flush=True)
     if given.figures:
         _write_figures(given.figures, late, time.process_time() - begin)
     return 0

@@ -17,6 +17,9 @@ from .wire.frame import Frame
 POSITION_LOST = 10.0
 """Metres of uncertainty above which the place counts as lost (`Sheet.extra`: ``position.lost``)."""
 
+FARTHEST_SEEN = 655.3
+"""Metres from which on a range of the sonar says that it sees nothing."""
+
 SELDOM = 5
 """Ticks from one repetition of a device's command to the next, once the device has answered."""
 
@@ -304,7 +307,7 @@ class Craft:
 
     def _hear_health(self, found: Received, now: float) -> None:
         seen = float(found.values["SonarRange"])
-        sonar = seen if seen < 655.3 else None
+        sonar = seen if seen < FARTHEST_SEEN else None
         charge, leak = float(found.values["Charge"]), bool(found.values["Leak"])
         self._state = replace(self._state, charge=charge, leak=leak, sonar=sonar)
 

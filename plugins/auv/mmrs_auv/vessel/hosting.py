@@ -17,7 +17,10 @@ from .wire.frame import Frame
 
 MICROSECONDS = 1_000_000
 CATCH_UP = 5
-"""Ticks that a node in real time may be late before it lets them go."""
+"""Ticks that a node in real time may be late before it lets them go; more than that was a stall."""
+
+BEHIND = 0.5
+"""Part of a period by which a node may be late before it first hears what waits for it."""
 
 SEEN_BASE = 0x18FF0000
 """Extended identifiers by which hosts that go by the bus say that their node has done what was due at a time.
@@ -33,6 +36,8 @@ PATIENCE = 2.0
 
 CLOCK_SILENT = 20.0
 """Seconds of real time for which who goes by the bus waits to be told the time."""
+
+_LISTENING = 0.1
 
 Pace = Literal["real", "bus", "lead"]
 
@@ -214,6 +219,34 @@ def _time_in(data: bytes) -> float | None:
     return int.from_bytes(data[:4], "little") / 1000.0
 
 
+class Awake:
+    """A clock that leaves out stalls of this process.
+
+    Who reads it often, and finds that very much has gone by, was stalled: what others said meanwhile still
+    waits to be heard, so that time does not count as their silence. All deadlines move by it.
+
+    Args:
+        most: seconds from one reading to the next that count.
+        clock: that runs all the time.
+
+    Attributes:
+        stalled: seconds that were left out.
+    """
+
+    def __init__(self, most: float, clock: Callable[[], float]) -> None:
+        self._most, self._clock = most, clock
+        self._read, self._now, self.stalled = clock(), 0.0, 0.0
+
+    def now(self) -> float:
+        """Return seconds since it was made, without those of stalls."""
+        read = self._clock()
+        counted = min(read - self._read, self._most)
+        self._now += counted
+        self.stalled += read - self._read - counted
+        self._read = read
+        return self._now
+
+
 def serve(
     node: Node,
     port: Port,
@@ -250,24 +283,35 @@ def serve(
 def _serve_by_clock(
     node: Node, port: Port, stop: threading.Event, late: Callable[[float], None] | None
 ) -> None:
-    begin = time.monotonic()
-    ticks = 0
+    awake = Awake(CATCH_UP * node.period, time.monotonic)
+    ticks, stalled = 0, 0.0
     while not stop.is_set():
         due = ticks * node.period
-        now = time.monotonic() - begin
+        now = awake.now()
         if now < due:
             if (frame := port.receive(due - now)) is not None:
-                node.hear(frame, time.monotonic() - begin)
+                node.hear(frame, awake.now())
             continue
+        if now - due > BEHIND * node.period:
+            _catch_up(node, port, awake)
+            now = awake.now()
         if late is not None:
-            late(now - due)
+            late(now - due + awake.stalled - stalled)
+            stalled = awake.stalled
         if now - due > CATCH_UP * node.period:
             ticks = int(now / node.period)
         for said in node.tick(now):
             port.send(said)
         ticks += 1
-        while time.monotonic() - begin < ticks * node.period and (heard := port.receive(0.0)) is not None:
+        while awake.now() < ticks * node.period and (heard := port.receive(0.0)) is not None:
             node.hear(heard, now)
+
+
+def _catch_up(node: Node, port: Port, awake: Awake) -> None:
+    """Let a node that is late hear what waits for it, for a period at most, before it judges silence."""
+    until = awake.now() + node.period
+    while (now := awake.now()) < until and (frame := port.receive(0.0)) is not None:
+        node.hear(frame, now)
 
 
 def _serve_leading(
@@ -306,18 +350,19 @@ def _serve_leading(
 def _serve_by_bus(node: Guard, port: Port, stop: threading.Event) -> None:
     due: float | None = None
     now = 0.0
-    told_at = time.monotonic()
+    awake = Awake(CATCH_UP * _LISTENING, time.monotonic)
+    told_at = awake.now()
     while not stop.is_set():
-        frame = port.receive(0.1)
+        frame = port.receive(_LISTENING)
         told = None if frame is None else clock_time(frame)
         if frame is None or told is None:
             if frame is not None:
                 node.hear(frame, now)
-            if time.monotonic() - told_at > CLOCK_SILENT:
+            if awake.now() - told_at > CLOCK_SILENT:
                 raise ClockSilentError(f"nobody has told the time for {CLOCK_SILENT:g} s")
             continue
         node.notice(frame, now)
-        now, told_at = told, time.monotonic()
+        now, told_at = told, awake.now()
         if due is None or due - now > 10.0 * node.period:
             due = now
         if now + 1e-6 >= due:

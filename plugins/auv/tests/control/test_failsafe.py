@@ -189,6 +189,27 @@ def test_a_decision_centre_that_is_heard_again_has_its_goal_pursued() -> None:
     assert rig.state.progress == "ACTIVE"
 
 
+@pytest.mark.parametrize("sheet", [FLOATS, SINKS], ids=["floats", "sinks"])
+def test_a_vehicle_that_came_up_without_its_decision_centre_stays_idle_for_who_swims_to_it(
+    sheet: Sheet,
+) -> None:
+    rig = diving(sheet)
+    rig.bus.kill("Decision")
+    rig.until(lambda: bool(rig.emergencies), 60.0)
+    rig.run(failsafe.MARGIN)
+    up = rig.bus.now
+    assert rig.vehicle.truth.depth < 0.7
+    rig.run(20.0)
+    assert rig.pushed["command"] < up
+    assert rig.pushed["status"] < up + 0.2
+    assert rig.afloat
+    assert rig.vehicle.released is (sheet is SINKS)
+    rig.bus.revive("Decision")
+    rig.run(5.0)
+    assert rig.pushed["command"] < up
+    assert rig.state.emergency == "COMMANDS_SILENT"
+
+
 def test_too_deep_a_dive_is_given_up() -> None:
     sheet = pool_sheet()
     rig = Rig(sheet, Surroundings(bottom=200.0))

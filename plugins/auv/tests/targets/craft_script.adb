@@ -14,6 +14,7 @@ with Wire;
 --    e MESSAGE COUNTER VALUES...   write a message of the list; "ID BYTES", or "refused"
 --    d MESSAGE ID BYTES            read a frame as that message; its values, or "none"
 --    v REAL                        set how many metres of depth a step is
+--    l METRES                      set of what uncertainty on the place counts as lost
 --    g MODE NORTH EAST DEPTH HEADING SPEED ALONG   begin a goal; "refused" where it cannot be said
 --    o DEVICE ACTION PARAMETER     ask a device
 --    x REASON                      give the dive up
@@ -175,7 +176,7 @@ procedure Craft_Script is
       Tell (Known.Distance);
       Tell (Known.Heard_At);
       Tell (Known.Known_At);
-      Put (Known.Trusted'Image & " " & Known.Leak'Image);
+      Put (Known.Trusted'Image & " " & Known.Leak'Image & " " & Craft.Is_Lost (Known)'Image);
       Put (Known.Progress'Image & Known.Emergency'Image & Known.Asked'Image & Known.Answer'Image);
    end Tell_State;
 
@@ -236,6 +237,7 @@ procedure Craft_Script is
          when 'e' => Write_Message;
          when 'd' => Read_Message;
          when 'v' => Craft.Set_Step (Real);
+         when 'l' => Craft.Count_As_Lost (Real);
          when 'g' => Begin_Goal;
          when 'o' => Operate;
          when 'x' => Craft.Vehicle.Give_Up (Whole);

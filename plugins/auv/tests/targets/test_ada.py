@@ -13,7 +13,7 @@ from dives import dive, diver, swim
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from mmrs_auv.targets.ada import literals
-from mmrs_auv.targets.ada.bus import catalogue
+from mmrs_auv.targets.ada.bus import LIMITS, catalogue
 from mmrs_auv.targets.ada.refusals import refusals
 from mmrs_auv.targets.ada.target import ADA
 
@@ -258,3 +258,10 @@ def test_the_catalogue_holds_what_a_decision_centre_says_and_hears():
     assert {field["name"] for field in messages["Progress"]["fields"]} == {
         "Goal", "State", "Distance", "Sequence", "Check",
     }  # fmt: skip
+
+
+def test_a_decision_centre_goes_by_the_figures_of_the_interpreter(monkeypatch):
+    monkeypatch.setitem(LIMITS, "POSITION_LOST", 7.25)
+    files = {each.path: each.content.decode() for each in render(ADA, input_of(dive()))}
+    assert "LIMIT_POSITION_LOST : constant := 7.25;" in files["common/catalogue.ads"]
+    assert "less well than to 7.25 m" in files["README.md"]

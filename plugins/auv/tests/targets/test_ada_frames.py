@@ -98,6 +98,12 @@ def test_depths_are_written_in_the_steps_of_each_vehicle(program, deepest):
     assert list(happenings(sheet(max_depth=deepest), 3, 60).differences(program)) == []
 
 
+@pytest.mark.parametrize("metres", [0.5, 100.0, 400.0])
+def test_the_place_is_lost_where_the_sheet_says_so(program, metres):
+    told = happenings(sheet(extra={"position.lost": metres}), 4, 100)
+    assert list(told.differences(program)) == []
+
+
 @pytest.mark.parametrize("count", COUNTS)
 def test_objects_are_seen_at_the_same_places(program, count):
     now, random = [0.0], Random(count)

@@ -49,6 +49,25 @@ def test_clients_of_python_can_and_by_sockets_hear_each_other_and_not_themselves
         assert first.recv(0.05) is None
 
 
+@pytest.mark.parametrize("said", ["", "< open can0 >"])
+def test_a_client_that_never_hears_the_bus_takes_no_room(said: str) -> None:
+    with running(Hub(greeting_seconds=0.1)) as hub, Raw(hub.port, listens=None) as idle:
+        assert idle.word() == "< hi >"
+        idle.say(said)
+        words = [idle.word(), idle.word(), idle.word()]
+        assert any("no channel and rawmode within 0.1 s" in word for word in words)
+        assert words[-1] == ""
+        assert eventually(lambda: hub.hub.clients == 0)
+
+
+def test_a_client_that_hears_the_bus_may_be_silent_for_long() -> None:
+    with running(Hub(greeting_seconds=0.05)) as hub, Raw(hub.port) as first, Raw(hub.port) as second:
+        with Raw(hub.port, listens=None) as idle:
+            assert [idle.word(), idle.word()[:7], idle.word()] == ["< hi >", "< error", ""]
+        first.say("< send 123 0 >")
+        assert second.word().split()[:3] == ["<", "frame", "123"]
+
+
 @given(FRAMES)
 @settings(max_examples=50, deadline=None, suppress_health_check=[HealthCheck.too_slow])
 def test_frames_are_told_as_python_can_reads_them(frame: Frame) -> None:

@@ -10,6 +10,7 @@ from uuid import uuid4
 
 import can
 import pytest
+from can.interfaces.virtual import VirtualBus
 from can_hub import Raw, eventually, running
 from mmrs_auv.vessel.wire.frame import Frame
 from mmrs_auv.vessel.wire.ports import Port, PortError, open_port
@@ -176,8 +177,41 @@ def test_interfaces_that_there_are_not() -> None:
         open_port("socketcan", "nosuch0")
 
 
-def test_what_an_interface_gives_back_of_ones_own_is_not_heard() -> None:
-    with open_port("virtual", str(uuid4())[:8], receive_own_messages=True) as port:
+class LocalBus(VirtualBus):
+    """Marks frames as Linux does: those of every process of this computer were not received from outside."""
+
+    def recv(self, timeout: float | None = None) -> can.Message | None:
+        message = super().recv(timeout)
+        if message is not None:
+            message.is_rx = False
+        return message
+
+
+def test_processes_of_one_computer_hear_each_other_though_linux_marks_their_frames() -> None:
+    channel = str(uuid4())[:8]
+    with Port(LocalBus(channel)) as first, Port(LocalBus(channel)) as second:
+        for frame in FRAMES:
+            first.send(frame)
+        assert [second.receive(5) for _ in FRAMES] == FRAMES
+        second.send(FRAMES[0])
+        assert first.receive(5) == FRAMES[0]
+        assert not first.errors
+        assert second.summary() == ""
+
+
+def test_what_an_adapter_gives_back_of_ones_own_is_not_heard_and_is_counted() -> None:
+    bus = VirtualBus(str(uuid4())[:8], receive_own_messages=True)
+    with Port(bus, echoes=True) as port:
         port.send(FRAMES[0])
         assert port.receive(0.3) is None
-        assert port.errors == {"echo": 1}
+        assert port.summary() == "1 echo"
+
+
+@pytest.mark.parametrize(
+    ("interface", "options"), [("virtual", {"receive_own_messages": True}), ("udp_multicast", {})]
+)
+def test_interfaces_that_would_give_back_ones_own_frames_are_refused(
+    interface: str, options: dict[str, bool]
+) -> None:
+    with pytest.raises(ValueError, match="its own frames as if another had sent them"):
+        open_port(interface, "can0", **options)

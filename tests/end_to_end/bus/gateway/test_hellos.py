@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 import json
+import socket
 import stat
+import threading
 import time
-from contextlib import suppress
+from contextlib import ExitStack, suppress
 
 import pytest
+
+from mmrs_core.flight.bus.gateway.server import MOST_CALLERS, Gateway
 
 
 def test_only_its_user_can_read_the_token(gateway):
@@ -67,6 +71,27 @@ def test_those_who_say_nothing_keep_no_program_waiting(gateway):
         last.ask(gateway.hello(), "welcome")
     for each in silent:
         each.close()
+
+
+@pytest.fixture
+def patient(tmp_path):
+    """Return a gateway of this process that waits a minute for a hello."""
+    made = Gateway("a", "run-0", lambda recorded: pytest.fail("none comes"), tmp_path, hello_seconds=60.0)
+    serving = threading.Thread(target=made.serve, args=(print,))
+    serving.start()
+    yield made
+    made.close()
+    serving.join()
+
+
+def test_of_those_who_say_nothing_only_few_are_kept(patient):
+    with ExitStack() as stack:
+        address = ("127.0.0.1", patient.port)
+        silent = [
+            stack.enter_context(socket.create_connection(address, 10.0)) for _ in range(3 * MOST_CALLERS)
+        ]
+        for each in silent[:-MOST_CALLERS]:
+            assert json.loads(stack.enter_context(each.makefile("rb")).readline())["is"] == "wrong"
 
 
 def test_a_hello_that_comes_in_drops_is_turned_away_in_time(gateway):

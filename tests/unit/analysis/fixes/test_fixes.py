@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import pytest
@@ -47,6 +48,8 @@ SPOILT = {
         'latitude="{0}" longitude="{1}"',
         'latitude="{1}" longitude="{0}"',
     ),
+    "MML029": (PARK, "context.xmi", 'latitude="42.369802"', 'latitude="-42.369802"'),
+    "MML030": (PARK, "context.xmi", 'longitude="13.349126"', 'longitude="-13.349126"'),
     "MML041": (DAM, "mission.xmi", WAY, f'{WAY}  <taskDependencies from="//@tasks.3" to="//@tasks.3"/>\n'),
     "MML042": (DAM, "mission.xmi", WAY, WAY + WAY),
     "BL035": (CLOCK, "behaviour.xmi", 'typeName="Small drone"', 'typeName="Smal drone"'),
@@ -184,3 +187,44 @@ def test_edits_that_overlap_are_none():
 
 def test_edits_leave_everything_else_as_it_is():
     assert with_edits(b"abcdef", [Edit(4, 5, "E"), Edit(1, 1, "+")]) == b"a+bcdEf"
+
+
+PLACE = r'latitude="([^"]*)" longitude="([^"]*)"'
+EXCHANGED = r'latitude="\2" longitude="\1"'
+
+
+def placed(relative, pattern, replacement, count=0):
+    """Return a file of the park and its text in which places were changed."""
+    file = (PARK / relative).resolve()
+    return file, re.sub(pattern, replacement, file.read_text(encoding="utf-8"), count=count)
+
+
+@pytest.mark.parametrize("relative", ["mission.xmi", "context.xmi"])
+def test_two_files_that_disagree_are_both_named_and_neither_is_changed(workshop, relative):
+    file, spoilt = placed(relative, PLACE, EXCHANGED)
+    repair = mended(workshop, PARK, {file: spoilt.encode()})
+    assert [each.code for each in repair.diagnosis.faults] == ["CTX008", "MML028"]
+    assert {Path(each.place.file).name for each in repair.diagnosis.faults} == {"context.xmi", "mission.xmi"}
+    assert repair.applied == repair.refused == ()
+
+
+def test_the_homes_are_mended_where_tasks_and_context_agree(workshop):
+    file, spoilt = placed("mission.xmi", f"<home(.*){PLACE}", r'<home\1latitude="\3" longitude="\2"')
+    repair = mended(workshop, PARK, {file: spoilt.encode()})
+    assert [each.fault.code for each in repair.applied] == ["MML027"] * 3
+    assert repair.texts[file] == file.read_bytes()
+    assert repair.diagnosis.faults == ()
+
+
+def test_one_home_with_the_wrong_sign_is_accused_and_not_its_neighbours(workshop):
+    file, spoilt = placed("mission.xmi", 'longitude="13.350097"', 'longitude="-13.350097"')
+    _repairer, now = repair_of(workshop, PARK, {file: spoilt.encode()})
+    assert [(each.code, each.place.path) for each in now.faults] == [("MML030", "/team/robots[1]")]
+
+
+def test_places_far_apart_are_sound_where_the_mission_says_so(workshop):
+    file, spoilt = placed("mission.xmi", 'longitude="13.350097"', 'longitude="17.350097"')
+    said = spoilt.replace('reserve="0.25"', 'largestGap="400000" reserve="0.25"')
+    for text, codes in ((spoilt, ["MML028"]), (said, [])):
+        _, now = repair_of(workshop, PARK, {file: text.encode()})
+        assert [each.code for each in now.faults] == codes

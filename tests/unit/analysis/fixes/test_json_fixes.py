@@ -45,6 +45,8 @@ SPOILT = {
         '"latitude": 42.369802, "longitude": 13.349126',
         '"latitude": 13.349126, "longitude": 42.369802',
     ),
+    "MML029": (PARK, CONTEXT, '"latitude": 42.369802', '"latitude": -42.369802'),
+    "MML030": (PARK, CONTEXT, '"longitude": 13.349126', '"longitude": -13.349126'),
     "MML041": (DAM, MISSION, WAY, f'{WAY}    {{"from": "//@tasks.3", "to": "//@tasks.3"}},\n'),
     "MML042": (DAM, MISSION, WAY, WAY + WAY),
     "BL035": (CLOCK, BEHAVIOUR, '"typeName": "Small drone"', '"typeName": "Smal drone"'),

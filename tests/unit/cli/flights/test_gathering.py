@@ -146,5 +146,5 @@ def test_the_same_run_makes_the_same_boxes(run, behaviour, types, tmp_path):
     written = []
     for name in ("one", "two"):
         (tmp_path / name).mkdir()
-        written.append([p.read_bytes() for p in write_boxes(run, behaviour, types, tmp_path / name)])
+        written.append([p.read_bytes() for p in write_boxes(run, behaviour, types, tmp_path / name, {})])
     assert written[0] == written[1]

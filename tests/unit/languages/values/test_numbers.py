@@ -119,3 +119,10 @@ def test_a_number_beyond_32_bits_is_never_written(value):
 def test_a_whole_number_that_no_real_one_equals_is_never_written_as_one(value):
     with pytest.raises(ValueError, match=r"no real number of 64 bits equals it|too large for a real number"):
         real.render_real(value)
+
+
+@pytest.mark.parametrize("hostile", ["0" * 100_000 + "!", "1e" + "0" * 100_000 + "!"])
+@pytest.mark.parametrize("read", [real.parse_real, decimals.parse_decimal])
+def test_long_digits_before_a_foreign_sign_are_refused(read, hostile):
+    with pytest.raises(ValueError, match="not a"):
+        read(hostile)

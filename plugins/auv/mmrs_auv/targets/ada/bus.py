@@ -5,8 +5,20 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 
 from mmrs_auv.kinds import SEA_WATER, largest_depth
+from mmrs_auv.vessel.api import FARTHEST_SEEN, OFTEN, POSITION_LOST, SELDOM
+from mmrs_auv.vessel.control.failsafe import HEALTH_SILENT
+from mmrs_auv.vessel.decision.helm import SILENT, STALE
 from mmrs_auv.vessel.refusals import MOST_DEPTH
-from mmrs_auv.vessel.wire.catalogue import BEATS, COMMON, MODES, PROGRESS, REASONS, Message, depth_step
+from mmrs_auv.vessel.wire.catalogue import (
+    BEAT_PERIOD,
+    BEATS,
+    COMMON,
+    MODES,
+    PROGRESS,
+    REASONS,
+    Message,
+    depth_step,
+)
 from mmrs_auv.vessel.wire.layout import layout_of
 from mmrs_core.behaviour.program import RobotProgram
 from mmrs_core.contributions.targets import TargetInput
@@ -15,13 +27,25 @@ from mmrs_core.errors import InfeasibleError
 SPOKEN = ("GoalPlace", "GoalPose", "DeviceCommand", "Emergency", "DecisionBeat")
 HEARD = ("Position", "Depth", "Pose", "Health", "Progress", "DeviceStatus")
 
+LIMITS: Mapping[str, float] = {
+    "BUS_SILENT": SILENT,
+    "STATE_SILENT": STALE,
+    "HEALTH_SILENT": HEALTH_SILENT + BEAT_PERIOD,  # after the actuator controller, which does so by itself
+    "POSITION_LOST": POSITION_LOST,
+    "FARTHEST_SEEN": FARTHEST_SEEN,
+    "BEAT_PERIOD": BEAT_PERIOD,
+    "SELDOM": SELDOM,
+    "OFTEN": OFTEN,
+}
+"""What a decision centre in Python goes by, and one in Ada as well: seconds, metres and numbers of ticks."""
+
 _KNOWN = {message.name: message for message in (*COMMON, *BEATS)}
 
 
 def catalogue() -> Mapping[str, object]:
     """Return what the template of the catalogue sees."""
     messages = [_message(_KNOWN[name]) for name in (*SPOKEN, *HEARD)]
-    return {"messages": messages, "words": list(_words())}
+    return {"messages": messages, "words": list(_words()), "limits": LIMITS}
 
 
 def can_be_said(message: str, field: str, value: float) -> bool:

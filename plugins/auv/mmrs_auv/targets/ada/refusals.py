@@ -12,7 +12,7 @@ from mmrs_auv.targets.ada.policies import declared, obstacles_to
 from mmrs_auv.targets.moves import MOVES, above_surface
 from mmrs_core.behaviour.program import BEHAVIOUR, Action, Move, RobotProgram
 from mmrs_core.contributions.targets import TargetInput
-from mmrs_core.mavlink.context import RobotContext, context_of
+from mmrs_core.mavlink.context import RobotContext, context_of, vehicleless
 from mmrs_core.scene import Name, Policy
 
 DEVICE_ACTION, FEEDBACK, NOTIFY = ((BEHAVIOUR, name) for name in ("DeviceAction", "Feedback", "Notify"))
@@ -27,6 +27,9 @@ STEPS = 65_535
 def refusals(input: TargetInput) -> Iterator[str]:
     """Yield each thing that the decision centre cannot do, with robot and move."""
     for robot in input.program.robots:
+        if unknown := vehicleless(robot, input):
+            yield f"{unknown}: --allow-lossy leaves it out beside others"
+            continue
         context = context_of(robot, input, geographic=False)
         if not context.vehicle.dives:
             yield f"robot '{robot.id}': is no underwater vehicle: --allow-lossy leaves it out beside others"
@@ -46,7 +49,7 @@ def refusals(input: TargetInput) -> Iterator[str]:
 
 def is_diver(robot: RobotProgram, input: TargetInput) -> bool:
     """Return whether a robot is an underwater vehicle."""
-    return context_of(robot, input, geographic=False).vehicle.dives
+    return not vehicleless(robot, input) and context_of(robot, input, geographic=False).vehicle.dives
 
 
 def of_movement(move: Move, context: RobotContext, step: float = 0.0) -> Iterator[str]:

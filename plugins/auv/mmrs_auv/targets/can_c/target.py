@@ -23,6 +23,7 @@ from mmrs_core.behaviour.program import BEHAVIOUR, RobotProgram
 from mmrs_core.contributions.targets import FileSpec, Target, TargetInput, TracedStep
 from mmrs_core.errors import UnsupportedError
 from mmrs_core.generation.escaping import file_stems
+from mmrs_core.mavlink.context import vehicleless
 
 AS_THEY_ARE = ("drives.h", "drives.c", "outputs.h", "hub.c", "Makefile")
 ASKS = (
@@ -79,6 +80,9 @@ def files_of(sheet: Sheet, folder: str) -> Iterator[FileSpec]:
 def refusals(input: TargetInput) -> Iterator[str]:
     """Yield which robots have no thrusters on a bus, and which moves nobody knows."""
     for robot in input.program.robots:
+        if unknown := vehicleless(robot, input):
+            yield unknown
+            continue
         try:
             _sheet(robot, input)
         except UnsupportedError as error:
@@ -93,6 +97,8 @@ def _sheet(robot: RobotProgram, input: TargetInput) -> Sheet:
     if type is None:
         why = f"type '{robot.type_name}' is not known"
         raise UnsupportedError(f"robot '{robot.id}': {why}", (why,))
+    if unknown := vehicleless(robot, input):
+        raise UnsupportedError(unknown)
     if not is_vehicle(type):
         why = "is no underwater vehicle"
         raise UnsupportedError(f"robot '{robot.id}': {why}", (why,))

@@ -23,7 +23,7 @@ from mmrs_core.contributions.wiring import DeviceWiring, Unwired, Wired, Wiring
 from mmrs_core.errors import UnsupportedError
 from mmrs_core.generation.escaping import file_stems
 from mmrs_core.mavlink.actions import action_losses
-from mmrs_core.mavlink.context import RobotContext, context_of, homeless, require_home
+from mmrs_core.mavlink.context import RobotContext, context_of, homeless, require_home, vehicleless
 from mmrs_core.mavlink.controllers import RUNTIME, RUNTIME_SOURCES, fleet_files
 from mmrs_core.mavlink.movements import losses_of
 from mmrs_core.mavlink.program import robot_view, trace_of
@@ -73,7 +73,8 @@ def refusals(input: TargetInput) -> Iterator[str]:
     local = _local(input)
     for robot in local.program.robots:
         if not _is_vehicle(robot, input):
-            yield f"robot '{robot.id}': is no underwater vehicle: --allow-lossy leaves it out beside others"
+            why = vehicleless(robot, input) or f"robot '{robot.id}': is no underwater vehicle"
+            yield f"{why}: --allow-lossy leaves it out beside others"
             continue
         if robot.home is None:
             yield homeless(robot)
@@ -88,7 +89,7 @@ def refusals(input: TargetInput) -> Iterator[str]:
 
 def _is_vehicle(robot: RobotProgram, input: TargetInput) -> bool:
     type = input.types.get(robot.type_name)
-    return type is not None and is_vehicle(type)
+    return type is not None and is_vehicle(type) and not vehicleless(robot, input)
 
 
 def _refused(robot: RobotProgram, input: TargetInput) -> Iterator[str]:

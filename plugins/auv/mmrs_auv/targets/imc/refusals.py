@@ -11,7 +11,7 @@ from mmrs_auv.targets.refusing import Wording, of_movement, of_policies, of_poli
 from mmrs_core.behaviour.program import Action, Move, RobotProgram, Transition
 from mmrs_core.contributions.targets import TargetInput
 from mmrs_core.mavlink.actions import DEVICE_ACTION
-from mmrs_core.mavlink.context import RobotContext, context_of, homeless
+from mmrs_core.mavlink.context import RobotContext, context_of, homeless, vehicleless
 
 WORDING = Wording(
     turn="which no manoeuvre of IMC does",
@@ -32,6 +32,9 @@ def refusals(input: TargetInput) -> Iterator[str]:
 def _of_robot(robot: RobotProgram, input: TargetInput) -> Iterator[str]:
     if robot.home is None:
         yield homeless(robot)
+    if unknown := vehicleless(robot, input):
+        yield unknown
+        return
     context = context_of(robot, input, geographic=False)
     if context.vehicle.flies:
         yield f"robot '{robot.id}': flies, and heights of these plans count down from the water surface"

@@ -9,7 +9,7 @@ from mmrs_auv.targets.refusing import Wording, of_movement, of_policies, of_poli
 from mmrs_core.behaviour.program import Move, RobotProgram, Transition
 from mmrs_core.contributions.targets import TargetInput
 from mmrs_core.generation.escaping import file_stems
-from mmrs_core.mavlink.context import RobotContext, context_of, homeless
+from mmrs_core.mavlink.context import RobotContext, context_of, homeless, vehicleless
 
 WORDING = Wording(
     turn="which no behaviour of a helm does",
@@ -34,6 +34,9 @@ def refusals(input: TargetInput) -> Iterator[str]:
 def _of_robot(robot: RobotProgram, input: TargetInput, nodes: Mapping[str, str]) -> Iterator[str]:
     if robot.home is None:
         yield homeless(robot)
+    if unknown := vehicleless(robot, input):
+        yield unknown
+        return
     context = context_of(robot, input, geographic=False)
     if context.vehicle.flies:
         yield f"robot '{robot.id}': flies, and depths of a helm count down from the water surface"

@@ -1,6 +1,6 @@
 with Ada.Text_IO; use Ada.Text_IO;
 with Bus;
-with Catalogue;
+with Catalogue;   use Catalogue;
 with Clocks;      use Clocks;
 with Craft;       use Craft;
 with Gateway;
@@ -8,16 +8,6 @@ with Guards;
 with Plans;       use Plans;
 
 package body Alarms is
-
-   --  Seconds of silence of the whole bus that count as loss.
-   Silent : constant Long_Float := 2.0;
-
-   --  Seconds in which nobody tells of leaks and battery, after which the dive is given up: a little later than
-   --  an actuator controller does that by itself.
-   Health_Silent : constant Long_Float := 5.5;
-
-   --  Metres of uncertainty of one sigma above which the place counts as lost.
-   Lost : constant Long_Float := 10.0;
 
    --  Seconds for which the vehicle may not know where it is, at first.
    Getting_Ready : constant Long_Float := 60.0;
@@ -33,8 +23,7 @@ package body Alarms is
 
    procedure Watch (What : Lasting; Happens : Boolean; Why : String);
    procedure Look_At_Health (Known : State);
-   function Is_Lost (Known : State) return Boolean;
-   function Is_Ready return Boolean;
+   function Is_Astray (Known : State) return Boolean;
 
    procedure Fail (What : Event; Why : String) is
    begin
@@ -75,20 +64,20 @@ package body Alarms is
 
    procedure Look_At_Health (Known : State) is
    begin
-      if Known.Health_At /= Never and then Now - Known.Health_At > Health_Silent then
-         Vehicle.Give_Up (Catalogue.REASON_SENSORS_SILENT);
+      if Known.Health_At /= Never and then Now - Known.Health_At > LIMIT_HEALTH_SILENT then
+         Vehicle.Give_Up (REASON_SENSORS_SILENT);
          Fail (CRASHED, "nobody tells of leaks and battery any more");
       end if;
    end Look_At_Health;
 
-   function Is_Lost (Known : State) return Boolean is
-     (not Known.Trusted or else Now - Known.Known_At > Stale or else Known.Uncertainty > Lost);
+   function Is_Astray (Known : State) return Boolean is
+     (Is_Lost (Known) or else Now - Known.Known_At > LIMIT_STATE_SILENT);
 
-   function Place_Is_Lost return Boolean is (Is_Lost (Vehicle.Told));
+   function Place_Is_Lost return Boolean is (Is_Astray (Vehicle.Told));
 
    procedure Look (Plan : Plans.Plan) is
       Known   : constant State := Vehicle.Told;
-      Is_Mute : constant Boolean := Now - Known.Heard_At > Stale;
+      Is_Mute : constant Boolean := Now - Known.Heard_At > LIMIT_STATE_SILENT;
       Is_Low  : constant Boolean := Known.Charge >= 0.0 and then Known.Charge < Plan.Reserve;
    begin
       Guards.Kick;
@@ -97,30 +86,24 @@ package body Alarms is
       elsif Bus.Is_Gone then
          Fail (LINK_LOST, "the bus is gone");
       end if;
-      Watch (LINK_LOST, Now - Known.Heard_At > Silent, "nothing is heard on the bus");
+      Watch (LINK_LOST, Now - Known.Heard_At > LIMIT_BUS_SILENT, "nothing is heard on the bus");
       if not (Is_Mute or Answers (CRASHED)) then
          Look_At_Health (Known);
       end if;
-      Watch (POSITION_LOST, Is_Lost (Known) and not Is_Mute, "depth, heading or place are not known");
+      Watch (POSITION_LOST, Is_Astray (Known) and not Is_Mute, "depth, heading or place are not known");
       Watch (BATTERY_LOW, Is_Low and not Is_Mute, "the battery has no more than the reserve");
       if not Is_Answering then
          Watch (OBSTACLE, Known.Sonar < Clearance and not Is_Mute, "sonar sees something ahead");
       end if;
    end Look;
 
-   function Is_Ready return Boolean is
-      Known : constant State := Vehicle.Told;
-   begin
-      return Known.Trusted and then Now - Known.Known_At < Stale and then Known.Uncertainty <= Lost;
-   end Is_Ready;
-
    procedure Get_Ready is
       Until_Then : constant Long_Float := Now + Getting_Ready;
    begin
-      while not Is_Ready loop
+      while Place_Is_Lost loop
          Guards.Kick;
          if Bus.Is_Gone or else Now > Until_Then then
-            if Bus.Is_Gone or else Now - Vehicle.Told.Heard_At > Silent then
+            if Bus.Is_Gone or else Now - Vehicle.Told.Heard_At > LIMIT_BUS_SILENT then
                Fail (LINK_LOST, "no vehicle is heard on its bus");
             end if;
             Fail (POSITION_LOST, "the vehicle does not know where it is");

@@ -32,7 +32,4 @@ package Alarms is
    --  Look, and let a moment go by. Raises Failed, Gateway.Refused.
    procedure Pause (Plan : Plans.Plan);
 
-   --  Seconds of silence of the sensor controller that count as loss.
-   Stale : constant Long_Float := 1.0;
-
 end Alarms;

@@ -2,15 +2,8 @@ with Catalogue; use Catalogue;
 
 package body Craft is
 
-   --  Ticks between two repetitions of a device's command once it has answered.
-   Seldom : constant := 5;
-
-   --  Emergency messages that are sent for one order, one at each tick.
-   Often : constant := 25;
-
-   Beat_Period : constant Long_Float := 0.5;
-
    Depth_Field : Wire.Field := GoalPose_Depth;
+   Lost        : Long_Float := LIMIT_POSITION_LOST;
 
    procedure Sealed (Item : in out Wire.Frame; As : Wire.Message; Counter : in out Unsigned_8);
 
@@ -21,6 +14,13 @@ package body Craft is
       Depth_Field.Scale := Metres;
       Depth_Field.Most := Long_Float (Depth_Field.Highest) * Metres;
    end Set_Step;
+
+   procedure Count_As_Lost (Metres : Long_Float) is
+   begin
+      Lost := Metres;
+   end Count_As_Lost;
+
+   function Is_Lost (Known : State) return Boolean is (not Known.Trusted or else Known.Uncertainty > Lost);
 
    procedure Sealed (Item : in out Wire.Frame; As : Wire.Message; Counter : in out Unsigned_8) is
    begin
@@ -75,7 +75,7 @@ package body Craft is
 
       procedure Give_Up (Reason : Natural) is
       begin
-         Emergencies := Often;
+         Emergencies := LIMIT_OFTEN;
          Vehicle.Reason := Reason;
          if Known.Emergency = 0 then
             Known.Emergency := Reason;
@@ -101,7 +101,7 @@ package body Craft is
             Known.Leak := Number (Item, Health_Leak) = 1;
             Known.Charge := Value (Item, Health_Charge);
             Known.Sonar := Value (Item, Health_SonarRange);
-            if Known.Sonar >= 655.3 then
+            if Known.Sonar >= LIMIT_FARTHEST_SEEN then
                Known.Sonar := Long_Float'Last;
             end if;
          elsif Is_Sound (Item, Progress) then
@@ -154,14 +154,14 @@ package body Craft is
          Add (Made);
          Sealed (Posed, GoalPose, Counted (3));
          Add (Posed);
-         Ticks := (Ticks + 1) mod Seldom;
+         Ticks := (Ticks + 1) mod LIMIT_SELDOM;
          if Asked.Open and then (Known.Answer = PROGRESS_NONE or else Ticks = 0) then
             Made := Asked.Command;
             Sealed (Made, DeviceCommand, Counted (4));
             Add (Made);
          end if;
          if Now + 1.0E-6 >= Beat_Due then
-            Beat_Due := Now + Beat_Period;
+            Beat_Due := Now + LIMIT_BEAT_PERIOD;
             Made := New_Frame (DecisionBeat);
             Put (Made, DecisionBeat_State, Long_Float (STATE_RUNS));
             Put (Made, DecisionBeat_Uptime, Long_Float'Min (Now - Began, DecisionBeat_Uptime.Most));

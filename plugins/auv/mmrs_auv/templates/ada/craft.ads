@@ -48,6 +48,12 @@ package Craft is
    --  How depths are written, metres in a step.
    procedure Set_Step (Metres : Long_Float);
 
+   --  Metres of uncertainty, of one sigma, above which the place counts as lost.
+   procedure Count_As_Lost (Metres : Long_Float);
+
+   --  Whether depth, heading or place are not known well enough, as far as was told last.
+   function Is_Lost (Known : State) return Boolean;
+
    procedure Goal_Frames (Wanted : Goal; Place_Frame, Pose_Frame : out Wire.Frame);
 
    protected Vehicle is

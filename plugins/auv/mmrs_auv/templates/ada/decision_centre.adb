@@ -4,6 +4,7 @@ with Ada.Strings.Unbounded; use Ada.Strings.Unbounded;
 with Ada.Text_IO;           use Ada.Text_IO;
 with Alarms;
 with Bus;
+with Catalogue;
 with Clocks;
 with Conditions;
 with Craft;
@@ -59,6 +60,7 @@ begin
         with "nobody has said how the bus writes depths: --depth-step METRES, as its database says";
    end if;
    Craft.Set_Step (Step);
+   Craft.Count_As_Lost (Options.Number ("--position-lost", Catalogue.LIMIT_POSITION_LOST, Most));
    Alarms.Keep_Clear (Options.Number ("--clearance", 0.0, Most));
    Slots.Prepare (Plan);
    if Options.Text ("--detections", "") /= "" then

@@ -6,7 +6,7 @@ package Options is
 
    Usage : constant String :=
      "decision_centre --bus HOST:PORT [--channel can0] [--logs FOLDER] [--run ID] [--patience SECONDS] "
-     & "[--depth-step METRES] [--gateway FILE] [--detections PORT] [--clearance METRES]";
+     & "[--depth-step METRES] [--gateway FILE] [--detections PORT] [--clearance METRES] [--position-lost METRES]";
 
    --  Raise Wrong where there are options of other names.
    procedure Refuse_Others;

@@ -36,7 +36,7 @@ package body Responses is
          Guards.Kick;
          exit when Bus.Is_Gone or else Now > Until_Then or else Now - Vehicle.Told.Heard_At > Silent;
          exit when Vehicle.Told.Progress = PROGRESS_REACHED;
-         exit when Now - Vehicle.Told.Known_At < Stale and then Vehicle.Told.Here.Depth < Afloat;
+         exit when Now - Vehicle.Told.Known_At < LIMIT_STATE_SILENT and then Vehicle.Told.Here.Depth < Afloat;
          delay 0.05;
       end loop;
    end Come_Up;

@@ -94,6 +94,7 @@ class Actuators:
         self._movement_at: float | None = None
         self._began: float | None = None
         self._emergency_at = 0.0
+        self._release = True
         self._due = {"Emergency": 0.0, "Reach": 0.0, "Beat": 0.0}
 
     def hear(self, frame: Frame, now: float) -> None:
@@ -188,7 +189,7 @@ class Actuators:
         self._due["Emergency"] = now + (
             failsafe.EMERGENCY_PERIOD if often else failsafe.EMERGENCY_PERIOD_LATER
         )
-        return [self._codec.encode("Emergency", Reason=self.emergency, Release=True)]
+        return [self._codec.encode("Emergency", Reason=self.emergency, Release=self._release)]
 
     def _tell(self, now: float, enable: bool) -> list[Frame]:
         said = []
@@ -243,3 +244,5 @@ class Actuators:
     def _hear_emergency(self, found: Received, now: float) -> None:
         if self.emergency is None:
             self._give_up(str(found.values["Reason"]), now)
+            self._release = False
+        self._release = self._release or bool(found.values["Release"])

@@ -8,6 +8,7 @@ from math import isfinite
 import numpy as np
 
 from ..control.allocation import DEGREES, Allocation, Array
+from ..control.failsafe import EMERGENCY_PERIOD_LATER
 from ..goals import GOAL_PERIOD, Goal, goal_of, within_rating
 from ..sheet import Sheet
 from ..wire.catalogue import (
@@ -49,7 +50,9 @@ class Movement:
 
     It asks for no thrust without a goal, without a state that may be trusted, and after an emergency. When
     the decision centre falls silent it holds place and depth for a while, then surfaces by thrust, until a
-    goal is heard again. While its height above the bottom is known it goes no deeper than leaves it clear.
+    goal is heard again. Once it is up in that way the dive has ended: it is given up by an emergency, so that
+    thrusters stay idle for whoever swims to the vehicle, and one that would sink lets go of its drop weight.
+    While its height above the bottom is known it goes no deeper than leaves it clear.
 
     Attributes:
         motion: the state it goes by.
@@ -84,6 +87,9 @@ class Movement:
         self._guidance: Guidance | None = None
         self._progress: Progress | None = None
         self._emergency: str | None = None
+        self._ended = False
+        self._emergency_due = 0.0
+        self._sinks = sheet.weight_in_water >= 0.0
         self._fallback: str | None = None
         self._trusted_at = self._goal_at = self._bottom_at = float("-inf")
         self._bottom = float("inf")
@@ -101,7 +107,21 @@ class Movement:
         self._began = now if self._began is None else self._began
         self._look_after_decision(now)
         wrench = self._wrench(now)
-        return [*self._asked(wrench), *self._tell(now)]
+        self._end_afloat()
+        return [*self._ending(now), *self._asked(wrench), *self._tell(now)]
+
+    def _end_afloat(self) -> None:
+        """Give the dive up, for good, once the vehicle is up without a decision centre."""
+        up = self._fallback == "SURFACE" and self._progress is not None and self._progress.state == "REACHED"
+        if up and self._emergency is None:
+            self._emergency, self._ended = "COMMANDS_SILENT", True
+
+    def _ending(self, now: float) -> list[Frame]:
+        """Repeat that the dive has ended, to every node that still asks for thrust or puts it out."""
+        if not self._ended or now + 1e-6 < self._emergency_due:
+            return []
+        self._emergency_due = now + EMERGENCY_PERIOD_LATER
+        return [self._codec.encode("Emergency", Reason="COMMANDS_SILENT", Release=self._sinks)]
 
     def _wrench(self, now: float) -> Array | None:
         """Return what is asked for; None: no thrust."""

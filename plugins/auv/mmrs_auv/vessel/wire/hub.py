@@ -29,6 +29,9 @@ MOST_RATE, _BURST = 8_000, 80
 Who says more is read no faster: it has to wait, and nobody else has.
 """
 
+GREETING_SECONDS = 5.0
+"""How long a client has from its connection to ``rawmode``: one that never hears the bus takes no room."""
+
 _SYSTEM_BUFFER = 65_536
 """Bytes that the system keeps for a client besides: what a slow one hears is not older than need be."""
 
@@ -65,6 +68,7 @@ class Hub:
 
     Attributes:
         troubles: may be changed at any time.
+        greeting_seconds: that a client has to open a channel and to ask for ``rawmode``.
         counts: ``frames``, ``lost``, ``corrupted``, ``missed`` (by clients that read too slowly),
             ``overdue`` (more were on their way than there is room for), ``slowed`` (times that a client had
             to wait), ``wrong`` (words), ``refused`` (clients), ``clients``.
@@ -76,8 +80,11 @@ class Hub:
         seed: int = 0,
         log: Log | None = None,
         spared: Callable[[Frame], bool] = lambda frame: False,
+        *,
+        greeting_seconds: float = GREETING_SECONDS,
     ) -> None:
         """Prepare; nothing listens yet. Frames that are `spared` pass at once, whatever the troubles."""
+        self.greeting_seconds = greeting_seconds
         self.troubles = troubles or Troubles()
         self.counts: Counter[str] = Counter()
         self._random = Random(seed)
@@ -186,6 +193,7 @@ class _Client(asyncio.Protocol):
         self._waits = False
         self._held: bytearray | None = None
         self._raw = False
+        self._greeting: asyncio.TimerHandle | None = None
         self._wrong = 0
 
     def connection_made(self, transport: asyncio.BaseTransport) -> None:
@@ -195,13 +203,22 @@ class _Client(asyncio.Protocol):
         connection.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, _SYSTEM_BUFFER)
         if self._hub.join(self):
             transport.write(HI)
+            late = self._dismiss_unless_raw
+            self._greeting = asyncio.get_running_loop().call_later(self._hub.greeting_seconds, late)
         else:
             self._refuse(f"there are {MOST_CLIENTS} clients")
             self.leave()
 
     def connection_lost(self, exc: Exception | None) -> None:
         self._transport = None
+        if self._greeting is not None:
+            self._greeting.cancel()
         self._hub.leave(self)
+
+    def _dismiss_unless_raw(self) -> None:
+        if not self._raw:
+            self._refuse(f"no channel and rawmode within {self._hub.greeting_seconds:g} s")
+            self.leave()
 
     def data_received(self, data: bytes) -> None:
         self._buffer += data

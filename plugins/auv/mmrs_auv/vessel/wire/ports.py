@@ -18,6 +18,19 @@ HOST, PORT, CHANNEL = "127.0.0.1", 29536, "can0"
 MOST_WAITING = 4096
 """Frames that wait for a node that does not take them; the oldest go first."""
 
+ECHOING = frozenset({"cantact", "gs_usb"})
+"""Interfaces of adapters that one process holds, and that give back what it sends, marked as such.
+
+Elsewhere a frame that was not received from outside may be another process's: Linux marks all frames of this
+computer in that way. Own frames are not asked for, so none comes.
+"""
+
+ASKED = frozenset({"neovi"})
+"""Interfaces that give back what they send unless they are asked not to."""
+
+UNTOLD = frozenset({"udp_multicast"})
+"""Interfaces that give back what they send, indistinguishable from what others send."""
+
 _POLL, _TRIES = 0.1, 5
 _SEND = 1.0
 """Seconds for which a hub may take nothing."""
@@ -33,12 +46,17 @@ class Port:
     Attributes:
         errors: what did not go well, by sort: ``overrun``: frames that nobody took in time, ``refused``:
             frames that the interface did not take, ``remote``, ``error`` and ``long``: frames that are no
-            data frames of classic CAN, ``echo``: frames of its own that the interface gave back,
+            data frames of classic CAN, ``echo``: frames of its own that an adapter gave back (`ECHOING`),
             ``receiving``: readings that failed.
     """
 
-    def __init__(self, bus: BusABC, most_waiting: int = MOST_WAITING) -> None:
-        """Begin to read; the port closes the bus when it is closed."""
+    def __init__(self, bus: BusABC, most_waiting: int = MOST_WAITING, *, echoes: bool = False) -> None:
+        """Begin to read; the port closes the bus when it is closed.
+
+        Args:
+            echoes: whether what the interface says was not received is what this port itself has sent.
+        """
+        self._echoes = echoes
         self.errors: Counter[str] = Counter()
         self._bus = bus
         self._frames: deque[Frame] = deque(maxlen=most_waiting)
@@ -83,6 +101,10 @@ class Port:
                     return None
             return self._frames.popleft()
 
+    def summary(self) -> str:
+        """Return what did not go well so far, in words; empty: all did."""
+        return ", ".join(f"{count} {sort}" for sort, count in sorted(self.errors.items()) if count)
+
     def close(self) -> None:
         """Leave the bus; idempotent."""
         self._leave("was closed")
@@ -126,6 +148,8 @@ class Port:
         if message is None:
             if _ended(self._bus):
                 self._leave("has ended the connection")
+        elif self._echoes and not message.is_rx:
+            self.errors["echo"] += 1
         elif (odd := _oddity(message)) is not None:
             self.errors[odd] += 1
         else:
@@ -160,13 +184,20 @@ def open_port(
 
     Raises:
         PortError: there is no such bus.
-        ValueError: there is no such interface, or a channel of a hub is misspelt.
+        ValueError: there is no such interface, it gives back frames of its own, or a channel of a hub is
+            misspelt.
     """
+    if interface in UNTOLD or options.get("receive_own_messages"):
+        raise ValueError(
+            f"interface {interface!r} would give a node its own frames as if another had sent them"
+        )
     if interface == "socketcand":
         return Port(_bus_of_hub(channel, patience, options), most_waiting)
     if bit_rate is not None:
         options["bitrate"] = bit_rate
-    return Port(_bus(interface, channel, options), most_waiting)
+    if interface in ASKED:
+        options["receive_own_messages"] = False
+    return Port(_bus(interface, channel, options), most_waiting, echoes=interface in ECHOING)
 
 
 def _bus(interface: str, channel: str, options: dict[str, Any]) -> BusABC:
@@ -255,8 +286,6 @@ def _oddity(message: Message) -> str | None:
     """Return what a message is if it is no data frame of classic CAN."""
     if message.is_error_frame:
         return "error"
-    if not message.is_rx:
-        return "echo"
     if message.is_remote_frame:
         return "remote"
     return "long" if message.is_fd or len(message.data) > 8 else None

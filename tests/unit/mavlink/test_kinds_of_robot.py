@@ -1,0 +1,101 @@
+"""Which vehicle carries a robot follows from its kind; a kind that names none is refused by its name."""
+
+from __future__ import annotations
+
+import shlex
+from dataclasses import replace
+
+import pytest
+
+from mmrs_core.errors import UnsupportedError
+from mmrs_core.generation.render import render
+from mmrs_core.mavlink.controllers import MAVLINK_PYTHON
+from mmrs_core.mavlink.earth import degrees_of
+from mmrs_core.mavlink.plans.qgc import QGC_PLAN
+from mmrs_core.mavlink.plans.wpl import WPL
+from mmrs_core.mavlink.vehicles import VEHICLES, vehicle_class
+from mmrs_core.scene import Frame
+from mmrs_core.sitl.__main__ import parser_of_arguments
+from mmrs_core.testing.programs import (
+    LAND,
+    go_to,
+    program,
+    quad,
+    robot_program,
+    take_off,
+    target_input,
+    two_drones,
+)
+from mmrs_core.transformation.kinds import PLAIN_ROBOT
+
+KITE = ("urn:kites:1.0", "Kite")
+KITES = replace(quad(), metaclasses=(KITE, ("urn:mmrs:robot:1.0", "Robot")))
+
+every_target = pytest.mark.parametrize("target", [MAVLINK_PYTHON, QGC_PLAN, WPL], ids=lambda each: each.name)
+
+
+def kinds(vehicle):
+    return {each.metaclass: each for each in (PLAIN_ROBOT, kite(vehicle))}
+
+
+def kite(vehicle):
+    return replace(PLAIN_ROBOT, name="kite", metaclass=KITE, vehicle=vehicle)
+
+
+def flown(vehicle):
+    moves = [take_off("up", 20.0), go_to("a", (0.0, 9.0, 20.0)), LAND]
+    return replace(target_input(program(robot_program("alpha", moves)), [KITES]), robot_kinds=kinds(vehicle))
+
+
+@every_target
+@pytest.mark.parametrize("lossy", [False, True])
+@pytest.mark.parametrize(("vehicle", "named"), [("", "no vehicle"), ("airship", "vehicle 'airship'")])
+def test_a_robot_that_no_vehicle_carries_is_refused_by_the_name_of_its_kind(target, lossy, vehicle, named):
+    with pytest.raises(UnsupportedError) as error:
+        render(target, flown(vehicle), allow_lossy=lossy)
+    said = " ".join((str(error.value), *error.value.elements))
+    assert f"robot 'alpha': is of kind 'kite', which names {named}; known are copter, rover, sub" in said
+
+
+def test_a_robot_is_what_its_kind_says():
+    robot = robot_program("alpha", [])
+    assert [vehicle_class(robot, KITES, kinds(name)) for name in VEHICLES] == list(VEHICLES.values())
+    files = {each.path: each.content for each in render(MAVLINK_PYTHON, flown("copter"))}
+    assert b'vehicle="copter"' in files["robot_alpha.py"]
+
+
+def test_every_kind_that_is_installed_names_its_vehicle(contributions):
+    installed = contributions.robot_kinds
+    assert {each.name: each.vehicle in VEHICLES for each in installed.values()} == dict.fromkeys(
+        (each.name for each in installed.values()), True
+    )
+
+
+def rehearsal(behaviour, *types):
+    files = {each.path: each.content for each in render(MAVLINK_PYTHON, target_input(behaviour, types))}
+    start = "    python -m mmrs_core.sitl "
+    lines = files["README.md"].decode().splitlines()
+    return [
+        parser_of_arguments().parse_args(shlex.split(line.removeprefix(start)))
+        for line in lines
+        if line.startswith(start)
+    ]
+
+
+def test_the_rehearsal_that_the_readme_prints_begins_at_the_homes_of_that_mission():
+    far = replace(two_drones(), frame=Frame("EPSG:4326", -33.9, -70.4, 500.0, "MSL"))
+    crawler = replace(quad(), name="Crawler", metaclasses=(("urn:mmrs:robot:1.0", "Robot"),))
+    last = robot_program("crawls", [], home=(5.0, -7.0, 0.0), type_name="Crawler")
+    far = replace(far, robots=(*far.robots, last))
+    started = rehearsal(far, quad(), crawler)
+    homes = degrees_of([robot.home[:2] for robot in far.robots], far.frame)
+    assert [tuple(map(float, each.home.split(","))) for each in started] == list(homes)
+    assert [each.port for each in started] == [14_550, 14_560, 14_570]
+    assert [each.kind for each in started] == ["copter", "copter", "rover"]
+
+
+def test_the_readme_gives_a_local_mission_no_place_on_the_earth():
+    local = replace(two_drones(), frame=replace(two_drones().frame, latitude=None, longitude=None))
+    files = {each.path: each.content for each in render(MAVLINK_PYTHON, target_input(local))}
+    assert b"--home" not in files["README.md"]
+    assert b"the vehicles may stand anywhere" in files["README.md"]
