@@ -97,13 +97,16 @@ def network_of(program: Program) -> Network:
 
 
 def groups_of(network: Network) -> tuple[Network, ...]:
-    """Return a network for each group of robots that share slots, in order; lone robots are in none."""
+    """Return a network for each group of robots that share slots, in order; lone robots are in none.
+
+    Robots share a slot if one waits for it that the other sets, to whatever value.
+    """
     number = {net.robot: index for index, net in enumerate(network.nets)}
     neighbours: list[set[int]] = [set() for _ in network.nets]
-    for slot, where in network.givers.items():
-        for giver, _ in where:
-            neighbours[giver].add(number[slot[0]])
-            neighbours[number[slot[0]]].add(giver)
+    for index, net in enumerate(network.nets):
+        for owner in {number[slot[0]] for node in net.nodes for slots, _ in node.sets for slot in slots}:
+            neighbours[index].add(owner)
+            neighbours[owner].add(index)
     graph = tuple(tuple(sorted(each)) for each in neighbours)
     waiting = {number[robot] for robot, _ in network.awaited}
     found = []

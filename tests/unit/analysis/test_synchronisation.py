@@ -149,6 +149,14 @@ def test_robots_that_share_no_slots_are_judged_apart():
     assert found[3].message.startswith("a3, b3: every robot comes to its Stop in any order of events")
 
 
+def test_who_only_takes_a_slot_back_shares_it():
+    """The robot that waits may miss its own notify."""
+    thief = robot("thief", [hold("h", before=(notify("a.go", active=False),))])
+    waiting = robot("a", [hold("h", after=(notify("a.go"),))], waits={"h": ["go"]}, slots=["go"])
+    (found,) = findings("synchronisation", given(thief, waiting))
+    assert (found.robot, found.status) == ("a", Status.VIOLATED)
+
+
 def test_a_robot_that_never_stops_leaves_others_decided():
     lost = robot("lost", [hold("h"), hold("i")], waits={"h": ["never"]}, slots=["never"])
     found = findings("synchronisation", given(lost, *token_pair(0)))
