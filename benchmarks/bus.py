@@ -314,7 +314,7 @@ def run_part(robots: int, seed: int, number: int, ports: list[int], folder: str)
     endpoints = Endpoints((f"tcp/127.0.0.1:{ports[number]}",), others)
     everybody = [each.id for each in made.robots]
     bus = shared_bus(made, mine, "run-0", own, ZenohCarrier("bench", "run-0", everybody, endpoints))
-    beginning = begin_together(bus.node, mine[0], "run-0", everybody, lambda why: None, beside=mine[1:])
+    beginning = begin_together(bus.node, mine[0], everybody, lambda why: None, beside=mine[1:])
     begun, before = time.monotonic(), _used(resource.RUSAGE_SELF)
     clock = RealClock(SPEEDUP)
     kind = {

@@ -99,7 +99,7 @@ def refuse_endpoints(option: str, endpoints: Sequence[str]) -> None:
 
 
 def begin_all(
-    bus: ProgramBus, program: Program, robots: Iterable[str], run: str, patience: float | None
+    bus: ProgramBus, program: Program, robots: Iterable[str], patience: float | None
 ) -> Callable[[Callable[[], None]], Mapping[str, str]]:
     """Return what has robots of this process begin at one instant with those of all others.
 
@@ -124,9 +124,7 @@ def begin_all(
 
         everybody = [robot.id for robot in program.robots]
         try:
-            found = begin_together(
-                bus.node, here[0], run, everybody, guard, beside=here[1:], patience=patience
-            )
+            found = begin_together(bus.node, here[0], everybody, guard, beside=here[1:], patience=patience)
         except Incomplete as error:
             raise LinkLostError(f"{error}; nothing has begun, --resume tries again") from error
         tell(f"begins together with the others, {found}")

@@ -126,7 +126,7 @@ def carry_out(workshop: Workshop, loaded: Loaded, wishes: Wishes) -> Result:
             links=links,
             resumed=resumed,
             patience=wishes.patience,
-            meet=begin_all(bus, program, _unbegun(here, resumed), run, wishes.bus.sync),
+            meet=begin_all(bus, program, _unbegun(here, resumed), wishes.bus.sync),
             observe=observer.observe,
             say=tell,
         )

@@ -319,8 +319,7 @@ def _meeting(robot: Robot, shared: Shared) -> Meet | None:
     robots, patience = robot.fleet or (robot.id,), shared.options.sync
     if patience is None:
         return None
-    node, run = shared.slots.node, shared.options.run
-    return lambda guard: begin_together(node, robot.id, run, robots, guard, patience=patience)
+    return lambda guard: begin_together(shared.slots.node, robot.id, robots, guard, patience=patience)
 
 
 def _recognition(

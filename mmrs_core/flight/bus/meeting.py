@@ -14,7 +14,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
-from .words import Answer, CommandId, Meet
+from .words import Answer, Meet
 
 if TYPE_CHECKING:
     from .node import Node
@@ -63,7 +63,6 @@ class Beginning:
 def begin_together(
     node: Node,
     robot: str,
-    run: str,
     robots: Sequence[str],
     guard: Callable[[str], None],
     now: Callable[[], float] = time.monotonic,
@@ -75,7 +74,6 @@ def begin_together(
     Args:
         node: this process's end of the bus.
         robot: one of its robots, which is ready.
-        run: identifier of the run.
         robots: all that begin together.
         guard: called again and again meanwhile with what is still missing; raises what should end it.
         now: the clock of the node.
@@ -85,7 +83,7 @@ def begin_together(
     Raises:
         Incomplete: not all are ready by then; says who is not.
     """
-    calls = [_Asking(node, each, run, robots, guard, now) for each in (robot, *beside)]
+    calls = [_Asking(node, each, robots, guard, now) for each in (robot, *beside)]
     asking = calls[0]
     _gather(calls, guard, time.monotonic() + patience)
     if not asking.at:
@@ -150,7 +148,6 @@ class _Asking:
         self,
         node: Node,
         robot: str,
-        run: str,
         robots: Sequence[str],
         guard: Callable[[str], None],
         now: Callable[[], float],
@@ -163,7 +160,7 @@ class _Asking:
         self._robot = robot
         self._robots, self._first = sorted(set(robots)), min(robots)
         self._node, self._guard, self._now = node, guard, now
-        self._request = Meet(CommandId(run, robot, node.incarnation, 0), len(self._robots))
+        self._request = Meet(node.id_of(robot), len(self._robots))
 
     def left(self) -> float:
         """Return the seconds until the instant, by this robot's clock."""

@@ -166,6 +166,10 @@ class Node:
         """Return what differs, and grows, each time that the robots of this process are started."""
         return self._owners.incarnation
 
+    def id_of(self, robot: str) -> CommandId:
+        """Return what the words of a robot of this process are known by that are no notifies."""
+        return self._announcing.id_of(robot)
+
     def slots_of(self, robot: str) -> tuple[str, ...]:
         """Return the names of the slots of a robot of this process."""
         return self._members[robot].owned.slots

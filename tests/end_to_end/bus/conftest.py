@@ -18,6 +18,7 @@ from mmrs_core.flight.bus.carriers.over_zenoh import Endpoints, ZenohCarrier
 
 NAMES = ("a", "b", "c")
 RUN = "run-0"
+PLAN = "91d99b94dcb38ab4"
 PATIENCE = 20.0
 
 
@@ -44,14 +45,14 @@ class Ends:
         run: str = RUN,
         listens: bool = True,
         settle: float = 0.0,
-        plan: str = "",
+        plan: str = PLAN,
     ) -> Node:
         """Open an end for a robot, with its own certificate if there are any and no other is given."""
         endpoints = self.endpoints(robot, certificate, listens)
         return self.open_at(robot, endpoints, run=run, settle=settle, plan=plan)
 
     def open_at(
-        self, robot: str, endpoints: Endpoints, *, run: str = RUN, settle: float = 0.0, plan: str = ""
+        self, robot: str, endpoints: Endpoints, *, run: str = RUN, settle: float = 0.0, plan: str = PLAN
     ) -> Node:
         """Open an end for a robot that reaches the others so."""
         others = tuple(other for other in NAMES if other != robot)

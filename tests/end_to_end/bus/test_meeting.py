@@ -27,7 +27,7 @@ class Ready:
 
     def _run(self) -> None:
         clock = lambda: time.monotonic() + self._ahead  # noqa: E731
-        self.found = begin_together(self._node, self._robot, "run-0", NAMES, self.missing.append, clock)
+        self.found = begin_together(self._node, self._robot, NAMES, self.missing.append, clock)
         self.begun = time.monotonic()
 
 
@@ -76,21 +76,21 @@ def ignore(why: str) -> None:
 def test_whoever_waits_for_too_long_says_who_has_not_come(ends):
     first = ends.open("a")
     with pytest.raises(Incomplete, match="'b', 'c' are not ready; never seen on the bus: 'b', 'c'"):
-        begin_together(first, "a", "run-0", NAMES, ignore, patience=0.2)
+        begin_together(first, "a", NAMES, ignore, patience=0.2)
 
 
 def test_a_robot_whose_list_keeper_has_not_come_says_so(ends):
     with pytest.raises(Incomplete, match="'a', 'c' are not ready"):
-        begin_together(ends.open("b"), "b", "run-0", NAMES, ignore, patience=0.2)
+        begin_together(ends.open("b"), "b", NAMES, ignore, patience=0.2)
 
 
 def test_a_robot_that_waits_no_longer_is_not_counted_as_ready(ends):
     for robot in NAMES[:2]:
         ends.open(robot)
     with pytest.raises(Incomplete, match="'a', 'c' are not ready"):
-        begin_together(ends.nodes[1], "b", "run-0", NAMES, ignore, patience=1.0)
+        begin_together(ends.nodes[1], "b", NAMES, ignore, patience=1.0)
     with pytest.raises(Incomplete, match="'b' is not ready"):
-        begin_together(ends.nodes[0], "a", "run-0", ("a", "b"), ignore, patience=0.5)
+        begin_together(ends.nodes[0], "a", ("a", "b"), ignore, patience=0.5)
 
 
 def test_waiting_for_the_others_can_be_ended(ends):
@@ -101,4 +101,4 @@ def test_waiting_for_the_others_can_be_ended(ends):
         raise Tired
 
     with pytest.raises(Tired):
-        begin_together(ends.open("b"), "b", "run-0", NAMES, guard)
+        begin_together(ends.open("b"), "b", NAMES, guard)

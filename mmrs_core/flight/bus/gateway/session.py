@@ -187,7 +187,7 @@ class Session:
         if self._robot not in robots:
             raise Unreadable(f"robots: {self._robot!r} is not among them")
         try:
-            begun = begin_together(self._node, self._robot, self._run, robots, self._stay, patience=patience)
+            begun = begin_together(self._node, self._robot, robots, self._stay, patience=patience)
         except Incomplete as error:
             raise Unreadable(str(error)) from None
         return {"is": "begun", "offset": begun.offset, "uncertainty": begun.uncertainty, "late": begun.late}

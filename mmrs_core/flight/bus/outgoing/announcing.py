@@ -36,7 +36,7 @@ class Announcing:
 
     def introduce(self, robot: str, recorded: Recorded) -> Notice:
         """Tell all that a robot has to do with, itself included, that it starts, and what its log says."""
-        id, requests = self._id_of(robot), dict[str, Request]()
+        id, requests = self.id_of(robot), dict[str, Request]()
         for owner in sorted(self._members[robot].contacts | {robot}):
             known = [(slot, *value) for (r, slot), value in recorded.notifies.items() if r == owner]
             requests[owner] = Begin(id, tuple(known))
@@ -51,7 +51,7 @@ class Announcing:
         if there != contacts:
             # Who comes later must be told by others, since this robot will be gone by then.
             there |= self._watching.here
-        farewell = Leave(self._id_of(robot), self._owners.lamport)
+        farewell = Leave(self.id_of(robot), self._owners.lamport)
         until = self._now() + FAREWELL_SECONDS
         self._outbox.bid_farewell(robot, _notice(robot, dict.fromkeys(there, farewell), until))
 
@@ -60,11 +60,11 @@ class Announcing:
         ended = {each: at for each, at in self._watching.ended().items() if each != robot}
         if ended:
             teller = next(iter(self._members))
-            tidings = Ended(self._id_of(teller), tuple(sorted(ended.items())))
+            tidings = Ended(self.id_of(teller), tuple(sorted(ended.items())))
             self._outbox.add(_notice(teller, {robot: tidings}, self._now() + TIDINGS_SECONDS))
 
-    def _id_of(self, robot: str) -> CommandId:
-        """Return what a robot's news of itself are known by."""
+    def id_of(self, robot: str) -> CommandId:
+        """Return what the words of a robot are known by that are no notifies."""
         return CommandId(self._run, robot, self._owners.incarnation, 0)
 
 

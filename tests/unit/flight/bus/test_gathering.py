@@ -60,7 +60,7 @@ def begin():
 
     def beginning(carrier, guard, **more) -> None:
         opened.append(Node([Member(Owned("b", (), {}, {}), frozenset("a"))], "run-0", carrier=carrier))
-        begin_together(opened[-1], "b", "run-0", ("a", "b"), guard, **more)
+        begin_together(opened[-1], "b", ("a", "b"), guard, **more)
 
     yield beginning
     for node in opened:
