@@ -52,7 +52,7 @@ def show(repair: Repair, mendable: Container[str]) -> None:
     for proposal in repair.applied:
         say(f"{proposal.fault.place}: {proposal.title} [{proposal.fault.code}]")
     for proposal in repair.refused:
-        tell(f"{_where(proposal)}: not mended: that would bring other errors [{proposal.fault.code}]")
+        tell(f"{_where(proposal)}: not mended: {proposal.objection} [{proposal.fault.code}]")
     refused = {proposal.fault for proposal in repair.refused}
     for fault in repair.diagnosis.faults:
         if fault.code in mendable and fault not in refused:

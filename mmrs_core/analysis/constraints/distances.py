@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator
 
 from mmrs_core.analysis.constraints.findings import CONTEXT, MISSION, finding
 from mmrs_core.analysis.constraints.sketch import sketch_of
-from mmrs_core.analysis.constraints.spread import EAST_SIGN, EXCHANGED, NORTH_SIGN, Rival, Stray
+from mmrs_core.analysis.constraints.spread import BOTH_SIGNS, EAST_SIGN, EXCHANGED, NORTH_SIGN, Rival, Stray
 from mmrs_core.contributions.constraints import Constraint, Finding
 from mmrs_core.languages.element import Element, root_of
 from mmrs_core.languages.grounding.frame import is_geographic
@@ -43,7 +43,8 @@ def _astray(mission: Element, models: ModelSet) -> Iterator[Finding]:
     spread = sketch_of(models).spread
     for stray in spread.strays:
         if stray.reading not in _READ:
-            yield finding(stray.element, _apart(stray))
+            both = "; with the other signs, it lies among them" if stray.reading == BOTH_SIGNS else ""
+            yield finding(stray.element, f"{_apart(stray)}{both}")
     yield from (_rivalry(each) for each in spread.rivals if not _is_context(each))
 
 

@@ -98,7 +98,7 @@ class Spread:
 def spread_of(models: ModelSet) -> Spread:
     """Return what lies apart; at least the mission's ``largestGap`` from everything else.
 
-    Where the mission does not say, figures that look exchanged are found at smaller distances too.
+    Where the mission does not say, figures that look exchanged are found from `NEAR` on.
     """
     known = _whereabouts(models)
     owners = tuple(_owners(models, known))
@@ -111,7 +111,8 @@ def spread_of(models: ModelSet) -> Spread:
     if said is not None or found.strays or found.rivals:
         return found
     fine = _Places(owners, degrees, readable, NEAR).spread()
-    return Spread(tuple(each for each in fine.strays if each.reading == EXCHANGED))
+    rivals = fine.rivals if any(each.exchanged for each in fine.rivals) else ()
+    return Spread(tuple(each for each in fine.strays if each.reading == EXCHANGED), rivals)
 
 
 def _whereabouts(models: ModelSet) -> dict[Element, tuple[float, float]]:

@@ -5,10 +5,10 @@ from __future__ import annotations
 import re
 from collections import Counter
 from collections.abc import Callable, Container, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
-from mmrs_core.contributions.fixes import Edit, Fix, Wrong
+from mmrs_core.contributions.fixes import Edit, Fix, Wrong, with_name
 from mmrs_core.diagnostics import Diagnostic, Place, Severity
 from mmrs_core.errors import UnreadableError
 from mmrs_core.languages.element import Element, Unknown
@@ -24,6 +24,9 @@ from mmrs_core.languages.xmi.markup import Markup, below_root
 _MOST_TRIALS = 100
 """How often a project is diagnosed anew; what takes longer is better looked at by a person."""
 _STEP = re.compile(r"/([^/\[\]]+)(?:\[([0-9]+)\])?")
+_MEMBER = re.compile(r"[^\[]*\[[0-9]+\]")
+_WITHHELD = "withheld-"
+_WORSE = "that would bring other errors"
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,12 +49,17 @@ class Diagnosis:
 
 @dataclass(frozen=True, slots=True)
 class Proposal:
-    """A fix of one fault, as changes of the file that the fault stands in."""
+    """A fix of one fault, as changes of the file that the fault stands in.
+
+    Attributes:
+        objection: why it was refused; empty if it was not.
+    """
 
     fault: Diagnostic
     title: str
     file: Path
     edits: tuple[Edit, ...]
+    objection: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,7 +80,7 @@ class Repair:
         changes: of files, by name.
         texts: what files are to hold, by real path.
         applied: what was mended, in order.
-        refused: what was not, because it would bring other errors.
+        refused: what was not, each with its objection.
         diagnosis: what is left.
     """
 
@@ -160,7 +168,7 @@ class Repairer:
             while pending and trials < _MOST_TRIALS:
                 batch, trials = pending.pop(), trials + 1
                 tried = self._tried(now, texts, batch)
-                if tried is not None:
+                if not isinstance(tried, str):
                     now, texts = tried
                     applied += batch
                     break  # what else was proposed may stand in another place now
@@ -168,26 +176,60 @@ class Repairer:
                 if half:
                     pending += [batch[half:], batch[:half]]
                 else:
-                    refused[_key(batch[0].fault)] = batch[0]
+                    refused[_key(batch[0].fault)] = replace(batch[0], objection=tried)
         changes = tuple(_changes(texts, now))
         return Repair(changes, texts, tuple(applied), tuple(refused.values()), now)
 
     def _tried(
         self, now: Diagnosis, texts: Mapping[Path, bytes], batch: Sequence[Proposal]
-    ) -> tuple[Diagnosis, dict[Path, bytes]] | None:
-        """Return what holds after some fixes; None if it is not better than before."""
-        after = dict(texts)
-        for file in {each.file for each in batch}:
-            edits = {edit for each in batch if each.file == file for edit in each.edits}
-            changed = with_edits(after[file] if file in after else read_bytes(file), edits)
-            if changed is None:
-                return None
-            after[file] = changed
+    ) -> tuple[Diagnosis, dict[Path, bytes]] | str:
+        """Return what holds after some fixes; why not, if it is not better than before."""
+        after = _edited(texts, batch)
+        then = self._diagnosed(after)
+        if after is None or then is None or not _is_better(now, then, batch):
+            return _WORSE
+        elsewhere = _vanished_elsewhere(now, then, batch)
+        if elsewhere:
+            without = self._diagnosed(_edited(texts, batch, withheld=True))
+            # what is there without these values does not stem from them
+            hidden = [each for each in elsewhere if without is None or _stays(each, without)]
+            if hidden:
+                return f"that would hide {hidden[0].code} at {hidden[0].place}, and not mend it"
+        return then, after
+
+    def _diagnosed(self, texts: Mapping[Path, bytes] | None) -> Diagnosis | None:
         try:
-            then = self._diagnose(after)
+            return self._diagnose(texts) if texts is not None else None
         except UnreadableError:
             return None
-        return (then, after) if _is_better(now, then, batch) else None
+
+
+def _edited(
+    texts: Mapping[Path, bytes], batch: Iterable[Proposal], *, withheld: bool = False
+) -> dict[Path, bytes] | None:
+    """Return texts after some fixes, or without the values that these would change; None if that fails."""
+    wanted: dict[Path, set[Edit]] = {}
+    for each in batch:
+        wanted.setdefault(each.file, set()).update(each.edits)
+    after = dict(texts)
+    for file, edits in wanted.items():
+        if withheld:
+            edits = set(_withholding(_markup(file, texts), edits))
+        changed = with_edits(after[file] if file in after else read_bytes(file), edits)
+        if changed is None:
+            return None
+        after[file] = changed
+    return after
+
+
+def _withholding(markup: Markup | None, edits: Iterable[Edit]) -> Iterator[Edit]:
+    """Yield edits so that attributes which are to get other values have names that no metaclass knows."""
+    values = {each.begin: each for each in edits}
+    for tag in markup.root.everything() if markup is not None else ():
+        for attribute in tag.attributes:
+            if values.pop(attribute.value_begin, None) is not None:
+                yield with_name(attribute, f"{_WITHHELD}{attribute.name}")
+    yield from values.values()
 
 
 def with_edits(data: bytes, edits: Iterable[Edit]) -> bytes | None:
@@ -249,6 +291,37 @@ def _is_better(before: Diagnosis, after: Diagnosis, mended: Sequence[Proposal]) 
     errors = (each for each in after.faults if each.severity is Severity.ERROR)
     worse = any((each.code, each.place.file, each.place.path) not in known for each in errors)
     return not worse and len(after.faults) < len(before.faults)
+
+
+def _vanished_elsewhere(before: Diagnosis, after: Diagnosis, mended: Sequence[Proposal]) -> list[Diagnostic]:
+    """Return the faults that are gone though they are not mended, and stand in none of the mended elements.
+
+    What could not be read is mended by being read: others were judged without it.
+    """
+    if all(_is_reading(each.fault) for each in mended):
+        return []
+    faults = {each.fault for each in mended}
+    changed = {_owner(each) for each in faults}
+    return [
+        each
+        for each in before.faults
+        if each not in faults and _owner(each) not in changed and not _stays(each, after)
+    ]
+
+
+def _owner(fault: Diagnostic) -> tuple[str, str]:
+    """Return the file, and the first member of a list on the path: the task, the robot, the area."""
+    found = _MEMBER.match(fault.place.path)
+    return fault.place.file, found[0] if found else fault.place.path
+
+
+def _stays(fault: Diagnostic, after: Diagnosis) -> bool:
+    """Return whether a fault is still there: its place may be counted anew, or its figures be others."""
+    return any(
+        (each.code, each.place.file) == (fault.code, fault.place.file)
+        and (each.place.path == fault.place.path or each.message == fault.message)
+        for each in after.faults
+    )
 
 
 def _on_lines(faults: Iterable[Diagnostic], lines: Container[tuple[str, int]]) -> int:

@@ -208,12 +208,59 @@ def test_two_files_that_disagree_are_both_named_and_neither_is_changed(workshop,
     assert repair.applied == repair.refused == ()
 
 
+@pytest.mark.parametrize("relative", ["mission.xmi", "context.xmi"])
+def test_two_files_that_disagree_are_named_where_exchanged_figures_are_near(workshop, relative):
+    texts = {}
+    for each in ("mission.xmi", "context.xmi"):
+        # 13.74 north and 13.35 east: exchanged, some 60 km off
+        file, text = placed(each, r'latitude="42\.(\d+)"', r'latitude="13.7\1"')
+        texts[file] = (re.sub(PLACE, EXCHANGED, text) if each == relative else text).encode()
+    repair = mended(workshop, PARK, texts)
+    assert [each.code for each in repair.diagnosis.faults[:2]] == ["CTX008", "MML028"]
+    assert "latitude and longitude may be exchanged" in repair.diagnosis.faults[0].hint
+    assert repair.applied == repair.refused == ()
+
+
 def test_the_homes_are_mended_where_tasks_and_context_agree(workshop):
     file, spoilt = placed("mission.xmi", f"<home(.*){PLACE}", r'<home\1latitude="\3" longitude="\2"')
     repair = mended(workshop, PARK, {file: spoilt.encode()})
     assert [each.fault.code for each in repair.applied] == ["MML027"] * 3
     assert repair.texts[file] == file.read_bytes()
     assert repair.diagnosis.faults == ()
+
+
+def test_one_home_with_two_wrong_signs_is_accused_and_left_as_it_is(workshop):
+    file, spoilt = placed(
+        "mission.xmi", '"42.370000" longitude="13.350097"', '"-42.37" longitude="-13.350097"'
+    )
+    repair = mended(workshop, PARK, {file: spoilt.encode()})
+    assert [(each.code, each.place.path) for each in repair.diagnosis.faults] == [
+        ("MML028", "/team/robots[1]")
+    ]
+    assert repair.diagnosis.faults[0].message.endswith("with the other signs, it lies among them")
+    assert repair.applied == repair.refused == ()
+
+
+def test_a_fix_that_hides_another_fault_is_refused(workshop):
+    # in its right place, the second home would link the third, which is 101 km away, with the rest
+    file, spoilt = placed("mission.xmi", '"42.370000" longitude="13.350097"', '"13.395" longitude="42.37"')
+    spoilt = spoilt.replace('longitude="13.350194"', 'longitude="14.58"')
+    repair = mended(workshop, PARK, {file: spoilt.encode()})
+    assert [(each.code, each.place.path) for each in repair.diagnosis.faults] == [
+        ("MML027", "/team/robots[1]"),
+        ("MML028", "/team/robots[2]"),
+    ]
+    assert repair.applied == ()
+    objection = f"that would hide MML028 at {repair.diagnosis.faults[1].place}, and not mend it"
+    assert [each.objection for each in repair.refused] == [objection]
+
+
+def test_faults_of_other_elements_go_with_the_value_that_they_stem_from(workshop):
+    file = (DAM / "mission.xmi").resolve()
+    text = re.sub(f"(<home.*){PLACE}", r'\1latitude="\3" longitude="\2"', file.read_text("utf-8"))
+    repairer, now = repair_of(workshop, DAM, {file: text.encode()})
+    assert "/tasks[8]" in {each.place.path for each in now.faults}  # it is placed relative to a home
+    assert repairer.repair(now, {file: text.encode()}).texts[file] == file.read_bytes()
 
 
 def test_one_home_with_the_wrong_sign_is_accused_and_not_its_neighbours(workshop):
