@@ -122,7 +122,7 @@ class World:
         parts = [Sensors(sheet, Codec(sheet)), self.actuators, Movement(sheet, Codec(sheet))]
         self._port = open_port("socketcand", f"can0@127.0.0.1:{hub.port}")
         self.trace = Trace(sheet)
-        self._emergency = self._codec.encode("Emergency", Reason="ORDERED", Release=False)
+        self._emergency = self._codec.encode("SensorsEmergency", Reason="ORDERED", Release=False)
         nodes = [self.vehicle, *parts, Bridge(self._port), self.trace]
         self.rehearsal = Rehearsal(nodes, watch=self._watch)
 

@@ -21,6 +21,7 @@ from mmrs_auv.vessel.sheet import Sheet
 from mmrs_auv.vessel.wire.catalogue import (
     BEATS,
     COMMON,
+    EMERGENCIES,
     MODES,
     PROGRESS,
     REASONS,
@@ -282,9 +283,9 @@ def happenings(sheet: Sheet, seed: int, ticks: int) -> Compared:
             }
             compared.hear(now, broken(codec.encode("DeviceStatus", **told), random))
         if tick > ticks * 0.9 and random.random() < 0.05:
-            compared.hear(
-                now, broken(codec.encode("Emergency", Reason=random.choice(REASONS), Release=True), random)
-            )
+            name = random.choice(list(EMERGENCIES))
+            said = codec.encode(name, Reason=random.choice(REASONS), Release=True)
+            compared.hear(now, broken(said, random))
         if tick > ticks * 0.8 and random.random() < 0.02:
             compared.give_up(random.choice(REASONS[1:]))
         compared.tick(now)

@@ -15,7 +15,7 @@ from mmrs_auv.targets.can_c.target import CAN_C, files_of
 from mmrs_auv.vessel.body.ballast import Release, pressure_of_depth
 from mmrs_auv.vessel.body.vehicle import Vehicle
 from mmrs_auv.vessel.sheet import Sheet
-from mmrs_auv.vessel.wire.catalogue import STATUS_BASE
+from mmrs_auv.vessel.wire.catalogue import EMERGENCIES, STATUS_BASE
 from mmrs_auv.vessel.wire.check import check_of
 from mmrs_auv.vessel.wire.codec import Codec
 from mmrs_auv.vessel.wire.frame import Frame
@@ -171,7 +171,9 @@ def happenings(sheet: Sheet, seed: int, seconds: float, *, emergencies: bool = T
         if random.random() < 0.01 and sheet.thrusters:
             compared.fail(random.randrange(len(sheet.thrusters)), random.random() < 0.4)
         if emergencies and at > seconds * 70 and random.random() < 0.004:
-            emergency = codec.encode("Emergency", Reason="LEAK", Release=random.random() < 0.5)
+            emergency = codec.encode(
+                random.choice(list(EMERGENCIES)), Reason="LEAK", Release=random.random() < 0.5
+            )
             compared.hear(at, _changed(emergency, random))
         if random.random() < (0.02 if at % 5 else 0.9):
             compared.tick(at)

@@ -13,7 +13,7 @@ from mmrs_auv.vessel.control.sensors import Sensors
 from mmrs_auv.vessel.hosting import Rehearsal
 from mmrs_auv.vessel.movement.movement import Movement
 from mmrs_auv.vessel.sheet import Sheet
-from mmrs_auv.vessel.wire.catalogue import COMMAND_BASE, EMERGENCY_ID, STATUS_BASE
+from mmrs_auv.vessel.wire.catalogue import COMMAND_BASE, EMERGENCIES, STATUS_BASE
 from mmrs_auv.vessel.wire.codec import Codec
 from mmrs_auv.vessel.wire.frame import Frame
 
@@ -102,7 +102,7 @@ class Rig:
                 numbers[number] = float(found.values["Thrust"])
                 if numbers[number] != 0.0 or (kind == "command" and found.values["Enable"]):
                     self.pushed[kind] = now
-        if frame.id == EMERGENCY_ID:
+        if frame.id in EMERGENCIES.values():
             found = self._listener.decode(frame)
             assert found is not None
             self.emergencies.append((now, str(found.values["Reason"])))

@@ -139,7 +139,7 @@ def test_a_device_that_is_not_there_is_refused() -> None:
 def test_an_emergency_is_said_again_and_again() -> None:
     listener = Listener()
     listener.craft.emergency("POLICY", release=False)
-    said = [values_of(listener.tick(), "Emergency") for _ in range(10)]
+    said = [values_of(listener.tick(), "DecisionEmergency") for _ in range(10)]
     assert said == [[{"Reason": "POLICY", "Release": False}]] * 10
     assert listener.craft.state().emergency == "POLICY"
 

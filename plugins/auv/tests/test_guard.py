@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
+from itertools import pairwise
 
 import pytest
 from mmrs_auv.testing import heavy_sheet, pool_sheet
@@ -15,6 +16,7 @@ from mmrs_auv.vessel.hosting import WireFault
 from mmrs_auv.vessel.movement.movement import Movement
 from mmrs_auv.vessel.node import Node
 from mmrs_auv.vessel.sheet import Sheet
+from mmrs_auv.vessel.wire.catalogue import EMERGENCIES, REASONS
 from mmrs_auv.vessel.wire.codec import Codec, Value
 from mmrs_auv.vessel.wire.frame import Frame
 from vessel_rig import Rig
@@ -100,6 +102,35 @@ def test_a_strange_device_that_says_what_a_node_says_ends_the_dive(
     rig.run(4.0)
     assert {reason for _, reason in rig.emergencies} == {"TWO_SENDERS"}
     assert rig.pushed["status"] < 6.0 + 2.0 * period + 0.3
+
+
+class Ear:
+    """A node that says nothing, and keeps what it hears under one identifier."""
+
+    name, period = "Ear", 1.0
+
+    def __init__(self, id: int) -> None:
+        self.heard: list[Frame] = []
+        self._id = id
+
+    def hear(self, frame: Frame, now: float) -> None:
+        if frame.id == self._id:
+            self.heard.append(frame)
+
+    def tick(self, now: float) -> list[Frame]:
+        return []
+
+
+def test_all_emergencies_of_a_node_go_by_one_counter() -> None:
+    rig, ear = diving(), Ear(EMERGENCIES["ActuatorsEmergency"])
+    rig.bus.add(ear)
+    rig.vehicle.faults.leak = True
+    rig.run(2.0)
+    rig.bus.add(Stranger(DIVING, "GoalPlace", 0.2, North=0.0, East=0.0))
+    rig.run(3.0)
+    assert {REASONS[frame.data[0]] for frame in ear.heard} == {"LEAK", "TWO_SENDERS"}
+    counters = [frame.data[-2] for frame in ear.heard]
+    assert {(later - earlier) % 256 for earlier, later in pairwise(counters)} == {1}
 
 
 def test_a_vehicle_that_sinks_drops_its_weight_and_comes_up() -> None:

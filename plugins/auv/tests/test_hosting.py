@@ -21,6 +21,7 @@ from mmrs_auv.vessel.hosting import (
     serve,
 )
 from mmrs_auv.vessel.instruments import instruments_of
+from mmrs_auv.vessel.wire.catalogue import EMERGENCIES
 from mmrs_auv.vessel.wire.codec import Codec
 from mmrs_auv.vessel.wire.frame import Frame
 
@@ -329,7 +330,7 @@ def test_a_process_that_was_stalled_does_not_take_that_for_silence_of_others(
     monkeypatch.undo()
     assert wire.left == 0.0
     assert actuators.emergency is None
-    assert 0x010 not in {frame.id for frame in wire.sent}
+    assert not {frame.id for frame in wire.sent} & set(EMERGENCIES.values())
     assert max(map(abs, actuators.thrusts)) > 1.0
 
 
@@ -347,5 +348,5 @@ def test_a_host_says_which_message_has_two_senders() -> None:
     assert told == [
         "another node says WrenchForce (0x080), which only this one is to say: the dive is given up"
     ]
-    assert len([each for each in wire.sent if each.id == 0x010]) in (2, 3, 4)
-    assert 0x010 in [id for _, id in node.heard]
+    assert len([each for each in wire.sent if each.id == EMERGENCIES["MovementEmergency"]]) in (2, 3, 4)
+    assert set(EMERGENCIES.values()) & {id for _, id in node.heard}

@@ -241,7 +241,7 @@ def test_the_vehicle_is_given_up_when_its_mission_stands_still(tmp_path: Path) -
     conditions.write_text(conditions.read_text().replace(asked, slow))
     found = run(build(robot), behaviour, tmp_path)
     assert found.status == 1
-    reasons = [each.values["Reason"] for each in found.world.said("Emergency")]
+    reasons = [each.values["Reason"] for each in found.world.said("DecisionEmergency")]
     assert reasons[0] == "COMMANDS_SILENT"
     assert found.replayed.faults
     assert found.replayed.accepted, found.replayed.complaints

@@ -169,7 +169,7 @@ def test_the_dive_is_given_up_when_nobody_tells_of_leaks_and_battery(tmp_path):
 
     found = done_by(tmp_path, bound([], FAR), meddle=at(3.0, careless))
     assert found.replayed.faults == {"naiad": "CRASHED"}
-    assert [each.values["Reason"] for each in found.world.said("Emergency")] == ["SENSORS_SILENT"]
+    assert [each.values["Reason"] for each in found.world.said("DecisionEmergency")] == ["SENSORS_SILENT"]
 
 
 def test_a_log_that_cannot_be_written_ends_the_plan(tmp_path):

@@ -13,6 +13,7 @@ from pathlib import Path
 
 import pytest
 from mmrs_auv.commands.modelled import sheets_in
+from mmrs_auv.vessel.wire.catalogue import EMERGENCIES
 from mmrs_auv.vessel.wire.ports import open_port
 from ports import free_port
 from vessel_processes import Ear, until
@@ -113,4 +114,4 @@ def drives(ear: Ear) -> set[object]:
 
 
 def reasons(ear: Ear) -> set[object]:
-    return {said.values["Reason"] for _, said in ear.said("Emergency")}
+    return {said.values["Reason"] for name in EMERGENCIES for _, said in ear.said(name)}

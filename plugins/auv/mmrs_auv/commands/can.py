@@ -145,7 +145,7 @@ def monitor(
 
     At the end it tells what was missed, and what was not believed.
 
-    Example: mmrs can monitor examples/pool --robot Naiad --only Depth --only Emergency
+    Example: mmrs can monitor examples/pool --robot Naiad --only Depth --only ActuatorsEmergency
     """
     from mmrs_auv.commands.watching import Monitor, heard
 

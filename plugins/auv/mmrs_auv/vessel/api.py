@@ -10,7 +10,7 @@ from types import MappingProxyType
 from .goals import GOAL_PERIOD, GOALS, Goal, check_goal, goal_frames
 from .hosting import Pace, Port, serve
 from .sheet import Sheet
-from .wire.catalogue import BEAT_PERIOD, DECISION, MOST_UPTIME, STATUS_BASE, by_id
+from .wire.catalogue import BEAT_PERIOD, DECISION, EMERGENCIES, MOST_UPTIME, STATUS_BASE, by_id
 from .wire.codec import Codec, Received
 from .wire.frame import Frame
 
@@ -88,8 +88,8 @@ class Craft:
         self._hearers = by_id({
             "Position": self._hear_place, "Pose": self._hear_pose, "Velocity": self._hear_speed,
             "Depth": self._hear_depth, "Current": self._hear_current, "Health": self._hear_health,
-            "Progress": self._hear_progress, "Emergency": self._hear_emergency,
-            "DeviceStatus": self._hear_device,
+            "Progress": self._hear_progress, "DeviceStatus": self._hear_device,
+            **dict.fromkeys(EMERGENCIES, self._hear_emergency),
         })  # fmt: skip
         self._drives = {STATUS_BASE + number: number for number in range(len(sheet.thrusters))}
         self._goal = Goal()
@@ -212,7 +212,7 @@ class Craft:
             ValueError: there is no such reason.
         """
         with self._lock:
-            self._codec.check("Emergency", Reason=reason, Release=release)
+            self._codec.check("DecisionEmergency", Reason=reason, Release=release)
             self._emergency, self._emergencies = (reason, release), OFTEN
             self._state = replace(self._state, emergency=self._state.emergency or reason)
 
@@ -251,7 +251,9 @@ class Craft:
             if self._emergency is not None and self._emergencies > 0:
                 self._emergencies -= 1
                 said.append(
-                    self._codec.encode("Emergency", Reason=self._emergency[0], Release=self._emergency[1])
+                    self._codec.encode(
+                        "DecisionEmergency", Reason=self._emergency[0], Release=self._emergency[1]
+                    )
                 )
             said += goal_frames(self._codec, self._goal)
             self._ticks += 1

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 
 from .node import Node
-from .wire.catalogue import EMERGENCY_ID, REASONS
+from .wire.catalogue import EMERGENCIES, REASONS, VEHICLE
 from .wire.check import check_of
 from .wire.frame import Frame
 from .wire.senders import Senders, own_of
@@ -19,7 +19,8 @@ class Guard:
     """A node, and what it hears that it should not.
 
     When another node says what only this one is to say, or two others say the same message, it says so, has
-    the dive given up by an emergency message, which it repeats for ever, and lets its node hear that, too.
+    the dive given up by the node's emergency message, which it repeats for ever in place of the node, and
+    lets its node hear one, too. A node that is not in the bus's database has no such message.
 
     Args:
         say: is told once which message it is.
@@ -31,7 +32,7 @@ class Guard:
         self._senders = Senders(own_of(node.name, drives=getattr(node, "has_drives", True)))
         self._told = False
         self._due = 0.0
-        self._said = 0
+        self._said = 255
 
     def hear(self, frame: Frame, now: float) -> None:
         """Let the node hear a frame."""
@@ -44,18 +45,29 @@ class Guard:
         if self._senders.fault and not self._told:
             self._told, self._due = True, now
             self._say(f"{self._senders.fault}: the dive is given up")
-            self._node.hear(emergency_frame(REASON, 0), now)
+            self._node.hear(emergency_frame(VEHICLE, REASON, 0), now)
 
     def tick(self, now: float) -> Sequence[Frame]:
         """Return what the node has to say, after an emergency message where one is due."""
-        if not self._told or now + 1e-6 < self._due:
-            return self._node.tick(now)
+        said, own = self._node.tick(now), EMERGENCIES.get(f"{self.name}Emergency")
+        if own is None:
+            return said
+        if not self._told:
+            self._said = next((frame.data[-2] for frame in said if frame.id == own), self._said)
+            return said
+        others = tuple(frame for frame in said if frame.id != own)
+        if now + 1e-6 < self._due:
+            return others
         self._due = now + PERIOD
         self._said += 1
-        return (emergency_frame(REASON, self._said), *self._node.tick(now))
+        return (emergency_frame(self.name, REASON, self._said), *others)
 
 
-def emergency_frame(reason: str, counter: int) -> Frame:
-    """Return a message that has a dive given up and the drop weight released, the same on every vehicle."""
-    data = bytes((REASONS.index(reason), 1, counter % 256))
-    return Frame(EMERGENCY_ID, data + bytes((check_of(EMERGENCY_ID, data),)))
+def emergency_frame(node: str, reason: str, counter: int) -> Frame:
+    """Return a node's message that has a dive given up and the drop weight released, on any vehicle.
+
+    Raises:
+        KeyError: the bus's database has no such node.
+    """
+    id, data = EMERGENCIES[f"{node}Emergency"], bytes((REASONS.index(reason), 1, counter % 256))
+    return Frame(id, data + bytes((check_of(id, data),)))

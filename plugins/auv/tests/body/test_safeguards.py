@@ -14,7 +14,7 @@ def test_an_emergency_stops_all_thrust_for_good():
     vehicle, helm, water = at_sea(thrusts=(10.0,) * 6)
     water.run(2.0)
 
-    water.post(helm.codec.encode("Emergency", Reason="ORDERED", Release=False))
+    water.post(helm.codec.encode("DecisionEmergency", Reason="ORDERED", Release=False))
     water.run(3.0)
 
     assert [drive.thrust for drive in vehicle.drives] == [0.0] * 6
@@ -29,7 +29,7 @@ def test_what_sinks_comes_up_without_its_drop_weight():
     water.run(5.0)
     assert vehicle.truth.depth > 1.05
 
-    water.post(helm.codec.encode("Emergency", Reason="ORDERED", Release=True))
+    water.post(helm.codec.encode("DecisionEmergency", Reason="ORDERED", Release=True))
     water.run(20.0)
 
     assert vehicle.released

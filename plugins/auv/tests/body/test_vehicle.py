@@ -86,7 +86,7 @@ def test_messages_come_as_often_as_the_catalogue_says():
 def test_no_frame_of_chance_moves_or_harms_it(frames):
     vehicle = Vehicle(pool_sheet(), POOL, QUIET, place=(0.0, 0.0, 3.0))
     for id, data, extended in frames:
-        for number in (id, 0x100, 0x010, 0x500):
+        for number in (id, 0x100, 0x010, 0x014, 0x500):
             vehicle.hear(Frame(number, data, extended), 0.0)
     vehicle.tick(0.5)
 

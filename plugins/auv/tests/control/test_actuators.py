@@ -11,6 +11,7 @@ from mmrs_auv.vessel.control.actuators import Actuators
 from mmrs_auv.vessel.control.allocation import Allocation
 from mmrs_auv.vessel.control.drives import Status
 from mmrs_auv.vessel.sheet import Sheet
+from mmrs_auv.vessel.wire.catalogue import EMERGENCIES
 from mmrs_auv.vessel.wire.codec import Codec
 from mmrs_auv.vessel.wire.frame import Frame
 
@@ -118,10 +119,11 @@ def test_a_wrench_that_is_not_enabled_means_no_thrust_and_no_emergency() -> None
     assert bench.actuators.emergency is None
 
 
-def test_an_emergency_of_another_node_is_for_good() -> None:
+@pytest.mark.parametrize("name", EMERGENCIES)
+def test_an_emergency_of_any_node_is_for_good(name: str) -> None:
     bench = Bench()
     bench.push(0.5, 20.0)
-    bench.say("Emergency", Reason="ORDERED", Release=False)
+    bench.say(name, Reason="ORDERED", Release=False)
     bench.push(3.0, 20.0)
     assert bench.commanded() == [(0.0, False)] * 6
     assert bench.actuators.emergency == "ORDERED"
@@ -135,7 +137,9 @@ def test_an_emergency_is_repeated_for_ever() -> None:
     for _ in range(400):
         bench.tick()
         times += [
-            bench.now for values in bench.told("Emergency") if values == {"Reason": "LEAK", "Release": True}
+            bench.now
+            for values in bench.told("ActuatorsEmergency")
+            if values == {"Reason": "LEAK", "Release": True}
         ]
     assert times[0] == pytest.approx(TICK)
     assert max(later - earlier for earlier, later in pairwise(times)) < 0.5 + 2.0 * TICK

@@ -13,6 +13,7 @@ from mmrs_auv.vessel.body.surroundings import Surroundings
 from mmrs_auv.vessel.control import failsafe
 from mmrs_auv.vessel.hosting import WireFault
 from mmrs_auv.vessel.sheet import Sheet
+from mmrs_auv.vessel.wire.catalogue import EMERGENCIES
 from vessel_rig import Rig
 
 CURRENT = Surroundings(current=(0.2, -0.1), bottom=20.0)
@@ -148,7 +149,9 @@ def test_a_weight_is_let_go_of_when_the_actuator_controller_is_gone() -> None:
 
 def test_an_emergency_that_is_lost_once_is_said_again() -> None:
     rig = diving(FLOATS)
-    rig.bus.disturb(WireFault(loss=1.0, ids=frozenset({0x010}), begin=rig.bus.now, end=rig.bus.now + 1.5))
+    rig.bus.disturb(
+        WireFault(loss=1.0, ids=frozenset(EMERGENCIES.values()), begin=rig.bus.now, end=rig.bus.now + 1.5)
+    )
     rig.vehicle.faults.leak = True
     rig.run(3.0)
     assert rig.vehicle.drives[0].stopped

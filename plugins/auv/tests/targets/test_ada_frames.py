@@ -13,6 +13,7 @@ from ada_crafts import (
     MESSAGES,
     OBJECTS,
     OWNER,
+    Compared,
     bits,
     compiled,
     happenings,
@@ -31,7 +32,7 @@ from c_drives import compiled as drives
 from c_drives import told as done_by
 from mmrs_auv.testing import heavy_sheet, pool_sheet, torpedo_sheet
 from mmrs_auv.vessel.eyes import Detections
-from mmrs_auv.vessel.wire.catalogue import REASONS
+from mmrs_auv.vessel.wire.catalogue import EMERGENCIES, REASONS
 from mmrs_auv.vessel.wire.codec import Codec
 from mmrs_auv.vessel.wire.frame import Frame
 from vessel_sheets import sheet
@@ -93,6 +94,15 @@ def test_what_is_said_and_known_is_the_same_whatever_happens(program, make, seed
     assert list(happenings(vehicle, seed, 300).differences(program)) == []
 
 
+@pytest.mark.parametrize("name", EMERGENCIES)
+def test_an_emergency_of_any_node_is_obeyed(program, name):
+    compared, codec = Compared(sheet()), Codec(sheet())
+    compared.hear(1.0, codec.encode(name, Reason="LEAK", Release=True))
+    compared.tick(1.0)
+    assert list(compared.differences(program)) == []
+    assert compared.craft.state().emergency == "LEAK"
+
+
 @pytest.mark.parametrize("deepest", [0.5, 655.35, 655.36, 1311.0, 6000.0, 8388.607])
 def test_depths_are_written_in_the_steps_of_each_vehicle(program, deepest):
     assert list(happenings(sheet(max_depth=deepest), 3, 60).differences(program)) == []
@@ -148,7 +158,7 @@ def test_the_way_back_is_that_of_controllers_in_python(program, count):
 @pytest.mark.parametrize("release", [True, False])
 def test_drives_in_c_stop_by_what_a_decision_centre_in_ada_says(program, release, tmp_path):
     """Each emergency as it is written, and with one bit turned in each byte."""
-    (number,) = (index for index, each in enumerate(MESSAGES) if each.name == "Emergency")
+    (number,) = (index for index, each in enumerate(MESSAGES) if each.name == "DecisionEmergency")
     stop = drives(sheet(1), tmp_path)
     reasons = [bits(float(reason)) for reason in range(len(REASONS))]
     lines = [f"e {number} 255 {reason} {bits(float(release))}" for reason in reasons]

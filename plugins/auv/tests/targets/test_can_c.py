@@ -14,6 +14,7 @@ from hypothesis import strategies as st
 from mmrs_auv.targets.can_c.target import CAN_C, files_of
 from mmrs_auv.targets.can_c.words import block, number
 from mmrs_auv.vessel.body.ballast import pressure_of_depth
+from mmrs_auv.vessel.wire.catalogue import EMERGENCIES
 from mmrs_auv.vessel.wire.check import check_of
 from mmrs_auv.vessel.wire.codec import Codec
 from mmrs_auv.vessel.wire.frame import Frame
@@ -99,12 +100,13 @@ def test_one_frame_for_ever_moves_nothing(three):
     assert all("o 0 0" in lines for lines in told(three, compared.script))
 
 
-def test_an_emergency_stops_all_for_good_and_drops_the_weight_once(three):
+@pytest.mark.parametrize("name", EMERGENCIES)
+def test_an_emergency_of_any_node_stops_all_for_good_and_drops_the_weight_once(three, name):
     compared, codec = Compared(sheet(3)), Codec(sheet(3))
     for at in range(0, 100, 5):
         compared.hear(at, codec.encode("Thruster0Command", Thrust=-9.0, Enable=True))
         if at in (20, 40):
-            compared.hear(at, codec.encode("Emergency", Reason="LEAK", Release=True))
+            compared.hear(at, codec.encode(name, Reason="LEAK", Release=True))
     agree(three, compared)
     lines = told(three, compared.script)
     assert sum(each.count("r") for each in lines) == 1
@@ -114,7 +116,7 @@ def test_an_emergency_stops_all_for_good_and_drops_the_weight_once(three):
 
 def test_an_emergency_for_no_reason_that_is_known_stops_nothing(three):
     compared, codec = Compared(sheet(3)), Codec(sheet(3))
-    sound = codec.encode("Emergency", Reason="LEAK", Release=True)
+    sound = codec.encode("DecisionEmergency", Reason="LEAK", Release=True)
     data = bytes([200, *sound.data[1:-1]])
     for at in range(0, 100, 5):
         compared.hear(at, codec.encode("Thruster0Command", Thrust=-9.0, Enable=True))

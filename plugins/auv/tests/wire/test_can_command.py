@@ -108,7 +108,7 @@ def test_messages_are_told_with_what_was_missed_and_not_believed(
                     said[2],
                     broken,
                     Frame(0x7FF, b"\1"),
-                    codec.encode("Emergency", Reason="LEAK", Release=False),
+                    codec.encode("SensorsEmergency", Reason="LEAK", Release=False),
                 ):
                     port.send(frame)
                 time.sleep(0.2)
@@ -124,7 +124,7 @@ def test_messages_are_told_with_what_was_missed_and_not_believed(
         "Depth Depth=3m Uncertainty=0.5m Trusted=yes",
         f"Depth [{broken.data.hex(' ')}] not believed: wrong length, check or value",
         "7FF [01] no message of this vehicle",
-        "Emergency Reason=LEAK Release=no",
+        "SensorsEmergency Reason=LEAK Release=no",
     ]
     assert told.err.splitlines() == [
         "5 frames",

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from mmrs_auv.vessel.sheet import Sheet
-from mmrs_auv.vessel.wire.catalogue import EMERGENCY_ID, NODES, Field, Message, messages_of
+from mmrs_auv.vessel.wire.catalogue import EMERGENCY_BASE, NODES, Field, Message, messages_of
 from mmrs_auv.vessel.wire.check import check_of
 from mmrs_auv.vessel.wire.codec import Codec
 from mmrs_auv.vessel.wire.frame import Frame
@@ -109,9 +109,9 @@ def test_anything_at_all_is_heard_without_an_error(data: bytes, message: Message
 
 def test_other_identifiers_and_extended_ones_are_none_of_this_bus() -> None:
     codec = Codec(SHEET)
-    frame = codec.encode("Emergency", Reason="LEAK", Release=True)
+    frame = codec.encode("VehicleEmergency", Reason="LEAK", Release=True)
     assert codec.decode(Frame(0x7FF, frame.data)) is None
-    assert codec.decode(Frame(EMERGENCY_ID, frame.data, extended=True)) is None
+    assert codec.decode(Frame(EMERGENCY_BASE, frame.data, extended=True)) is None
     assert not codec.faults
 
 
@@ -125,8 +125,8 @@ def test_a_clock_of_another_length_is_refused(length: int) -> None:
 def test_a_number_that_nothing_stands_for_is_refused_though_its_check_is_right() -> None:
     codec = Codec(SHEET)
     said = bytes((200, 0, 7))
-    assert codec.decode(Frame(EMERGENCY_ID, said + bytes((check_of(EMERGENCY_ID, said),)))) is None
-    assert codec.faults == {"Emergency": 1}
+    assert codec.decode(Frame(EMERGENCY_BASE, said + bytes((check_of(EMERGENCY_BASE, said),)))) is None
+    assert codec.faults == {"VehicleEmergency": 1}
 
 
 def test_more_thrust_than_there_is_is_refused_though_its_check_is_right() -> None:
@@ -187,11 +187,15 @@ def test_the_check_is_that_of_the_standard() -> None:
         ("Thruster0Command", {"Thrust": 1.0, "Enable": True, "Trust": 1}, "there is no field Trust"),
         ("Thruster9Command", {"Thrust": 1.0, "Enable": True}, "there is no message 'Thruster9Command'"),
         (
-            "Emergency",
+            "VehicleEmergency",
             {"Reason": "BORED", "Release": True},
-            "Emergency.Reason: 'BORED': expected one of NONE, ",
+            "VehicleEmergency.Reason: 'BORED': expected one of NONE, ",
         ),
-        ("Emergency", {"Reason": 4, "Release": True}, "Emergency.Reason: 4: expected one of NONE, "),
+        (
+            "VehicleEmergency",
+            {"Reason": 4, "Release": True},
+            "VehicleEmergency.Reason: 4: expected one of NONE, ",
+        ),
         ("Clock", {"Time": -0.001}, "Clock.Time: -0.001: expected 0 to "),
     ],
 )

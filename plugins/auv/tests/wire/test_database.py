@@ -79,7 +79,7 @@ def test_cycle_times_and_the_watchdog_are_in_milliseconds() -> None:
     assert (command.cycle_time, status.cycle_time) == (50, 100)
     assert command.dbc.attributes[WATCHDOG].value == 400
     assert WATCHDOG not in status.dbc.attributes
-    assert database.get_message_by_name("Emergency").cycle_time is None
+    assert database.get_message_by_name("DecisionEmergency").cycle_time is None
     assert database.get_message_by_name("VehicleBeat").cycle_time == 500
 
 
@@ -123,7 +123,7 @@ def test_a_wrench_holds_all_that_thrusters_give() -> None:
 
 
 def test_named_values_have_their_names_in_value_tables() -> None:
-    reason = loaded(sheet()).get_message_by_name("Emergency").get_signal_by_name("Reason")
+    reason = loaded(sheet()).get_message_by_name("DecisionEmergency").get_signal_by_name("Reason")
     assert reason.choices is not None
     assert str(reason.choices[4]) == "LEAK"
 

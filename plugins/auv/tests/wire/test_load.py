@@ -7,7 +7,7 @@ from math import ceil
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
-from mmrs_auv.vessel.wire.catalogue import messages_of
+from mmrs_auv.vessel.wire.catalogue import EMERGENCIES, messages_of
 from mmrs_auv.vessel.wire.frame import Frame
 from mmrs_auv.vessel.wire.layout import layout_of
 from mmrs_auv.vessel.wire.load import heard_load, load_of
@@ -24,7 +24,7 @@ def test_load_is_the_sum_of_lengths_by_periods() -> None:
 
 def test_what_is_only_said_when_there_is_something_to_say_counts_for_nothing() -> None:
     assert {each.name for each in load_of(sheet()).shares if each.period is None} == {
-        "Clock", "Emergency", "DeviceCommand", "DeviceStatus",
+        "Clock", "DeviceCommand", "DeviceStatus", *EMERGENCIES,
     }  # fmt: skip
 
 

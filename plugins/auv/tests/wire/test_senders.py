@@ -121,22 +121,33 @@ def test_a_frame_whose_damaged_identifier_is_ones_own_is_none_of_ones_own(seed: 
     assert heard(damaged) == ""
 
 
-def test_emergencies_and_messages_of_others_are_of_no_concern() -> None:
-    emergencies = [emergency_frame("LEAK", number) for number in (5, 200, 6, 201, 7, 202, 8, 203)]
-    assert heard(emergencies * 3) == ""
+def test_each_node_may_say_emergencies_but_no_two_may_say_the_same() -> None:
+    counters = (5, 200, 6, 201, 7, 202, 8, 203)
+    others = [node for node in NODES if node != "Movement"]
+    assert heard(emergency_frame(node, "LEAK", count) for count in range(40) for node in others) == ""
+    two = [emergency_frame("Sensors", "LEAK", number) for number in counters]
+    assert heard(two) == "two nodes say SensorsEmergency (0x011), which only one is to say"
+    own = [emergency_frame("Movement", "LEAK", number) for number in counters]
+    assert heard(own) == "another node says MovementEmergency (0x013), which only this one is to say"
+
+
+def test_messages_of_others_are_of_no_concern() -> None:
     assert heard([Frame(0x18FF0080, bytes((number, 0)), True) for number in range(9)]) == ""
 
 
-def test_every_message_but_emergencies_belongs_to_one_node() -> None:
+def test_every_identifier_belongs_to_one_message_of_one_node() -> None:
+    assert len({message.id for message in messages_of(SHEET)}) == len(messages_of(SHEET))
     for message in messages_of(SHEET):
         owners = [node for node in NODES if message.id in own_of(node)]
-        assert owners == ([] if message.name == "Emergency" else [message.sender])
+        assert owners == [message.sender]
         assert name_of(message.id) == f"{message.name} (0x{message.id:03X})"
     assert 0x140 not in own_of("Vehicle", drives=False)
 
 
+@pytest.mark.parametrize("node", NODES)
 @pytest.mark.parametrize("reason", REASONS)
-def test_emergencies_are_what_the_codec_says(reason: str) -> None:
+def test_emergencies_are_what_the_codec_says(reason: str, node: str) -> None:
     codec = Codec(SHEET)
-    for counter in range(300):
-        assert emergency_frame(reason, counter) == codec.encode("Emergency", Reason=reason, Release=True)
+    for counter in range(260):
+        said = codec.encode(f"{node}Emergency", Reason=reason, Release=True)
+        assert emergency_frame(node, reason, counter) == said

@@ -13,6 +13,7 @@ from mmrs_auv.vessel.wire.catalogue import (
     BEAT_PERIOD,
     BEATS,
     COMMON,
+    EMERGENCIES,
     MODES,
     PROGRESS,
     REASONS,
@@ -24,8 +25,11 @@ from mmrs_core.behaviour.program import RobotProgram
 from mmrs_core.contributions.targets import TargetInput
 from mmrs_core.errors import InfeasibleError
 
-SPOKEN = ("GoalPlace", "GoalPose", "DeviceCommand", "Emergency", "DecisionBeat")
-HEARD = ("Position", "Depth", "Pose", "Health", "Progress", "DeviceStatus")
+SPOKEN = ("GoalPlace", "GoalPose", "DeviceCommand", "DecisionEmergency", "DecisionBeat")
+HEARD = (
+    *(name for name in EMERGENCIES if name not in SPOKEN),
+    *("Position", "Depth", "Pose", "Health", "Progress", "DeviceStatus"),
+)
 
 LIMITS: Mapping[str, float] = {
     "BUS_SILENT": SILENT,
@@ -45,7 +49,7 @@ _KNOWN = {message.name: message for message in (*COMMON, *BEATS)}
 def catalogue() -> Mapping[str, object]:
     """Return what the template of the catalogue sees."""
     messages = [_message(_KNOWN[name]) for name in (*SPOKEN, *HEARD)]
-    return {"messages": messages, "words": list(_words()), "limits": LIMITS}
+    return {"messages": messages, "emergencies": list(EMERGENCIES), "words": list(_words()), "limits": LIMITS}
 
 
 def can_be_said(message: str, field: str, value: float) -> bool:

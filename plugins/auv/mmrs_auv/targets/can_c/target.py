@@ -14,10 +14,11 @@ from mmrs_auv.targets.can_c.words import block, number
 from mmrs_auv.targets.moves import MOVES
 from mmrs_auv.targets.places import templates_of
 from mmrs_auv.vessel.body.ballast import patience_of, pressure_of_depth
+from mmrs_auv.vessel.body.drive import MOST_AHEAD
 from mmrs_auv.vessel.body.propulsion import curve_of
 from mmrs_auv.vessel.refusals import MOST_POWER
 from mmrs_auv.vessel.sheet import Sheet
-from mmrs_auv.vessel.wire.catalogue import messages_of
+from mmrs_auv.vessel.wire.catalogue import EMERGENCIES, STATUS_PERIOD, messages_of
 from mmrs_auv.vessel.wire.layout import layout_of
 from mmrs_core.behaviour.program import BEHAVIOUR, RobotProgram
 from mmrs_core.contributions.targets import FileSpec, Target, TargetInput, TracedStep
@@ -130,6 +131,9 @@ def _view(sheet: Sheet) -> dict[str, object]:
         "dead_man": _microseconds(patience_of(sheet), "deadman.time"),
         "deep": pressure_of_depth(sheet),
         "most_power": MOST_POWER,
+        "most_ahead": MOST_AHEAD,
+        "status_period": _microseconds(STATUS_PERIOD, "status"),
+        "emergencies": len(EMERGENCIES),
         "thrusters": thrusters,
     }
 

@@ -109,9 +109,9 @@ package body Craft is
                Known.Progress := Number (Item, Progress_State);
                Known.Distance := Value (Item, Progress_Distance);
             end if;
-         elsif Is_Sound (Item, Emergency) then
+         elsif (for some Each of All_Emergencies => Is_Sound (Item, Each)) then
             if Known.Emergency = 0 then
-               Known.Emergency := Natural'Max (1, Number (Item, Emergency_Reason));
+               Known.Emergency := Natural'Max (1, Number (Item, DecisionEmergency_Reason));
             end if;
          elsif Is_Sound (Item, DeviceStatus) then
             if Number (Item, DeviceStatus_Request) = Known.Asked and then Asked.Open then
@@ -143,10 +143,10 @@ package body Craft is
          Said := (others => (others => <>));
          if Emergencies > 0 then
             Emergencies := Emergencies - 1;
-            Made := New_Frame (Emergency);
-            Put (Made, Emergency_Reason, Long_Float (Reason));
-            Put (Made, Emergency_Release, 1.0);
-            Sealed (Made, Emergency, Counted (1));
+            Made := New_Frame (DecisionEmergency);
+            Put (Made, DecisionEmergency_Reason, Long_Float (Reason));
+            Put (Made, DecisionEmergency_Release, 1.0);
+            Sealed (Made, DecisionEmergency, Counted (1));
             Add (Made);
          end if;
          Goal_Frames (In_Force, Made, Posed);

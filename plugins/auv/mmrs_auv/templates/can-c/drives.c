@@ -6,9 +6,6 @@
 #include "bus.h"
 #include "outputs.h"
 
-#define STATUS_PERIOD 100000u /* microseconds */
-#define MOST_AHEAD 127u
-
 uint8_t drives_check(uint32_t id, const uint8_t *data, size_t length)
 {
     uint8_t crc = 0xffu;
@@ -98,7 +95,7 @@ static void look_after(struct drives *drives, uint32_t now)
 static bool obey(struct drive *drive, const struct vehicle_command *command, double most, uint32_t now)
 {
     const uint8_t ahead = drive->counted ? (uint8_t)(command->counter - drive->last) : 0u;
-    const bool valid = ahead >= 1u && ahead <= MOST_AHEAD;
+    const bool valid = ahead >= 1u && ahead <= VEHICLE_MOST_AHEAD;
     if (valid || !drive->obeys) {
         drive->last = command->counter;
         drive->counted = true;
@@ -191,7 +188,7 @@ void drives_hear(struct drives *drives, const struct drives_frame *frame, uint32
     if (frame->extended) {
         return;
     }
-    if (frame->id == BUS_EMERGENCY_FRAME_ID) {
+    if (frame->id - BUS_EMERGENCY_FRAME_ID < VEHICLE_EMERGENCIES) {
         hear_emergency(drives, frame);
         return;
     }
@@ -214,7 +211,7 @@ size_t drives_tick(struct drives *drives, uint32_t now, struct drives_frame *fra
     if (drives->told && late > UINT32_MAX / 2u) {
         return 0;
     }
-    drives->due = drives->told && late < STATUS_PERIOD ? drives->due + STATUS_PERIOD : now + STATUS_PERIOD;
+    drives->due = (drives->told && late < VEHICLE_STATUS_PERIOD ? drives->due : now) + VEHICLE_STATUS_PERIOD;
     drives->told = true;
     for (unsigned number = 0; number < VEHICLE_THRUSTERS; number++) {
         say_status(&drives->drive[number], &vehicle_thrusters[number], &frames[number]);

@@ -6,16 +6,19 @@ from ..sheet import Thruster
 
 OFF, RUNS, WATCHDOG, FAULT = "OFF", "RUNS", "WATCHDOG", "FAULT"
 
+MOST_AHEAD = 127
+"""By how many the counter of a valid command is ahead of the last, at most."""
+
 _SOON = 1e-9  # seconds by which sums of periods may be off
 
 
 class Drive:
     """What stands between commands and a thruster's motor.
 
-    A command is valid if its check is right, which who decodes it sees to, and its counter is 1 to 127 ahead
-    of the last one, modulo 256. Only valid commands are obeyed and keep the watchdog quiet. The first command
-    of all, and the first after the watchdog stopped the thruster, are not obeyed: they tell where the
-    counter is. So a sender that repeats one frame for ever does nothing.
+    A command is valid if its check is right, which who decodes it sees to, and its counter is 1 to
+    `MOST_AHEAD` ahead of the last one, modulo 256. Only valid commands are obeyed and keep the watchdog
+    quiet. The first command of all, and the first after the watchdog stopped the thruster, are not obeyed:
+    they tell where the counter is. So a sender that repeats one frame for ever does nothing.
 
     Attributes:
         thrust: newtons that it puts out.
@@ -39,7 +42,7 @@ class Drive:
         """Take a command with a right check; return whether it was valid."""
         self.run(now)
         ahead = 0 if self._counter is None else (counter - self._counter) % 256
-        valid = 1 <= ahead <= 127
+        valid = 1 <= ahead <= MOST_AHEAD
         if valid or self._heard is None:
             self._counter = counter
         if not valid:

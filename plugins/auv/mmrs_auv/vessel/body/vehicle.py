@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from math import degrees, inf
 
 from ..sheet import Sheet, Vector
-from ..wire.catalogue import COMMAND_BASE, EMERGENCY_ID, STATUS_BASE, VEHICLE, messages_of
+from ..wire.catalogue import COMMAND_BASE, EMERGENCIES, STATUS_BASE, VEHICLE, messages_of
 from ..wire.codec import Codec, Received, Value
 from ..wire.frame import Frame
 from .ballast import Release
@@ -23,6 +23,7 @@ STEP = 0.01
 """Seconds of a step of the motion."""
 
 DEVICE_COMMAND = 0x500
+HEARD = frozenset({*EMERGENCIES.values(), DEVICE_COMMAND})
 
 _SOON = 1e-9  # seconds by which sums of periods may be off
 _CALM = Surroundings()
@@ -137,7 +138,7 @@ class Vehicle:
         """Obey commands to thrusters and devices, and emergencies."""
         number, status = frame.id - COMMAND_BASE, frame.id - STATUS_BASE
         told = self._outside is not None and 0 <= status < len(self.drives)
-        if not (told or 0 <= number < len(self.drives) or frame.id in (EMERGENCY_ID, DEVICE_COMMAND)):
+        if not (told or 0 <= number < len(self.drives) or frame.id in HEARD):
             return
         received = self._codec.decode(frame)
         if received is None or self.charge <= 0.0:
@@ -145,7 +146,7 @@ class Vehicle:
         self._advance(now)
         if told and self._outside is not None:
             self._outside.hear(status, received, now)
-        elif frame.id == EMERGENCY_ID:
+        elif frame.id in EMERGENCIES.values():
             self._reason = str(received.values["Reason"])
             self._stop(release=bool(received.values["Release"]))
         elif frame.id == DEVICE_COMMAND:

@@ -9,7 +9,15 @@ import numpy as np
 
 from ..instruments import instruments_of
 from ..sheet import Sheet
-from ..wire.catalogue import ACTUATORS, BEAT_PERIOD, COMMAND_PERIOD, MOST_UPTIME, STATUS_PERIOD, by_id
+from ..wire.catalogue import (
+    ACTUATORS,
+    BEAT_PERIOD,
+    COMMAND_PERIOD,
+    EMERGENCIES,
+    MOST_UPTIME,
+    STATUS_PERIOD,
+    by_id,
+)
 from ..wire.codec import Codec, Received
 from ..wire.frame import Frame
 from . import failsafe
@@ -70,8 +78,8 @@ class Actuators:
         self._too_deep = failsafe.deepest(sheet.max_depth) * sheet.water_density * GRAVITY
         self._hearers = by_id({
             "WrenchForce": self._hear_force, "WrenchMoment": self._hear_moment, "Depth": self._hear_depth,
-            "Pressure": self._hear_pressure, "Health": self._hear_health, "Emergency": self._hear_emergency,
-            "MovementBeat": self._hear_beat,
+            "Pressure": self._hear_pressure, "Health": self._hear_health, "MovementBeat": self._hear_beat,
+            **dict.fromkeys(EMERGENCIES, self._hear_emergency),
         })  # fmt: skip
         self.emergency: str | None = None
         self.thrusts: Array = np.zeros(len(sheet.thrusters))
@@ -189,7 +197,7 @@ class Actuators:
         self._due["Emergency"] = now + (
             failsafe.EMERGENCY_PERIOD if often else failsafe.EMERGENCY_PERIOD_LATER
         )
-        return [self._codec.encode("Emergency", Reason=self.emergency, Release=self._release)]
+        return [self._codec.encode("ActuatorsEmergency", Reason=self.emergency, Release=self._release)]
 
     def _tell(self, now: float, enable: bool) -> list[Frame]:
         said = []

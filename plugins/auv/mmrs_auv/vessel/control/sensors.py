@@ -125,7 +125,7 @@ class Sensors:
         gone = self._beat_at is not None and now - self._beat_at > failsafe.ACTUATORS_GONE
         if gone and now + 1e-6 >= self._due["Emergency"]:
             self._due["Emergency"] = now + failsafe.EMERGENCY_PERIOD_LATER
-            said.append(self._codec.encode("Emergency", Reason="COMMANDS_SILENT", Release=True))
+            said.append(self._codec.encode("SensorsEmergency", Reason="COMMANDS_SILENT", Release=True))
         if now + 1e-6 >= self._due["Current"]:
             self._due["Current"] = now + CURRENT_PERIOD
             north, east = np.clip(self.reckoning.current(), -FASTEST, FASTEST).tolist()

@@ -14,6 +14,7 @@ from ..sheet import Sheet
 from ..wire.catalogue import (
     BEAT_PERIOD,
     COMMAND_PERIOD,
+    EMERGENCIES,
     FORCE_ID,
     MOMENT_ID,
     MOST_UPTIME,
@@ -79,7 +80,7 @@ class Movement:
             "Position": self._hear_state, "Depth": self._hear_depth, "Pose": self._hear_state,
             "Velocity": self._hear_state, "Turning": self._hear_turning, "Current": self._hear_current,
             "Reach": self._hear_reach, "GoalPlace": self._hear_place, "GoalPose": self._hear_pose,
-            "Emergency": self._hear_emergency, "Altitude": self._hear_altitude,
+            **dict.fromkeys(EMERGENCIES, self._hear_emergency), "Altitude": self._hear_altitude,
         })  # fmt: skip
         self.motion = Motion()
         self.goal: Goal | None = None
@@ -121,7 +122,7 @@ class Movement:
         if not self._ended or now + 1e-6 < self._emergency_due:
             return []
         self._emergency_due = now + EMERGENCY_PERIOD_LATER
-        return [self._codec.encode("Emergency", Reason="COMMANDS_SILENT", Release=self._sinks)]
+        return [self._codec.encode("MovementEmergency", Reason="COMMANDS_SILENT", Release=self._sinks)]
 
     def _wrench(self, now: float) -> Array | None:
         """Return what is asked for; None: no thrust."""

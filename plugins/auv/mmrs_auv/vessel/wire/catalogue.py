@@ -20,8 +20,11 @@ Kind = TypeVar("Kind")
 VEHICLE, SENSORS, ACTUATORS, MOVEMENT, DECISION = "Vehicle", "Sensors", "Actuators", "Movement", "Decision"
 NODES = (VEHICLE, SENSORS, ACTUATORS, MOVEMENT, DECISION)
 
-CLOCK_ID, EMERGENCY_ID, FORCE_ID, MOMENT_ID, GOAL_POSE_ID = 0x001, 0x010, 0x080, 0x081, 0x401
-COMMAND_BASE, STATUS_BASE, HEARTBEAT_BASE = 0x100, 0x140, 0x700
+CLOCK_ID, FORCE_ID, MOMENT_ID, GOAL_POSE_ID = 0x001, 0x080, 0x081, 0x401
+EMERGENCY_BASE, COMMAND_BASE, STATUS_BASE, HEARTBEAT_BASE = 0x010, 0x100, 0x140, 0x700
+
+EMERGENCIES: Mapping[str, int] = {f"{node}Emergency": EMERGENCY_BASE + NODES.index(node) for node in NODES}
+"""Identifiers of the emergency messages, by name: each node has one of its own, and obeys all."""
 
 MOST_UPTIME = (2**28 - 1) * 0.001
 """Seconds of uptime that a beat holds; it stays at that afterwards."""
@@ -138,8 +141,9 @@ def _wrench(newtons: float, newton_metres: float) -> tuple[Message, Message]:
 COMMON = (
     Message(CLOCK_ID, "Clock", VEHICLE, (_unsigned("Time", 32, 0.001, "s"),), None,
             comment="simulated time: nodes that go by it tick when it has come"),
-    Message(EMERGENCY_ID, "Emergency", DECISION, (_named("Reason", 8, *REASONS), _flag("Release")), None,
-            comment="thrust zero at once; Release: let go of the drop weight. Any node sends it."),
+    *(Message(EMERGENCIES[f"{node}Emergency"], f"{node}Emergency", node,
+              (_named("Reason", 8, *REASONS), _flag("Release")), None,
+              comment="thrust zero at once; Release: let go of the drop weight") for node in NODES),
     *_wrench(0.02, 0.01),
     Message(0x0A0, "Reach", ACTUATORS,
             (*(_flag(degree) for degree in ("Surge", "Sway", "Heave", "Roll", "Pitch", "Yaw")),

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, TypeAlias
 
 from ..refusals import MOST_THRUSTERS
 from ..sheet import Sheet
-from .catalogue import COMMAND_BASE, EMERGENCY_ID, NODES, Message, messages_of
+from .catalogue import COMMAND_BASE, NODES, Message, messages_of
 from .layout import Slot, layout_of
 
 if TYPE_CHECKING:
@@ -67,7 +67,7 @@ def entry_of(message: Message, attributes: Attributes | None = None) -> Entry:
         message.name,
         layout.length,
         [_signal(slot, message) for slot in layout.slots.values()],
-        senders=_senders(message),
+        senders=[message.sender],
         cycle_time=None if message.period is None else round(message.period * 1000),
         comment=_ascii(message.comment) or None,
         dbc_specifics=DbcSpecifics(attributes=OrderedDict(attributes or {})),
@@ -79,11 +79,6 @@ def _attributes(message: Message, sheet: Sheet, watchdog: DbcAttributeDefinition
 
     limit = _patience(message, sheet)
     return {WATCHDOG: DbcAttribute(round(limit * 1000), watchdog)} if limit else {}
-
-
-def _senders(message: Message) -> list[str]:
-    others = [node for node in NODES if node != message.sender]
-    return [message.sender, *others] if message.id == EMERGENCY_ID else [message.sender]
 
 
 def _patience(message: Message, sheet: Sheet) -> float:
@@ -106,7 +101,7 @@ def _signal(slot: Slot, message: Message) -> Signal:
         minimum=round(slot.low * field.scale, 9),
         maximum=round(slot.high * field.scale, 9),
         unit=field.unit or None,
-        receivers=[node for node in NODES if node not in _senders(message)] or list(NODES),
+        receivers=[node for node in NODES if node != message.sender],
         comment=_ascii(field.comment) or None,
     )
 

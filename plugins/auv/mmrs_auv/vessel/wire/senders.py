@@ -6,7 +6,7 @@ from collections import deque
 from collections.abc import Collection
 
 from ..refusals import MOST_THRUSTERS
-from .catalogue import ACTUATORS, BEATS, COMMAND_BASE, COMMON, EMERGENCY_ID, STATUS_BASE, VEHICLE
+from .catalogue import ACTUATORS, BEATS, COMMAND_BASE, COMMON, STATUS_BASE, VEHICLE
 from .check import check_of
 from .frame import Frame
 
@@ -46,7 +46,7 @@ class Senders:
 
     def hear(self, frame: Frame, now: float) -> None:
         """Take a frame that another node said; one whose check is wrong may be any, damaged."""
-        if self.fault or frame.extended or frame.id == EMERGENCY_ID:
+        if self.fault or frame.extended:
             return
         data = frame.data
         if len(data) < 2 or check_of(frame.id, data[:-1]) != data[-1]:
@@ -124,7 +124,7 @@ def own_of(node: str, *, drives: bool = True) -> frozenset[int]:
     Args:
         node: its name. drives: whether those of the thrusters are part of the vehicle's node.
     """
-    said = {each.id for each in (*COMMON, *BEATS) if each.sender == node and each.id != EMERGENCY_ID}
+    said = {each.id for each in (*COMMON, *BEATS) if each.sender == node}
     numbers = range(MOST_THRUSTERS)
     if node == ACTUATORS:
         said |= {COMMAND_BASE + number for number in numbers}
