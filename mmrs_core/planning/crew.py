@@ -18,8 +18,10 @@ from mmrs_core.planning.materials import (
     shortages,
 )
 from mmrs_core.planning.sorties import Pilot
+from mmrs_core.planning.states import State
 from mmrs_core.planning.strokes import length_of
 from mmrs_core.planning.travel import Spaces, Travel, kinematics_of
+from mmrs_core.planning.turns import Done
 from mmrs_core.scene import Robot, Scene, Task, Work
 
 _PORTIONS_PER_ROBOT = 60
@@ -45,6 +47,8 @@ class Crew:
         teams: by name of task: robots that may share it, by sort of work; robots of different sorts
             (such as cameras with different footprints) cannot.
         refusals: by (task, robot): why the robot cannot do the task.
+        starts: by (robot, delay): the states in which schedules have begun.
+        done: what has become of jobs in earlier schedules; see `schedule`.
     """
 
     def __init__(
@@ -76,6 +80,8 @@ class Crew:
             )
             for robot in scene.robots
         }
+        self.starts = dict[tuple[str, float], State]()
+        self.done = dict[tuple[object, ...], tuple[tuple[State, ...], Done | None]]()
         self._coarsest = _seconds_of_all(scene) / (_PORTIONS_PER_ROBOT * max(1, len(scene.robots)))
         self.refusals: dict[tuple[str, str], str] = dict(scene.refusals)
         self._layouts: dict[tuple[str, str], Layout] = {}

@@ -95,7 +95,9 @@ class _Scheduling:
         self._crew, self._decisions, self._record = crew, decisions, record
         self._tasks = {task.name: task for task in crew.scene.tasks}
         self._states: States = {
-            name: pilot.start(decisions.delays.get(name, 0.0)) for name, pilot in crew.pilots.items()
+            name: crew.starts.setdefault((name, delay), pilot.start(delay))
+            for name, pilot in crew.pilots.items()
+            for delay in (decisions.delays.get(name, 0.0),)
         }
         self._ends: dict[str, Mapping[str, float]] = {}
         self._soonest: dict[str, Mapping[str, float]] = {}
@@ -123,14 +125,33 @@ class _Scheduling:
             for known in (self._ends, self._soonest):
                 known[job.name] = {name: end for before in job.after for name, end in known[before].items()}
             return True
-        done = self._chosen(job) if job.choice is not None else self._shared(job)
+        done = self._chosen_or_shared(job) if self._record else self._remembered(job)
         if done is None:
             return False
-        self._states = done.states
+        self._states = {**self._states, **done.states}
         self._ends[job.name], self._soonest[job.name] = done.ends, done.soonest
         self._spans[job.name] = (done.begin, max(done.ends.values()))
         self._busy |= done.ends.keys()
         return True
+
+    def _remembered(self, job: Job) -> Done | None:
+        """Do a job, or return what became of it in an earlier schedule in which all that matters was alike.
+
+        States stand for themselves in the key: one that is made anew is another one.
+        """
+        turns = self._decisions.in_turns
+        concerned = self._crew.pilots if turns or job.choice is not None else self._crew.able(job.name)
+        states = tuple(self._states[name] for name in concerned)
+        before = tuple((*self._ends[name].items(), *self._soonest[name].items()) for name in job.after)
+        wanted = tuple(self._tasks[name].wanted for name in job.tasks())
+        key = (job.name, self._decisions.teams.get(job.name), turns, wanted, before, *map(id, states))
+        known = self._crew.done.get(key)
+        if known is None:
+            known = self._crew.done[key] = (states, self._chosen_or_shared(job))
+        return known[1]
+
+    def _chosen_or_shared(self, job: Job) -> Done | None:
+        return self._chosen(job) if job.choice is not None else self._shared(job)
 
     def _shared(self, job: Job) -> Done | None:
         """Share a task out as well as can be."""
@@ -148,7 +169,7 @@ class _Scheduling:
         ends = {name: state.time for name, state in after.items()}
         soonest = {name: state.time - state.lead for name, state in after.items()}
         begin = min(share.run.started() for share in sharing.shares)
-        return Done({**self._states, **after}, begin, ends, soonest, sharing.back)
+        return Done(after, begin, ends, soonest, sharing.back)
 
     def _in_turns(self, sharing: Sharing) -> Done | None:
         parts = [

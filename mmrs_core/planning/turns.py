@@ -33,7 +33,7 @@ class Done:
     """What has become of a job.
 
     Attributes:
-        states: of all robots after it.
+        states: after it, of the robots that it moves at least.
         begin: seconds at which it began; ends: by robot that has a share, when that ended; soonest: when
             that may have been at the earliest.
         back: when the last of these is back, seconds.
