@@ -145,7 +145,10 @@ class Beginnings:
             self._pass(event)
             return None, event
         if not self._may_be(start, metaclass, claimed is not None):
-            self._pass_or_keep(start, event, metaclass)
+            if start.owner is not None:
+                self._keep(start, event, f"{metaclass.ns_uri}#{metaclass.name}")
+            else:
+                self._pass(event)
             return None, event
         return self._made(start, metaclass), event
 
@@ -183,7 +186,7 @@ class Beginnings:
             return False
         if is_claimed and feature is not None and not _fits(feature, metaclass):
             message = f"{metaclass.name}: not a {feature.type.name}, which {feature.name} takes"
-            self._members.fault("XMI008", message, start.line, start.owner, broken=feature)
+            self._members.fault("XMI008", message, start.line, start.owner)
             return False
         return True
 
@@ -207,13 +210,6 @@ class Beginnings:
         else:
             self._members.no_object(start.owner, feature, start.above)
 
-    def _pass_or_keep(self, start: Begun, event: Event, metaclass: Metaclass) -> None:
-        """Go to the end of an object; one of an abstract class holds its place among others."""
-        if metaclass.implementation is None and start.owner is not None:
-            self._keep(start, event, f"{metaclass.ns_uri}#{metaclass.name}")
-        else:
-            self._pass(event)
-
     def _pass(self, event: Event) -> None:
         """Go to the end of the object that is open, from an event in it."""
         while event[0] != END:
@@ -221,7 +217,7 @@ class Beginnings:
             event = next(self._events)
 
     def _keep(self, start: Begun, event: Event, claimed: str) -> None:
-        """Keep an object whose class is not known, or abstract, and go to its end."""
+        """Keep an object of an unknown, wrong or abstract class, which holds its place; go to its end."""
         xml = next((each[2] for each in start.said if each[1] == XML), None)
         scope = start.scope
         while event[0] != END:

@@ -10,7 +10,7 @@ from mmrs_core.languages.element import Element, Hidden, Source, Unknown, descen
 from mmrs_core.languages.json_form.unknown import UnknownObject
 from mmrs_core.languages.references.documents import Draft
 
-_LEAVE_UNKNOWN = frozenset(("XMI001", "XMI002", "XMI014", "XMI015"))
+_LEAVE_UNKNOWN = frozenset(("XMI001", "XMI002", "XMI003", "XMI008", "XMI014", "XMI015"))
 """The faults that each unknown element goes with, one or the other."""
 _PATH = re.compile(r"""(?<=["'\s#])/[0-9]*(?:/@[^\s"'/#@]+)+""")
 _BEFORE = re.compile(r"""[^\s"']#\Z""")

@@ -126,20 +126,17 @@ def _target(
 
 
 def _hidden(uri: str, reference: Pending, draft: Draft, where: Draft, registry: Registry) -> Element | None:
-    """Return what stands inside an element whose language is not installed, after a fault that names it."""
+    """Return what stands inside an element that was not read; a fault where its language is not installed."""
     hidden = hidden_in(where, uri.rpartition("#")[2], reference.claimed)
     if hidden is None:
         return None
     ns_uri, _, name = hidden._mmrs_outer._mmrs_type.rpartition("#")
-    if not ns_uri or registry.has(
-        ns_uri
-    ):  # then the element itself is wrong, and what it would hold is not known
-        return None
-    message = (
-        f"{reference.feature.name}: leads into a {name} of {ns_uri}, which is not installed: {shown(uri)}"
-    )
-    hint = hint_for(ns_uri, registry, "the reference is kept as it is")
-    draft.fault("XMI001", message, reference.line, reference.element, hint)
+    if ns_uri and not registry.has(ns_uri):
+        message = (
+            f"{reference.feature.name}: leads into a {name} of {ns_uri}, which is not installed: {shown(uri)}"
+        )
+        hint = hint_for(ns_uri, registry, "the reference is kept as it is")
+        draft.fault("XMI001", message, reference.line, reference.element, hint)
     return hidden
 
 
@@ -189,7 +186,9 @@ def _as_given(document: str, draft: Draft, real: Path) -> Path:
 def _set(reference: Pending, target: Element, draft: Draft) -> bool:
     """Put the target into the reference; return whether the other end has to be told."""
     element, feature = reference.element, reference.feature
-    if not isinstance(target, Unknown) and not feature.type.accepts(target):
+    if isinstance(target, Unknown):
+        draft.broken.add((element, feature.name))
+    elif not feature.type.accepts(target):
         label = label_of(target)
         what = f"{type(target).__name__}{label and f' {label!r}'}"
         message = f"{feature.name}: leads to the {what}, not to a {feature.type.name}"

@@ -164,13 +164,13 @@ class XmiReader:
             ns_uri = self._document.namespaces.uri(prefix) or ""
             claimed = f"{ns_uri}#{name}"
             metaclass = self._metaclass(ns_uri, name, owner, prefix)
+        if metaclass is not None and not issubclass(metaclass.interface, feature.type.interface):
+            message = f"{metaclass.name}: not a {feature.type.name}, which {feature.name} takes"
+            self._fault("XMI008", message, owner)
+            metaclass = None
         element = self._make(metaclass, claimed, owner)
         if metaclass is not None and not isinstance(element, Unknown):
             self._open.append((element, metaclass, None))
-            if not issubclass(metaclass.interface, feature.type.interface):
-                message = f"{metaclass.name}: not a {feature.type.name}, which {feature.name} takes"
-                self._fault("XMI008", message, owner, broken=feature)
-                return
         self._contain(owner, feature, element)
         if metaclass is not None and not isinstance(element, Unknown):
             self._attributes(element, metaclass, attributes)
@@ -182,7 +182,7 @@ class XmiReader:
         settle(owner, feature, element, occupied)
 
     def _make(self, metaclass: Metaclass | None, claimed: str, owner: Element | None = None) -> Element:
-        """Make an element; one of an unknown or abstract class is kept as it is, and holds its place."""
+        """Make an element; one of an unknown, wrong or abstract class is kept, and holds its place."""
         if metaclass is not None and metaclass.implementation is None:
             self._fault("XMI003", f"{metaclass.name}: abstract; say which kind of it by xsi:type", owner)
         if metaclass is None or metaclass.implementation is None:

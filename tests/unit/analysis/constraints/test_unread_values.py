@@ -13,6 +13,7 @@ from mmrs_core.pipeline import check_models, read_models
 
 EXAMPLES = Path(__file__).parents[4] / "examples"
 PARK = EXAMPLES / "carbon-dioxide"
+DAM = EXAMPLES / "mixed-team"
 POOL = EXAMPLES / "pool"
 QUAD = "robots/quad-650.xmi"
 
@@ -38,6 +39,17 @@ def changed(folder, name, old, new):
         (PARK, "mission.xmi", 'event="BATTERY_LOW"', 'event="LOW_BATTERY"', "XMI005"),
         (PARK, "mission.xmi", '<home xsi:type="mission:GeoCoordinate"', "<home", "XMI003"),
         (PARK, "mission.xmi", '<tasks xsi:type="mission:Fork"', "<tasks", "XMI003"),
+        (PARK, "mission.xmi", '<tasks xsi:type="mission:Fork"', '<tasks xsi:type="mission:Robot"', "XMI008"),
+        (DAM, "mission.xmi", '<tasks xsi:type="mission:Fork" name="if', '<tasks name="if', "XMI003"),
+        (
+            DAM,
+            "mission.xmi",
+            '<tasks xsi:type="mission:Fork" name="if',
+            '<tasks xsi:type="x" name="if',
+            "XMI014",
+        ),
+        (DAM, "mission.xmi", '<tasks xsi:type="mission:Join" name="done', '<tasks name="done', "XMI003"),
+        (DAM, "mission.xmi", "survey:RoadTask", "mission:Robot", "XMI008"),
         (PARK, QUAD, ' gps="true"', ' gps="yes"', "XMI005"),
         (PARK, QUAD, ' payloadWeight="', ' payloadWeight="kg ', "XMI005"),
         (POOL, "context.xmi", ' maxHeight="', ' maxHeight="m ', "XMI005"),
@@ -55,6 +67,8 @@ def test_what_cannot_be_read_is_the_only_fault(contributions, folder, name, old,
         ('"BATTERY_LOW"', '"LOW_BATTERY"', "XMI005"),
         ('"gridResolution": ', '"gridResolution": "fine", "speed": ', "XMI005"),
         ('"$type": "mission:Fork",', "", "XMI003"),
+        ('"$type": "mission:Fork",', '"$type": "mission:Robot",', "XMI008"),
+        ('"$type": "survey:PhotoGridTask",', '"$type": "mission:Robot",', "XMI008"),
     ],
 )
 def test_what_cannot_be_read_of_json_is_the_only_fault(contributions, tmp_path, old, new, code):
@@ -67,6 +81,13 @@ def test_what_cannot_be_read_of_json_is_the_only_fault(contributions, tmp_path, 
         file, contributions, context=PARK / "context.xmi", robots=[PARK / "robots" / "quad-650.xmi"]
     )
     assert [each.code for each in (*found, *check_models(models, contributions))] == [code]
+
+
+def test_a_reference_into_what_cannot_be_read_is_no_fault(contributions):
+    text = (DAM / "mission.xmi").read_text(encoding="utf-8")
+    assert "//@team/@robots.3/@home" in text
+    robot = text.replace("<robots ", '<robots xsi:type="mission:Fork" ')
+    assert {each[0] for each in faults(DAM, contributions, **{"mission.xmi": robot})} == {"XMI008"}
 
 
 def test_a_misspelt_literal_comes_with_the_one_it_is_nearest_to(contributions):
