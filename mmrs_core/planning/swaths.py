@@ -26,8 +26,6 @@ _ANGLES = 8
 _SHIFTED = 3
 _SHIFTS = (0.0, 0.5, 1.0)
 _REPAIRS = 4
-_MOST_PRODUCTS = 1_000_000
-"""Of directions and edges that are weighed at once."""
 _LEFT_OUT = 1e-5
 """Share of the target that swaths may leave out: a hundredth of what is promised."""
 
@@ -107,18 +105,23 @@ def sweep_angles(pieces: Sequence[Polygon]) -> list[float]:
         ]
     )
     directions = np.unique(np.round(np.arctan2(edges[:, 1], edges[:, 0]) % pi, 6) % pi)
-    at_once = max(1, _MOST_PRODUCTS // len(edges))  # all of a border of many vertices would fill the memory
-    across = np.concatenate(
-        [_across(directions[i : i + at_once], edges) for i in range(0, len(directions), at_once)]
-    )
-    best = directions[np.argsort(across, kind="stable")][: _ANGLES - 2].tolist()
+    best = directions[np.argsort(_across(directions, edges), kind="stable")][: _ANGLES - 2].tolist()
     return list(dict.fromkeys([*best, 0.0, pi / 2]))
 
 
 def _across(directions: Floats, edges: Floats) -> Floats:
-    """Return for each direction how far the edges reach across it, in all."""
-    products = np.outer(np.sin(directions), edges[:, 0]) - np.outer(np.cos(directions), edges[:, 1])
-    across: Floats = np.abs(products).sum(axis=1)
+    """Return for each direction how far the edges reach across it, in all; n log n in both numbers.
+
+    Edges are turned to point to their left in [0, pi). Those behind a direction reach across it on one
+    side, those before it on the other: sums up to each edge, in the order of their own directions, tell.
+    """
+    own = np.arctan2(edges[:, 1], edges[:, 0])
+    upright = np.where(((own < 0.0) | (own >= pi))[:, None], -edges, edges)
+    order = np.argsort(own % pi, kind="stable")
+    sums = np.vstack([np.zeros(2), np.cumsum(upright[order], axis=0)])
+    before = np.searchsorted((own % pi)[order], directions)
+    east, north = (sums[-1] - 2.0 * sums[before]).T
+    across: Floats = north * np.cos(directions) - east * np.sin(directions)
     return across
 
 
