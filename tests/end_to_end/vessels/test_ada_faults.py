@@ -79,6 +79,8 @@ def test_the_vehicle_goes_back_by_the_way_that_it_came_and_comes_up(tmp_path):
     found = done_by(tmp_path, behaviour, meddle=at(12.0, drained))
     assert found.replayed.faults == {"naiad": "BATTERY_LOW"}
     assert ways(found)[-1] == "SURFACE"
+    assert found.world.said("GoalPose")[-1].values["Mode"] == "IDLE"
+    assert {drive.thrust for drive in found.world.vehicle.drives} == {0.0}
     truth = found.world.vehicle.truth
     assert abs(truth.north) < 1.0
     assert abs(truth.east) < 1.0

@@ -254,8 +254,11 @@ class CanRobot:
             return _Idle()
         if response in FINDS:
             path = self._escapes.clear(response, self._here())
-            return _Then(self._duties.way(path), Surface(self._afloat))
-        return Surface(self._afloat)
+            return _Then(self._duties.way(path), self._surface())
+        return self._surface()
+
+    def _surface(self) -> Duty:
+        return Surface(self._afloat, floats=self._sheet.weight_in_water < 0.0)
 
     def _look(self, now: float) -> None:
         self._now = max(self._now, now)

@@ -236,8 +236,9 @@ class CanVehicle:
     def surface(self) -> None:
         """Come up; nobody waits for a vehicle that is not heard."""
         self._mode, self._armed = SURFACE, True
-        self._do(Surface(self._afloat), leave=lambda: self._craft.state().silent > SILENT)
-        self._rest_afloat()
+        duty = Surface(self._afloat, floats=self._sheet.weight_in_water < 0.0)
+        self._do(duty, leave=lambda: self._craft.state().silent > SILENT)
+        self._armed = False
 
     def disarm(self) -> None:
         """Ask for no thrust."""
@@ -246,7 +247,8 @@ class CanVehicle:
 
     def finish(self) -> None:
         """End the mission: no thrust, unless it would sink."""
-        self._rest_afloat()
+        Finish(floats=self._sheet.weight_in_water < 0.0).begin(self._craft, self._clock.now())
+        self._armed = False
 
     def evidence(self) -> CanVehicle:
         """Return itself: it says what it is told to do at any time."""
@@ -323,10 +325,6 @@ class CanVehicle:
         if event == LINK_LOST and policy.response == CONTINUE:
             return BUS_SECONDS
         return policy.after or 0.0
-
-    def _rest_afloat(self) -> None:
-        Finish(floats=self._sheet.weight_in_water < 0.0).begin(self._craft, self._clock.now())
-        self._armed = False
 
     def _below(self, place: Place) -> Vector:
         assert isinstance(place, Local)

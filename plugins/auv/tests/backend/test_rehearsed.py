@@ -143,6 +143,10 @@ def test_whatever_goes_wrong_the_vehicle_comes_up(tmp_path: Path, meddle: Meddle
     assert found.accepted
     assert at(found.robots["naiad"])[2] < AFLOAT
     assert list(found.run.ending.responses.values()) == ["SURFACE"]
+    stage = found.robots["naiad"].stage
+    stage.advance(stage.rehearsal.now + 20.0)
+    assert [drive.thrust for drive in stage.vehicle.drives] == [0.0] * len(stage.vehicle.drives)
+    assert stage.vehicle.truth.depth < AFLOAT
 
 
 def test_that_the_dive_was_given_up_is_told_once(tmp_path: Path) -> None:

@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import signal
 import subprocess
+import time
 from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
@@ -279,6 +280,33 @@ def test_the_program_is_a_node_of_the_bus(program):
         assert (found["Thrust"], found["Power"]) == (0.0, 0.0)
         assert not codec.faults
         assert stop(drives) == 0
+
+
+def test_a_program_that_was_stopped_does_not_take_its_own_lateness_for_silence(tmp_path):
+    vehicle = sheet(1, extra={"deadman.time": 0.7})
+    made, codec = written(vehicle, tmp_path), Codec(vehicle)
+    outputs = made / "outputs.c"
+    deep = outputs.read_text().replace("return told;", "return told || true;")
+    release = '#include <stdio.h>\nvoid outputs_release(void)\n{\n    (void)fputs("released\\n", stderr);'
+    outputs.write_text(deep.replace("void outputs_release(void)\n{", release))
+    subprocess.run(["make", "-C", str(made)], check=True, capture_output=True, timeout=120)
+
+    with running() as hub, Raw(hub.port) as client, started(made / "drives", hub.port) as drives:
+
+        def command(times):
+            for _ in range(times):
+                say(client, codec.encode("Thruster0Command", Thrust=12.5, Enable=True))
+                time.sleep(0.05)
+
+        command(3)
+        statuses(client, codec, lambda status: status["Drive"] == "RUNS")
+        drives.send_signal(signal.SIGSTOP)
+        command(20)
+        drives.send_signal(signal.SIGCONT)
+        command(2)
+        assert statuses(client, codec, lambda status: True)["Drive"] == "RUNS"
+        drives.send_signal(signal.SIGTERM)
+        assert drives.communicate(timeout=10)[1] == b""
 
 
 def test_the_program_ends_with_the_bus(program):

@@ -21,24 +21,30 @@ package body Responses is
    Up           : constant Long_Float := 0.2;
    Up_By_Itself : constant Long_Float := 0.5;
 
-   procedure Come_Up;
+   procedure Come_Up (Plan : Plans.Plan);
    procedure Hold (Plan : Plans.Plan);
    procedure Do_It (Plan : Plans.Plan; By : Response);
    function First (What : Event; Answer : Response_To) return Response;
 
-   --  Come up, by thrust unless the dive was given up, as long as the bus is there.
-   procedure Come_Up is
+   --  Come up, by thrust unless the dive was given up, as long as the bus is there. What floats rests there without
+   --  thrust, for whoever swims to it.
+   procedure Come_Up (Plan : Plans.Plan) is
       Until_Then : constant Long_Float := Now + Coming_Up;
       Afloat     : constant Long_Float := (if Vehicle.Told.Emergency = 0 then Up else Up_By_Itself);
    begin
       Vehicle.Begin_Goal ((Mode => MODE_SURFACE, others => <>));
       loop
          Guards.Kick;
-         exit when Bus.Is_Gone or else Now > Until_Then or else Now - Vehicle.Told.Heard_At > Silent;
+         if Bus.Is_Gone or else Now > Until_Then or else Now - Vehicle.Told.Heard_At > Silent then
+            return;
+         end if;
          exit when Vehicle.Told.Progress = PROGRESS_REACHED;
          exit when Now - Vehicle.Told.Known_At < LIMIT_STATE_SILENT and then Vehicle.Told.Here.Depth < Afloat;
          delay 0.05;
       end loop;
+      if Plan.Floats then
+         Vehicle.Begin_Goal ((Mode => MODE_IDLE, others => <>));
+      end if;
    end Come_Up;
 
    --  Stay where the vehicle is, by thrust, until something else goes wrong or nobody is there any more.
@@ -65,10 +71,10 @@ package body Responses is
             else
                Ways.Back_Out (Plan);
             end if;
-            Come_Up;
+            Come_Up (Plan);
 
          when Comes_Up =>
-            Come_Up;
+            Come_Up (Plan);
 
          when Stops_Thrust =>
             Vehicle.Begin_Goal ((Mode => MODE_IDLE, others => <>));

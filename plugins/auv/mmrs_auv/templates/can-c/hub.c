@@ -22,6 +22,7 @@
 
 #define TICK 10000u /* microseconds */
 #define PATIENCE 5000000u
+#define STALL (5u * TICK) /* between two readings of the clock; more was a stall */
 #define LONGEST_WORD 128u
 
 enum { ENDED = 0, WRONG_WORDS = 2, BUS_GONE = 3 };
@@ -47,6 +48,17 @@ static uint32_t microseconds(void)
     struct timespec now;
     (void)clock_gettime(CLOCK_MONOTONIC, &now);
     return (uint32_t)((uint64_t)now.tv_sec * 1000000u + (uint64_t)now.tv_nsec / 1000u);
+}
+
+/* Return the time without stalls of this program: what came meanwhile still waits to be heard, so that they are
+ * nobody's silence. */
+static uint32_t awake(void)
+{
+    static uint32_t now, seen;
+    const uint32_t gone = microseconds() - seen;
+    seen += gone;
+    now += gone < STALL ? gone : STALL;
+    return now;
 }
 
 /* Return false if the bus is gone; what finds no room is let go, for the bus must not stop the watchdogs. */
@@ -105,7 +117,7 @@ static bool hear_word(struct client *client, struct drives *drives)
         return client->answers == 2 ? say(client, "< rawmode >") : true;
     }
     if (frame_of(client->word, &frame)) {
-        drives_hear(drives, &frame, microseconds());
+        drives_hear(drives, &frame, awake());
     }
     return true;
 }
@@ -139,15 +151,15 @@ static bool serve(struct client *client, struct drives *drives)
 {
     struct drives_frame frames[VEHICLE_THRUSTERS];
     struct pollfd waits = {.fd = client->socket, .events = POLLIN, .revents = 0};
-    const uint32_t began = microseconds();
+    const uint32_t began = awake();
     uint32_t last = began - TICK;
     while (!ends) {
-        const uint32_t gone = microseconds() - last;
+        const uint32_t gone = awake() - last;
         if (poll(&waits, 1, gone >= TICK ? 0 : (int)((TICK - gone + 999u) / 1000u)) > 0
             && !hear(client, drives)) {
             return false;
         }
-        const uint32_t now = microseconds();
+        const uint32_t now = awake();
         if (now - last < TICK) {
             continue;
         }

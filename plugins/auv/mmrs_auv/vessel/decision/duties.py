@@ -182,11 +182,11 @@ class Finish:
 
 
 class Surface:
-    """Come up."""
+    """Come up, and rest there: whoever swims to the vehicle finds its thrusters still, unless it would sink."""
 
-    def __init__(self, afloat: float) -> None:
+    def __init__(self, afloat: float, *, floats: bool) -> None:
         """Come up; `afloat`: depth of the centre of gravity afloat, metres."""
-        self._afloat = afloat
+        self._afloat, self._rest = afloat, Finish(floats=floats)
 
     def begin(self, craft: Craft, now: float) -> None:
         """Begin; thrust helps unless the dive was given up."""
@@ -195,7 +195,10 @@ class Surface:
     def done(self, craft: Craft, now: float) -> bool:
         """Return whether the vehicle is at the surface."""
         state = craft.state()
-        return state.progress == "REACHED" or (state.age < 1.0 and state.depth < self._afloat + AFLOAT)
+        up = state.progress == "REACHED" or (state.age < 1.0 and state.depth < self._afloat + AFLOAT)
+        if up:
+            self._rest.begin(craft, now)
+        return up
 
 
 class Charge:
