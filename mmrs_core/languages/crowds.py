@@ -10,7 +10,8 @@ from mmrs_core.languages.element import Element, Unknown, descendants, held, met
 MOST_PARTS = 10_000
 """Of one kind in one element: tasks of a mission, vertices of a border, robots of a team.
 
-Borders are compared side by side with each other: ten times as many sides take a hundred times as long.
+So many tasks of one robot take half a minute to plan, so many vertices of a grid 12 s and of an obstacle 7 s
+(measured on a busy machine); ten times as many take more than a hundred times as long.
 """
 
 

@@ -101,15 +101,26 @@ def _plan_with(crew: Crew, jobs: Sequence[Job], seed: int) -> Plan:
     try:
         return _plan_of(crew, jobs, seed)
     except TooNearError as error:
-        for told, in_turns in _told_otherwise(crew, at_home=error.at_home):
+        for told, in_turns in _told_otherwise(crew, error):
             try:
-                return _plan_of(told, jobs, seed, in_turns=in_turns)
+                made = _plan_of(told, jobs, seed, in_turns=in_turns)
             except InfeasibleError:
                 continue
+            return replace(made, notes=(*_of_homecoming(crew, told, made), *made.notes))
         raise InfeasibleError(str(error), error.reasons) from error
 
 
-def _told_otherwise(crew: Crew, *, at_home: bool) -> Iterator[tuple[Crew, bool]]:
+def _of_homecoming(crew: Crew, told: Crew, made: Plan) -> Iterator[str]:
+    """Yield which robots at work return home though nobody asked for it, but to keep apart."""
+    before = {robot.name: robot.return_home for robot in crew.scene.robots}
+    returning = {robot.name for robot in told.scene.robots if robot.return_home and not before[robot.name]}
+    names = [each.robot for each in made.robots if each.robot in returning and each.steps]
+    if names:
+        ends = "returns home unasked" if len(names) == 1 else "return home unasked"
+        yield f"{', '.join(names)} {ends}, so that robots on the ground keep apart"
+
+
+def _told_otherwise(crew: Crew, error: TooNearError) -> Iterator[tuple[Crew, bool]]:
     """Yield (crew, whether its robots fly one after the other) that may help where robots come too near.
 
     Robots may transit one above the other, keep away from where others stand at home, end at home where
@@ -118,11 +129,13 @@ def _told_otherwise(crew: Crew, *, at_home: bool) -> Iterator[tuple[Crew, bool]]
     altitudes, least = stacked_altitudes(crew.scene), distance_to_keep(crew.scene)
     if altitudes:
         yield Crew(crew.scene, fine=crew.fine, homebound=crew.homebound, altitudes=altitudes), False
-    if at_home:
+    if error.at_home:
         yield Crew(crew.scene, fine=crew.fine, homebound=crew.homebound, from_homes=least), False
-    team = tuple(replace(robot, return_home=True) for robot in crew.scene.robots)
-    if team != crew.scene.robots:
-        yield Crew(replace(crew.scene, robots=team), fine=crew.fine, from_homes=least), False
+    before = crew.scene.robots
+    for names in dict.fromkeys((error.robots, frozenset(crew.pilots))):
+        team = tuple(replace(robot, return_home=True) if robot.name in names else robot for robot in before)
+        if team != before:
+            yield Crew(replace(crew.scene, robots=team), fine=crew.fine, from_homes=least), False
     everyone = frozenset(crew.pilots)
     yield Crew(crew.scene, fine=crew.fine, homebound=everyone), True
     yield Crew(crew.scene, fine=crew.fine, homebound=everyone, from_homes=least), True

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
+from math import dist
 
 import numpy as np
 
@@ -11,7 +12,7 @@ from mmrs_core.errors import InfeasibleError
 from mmrs_core.planning.nearness import Nearness, Track, near_pairs, track_of
 from mmrs_core.planning.schedule import Decisions
 from mmrs_core.planning.timeline import Spot, rides_of
-from mmrs_core.scene import Plan, Scene
+from mmrs_core.scene import Plan, Position, Scene
 
 _ROUNDS = 60
 _LONGEST_DELAY = 36_000.0
@@ -31,11 +32,13 @@ class TooNearError(InfeasibleError):
 
     Attributes:
         at_home: whether one of those that come too near first stands at its home.
+        robots: names of those two; empty where nobody is known.
     """
 
-    def __init__(self, encounter: Encounter | None, least: float) -> None:
-        super().__init__(_words(encounter, least))
+    def __init__(self, encounter: Encounter | None, least: float, homes: Mapping[str, Position]) -> None:
+        super().__init__(_words(encounter, least, homes))
         self.at_home = encounter is not None and encounter.at_home
+        self.robots = frozenset() if encounter is None else frozenset((encounter.first, encounter.second))
 
 
 @dataclass(frozen=True, slots=True)
@@ -88,7 +91,8 @@ def separated(scene: Scene, decisions: Decisions, planned: Callable[[Decisions],
         if better is None:
             break
         decisions, found = better
-    raise TooNearError(first_encounter(scene, found, least), least)
+    homes = {robot.name: robot.home for robot in scene.robots}
+    raise TooNearError(first_encounter(scene, found, least), least, homes)
 
 
 def _resolved(
@@ -140,13 +144,15 @@ def _finest(least: float) -> float:
     return max(0.5, least / _PARTS)
 
 
-def _words(encounter: Encounter | None, least: float) -> str:
+def _words(encounter: Encounter | None, least: float, homes: Mapping[str, Position]) -> str:
     if encounter is None:
         return "no plan keeps robots apart"
     at_home = ", one of them at its home" if encounter.at_home else ""
+    apart = dist(homes[encounter.first], homes[encounter.second])
+    near = f" (their homes are {apart:.1f} m apart)" if apart < least else ""
     return (
         f"robots '{encounter.first}' and '{encounter.second}' come within {encounter.distance:.1f} m"
-        f" after {encounter.time:.0f} s{at_home}, {least:g} m are required:"
+        f" after {encounter.time:.0f} s{at_home}{near}, {least:g} m are required:"
         f" {least - encounter.distance:.1f} m short; starting later does not help"
     )
 

@@ -4,7 +4,7 @@ from math import dist
 
 import numpy as np
 import pytest
-from plain_scenes import control, road, robot, scene, task, visit
+from plain_scenes import CRAWLER, control, road, robot, scene, task, visit
 from plan_replay import complaints
 
 from mmrs_core.errors import InfeasibleError
@@ -92,6 +92,31 @@ def test_no_robot_lands_beside_one_that_has_landed():
     assert first_encounter(whole, found, 3.0) is None
     ends = [each.steps[-1].at for each in found.robots]
     assert dist(ends[0][:2], ends[1][:2]) >= 3.0
+    assert found.notes[0].startswith("r0, r1 return home unasked, so that robots on the ground keep apart")
+
+
+def test_only_who_would_land_too_near_to_another_is_sent_home():
+    team = tuple(robot(f"r{k}", (-40.0, 20.0 * k, 0.0), returns=False) for k in range(3))
+    places = [(100.0, 0.0, 20.0), (100.3, 0.0, 20.0), (100.0, 90.0, 20.0)]
+    works = {f"t{k}": {f"r{k}": visit(place)} for k, place in enumerate(places)}
+    low = (Policy("BATTERY_LOW", "LAND"),)
+    whole = scene(team, works, after=[("t0", "t1")], minimum_separation=3.0, policies=low)
+    found = plan(whole)
+    assert complaints(whole, found) == []
+    ends = [each.steps[-1].at for each in found.robots]
+    assert [dist(end[:2], each.home[:2]) < 1.0 for end, each in zip(ends, team, strict=True)] == [
+        True,
+        True,
+        False,
+    ]
+
+
+def test_homes_that_are_too_near_are_named_where_they_are_the_cause():
+    team = (robot("r1", kinematics=CRAWLER), robot("r2", (1.0, 0.0, 0.0), kinematics=CRAWLER))
+    works = {"a": {"r1": visit((50.0, 0.0, 0.0))}, "b": {"r2": visit((50.0, 30.0, 0.0))}}
+    whole = scene(team, works, minimum_separation=3.0)
+    with pytest.raises(InfeasibleError, match=r"after 0 s \(their homes are 1\.0 m apart\)"):
+        plan(whole)
 
 
 def test_a_way_leads_around_a_robot_that_stands_at_home_without_work():
