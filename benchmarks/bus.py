@@ -33,7 +33,8 @@ from mmrs_core.behaviour.program import Program
 from mmrs_core.behaviour.replay import Outcome, replay
 from mmrs_core.contributions.backends import BackendInput
 from mmrs_core.flight.bus import begin_together
-from mmrs_core.flight.bus.carriers.over_zenoh import Endpoints, ZenohCarrier, configuration
+from mmrs_core.flight.bus.carriers.over_zenoh import ZenohCarrier
+from mmrs_core.flight.bus.carriers.sessions import Endpoints, configuration
 from mmrs_core.flight.program import Local, Notify, Robot, Start, Step
 from mmrs_core.flight.records.log import Log
 from mmrs_core.flight.slots import BusSlots, LocalSlots, shared_slots

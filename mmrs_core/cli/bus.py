@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from mmrs_core.behaviour.program import Program
     from mmrs_core.cli.bus_access import Holder
     from mmrs_core.flight.bus import Node, Recorded
-    from mmrs_core.flight.bus.carriers.over_zenoh import Endpoints
+    from mmrs_core.flight.bus.carriers.sessions import Endpoints
     from mmrs_core.flight.bus.gateway.server import Gateway
 
 app = typer.Typer(
@@ -79,7 +79,8 @@ def keys(
 
     By them each robot can speak only for itself. DIR/NAME holds all that the machine of that robot needs:
     copy it there, and give its bus.json5 to the controller as --bus-config. DIR/observer is for looking on.
-    The authority's key stays with you. Call it again with all robots to add one: what there is, is kept.
+    The authority's key stays with you. Call it again with all robots to add one, or to replace a certificate
+    that is revoked or whose folder is gone: the rest is kept. Copy the folders again then.
 
     Example: mmrs bus keys keys --robot Drone1 --robot Drone2 --host 10.0.0.1 --host 10.0.0.2
     """
@@ -90,16 +91,41 @@ def keys(
     holders = tuple(_holder(text) for text in robots)
     _refuse_doubles(holders)
     reached = [_host(text) for text in hosts or ("localhost", "127.0.0.1")]
-    try:
+    with _readable():
         made = make_keys(folder, holders, reached, datetime.now(UTC), days)
-    except OSError as error:
-        raise UnreadableError(f"{error.filename}: {error.strerror}") from error
-    except ValueError as error:
-        raise UnreadableError(str(error)) from error
     if json:
         say_json({"folders": [str(each) for each in made]})
     else:
         for each in made:
+            say(f"written: {each}")
+    return 0
+
+
+@app.command("revoke")
+def revoke(
+    folder: Annotated[Path, typer.Argument(metavar="DIR", help="Where mmrs bus keys wrote.")],
+    name: Annotated[
+        str, typer.Argument(metavar="NAME", help="Robot, or process, whose key is not to be valid.")
+    ],
+    json: Json = False,
+) -> int:
+    """Revoke the certificate of a robot.
+
+    Copy DIR/revoked.pem to every machine, next to its bus.json5. Running processes read it within seconds and
+    refuse the old key from then on. mmrs bus keys makes another certificate for the robot.
+
+    Example: mmrs bus revoke keys Drone1
+    """
+    from datetime import UTC, datetime
+
+    with _needing("cryptography"):
+        from mmrs_core.cli import bus_certificates
+    with _readable():
+        written = bus_certificates.revoke(folder, name, datetime.now(UTC))
+    if json:
+        say_json({"revoked": name, "lists": [str(each) for each in written]})
+    else:
+        for each in written:
             say(f"written: {each}")
     return 0
 
@@ -133,7 +159,7 @@ def gateway(
     from mmrs_core.flight.screen import unfailing
 
     with _needing("eclipse-zenoh"):
-        from mmrs_core.flight.bus.carriers.over_zenoh import Endpoints
+        from mmrs_core.flight.bus.carriers.sessions import Endpoints
     program = load_program(Workshop(settings_of(call)), behaviour_file(behaviour))
     if robot not in {each.id for each in program.robots}:
         raise typer.BadParameter(f"--robot {robot}: not in the behaviour")
@@ -170,7 +196,7 @@ def state(
     """
     with _needing("eclipse-zenoh"):
         from mmrs_core.flight.bus.carriers.looking import reasons, states_of
-        from mmrs_core.flight.bus.carriers.over_zenoh import Endpoints
+        from mmrs_core.flight.bus.carriers.sessions import Endpoints
     _refuse_endpoints(listen, connect)
     endpoints = Endpoints(tuple(listen or ()), tuple(connect or ()), config)
     try:
@@ -228,6 +254,17 @@ def _needing(distribution: str) -> Iterator[None]:
         yield
     except ModuleNotFoundError as error:
         raise UnsupportedError(f"bus: needs {distribution}; pip install 'mmrs-core[bus]'") from error
+
+
+@contextmanager
+def _readable() -> Iterator[None]:
+    """Report what is wrong with a folder of keys."""
+    try:
+        yield
+    except OSError as error:
+        raise UnreadableError(f"{error.filename}: {error.strerror}") from error
+    except ValueError as error:
+        raise UnreadableError(str(error)) from error
 
 
 def _holder(text: str) -> Holder:

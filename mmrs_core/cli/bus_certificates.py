@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import os
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from datetime import datetime, timedelta
 from ipaddress import ip_address
 from pathlib import Path
@@ -22,6 +22,7 @@ from cryptography.hazmat.primitives.serialization import (
 from cryptography.x509.oid import ExtendedKeyUsageOID, NameOID
 
 from mmrs_core.cli.bus_access import Holder, configuration
+from mmrs_core.flight.bus.carriers.revocation import REVOKED, serial_of, valid_name
 
 AUTHORITY = "authority"
 """Stem of the files of whoever signs the certificates; its key belongs on no robot."""
@@ -29,11 +30,16 @@ AUTHORITY = "authority"
 OBSERVER = "observer"
 """Name of the certificate that may look on and may not speak for any robot."""
 
+_CERTIFICATE = "certificate.pem"
+_EARLIER = timedelta(hours=1)
+"""Clocks may be behind by so much."""
+
 
 @dataclass(frozen=True, slots=True)
 class _Signer:
     certificate: x509.Certificate
     key: ec.EllipticCurvePrivateKey
+    list: x509.CertificateRevocationList
 
 
 def make_keys(
@@ -41,8 +47,9 @@ def make_keys(
 ) -> tuple[Path, ...]:
     """Write an authority, and for each holder a folder with all that its process needs.
 
-    An authority and certificates that are in the folder already are used again, so that a robot can be
-    added; configurations are written anew, since each lists all robots.
+    An authority and valid certificates that are in the folder already are used again, so that a robot can be
+    added; configurations are written anew, since each lists all robots. Whoever gets another certificate than
+    before has the one before revoked.
 
     Args:
         folder: where to write; ``<holder>/`` within it goes to the holder's machine.
@@ -56,52 +63,144 @@ def make_keys(
 
     Raises:
         OSError: if something cannot be written.
-        ValueError: if the authority in the folder cannot be used, or somebody has a certificate of it who
-            is not named: nobody would let them in any more.
+        ValueError: if the authority or the revocation list in the folder cannot be used, or somebody has a
+            valid certificate who is not named: nobody would let them in any more.
     """
     folder.mkdir(parents=True, exist_ok=True)
-    left_out = sorted(
-        path.parent.name
-        for path in folder.glob("*/certificate.pem")
-        if path.parent.name not in {OBSERVER, *(holder.name for holder in holders)}
-    )
-    if left_out:
-        raise ValueError(
-            f"{folder}: {', '.join(map(repr, left_out))} would not be let in any more: name all who are to be"
-            " on the bus, or delete the folders of those who are not"
-        )
-    signer = _authority(folder, now, days)
     everybody = (*holders, Holder(OBSERVER, ()))
+    if (folder / f"{AUTHORITY}.pem").exists():
+        signer = _authority(folder)
+        _refuse_left_out(folder, {holder.name for holder in everybody}, signer.list.tbs_certlist_bytes)
+        # A folder that is gone may have held a certificate: its key must not stay valid.
+        gone = [each.name for each in everybody if not (folder / each.name / _CERTIFICATE).exists()]
+        signer = _revoked(folder, signer, gone, now)
+    else:
+        signer = _new_authority(folder, now, days)
     made = []
     for holder in everybody:
         own = folder / holder.name
         own.mkdir(exist_ok=True, mode=0o700)
-        if not (own / "certificate.pem").exists():
-            _certify(own, holder.name, hosts, signer, now, days)
-        _write(own / "authority.pem", (folder / f"{AUTHORITY}.pem").read_bytes())
+        name = valid_name(holder.name, signer.list.tbs_certlist_bytes)
+        if _name_in(own) != name:
+            _certify(own, name, hosts, signer, now, days)
+        for common in (f"{AUTHORITY}.pem", REVOKED):
+            _write(own / common, (folder / common).read_bytes())
         _write(own / "bus.json5", json.dumps(configuration(holder, everybody), indent=2).encode() + b"\n")
         made.append(own)
     return tuple(made)
 
 
-def _authority(folder: Path, now: datetime, days: int) -> _Signer:
-    certificate, key = folder / f"{AUTHORITY}.pem", folder / f"{AUTHORITY}.key.pem"
-    if certificate.exists():
-        found = load_pem_private_key(key.read_bytes(), None)
-        if not isinstance(found, ec.EllipticCurvePrivateKey):
-            raise ValueError(f"{key}: no key of the kind that signs for the bus")
-        return _Signer(x509.load_pem_x509_certificate(certificate.read_bytes()), found)
+def revoke(folder: Path, holder: str, now: datetime) -> tuple[Path, ...]:
+    """Revoke the certificate in a holder's folder; one that is revoked already stays so.
+
+    Args:
+        folder: where `make_keys` wrote. holder: its name.
+        now: when this is done.
+
+    Returns:
+        Where the revocation list is: in the folder, and in the folder of each holder.
+
+    Raises:
+        OSError: if something cannot be read or written.
+        ValueError: if the authority or the revocation list cannot be used, or the holder has no certificate.
+    """
+    signer = _authority(folder)
+    if (name := _name_in(folder / holder)) is None:
+        raise ValueError(
+            f"{folder / holder}: holds no certificate; where it is lost, mmrs bus keys replaces it"
+        )
+    if name == valid_name(holder, signer.list.tbs_certlist_bytes):
+        _revoked(folder, signer, [holder], now)
+    return (folder / REVOKED, *(path.with_name(REVOKED) for path in sorted(folder.glob(f"*/{_CERTIFICATE}"))))
+
+
+def _refuse_left_out(folder: Path, named: set[str], revoked: bytes) -> None:
+    holders = sorted(path.parent.name for path in folder.glob(f"*/{_CERTIFICATE}"))
+    valid = [each for each in holders if _name_in(folder / each) == valid_name(each, revoked)]
+    if left_out := [each for each in valid if each not in named]:
+        raise ValueError(
+            f"{folder}: {', '.join(map(repr, left_out))} would not be let in any more: name all who are to be"
+            " on the bus, and revoke those who are not (mmrs bus revoke)"
+        )
+
+
+def _name_in(own: Path) -> str | None:
+    """Return the common name of the certificate in a holder's folder; None: there is none."""
+    if not (own / _CERTIFICATE).exists():
+        return None
+    made = x509.load_pem_x509_certificate((own / _CERTIFICATE).read_bytes())
+    return str(made.subject.get_attributes_for_oid(NameOID.COMMON_NAME)[0].value)
+
+
+def _revoked(folder: Path, signer: _Signer, holders: Sequence[str], now: datetime) -> _Signer:
+    """Revoke the valid certificates of holders, and write the list wherever it belongs."""
+    if holders:
+        revoked = signer.list.tbs_certlist_bytes
+        serials = [serial_of(valid_name(holder, revoked)) for holder in holders]
+        entries = [
+            x509.RevokedCertificateBuilder().serial_number(each).revocation_date(now).build()
+            for each in serials
+        ]
+        listed = _list(signer.certificate, signer.key, [*signer.list, *entries], now)
+        signer = replace(signer, list=listed)
+        content = signer.list.public_bytes(Encoding.PEM)
+        for path in (folder, *(path.parent for path in folder.glob(f"*/{_CERTIFICATE}"))):
+            _write(path / REVOKED, content)
+    return signer
+
+
+def _authority(folder: Path) -> _Signer:
+    certificate, key, revoked = (
+        folder / name for name in (f"{AUTHORITY}.pem", f"{AUTHORITY}.key.pem", REVOKED)
+    )
+    if certificate.exists() and not revoked.exists():
+        raise ValueError(
+            f"{revoked}: missing; without it revoked certificates would be valid again. Restore it, or make"
+            " all keys anew in another folder"
+        )
+    found = load_pem_private_key(key.read_bytes(), None)
+    if not isinstance(found, ec.EllipticCurvePrivateKey):
+        raise ValueError(f"{key}: no key of the kind that signs for the bus")
+    known = x509.load_pem_x509_crl(revoked.read_bytes())
+    if not known.is_signature_valid(found.public_key()):
+        raise ValueError(f"{revoked}: not signed by {certificate.name}")
+    return _Signer(x509.load_pem_x509_certificate(certificate.read_bytes()), found, known)
+
+
+def _new_authority(folder: Path, now: datetime, days: int) -> _Signer:
     made = ec.generate_private_key(ec.SECP256R1())
     name = _name("MMRS bus")
     signed = (
         _builder(name, name, made, now, days)
+        .serial_number(x509.random_serial_number())
         .add_extension(x509.BasicConstraints(ca=True, path_length=0), critical=True)
         .add_extension(_usage(signs=True), critical=True)
         .sign(made, SHA256())
     )
-    _write(key, _pem(made))
-    _write(certificate, signed.public_bytes(Encoding.PEM))
-    return _Signer(signed, made)
+    signer = _Signer(signed, made, _list(signed, made, (), now))
+    _write(folder / f"{AUTHORITY}.key.pem", _pem(made))
+    _write(folder / REVOKED, signer.list.public_bytes(Encoding.PEM))
+    _write(folder / f"{AUTHORITY}.pem", signed.public_bytes(Encoding.PEM))
+    return signer
+
+
+def _list(
+    authority: x509.Certificate,
+    key: ec.EllipticCurvePrivateKey,
+    revoked: Sequence[x509.RevokedCertificate],
+    now: datetime,
+) -> x509.CertificateRevocationList:
+    """Return a revocation list, valid for as long as the authority is."""
+    made = (
+        x509.CertificateRevocationListBuilder()
+        .issuer_name(authority.subject)
+        .last_update(now - _EARLIER)
+        .next_update(authority.not_valid_after_utc)
+        .add_extension(x509.CRLNumber(len(revoked)), critical=False)
+    )
+    for each in revoked:
+        made = made.add_revoked_certificate(each)
+    return made.sign(key, SHA256())
 
 
 def _certify(own: Path, name: str, hosts: Sequence[str], signer: _Signer, now: datetime, days: int) -> None:
@@ -109,6 +208,7 @@ def _certify(own: Path, name: str, hosts: Sequence[str], signer: _Signer, now: d
     both = [ExtendedKeyUsageOID.SERVER_AUTH, ExtendedKeyUsageOID.CLIENT_AUTH]
     signed = (
         _builder(_name(name), signer.certificate.subject, key, now, days)
+        .serial_number(serial_of(name))
         .add_extension(x509.BasicConstraints(ca=False, path_length=None), critical=True)
         .add_extension(x509.SubjectAlternativeName([_host(host) for host in hosts]), critical=False)
         .add_extension(x509.ExtendedKeyUsage(both), critical=False)
@@ -116,7 +216,7 @@ def _certify(own: Path, name: str, hosts: Sequence[str], signer: _Signer, now: d
         .sign(signer.key, SHA256())
     )
     _write(own / "key.pem", _pem(key))
-    _write(own / "certificate.pem", signed.public_bytes(Encoding.PEM))
+    _write(own / _CERTIFICATE, signed.public_bytes(Encoding.PEM))
 
 
 def _builder(
@@ -127,8 +227,7 @@ def _builder(
         .subject_name(subject)
         .issuer_name(issuer)
         .public_key(key.public_key())
-        .serial_number(x509.random_serial_number())
-        .not_valid_before(now - timedelta(hours=1))
+        .not_valid_before(now - _EARLIER)
         .not_valid_after(now + timedelta(days=days))
     )
 

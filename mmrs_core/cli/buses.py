@@ -72,7 +72,8 @@ def bus_for(
         restore(bus, program, resumed or ())
         return bus
     try:
-        from mmrs_core.flight.bus.carriers.over_zenoh import Endpoints, ZenohCarrier
+        from mmrs_core.flight.bus.carriers.over_zenoh import ZenohCarrier
+        from mmrs_core.flight.bus.carriers.sessions import Endpoints
     except ModuleNotFoundError as error:
         raise UnsupportedError("--bus: needs Zenoh; pip install 'mmrs-core[bus]'") from error
     refuse_endpoints("--bus-listen", wishes.listen)

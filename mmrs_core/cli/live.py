@@ -61,7 +61,12 @@ def run(
         ),
     ] = 0.0,
     bus: Annotated[
-        bool, typer.Option("--bus", help="Keep slots with robots that other processes run, by Zenoh.")
+        bool,
+        typer.Option(
+            "--bus",
+            help="Keep slots with robots of other processes, by Zenoh; without an address or keys,"
+            " of processes on this computer.",
+        ),
     ] = False,
     bus_listen: Annotated[
         _Texts, typer.Option("--bus-listen", metavar="ENDPOINT", help="Such as tcp/0.0.0.0:7447.")

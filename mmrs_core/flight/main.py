@@ -107,7 +107,8 @@ def _slots(
     stack: ExitStack,
 ) -> BusSlots:
     if options.bus.used:
-        from .bus.carriers.over_zenoh import Endpoints, ZenohCarrier
+        from .bus.carriers.over_zenoh import ZenohCarrier
+        from .bus.carriers.sessions import Endpoints
 
         reached = Endpoints(options.bus.listen, options.bus.connect, options.bus.file)
         zenoh = ZenohCarrier(robots[0].mission, options.run, team_of(robots), reached, plan=robots[0].plan)

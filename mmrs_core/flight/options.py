@@ -137,7 +137,7 @@ def parser_for(robots: Sequence[Robot]) -> argparse.ArgumentParser:
     add("--inject", action="append", default=[], metavar="FAULTS", help=HELP)
     add("--sync", action="store_true", help="begin at one instant, when all robots of the mission are ready")
     add("--sync-patience", type=_positive, default=PATIENCE, metavar="SECONDS", help=_SYNC_PATIENCE)
-    add("--bus", action="store_true", help="keep slots with robots in other processes, by Zenoh")
+    add("--bus", action="store_true", help=_BUS)
     add("--bus-listen", action="append", default=[], metavar="ENDPOINT", help="such as tcp/0.0.0.0:7447")
     add("--bus-connect", action="append", default=[], metavar="ENDPOINT", help="such as tcp/10.0.0.2:7447")
     add("--bus-config", type=Path, metavar="FILE", help="Zenoh's configuration, as mmrs bus keys makes it")
@@ -178,6 +178,10 @@ def options_of(
 _SYNC_PATIENCE = (
     f"real seconds to wait with --sync for robots that are not ready, default {PATIENCE:g};"
     " then nothing begins"
+)
+_BUS = (
+    "keep slots with robots of other processes, by Zenoh; without an address or keys, of processes on this"
+    " computer"
 )
 _PATIENCE = (
     "how long to wait for the order resume when a robot has come home for its battery and no other works"

@@ -352,7 +352,8 @@ def _main() -> int:
 
 
 def _zenoh_bus(made, given, folder, records):
-    from mmrs_core.flight.bus.carriers.over_zenoh import Endpoints, ZenohCarrier
+    from mmrs_core.flight.bus.carriers.over_zenoh import ZenohCarrier
+    from mmrs_core.flight.bus.carriers.sessions import Endpoints
 
     names = [each.id for each in made.robots]
     carrier = ZenohCarrier(

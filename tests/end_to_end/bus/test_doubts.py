@@ -13,7 +13,7 @@ from mmrs_core.cli.bus_certificates import make_keys
 from mmrs_core.cli.running import run_command
 from mmrs_core.flight.bus.carriers import doubts
 from mmrs_core.flight.bus.carriers.doubts import Papers, why_not
-from mmrs_core.flight.bus.carriers.over_zenoh import Endpoints
+from mmrs_core.flight.bus.carriers.sessions import Endpoints
 
 
 def papers(folder, holder="b"):
@@ -65,7 +65,7 @@ def test_a_certificate_that_has_expired_is_told_as_that(ends, listening):
 def test_a_certificate_that_is_not_valid_yet_is_told_with_what_the_clock_says(ends, tmp_path):
     ends.keys = tmp_path / "keys"
     early = keys(ends.keys, since=datetime.now(UTC) + timedelta(days=400))
-    ends.open("a")
+    ends.open("a", certificate="b")
     _, refused = why_not(f"tls/127.0.0.1:{ends.ports['a']}", early)
     assert f"the clock here says {datetime.now(UTC):%Y-%m}" in refused
     assert "not yet valid" in refused

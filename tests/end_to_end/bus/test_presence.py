@@ -14,7 +14,8 @@ from bus_walking import RUN, exchange
 from stalls import Stalls
 
 from mmrs_core.flight.bus import Unwelcome
-from mmrs_core.flight.bus.carriers.over_zenoh import Endpoints, ZenohCarrier
+from mmrs_core.flight.bus.carriers.over_zenoh import ZenohCarrier
+from mmrs_core.flight.bus.carriers.sessions import Endpoints
 from mmrs_core.runtime.slots import shared_bus
 
 SCRIPT = Path(bus_walking.__file__)

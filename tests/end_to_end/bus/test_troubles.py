@@ -9,7 +9,7 @@ import pytest
 import zenoh
 
 from mmrs_core.flight.bus.carriers.looking import states_of
-from mmrs_core.flight.bus.carriers.over_zenoh import Endpoints
+from mmrs_core.flight.bus.carriers.sessions import Endpoints
 from mmrs_core.flight.bus.words import digest
 
 

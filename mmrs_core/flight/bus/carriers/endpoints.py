@@ -4,10 +4,13 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable
+from contextlib import suppress
+from ipaddress import ip_address
 
 _ADDRESS = r"[^/?#\s]+:(?P<port>\d{1,5})"
 _ENDPOINT = re.compile(rf"((tcp|tls|udp|quic|quic_datagram|ws)/{_ADDRESS}|[a-z][a-z_-]*/[^?#\s]+)([?#]\S*)?")
 _OTHERS = ("serial", "unixpipe", "unixsock-stream", "vsock")
+_OF_THIS_COMPUTER = ("unixpipe", "unixsock-stream")
 LAST_PORT = 65_535
 
 
@@ -16,6 +19,15 @@ def first_fault(endpoints: Iterable[str]) -> str:
     return next(
         (f"{each}: no endpoint, such as tcp/10.0.0.2:7447" for each in endpoints if not _is(each)), ""
     )
+
+
+def is_local(endpoint: str) -> bool:
+    """Return whether an endpoint is reached from this computer only; unknown names are not."""
+    way, _, address = endpoint.partition("/")
+    host = re.split(r"[?#]", address)[0].rpartition(":")[0].strip("[]")
+    with suppress(ValueError):
+        return ip_address(host).is_loopback
+    return way in _OF_THIS_COMPUTER or host == "localhost"
 
 
 def _is(text: str) -> bool:

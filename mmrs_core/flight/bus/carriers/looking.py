@@ -9,7 +9,7 @@ import zenoh
 
 from ..words import digest
 from .doubts import why_not
-from .over_zenoh import Endpoints, closed, opened, papers_of
+from .sessions import Endpoints, closed, configuration, opened, papers_of
 
 
 def states_of(
@@ -29,7 +29,7 @@ def states_of(
     key, found = f"mmrs/{digest(mission)}/{digest(run)}/*/state", dict[str, str]()
     wanted = {digest(robot) for robot in robots}
     until = time.monotonic() + seconds
-    session = opened(endpoints)
+    session = opened(configuration(endpoints))
     try:
         while time.monotonic() < until and not (wanted and wanted <= set(found)):
             # Peers may not be in touch yet: what they keep is asked for again and again.

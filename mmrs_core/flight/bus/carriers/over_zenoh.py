@@ -8,16 +8,12 @@ the certificate of whoever speaks.
 
 from __future__ import annotations
 
-import atexit
 import json
-import os
-import re
 import threading
 import uuid
 from collections.abc import Callable, Sequence
-from contextlib import suppress
-from dataclasses import dataclass
-from pathlib import Path
+from functools import partial
+from itertools import count
 from queue import SimpleQueue
 from typing import Any
 
@@ -26,48 +22,15 @@ import zenoh
 from ..troubles import Net, tell_people
 from ..words import LONGEST, digest
 from .carrier import Answered, Station
-from .doubts import Doubts, Papers
-from .endpoints import first_fault
-
-LEASE_MILLISECONDS = 1500
-"""After so long without a sign a frozen peer counts as lost."""
+from .doubts import Doubts
+from .renewing import Renewing
+from .sessions import Endpoints, closed, configuration, exposed, opened, papers_of, speaks_for
 
 ANSWER_SECONDS = 5.0
 """How long an answer is of use; what is not answered is asked again sooner."""
 
-CLOSING_SECONDS, LAST_SECONDS = 1.0, 2.0
-"""How long closing may take, and how much longer when the process ends."""
-
-READERS = 64
-"""Threads that read from the network. Zenoh blocks two of them for ten seconds with every machine that goes
-out of reach (it closes sockets that linger); without one that is free, nobody else is heard either."""
-
-_FILES = (
-    "root_ca_certificate",
-    "listen_private_key",
-    "listen_certificate",
-    "connect_private_key",
-    "connect_certificate",
-)
-_SHOWN = ("root_ca_certificate", "connect_certificate", "connect_private_key")
-_SOURCES = re.compile(r" at \S+\.rs:\d+\.?")
-_TLS_TO_IPV6 = re.compile(r"(tls|quic|quic_datagram)/\[")
-RETRY = {"period_init_ms": 100, "period_max_ms": 1000, "period_increase_factor": 2}
-
-
-@dataclass(frozen=True, slots=True)
-class Endpoints:
-    """How peers are reached.
-
-    Attributes:
-        listen: endpoints to listen at, such as ``tcp/0.0.0.0:7447``. connect: endpoints of others; with
-            none of either, and none in the file, others are found by multicast.
-        file: of Zenoh's configuration, with certificates for example; None: there is none.
-    """
-
-    listen: tuple[str, ...] = ()
-    connect: tuple[str, ...] = ()
-    file: Path | None = None
+_There = dict[tuple[str, bool], set[str]]
+"""Starts by which a robot is there, by its name and whether it flies by the same plan."""
 
 
 class ZenohCarrier:
@@ -95,18 +58,21 @@ class ZenohCarrier:
         self._names = {digest(robot): robot for robot in robots}
         self._endpoints = endpoints
         self._plan = digest(plan)
-        self._start = f"{uuid.uuid4().hex[:12]}-{self._plan}"
+        self._process, self._sessions = uuid.uuid4().hex[:12], count(1)
+        self._start = ""
         self._station: Station | None = None
         self._speaks_for: frozenset[str] | None = None
         self._own: set[str] = set()
         self._session: Any = None
         self._declared: list[Any] = []
         self._tokens: dict[str, Any] = {}
-        self._there: dict[tuple[str, bool], set[str]] = {}
+        self._there: _There = {}
         self._work: SimpleQueue[Callable[[], None] | None] = SimpleQueue()
         self._worker = threading.Thread(target=self._serve_all, name="bus answers", daemon=True)
         self._closing = threading.Lock()
+        self._over = threading.Event()
         self._doubts: Doubts | None = None
+        self._renewing: Renewing | None = None
 
     def open(self, station: Station) -> None:
         """Open a session, and watch who is there.
@@ -114,17 +80,66 @@ class ZenohCarrier:
         Raises:
             OSError: it cannot be opened, or its configuration is not readable.
         """
-        self._station = station
-        self._session = opened(self._endpoints)
-        self._speaks_for = _speaks_for(self._endpoints.file)
+        self._station, file = station, self._endpoints.file
+        config = configuration(self._endpoints)
+        if file is not None and (speaks := speaks_for(file)) is not None:
+            self._speaks_for = speaks
+            self._renewing = Renewing(self._endpoints, file, self._rejoin, self._net)
+        if reached := exposed(config):
+            self._net.tell(
+                f"without keys it listens at {', '.join(reached)}:"
+                " any host that reaches it can read and set slots"
+            )
+        self._join(config)
         self._worker.start()
-        watched = self._session.liveliness().declare_subscriber(
-            f"{self._prefix}/*/here/*", self._later(self._see), history=True
-        )
-        self._declared.append(watched)
-        papers = papers_of(self._endpoints.file)
-        self._doubts = Doubts(self._endpoints.connect, papers, self._count_peers, self._net)
+        self._doubts = Doubts(self._endpoints.connect, papers_of(file), self._count_peers, self._net)
         self._doubts.start()
+        if self._renewing is not None:
+            self._renewing.start()
+
+    def _join(self, config: Any) -> None:
+        """Open a session, and show in it the robots that are shown.
+
+        Raises:
+            OSError: it cannot be opened.
+        """
+        session = opened(config)
+        with self._closing:
+            if not self._over.is_set():
+                self._session = session
+                # By another key than the session before, whose end may be noticed later.
+                self._start = f"{self._process}.{next(self._sessions)}-{self._plan}"
+                see = self._later(partial(self._see, self._there))
+                watched = session.liveliness().declare_subscriber(
+                    f"{self._prefix}/*/here/*", see, history=True
+                )
+                self._declared.append(watched)
+                self._tokens = {robot: self._token(robot) for robot in self._tokens}
+                return
+        closed(session)
+
+    def _rejoin(self, config: Any) -> None:
+        """Open a session instead of the one there is; meanwhile no robot of another process is there.
+
+        Raises:
+            OSError: it cannot be opened; then this process is off the bus.
+        """
+        self._part()
+        there, self._there = self._there, {}
+        self._work.put(lambda: self._lose(there))
+        self._join(config)
+
+    def _part(self) -> None:
+        """Close the session, if there is one."""
+        with self._closing:
+            session, self._session = self._session, None
+            declared, self._declared = self._declared, []
+            self._tokens = dict.fromkeys(self._tokens)
+            self._own.clear()
+        if session is not None:
+            for each in declared:
+                each.undeclare()
+            closed(session)
 
     def _count_peers(self) -> int:
         with self._closing:
@@ -159,20 +174,20 @@ class ZenohCarrier:
         if self._speaks_for is not None and robot not in self._speaks_for:
             whose = ", ".join(map(repr, sorted(self._speaks_for))) or "no robot"
             raise OSError(f"{self._endpoints.file}: its certificate speaks for {whose}, not for {robot!r}")
-        here = f"{self._key(robot, 'here')}/{self._start}"
         with self._closing:
-            if self._session is None or robot in self._tokens:
+            if self._over.is_set() or robot in self._tokens:
                 return
-            if robot not in self._own:
-                self._answer_for(robot)
-            self._tokens[robot] = self._session.liveliness().declare_token(here)
+            self._tokens[robot] = None if self._session is None else self._token(robot)
         self.publish(robot)
 
-    def _answer_for(self, robot: str) -> None:
-        self._own.add(robot)
-        serve, show = self._later(self._serve), self._later(lambda query: self._show(robot, query))
-        self._declared.append(self._session.declare_queryable(self._key(robot, "from", None), serve))
-        self._declared.append(self._session.declare_queryable(self._key(robot, "state"), show))
+    def _token(self, robot: str) -> Any:
+        """Answer for a robot, and return what tells that it is there."""
+        if robot not in self._own:
+            self._own.add(robot)
+            serve, show = self._later(self._serve), self._later(lambda query: self._show(robot, query))
+            self._declared.append(self._session.declare_queryable(self._key(robot, "from", None), serve))
+            self._declared.append(self._session.declare_queryable(self._key(robot, "state"), show))
+        return self._session.liveliness().declare_token(f"{self._key(robot, 'here')}/{self._start}")
 
     def vanish(self, robot: str) -> None:
         """Tell that a robot is no longer there; it still answers."""
@@ -192,16 +207,14 @@ class ZenohCarrier:
 
     def close(self) -> None:
         """Close the session; idempotent."""
-        if self._doubts is not None:
-            self._doubts.stop()
+        self._over.set()
+        for each in (self._doubts, self._renewing):
+            if each is not None:
+                each.stop()
         for robot in list(self._tokens):
             self.vanish(robot)
-        while self._declared:
-            self._declared.pop().undeclare()
-        with self._closing:
-            session, self._session = self._session, None
-        if session is not None:
-            closed(session)
+        self._part()
+        if self._worker.is_alive():
             self._work.put(None)
             self._worker.join()
 
@@ -240,18 +253,27 @@ class ZenohCarrier:
             if self._station is not None:
                 query.reply(self._key(robot, "state"), _shown(self._station, robot))
 
-    def _see(self, sample: Any) -> None:
+    def _see(self, there: _There, sample: Any) -> None:
+        """Take note of who is there, in the session that has this record of it."""
         robot, start = self._parts(sample.key_expr)
         name = self._names.get(robot)
-        if name is None or start == self._start or self._station is None:
+        own = start.startswith(f"{self._process}.")
+        if name is None or own or self._station is None or there is not self._there:
             return
         fits = start.endswith(f"-{self._plan}")
-        there = self._there.setdefault((name, fits), set())
+        starts = there.setdefault((name, fits), set())
         if sample.kind == zenoh.SampleKind.DELETE:
-            there.discard(start)
+            starts.discard(start)
         else:
-            there.add(start)
-        (self._station.noticed if fits else self._station.stranger)(name, bool(there))
+            starts.add(start)
+        (self._station.noticed if fits else self._station.stranger)(name, bool(starts))
+
+    def _lose(self, there: _There) -> None:
+        """Take note that nobody is there any more of those that were."""
+        if self._station is not None:
+            for (name, fits), starts in there.items():
+                if starts:
+                    (self._station.noticed if fits else self._station.stranger)(name, False)
 
     def _parts(self, key: Any) -> tuple[str, str]:
         """Return whose key it is and what it ends with; empty where it is none of ours or stands for many."""
@@ -266,120 +288,6 @@ class ZenohCarrier:
         return f"{self._prefix}/{digest(robot)}/{what}{ending}"
 
 
-def configuration(endpoints: Endpoints) -> Any:
-    """Return Zenoh's configuration.
-
-    Raises:
-        OSError: the file cannot be read, or is none of Zenoh's configurations; or an endpoint is none.
-    """
-    if why := first_fault((*endpoints.listen, *endpoints.connect)):
-        raise OSError(why)
-    config = zenoh.Config() if endpoints.file is None else _from_file(endpoints.file)
-    _refuse_ways(endpoints, json.loads(config.get_json("transport/link/protocols")))
-    _insert(config, "transport/link/tx/lease", LEASE_MILLISECONDS)
-    _insert(config, "connect/retry", RETRY)
-    if endpoints.listen:
-        _insert(config, "listen/endpoints", list(endpoints.listen))
-    if endpoints.connect:
-        _insert(config, "connect/endpoints", list(endpoints.connect))
-    if endpoints.listen or endpoints.connect or endpoints.file is not None:
-        _insert(config, "scouting/multicast/enabled", False)
-        # A peer that is not there yet is looked for again and again, and nobody waits for it.
-        _insert(config, "connect/timeout_ms", -1)
-        _insert(config, "connect/exit_on_failure", False)
-    return config
-
-
-def _refuse_ways(endpoints: Endpoints, allowed: Sequence[str] | None) -> None:
-    """Refuse endpoints that Zenoh would try in vain, and without a word.
-
-    Raises:
-        OSError: one needs certificates and there are none, the file does not allow it, or Zenoh, which takes
-            an IPv6 address for a name, does not reach it by TLS.
-    """
-    for each in endpoints.connect:
-        if _TLS_TO_IPV6.match(each):
-            raise OSError(f"{each}: IPv6 addresses are not reached by TLS: say a name that stands for it")
-    for each in (*endpoints.listen, *endpoints.connect):
-        way = each.partition("/")[0]
-        if endpoints.file is None and way in ("tls", "quic"):
-            raise OSError(f"{each}: needs certificates, and the configuration with them (mmrs bus keys)")
-        if allowed and way not in allowed:
-            raise OSError(f"{each}: {endpoints.file} allows {', '.join(allowed)} only")
-
-
-def papers_of(file: Path | None) -> Papers | None:
-    """Return what a configuration says of certificates; None: nothing, or not all of it."""
-    if file is None:
-        return None
-    config = _from_file(file)
-    found = [json.loads(config.get_json(f"transport/link/tls/{name}")) for name in _SHOWN]
-    return Papers(*map(Path, found)) if all(isinstance(each, str) for each in found) else None
-
-
-def _from_file(path: Path) -> Any:
-    """Return the configuration in a file; names of files in it are those of files beside it."""
-    try:
-        config = zenoh.Config.from_file(str(path))
-    except zenoh.ZError as error:
-        raise OSError(f"{path}: cannot be read as a configuration of Zenoh: {_plain(error)}") from error
-    for name in _FILES:
-        found = json.loads(config.get_json(f"transport/link/tls/{name}"))
-        if isinstance(found, str) and not Path(found).is_absolute():
-            _insert(config, f"transport/link/tls/{name}", str((path.parent / found).absolute()))
-    return config
-
-
-def _insert(config: Any, name: str, value: object) -> None:
-    config.insert_json5(name, json.dumps(value))
-
-
 def _shown(station: Station, robot: str) -> str:
     """Return the state of a robot's slots with its name, for those who look on and know the key only."""
     return json.dumps({"robot": robot, "slots": json.loads(station.shown(robot))})
-
-
-def closed(session: Any) -> None:
-    """Close a session, but do not wait for peers that are frozen: Zenoh would, for ten seconds."""
-
-    def close() -> None:
-        # What fails here is that a peer does not say goodbye; there is nobody left to be told.
-        with suppress(zenoh.ZError):
-            session.close()
-
-    closing = threading.Thread(target=close, name="bus closing", daemon=True)
-    closing.start()
-    closing.join(CLOSING_SECONDS)
-    if closing.is_alive():
-        # A thread that comes back from Zenoh while the interpreter ends would abort the process.
-        atexit.register(closing.join, LAST_SECONDS)
-
-
-def opened(endpoints: Endpoints) -> Any:
-    """Return a session.
-
-    Raises:
-        OSError: it cannot be opened, or its configuration is not readable.
-    """
-    # Read when the first session of a process is opened, and nowhere else can it be said.
-    os.environ.setdefault("ZENOH_RUNTIME", f"(rx: (worker_threads: {READERS}))")
-    try:
-        return zenoh.open(configuration(endpoints))
-    except zenoh.ZError as error:
-        raise OSError(f"bus: cannot be opened: {_plain(error)}") from error
-
-
-def _plain(error: zenoh.ZError) -> str:
-    """Return what Zenoh says, without the lines of its sources."""
-    return _SOURCES.sub("", str(error)).strip()
-
-
-def _speaks_for(file: Path | None) -> frozenset[str] | None:
-    """Return the robots for which the certificate of a configuration speaks; None where it does not say.
-
-    Raises:
-        OSError: the file cannot be read, or is none of Zenoh's configurations.
-    """
-    told = json.loads(_from_file(file).get_json("metadata")) if file is not None else None
-    robots = told.get("robots") if isinstance(told, dict) else None
-    return frozenset(map(str, robots)) if isinstance(robots, list) else None

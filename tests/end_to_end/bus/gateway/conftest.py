@@ -15,7 +15,8 @@ from waiting_pair import waiting_pair
 
 from mmrs_core import pipeline
 from mmrs_core.flight.bus import CommandId
-from mmrs_core.flight.bus.carriers.over_zenoh import Endpoints, ZenohCarrier
+from mmrs_core.flight.bus.carriers.over_zenoh import ZenohCarrier
+from mmrs_core.flight.bus.carriers.sessions import Endpoints
 from mmrs_core.languages.reading import read_model
 from mmrs_core.runtime.slots import node_of
 

@@ -1,0 +1,49 @@
+"""Revoked keys: processes that run refuse them as soon as the authority's list says so."""
+
+from __future__ import annotations
+
+import shutil
+from datetime import UTC, datetime
+
+import pytest
+
+from mmrs_core.cli.bus_certificates import revoke
+from mmrs_core.flight.bus.carriers import over_zenoh, renewing
+
+LONG_ENOUGH = 1.5
+
+
+@pytest.fixture
+def told(ends, monkeypatch):
+    """Return what processes tell, which have certificates and look all the time for changes."""
+    lines = []
+    monkeypatch.setattr(renewing, "LOOK_SECONDS", 0.05)
+    monkeypatch.setattr(over_zenoh, "tell_people", lines.append)
+    ends.certify()
+    return lines
+
+
+@pytest.fixture
+def pair(ends, told, until):
+    a, b = ends.open("a"), ends.open("b")
+    until(lambda: not a.missing("b") and not b.missing("a"))
+    return a, b
+
+
+def test_a_stolen_key_is_refused_without_a_restart_once_it_is_revoked(ends, pair, told, until, notify):
+    a, b = pair
+    shutil.copytree(ends.keys / "c", ends.keys / "stolen")
+    thief = ends.open("c", certificate="stolen", listens=False)
+    until(lambda: not thief.missing("ab") and not a.missing("c") and not b.missing("c"))
+    assert notify(thief, "c", "a")
+    revoke(ends.keys, "c", datetime.now(UTC))
+    until(lambda: a.missing("c") and b.missing("c") and thief.missing("ab") == ("a", "b"))
+    until(lambda: not a.missing("b") and not b.missing("a"))
+    assert not notify(thief, "c", "a", 2, active=False, seconds=LONG_ENOUGH)
+    assert a.state(("a", "go")).active, "the stolen key has reset a slot"
+    assert thief.missing("ab") == ("a", "b"), "the stolen key still hears others"
+    assert notify(a, "a", "b"), "valid keys no longer work"
+    ends.certify()
+    ends.open("c")
+    until(lambda: not a.missing("c") and not b.missing("c"))
+    assert "opened anew, for the keys have changed: lets in a, b, c 2, observer" in told
