@@ -15,6 +15,9 @@ from .sessions import Endpoints, admitted, configuration, revoked_by
 LOOK_SECONDS = 2.0
 """How often the files are looked at."""
 
+STOP_SECONDS = 2.0
+"""How long the end may take."""
+
 
 class Renewing:
     """Looks, in a thread of its own, whether others are to be let in than before."""
@@ -35,7 +38,7 @@ class Renewing:
         self._files = (file, file.with_name(REVOKED))
         self._seen = self._contents()
         self._revoked = revoked_by(file)
-        self._access = _access(configuration(endpoints))
+        self._access: str | None = _access(configuration(endpoints))
         self._over = threading.Event()
         self._thread = threading.Thread(target=self._watch, name="bus keys", daemon=True)
 
@@ -44,8 +47,10 @@ class Renewing:
         self._thread.start()
 
     def stop(self) -> None:
-        """End; does not wait for what is done at that moment."""
+        """End; a session that is being opened is waited for, but not for long."""
         self._over.set()
+        if self._thread.is_alive():
+            self._thread.join(STOP_SECONDS)
 
     def _watch(self) -> None:
         while not self._over.wait(LOOK_SECONDS):
@@ -58,19 +63,21 @@ class Renewing:
         Raises:
             OSError: the session cannot be opened anew.
         """
-        if (contents := self._contents()) == self._seen:
+        contents = self._contents()
+        if contents == self._seen and self._access is not None:
             return
+        self._seen = contents
         try:
             config = configuration(self._endpoints, self._revoked)
-            revoked = self._revoked + revoked_by(self._files[0])
+            self._revoked += revoked_by(self._files[0])
         except OSError as error:
-            self._seen = contents
             self._net.tell(f"{error}; the keys that were read before stay in use")
             return
         if (access := _access(config)) != self._access:
             self._net.tell(f"opened anew, for the keys have changed: lets in {', '.join(admitted(config))}")
+            self._access = None  # until the session is open
             self._renew(config)
-        self._seen, self._revoked, self._access = contents, revoked, access
+            self._access = access
 
     def _contents(self) -> list[bytes]:
         found = []
