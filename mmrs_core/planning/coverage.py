@@ -101,11 +101,9 @@ def work_over(scene: Scene, robot: Robot, shell: Ring, sweep: Sweep, holes: Sequ
     if action is not None and not length > 0:
         raise ValueError(f"action {action!r} needs a length to cover along the stroke, {length} is none")
     target = target_of(scene, robot, shell, holes, sweep.altitude)
-    asked = sum(
-        part.area for part in parts(shapely.difference(polygon(shell), _union(holes), grid_size=GRID))
-    )
     area = sum(piece.area for piece in target)
     if not target:
+        asked = shapely.difference(polygon(shell), _union(holes), grid_size=GRID).area
         raise InfeasibleError(f"polygon of {asked:.1f} m² lies within the clearance of areas as a whole")
     if length > 0 and width > 0 and area > MOST * length * width:
         wanted = area / length / width
@@ -121,7 +119,6 @@ def work_over(scene: Scene, robot: Robot, shell: Ring, sweep: Sweep, holes: Sequ
         target=tuple(rings(piece) for piece in target),
         width=width,
         length=sweep.along,
-        unreachable=max(0.0, asked - area),
     )
     strokes = tuple(_stroke(line, sweep) for line in lines)
     return Work(strokes=strokes, divisible=True, rule=sweep.rule, ordered=False, coverage=covered)

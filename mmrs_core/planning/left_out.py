@@ -4,7 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
-from mmrs_core.scene import Branch, LeftOut, Scene, Serve, Step, Work
+import shapely
+from shapely.geometry.base import BaseGeometry
+
+from mmrs_core.geometry.polygons import parts, polygon
+from mmrs_core.planning.coverage import blocks_at
+from mmrs_core.planning.footprints import GRID
+from mmrs_core.scene import Branch, Coverage, LeftOut, Position, Robot, Scene, Serve, Step, Work
 
 _LEAST = 0.05
 """Square metres, or metres, under which what is left out is rounding."""
@@ -18,7 +24,7 @@ def left_out(scene: Scene, steps: Mapping[str, tuple[Step, ...]]) -> tuple[LeftO
         for task in scene.tasks
         for robot in scene.robots
         if (task.name, robot.name) in served
-        for each in _of(task.name, scene.works[(task.name, robot.name)])
+        for each in _of(scene, task.name, robot, scene.works[task.name, robot.name])
     )
     return tuple(dict.fromkeys(found))
 
@@ -32,13 +38,38 @@ def _served(steps: tuple[Step, ...]) -> Iterator[str]:
                 yield from _served(arm)
 
 
-def _of(task: str, work: Work) -> Iterator[LeftOut]:
+def _of(scene: Scene, task: str, robot: Robot, work: Work) -> Iterator[LeftOut]:
     for gap in work.gaps:
         if gap.length > _LEAST:
-            east, north, _ = gap.at
-            place = f"from {gap.begin:.1f} m along {gap.line}, about ({east:.1f}, {north:.1f})"
+            place = f"from {gap.begin:.1f} m along {gap.line}, {_about(gap.at)}"
             yield LeftOut(task, gap.length, "m", f"{place}, too near to {gap.area}", gap.at)
-    if work.coverage is not None and work.coverage.unreachable > _LEAST:
-        yield LeftOut(
-            task, work.coverage.unreachable, "m²", "of its area, too near to what is kept away from"
-        )
+    if work.coverage is not None:
+        up = work.strokes[0].points[0][2]
+        for piece in parts(uncovered(work.coverage), smallest=_LEAST):
+            spot = piece.representative_point()
+            at = (spot.x, spot.y, up)
+            yield LeftOut(task, piece.area, "m²", f"{_about(at)}, too near to {_near(scene, robot, at)}", at)
+
+
+def _about(at: Position) -> str:
+    return f"about ({at[0]:.1f}, {at[1]:.1f})"
+
+
+def uncovered(coverage: Coverage) -> BaseGeometry:
+    """Return what of the polygon that was asked for is outside the target."""
+    holes = [polygon(hole) for hole in coverage.holes]
+    target = [shapely.Polygon(shell, inner) for shell, inner in coverage.target]
+    taken = shapely.union_all([*holes, *target])
+    left: BaseGeometry = shapely.difference(polygon(coverage.shell), taken, grid_size=GRID)
+    return left
+
+
+def _near(scene: Scene, robot: Robot, at: Position) -> str:
+    """Return the names of what a robot keeps away from at a place."""
+    names = [
+        f"'{area.name}'"
+        for area in scene.kept_from(robot)
+        if blocks_at(area, robot.clearance, at[2])
+        and polygon(area.shell).distance(shapely.Point(at)) <= area.safety_distance + robot.clearance + GRID
+    ]
+    return ", ".join(names) or "what is kept away from"

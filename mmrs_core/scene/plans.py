@@ -135,19 +135,19 @@ class LeftOut:
         amount: metres of a line, square metres of an area.
         unit: "m" or "m²".
         where: in words.
-        at: middle of a stretch of a line; None for areas.
+        at: middle of a stretch of a line, or a place within a part of an area.
     """
 
     task: str
     amount: float
     unit: str
     where: str
-    at: Position | None = None
+    at: Position
 
     def __str__(self) -> str:
         """Return it in one line.
 
-        >>> str(LeftOut("road", 4.5, "m", "from 118.0 m along the line, too near to 'mast'"))
+        >>> str(LeftOut("road", 4.5, "m", "from 118.0 m along the line, too near to 'mast'", (9.0, 9.0, 0.0)))
         "task 'road' leaves out 4.5 m from 118.0 m along the line, too near to 'mast'"
         """
         return f"task '{self.task}' leaves out {self.amount:.1f} {self.unit} {self.where}"

@@ -72,7 +72,6 @@ class Coverage:
         target: the parts of it that the robot's clearance leaves, as (shell, holes) polygons.
         width: of the strip that a stroke covers, metres, centred on the stroke; length: of what one
             action covers along the way, centred on the action's point; 0 where actions do not matter.
-        unreachable: square metres of the polygon asked for that are outside the target.
     """
 
     shell: Ring
@@ -80,7 +79,6 @@ class Coverage:
     target: tuple[tuple[Ring, tuple[Ring, ...]], ...]
     width: float
     length: float
-    unreachable: float
 
 
 @dataclass(frozen=True, slots=True)

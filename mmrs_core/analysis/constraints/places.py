@@ -15,6 +15,8 @@ from mmrs_core.analysis.constraints.findings import MISSION, called, finding
 from mmrs_core.analysis.constraints.sketch import DrawnArea, Sketch, polygon_of, sketch_of
 from mmrs_core.contributions.constraints import Constraint, Finding
 from mmrs_core.diagnostics import Severity
+from mmrs_core.geometry.clearance import grow
+from mmrs_core.geometry.polygons import parts
 from mmrs_core.geometry.stretches import between, blocked_stretches, open_stretches
 from mmrs_core.languages.element import Element
 from mmrs_core.languages.grounding.values import child, children, number
@@ -23,6 +25,9 @@ from mmrs_core.scene import Position
 
 EXACT = 1e-6
 """Metres by which a distance may fall short because numbers are rounded."""
+
+_LEAST = 0.05
+"""Square metres under which what cannot be reached is rounding."""
 
 
 def _home(robot: Element, models: ModelSet) -> Iterator[Finding]:
@@ -133,8 +138,11 @@ def _line_of(task: Element, models: ModelSet) -> _Line | None:
 
 
 def _blocked(points: list[Position], area: DrawnArea, keep: float) -> list[tuple[float, float]]:
-    ring = [(east, north) for east, north in shapely.get_coordinates(area.shape.exterior)[:-1].tolist()]
-    return blocked_stretches(points, ring, area.low, area.high, keep, _all_within)
+    return blocked_stretches(points, _ring_of(area), area.low, area.high, keep, _all_within)
+
+
+def _ring_of(area: DrawnArea) -> list[tuple[float, float]]:
+    return [(east, north) for east, north in shapely.get_coordinates(area.shape.exterior)[:-1].tolist()]
 
 
 def _all_within(ring: Sequence[tuple[float, float]], distance: float) -> BaseGeometry:
@@ -142,14 +150,48 @@ def _all_within(ring: Sequence[tuple[float, float]], distance: float) -> BaseGeo
 
 
 def _covered(task: Element, models: ModelSet) -> Iterator[Finding]:
+    area = _area_of(task, models)
+    if area is not None and area.closed and not area.left:
+        yield finding(task, "all of its area is too near to what every robot must keep away from")
+
+
+def _partly_covered(task: Element, models: ModelSet) -> Iterator[Finding]:
+    area = _area_of(task, models)
+    if area is None or not area.left:
+        return
+    for piece in area.closed:
+        spot = piece.representative_point()
+        yield finding(
+            task,
+            f"{piece.area:.1f} m² of its area, about ({spot.x:.1f}, {spot.y:.1f}), are too near to"
+            f" {area.names_at(spot)} for every robot",
+        )
+
+
+@dataclass(frozen=True, slots=True)
+class _Area:
+    """What no robot that can do a task may reach of its area, if any is left, and what is kept away from."""
+
+    closed: tuple[shapely.Polygon, ...]
+    left: bool
+    grown: list[tuple[str, BaseGeometry]]
+
+    def names_at(self, spot: shapely.Point) -> str:
+        """Return what is too near to a place."""
+        return ", ".join(name for name, shape in self.grown if shape.distance(spot) < EXACT)
+
+
+def _area_of(task: Element, models: ModelSet) -> _Area | None:
     sketch = sketch_of(models)
     ring, smallest = sketch.ring(task, "shell"), _smallest_clearance(task, models)
     shape = polygon_of(ring) if ring is not None else None
     if shape is None or smallest is None:
-        return
+        return None
     grown = list(_grown(sketch.kept_from, smallest, _height(task, sketch)))
-    if grown and shape.within(shapely.union_all(grown)):
-        yield finding(task, "all of its area is too near to what every robot must keep away from")
+    holes = (polygon_of(hole) for each in children(task, "holes") if (hole := sketch.ring(each, "points")))
+    asked = shape - shapely.union_all([hole for hole in holes if hole is not None])
+    kept = shapely.union_all([shape for _, shape in grown])
+    return _Area(parts(asked & kept, smallest=_LEAST), (asked - kept).area > _LEAST, grown)
 
 
 def _height(task: Element, sketch: Sketch) -> float | None:
@@ -158,13 +200,14 @@ def _height(task: Element, sketch: Sketch) -> float | None:
     return ups.pop() if len(ups) == 1 else None
 
 
-def _grown(areas: Iterable[DrawnArea], clearance: float, up: float | None) -> Iterator[BaseGeometry]:
-    """Yield areas grown by no more than is kept from them, so that what they cover cannot be reached."""
+def _grown(
+    areas: Iterable[DrawnArea], clearance: float, up: float | None
+) -> Iterator[tuple[str, BaseGeometry]]:
+    """Yield areas, called and grown as the planner grows them, as far as they matter at a height."""
     for area in areas:
-        endless = area.low == -inf and area.high == inf
-        reach = area.reach(clearance, 0.0 if up is None else up) if endless or up is not None else -1.0
-        if reach >= 0.0:
-            yield area.shape.buffer(reach, quad_segs=16)
+        endless, keep = area.low == -inf and area.high == inf, area.safety_distance + clearance
+        if endless or (up is not None and area.off(up) < keep):
+            yield called(area.element), grow(_ring_of(area), keep)
 
 
 def _astray(task: Element, models: ModelSet) -> Iterator[Finding]:
@@ -284,5 +327,13 @@ CONSTRAINTS = (
         (MISSION, "Mission"),
         _separated,
         "move the homes apart, or lower minimumSeparation",
+    ),
+    Constraint(
+        "MML091",
+        "All of an area task can be reached.",
+        (MISSION, "PolygonTask"),
+        _partly_covered,
+        "cut a hole there if it need not be done",
+        Severity.NOTE,
     ),
 )

@@ -11,7 +11,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
 from dataclasses import dataclass
-from math import hypot, sqrt
+from math import hypot
 
 import shapely
 from shapely.geometry import Polygon
@@ -40,11 +40,6 @@ class DrawnArea:
     low: float
     high: float
     safety_distance: float
-
-    def reach(self, clearance: float, up: float) -> float:
-        """Return how far to its side it keeps out a robot at a height, metres; negative: not at all."""
-        keep, off = self.safety_distance + clearance, self.off(up)
-        return sqrt(keep * keep - off * off) if off <= keep else -1.0
 
     def off(self, up: float) -> float:
         """Return how far a height is above or below the area, metres; 0 between its two sides."""

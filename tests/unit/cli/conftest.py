@@ -98,7 +98,7 @@ def scene_named(names: dict[str, str]) -> Scene:
         Robot(names.get(name, name), kind, home, True, 0.0, "NORMAL", 0.8, "drone", kinematics)
         for name, home in HOMES.items()
     )
-    coverage = Coverage(tuple(p[:2] for p in SHELL), (), (), 20.0, 12.0, 0.0)
+    coverage = Coverage(tuple(p[:2] for p in SHELL), (), (), 20.0, 12.0)
     return Scene(
         name=names.get("mission", "two drones"),
         frame=Frame("EPSG:4326", 42.37, 13.35),

@@ -379,7 +379,8 @@ def test_a_plan_names_what_it_leaves_out_of_a_line_once():
 
 
 def test_a_plan_names_the_share_of_an_area_that_it_leaves_out():
-    covered = Coverage(((0.0, 0.0), (9.0, 0.0), (9.0, 9.0)), (), (), 5.0, 0.0, unreachable=12.5)
-    work = replace(road((100.0, 0.0, 20.0), (140.0, 0.0, 20.0)), coverage=covered)
-    (left,) = plan(scene(TWO, {"a": work})).left_out
-    assert str(left) == "task 'a' leaves out 12.5 m² of its area, too near to what is kept away from"
+    west, shell = ((100.0, 0.0), (104.0, 0.0), (104.0, 9.0), (100.0, 9.0)), box("", 100, 0, 110, 9).shell
+    covered = Coverage(shell, (), ((west, ()),), 5.0, 0.0)
+    work = replace(road((100.0, 0.0, 20.0), (103.0, 0.0, 20.0)), coverage=covered)
+    (left,) = plan(scene(TWO, {"a": work}, areas=[box("mast", 107, -5, 112, 15, high=20.0)])).left_out
+    assert str(left) == "task 'a' leaves out 54.0 m² about (107.0, 4.5), too near to 'mast'"

@@ -11,7 +11,7 @@ EAST = ((0.0, 0.0, 5.0), (30.0, 0.0, 5.0))
 
 
 def coverage(width, length):
-    return Coverage(SHELL, (), (), width, length, 0.0)
+    return Coverage(SHELL, (), (), width, length)
 
 
 def test_an_action_covers_a_rectangle_around_it_along_the_way():
