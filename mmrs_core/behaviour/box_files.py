@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
+from itertools import pairwise
 from pathlib import Path
 
 from mmrs_core.behaviour.blackbox import Entry, Tell, entries_of
@@ -83,18 +84,10 @@ def _box(folder: Path, stem: str) -> BlackBox:
 
 def _missing(stem: str, numbered: Iterable[int], current: bool) -> Iterator[str]:
     numbers = sorted(numbered)
-    absent = sorted(set(range(1, numbers[-1])) - set(numbers)) if numbers else []
-    for first, last in _stretches(absent):
-        which = f"part {first}" if first == last else f"parts {first} to {last}"
-        yield f"{stem}{BOX}: {which} of {numbers[-1]} {'is' if first == last else 'are'} missing"
+    for before, after in pairwise((0, *numbers)):
+        if after > before + 1:
+            alone = after == before + 2
+            which = f"part {before + 1}" if alone else f"parts {before + 1} to {after - 1}"
+            yield f"{stem}{BOX}: {which} of {numbers[-1]} {'is' if alone else 'are'} missing"
     if numbers and not current:
         yield f"{stem}{BOX}: its last part, {stem}{BOX}{BOX_SUFFIX}, is missing"
-
-
-def _stretches(numbers: list[int]) -> Iterator[tuple[int, int]]:
-    first = None
-    for i, number in enumerate(numbers):
-        first = number if first is None else first
-        if i + 1 == len(numbers) or numbers[i + 1] != number + 1:
-            yield first, number
-            first = None

@@ -24,6 +24,7 @@ SCHEMA = Path(__file__).with_name("log.schema.json")
 SUFFIX = ".jsonl"
 LABELS = ("act", "ntf", "begin", "end", "take", "choose", "fault")
 LONGEST_LINE = 100_000
+_LONGEST_NUMBER = 400
 
 _FIELDS = tuple(field.name for field in fields(StepRecord))
 _COUNTS = ("seq", "lamport")
@@ -194,7 +195,7 @@ def _record(line: str) -> StepRecord:
     if len(line) > LONGEST_LINE:
         raise ValueError(f"line of {len(line)} characters: longer than any step")
     try:
-        value: object = json.loads(line, parse_constant=_refuse)
+        value: object = json.loads(line, parse_constant=_refuse, parse_int=_whole)
     except RecursionError:
         raise ValueError("line nested too deeply to be a step") from None
     except json.JSONDecodeError as error:
@@ -204,6 +205,12 @@ def _record(line: str) -> StepRecord:
     assert isinstance(value, dict)
     counts = {name: int(value[name]) for name in _COUNTS}
     return StepRecord(**{**value, **counts, "time": float(value["time"])})
+
+
+def _whole(text: str) -> int:
+    if len(text) > _LONGEST_NUMBER:
+        raise ValueError(f"a whole number of {len(text)} digits: longer than any of a step")
+    return int(text)
 
 
 def _refuse(constant: str) -> float:

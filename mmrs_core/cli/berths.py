@@ -137,7 +137,7 @@ class Berths:
 
 def _address(text: str) -> tuple[str, int]:
     host, _, port = text.rpartition(":")
-    if not port.isdecimal() or not 1 <= int(port) <= LAST_PORT:
+    if not port.isdecimal() or len(port) > 9 or not 1 <= int(port) <= LAST_PORT:
         raise ValueError(f"--ground {text}: is not [HOST:]PORT")
     return host or "127.0.0.1", int(port)
 

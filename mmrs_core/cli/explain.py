@@ -38,7 +38,7 @@ def explain(
     if robot or move or task:
         return _places(Path(where), robot, move, task, json)
     file, _, line = where.rpartition(":")
-    if not (file and line.isdecimal()):
+    if not (file and line.isdecimal() and len(line) < 10):
         raise typer.BadParameter(f"{where}: is not FILE:LINE; say --robot, --move or --task for a folder")
     return _line(Path(file), int(line), json)
 

@@ -202,7 +202,7 @@ def _not_negative(text: str) -> float:
 
 
 def _count(text: str) -> int:
-    if not text.isdecimal() or int(text) < 1:
+    if not text.isdecimal() or len(text) > 9 or int(text) < 1:
         raise argparse.ArgumentTypeError(f"{text}: is no whole number from 1 on")
     return int(text)
 

@@ -131,7 +131,7 @@ def read_manifest(path: Path) -> Manifest | None:
         return None
     try:
         return manifest_in(path.read_bytes())
-    except (ValueError, KeyError, TypeError) as error:
+    except (ValueError, KeyError, TypeError, AttributeError, RecursionError) as error:
         raise UnreadableError(f"{path}: is no manifest of generated files ({error})") from error
 
 

@@ -202,7 +202,7 @@ def _finite(text: str) -> float:
 
 
 def _command(text: str) -> int:
-    if not text.isdecimal():
+    if not text.isdecimal() or len(text) > 9:
         raise ValueError(f"'{text}' is no number of a command")
     return int(text)
 

@@ -40,7 +40,7 @@ def sights_in(path: Path) -> tuple[Sight, ...]:
     try:
         things = json.loads(path.read_text(encoding="utf-8"))["things"]
         return tuple(_sight(thing) for thing in things)
-    except (TypeError, KeyError, ValueError) as error:
+    except (TypeError, KeyError, ValueError, RecursionError) as error:
         raise ValueError(f"{path}: no surroundings: {error!r}") from error
 
 

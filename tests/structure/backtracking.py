@@ -56,13 +56,6 @@ class _Automaton:
         )
 
 
-@dataclass(frozen=True, slots=True)
-class _Edge:
-    begin: int
-    end: int
-    characters: Characters
-
-
 def superlinear(pattern: re.Pattern[Any], *, searched: bool, whole: bool) -> str:
     """Return why matching can take more than linear time; nothing where it cannot.
 
@@ -73,14 +66,9 @@ def superlinear(pattern: re.Pattern[Any], *, searched: bool, whole: bool) -> str
     """
     tree = parser.parse(pattern.pattern, pattern.flags & ~re.DEBUG)
     samples = _SAMPLES if isinstance(pattern.pattern, str) else "".join(map(chr, range(256)))
-    build = _Build(tree, samples, bool(pattern.flags & re.IGNORECASE), _mode(pattern))
+    mode = pattern.flags & (re.ASCII | re.UNICODE) or re.ASCII  # patterns of bytes have neither
+    build = _Build(tree, samples, bool(pattern.flags & re.IGNORECASE), mode)
     return build.judged(searched, whole)
-
-
-def _mode(pattern: re.Pattern[Any]) -> int:
-    if isinstance(pattern.pattern, bytes):
-        return re.ASCII
-    return pattern.flags & (re.ASCII | re.UNICODE)
 
 
 class _Build:
@@ -93,7 +81,6 @@ class _Build:
             named |= {other for each in named for other in (each.lower(), each.upper()) if len(other) == 1}
         self._all = frozenset(samples) | named
         self._words = self._category(codes.CATEGORY_WORD)
-        self._classes: dict[int, Characters] = {}
         self._automaton = _Automaton(self._all)
 
     def judged(self, searched: bool, whole: bool) -> str:
@@ -252,17 +239,13 @@ def _named(tree: Any) -> Iterator[int]:
             yield from (
                 each for each in (argument[0] - 1, *argument, argument[1] + 1) if 0 <= each < 0x110000
             )
-        elif name is codes.IN or name is codes.ATOMIC_GROUP:
-            yield from _named(argument)
-        elif name is codes.SUBPATTERN:
-            yield from _named(argument[3])
-        elif name is codes.BRANCH:
-            for each in argument[1]:
+        elif name in (codes.IN, codes.ATOMIC_GROUP, codes.BRANCH):
+            for each in argument[1] if name is codes.BRANCH else (argument,):
                 yield from _named(each)
-        elif name in (codes.MAX_REPEAT, codes.MIN_REPEAT, codes.POSSESSIVE_REPEAT):
-            yield from _named(argument[2])
         elif name in (codes.ASSERT, codes.ASSERT_NOT):
             yield from _named(argument[1])
+        elif isinstance(argument, tuple):  # a group or a repetition, which ends with what it is about
+            yield from _named(argument[-1])
 
 
 class _Ambiguity:

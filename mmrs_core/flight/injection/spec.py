@@ -128,7 +128,7 @@ def _words(text: str, robots: Collection[str]) -> Iterator[tuple[str, str]]:
 
 
 def _seed(word: str) -> int:
-    if not word[5:].isdecimal():
+    if not word[5:].isdecimal() or len(word) > 100:
         raise ValueError(f"{word}: is not seed=NUMBER")
     return int(word[5:])
 

@@ -77,7 +77,7 @@ def split_system(text: str) -> tuple[str, int]:
     url, separator, number = text.rpartition("@")
     if not separator:
         return text, 0
-    if not number.isdecimal() or not 0 < int(number) <= LAST_SYSTEM:
+    if not number.isdecimal() or len(number) > 9 or not 0 < int(number) <= LAST_SYSTEM:
         raise ValueError(f"{text}: {number!r} after the @ is no MAVLink system from 1 to {LAST_SYSTEM}")
     return url, int(number)
 
@@ -93,14 +93,14 @@ def address_of(url: str) -> Address | None:
         _baud_of(url)
         return None
     host, _, number = rest.rpartition(":")
-    if not host or not number.isdecimal() or int(number) > LAST_PORT:
+    if not host or not number.isdecimal() or len(number) > 9 or int(number) > LAST_PORT:
         raise ValueError(f"{url}: is not {scheme}:HOST:PORT")
     return host, int(number)
 
 
 def _baud_of(url: str) -> int:
     device, _, baud = url.partition(",")
-    if not device or not (baud or "0").isdecimal():
+    if not device or not (baud or "0").isdecimal() or len(baud) > 9:
         raise ValueError(f"{url}: is not DEVICE,BAUD")
     return int(baud or USUAL_BAUD)
 

@@ -176,7 +176,7 @@ def _stamps_in(path: Path) -> tuple[int, dict[str, int]]:
     try:
         kept = json.loads(path.read_text("ascii"))
         return int(kept["sent"]), {str(stream): int(stamp) for stream, stamp in kept["heard"].items()}
-    except (ValueError, KeyError, TypeError, AttributeError) as error:
+    except (ValueError, KeyError, TypeError, AttributeError, RecursionError) as error:
         raise ValueError(f"{path}: holds no time stamps of signatures: {error}") from error
 
 

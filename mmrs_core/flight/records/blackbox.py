@@ -88,7 +88,7 @@ def _time_in(line: bytes) -> float:
 def _object_in(line: bytes) -> Mapping[str, object]:
     try:
         found = json.loads(line)
-    except ValueError:
+    except (ValueError, RecursionError):
         return {}
     return found if isinstance(found, dict) else {}
 

@@ -110,7 +110,7 @@ def system_of(box: Path) -> int:
 def _system(line: str) -> int:
     try:
         content = json.loads(line)
-    except ValueError:
+    except (ValueError, RecursionError):
         return 0
     system = content.get("system") if isinstance(content, dict) and content.get("kind") == "start" else None
     return system if isinstance(system, int) else 0

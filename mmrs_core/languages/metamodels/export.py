@@ -139,7 +139,7 @@ def _recorded(path: Path) -> Mapping[str, str]:
     """Return the hashes by name that an export left; without a sound record, none are known."""
     try:
         found = json.loads(path.read_bytes())
-    except (OSError, ValueError):
+    except (OSError, ValueError, RecursionError):
         return {}
     return (
         {name: each for name, each in found.items() if isinstance(each, str)}

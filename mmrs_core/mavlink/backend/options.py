@@ -75,7 +75,7 @@ def _positive(text: str) -> float:
 
 
 def _count(text: str) -> int:
-    if not text.isdecimal() or int(text) < 1:
+    if not text.isdecimal() or len(text) > 9 or int(text) < 1:
         raise ValueError(f"'{text}' is not a number from 1 on")
     return int(text)
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 import tomllib
 from collections.abc import Iterator, Sequence
+from itertools import islice
 from typing import Any
 
 _HEADER = re.compile(r"\s*(\[[^\[\]]+\])\s*(#.*)?")
@@ -18,6 +19,8 @@ MOST_BRACKETS = 100
 """Opened on one line, or not closed yet: the parser goes deeper with each."""
 MOST_KEYS = 50
 """Parts of a dotted key on one line."""
+_MOST_SIGNS = 50
+"""Signs of equality in a key, in quotes."""
 
 _LONG_KEY = re.compile(r"^\s*+\[*+(?:[^.=\"']*+\.){50}")
 _LONG_NUMBER = re.compile(r"[0-9_]{400}")
@@ -88,7 +91,7 @@ def _paths(text: str) -> Iterator[tuple[int, list[str]]]:
 
 
 def _assigned(line: str) -> list[str]:
-    for equals in re.finditer("=", line):
+    for equals in islice(re.finditer("=", line), _MOST_SIGNS):
         if found := _keys(f"{line[: equals.start()]} = 0"):
             return found
     return []

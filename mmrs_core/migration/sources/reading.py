@@ -76,7 +76,8 @@ def _target(text: str, document: SourceDocument, root: SourceNode) -> SourceNode
     roots = document.roots
     node: SourceNode | None = root
     if head:
-        node = roots[int(head)] if head.isascii() and head.isdigit() and int(head) < len(roots) else None
+        number = int(head) if head.isascii() and head.isdigit() and len(head) < 10 else len(roots)
+        node = roots[number] if number < len(roots) else None
     for step in steps:
         match = _STEP.fullmatch(step)
         if match is None or node is None:

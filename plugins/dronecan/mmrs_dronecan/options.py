@@ -45,7 +45,7 @@ def options_of(given: Mapping[str, str]) -> Options:
 
 
 def _node(text: str) -> int:
-    if not (text.isascii() and text.isdecimal()) or not 1 <= int(text) <= 127:
+    if not (text.isascii() and text.isdecimal() and len(text) < 4) or not 1 <= int(text) <= 127:
         raise UnsupportedError(f"dronecan: node {text!r} is not 1 to 127")
     return int(text)
 

@@ -88,7 +88,7 @@ class FileJournal:
     def _line(self, number: int, line: bytes) -> Mapping[str, Any]:
         try:
             found = json.loads(line)
-        except ValueError as error:
+        except (ValueError, RecursionError) as error:
             raise ValueError(f"{self._path}:{number}: damaged: {error}") from error
         if not isinstance(found, dict):
             raise ValueError(f"{self._path}:{number}: damaged: no object")

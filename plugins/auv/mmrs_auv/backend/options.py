@@ -117,7 +117,7 @@ def _number(text: str) -> float:
 
 
 def _whole(text: str) -> int:
-    if not text.isdecimal():
+    if not text.isdecimal() or len(text) > 99:
         raise ValueError(f"{text} is not a whole number from 0 on")
     return int(text)
 

@@ -133,7 +133,7 @@ def _by_robot(
 def _ports(parser: argparse.ArgumentParser, robots: Sequence[str], texts: Sequence[str]) -> Mapping[str, int]:
     found = _by_robot(parser, "--detections", robots, texts)
     for text in found.values():
-        if not (text.isascii() and text.isdecimal() and 0 < int(text) < 65_536):
+        if not (text.isascii() and text.isdecimal() and len(text) < 6 and 0 < int(text) < 65_536):
             parser.error(f"--detections {text}: is no port")
     if len(set(found.values())) < len(found):
         parser.error("--detections: each vehicle's cameras need a port of their own")

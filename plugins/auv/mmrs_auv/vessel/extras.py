@@ -29,7 +29,7 @@ EXTRAS = frozenset((
 ))  # fmt: skip
 """All names but those of devices, which are ``device0.seconds``, ``device1.seconds`` and so on."""
 
-_DEVICE = re.compile(r"device(0|[1-9][0-9]*)\.seconds")
+_DEVICE = re.compile(r"device(0|[1-9][0-9]{0,8})\.seconds")
 
 
 def misnamed(sheet: Sheet) -> Iterator[str]:

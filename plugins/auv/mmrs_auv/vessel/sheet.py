@@ -87,7 +87,10 @@ def from_json(text: str) -> Sheet:
     Raises:
         ValueError: the text is no sheet, or has names that no sheet has; lists these.
     """
-    found = json.loads(text, object_pairs_hook=_once)
+    try:
+        found = json.loads(text, object_pairs_hook=_once)
+    except RecursionError:
+        raise ValueError("no sheet of a vehicle: nested too deeply") from None
     if wrong := [*_misshapen(found)] or [*_misnamed(found, Sheet)] or [*_misnamed_thrusters(found)]:
         raise ValueError(f"no sheet of a vehicle: {'; '.join(wrong)}")
     thrusters = tuple(

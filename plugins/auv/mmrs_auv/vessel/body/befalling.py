@@ -114,7 +114,7 @@ def _thruster(sheet: Sheet, name: str) -> int:
     name = name.strip("'\"")
     if name in ids:
         return ids.index(name)
-    if name.isascii() and name.isdecimal() and int(name) < len(ids):
+    if name.isascii() and name.isdecimal() and len(name) < 10 and int(name) < len(ids):
         return int(name)
     raise ValueError(f"{name}: no such thruster; there are {', '.join(ids)}, by number 0 to {len(ids) - 1}")
 

@@ -98,7 +98,7 @@ def from_json(text: str) -> Surroundings:
         obstacles = tuple(Obstacle(**each) for each in found.pop("obstacles", ()))
         things = tuple(Thing(**each) for each in found.pop("things", ()))
         around = Surroundings(**found, current=(north, east), obstacles=obstacles, things=things)
-    except (KeyError, TypeError, AttributeError) as error:
+    except (KeyError, TypeError, AttributeError, RecursionError) as error:
         raise ValueError(f"no surroundings: {error}") from error
     _check(around)
     return around

@@ -238,7 +238,7 @@ def _address(channel: str, host: str, port: int) -> tuple[str, str, int]:
     if not at:
         return name, host, port
     host, colon, number = rest.rpartition(":")
-    if not colon or not host or not number.isdecimal():
+    if not colon or not host or not number.isdecimal() or len(number) > 9:
         raise ValueError(f"channel {channel!r}: expected CHANNEL@HOST:PORT")
     return name, host, int(number)
 
