@@ -46,4 +46,4 @@ def test_a_stolen_key_is_refused_without_a_restart_once_it_is_revoked(ends, pair
     ends.certify()
     ends.open("c")
     until(lambda: not a.missing("c") and not b.missing("c"))
-    assert "opened anew, for the keys have changed: lets in a, b, c 2, observer" in told
+    assert "keys have changed; opened anew, accepting the certificates a, b, c 2, observer" in told

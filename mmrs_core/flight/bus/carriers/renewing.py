@@ -71,10 +71,12 @@ class Renewing:
             config = configuration(self._endpoints, self._revoked)
             self._revoked += revoked_by(self._files[0])
         except OSError as error:
-            self._net.tell(f"{error}; the keys that were read before stay in use")
+            self._net.tell(f"{error}; the previous keys stay in use")
             return
         if (access := _access(config)) != self._access:
-            self._net.tell(f"opened anew, for the keys have changed: lets in {', '.join(admitted(config))}")
+            self._net.tell(
+                f"keys have changed; opened anew, accepting the certificates {', '.join(admitted(config))}"
+            )
             self._access = None  # until the session is open
             self._renew(config)
             self._access = access

@@ -179,7 +179,7 @@ def test_a_session_is_opened_anew_once_where_a_list_has_changed(keys):
     process.renewing.look()
     process.renewing.look()
     assert process.opened == [["a", "b 2", "observer"]]
-    assert process.told == ["opened anew, for the keys have changed: lets in a, b 2, observer"]
+    assert process.told == ["keys have changed; opened anew, accepting the certificates a, b 2, observer"]
 
 
 def test_a_forged_list_changes_nothing_while_a_process_runs_and_is_told(keys, theirs):
@@ -191,7 +191,7 @@ def test_a_forged_list_changes_nothing_while_a_process_runs_and_is_told(keys, th
     assert process.opened == []
     (said,) = process.told
     assert said.startswith(f"{keys / 'a' / REVOKED}: refused: CRL signature failure")
-    assert said.endswith("the keys that were read before stay in use")
+    assert said.endswith("the previous keys stay in use")
 
 
 def test_an_older_list_lets_nobody_in_again_while_a_process_runs(keys):
