@@ -9,8 +9,8 @@ from pathlib import Path
 import pytest
 from ports import free_port
 
-from mmrs_core.flight.bus.carriers import over_zenoh, sessions
-from mmrs_core.flight.bus.carriers.sessions import Endpoints
+from mmrs_core.flight.bus.carriers import looking, over_zenoh, sessions
+from mmrs_core.flight.bus.carriers.sessions import Endpoints, exposed
 
 SOCKETS = Path("/proc/self/net")
 LISTENS = {"tcp": "0A", "tcp6": "0A", "udp": "07", "udp6": "07"}
@@ -67,3 +67,16 @@ def test_a_process_without_keys_that_others_reach_says_so_in_one_line(ends, monk
     ends.open_at("b", Endpoints((f"tcp/0.0.0.0:{port}",)))
     where = f"tcp/0.0.0.0:{port}"
     assert lines == [f"without keys it listens at {where}: any host that reaches it can read and set slots"]
+
+
+def test_who_only_looks_on_listens_nowhere(monkeypatch):
+    used = []
+
+    def opened(config):
+        used.append(config)
+        return sessions.opened(config)
+
+    monkeypatch.setattr(looking, "opened", opened)
+    endpoints = Endpoints(connect=("tcp/192.0.2.1:7447",))
+    assert looking.states_of("mission", "run-0", endpoints, 0.1) == {}
+    assert [exposed(config) for config in used] == [()]

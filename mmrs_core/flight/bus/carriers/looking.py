@@ -29,7 +29,10 @@ def states_of(
     key, found = f"mmrs/{digest(mission)}/{digest(run)}/*/state", dict[str, str]()
     wanted = {digest(robot) for robot in robots}
     until = time.monotonic() + seconds
-    session = opened(configuration(endpoints))
+    config = configuration(endpoints)
+    if not endpoints.listen:
+        config.insert_json5("listen/endpoints", "[]")  # peers need not find who only asks
+    session = opened(config)
     try:
         while time.monotonic() < until and not (wanted and wanted <= set(found)):
             # Peers may not be in touch yet: what they keep is asked for again and again.
