@@ -8,6 +8,7 @@ import pytest
 from mmrs_auv.testing import pool_sheet
 from mmrs_auv.vessel.api import Craft
 from mmrs_auv.vessel.decision.drives import Drives
+from mmrs_auv.vessel.decision.helm import Watch
 from mmrs_auv.vessel.goals import Goal, goal_frames, goal_of, within_rating
 from mmrs_auv.vessel.wire.codec import Codec, Received
 from vessel_rig import Rig
@@ -50,6 +51,19 @@ def test_thrusters_that_fail_are_told_once_and_are_no_sign_of_life() -> None:
     listener.tell("Thruster2Status", Thrust=0.0, Power=0.0, Drive="RUNS")
     assert drives.news() == (("NOTICE", f"thruster '{listener.sheet.thrusters[2].id}' works again"),)
     assert listener.craft.state().silent == float("inf")
+
+
+def test_what_is_borne_lasts_by_the_time_in_which_a_vehicle_was_heard() -> None:
+    """A stall of this program, in which only clocks on the wall go on, makes nothing last longer."""
+    listener = Listener()
+    watch = Watch(listener.craft, 0.1, after=lambda event: 1.0, clearance=3.0)
+    found = []
+    for _ in range(8):
+        listener.tell("Depth", Depth=1.0, Uncertainty=0.1, Trusted=True)
+        listener.tell("Health", Leak=False, Charge=0.9, Power=1.0, SonarRange=2.0)
+        found.append(watch.failure())
+        listener.tick()
+    assert [each and each.event for each in found] == [None] * 5 + ["OBSTACLE"] * 3
 
 
 @pytest.mark.parametrize("mode", ["IDLE", "HOLD", "GO_TO", "TURN", "SURFACE", "SEARCH"])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import signal
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import ExitStack
@@ -14,6 +15,7 @@ from dives import dive, swim
 from mmrs_auv.plugin import mmrs_metamodels
 from mmrs_auv.vessel.body.surroundings import Obstacle
 from mmrs_auv.vessel.eyes import Detection
+from mmrs_auv.vessel.wire.catalogue import EMERGENCIES
 from waiting_pair import finding_pair, waiting_pair
 
 from mmrs_core.behaviour.log import read_logs
@@ -84,6 +86,23 @@ def test_the_vehicle_goes_back_by_the_way_that_it_came_and_comes_up(tmp_path):
     truth = found.world.vehicle.truth
     assert abs(truth.north) < 1.0
     assert abs(truth.east) < 1.0
+
+
+def stalled(*spells: tuple[float, float]) -> Meddle:
+    """Return what stops the decision centre for spells of time, each from a second to a second."""
+    signals = [each for begin, end in spells for each in ((begin, signal.SIGSTOP), (end, signal.SIGCONT))]
+
+    def meddle(world, process) -> None:
+        while signals and world.rehearsal.now >= signals[0][0]:
+            process.send_signal(signals.pop(0)[1])
+
+    return meddle
+
+
+def test_a_decision_centre_that_was_stalled_does_not_take_its_own_lateness_for_silence(tmp_path):
+    found = done_by(tmp_path, bound([], swim("a", 0.0, 5.0, 1.0)), meddle=stalled((4.0, 4.7), (6.0, 9.0)))
+    assert (found.status, found.errors) == (0, "")
+    assert not any(found.world.said(name) for name in EMERGENCIES)
 
 
 def test_the_vehicle_holds_before_an_obstacle_until_nobody_is_there_any_more(tmp_path):

@@ -36,6 +36,9 @@ ASKED_EVERY = 1.0
 OFF_FOR = 2.0
 """Seconds without motors after which no news of a new start is waited for."""
 
+STALL = 1.0
+"""Seconds from one look to the next after which this program was stalled, which is nobody's silence."""
+
 STICKS_LOST = Safeguard(
     "FS_PILOT_INPUT",
     "no sticks any more",
@@ -73,6 +76,7 @@ class Autopilot:
         link.observe(self._texts)
         self._starts, self._ready_at, self._asked = 0, -inf, -inf
         self._off_since, self._silent_at = inf, -inf
+        self._looked = self._stalled = -inf
 
     def get_ready(self, say: Callable[[str], None]) -> None:
         """Go into depth hold and arm.
@@ -110,8 +114,11 @@ class Autopilot:
         Args:
             patience: seconds of silence after which the link counts as lost.
         """
+        now = self._link.clock.now()
+        self._stalled = now if now - self._looked > self._link.clock.patience(STALL) else self._stalled
+        self._looked = now
         if self.is_silent(patience):
-            self._silent_at = self._link.clock.now()
+            self._silent_at = now
             return faults.Fault(faults.LINK_LOST, f"not heard for {self._link.silent_for():.0f} s")
         if self._link.starts != self._starts:
             return faults.Fault(faults.VEHICLE_RESTARTED, "it has begun anew, with its motors off")
@@ -160,8 +167,8 @@ class Autopilot:
 
     @property
     def silent(self) -> float:
-        """Return for how many seconds it has not been heard."""
-        return self._link.silent_for()
+        """Return for how many seconds it has not been heard, since this program was last stalled."""
+        return min(self._link.silent_for(), self._link.clock.now() - self._stalled)
 
     def is_silent(self, seconds: float) -> bool:
         """Return whether it has not been heard for so long, and for a real second."""

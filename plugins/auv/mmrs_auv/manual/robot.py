@@ -103,13 +103,13 @@ class ManualRobot:
     def fault(self, now: float) -> Fault | None:
         """Return what went wrong."""
         with self._lock:
-            found = self._troubles.told(now) or self._own
+            found = self._troubles.told() or self._own
             return self._hinders(found) if self._response and found is not None else found
 
     def bear(self, now: float) -> bool:
         """Go on although something went wrong that policies say to bear."""
         with self._lock:
-            if self._troubles.told(now) is not None:
+            if self._troubles.told() is not None:
                 self._troubles.bear()
             else:
                 self._own = None

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from math import inf
 
-from mmrs_auv.manual.autopilot import Autopilot
+from mmrs_auv.manual.autopilot import STALL, Autopilot
 from mmrs_core.behaviour.policies import patience
 from mmrs_core.contributions.execution import Fault
 from mmrs_core.flight import faults
@@ -29,29 +29,32 @@ class Troubles:
         seconds = patience(faults.LINK_LOST, policies)
         self._silence = LINK_PATIENCE if seconds is None else seconds
         self._fault: Fault | None = None
-        self._since = -inf
+        self._looked, self._lasted = -inf, 0.0
         self._borne: set[str] = set()
 
     def look(self, now: float) -> None:
         """See what is wrong now; what goes on is told in the words in which it began."""
         found = self._autopilot.trouble(self._silence)
+        gone, self._looked = now - self._looked, now
         if found is None:
             self.end()
         elif found.event != self.event:
-            self.begin(Fault(found.event, str(found), found.instead), now)
+            self.begin(Fault(found.event, str(found), found.instead), 0.0)
+        else:
+            self._lasted += min(gone, STALL)
 
-    def begin(self, found: Fault, now: float = -inf) -> None:
-        """Have something be wrong."""
-        self._fault, self.event, self._since = found, found.which, now
+    def begin(self, found: Fault, lasted: float = inf) -> None:
+        """Have something be wrong that has lasted for so many seconds."""
+        self._fault, self.event, self._lasted = found, found.which, lasted
 
     def end(self) -> None:
         """Have nothing be wrong."""
         self._fault, self.event = None, ""
 
-    def told(self, now: float) -> Fault | None:
+    def told(self) -> Fault | None:
         """Return what is wrong, once it has lasted for as long as its policy says, unless it is borne."""
         found = self._fault
-        if found is None or found.which in self._borne or now < self._since + self._after(found):
+        if found is None or found.which in self._borne or self._lasted < self._after(found):
             return None
         return found
 

@@ -32,6 +32,7 @@ class State:
     """What is known of a vehicle: metres, metres per second, degrees, degrees per second.
 
     Attributes:
+        time: seconds, by a clock of whoever hears it that leaves out stalls of his own.
         uncertainty: of the place, one sigma.
         trusted: whether depth, attitude and heading may be relied on.
         age: seconds since the sensor controller said it; infinite: it never did.
@@ -44,6 +45,7 @@ class State:
         failed: numbers on the bus of the thrusters whose drives say that they have failed.
     """
 
+    time: float = 0.0
     north: float = 0.0
     east: float = 0.0
     depth: float = 0.0
@@ -222,6 +224,7 @@ class Craft:
             known, age = self._state, self._now - self._state_at
             return replace(
                 known,
+                time=self._now,
                 age=age,
                 silent=self._now - self._heard_at,
                 position_lost=not known.trusted or known.uncertainty > self._lost,

@@ -64,6 +64,15 @@ def test_a_link_that_is_lost_is_told():
         assert driven.fault.which == "LINK_LOST"
 
 
+def test_a_stall_of_this_program_is_no_silence_of_the_vehicle():
+    with sub() as driven:
+        driven.set_out()
+        driven.clock._zero -= 20.0 * LINK_PATIENCE / driven.clock.speedup
+        assert driven.backend._autopilot.trouble(LINK_PATIENCE) is None
+        driven.pass_by(1.0)
+        assert driven.fault is None
+
+
 def test_a_vehicle_that_is_not_heard_stays_and_goes_on_when_it_is_heard_again_if_policies_bear_that():
     with sub() as driven:
         driven.set_out()

@@ -158,7 +158,7 @@ package body Bus is
 
    procedure Open (Host : String; Port : Natural; Channel : String; Patience : Long_Float) is
       Address : Sock_Addr_Type;
-      Until_Then : constant Long_Float := Clocks.Now + Patience;
+      Until_Then : constant Long_Float := Clocks.Passed + Patience;
    begin
       Address.Port := Port_Type (Port);
       Address.Addr := Addresses (Get_Host_By_Name (Host), 1);
@@ -170,7 +170,7 @@ package body Bus is
          exception
             when Socket_Error =>
                Close_Socket (Link);
-               if Clocks.Now > Until_Then then
+               if Clocks.Passed > Until_Then then
                   raise Refused with "no bus at " & Image (Address);
                end if;
                delay 0.2;

@@ -77,7 +77,7 @@ begin
    Step_Log.Open
      (Options.Text ("--logs", "logs") & "/" & To_String (Plan.Log), Step_Log.Json (Options.Text ("--run", "run-0")),
       To_String (Plan.Robot));
-   Step_Log.Shift (Late - Clocks.Now);
+   Step_Log.Shift (Late - Clocks.Passed);
    Guards.Begin_Work;
    Done := Machine.Runs (Plan);
    GNAT.OS_Lib.OS_Exit (if Done then 0 else 1);

@@ -85,6 +85,7 @@ package body Guards is
          Speak;
          Dog.Pat (Speaker, Clocks.Now);
          Due := Due + Period;
+         Due := (if Due < Clock then Clock else Due);
          delay until Due;
       end loop;
    exception

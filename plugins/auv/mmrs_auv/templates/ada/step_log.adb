@@ -28,7 +28,7 @@ package body Step_Log is
 
    function Seconds return String is
    begin
-      Latest := Long_Float'Max (Latest, Clocks.Now + Offset);
+      Latest := Long_Float'Max (Latest, Clocks.Passed + Offset);
       return Image (Latest);
    end Seconds;
 

@@ -182,7 +182,7 @@ class Finish:
 
 
 class Surface:
-    """Come up, and rest there: whoever swims to the vehicle finds its thrusters still, unless it would sink."""
+    """Come up, and rest there without thrust, for whoever swims to the vehicle, unless it would sink."""
 
     def __init__(self, afloat: float, *, floats: bool) -> None:
         """Come up; `afloat`: depth of the centre of gravity afloat, metres."""

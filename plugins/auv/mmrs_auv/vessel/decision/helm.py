@@ -45,7 +45,7 @@ class Watch:
         self._craft, self._reserve, self._after, self._clearance = craft, reserve, after, clearance
         self._since: dict[str, float] = {}
 
-    def failure(self, now: float) -> FailureError | None:
+    def failure(self) -> FailureError | None:
         """Return what has gone wrong; what ends everything goes first."""
         state = self._craft.state()
         if state.emergency is not None:
@@ -54,7 +54,7 @@ class Watch:
         for event in set(self._since) - set(found):
             del self._since[event]
         for event, reason in found.items():
-            lasts = now - self._since.setdefault(event, now)
+            lasts = state.time - self._since.setdefault(event, state.time)
             if event not in self.borne and lasts >= self._after(event):
                 return FailureError(event, reason)
         return None
@@ -104,7 +104,7 @@ class Helm:
     def failure(self, now: float) -> FailureError | None:
         """Return what goes wrong."""
         self._look(now)
-        watched = self.watch.failure(now) if self.watch is not None else None
+        watched = self.watch.failure() if self.watch is not None else None
         return watched or self._failure
 
     def bear(self, event: str) -> None:
