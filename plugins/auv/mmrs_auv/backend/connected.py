@@ -142,8 +142,12 @@ def connected(given: BackendInput, live: Live) -> ConnectedRobot:
     faults = faults_of(given, live, options.inject)
     logging.getLogger("can").setLevel(logging.ERROR)
     channel = live.links.get(given.robot.id, "") or options.channel or CHANNEL
+
+    def tell(text: str) -> None:
+        live.say(f"'{given.robot.id}': {text}")
+
     try:
-        port = open_port(options.interface, channel, bit_rate=options.bit_rate or None)
+        port = open_port(options.interface, channel, bit_rate=options.bit_rate or None, say=tell)
     except OSError as error:
         raise LinkLostError(f"robot '{given.robot.id}': {channel}: {error}") from error
     reached: ClosablePort = port if faults is None else injected(port, faults, given.robot.id)

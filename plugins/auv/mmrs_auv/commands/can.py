@@ -164,8 +164,6 @@ def monitor(
         finally:
             for line in watched.summary():
                 tell(line)
-            if wrong := port.summary():
-                tell(f"errors of the bus: {wrong}")
     return 0
 
 
@@ -243,7 +241,7 @@ def _connected(interface: str, channel: str, bit_rate: int) -> Iterator[Port]:
 
     rate = None if interface in ("socketcan", "socketcand", "virtual") else bit_rate
     try:
-        with open_port(interface, channel, bit_rate=rate) as port:
+        with open_port(interface, channel, bit_rate=rate, say=tell) as port:
             yield port
     except PortError as error:
         raise LinkLostError(str(error)) from error

@@ -60,8 +60,12 @@ def main(
         def vehicle(robot: Robot, options: Options, guard: Callable[[], None], box: BlackBox) -> CanVehicle:
             sheet = from_json(sheets[robot.id].read_text(encoding="utf-8"))
             channel = channels[robot.id]
+
+            def tell(text: str) -> None:
+                say(f"'{robot.id}': {text}")
+
             try:
-                port = open_port(given.interface, channel, bit_rate=given.bit_rate)
+                port = open_port(given.interface, channel, bit_rate=given.bit_rate, say=tell)
             except (OSError, ValueError) as error:
                 raise Fault(LINK_LOST, f"{channel}: {error}") from error
             paced = given.clock or ("bus" if options.clock.speedup != 1.0 else "real")
@@ -71,8 +75,6 @@ def main(
                 time.sleep(FAREWELL)
                 connection.close()
                 port.close()
-                if wrong := port.summary():
-                    say(f"'{robot.id}': errors of the bus: {wrong}")
 
             stack.callback(let_go)
             patience, eyes = options.reach.patience, _eyes(robot.id, ports.get(robot.id), stack)

@@ -33,10 +33,14 @@ def main(words: Sequence[str] | None = None) -> int:
     """Serve the part that is asked for until SIGTERM or SIGINT; return the exit status."""
     logging.getLogger("can").setLevel(logging.ERROR)
     given = _parser().parse_args(words)
+
+    def tell(text: str) -> None:
+        print(f"{given.part}: {text}", file=sys.stderr, flush=True)
+
     try:
         sheet = from_json(given.sheet.read_text(encoding="utf-8"))
         node = _node(given, sheet)
-        port = open_port(given.interface, given.channel, bit_rate=given.bit_rate)
+        port = open_port(given.interface, given.channel, bit_rate=given.bit_rate, say=tell)
     except (OSError, ValueError) as error:
         print(f"{given.part}: {error}", file=sys.stderr)
         return 2
@@ -52,7 +56,7 @@ def main(words: Sequence[str] | None = None) -> int:
                 stop,
                 speedup=given.speedup,
                 late=late.append if given.figures else None,
-                say=lambda text: print(f"{given.part}: {text}", file=sys.stderr, flush=True),
+                say=tell,
             )
     except ClockSilentError as error:
         print(f"{given.part}: {error}", file=sys.stderr)
@@ -60,9 +64,6 @@ def main(words: Sequence[str] | None = None) -> int:
     except PortError as error:
         print(f"{given.part}: the bus is gone: {error}", file=sys.stderr)
         return 3
-    finally:
-        if wrong := port.summary():
-            print(f"{given.part}: errors of the bus: {wrong}", file=sys.stderr, flush=True)
     if given.figures:
         _write_figures(given.figures, late, time.process_time() - begin)
     return 0

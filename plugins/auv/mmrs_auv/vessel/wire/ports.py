@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import select
 import socket
+import sys
 import threading
 import time
 from collections import Counter, deque
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 from .frame import Frame
@@ -31,6 +33,17 @@ ASKED = frozenset({"neovi"})
 UNTOLD = frozenset({"udp_multicast"})
 """Interfaces that give back what they send, indistinguishable from what others send."""
 
+ERRORS = {
+    "overrun": "frames that nobody took in time",
+    "refused": "frames that the interface did not take",
+    "remote": "remote frames",
+    "error": "error frames",
+    "long": "frames longer than those of classic CAN",
+    "echo": "own frames that the adapter gave back",
+    "receiving": "readings that failed",
+}
+"""What may not go well at a port, by sort."""
+
 _POLL, _TRIES = 0.1, 5
 _SEND = 1.0
 """Seconds for which a hub may take nothing."""
@@ -40,28 +53,38 @@ class PortError(OSError):
     """There is no bus, or there is none any more."""
 
 
+def complain(text: str) -> None:
+    """Write a line to standard error."""
+    print(text, file=sys.stderr, flush=True)
+
+
 class Port:
     """A connection to a bus; a thread of its own reads from it.
 
     Attributes:
-        errors: what did not go well, by sort: ``overrun``: frames that nobody took in time, ``refused``:
-            frames that the interface did not take, ``remote``, ``error`` and ``long``: frames that are no
-            data frames of classic CAN, ``echo``: frames of its own that an adapter gave back (`ECHOING`),
-            ``receiving``: readings that failed.
+        errors: what did not go well: how often, by sort of `ERRORS`.
     """
 
-    def __init__(self, bus: BusABC, most_waiting: int = MOST_WAITING, *, echoes: bool = False) -> None:
+    def __init__(
+        self,
+        bus: BusABC,
+        most_waiting: int = MOST_WAITING,
+        *,
+        echoes: bool = False,
+        say: Callable[[str], None] = complain,
+    ) -> None:
         """Begin to read; the port closes the bus when it is closed.
 
         Args:
             echoes: whether what the interface says was not received is what this port itself has sent.
+            say: is told of each sort of error when it first happens, and of all when the port is closed.
         """
-        self._echoes = echoes
+        self._echoes, self._say = echoes, say
         self.errors: Counter[str] = Counter()
         self._bus = bus
         self._frames: deque[Frame] = deque(maxlen=most_waiting)
         self._changed = threading.Condition()
-        self._gone = ""
+        self._gone, self._told = "", False
         self._reader = threading.Thread(target=self._read, name="can-reader", daemon=True)
         self._reader.start()
 
@@ -81,7 +104,7 @@ class Port:
         try:
             self._bus.send(message)
         except CanError:
-            self.errors["refused"] += 1
+            self._count("refused")
         except OSError as error:
             self._leave(f"cannot be written to: {error}")
             self._check()
@@ -101,15 +124,15 @@ class Port:
                     return None
             return self._frames.popleft()
 
-    def summary(self) -> str:
-        """Return what did not go well so far, in words; empty: all did."""
-        return ", ".join(f"{count} {sort}" for sort, count in sorted(self.errors.items()) if count)
-
     def close(self) -> None:
         """Leave the bus; idempotent."""
         self._leave("was closed")
         if self._reader is not threading.current_thread():
             self._reader.join()
+        counts = ", ".join(f"{count} {sort}" for sort, count in sorted(self.errors.items()))
+        if counts and not self._told:
+            self._told = True
+            self._say(f"errors of the bus: {counts}")
 
     def __enter__(self) -> Port:
         return self
@@ -126,6 +149,11 @@ class Port:
             self._gone = self._gone or why
             self._changed.notify_all()
 
+    def _count(self, sort: str) -> None:
+        self.errors[sort] += 1
+        if self.errors[sort] == 1:
+            self._say(f"errors of the bus: {ERRORS[sort]}")
+
     def _read(self) -> None:
         try:
             while not self._gone:
@@ -139,7 +167,7 @@ class Port:
         try:
             message = self._bus.recv(_POLL)
         except (CanError, OSError, ValueError):
-            self.errors["receiving"] += 1
+            self._count("receiving")
             if _ended(self._bus):
                 self._leave("has ended the connection")
             else:
@@ -149,18 +177,19 @@ class Port:
             if _ended(self._bus):
                 self._leave("has ended the connection")
         elif self._echoes and not message.is_rx:
-            self.errors["echo"] += 1
+            self._count("echo")
         elif (odd := _oddity(message)) is not None:
-            self.errors[odd] += 1
+            self._count(odd)
         else:
             self._keep(Frame(message.arbitration_id, bytes(message.data), message.is_extended_id))
 
     def _keep(self, frame: Frame) -> None:
         with self._changed:
-            if len(self._frames) == self._frames.maxlen:
-                self.errors["overrun"] += 1
+            full = len(self._frames) == self._frames.maxlen
             self._frames.append(frame)
             self._changed.notify()
+        if full:
+            self._count("overrun")
 
 
 def open_port(
@@ -170,6 +199,7 @@ def open_port(
     bit_rate: int | None = None,
     patience: float = 5.0,
     most_waiting: int = MOST_WAITING,
+    say: Callable[[str], None] = complain,
     **options: Any,
 ) -> Port:
     """Connect to a bus.
@@ -180,6 +210,7 @@ def open_port(
         channel: of that interface; for ``socketcand`` also ``CHANNEL@HOST:PORT``.
         bit_rate: bits per second, for adapters that have to be told.
         patience: seconds to wait for a hub that is not there yet.
+        say: is told of errors of the bus, as by `Port`.
         options: of python-can's interface, such as ``host`` and ``port`` for ``socketcand``.
 
     Raises:
@@ -192,12 +223,12 @@ def open_port(
             f"interface {interface!r} would give a node its own frames as if another had sent them"
         )
     if interface == "socketcand":
-        return Port(_bus_of_hub(channel, patience, options), most_waiting)
+        return Port(_bus_of_hub(channel, patience, options), most_waiting, say=say)
     if bit_rate is not None:
         options["bitrate"] = bit_rate
     if interface in ASKED:
         options["receive_own_messages"] = False
-    return Port(_bus(interface, channel, options), most_waiting, echoes=interface in ECHOING)
+    return Port(_bus(interface, channel, options), most_waiting, echoes=interface in ECHOING, say=say)
 
 
 def _bus(interface: str, channel: str, options: dict[str, Any]) -> BusABC:
