@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from contextlib import contextmanager
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
 from importlib.resources import files
 from pathlib import Path
 
@@ -34,4 +34,23 @@ def named(path: Path) -> Iterator[None]:
     except OSError as error:
         if error.filename is None:
             error.filename = str(path)
+        raise
+
+
+@contextmanager
+def new_folders() -> Iterator[Callable[[Path], None]]:
+    """Yield what makes a folder, and those it stands in; where anything fails, those still empty go again."""
+    made: list[Path] = []
+
+    def make(folder: Path) -> None:
+        for each in [each for each in (folder, *folder.parents) if not each.exists()][::-1]:
+            each.mkdir(exist_ok=True)
+            made.append(each)
+
+    try:
+        yield make
+    except BaseException:
+        for each in reversed(made):
+            with suppress(OSError):
+                each.rmdir()
         raise

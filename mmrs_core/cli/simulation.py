@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from itertools import pairwise
 from math import dist
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 import typer
 
@@ -20,6 +22,7 @@ from mmrs_core.cli.output import progress
 from mmrs_core.contributions.rules import RobotKind
 from mmrs_core.errors import MmrsError
 from mmrs_core.pipeline import Place, simulate
+from mmrs_core.resources import new_folders
 from mmrs_core.runtime.run import Run
 from mmrs_core.scene import Name, RobotType
 
@@ -126,23 +129,40 @@ def write_logs(
     types: Mapping[str, RobotType] | None = None,
     kinds: Mapping[Name, RobotKind] | None = None,
 ) -> tuple[Path, ...]:
-    """Write the log and the black box of every robot; return the logs.
+    """Write the log and the black box of every robot, all or none; return the logs.
 
     What an earlier simulation left there of other robots goes away.
 
     Raises:
         ProtectedError: if the black box of a flight lies there.
+        OSError: if the folder cannot be written to.
     """
     from mmrs_core.cli.flights.recording import remove_boxes, write_boxes
 
     names = [log_name(robot.id) for robot in program.robots]
-    remove_boxes(folder)
-    _remove_older(folder, set(names))
-    with LogWriter(folder) as writer:
-        for record in run.records:
-            writer.write(record)
-    write_boxes(run, program, types or {}, folder, kinds or {})
+    with new_folders() as make:
+        make(folder)
+        with TemporaryDirectory(prefix=".mmrs-", dir=folder) as staged, _named_in(folder):
+            with LogWriter(Path(staged)) as writer:
+                for record in run.records:
+                    writer.write(record)
+            write_boxes(run, program, types or {}, Path(staged), kinds or {})
+            remove_boxes(folder)
+            _remove_older(folder, set(names))
+            for file in sorted(Path(staged).iterdir()):
+                file.replace(folder / file.name)
     return tuple(folder / name for name in names if (folder / name).exists())
+
+
+@contextmanager
+def _named_in(folder: Path) -> Iterator[None]:
+    """Have errors about a file name it as it is called in a folder."""
+    try:
+        yield
+    except OSError as error:
+        if error.filename is not None:
+            error.filename = str(folder / Path(error.filename).name)
+        raise
 
 
 def _remove_older(folder: Path, kept: set[str]) -> None:

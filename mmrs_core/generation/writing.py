@@ -8,7 +8,7 @@ written. Files that a former run generated and this one does not are removed if 
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from hashlib import sha256
 from pathlib import Path
 from tempfile import mkstemp
@@ -16,7 +16,7 @@ from tempfile import mkstemp
 from mmrs_core.contributions.targets import GeneratedFile
 from mmrs_core.errors import InternalError, MmrsError
 from mmrs_core.generation.manifest import Recorded, read_manifest
-from mmrs_core.resources import named
+from mmrs_core.resources import named, new_folders
 
 
 def write(files: Iterable[GeneratedFile], directory: Path, *, force: bool = False) -> tuple[Path, ...]:
@@ -73,23 +73,28 @@ def _check_inside(directory: Path, path: str) -> None:
 
 def _put(files: Sequence[GeneratedFile], directory: Path) -> None:
     staged: list[tuple[Path, Path]] = []
-    try:
-        for file in files:
-            staged.append((_staged(file, directory), directory / file.path))
-        for temporary, final in staged:
-            temporary.replace(final)
-    finally:
-        for temporary, _ in staged:
-            temporary.unlink(missing_ok=True)
+    with new_folders() as make:
+        try:
+            for file in files:
+                staged.append((_staged(file, directory, make), directory / file.path))
+            for temporary, final in staged:
+                temporary.replace(final)
+        finally:
+            for temporary, _ in staged:
+                temporary.unlink(missing_ok=True)
 
 
-def _staged(file: GeneratedFile, directory: Path) -> Path:
+def _staged(file: GeneratedFile, directory: Path, make: Callable[[Path], None]) -> Path:
     folder = (directory / file.path).parent
-    folder.mkdir(parents=True, exist_ok=True)
+    make(folder)
     handle, name = mkstemp(prefix=".mmrs-", dir=folder)
-    with named(directory / file.path), os.fdopen(handle, "wb") as stream:
-        stream.write(file.content)
-    Path(name).chmod(0o644)
+    try:
+        with named(directory / file.path), os.fdopen(handle, "wb") as stream:
+            stream.write(file.content)
+        Path(name).chmod(0o644)
+    except BaseException:
+        Path(name).unlink(missing_ok=True)
+        raise
     return Path(name)
 
 

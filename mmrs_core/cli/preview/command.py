@@ -18,7 +18,6 @@ from mmrs_core.cli.parameters import (
     without_mission,
 )
 from mmrs_core.cli.settings import Json, settings_of
-from mmrs_core.resources import named
 
 if TYPE_CHECKING:
     from mmrs_core.cli.journey import Journey, Workshop
@@ -141,10 +140,8 @@ def write_pictures(picture: Picture, folder: Path) -> tuple[Path, ...]:
     """Write the page and the map into a folder, which is made where it is missing; return both paths."""
     from mmrs_core.cli.preview.map_drawing import map_markup
     from mmrs_core.cli.preview.page import page
+    from mmrs_core.cli.replacing import replace_files
 
-    folder.mkdir(parents=True, exist_ok=True)
-    contents = ((folder / PAGE, page(picture)), (folder / MAP, map_markup(picture, legend=True) + "\n"))
-    for path, content in contents:
-        with named(path):
-            path.write_text(content, encoding="utf-8")
-    return tuple(path for path, _ in contents)
+    contents = {folder / PAGE: page(picture), folder / MAP: map_markup(picture, legend=True) + "\n"}
+    replace_files({path: content.encode() for path, content in contents.items()})
+    return tuple(contents)

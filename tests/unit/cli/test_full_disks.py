@@ -6,16 +6,19 @@ import errno
 import os
 from contextlib import suppress
 from dataclasses import replace
+from pathlib import Path
 
 import pytest
 
 from mmrs_core.behaviour.log import LogWriter, read_log
 from mmrs_core.behaviour.steps import StepRecord
+from mmrs_core.cli import run
 from mmrs_core.flight.faults import Fault
 from mmrs_core.flight.records.log import Log
 from mmrs_core.languages.writing import replace_file
 
 FULL = "/dev/full"
+HANDWRITTEN = Path(__file__).parents[3] / "examples" / "handwritten"
 STEP = StepRecord("run-0", "alpha", 0, 1, 0.0, "begin", "start")
 
 
@@ -51,6 +54,28 @@ def limit():
 
     yield set_to
     set_to(None)
+
+
+@pytest.mark.parametrize("command", [["simulate"], ["preview"], ["generate", "--target", "mavlink-python"]])
+def test_a_folder_that_is_new_goes_again_where_what_it_is_for_cannot_be_written(
+    tmp_path, limit, capsys, command
+):
+    name, *options = command
+    limit(10)
+    code = run([name, str(HANDWRITTEN), *options, "-o", str(tmp_path / "new" / "folder")])
+    limit(None)
+    assert code == 3
+    assert str(tmp_path / "new" / "folder") in capsys.readouterr().err
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_logs_of_a_simulation_stay_where_those_of_another_cannot_be_written(tmp_path, limit):
+    assert run(["simulate", str(HANDWRITTEN), "-o", str(tmp_path)]) == 0
+    before = {file: file.read_bytes() for file in tmp_path.iterdir()}
+    limit(1000)
+    assert run(["simulate", str(HANDWRITTEN), "-o", str(tmp_path)]) == 3
+    limit(None)
+    assert {file: file.read_bytes() for file in tmp_path.iterdir()} == before
 
 
 @pytest.mark.parametrize("resumed", [False, True])

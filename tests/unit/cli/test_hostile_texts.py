@@ -1,4 +1,4 @@
-"""Whole numbers of more digits than Python reads, and nesting deeper than it goes, are refused in plain words."""
+"""Numbers longer than Python reads, and nesting deeper than it goes, are refused in plain words."""
 
 from __future__ import annotations
 
