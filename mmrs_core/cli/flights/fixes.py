@@ -7,6 +7,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import lru_cache
 from math import isfinite, nan
+from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -14,10 +15,11 @@ import numpy as np
 from mmrs_core.behaviour.blackbox import Entry, number_of
 from mmrs_core.behaviour.program import Program, RobotProgram
 from mmrs_core.cli.flights.values import Flags, Track
+from mmrs_core.contributions.rules import RobotKind
 from mmrs_core.geometry.frames import Floats, LocalFrame
 from mmrs_core.mavlink.earth import WGS84
 from mmrs_core.mavlink.vehicles import VEHICLES, vehicle_class
-from mmrs_core.scene import Frame, Position, RobotType
+from mmrs_core.scene import Frame, Name, Position, RobotType
 
 if TYPE_CHECKING:
     from pyproj import Transformer
@@ -133,15 +135,22 @@ class Zero:
         return (east, north, up) if isfinite(east + north + up) else None
 
 
-def zero_of(robot: RobotProgram, program: Program, robot_type: RobotType | None, vehicle: str = "") -> Zero:
+def zero_of(
+    robot: RobotProgram,
+    program: Program,
+    robot_type: RobotType | None,
+    vehicle: str = "",
+    kinds: Mapping[Name, RobotKind] = MappingProxyType({}),
+) -> Zero:
     """Return what the places in the black box of a robot count from.
 
     Args:
         robot_type: None where it is not known.
         vehicle: what the black box says that it was; empty where it says nothing.
+        kinds: of robots, by metaclass; without them, the type's metaclasses tell what carries it.
     """
     home = robot.home if robot.home is not None else (0.0, 0.0, 0.0)
-    known = VEHICLES.get(vehicle) if vehicle else vehicle_class(robot, robot_type, {})
+    known = VEHICLES.get(vehicle) if vehicle else vehicle_class(robot, robot_type, kinds)
     dives = known is not None and known.dives
     return Zero(program.frame, home, program.frame.surface if dives else home[2])
 

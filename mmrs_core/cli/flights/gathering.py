@@ -6,6 +6,7 @@ from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
+from types import MappingProxyType
 
 from mmrs_core.behaviour.blackbox import Damage, Entry, number_of
 from mmrs_core.behaviour.box_files import BlackBox, black_boxes, is_part
@@ -15,8 +16,9 @@ from mmrs_core.behaviour.steps import StepRecord
 from mmrs_core.cli.flights.clocks import Readings, Shift, shifts_of
 from mmrs_core.cli.flights.fixes import Fixes, Zero, zero_of
 from mmrs_core.cli.flights.values import Flight, Flown
+from mmrs_core.contributions.rules import RobotKind
 from mmrs_core.errors import InvalidModelError, UnreadableError
-from mmrs_core.scene import RobotType
+from mmrs_core.scene import Name, RobotType
 
 SIMULATION = "simulation"
 """What stands for the link where there was no vehicle."""
@@ -85,13 +87,19 @@ def _flat(frames: Mapping[object, object]) -> Iterator[tuple[str, int]]:
             yield from ((f"{name}: {further}", inner) for further, inner in _flat(count))
 
 
-def read_flight(paths: Sequence[Path], program: Program, types: Mapping[str, RobotType]) -> Flight:
+def read_flight(
+    paths: Sequence[Path],
+    program: Program,
+    types: Mapping[str, RobotType],
+    kinds: Mapping[Name, RobotKind] = MappingProxyType({}),
+) -> Flight:
     """Return what logs and black boxes tell; damages are in the flight, for people.
 
     Args:
         paths: logs, parts of black boxes, or folders of them.
         program: the behaviour whose run it was.
         types: of its robots, by name, as far as they are known.
+        kinds: of robots, by metaclass.
 
     Raises:
         UnreadableError: if a file cannot be opened, or there is neither log nor black box.
@@ -131,7 +139,11 @@ def read_flight(paths: Sequence[Path], program: Program, types: Mapping[str, Rob
                 steps.get(robot.id, ()),
                 contents.get(robot.id, _Contents()),
                 zero_of(
-                    robot, program, types.get(robot.type_name), contents.get(robot.id, _Contents()).vehicle
+                    robot,
+                    program,
+                    types.get(robot.type_name),
+                    contents.get(robot.id, _Contents()).vehicle,
+                    kinds,
                 ),
                 damages,
             ),
@@ -206,7 +218,16 @@ def _flown(
         damages.append(f"{robot}: {contents.dropped} entries beyond {MOST_ENTRIES} are left out")
     counted: Counter[str] = sum(contents.counts, Counter())
     entries = tuple(contents.entries)
-    return Flown(robot, tuple(records), track, entries, contents.messages, counted, contents.simulated)
+    return Flown(
+        robot,
+        tuple(records),
+        track,
+        entries,
+        contents.messages,
+        counted,
+        contents.simulated,
+        contents.vehicle,
+    )
 
 
 def _moved(flown: Flown, shift: Shift | None) -> Flown:

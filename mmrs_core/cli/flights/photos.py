@@ -5,13 +5,15 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from types import MappingProxyType
 
 from mmrs_core.behaviour.blackbox import number_of
 from mmrs_core.behaviour.program import Action, Move, Program, RobotProgram
 from mmrs_core.cli.flights.fixes import Zero, zero_of
 from mmrs_core.cli.flights.values import Flight, Flown
+from mmrs_core.contributions.rules import RobotKind
 from mmrs_core.mavlink.wiring import DIGICAM_CONTROL, IMAGE_START_CAPTURE, Unwired, Wired, wiring_of
-from mmrs_core.scene import Position, RobotType
+from mmrs_core.scene import Name, Position, RobotType
 
 TAKEN, UNCONFIRMED, SIMULATED = "taken", "not confirmed", "simulated"
 _LIKE_PHOTO = re.compile(r"photo|picture|image|snap|capture", re.IGNORECASE)
@@ -39,13 +41,18 @@ class Shot:
     task: str = ""
 
 
-def shots_in(program: Program, flight: Flight, types: Mapping[str, RobotType]) -> dict[str, tuple[Shot, ...]]:
-    """Return all photos of a flight, by robot; types by name, as far as they are known."""
+def shots_in(
+    program: Program,
+    flight: Flight,
+    types: Mapping[str, RobotType],
+    kinds: Mapping[Name, RobotKind] = MappingProxyType({}),
+) -> dict[str, tuple[Shot, ...]]:
+    """Return all photos of a flight, by robot; types by name, as far as known, kinds by metaclass."""
     return {
         robot.id: shots_of(
             robot,
-            flight.robots[robot.id],
-            zero_of(robot, program, types.get(robot.type_name)),
+            flown := flight.robots[robot.id],
+            zero_of(robot, program, types.get(robot.type_name), flown.vehicle, kinds),
             types.get(robot.type_name),
         )
         for robot in program.robots

@@ -76,6 +76,7 @@ class Flown:
         entries: of its black box, in order: all but fixes, messages and counts.
         messages: how many there were, by direction and type; counted: frames, by how they were counted.
         simulated: whether there was no vehicle.
+        vehicle: class of vehicle that its black box names; empty where it names none.
     """
 
     robot: str
@@ -85,6 +86,7 @@ class Flown:
     messages: int = 0
     counted: Mapping[str, int] = field(default_factory=dict)
     simulated: bool = False
+    vehicle: str = ""
 
     def of_kind(self, kind: str) -> tuple[Entry, ...]:
         """Return the entries of one kind."""

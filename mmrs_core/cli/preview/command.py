@@ -130,9 +130,12 @@ def _of_flight(
     from mmrs_core.cli.simulation import answers
 
     loaded = load_behaviour(workshop, file, context=context, robots=robots)
-    flight = read_flight(logs, loaded.program, loaded.place.types)
+    contributed = workshop.contributions
+    flight = read_flight(logs, loaded.program, loaded.place.types, contributed.robot_kinds)
     planned = planned_for(workshop, loaded, flight, answers(assume))
-    given = Given(loaded.program, loaded.place, flight, planned, workshop.contributions.move_kinds)
+    given = Given(
+        loaded.program, loaded.place, flight, planned, contributed.move_kinds, contributed.robot_kinds
+    )
     return picture_of_flight(workshop, loaded, given, report_of(given), file.parent)
 
 

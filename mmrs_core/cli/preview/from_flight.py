@@ -56,7 +56,7 @@ def picture_of_flight(
         surroundings,
     )
     kinds = contributed.move_kinds
-    shots = shots_in(program, flight, surroundings.types)
+    shots = shots_in(program, flight, surroundings.types, contributed.robot_kinds)
     shown = [_Shown(robot, flight.robots[robot.id], kinds, shots[robot.id]) for robot in program.robots]
     robots = tuple(each.over(picture) for each, picture in zip(shown, plan.robots, strict=True))
     coarsest = max(each.tolerance for each in shown) if shown else 0.0

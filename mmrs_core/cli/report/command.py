@@ -56,11 +56,14 @@ def report(
 
     workshop, file = Workshop(settings_of(call)), behaviour_file(behaviour)
     loaded = load_behaviour(workshop, file, context=context, robots=robot_files(robots))
-    flight = read_flight(logs, loaded.program, loaded.place.types)
+    contributed = workshop.contributions
+    flight = read_flight(logs, loaded.program, loaded.place.types, contributed.robot_kinds)
     for damage in flight.damages:
         tell(damage)
     planned = planned_for(workshop, loaded, flight, answers(assume))
-    given = Given(loaded.program, loaded.place, flight, planned, workshop.contributions.move_kinds)
+    given = Given(
+        loaded.program, loaded.place, flight, planned, contributed.move_kinds, contributed.robot_kinds
+    )
     made = report_of(given)
     path = output if output is not None else _beside(logs[0])
     refuse_inputs((path,), (*workshop.inputs, *read_files(logs)))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from itertools import pairwise
 from math import dist
 
@@ -28,7 +28,7 @@ from mmrs_core.cli.report.privacy import without_secrets
 from mmrs_core.cli.report.separations import separations_of, under_way
 from mmrs_core.cli.report.tasks import task_reports
 from mmrs_core.cli.report.values import Approach, PhotoReport, Report, RobotReport, Separation
-from mmrs_core.contributions.rules import MoveKind
+from mmrs_core.contributions.rules import MoveKind, RobotKind
 from mmrs_core.pipeline import Place as Surroundings
 from mmrs_core.scene import Name
 
@@ -38,7 +38,7 @@ class Given:
     """All that a report is made of.
 
     Attributes:
-        kinds: of moves, by metaclass.
+        kinds: of moves, by metaclass. robot_kinds: of robots, by metaclass.
     """
 
     program: Program
@@ -46,6 +46,7 @@ class Given:
     flight: Flight
     planned: Planned
     kinds: Mapping[Name, MoveKind]
+    robot_kinds: Mapping[Name, RobotKind] = field(default_factory=dict)
 
     def legs(self) -> dict[str, tuple[PlannedLeg, ...]]:
         """Return the moves that each robot began, with the ways that they should have gone."""
@@ -97,7 +98,8 @@ def report_of(given: Given) -> Report:
 
 
 def _zero(given: Given, robot: RobotProgram) -> Zero:
-    return zero_of(robot, given.program, given.place.types.get(robot.type_name))
+    type, vehicle = given.place.types.get(robot.type_name), given.flight.robots[robot.id].vehicle
+    return zero_of(robot, given.program, type, vehicle, given.robot_kinds)
 
 
 def _robot(robot: RobotProgram, given: Given, judged: ReplayResult) -> RobotReport:
@@ -158,7 +160,7 @@ def _separations(
 
 
 def _photos(given: Given, places: Places) -> Iterator[PhotoReport]:
-    for robot, shots in shots_in(given.program, given.flight, given.place.types).items():
+    for robot, shots in shots_in(given.program, given.flight, given.place.types, given.robot_kinds).items():
         for shot in shots:
             where = places.of(shot.at) if shot.at is not None else None
             yield PhotoReport(robot, shot.time, shot.state, shot.index, shot.task, shot.move, where)

@@ -11,7 +11,8 @@ from mmrs_core.behaviour.blackbox import Entry
 from mmrs_core.cli.flights.fixes import Fixes, Zero, zero_of
 from mmrs_core.mavlink.earth import degrees_of
 from mmrs_core.scene import Frame
-from mmrs_core.testing.programs import L_AQUILA, program, robot_program, take_off
+from mmrs_core.testing.programs import L_AQUILA, program, quad, robot_program, take_off
+from mmrs_core.transformation.kinds import PLAIN_ROBOT
 
 HOME = (100.0, -50.0, 7.0)
 UP = [take_off("up", 5.0)]
@@ -125,3 +126,10 @@ def test_heights_under_water_count_from_the_surface():
     behaviour = program(robot_program("Ann", UP, home=HOME), frame=replace(L_AQUILA, surface=2.0))
     assert zero_of(behaviour.robots[0], behaviour, None, "sub").up == 2.0
     assert zero_of(behaviour.robots[0], behaviour, None, "copter").up == 7.0
+
+
+def test_heights_of_a_robot_whose_box_is_silent_count_as_its_kind_says():
+    behaviour = program(robot_program("Ann", UP, home=HOME), frame=replace(L_AQUILA, surface=2.0))
+    diver = replace(PLAIN_ROBOT, name="ray", metaclass=("urn:rays:1.0", "Ray"), vehicle="sub")
+    ray = replace(quad(), metaclasses=(diver.metaclass, PLAIN_ROBOT.metaclass))
+    assert zero_of(behaviour.robots[0], behaviour, ray, kinds={diver.metaclass: diver}).up == 2.0
