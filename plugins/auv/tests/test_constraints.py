@@ -106,12 +106,24 @@ def asked(registry, metaclass, **features):
     return sample_mission(registry.create(AUV_TASKS, metaclass, name="it", **features), robot_type="Diver")
 
 
-def sonar(registry, **properties):
+def device(registry, id, **properties):
     made = [
         registry.create(ROBOT_LANGUAGE, "Property", name=key.replace("_", "."), value=said)
         for key, said in properties.items()
     ]
-    return vehicle(registry, devices=[registry.create(ROBOT_LANGUAGE, "Device", id="sonar", properties=made)])
+    return registry.create(ROBOT_LANGUAGE, "Device", id=id, properties=made)
+
+
+def sonar(registry, **properties):
+    return vehicle(registry, devices=[device(registry, "sonar", **properties)])
+
+
+def logs(registry, *mosts):
+    made = [
+        device(registry, f"log{number}", sensor_kind="dvl", dvl_range_max=most)
+        for number, most in enumerate(mosts)
+    ]
+    return vehicle(registry, devices=made)
 
 
 def pipelines(registry, *names):
@@ -202,6 +214,7 @@ CASES = {
         lambda r: [sonar(r, sonar_aperture="120 deg")],
         lambda r: [sonar(r, sonar_aperture="120", sensor_kind="sonar")],
     ),
+    "AUV034": Case(lambda r: [logs(r, "50", "80")], lambda r: [logs(r, "50", "50.0")]),
     "AUV022": Case(
         lambda r: [sonar(r, sonar_aperture="120"), survey(r, swath=None)],
         lambda r: [sonar(r, sonar_aperture="120"), survey(r, swath=None, bottomDepth=8.0)],

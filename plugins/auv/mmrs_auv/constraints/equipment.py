@@ -14,11 +14,12 @@ from mmrs_core.languages.modelset import ModelSet
 from mmrs_core.languages.naming import nearest
 from mmrs_core.planning.devices import figure
 
-DEVICE = ("urn:mmrs:robot:1.0", "Device")
+ROBOT_TYPE, DEVICE = ("urn:mmrs:robot:1.0", "Robot"), ("urn:mmrs:robot:1.0", "Device")
 
 KIND = "sensor.kind"
 KINDS = ("depth", "imu", "compass", "dvl", "sonar", "altimeter")
-FIGURES = (*SONAR_KEYS, "dvl.range.min", "dvl.range.max")
+LOG_FIGURES = ("dvl.range.min", "dvl.range.max")
+FIGURES = (*SONAR_KEYS, *LOG_FIGURES)
 OURS = ("sonar.", "dvl.")
 """What names of properties begin with that are read here."""
 
@@ -55,6 +56,23 @@ def _unreadable(device: Element, models: ModelSet) -> Iterator[Finding]:
             )
 
 
+def _differing_logs(robot: Element, models: ModelSet) -> Iterator[Finding]:
+    """Find Doppler logs of different ranges: the vehicle's estimator knows one."""
+    first: dict[str, tuple[str, str]] = {}
+    for device in children(robot, "devices"):
+        said = {text(each, "name"): text(each, "value") for each in children(device, "properties")}
+        if said.get(KIND) != "dvl":
+            continue
+        for key in LOG_FIGURES:
+            if (most := figure(said, key)) is None:
+                continue
+            other, known = first.setdefault(key, (text(device, "id"), said[key]))
+            if most != figure({key: known}, key):
+                yield Finding(
+                    device, f"{key} of '{text(device, 'id')}' is {said[key]}, that of '{other}' is {known}"
+                )
+
+
 EQUIPMENT_CONSTRAINTS = (
     Constraint(
         "AUV019",
@@ -78,6 +96,13 @@ EQUIPMENT_CONSTRAINTS = (
         _unreadable,
         "metres and degrees as plain numbers, such as 30.0",
         Severity.WARNING,
+    ),
+    Constraint(
+        "AUV034",
+        "Doppler logs of a vehicle measure between the same heights",
+        ROBOT_TYPE,
+        _differing_logs,
+        "leave out the log that the vehicle does not navigate by",
     ),
 )
 """What must hold for ballast and devices."""

@@ -181,7 +181,11 @@ def _whereabouts(
     from .hearing import Whereabouts
 
     heard = Whereabouts(Codec(sheet))
-    port = stack.enter_context(open_port(given.interface, given.channel))
+
+    def tell(text: str) -> None:
+        print(f"{given.part}: {text}", file=sys.stderr, flush=True)
+
+    port = stack.enter_context(open_port(given.interface, given.channel, say=tell))
 
     def listen() -> None:
         try:
