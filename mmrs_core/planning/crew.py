@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from copy import copy
 from dataclasses import replace
+from functools import partial
 
 from mmrs_core.errors import UnreachableError
 from mmrs_core.planning.jobs import is_control
@@ -17,6 +18,8 @@ from mmrs_core.planning.materials import (
     layout_of,
     shortages,
 )
+from mmrs_core.planning.mixing import Mixture, Sort
+from mmrs_core.planning.remainders import comparable
 from mmrs_core.planning.sorties import Pilot
 from mmrs_core.planning.states import State
 from mmrs_core.planning.strokes import length_of
@@ -44,8 +47,9 @@ class Crew:
         fine: whether works are divided as finely as can be.
         homebound: names of the robots that always keep enough to go home.
         pilots: by name of robot, in the scene's order.
-        teams: by name of task: robots that may share it, by sort of work; robots of different sorts
-            (such as cameras with different footprints) cannot.
+        teams: by name of task: robots that can do it, by sort of work, which cameras with different
+            footprints or different clearances make.
+        mixtures: by name of task: the sorts that can share it, where there are several.
         refusals: by (task, robot): why the robot cannot do the task.
         starts: by (robot, delay): the states in which schedules have begun.
         done: what has become of jobs in earlier schedules; see `schedule`.
@@ -86,11 +90,25 @@ class Crew:
         self.refusals: dict[tuple[str, str], str] = dict(scene.refusals)
         self._layouts: dict[tuple[str, str], Layout] = {}
         self._materials: dict[tuple[str, str, Direction], Material | None] = {}
-        self.teams: Mapping[str, tuple[tuple[str, ...], ...]] = {
-            task.name: self._teams(task) for task in scene.tasks if not is_control(task)
-        }
+        self.teams: dict[str, tuple[tuple[str, ...], ...]] = {}
+        self.mixtures: dict[str, tuple[Mixture, ...]] = {}
+        for task in scene.tasks:
+            if not is_control(task):
+                self._gather(task)
 
-    def _teams(self, task: Task) -> tuple[tuple[str, ...], ...]:
+    def _gather(self, task: Task) -> None:
+        """Find out who can do a task, and who can share it."""
+        teams, mixtures = list[tuple[str, ...]](), list[Mixture]()
+        for family in _families(self._sorts(task)):
+            robots = sum(len(team) for _, team in family)
+            sorts = [self._able(task.name, work, team, robots) for work, team in family]
+            teams += [each.team for each in sorts]
+            if len(able := [each for each in sorts if each.team]) > 1:
+                mixtures.append(Mixture(task.name, able, self.pilots, partial(self._layout, robots=robots)))
+        self.teams[task.name], self.mixtures[task.name] = tuple(teams), tuple(mixtures)
+
+    def _sorts(self, task: Task) -> list[tuple[Work, list[str]]]:
+        """Return the robots whose work of a task is sound, by work."""
         sorts: list[tuple[Work, list[str]]] = []
         for name, pilot in self.pilots.items():
             work = self._sound_work(task, pilot)
@@ -101,7 +119,7 @@ class Crew:
                 sorts.append((work, [name]))
             else:
                 team.append(name)
-        return tuple(self._able(task.name, work, team) for work, team in sorts)
+        return sorts
 
     def _sound_work(self, task: Task, pilot: Pilot) -> Work | None:
         """Return the robot's work of a task; None, with the reason kept, if it cannot do it."""
@@ -116,9 +134,12 @@ class Crew:
             return None
         return work
 
-    def _able(self, task: str, work: Work, team: Sequence[str]) -> tuple[str, ...]:
+    def _layout(self, work: Work, team: Sequence[str], robots: int) -> Layout:
+        return layout_of(work, self.pilots[team[0]], robots, coarsest=self._coarsest, fine=self.fine)
+
+    def _able(self, task: str, work: Work, team: Sequence[str], robots: int) -> Sort:
         """Lay the work out for each robot of a team; return those that find a way through it."""
-        layout = layout_of(work, self.pilots[team[0]], len(team), coarsest=self._coarsest, fine=self.fine)
+        layout = self._layout(work, team, robots)
         able = []
         for name in team:
             self._layouts[task, name] = layout
@@ -127,7 +148,7 @@ class Crew:
                 able.append(name)
             except UnreachableError as error:
                 self.refusals[task, name] = str(error)
-        return tuple(able)
+        return Sort(work, tuple(able), layout)
 
     def asking(self, wanted: Mapping[str, int]) -> Crew:
         """Return the same crew, materials and all, where tasks want so many robots."""
@@ -162,7 +183,16 @@ class Crew:
 
     def sharers(self, task: str) -> int:
         """Return how many robots may share a task at most; 1 where it is indivisible."""
-        return 1 if self.whole(task) else max((len(team) for team in self.teams[task]), default=0)
+        return 1 if self.whole(task) else max(map(len, self.circles(task)), default=0)
+
+    def circles(self, task: str) -> list[tuple[str, ...]]:
+        """Return the robots that can share a task with each other, each in one circle."""
+        mixed = [
+            tuple(name for each in mixture.sorts for name in each.team) for mixture in self.mixtures[task]
+        ]
+        inside = {name for names in mixed for name in names}
+        found = [*mixed, *(team for team in self.teams[task] if team and team[0] not in inside)]
+        return [tuple(name for name in self.pilots if name in circle) for circle in found]
 
     def whole(self, task: str) -> bool:
         """Return whether one robot must do all of a task."""
@@ -171,14 +201,14 @@ class Crew:
 
     def sharing_with(self, task: str, robot: str) -> tuple[str, ...]:
         """Return the robots that can share a task with one, itself included."""
-        return next((team for team in self.teams[task] if robot in team), ())
+        return next((circle for circle in self.circles(task) if robot in circle), ())
 
     def shortfalls(self) -> Iterator[str]:
         """Yield what makes tasks impossible whatever the plan: nobody able, or too few."""
         for task in self.scene.tasks:
             if is_control(task):
                 continue
-            largest = max((len(team) for team in self.teams[task.name] if team), default=0)
+            largest = max(map(len, self.circles(task.name)), default=0)
             if not largest:
                 yield f"task '{task.name}' can be done by no robot ({self.why_not(task.name)})"
             elif task.wanted is not None and task.wanted > largest:
@@ -191,7 +221,7 @@ class Crew:
 
     def sorts(self, task: str) -> str:
         """Return which robots can share a task among themselves only; empty where all can."""
-        teams = [" and ".join(team) for team in self.teams[task] if team]
+        teams = [" and ".join(circle) for circle in self.circles(task)]
         apart = ", ".join(teams[:-1]) + f" cannot share it with {teams[-1]}" if len(teams) > 1 else ""
         return (
             f"{apart}: sensors or clearances differ, so that their work is laid out otherwise"
@@ -220,6 +250,19 @@ class Crew:
             material = self.forwards(task, name)
             for fault in charge_faults(material, self.pilots[name]) if material is not None else ():
                 yield f"{name}: {fault}"
+
+
+def _families(sorts: Sequence[tuple[Work, list[str]]]) -> list[list[tuple[Work, list[str]]]]:
+    """Return works and teams, those together that can share a task."""
+    families: list[list[tuple[Work, list[str]]]] = []
+    for each in sorts:
+        kin = (known for known in families if all(comparable(each[0], other) for other, _ in known))
+        family = next(kin, None)
+        if family is None:
+            families.append([each])
+        else:
+            family.append(each)
+    return families
 
 
 def homebound_of(scene: Scene) -> frozenset[str]:

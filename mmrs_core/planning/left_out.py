@@ -17,16 +17,30 @@ _LEAST = 0.05
 
 
 def left_out(scene: Scene, steps: Mapping[str, tuple[Step, ...]]) -> tuple[LeftOut, ...]:
-    """Return what robots that go these steps leave out of the tasks that they do."""
+    """Return what robots that go these steps leave out of the tasks that they do.
+
+    Where robots of different sorts share a task, that is what the one leaves out that leaves out least:
+    its sort does all that others have not done.
+    """
     served = {(task, robot) for robot, taken in steps.items() for task in _served(taken)}
-    found = (
-        each
-        for task in scene.tasks
-        for robot in scene.robots
-        if (task.name, robot.name) in served
-        for each in _of(scene, task.name, robot, scene.works[task.name, robot.name])
-    )
-    return tuple(dict.fromkeys(found))
+    found = list[LeftOut]()
+    for task in scene.tasks:
+        works = [
+            (robot, scene.works[task.name, robot.name])
+            for robot in scene.robots
+            if (task.name, robot.name) in served
+        ]
+        if works:
+            robot, work = min(works, key=lambda each: left_out_of(each[1]))
+            found += _of(scene, task.name, robot, work)
+    return tuple(found)
+
+
+def left_out_of(work: Work) -> float:
+    """Return how much of its task a work leaves out, square metres or metres."""
+    if work.coverage is not None:
+        return float(uncovered(work.coverage).area)
+    return sum(gap.length for gap in work.gaps)
 
 
 def _served(steps: tuple[Step, ...]) -> Iterator[str]:

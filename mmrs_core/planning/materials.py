@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 from math import inf
 
@@ -79,6 +79,19 @@ class Material:
         if index == 0 and self.entry is not None and self.entry != self.first(0):
             return Approach((self.entry, self.first(0)), self.speeds[0])
         return Approach((self.first(index),), self.speeds[index])
+
+    def only(self, begin: int, end: int) -> Material:
+        """Return the material of a run of portions alone."""
+        kept = slice(begin, end + 1)
+        return replace(
+            self,
+            portions=self.portions[kept],
+            begins=self.begins[kept],
+            ends=self.ends[kept],
+            soonest=self.soonest[kept],
+            entry=self.entry if begin == 0 else None,
+            speeds=self.speeds[kept],
+        )
 
     def strokes(self, begin: int, end: int) -> tuple[Stroke, ...]:
         """Return the strokes of a run of portions, parts of one stroke put together again."""

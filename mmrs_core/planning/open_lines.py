@@ -15,10 +15,17 @@ from mmrs_core.scene import Gap, Position, Robot, Scene
 
 @dataclass(frozen=True, slots=True)
 class OpenLine:
-    """What is left of a line: its parts, in its direction, and the gaps."""
+    """What is left of a line.
+
+    Attributes:
+        parts: in its direction.
+        gaps: between them.
+        stretches: of each part: index of its line, and from where to where along it, metres.
+    """
 
     parts: tuple[tuple[Position, ...], ...]
     gaps: tuple[Gap, ...]
+    stretches: tuple[tuple[int, tuple[float, float]], ...]
 
 
 class NothingLeftError(InfeasibleError):
@@ -52,9 +59,9 @@ def open_line(
             )
         )
     }
-    if not blocked:
-        return OpenLine((tuple(line),), ())
     length = sum(dist(a, b) for a, b in pairwise(line))
+    if not blocked:
+        return OpenLine((tuple(line),), (), ((0, (0.0, length)),))
     kept = open_stretches(blocked.values(), length, least)
     if not kept:
         names = _names(blocked)
@@ -70,7 +77,7 @@ def open_line(
         )
         for begin, end in between(kept, length)
     )
-    return OpenLine(tuple(part_of(line, *each) for each in kept), gaps)
+    return OpenLine(tuple(part_of(line, *each) for each in kept), gaps, tuple((0, each) for each in kept))
 
 
 def open_lines(
@@ -82,7 +89,8 @@ def open_lines(
         NothingLeftError: nothing is left of all of them.
     """
     parts, gaps, refusals = list[tuple[Position, ...]](), list[Gap](), list[NothingLeftError]()
-    for what, line in lines:
+    stretches = list[tuple[int, tuple[float, float]]]()
+    for index, (what, line) in enumerate(lines):
         try:
             found = open_line(robot, scene, line, what, least=least)
         except NothingLeftError as error:
@@ -91,9 +99,10 @@ def open_lines(
             continue
         parts += found.parts
         gaps += found.gaps
+        stretches += ((index, stretch) for _, stretch in found.stretches)
     if refusals and not parts:
         raise refusals[0]
-    return OpenLine(tuple(parts), tuple(gaps))
+    return OpenLine(tuple(parts), tuple(gaps), tuple(stretches))
 
 
 def _names(names: Iterable[str]) -> str:

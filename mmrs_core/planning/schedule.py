@@ -10,6 +10,7 @@ from math import inf
 from mmrs_core.planning.choices import carry_out
 from mmrs_core.planning.crew import Crew
 from mmrs_core.planning.jobs import Job
+from mmrs_core.planning.mixing import mixes, share_mixed
 from mmrs_core.planning.runs import Run
 from mmrs_core.planning.sharing import Candidate, Sharing, share_out
 from mmrs_core.planning.states import Ready, State
@@ -232,6 +233,13 @@ class _Scheduling:
                 found = share_out(some, everyone=everyone, record=self._record)
                 if found is not None:
                     yield found
+        for mixture in self._crew.mixtures[job.name]:
+            groups = [self._candidates(job, task, each.team) for each in mixture.sorts]
+            for mixed in self._mixes_of(task, groups):
+                everyone = task.wanted is not None
+                found = share_mixed(mixture, mixed, everyone=everyone, record=self._record)
+                if found is not None:
+                    yield found
 
     def _candidates(self, job: Job, task: Task, team: Sequence[str]) -> list[Candidate]:
         """Return the robots of a team, those first that are first back from the first portion."""
@@ -269,3 +277,18 @@ class _Scheduling:
             return
         sizes = {size for size in _SOME_SIZES if size < len(candidates)} | {len(candidates)}
         yield from ((candidates[:size], False) for size in sorted(sizes) if size)
+
+    def _mixes_of(
+        self, task: Task, groups: Sequence[Sequence[Candidate]]
+    ) -> Iterator[Sequence[Sequence[Candidate]]]:
+        """Yield, by sort, the robots to be tried together, of two sorts at least."""
+        decided = self._decisions.teams.get(task.name)
+        if isinstance(decided, tuple):
+            chosen = [[each for each in group if each.pilot.robot.name in decided] for group in groups]
+            if sum(map(bool, chosen)) > 1 and task.wanted in (None, sum(map(len, chosen))):
+                yield chosen
+            return
+        robots = sum(map(len, groups))
+        size = task.wanted or min(decided or robots, robots)
+        for counts in mixes(tuple(map(len, groups)), size):
+            yield [group[:count] for group, count in zip(groups, counts, strict=True)]

@@ -13,7 +13,7 @@ from mmrs_core.planning.sorties import Pilot
 from mmrs_core.planning.states import Ready, State
 
 _HALVINGS = 12
-_CLOSE = 4e-3
+CLOSE = 4e-3
 """Share of the time within which two ways of sharing out are alike."""
 
 
@@ -107,7 +107,7 @@ class _Filling:
             return None
         low = min(candidate.state.time for candidate in self._order)
         for _ in range(_HALVINGS):
-            if found.back - low <= _CLOSE * found.back:
+            if found.back - low <= CLOSE * found.back:
                 break
             middle = (low + found.back) / 2
             better = self._fill(middle)

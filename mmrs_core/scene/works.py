@@ -48,6 +48,9 @@ class Stroke:
         object: description of an object to go up to after the last point; None: none.
         object_distance: metres from it at the end; object_tolerance: how far it may be from the
             last point, metres, None where unknown.
+        part: which part of the task it does, such as "row 3"; empty: the one with these points. Robots of
+            different sorts share a task by it.
+        stretch: from where to where it does that part, in a measure that is the same for all robots.
     """
 
     points: tuple[Position, ...]
@@ -61,6 +64,8 @@ class Stroke:
     object: str | None = None
     object_distance: float = 0.0
     object_tolerance: float | None = None
+    part: str = ""
+    stretch: tuple[float, float] = (0.0, 1.0)
 
 
 @dataclass(frozen=True, slots=True)

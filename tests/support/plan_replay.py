@@ -6,6 +6,7 @@ from math import dist, hypot, inf, sqrt
 import numpy as np
 import shapely
 
+from mmrs_core.cli.preview.footprints import footprints
 from mmrs_core.scene import Await, Branch, Launch, Recharge, Recover, Serve, Signal, Transit
 
 NEAR = 1e-6
@@ -241,7 +242,10 @@ def _work_faults(scene, plan):
             faults.append(f"task {name} is not done")
             continue
         work = scene.works[name, serves[0][0]]
-        if _sums(work.strokes) != _sums([step.stroke for _, step in serves]):
+        sorts = [scene.works[name, who] for who in dict.fromkeys(who for who, _ in serves)]
+        if any(other != work for other in sorts):
+            faults += _mixed_faults(scene, name, sorts, serves)
+        elif _sums(work.strokes) != _sums([step.stroke for _, step in serves]):
             faults.append(
                 f"task {name}: {_sums([s.stroke for _, s in serves])} of {_sums(work.strokes)} done"
             )
@@ -252,6 +256,23 @@ def _work_faults(scene, plan):
             if [e for _, e in flags] != [False] * (len(flags) - 1) + [True]:
                 faults.append(f"task {name}: {robot} has wrong last flags")
     return faults
+
+
+def _mixed_faults(scene, name, sorts, serves):
+    """Robots with works of their own cover all together what the one covers that leaves out least."""
+    if any(work.coverage is None for work in sorts):
+        return []
+    targets = [
+        shapely.union_all([shapely.Polygon(*rings) for rings in work.coverage.target], grid_size=1e-6)
+        for work in sorts
+    ]
+    whole = max(targets, key=lambda each: each.area)
+    rings = [
+        ring for who, step in serves for ring in footprints(step.stroke, scene.works[name, who].coverage)
+    ]
+    union = shapely.union_all([shapely.Polygon(ring) for ring in rings], grid_size=1e-6)
+    share = shapely.difference(whole, union, grid_size=1e-6).area / whole.area
+    return [f"task {name}: {share:.6f} of its area is left out"] if share > 1e-4 else []
 
 
 def _sums(strokes):

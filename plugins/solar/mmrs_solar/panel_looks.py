@@ -34,7 +34,8 @@ def panel_look_work(task: Task, robot: Robot, scene: Scene) -> Work:
         refuse_heights(robot, (place,))
         refuse_blocked(robot, scene, (place,), what)
         refuse_near(robot, group, place, what)
-        strokes.append(Stroke((place,), (recorded(part, camera, action, 0.0),), Look(panel, camera.id)))
+        done, look = (recorded(part, camera, action, 0.0),), Look(panel, camera.id)
+        strokes.append(Stroke((place,), done, look, part=what))
     return Work(tuple(strokes), divisible=True, rule=RULE, ordered=False)
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 from math import ceil, dist
 
@@ -60,15 +60,20 @@ def row_inspection_work(task: Task, robot: Robot, scene: Scene) -> Work:
     """
     part, group = task.part, group_of(task.part, scene)
     how = _pass_of(part, group, robot)
-    ways = []
-    for index, (row, *ends) in enumerate(_ways(part, group, how)):
+    ways, stretches = [], []
+    for index, (row, share, *ends) in enumerate(_ways(part, group, how)):
         begin, end = ends if index % 2 == 0 else ends[::-1]
+        stretches.append((f"row {row}, stretch {share}", dist(begin, end), index % 2 == 0))
         points = (between(begin, end, -how.lead_in / dist(begin, end)), begin, end)
         refuse_heights(robot, points)
         refuse_near(robot, group, end, f"the way along row {row}")
         ways.append((f"the way along row {row}", points))
     found = open_lines(robot, scene, ways, least=how.lead_in + LEAST)
-    strokes = (_stroke(part, how, each[0], each[-1]) for each in found.parts)
+    strokes = []
+    for way, (index, (first, last)) in zip(found.parts, found.stretches, strict=True):
+        name, length, ahead = stretches[index]
+        recording = (first, last - how.lead_in) if ahead else (length - first, length + how.lead_in - last)
+        strokes.append(replace(_stroke(part, how, way[0], way[-1]), part=name, stretch=recording))
     return Work(tuple(strokes), divisible=True, rule=RULE, ordered=False, gaps=found.gaps)
 
 
@@ -142,8 +147,8 @@ def passes_over(width: float, strip: float, overlap: float) -> tuple[float, ...]
     return tuple(index * step - (width - strip) / 2.0 for index in range(steps + 1))
 
 
-def _ways(part: Part, group: Group, how: Pass) -> Iterator[tuple[int, Position, Position]]:
-    """Yield (row, begin, end) of each way of the camera, all in the direction of the group's points."""
+def _ways(part: Part, group: Group, how: Pass) -> Iterator[tuple[int, int, Position, Position]]:
+    """Yield (row, stretch, begin, end) of each way of the camera, in the direction of the group's points."""
     first, last = whole(part, "firstRow", 1), whole(part, "lastRow", group.rows)
     if not 1 <= first <= last <= group.rows:
         raise InfeasibleError(f"rows {first} to {last} are asked for, the group has {group.rows}")
@@ -158,7 +163,7 @@ def _ways(part: Part, group: Group, how: Pass) -> Iterator[tuple[int, Position, 
         for uphill in how.uphill:
             begin, end = (before(each, how.view, how.distance) for each in group.row(row, uphill))
             stops = [between(begin, end, index / parts) for index in range(parts + 1)]
-            yield from ((row, *stretch) for stretch in pairwise(stops))
+            yield from ((row, share, *ends) for share, ends in enumerate(pairwise(stops), 1))
 
 
 ROW_INSPECTION_RULE = Rule(RULE, THERMAL_ROW_TASK, row_inspection_work)

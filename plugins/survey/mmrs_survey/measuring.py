@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from mmrs_core.contributions.rules import Rule
 from mmrs_core.errors import InfeasibleError
 from mmrs_core.planning.coverage import Sweep, work_over
@@ -30,7 +32,10 @@ def measure_work(task: Task, robot: Robot, scene: Scene) -> Work:
     if spacing is None or len(points) == 1:
         return _at_points(points, action, robot, scene)
     found = open_line(robot, scene, without_repeats(points), "the line")
-    strokes = tuple(_along(each, spacing, action) for each in found.parts)
+    strokes = tuple(
+        replace(_along(each, spacing, action), part="the line", stretch=stretch)
+        for each, (_, stretch) in zip(found.parts, found.stretches, strict=True)
+    )
     return Work(strokes, divisible=True, rule=RULE, gaps=found.gaps)
 
 

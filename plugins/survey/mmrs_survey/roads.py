@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from mmrs_core.contributions.rules import Rule
 from mmrs_core.errors import InfeasibleError
 from mmrs_core.planning.devices import device_for
@@ -23,9 +25,14 @@ def road_work(task: Task, robot: Robot, scene: Scene) -> Work:
     called = [f"pass {number}" for number in range(1, len(lines) + 1)] if free else ["the line"]
     drawn = lines if free or not turned else [line[::-1] for line in lines]
     found = open_lines(robot, scene, zip(called, drawn, strict=True))
-    parts = [part[::-1] for part in found.parts[::-1]] if turned and not free else found.parts
-    strokes = tuple(_stroke(task.part, robot, line, free=free) for line in parts)
-    return Work(strokes, divisible=True, rule="road", ordered=not free, entry=entry, gaps=found.gaps)
+    ways = list(zip(found.parts, found.stretches, strict=True))
+    if turned and not free:
+        ways = [(line[::-1], (index, stretch[::-1])) for line, (index, stretch) in ways[::-1]]
+    strokes = [
+        replace(_stroke(task.part, robot, line, free=free), part=called[index], stretch=stretch)
+        for line, (index, stretch) in ways
+    ]
+    return Work(tuple(strokes), divisible=True, rule="road", ordered=not free, entry=entry, gaps=found.gaps)
 
 
 def _lines(part: Part) -> tuple[tuple[Position, ...], ...]:

@@ -365,7 +365,7 @@ def test_a_shared_task_that_takes_too_many_charges_names_who_cannot_share_it():
     three = [*two, replace(two[0], name="r3")]
     corners = tuple((float(50 * (i % 2)), 50.0, 20.0) for i in range(81))
     line = road(*corners, cuts=tuple(range(50, 4000, 50)))
-    works = {"a": {"r1": line, "r2": line, "r3": replace(line, rule="other")}}
+    works = {"a": {"r1": line, "r2": line, "r3": road((0.0, 60.0, 20.0), (50.0, 60.0, 20.0))}}
     with pytest.raises(InfeasibleError, match="r1 and r2 cannot share it with r3"):
         plan(scene(three, works, tasks={"a": task("a", wanted=2)}))
 
