@@ -9,7 +9,8 @@ from mmrs_auv.names import FOLLOW_PIPELINE_TASK, PIPELINE
 from mmrs_auv.tasks.recording import recorded
 from mmrs_core.contributions.rules import Rule
 from mmrs_core.errors import InfeasibleError
-from mmrs_core.planning.places import refuse_blocked, refuse_heights
+from mmrs_core.planning.open_lines import open_line
+from mmrs_core.planning.places import refuse_heights
 from mmrs_core.scene import Part, Point, Position, Robot, Scene, Stroke, Task, Work
 from mmrs_core.scene.attributes import flag, number, positions, text
 
@@ -23,7 +24,7 @@ SHARPEST = 0.5
 
 
 def pipeline_work(task: Task, robot: Robot, scene: Scene) -> Work:
-    """Return one stroke above a pipeline, or beside it."""
+    """Return one stroke above a pipeline, or beside it; several where it is too near to something."""
     part = task.part
     height, offset = number(part, "height") or 0.0, number(part, "offset") or 0.0
     if hypot(height, offset) < robot.clearance:
@@ -32,12 +33,17 @@ def pipeline_work(task: Task, robot: Robot, scene: Scene) -> Work:
             f"{robot.clearance:.2f} m"
         )
     line = tuple((east, north, up + height) for east, north, up in beside(_route(part, scene), offset))
-    if flag(part, "inverted"):
-        line = line[::-1]
     refuse_heights(robot, line)
-    refuse_blocked(robot, scene, line, "the way along the pipeline")
-    stroke = Stroke(line, cuts=_cuts(line), reversible=True)
-    return Work((recorded(part, robot, stroke),), divisible=True, rule=RULE)
+    found = open_line(robot, scene, line, "the way along the pipeline")
+    ways = [(way, stretch) for way, (_, stretch) in zip(found.parts, found.stretches, strict=True)]
+    if flag(part, "inverted"):
+        ways = [(way[::-1], stretch[::-1]) for way, stretch in ways[::-1]]
+    strokes = (
+        Stroke(way, cuts=_cuts(way), reversible=True, part="the pipeline", stretch=stretch)
+        for way, stretch in ways
+    )
+    recording = tuple(recorded(part, robot, stroke) for stroke in strokes)
+    return Work(recording, divisible=True, rule=RULE, gaps=found.gaps)
 
 
 def _route(task: Part, scene: Scene) -> tuple[Position, ...]:

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from itertools import accumulate, pairwise
-from math import dist, floor, radians, tan
+from math import dist, floor, inf, radians, tan
 
 from mmrs_auv.names import YO_YO_TASK
 from mmrs_auv.tasks.recording import recorded
 from mmrs_core.contributions.rules import Rule
 from mmrs_core.errors import InfeasibleError
+from mmrs_core.planning.open_lines import OpenLine, open_line
 from mmrs_core.planning.places import refuse_blocked, refuse_heights
 from mmrs_core.scene import Part, Point, Position, Robot, Scene, Stroke, Task, Work
 from mmrs_core.scene.attributes import number, position, positions
@@ -23,7 +25,8 @@ MOST_WAVES = 5_000
 def yo_yo_work(task: Task, robot: Robot, scene: Scene) -> Work:
     """Return one stroke along the line between two depths, no steeper than asked for.
 
-    It begins and ends at the upper depth, with all ways down and up equally long.
+    It begins and ends at the upper depth, with all ways down and up equally long. Where it is too near
+    to something, there is one for each part of the line that keeps clear of that at all these depths.
     """
     part, surface = task.part, scene.frame.surface
     line = _level(positions(part, "points"))
@@ -36,19 +39,48 @@ def yo_yo_work(task: Task, robot: Robot, scene: Scene) -> Work:
         raise InfeasibleError(f"the line of {length:.1f} m is too short to go down and up, {wave:.1f} m")
     if length > MOST_WAVES * wave:
         raise InfeasibleError(f"goes down and up {length / wave:,.0f} times, of {MOST_WAVES:,} at most")
-    waves = floor(length / wave + 1e-9)
-    points = tuple(
-        (east, north, surface - upper - (lower - upper) * _drop(at, length / waves))
-        for at, (east, north) in _stops(line, length, 2 * waves)
-    )
+    top, bottom = surface - upper, surface - lower
     initial = position(part, "initialPosition")
-    entry = (initial[0], initial[1], surface - upper)
+    entry = (initial[0], initial[1], top)
+    points = _waves(line, wave, top, bottom)
     refuse_heights(robot, (entry, *points))
     refuse_blocked(robot, scene, (entry,), "the initial position")
-    refuse_blocked(robot, scene, points, "the line")
-    cuts = tuple(_climbs(points)) if waves > 1 else ()
-    stroke = recorded(part, robot, Stroke(points, cuts=cuts, reversible=True))
-    return Work((stroke,), divisible=True, rule=RULE, entry=entry)
+    level = tuple((east, north, top) for east, north in line)
+    whole = OpenLine((level,), (), ((0, (0.0, length)),))
+    clear = open_line(robot, scene, points, "the line").gaps == ()
+    found = (
+        whole if clear else open_line(robot, _at(scene, robot, top, bottom), level, "the line", least=wave)
+    )
+    strokes = []
+    for way, (_, stretch) in zip(found.parts, found.stretches, strict=True):
+        points = _waves(_level(way), wave, top, bottom)
+        stroke = Stroke(
+            points, cuts=tuple(_climbs(points)), reversible=True, part="the line", stretch=stretch
+        )
+        strokes.append(recorded(part, robot, stroke))
+    return Work(tuple(strokes), divisible=True, rule=RULE, entry=entry, gaps=found.gaps)
+
+
+def _waves(line: tuple[Point, ...], wave: float, top: float, bottom: float) -> tuple[Position, ...]:
+    """Return the way down and up along a line, as often as so long waves fit."""
+    length = sum(dist(a, b) for a, b in pairwise(line))
+    waves = floor(length / wave + 1e-9)
+    return tuple(
+        (east, north, top - (top - bottom) * _drop(at, length / waves))
+        for at, (east, north) in _stops(line, length, 2 * waves)
+    )
+
+
+def _at(scene: Scene, robot: Robot, top: float, bottom: float) -> Scene:
+    """Return a scene in which what a robot keeps from between two heights reaches over all heights."""
+    return replace(
+        scene,
+        areas=tuple(
+            replace(area, low=-inf, high=inf)
+            for area in scene.areas
+            if area.low < top + (keep := area.safety_distance + robot.clearance) and area.high > bottom - keep
+        ),
+    )
 
 
 def _needed(part: Part, name: str) -> float:

@@ -8,6 +8,7 @@ from mmrs_auv.names import PIPELINE
 from mmrs_auv.tasks.pipelines import beside, pipeline_work
 
 from mmrs_core.errors import InfeasibleError
+from mmrs_core.planning.places import refuse_blocked
 from mmrs_core.scene import Part
 
 LINE = ((10.0, 0.0, -20.0), (60.0, 0.0, -20.0), (60.0, 60.0, -26.0))
@@ -60,6 +61,26 @@ def test_a_pipeline_that_is_not_there_is_told(robot, scene, task):
         pipeline_work(follow(task), robot(), scene())
 
 
-def test_what_stands_over_the_pipeline_is_told(robot, scene, task):
-    with pytest.raises(InfeasibleError, match="the way along the pipeline comes"):
-        pipeline_work(follow(task), robot(), scene((40.0, 0.0, 1.0), elements=(PIPE,)))
+@pytest.mark.parametrize("inverted", [False, True])
+def test_a_pipeline_under_an_obstacle_is_followed_as_far_as_its_way_is_clear(robot, scene, task, inverted):
+    place = scene((40.0, 0.0, 1.0), elements=(PIPE,))
+    asked = follow(task, inverted=inverted, startAction="Record", stopAction="Record", deviceId="sonar")
+    work = pipeline_work(asked, robot(), place)
+    (gap,) = work.gaps
+    assert gap.at == (pytest.approx(40.0), 0.0, -18.5)
+    assert (gap.line, gap.area) == ("the way along the pipeline", "'block 0'")
+    ways = [stroke.points[::-1] if inverted else stroke.points for stroke in work.strokes]
+    one, two = ways[::-1] if inverted else ways
+    assert one[0] == (10.0, 0.0, -18.5)
+    assert one[1] == (pytest.approx(10.0 + gap.begin), 0.0, -18.5)
+    assert two[0] == (pytest.approx(10.0 + gap.begin + gap.length), 0.0, -18.5)
+    assert two[1:] == ((60.0, 0.0, -18.5), (60.0, 60.0, -24.5))
+    for stroke in work.strokes:
+        assert stroke.actions[0].at == 0.0
+        assert len(stroke.actions) == 2
+        refuse_blocked(robot(), place, stroke.points, "a part")
+
+
+def test_a_pipeline_of_which_nothing_is_left_is_refused(robot, scene, task):
+    with pytest.raises(InfeasibleError, match="nothing is left of the way along the pipeline"):
+        pipeline_work(follow(task), robot(), scene((40.0, 30.0, 60.0), elements=(PIPE,)))

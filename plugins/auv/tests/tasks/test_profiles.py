@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+from dataclasses import replace
 from itertools import pairwise
 from math import atan2, degrees, dist, hypot, radians, tan
 
@@ -9,6 +10,7 @@ from hypothesis import strategies as st
 from mmrs_auv.tasks.profiles import yo_yo_work
 
 from mmrs_core.errors import InfeasibleError
+from mmrs_core.planning.places import refuse_blocked
 
 BENT = ((10.0, 0.0, 0.0), (60.0, 0.0, 0.0), (60.0, 37.0, 0.0))
 RELAXED = settings(suppress_health_check=[HealthCheck.function_scoped_fixture])
@@ -68,3 +70,34 @@ def test_depths_that_are_exchanged_are_refused(robot, scene, task):
 def test_turning_points_below_what_the_vehicle_bears_are_refused(robot, scene, task):
     with pytest.raises(InfeasibleError, match="below the floor"):
         yo_yo_work(yo_yo(task, minDepth=45.0, maxDepth=51.0), robot(), scene())
+
+
+def test_a_line_that_touches_an_obstacle_is_followed_on_both_sides_of_it(robot, scene, task):
+    place = scene((30.0, 0.0, 1.0))
+    work = yo_yo_work(yo_yo(task, pitch=60.0), robot(), place)
+    (gap,) = work.gaps
+    one, two = work.strokes
+    assert one.points[0][:2] == BENT[0][:2]
+    assert one.points[-1][0] == pytest.approx(10.0 + gap.begin)
+    assert two.points[0][0] == pytest.approx(10.0 + gap.begin + gap.length)
+    assert two.points[-1][:2] == pytest.approx(BENT[-1][:2])
+    assert gap.at == (pytest.approx(30.0), 0.0, -5.0)
+    assert [one.stretch, two.stretch] == [(0.0, gap.begin), (gap.begin + gap.length, 87.0)]
+    for stroke in work.strokes:
+        assert stroke.points[0][2] == stroke.points[-1][2] == -5.0
+        refuse_blocked(robot(), place, stroke.points, "a part")
+
+
+def test_a_part_too_short_to_go_down_and_up_is_left_out(robot, scene, task):
+    work = yo_yo_work(yo_yo(task, pitch=30.0), robot(), scene((30.0, 0.0, 1.0)))
+    (gap,) = work.gaps
+    assert gap.begin == 0.0
+    assert len(work.strokes) == 1
+
+
+def test_waves_that_pass_over_an_obstacle_are_not_interrupted(robot, scene, task):
+    place = scene((30.0, 0.0, 0.1))
+    deep = replace(place, areas=tuple(replace(each, high=-12.0) for each in place.areas))
+    asked = yo_yo(task, pitch=45.0)
+    assert yo_yo_work(asked, robot(), deep).gaps == ()
+    assert yo_yo_work(asked, robot(), place).gaps
