@@ -49,10 +49,13 @@ class Failure:
 def ended_by(error: Exception, settings: Settings) -> int:
     """Print what an error means for the user; return the exit code."""
     if settings.debug:
-        tell("".join(traceback.format_exception(error)).rstrip())
+        for line in "".join(traceback.format_exception(error)).splitlines():
+            tell(line)
     failure = failure_of(error)
     report(failure.diagnostics)
-    tell(failure.message if failure.message.startswith(_HELP) else f"mmrs: {one_line(failure.message)}")
+    usage = failure.message.startswith(_HELP)
+    for line in failure.message.splitlines() if usage else [f"mmrs: {one_line(failure.message)}"]:
+        tell(line)
     for detail in failure.details:
         tell(f"  - {one_line(detail)}")
     if settings.json:

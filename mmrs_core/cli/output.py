@@ -41,7 +41,11 @@ def one_line(words: str) -> str:
     >>> one_line("a\nmmrs: done\tb")
     'a\\nmmrs: done\\tb'
     """
-    return printable(words).replace("\n", "\\n").replace("\t", "\\t")
+    return _unbroken(words).replace("\t", "\\t")
+
+
+def _unbroken(words: str) -> str:
+    return printable(words).replace("\n", "\\n")
 
 
 def _printable(character: str) -> str:
@@ -51,7 +55,7 @@ def _printable(character: str) -> str:
 
 
 def say(words: str = "", colour: str = "") -> None:
-    """Print a line of the result, in a colour where a person reads it.
+    """Print one line of the result, whatever names are in it, in a colour where a person reads it.
 
     Args:
         words: the line.
@@ -60,15 +64,15 @@ def say(words: str = "", colour: str = "") -> None:
     Raises:
         typer.Exit: if nobody reads any more.
     """
-    line = printable(words)
+    line = _unbroken(words)
     if colour and coloured(sys.stdout):
         line = f"\x1b[{colour}m{line}\x1b[0m"
     _write(sys.stdout, line + "\n")
 
 
 def tell(words: str) -> None:
-    """Print a line that is not the result: to standard error."""
-    _write(sys.stderr, printable(words) + "\n")
+    """Print one line that is not the result: to standard error."""
+    _write(sys.stderr, _unbroken(words) + "\n")
 
 
 def say_json(value: object) -> None:
@@ -131,7 +135,7 @@ def progress(doing: str) -> Iterator[Callable[[str], None]]:
 
     def show(far: str) -> None:
         nonlocal longest
-        words = f"{printable(doing)} … {printable(far)}".rstrip()
+        words = f"{one_line(doing)} … {one_line(far)}".rstrip()
         _write(sys.stderr, f"\r{words.ljust(longest)}")
         longest = max(longest, len(words))
 

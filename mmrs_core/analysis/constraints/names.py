@@ -14,7 +14,7 @@ from mmrs_core.analysis.constraints.findings import (
 )
 from mmrs_core.contributions.constraints import Constraint, Finding
 from mmrs_core.diagnostics import Severity
-from mmrs_core.languages.element import Element
+from mmrs_core.languages.element import Element, Unknown, descendants
 from mmrs_core.languages.grounding.values import children, text
 from mmrs_core.languages.modelset import ModelSet
 from mmrs_core.languages.naming import unreadable
@@ -90,6 +90,14 @@ def _legible_parts(robot: Element, models: ModelSet) -> Iterator[Finding]:
             yield finding(element, f"the {word} {fault}")
 
 
+def _legible_type(robot: Element, models: ModelSet) -> Iterator[Finding]:
+    for element in (robot, *descendants(robot)):
+        for feature in () if isinstance(element, Unknown) else ("id", "name", "key"):
+            name = text(element, feature)
+            if name.strip() and (fault := unreadable(name)):
+                yield finding(element, f"the {feature} {fault}")
+
+
 _RENAME = "give each its own name"
 _READABLE = "write a name with something to see, on one line, without tabs or marks that turn the text round"
 _ONE_POLICY = "keep one policy for each event"
@@ -125,6 +133,13 @@ CONSTRAINTS = (
         (ROBOT, "Robot"),
         _devices,
         "give each its own identifier",
+    ),
+    Constraint(
+        "RL031",
+        "Names, identifiers and keys of a robot type can be read by people.",
+        (ROBOT, "Robot"),
+        _legible_type,
+        _READABLE,
     ),
     Constraint("RL003", "Actions of a device have different names.", (ROBOT, "Device"), _actions, _RENAME),
     Constraint(

@@ -142,3 +142,11 @@ def test_a_stream_on_a_full_disk_is_named(monkeypatch, tmp_path, name):
             OSError, match=f"standard {name[3:].replace('out', 'output').replace('err', 'error')}"
         ):
             output.say("x") if name == "stdout" else output.tell("x")
+
+
+def test_a_name_of_several_lines_begins_no_line_of_a_result_or_a_note(capsys):
+    output.say("'a\nmmrs: done': 3 tasks")
+    output.tell("'a\r\nb'")
+    captured = capsys.readouterr()
+    assert captured.out == "'a\\nmmrs: done': 3 tasks\n"
+    assert captured.err == "'a\\r\\nb'\n"
