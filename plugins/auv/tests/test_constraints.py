@@ -135,6 +135,23 @@ def pipelines(registry, *names):
     return [ctx.Context(name="lake", elements=made)]
 
 
+def followed(registry, north):
+    """Return a task along a pipeline of 50 m, and a block of 2 m beside it."""
+    place = ctx.Context(
+        name="lake",
+        elements=list(pipelines(registry, "outfall")[0].elements),
+        obstacles=[
+            ctx.Obstacle(
+                name="block",
+                safetyDistance=1.0,
+                shell=[at(e, north + n) for e, n in ((20, 0), (22, 0), (22, 2), (20, 2))],
+            )
+        ],
+    )
+    task = asked(registry, "FollowPipelineTask", pipeline=place.elements[0])
+    return [vehicle(registry), task, place]
+
+
 def fix(registry):
     return asked(registry, "SurfaceTask", point=at(5.0, 5.0, -2.0))
 
@@ -234,6 +251,7 @@ CASES = {
     ),
     "AUV030": Case(lambda r: pipelines(r, "outfall", ""), lambda r: pipelines(r, "outfall", "inlet")),
     "AUV031": Case(lambda r: [vehicle(r), fix(r)], lambda r: [vehicle(r, gps=True), fix(r)]),
+    "AUV034": Case(lambda r: followed(r, 0.0), lambda r: followed(r, 5.0)),
 }
 BY_CODE = {constraint.code: constraint for constraint in CONSTRAINTS}
 

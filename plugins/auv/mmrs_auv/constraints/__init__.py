@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from mmrs_auv.constraints.equipment import EQUIPMENT_CONSTRAINTS
 from mmrs_auv.constraints.mountings import MOUNTING_CONSTRAINTS
+from mmrs_auv.constraints.pipelines import PIPELINE_CONSTRAINTS
 from mmrs_auv.constraints.tasks import TASK_CONSTRAINTS
 from mmrs_auv.constraints.thrusters import THRUSTER_CONSTRAINTS
 from mmrs_auv.constraints.vehicles import VEHICLE_CONSTRAINTS
@@ -13,5 +14,6 @@ CONSTRAINTS = (
     *MOUNTING_CONSTRAINTS,
     *EQUIPMENT_CONSTRAINTS,
     *TASK_CONSTRAINTS,
+    *PIPELINE_CONSTRAINTS,
     *THRUSTER_CONSTRAINTS,
 )

@@ -32,9 +32,9 @@ def pipeline_work(task: Task, robot: Robot, scene: Scene) -> Work:
             f"comes {hypot(height, offset):.2f} m near to the pipeline, its clearance is "
             f"{robot.clearance:.2f} m"
         )
-    line = tuple((east, north, up + height) for east, north, up in beside(_route(part, scene), offset))
+    line = way_along(_route(part, scene), height, offset)
     refuse_heights(robot, line)
-    found = open_line(robot, scene, line, "the way along the pipeline")
+    found = open_line(robot, scene, line, "the pipeline")
     ways = [(way, stretch) for way, (_, stretch) in zip(found.parts, found.stretches, strict=True)]
     if flag(part, "inverted"):
         ways = [(way[::-1], stretch[::-1]) for way, stretch in ways[::-1]]
@@ -51,11 +51,19 @@ def _route(task: Part, scene: Scene) -> tuple[Position, ...]:
     found = [each for each in scene.elements if each.is_a(PIPELINE) and text(each, "name") == name]
     if len(found) != 1:
         raise InfeasibleError(f"{len(found) or 'no'} pipelines of the context are called '{name}'")
-    points = positions(found[0], "points")
+    return positions(found[0], "points")
+
+
+def way_along(points: tuple[Position, ...], height: float, offset: float) -> tuple[Position, ...]:
+    """Return the way so many metres above a pipeline and to the right of it.
+
+    Raises:
+        InfeasibleError: it has no length, or bends too sharply for that.
+    """
     line = (*points[:1], *(b for a, b in pairwise(points) if dist(a[:2], b[:2]) > 1e-6))
     if len(line) < 2:
-        raise InfeasibleError(f"pipeline '{name}' has no length")
-    return line
+        raise InfeasibleError("the pipeline has no length")
+    return tuple((east, north, up + height) for east, north, up in beside(line, offset))
 
 
 def beside(line: tuple[Position, ...], offset: float) -> tuple[Position, ...]:

@@ -68,7 +68,7 @@ def test_a_pipeline_under_an_obstacle_is_followed_as_far_as_its_way_is_clear(rob
     work = pipeline_work(asked, robot(), place)
     (gap,) = work.gaps
     assert gap.at == (pytest.approx(40.0), 0.0, -18.5)
-    assert (gap.line, gap.area) == ("the way along the pipeline", "'block 0'")
+    assert (gap.line, gap.area) == ("the pipeline", "'block 0'")
     ways = [stroke.points[::-1] if inverted else stroke.points for stroke in work.strokes]
     one, two = ways[::-1] if inverted else ways
     assert one[0] == (10.0, 0.0, -18.5)
@@ -82,5 +82,5 @@ def test_a_pipeline_under_an_obstacle_is_followed_as_far_as_its_way_is_clear(rob
 
 
 def test_a_pipeline_of_which_nothing_is_left_is_refused(robot, scene, task):
-    with pytest.raises(InfeasibleError, match="nothing is left of the way along the pipeline"):
+    with pytest.raises(InfeasibleError, match="nothing is left of the pipeline"):
         pipeline_work(follow(task), robot(), scene((40.0, 30.0, 60.0), elements=(PIPE,)))
