@@ -69,6 +69,7 @@ class Remainders:
         self._over_ground = all(work.coverage is not None for work in works)
         self._works = works
         self._ground: dict[int, Shapes] = {}
+        self._covered: dict[tuple[int, int, tuple[tuple[int, int], ...]], bool] = {}
         self._under: dict[tuple[int, int], list[list[int]]] = {}
 
     def left(self, sort: int, before: Sequence[Turn]) -> frozenset[int]:
@@ -80,15 +81,23 @@ class Remainders:
 
     def _bare(self, sort: int, before: Sequence[Turn]) -> Iterator[int]:
         """Yield the parts under which some ground is not yet covered."""
-        for part, ground in enumerate(self._ground_of(sort)):
-            covered = [
-                self._ground_of(turn.sort)[other]
+        for part in range(len(self.parts[sort])):
+            covering = tuple(
+                (turn.sort, other)
                 for turn in before
                 for other in self._under_of(sort, turn.sort)[part]
                 if other in turn.done
-            ]
-            if not covered or _uncovered(ground, covered):
+            )
+            if not self._is_covered(sort, part, covering):
                 yield part
+
+    def _is_covered(self, sort: int, part: int, covering: tuple[tuple[int, int], ...]) -> bool:
+        """Return whether parts of other sorts cover all ground under a part."""
+        key = (sort, part, covering)
+        if key not in self._covered:
+            shapes = [self._ground_of(other)[each] for other, each in covering]
+            self._covered[key] = bool(shapes) and not _uncovered(self._ground_of(sort)[part], shapes)
+        return self._covered[key]
 
     def _ground_of(self, sort: int) -> Shapes:
         """Return what each part of a sort's work covers of its target."""
