@@ -251,7 +251,7 @@ CASES = {
     ),
     "AUV030": Case(lambda r: pipelines(r, "outfall", ""), lambda r: pipelines(r, "outfall", "inlet")),
     "AUV031": Case(lambda r: [vehicle(r), fix(r)], lambda r: [vehicle(r, gps=True), fix(r)]),
-    "AUV034": Case(lambda r: followed(r, 0.0), lambda r: followed(r, 5.0)),
+    "AUV035": Case(lambda r: followed(r, 0.0), lambda r: followed(r, 5.0)),
 }
 BY_CODE = {constraint.code: constraint for constraint in CONSTRAINTS}
 

@@ -66,7 +66,7 @@ def _blocked(way: tuple[Position, ...], area: DrawnArea, keep: float) -> list[St
 
 PIPELINE_CONSTRAINTS = (
     Constraint(
-        "AUV034",
+        "AUV035",
         "All of a pipeline can be followed",
         FOLLOW_PIPELINE_TASK,
         _interrupted,
