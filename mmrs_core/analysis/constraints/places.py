@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
-from itertools import combinations, pairwise
+from itertools import combinations
 from math import dist, inf
 
 import shapely
 from shapely.geometry.base import BaseGeometry
 
+from mmrs_core.analysis.constraints.blocked import BlockedLine, blocked_line, ring_of
 from mmrs_core.analysis.constraints.capabilities import able
 from mmrs_core.analysis.constraints.findings import MISSION, called, finding
 from mmrs_core.analysis.constraints.sketch import DrawnArea, Sketch, polygon_of, sketch_of
@@ -17,7 +18,6 @@ from mmrs_core.contributions.constraints import Constraint, Finding
 from mmrs_core.diagnostics import Severity
 from mmrs_core.geometry.clearance import grow
 from mmrs_core.geometry.polygons import parts
-from mmrs_core.geometry.stretches import between, blocked_stretches, open_stretches
 from mmrs_core.languages.element import Element
 from mmrs_core.languages.grounding.values import child, children, number
 from mmrs_core.languages.modelset import ModelSet
@@ -98,55 +98,25 @@ def _positions(task: Element, feature: str, sketch: Sketch) -> list[Position]:
 def _line_inside(task: Element, models: ModelSet) -> Iterator[Finding]:
     line = _line_of(task, models)
     if line is not None and line.blocked and not line.left:
-        yield finding(task, f"every part of its line is too near to {line.areas} for every robot")
+        names = ", ".join(dict.fromkeys(name for _, name in line.blocked))
+        yield finding(task, f"every part of its line is too near to {names} for every robot")
 
 
 def _line_through(task: Element, models: ModelSet) -> Iterator[Finding]:
     line = _line_of(task, models)
     if line is not None and line.left:
-        for begin, end in line.blocked:
+        for (begin, end), names in line.blocked:
             yield finding(
                 task,
-                f"{end - begin:.1f} of its {line.length:.1f} m are too near to {line.areas} for every robot, "
+                f"{end - begin:.1f} of its {line.length:.1f} m are too near to {names} for every robot, "
                 f"from {begin:.1f} m along its line",
             )
 
 
-@dataclass(frozen=True, slots=True)
-class _Line:
-    """What no robot that can do a task may follow of its line (from, to), and what is left, metres."""
-
-    length: float
-    blocked: list[tuple[float, float]]
-    left: list[tuple[float, float]]
-    areas: str
-
-
-def _line_of(task: Element, models: ModelSet) -> _Line | None:
+def _line_of(task: Element, models: ModelSet) -> BlockedLine | None:
     sketch = sketch_of(models)
     points, smallest = _positions(task, "points", sketch), _smallest_clearance(task, models)
-    if not points or smallest is None:
-        return None
-    found = {
-        called(area.element): stretches
-        for area in sketch.kept_from
-        if (stretches := _blocked(points, area, area.safety_distance + smallest))
-    }
-    length = sum(dist(a, b) for a, b in pairwise(points))
-    left = open_stretches(found.values(), length)
-    return _Line(length, between(left, length) if found else [], left, ", ".join(found))
-
-
-def _blocked(points: list[Position], area: DrawnArea, keep: float) -> list[tuple[float, float]]:
-    return blocked_stretches(points, _ring_of(area), area.low, area.high, keep, _all_within)
-
-
-def _ring_of(area: DrawnArea) -> list[tuple[float, float]]:
-    return [(east, north) for east, north in shapely.get_coordinates(area.shape.exterior)[:-1].tolist()]
-
-
-def _all_within(ring: Sequence[tuple[float, float]], distance: float) -> BaseGeometry:
-    return shapely.buffer(shapely.Polygon(ring), distance, quad_segs=16)
+    return blocked_line(sketch, points, smallest) if points and smallest is not None else None
 
 
 def _covered(task: Element, models: ModelSet) -> Iterator[Finding]:
@@ -207,7 +177,7 @@ def _grown(
     for area in areas:
         endless, keep = area.low == -inf and area.high == inf, area.safety_distance + clearance
         if endless or (up is not None and area.off(up) < keep):
-            yield called(area.element), grow(_ring_of(area), keep)
+            yield called(area.element), grow(ring_of(area), keep)
 
 
 def _astray(task: Element, models: ModelSet) -> Iterator[Finding]:

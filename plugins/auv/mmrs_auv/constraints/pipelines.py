@@ -3,20 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from itertools import pairwise
-from math import dist
-
-import shapely
 
 from mmrs_auv.names import FOLLOW_PIPELINE_TASK
 from mmrs_auv.tasks.pipelines import way_along
+from mmrs_core.analysis.constraints.blocked import blocked_line
 from mmrs_core.analysis.constraints.capabilities import able
-from mmrs_core.analysis.constraints.sketch import DrawnArea, sketch_of
+from mmrs_core.analysis.constraints.sketch import sketch_of
 from mmrs_core.contributions.constraints import Constraint, Finding
 from mmrs_core.diagnostics import Severity
 from mmrs_core.errors import InfeasibleError
-from mmrs_core.geometry.clearance import grow
-from mmrs_core.geometry.stretches import Stretch, between, blocked_stretches, open_stretches
 from mmrs_core.languages.element import Element, label_of
 from mmrs_core.languages.grounding.values import child, children, number
 from mmrs_core.languages.modelset import ModelSet
@@ -29,21 +24,12 @@ def _interrupted(task: Element, models: ModelSet) -> Iterator[Finding]:
     smallest = min((each for each in clearances if each is not None), default=None)
     if not way or smallest is None or None in clearances:
         return
-    near = {
-        label_of(area.element): found
-        for area in sketch.kept_from
-        if (found := _blocked(way, area, area.safety_distance + smallest))
-    }
-    length = sum(dist(a, b) for a, b in pairwise(way))
-    left = open_stretches(near.values(), length)
-    for begin, end in between(left, length) if near else ():
-        names = ", ".join(
-            f"'{name}'" for name, found in near.items() if any(a <= end and b >= begin for a, b in found)
-        )
+    line = blocked_line(sketch, way, smallest)
+    for (begin, end), names in line.blocked:
         yield Finding(
             task,
-            f"task '{label_of(task)}': {end - begin:.1f} of the {length:.1f} m of its pipeline are too near "
-            f"to {names} for every robot, from {begin:.1f} m on",
+            f"task '{label_of(task)}': {end - begin:.1f} of the {line.length:.1f} m of its pipeline are too "
+            f"near to {names} for every robot, from {begin:.1f} m on",
         )
 
 
@@ -57,11 +43,6 @@ def _way(task: Element, models: ModelSet) -> tuple[Position, ...]:
         return way_along(placed, height, offset) if len(placed) == len(points) else ()
     except InfeasibleError:
         return ()
-
-
-def _blocked(way: tuple[Position, ...], area: DrawnArea, keep: float) -> list[Stretch]:
-    ring = [(east, north) for east, north in shapely.get_coordinates(area.shape.exterior)[:-1].tolist()]
-    return blocked_stretches(way, ring, area.low, area.high, keep, grow)
 
 
 PIPELINE_CONSTRAINTS = (
