@@ -27,6 +27,7 @@ from mmrs_core.languages.grounding.values import child, children, number, text
 from mmrs_core.languages.modelset import ModelSet
 from mmrs_core.scene import AreaUse, Position, Ring
 
+_ROUND_THE_EARTH = 4e7
 AREAS = ("forbiddenAreas", "obstacles", "emergencyAreas")
 
 
@@ -128,15 +129,13 @@ class Sketch:
         if shape is None:
             return None
         low, high = heights_of(element)
-        return DrawnArea(
-            element, use_of(element), shape, low, high, max(number(element, "safetyDistance") or 0.0, 0.0)
-        )
+        return DrawnArea(element, use_of(element), shape, low, high, _kept(element, "safetyDistance"))
 
     def _robot(self, element: Element) -> DrawnRobot:
         robot_type = self._models.robots.get(text(element, "type") or text(element, "typeName"))
         size = child(robot_type, "size") if robot_type is not None else None
         half = half_diagonal(size) if size is not None else None
-        error = max(number(self._framed, "positionError") or 0.0, 0.0)
+        error = _kept(self._framed, "positionError")
         home = child(element, "home")
         return DrawnRobot(
             element=element,
@@ -144,6 +143,11 @@ class Sketch:
             home=self.ground.positions.get(home) if home is not None else None,
             clearance=None if half is None else half + error,
         )
+
+
+def _kept(element: Element, name: str) -> float:
+    """Return a distance that is kept, metres; one round the Earth is as good as any that is larger."""
+    return min(max(number(element, name) or 0.0, 0.0), _ROUND_THE_EARTH)
 
 
 def polygon_of(ring: Ring) -> Polygon | None:
