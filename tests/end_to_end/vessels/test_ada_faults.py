@@ -255,7 +255,8 @@ def test_the_vehicle_comes_up_when_its_gateway_dies(tmp_path):
     result = replay(behaviour, read_logs([tmp_path / "logs"]))
     assert result.accepted, result.complaints
     assert result.faults == {"a": "PEER_LOST", "b": "PEER_LOST"}
-    assert [ways(each)[-1] for each in dives] == ["SURFACE", "SURFACE"]
+    assert [each.world.said("GoalPose")[-1].values["Mode"] for each in dives] == ["IDLE", "IDLE"]
+    assert all(each.world.vehicle.truth.depth < 0.3 for each in dives)
 
 
 def test_what_one_vehicle_has_found_another_knows_that_it_has_notified(tmp_path):
