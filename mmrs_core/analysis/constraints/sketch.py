@@ -141,7 +141,7 @@ class Sketch:
             element=element,
             type=robot_type,
             home=self.ground.positions.get(home) if home is not None else None,
-            clearance=None if half is None else half + error,
+            clearance=None if half is None else min(half + error, _ROUND_THE_EARTH),
         )
 
 

@@ -18,4 +18,5 @@ def test_a_distance_that_nothing_keeps_is_a_fault_and_overflows_nowhere(models, 
     for area in (*models.context.forbiddenAreas, *models.context.obstacles):
         models.put(area, safetyDistance=distance)
     models.put(models.mission, positionError=distance)
+    models.put(models.quad.size, length=distance)
     assert "MML080" in {fault.code for fault in models.faults()}
