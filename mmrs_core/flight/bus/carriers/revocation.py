@@ -21,7 +21,7 @@ from .doubts import Papers
 REVOKED = "revoked.pem"
 """Name of the list, next to the configuration that ``mmrs bus keys`` writes."""
 
-_ONE_LIST = re.compile(rb"\s*-----BEGIN X509 CRL-----\s([A-Za-z0-9+/\s]+={0,2}\s*)-----END X509 CRL-----\s*")
+_ONE_LIST = re.compile(rb"\s*-----BEGIN X509 CRL-----\s([A-Za-z0-9+/\s]++={0,2}\s*)-----END X509 CRL-----\s*")
 _REVOKED, _OWN_TIMES = 23, (9, 10)
 """OpenSSL's codes for certificates that are revoked, or not yet or no longer valid: seen only behind a list
 that is in order."""
