@@ -8,12 +8,15 @@ from itertools import pairwise
 from math import dist
 
 import shapely
+from shapely.geometry.base import BaseGeometry
 
 from mmrs_core.analysis.constraints.findings import called
 from mmrs_core.analysis.constraints.sketch import DrawnArea, Sketch
-from mmrs_core.geometry.clearance import grow
-from mmrs_core.geometry.stretches import Stretch, between, blocked_stretches, open_stretches
+from mmrs_core.geometry.stretches import Stretch, Vertex, between, blocked_stretches, open_stretches
 from mmrs_core.scene import Position
+
+SEGMENTS = 64
+"""Of a quarter of a circle about a corner: exact to a ten-thousandth of its radius."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,7 +46,7 @@ def blocked_line(sketch: Sketch, line: Sequence[Position], clearance: float) -> 
         for area in sketch.kept_from
         if (
             found := blocked_stretches(
-                line, ring_of(area), area.low, area.high, area.safety_distance + clearance, grow
+                line, _ring_of(area), area.low, area.high, area.safety_distance + clearance, _all_within
             )
         )
     }
@@ -59,6 +62,9 @@ def blocked_line(sketch: Sketch, line: Sequence[Position], clearance: float) -> 
     return BlockedLine(length, left, blocked)
 
 
-def ring_of(area: DrawnArea) -> list[tuple[float, float]]:
-    """Return the corners of an area, (east, north) in metres."""
+def _all_within(ring: Sequence[Vertex], distance: float) -> BaseGeometry:
+    return shapely.buffer(shapely.Polygon(ring), distance, quad_segs=SEGMENTS)
+
+
+def _ring_of(area: DrawnArea) -> list[Vertex]:
     return [(east, north) for east, north in shapely.get_coordinates(area.shape.exterior)[:-1].tolist()]

@@ -5,18 +5,17 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from itertools import combinations
-from math import dist, inf
+from math import dist, floor, inf, log10
 
 import shapely
 from shapely.geometry.base import BaseGeometry
 
-from mmrs_core.analysis.constraints.blocked import BlockedLine, blocked_line, ring_of
+from mmrs_core.analysis.constraints.blocked import SEGMENTS, BlockedLine, blocked_line
 from mmrs_core.analysis.constraints.capabilities import able
 from mmrs_core.analysis.constraints.findings import MISSION, called, finding
 from mmrs_core.analysis.constraints.sketch import DrawnArea, Sketch, polygon_of, sketch_of
 from mmrs_core.contributions.constraints import Constraint, Finding
 from mmrs_core.diagnostics import Severity
-from mmrs_core.geometry.clearance import grow
 from mmrs_core.geometry.polygons import parts
 from mmrs_core.languages.element import Element
 from mmrs_core.languages.grounding.values import child, children, number
@@ -133,9 +132,14 @@ def _partly_covered(task: Element, models: ModelSet) -> Iterator[Finding]:
         spot = piece.representative_point()
         yield finding(
             task,
-            f"{piece.area:.1f} m² of its area, about ({spot.x:.1f}, {spot.y:.1f}), are too near to"
+            f"about {_roughly(piece.area)} m² of its area, at ({spot.x:.1f}, {spot.y:.1f}), are too near to"
             f" {area.names_at(spot)} for every robot",
         )
+
+
+def _roughly(area: float) -> str:
+    """Return an area to three digits: planning grows what is kept away from a little further."""
+    return f"{round(area, 2 - floor(log10(area))):g}"
 
 
 @dataclass(frozen=True, slots=True)
@@ -173,11 +177,11 @@ def _height(task: Element, sketch: Sketch) -> float | None:
 def _grown(
     areas: Iterable[DrawnArea], clearance: float, up: float | None
 ) -> Iterator[tuple[str, BaseGeometry]]:
-    """Yield areas, called and grown as the planner grows them, as far as they matter at a height."""
+    """Yield areas, called and grown by all that is kept from them, as far as they matter at a height."""
     for area in areas:
         endless, keep = area.low == -inf and area.high == inf, area.safety_distance + clearance
         if endless or (up is not None and area.off(up) < keep):
-            yield called(area.element), grow(ring_of(area), keep)
+            yield called(area.element), shapely.buffer(area.shape, keep, quad_segs=SEGMENTS)
 
 
 def _astray(task: Element, models: ModelSet) -> Iterator[Finding]:
