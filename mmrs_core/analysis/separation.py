@@ -12,6 +12,7 @@ check, and only waits for each other are proof. Robots at homes that are nearer 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from dataclasses import replace
 from math import dist, inf
 
 import numpy as np
@@ -36,9 +37,13 @@ NAME = "separation"
 
 
 def _run(input: CheckInput) -> Iterator[Verdict]:
-    if input.program.minimum_separation is None:
+    least = input.program.minimum_separation
+    if least is None:
         yield Verdict(NAME, Status.NOT_CHECKED, message="no minimum separation is asked for")
         return
+    if input.program.idle:
+        everybody = (*input.program.robots, *input.program.idle)
+        input = replace(input, program=replace(input.program, robots=everybody, idle=()), shared={})
     occupations: list[Occupation] = []
     undecided = False
     for robot in input.program.robots:
@@ -51,7 +56,7 @@ def _run(input: CheckInput) -> Iterator[Verdict]:
         for gaps in _gaps(input, robot):
             undecided = True
             yield unknown_moves(NAME, robot, gaps)
-    needed = input.program.minimum_separation + 2.0 * input.program.position_error
+    needed = least + 2.0 * input.program.position_error
     excused: dict[tuple[str, str], float] = {}
     encounters = _encounters(input, occupations, needed, excused)
     worst = _worst(encounters)

@@ -8,7 +8,7 @@ the (robot, slot) pairs that they set, positions are (east, north, up) in metres
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
 from functools import cached_property
 from typing import TypeAlias
 
@@ -179,6 +179,7 @@ class Program:
         minimum_separation: metres between robots; None: not asked for.
         reserve: part of lifetime and energy that must remain unused, 0 to 1.
         accepted_unknowns: names of the checks whose properties may remain unknown.
+        idle: robots that nobody runs, and that stand at their homes.
     """
 
     name: str
@@ -188,11 +189,17 @@ class Program:
     minimum_separation: float | None = None
     reserve: float = 0.2
     accepted_unknowns: tuple[str, ...] = ()
+    idle: tuple[RobotProgram, ...] = ()
 
     @cached_property
     def fingerprint(self) -> str:
-        """Return what differs where two plans of the mission do, whatever files they were read from."""
-        return fingerprint(self)
+        """Return what differs where two plans of the mission do, whatever files they were read from.
+
+        Robots that nobody runs make no difference.
+        """
+        return fingerprint(
+            {each.name: getattr(self, each.name) for each in fields(self) if each.name != "idle"}
+        )
 
     def robot(self, id: str) -> RobotProgram:
         """Return the robot of that identifier."""

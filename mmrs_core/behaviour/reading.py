@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 
 from mmrs_core.behaviour.notifying import resolve
 from mmrs_core.behaviour.program import Action, Heading, Move, Program, RobotProgram, Target, Transition
@@ -53,8 +53,10 @@ class _Reading:
 
     def program(self) -> Program:
         behaviour = self._behaviour
-        self._refuse_doubles(behaviour.robots, [robot.id for robot in behaviour.robots], "robot")
-        robots = tuple(self._robot(robot, index) for index, robot in enumerate(behaviour.robots))
+        everybody = [*behaviour.robots, *behaviour.idleRobots]
+        self._refuse_doubles(everybody, [robot.id for robot in everybody], "robot")
+        robots = self._robots(behaviour.robots, "robots")
+        idle = self._robots(behaviour.idleRobots, "idleRobots")
         if not robots:
             self._add(behaviour, "has no robots")
         if self.faults:
@@ -69,10 +71,13 @@ class _Reading:
             minimum_separation=behaviour.minimumSeparation,
             reserve=behaviour.reserve,
             accepted_unknowns=tuple(behaviour.acceptedUnknowns),
+            idle=idle,
         )
 
-    def _robot(self, robot: bl.Robot, number: int) -> RobotProgram:
-        path = f"/robots[{number}]"
+    def _robots(self, robots: Sequence[bl.Robot], feature: str) -> tuple[RobotProgram, ...]:
+        return tuple(self._robot(robot, f"/{feature}[{index}]") for index, robot in enumerate(robots))
+
+    def _robot(self, robot: bl.Robot, path: str) -> RobotProgram:
         flowing = _flowing(robot)
         moves = tuple(
             self._move(move, f"{path}/moves[{index}]", index, move in flowing)

@@ -32,6 +32,8 @@ class Behaviour(Element):
     """Names of the properties that may remain unknown when the behaviour is checked."""
     robots: list[Robot]
     """The robots."""
+    idleRobots: list[Robot]
+    """Robots of the team that have nothing to do: nobody runs them, and they stand at their homes, where the others keep away from them."""
     targets: list[Target]
     """The positions and objects that moves, headings and homes refer to."""
     def __init__(
@@ -48,6 +50,7 @@ class Behaviour(Element):
         reserve: float | None = ...,
         acceptedUnknowns: Iterable[str] | None = ...,
         robots: Iterable[Robot] | None = ...,
+        idleRobots: Iterable[Robot] | None = ...,
         targets: Iterable[Target] | None = ...,
     ) -> None: ...
 

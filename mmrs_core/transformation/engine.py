@@ -46,14 +46,13 @@ def transform(
     """Return the behaviour of every robot that has something to do, and what each move is for.
 
     The behaviour is monotone: a fresh slot for each synchronisation and receiver, only ever
-    activated. Robots without work do not occur in it.
+    activated. Robots without work are its idle robots.
     """
     kinds = {kind.name: kind for kind in robot_kinds.values()}
     by_name = {rule.name: rule for rule in rules.values()}
     chains = {
         each.robot: draft(each, scene.robot(each.robot), kinds[scene.robot(each.robot).kind], by_name)
         for each in plan.robots
-        if each.steps
     }
     return _Assembly(scene, plan, chains, registry).behaviour()
 
@@ -61,13 +60,15 @@ def transform(
 class _Assembly:
     def __init__(self, scene: Scene, plan: Plan, chains: Mapping[str, Chain], registry: Registry) -> None:
         self._scene, self._chains, self._registry = scene, chains, registry
+        self._idle = {each.robot for each in plan.robots if not each.steps}
         self._coordinates = Coordinates(scene.frame, _positions(scene, chains))
         self._objects: dict[tuple[str, Position, float | None], bl.ObjectTarget] = {}
         self._slots = _slots(plan)
 
     def behaviour(self) -> tuple[bl.Behaviour, Trace]:
         scene = self._scene
-        robots = [self._robot(scene.robot(name), chain) for name, chain in self._chains.items()]
+        made = {name: self._robot(scene.robot(name), chain) for name, chain in self._chains.items()}
+        robots = [robot for name, robot in made.items() if name not in self._idle]
         behaviour = bl.Behaviour(
             name=scene.name,
             crs=scene.frame.crs,
@@ -80,6 +81,7 @@ class _Assembly:
             reserve=scene.reserve,
             acceptedUnknowns=list(scene.accepted_unknowns),
             robots=robots,
+            idleRobots=[made[name] for name in self._chains if name in self._idle],
             targets=[*self._coordinates.all, *self._objects.values()],
         )
         return behaviour, Trace(tuple(_links(robots)))
@@ -151,7 +153,7 @@ class _Assembly:
         slots = [self._slots[receiver][give.signal] for receiver in give.receivers]
         if len(slots) == 1:
             return bl.UnicastNotify(slot=slots[0])
-        if len(slots) == len(self._chains) - 1:
+        if len(slots) == len(self._chains) - len(self._idle) - 1:
             return bl.BroadcastNotify(slot=slots[0])
         return bl.MulticastNotify(slots=slots)
 

@@ -14,7 +14,7 @@ from mmrs_core.testing.small_programs import MOVE, ROBOT_TYPE, program, robot_ty
 ROBOT = ("urn:mmrs:robot:1.0", "Robot")
 FLYER = ("urn:mmrs:test:1.0", "Flyer")
 ANY = frozenset()
-OF_PROGRAMS = ("minimum_separation", "position_error", "reserve")
+OF_PROGRAMS = ("minimum_separation", "position_error", "reserve", "idle")
 
 
 def kind(metaclass=ROBOT, launches=False, floor=-inf, ceiling=inf, speed=2.0, acceleration=inf):

@@ -105,6 +105,13 @@ def test_a_robot_may_stand_beside_the_home_that_another_leaves_upright_and_is_na
     assert "a and b (1.00 m)" in verdict.caveat
 
 
+@pytest.mark.parametrize(("north", "status"), [(0.0, Status.VIOLATED), (3.1, Status.SAFE)])
+def test_robots_that_nobody_runs_stand_at_their_homes(north, status):
+    idle = robot("idle", [], home=(20.0, north, 0.0))
+    (verdict,) = separation(robot("a", [go("east", (40.0, 0.0, 0.0))]), idle=(idle,))
+    assert verdict.status is status
+
+
 def test_launching_side_by_side_is_violated():
     assert [verdict.status for verdict in flights(second_waits=False)] == [Status.VIOLATED]
 

@@ -7,6 +7,7 @@ import pytest
 from mmrs_core.contributions.rules import MoveSpec, Rule
 from mmrs_core.errors import InfeasibleError
 from mmrs_core.languages import behaviour as bl
+from mmrs_core.languages.element import metaclass_of
 from mmrs_core.languages.registry import core_registry
 from mmrs_core.scene import (
     ActionAt,
@@ -112,9 +113,11 @@ def test_a_cruise_that_the_wind_slows_down_is_commanded(fastest, speed):
     assert model.robots[0].moves[1].speed == speed
 
 
-def test_robots_without_work_do_not_occur():
+def test_robots_without_work_are_idle():
     model, _ = behaviour_of(plan_of(transit(HOME, (1.0, 0.0, 0.0))), plan_of(name="idle"))
     assert [each.id for each in model.robots] == ["one"]
+    (idle,) = model.idleRobots
+    assert (idle.id, [metaclass_of(move).name for move in idle.moves]) == ("idle", ["Start", "Stop"])
 
 
 def test_actions_come_where_they_are_due_along_a_stroke():
