@@ -37,6 +37,7 @@ ANSWER_SECONDS = 30.0
 """Longest time that a robot has for an answer; a client may ask for less with `seconds`."""
 
 LONGEST_LINE = 65_536
+TOO_LONG = {"error": f"an order is one line of less than {LONGEST_LINE} bytes"}
 GREETING_SECONDS = 5.0
 """Longest time from the connection, or from the last answer, to the end of an order's line."""
 
@@ -140,7 +141,11 @@ class Control:
                         for reply in self._replies(given):
                             file.write(_written(reply))
                             file.flush()
-                file.write(_written(self._late))
+                file.write(_written(TOO_LONG if len(line) == LONGEST_LINE else self._late))
+                file.flush()
+                caller.shutdown(socket.SHUT_WR)
+                while file.read(LONGEST_LINE):
+                    pass  # whoever still sends would lose the answer if the connection were closed now
         except OSError:
             # Whoever gave the order does not want to hear its end; the robots obey all the same.
             return

@@ -6,17 +6,22 @@ import json
 import queue
 import socket
 import threading
-from collections.abc import Iterator, Mapping, Sequence
+from collections import Counter
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 from ..clock import SIGNAL_SECONDS
+from .orders import STATUS, is_answer
+from .standing import is_standing
 
 CALL_SECONDS = 5.0
+LONGEST_REPLY = 1 << 20
+STRANGE = "what answers at its port is not its process, or does not answer as that should"
 _BOOT = Path("/proc/sys/kernel/random/boot_id")
 
 Request = tuple[int, Mapping[str, Any]]
-"""A port of this machine, and what is asked there."""
+"""A port of this machine, and the order that is given there, with its `robots`."""
 
 
 def network() -> str:
@@ -38,12 +43,20 @@ def object_in(line: str | bytes) -> dict[str, Any]:
     """Return the object of JSON in a line.
 
     Raises:
-        ValueError: there is none.
+        ValueError: there is none, or it has a name twice.
     """
+    twice: list[str] = []
+
+    def once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+        twice.extend(name for name, count in Counter(name for name, _ in pairs).items() if count > 1)
+        return dict(pairs)
+
     try:
-        given = json.loads(line)
+        given = json.loads(line, object_pairs_hook=once)
     except (ValueError, RecursionError) as error:
         raise ValueError("an order is one line of JSON") from error
+    if twice:
+        raise ValueError(f"{twice[0]!a} is there more than once")
     if not isinstance(given, dict):
         raise ValueError("an order is an object of JSON")
     return given
@@ -68,7 +81,8 @@ def asked_at_once(
                 said.put((number, reply))
         except (Unreachable, ValueError) as error:
             said.put((number, error))
-        said.put((number, None))
+        finally:
+            said.put((number, None))
 
     for number, request in enumerate(requests):
         threading.Thread(target=ask, args=(number, request), name="call", daemon=True).start()
@@ -85,17 +99,17 @@ def asked_at_once(
 
 
 def _replies(port: int, content: Mapping[str, Any], seconds: float) -> Iterator[dict[str, Any]]:
+    missing = set(content["robots"])
     try:
         with socket.create_connection(("127.0.0.1", port), CALL_SECONDS) as connection:
             connection.settimeout(seconds + CALL_SECONDS)
             connection.sendall(json.dumps(content).encode("ascii") + b"\n")
             with connection.makefile("rb") as file:
-                for line in file:
-                    reply = json.loads(line)
-                    if "error" in reply:
-                        raise ValueError(reply["error"])
-                    if reply.get("done") is True:
+                while line := file.readline(LONGEST_REPLY):
+                    reply = _reply_in(line, missing, content)
+                    if reply is None:
                         return
+                    missing.discard(reply["robot"])
                     yield reply
     except TimeoutError as error:
         raise Unreachable("its process does not answer") from error
@@ -104,3 +118,25 @@ def _replies(port: int, content: Mapping[str, Any], seconds: float) -> Iterator[
     except OSError as error:
         raise Unreachable(f"its process cannot be reached: {error.strerror or error}") from error
     raise Unreachable("its process has ended before its answer")
+
+
+def _reply_in(line: bytes, missing: Collection[str], content: Mapping[str, Any]) -> dict[str, Any] | None:
+    """Return what one of the missing robots says in a line; None: that was all.
+
+    Raises:
+        Unreachable: no process that runs robots says that.
+        ValueError: the order is not understood; says why.
+    """
+    try:
+        reply = object_in(line)
+    except ValueError as error:
+        raise Unreachable(STRANGE) from error
+    if isinstance(reply.get("error"), str):
+        raise ValueError(reply["error"])
+    if reply.get("done") is True and not missing:
+        return None
+    robot = reply.get("robot")
+    meant = is_standing(reply) if content["order"] == STATUS else is_answer(reply, content["order"])
+    if not meant or not isinstance(robot, str) or robot not in missing:
+        raise Unreachable(STRANGE)
+    return reply

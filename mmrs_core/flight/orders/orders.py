@@ -5,7 +5,7 @@ from __future__ import annotations
 import threading
 import time
 from collections import deque
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 from ..questions import Questions
@@ -29,6 +29,8 @@ ORDERS = {
 }
 """What can be ordered, and what it means."""
 
+LONGEST_SECONDS = 1e9
+
 ENDINGS = frozenset({RETURN, LAND, STOP})
 """Orders that end a robot's program."""
 
@@ -51,6 +53,16 @@ def ordered(name: str, question: str, answer: bool) -> dict[str, object]:
     """Return what was ordered, or answered to which question, as a black box has it."""
     asked = {"question": question, "says": "yes" if answer else "no"} if name == ANSWER else {}
     return {"order": name, **asked}
+
+
+def is_answer(reply: Mapping[str, object], name: object) -> bool:
+    """Return whether this is what a robot says to an order of that name, as JSON has it."""
+    seconds = reply.get("seconds")
+    timed = (
+        isinstance(seconds, int | float) and not isinstance(seconds, bool) and 0 <= seconds < LONGEST_SECONDS
+    )
+    texts = isinstance(reply.get("why"), str) and reply.get("order") == name
+    return timed and texts and isinstance(reply.get("confirmed"), bool)
 
 
 class Receipt:

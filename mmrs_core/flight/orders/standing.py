@@ -8,6 +8,7 @@ Reply = Mapping[str, object]
 """What a robot says to ``status``, as JSON has it."""
 
 HOUR = 3600
+LARGEST = 1e12
 
 
 def lines_of(replies: Sequence[Reply]) -> Iterator[str]:
@@ -28,6 +29,27 @@ def lines_of(replies: Sequence[Reply]) -> Iterator[str]:
         yield from _below(reply)
 
 
+def is_standing(reply: Reply) -> bool:
+    """Return whether whatever is to be a figure in a reply is one, or null where nothing is known of it.
+
+    >>> is_standing({"phase": "works", "speed": None}), is_standing({"phase": "works", "speed": "fast"})
+    (True, False)
+    """
+    place = reply.get("place")
+    if isinstance(place, Mapping):
+        needed = ("latitude", "longitude") if "latitude" in place else ("north", "east")
+        if not all(name in place and is_figure(place[name]) for name in (*needed, "height")):
+            return False
+    return all(is_figure(reply.get(name)) for name in ("time", "energy", "speed"))
+
+
+def is_figure(value: object) -> bool:
+    """Return whether this is a number that people can read, or null."""
+    if value is None:
+        return True
+    return isinstance(value, int | float) and not isinstance(value, bool) and abs(value) < LARGEST
+
+
 def _cells(reply: Reply) -> tuple[str, ...]:
     return (
         repr(reply["robot"]),
@@ -36,7 +58,7 @@ def _cells(reply: Reply) -> tuple[str, ...]:
         _motors(reply),
         _battery(reply),
         _place(reply.get("place")),
-        f"{_number(reply['speed']):.1f} m/s" if "speed" in reply else "",
+        f"{_number(reply['speed']):.1f} m/s" if reply.get("speed") is not None else "",
     )
 
 
@@ -46,7 +68,7 @@ def _move(reply: Reply) -> str:
         return ""
     if step is None:
         return f"at {move!r}"
-    when = _clock(_number(reply.get("time", 0.0)))
+    when = _clock(_number(reply.get("time") or 0.0))
     if step in ("begin", "end"):
         return f"{move!r} {'since' if step == 'begin' else 'done at'} {when}"
     return f"at {move!r}, {step} {when}"
@@ -68,7 +90,7 @@ def _battery(reply: Reply) -> str:
 
 def _place(place: object) -> str:
     """Return a place as a robot tells it: degrees, or metres from its home; and metres above that."""
-    if not isinstance(place, Mapping):
+    if not isinstance(place, Mapping) or None in place.values():
         return ""
     height = f"{_number(place['height']):.1f} m up"
     if "latitude" in place:
