@@ -1,8 +1,10 @@
 """The columns over the homes of robots, in which neighbours at home are not kept away from.
 
 Homes may be nearer to each other than robots must keep in flight. Robots that stand at such homes are
-excused, and so is one that rises or descends straight over its own while the other stands at its own.
-Nothing else is: neither two that rise side by side, nor one that comes to another's home.
+excused, and so is one that rises or descends straight over its own while the other stands at its own,
+as long as they are no nearer to each other than their homes are.
+Nothing else is: neither two that rise side by side, nor one that comes to another's home, nor any two
+whose homes are at one place.
 """
 
 from __future__ import annotations
@@ -15,8 +17,8 @@ from math import dist, hypot, inf
 from mmrs_core.scene import Position
 
 HOME_SPOT = 0.1
-"""Metres from its home within which a robot stands there, and from the axis of its column within which
-it is in it."""
+"""Metres from its home within which a robot stands there, from the axis of its column within which it is
+in it, and from each other within which two homes are one place."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -18,6 +18,7 @@ from math import dist, inf
 import numpy as np
 import shapely
 
+from mmrs_core.analysis.columns import HOME_SPOT
 from mmrs_core.analysis.encounters import (
     Encounter,
     Order,
@@ -73,7 +74,8 @@ def _excuses(excused: Mapping[tuple[str, str], float]) -> str:
     pairs = ", ".join(f"{one} and {other} ({apart:.2f} m)" for (one, other), apart in excused.items())
     return (
         f"excused, since their homes are nearer: {pairs},"
-        " while one stands at its home and the other does, too, or is straight above its own"
+        " while one stands at its home and the other does, too, or is straight above its own,"
+        " and they are no nearer to each other than their homes"
     )
 
 
@@ -125,7 +127,10 @@ def _may_meet(one: Occupation, other: Occupation) -> bool:
 
 def _excused(one: Occupation, other: Occupation, needed: float) -> bool:
     """Return whether two robots, whose homes are too near, are only where their homes keep them."""
-    if one.radius or other.radius or not _between_homes(one, other) < needed - TOLERANCE:
+    homes = _between_homes(one, other)
+    if one.radius or other.radius or not homes < needed - TOLERANCE:
+        return False
+    if apart(one.points, other.points) < max(homes - HOME_SPOT, HOME_SPOT):
         return False
     return (_at_home(one) and _over_home(other, one, needed)) or (
         _at_home(other) and _over_home(one, other, needed)

@@ -18,6 +18,12 @@ from mmrs_core.scene import Position
 Floats: TypeAlias = NDArray[np.float64]
 Indices: TypeAlias = NDArray[np.intp]
 
+_SLOPE = 0.05
+"""Metres by which robots over neighbouring homes may be nearer than the homes: these differ in height."""
+
+_ONE_PLACE = 0.15
+"""Metres within which two homes are one place, where no two robots can be."""
+
 
 @dataclass(frozen=True, slots=True)
 class Track:
@@ -111,7 +117,8 @@ def near_pairs(
     """Return the pairs of pieces that come within a distance of each other, in space.
 
     Homes that are nearer to each other are the operator's choice: a robot that stands at such a home is
-    no hindrance to the other one at its own, nor in the column over it.
+    no hindrance to the other one at its own, nor in the column over it, while they are no nearer to each
+    other than their homes are.
 
     Args:
         one: track of a robot.
@@ -140,11 +147,16 @@ def near_pairs(
 
 
 def _excused(one: Track, two: Track, least: float, i: Indices, j: Indices) -> NDArray[np.bool_]:
-    """Return (n,): which pairs of pieces are one at a home and one at or over a neighbouring home."""
+    """Return (n,): which pairs of pieces are one at a home and one at or over a neighbouring home.
+
+    Only those that are no nearer to each other than the homes.
+    """
     if dist(one.home, two.home) >= least:
         return np.zeros(len(i), dtype=np.bool_)
     spots = np.stack([one.spots[i], two.spots[j]])
     found: NDArray[np.bool_] = (spots.min(axis=0) > Spot.ELSEWHERE) & (spots.max(axis=0) == Spot.HOME)
+    nearest = max(dist(one.home, two.home) - _SLOPE, _ONE_PLACE)
+    found[found] = legs_apart(one.places[i[found]], two.places[j[found]]) >= nearest
     return found
 
 

@@ -11,7 +11,7 @@ import numpy as np
 from mmrs_core.errors import InfeasibleError
 from mmrs_core.planning.nearness import Nearness, Track, near_pairs, track_of
 from mmrs_core.planning.schedule import Decisions
-from mmrs_core.planning.timeline import Spot, rides_of
+from mmrs_core.planning.timeline import rides_of
 from mmrs_core.scene import Plan, Position, Scene
 
 _ROUNDS = 60
@@ -178,14 +178,13 @@ def earliest_encounter(tracks: Mapping[str, Track], least: float) -> Encounter |
 
 
 def _neighbours(tracks: Mapping[str, Track], least: float) -> Iterator[tuple[str, str]]:
-    """Yield the pairs of tracks whose boxes come within a distance, one of which at least leaves home."""
+    """Yield the pairs of tracks whose boxes come within a distance."""
     names = [name for name, track in tracks.items() if len(track.times)]
     boxes = np.array([tracks[name].box() for name in names]).reshape(-1, 2, 3)
     low, high = boxes[:, 0], boxes[:, 1]
-    leaves = np.array([bool((tracks[name].spots != Spot.HOME).any()) for name in names])
     for i, name in enumerate(names):
         near = (low[i] < high[i + 1 :] + least).all(axis=1) & (low[i + 1 :] < high[i] + least).all(axis=1)
-        for j in np.flatnonzero(near & (leaves[i] | leaves[i + 1 :])).tolist():
+        for j in np.flatnonzero(near).tolist():
             yield name, names[i + 1 + j]
 
 

@@ -182,6 +182,22 @@ def test_landing_at_the_home_of_another_that_is_there_is_not_excused():
     assert [verdict.status for verdict in separation(a, b, **FLYERS)] == [Status.VIOLATED]
 
 
+@pytest.mark.parametrize(
+    ("home", "at", "status"),
+    [
+        pytest.param((0.0, 0.0, 2.0), 10.0, Status.VIOLATED, id="takes off through one above"),
+        pytest.param((0.0, 0.0, 2.0), 2.0, Status.VIOLATED, id="hovers where one is parked"),
+        pytest.param((0.05, 0.0, 2.9), 10.0, Status.VIOLATED, id="takes off past one above"),
+        pytest.param((0.0, 0.0, 0.0), 10.0, Status.VIOLATED, id="at one place"),
+        pytest.param((0.0, 2.0, 0.5), 10.0, Status.SAFE, id="on a slope"),
+    ],
+)
+def test_a_robot_above_its_home_is_excused_only_as_far_from_another_as_their_homes_are(home, at, status):
+    moves = [take_off("up", at), hold("look", 60.0), land("down")]
+    robots = robot("a", moves, home=(0.0, 0.0, 0.0)), robot("c", [], home=home)
+    assert [verdict.status for verdict in separation(*robots, **FLYERS)] == [status]
+
+
 def test_a_column_ends_where_its_robot_leaves_it_sideways():
     """Level flight 2 m above the own home, 1 m beside a robot that waits there, is not straight up."""
     a = flight("a", (1.0, 0.0, 0.0), before=500.0)

@@ -117,6 +117,17 @@ def test_only_a_robot_at_home_and_one_at_or_over_a_neighbouring_home_are_excused
     assert bool(len(near_pairs(first, second, 5.0, finest=0.5, spare=0.0).distance)) == counted
 
 
+@pytest.mark.parametrize(
+    ("there", "counted"),
+    [((0.0, 0.0, 2.0), True), ((0.05, 0.0, 2.9), True), ((0.0, 0.0, 0.0), True), ((0.0, 2.0, 0.4), False)],
+)
+def test_a_robot_over_its_home_is_excused_only_as_far_from_another_as_their_homes_are(there, counted):
+    here = (0.0, 0.0, 0.0)
+    over, parked = track(column(here, early=9.0), home=here), track(stands(there), home=there)
+    for one, two in ((over, parked), (parked, over)):
+        assert bool(len(near_pairs(one, two, 3.0, finest=0.5, spare=0.0).distance)) == counted
+
+
 def test_a_robot_that_stands_at_home_for_ever_is_near_at_any_time():
     home = (50.0, 3.0, 19.0)
     idle = track(stands(home), home=home)
