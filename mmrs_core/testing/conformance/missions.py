@@ -39,8 +39,9 @@ class MissionConformance:
         return copy
 
     def test_it_is_valid(self) -> None:
-        """Nothing is wrong with it, and nothing is warned of."""
-        assert run_json("validate", self.folder)["diagnostics"] == []
+        """Nothing is wrong with it, and nothing is warned of; notes are welcome."""
+        found = run_json("validate", self.folder)["diagnostics"]
+        assert [each for each in found if each["severity"] != "note"] == []
 
     def test_every_rule_leads_to_moves(self, planned: Path) -> None:
         """The plan says of each move by which rule it came about."""

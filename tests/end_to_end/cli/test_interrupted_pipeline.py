@@ -28,7 +28,7 @@ def bay(tmp_path):
 def test_what_is_left_out_of_a_pipeline_is_said_alike_before_and_after_planning(mmrs, bay):
     code, out, err = mmrs("validate", bay)
     assert code == 0
-    said = r"'pipe': ([\d.]+) of the [\d.]+ m of its pipeline are too near to 'buoy' for every robot"
+    said = r"'pipe': ([\d.]+) of the [\d.]+ m of its pipeline are too near to Obstacle 'buoy' for every robot"
     length, begin = re.search(rf"{said}, from ([\d.]+) m on", out + err).groups()
     code, out, _ = mmrs("plan", bay)
     assert code == 0

@@ -36,7 +36,7 @@ def written(folder: Path, old: str, new: str) -> Path:
         ('maxPower="230.0"', 'maxPower="9999"', "robot 'Naiad'", "max_power: 9999.0 is more than 6553.5"),
         ('id="T2"', 'id="T1"', "pool-auv.xmi:40", "'T1' has the identifier of another"),
         ('id="T2"', 'id="T&quot;2"', "robot 'Naiad'", "thruster 1 ('T\"2'): id: 'T\"2' has '\"'"),
-        ('id="T2"', 'id="T&#10;CM_ 2"', "robot 'Naiad'", "thruster 1 ('T\\nCM_ 2'): id: "),
+        ('id="T2"', 'id="T&#10;CM_ 2"', "pool-auv.xmi:40", "Thruster 'T\\nCM_ 2': "),
     ],
 )  # fmt: skip
 def test_what_no_bus_can_be_made_of(
