@@ -32,9 +32,10 @@ MOST_STRETCHES = 200
 
 @dataclass(frozen=True, slots=True)
 class Encounter:
-    """Two occupations that come too near, `apart` metres at a time; `needed` would do.
+    """Two occupations that come too near at a time; `needed` metres would do.
 
     Attributes:
+        apart: metres that the robots are then apart: at most if decided, at least if not.
         decided: whether both robots are certainly there at that time.
     """
 
@@ -80,21 +81,26 @@ class Order:
 
 def required(one: Occupation, other: Occupation, needed: float) -> float:
     """Return how far two paths have to be from each other, metres."""
-    return needed + one.radius + other.radius - TOLERANCE
+    return needed + _astray(one, other) - TOLERANCE
+
+
+def _astray(one: Occupation, other: Occupation) -> float:
+    """Return by how many metres two robots may be nearer to each other than their paths, or further apart."""
+    return one.radius + other.radius
 
 
 def certain_encounter(one: Occupation, other: Occupation, needed: float, order: Order) -> Encounter | None:
     """Return where one robot certainly comes too near to another that stands; None if that is not proven."""
-    if one.radius or other.radius or not (one.stands or other.stands):
+    if not (one.stands or other.stands):
         return None
     if one.stands and other.stands:
         found = _standing(one, other, order)
     else:
         found = _passing(other, one, order) if one.stands else _passing(one, other, order)
-    if found is None or found[0] >= required(one, other, needed):
+    if found is None:
         return None
-    nearness, time = found
-    return Encounter(one, other, time, nearness, needed, True)
+    nearness, time = found[0] + _astray(one, other), found[1]
+    return Encounter(one, other, time, nearness, needed, True) if nearness < needed - TOLERANCE else None
 
 
 def _standing(one: Occupation, other: Occupation, order: Order) -> tuple[float, float] | None:
@@ -137,7 +143,7 @@ def nearest_encounter(one: Occupation, other: Occupation, needed: float) -> Enco
     The time that both may be there is halved, always where the parts of the ways are nearest to each
     other, until they are far enough apart or the time is short.
     """
-    least = required(one, other, needed)
+    least, astray = required(one, other, needed), _astray(one, other)
     begin, end = _common_time(one, other)
     pending = [(apart(one.between(begin, end), other.between(begin, end)), begin, end)]
     nearest: Encounter | None = None
@@ -154,8 +160,9 @@ def nearest_encounter(one: Occupation, other: Occupation, needed: float) -> Enco
             nearness = _apart_moving(one, other, begin, end)
             if nearness >= least:
                 continue
+            decided = nearness + astray < needed - TOLERANCE
         left -= 1
-        found = Encounter(one, other, begin, nearness - one.radius - other.radius, needed, decided)
+        found = Encounter(one, other, begin, nearness + (astray if decided else -astray), needed, decided)
         if decided:
             return found
         nearest = nearest or found

@@ -35,8 +35,8 @@ class Occupation:
         begin: the earliest time at which the robot is there. end: the latest.
         least: seconds, for each leg of the way, that the robot takes at least: it is no faster than it
             is commanded to be, unless its moves' kind says that it may be.
-        certain: from when to when the robot is there in every run that makes the move, and where it
-            is known; the first exceeds the second if never.
+        certain: from when to when the robot is there in every run that makes the move, within the
+            radius of a place that is known; the first exceeds the second if never.
         column: the one over its home, where its home is known.
         leaves_by: the moves with whose begin a stand ends; none if it lasts for ever, or is no wait.
     """
@@ -169,7 +169,7 @@ def _stand(
         begin=come.low,
         end=go.high,
         least=(),
-        certain=(come.high, go.low) if radius == 0.0 else (inf, -inf),
+        certain=(come.high, go.low),
         column=column,
         leaves_by=tuple(transition.ways) if transition is not None else (),
     )

@@ -182,9 +182,10 @@ def _verdict(input: CheckInput, encounter: Encounter) -> Verdict:
     one, other = encounter.one, encounter.other
     move = input.program.robot(one.robot).moves[one.move]
     meeting = input.program.robot(other.robot).moves[other.move]
+    most = "at most " if encounter.decided and one.radius + other.radius > 0.0 else ""
     words = (
-        f"{one.robot}: {_words(one)} '{move.id}' is {max(0.0, encounter.apart):.2f} m from {other.robot}"
-        f" {_words(other)} '{meeting.id}' at {encounter.time:.1f} s, {encounter.needed:.2f} m are required"
+        f"{one.robot}: {_words(one)} '{move.id}' is {most}{max(0.0, encounter.apart):.2f} m from"
+        f" {other.robot} {_words(other)} '{meeting.id}' at {encounter.time:.1f} s, {encounter.needed:.2f} m are required"
     )
     status = Status.VIOLATED if encounter.decided else Status.UNKNOWN
     if status is Status.UNKNOWN:

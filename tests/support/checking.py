@@ -17,7 +17,9 @@ ANY = frozenset()
 OF_PROGRAMS = ("minimum_separation", "position_error", "reserve", "idle")
 
 
-def kind(metaclass=ROBOT, launches=False, floor=-inf, ceiling=inf, speed=2.0, acceleration=inf):
+def kind(
+    metaclass=ROBOT, launches=False, floor=-inf, ceiling=inf, speed=2.0, acceleration=inf, turning_radius=0.0
+):
     """Return a kind of robots that move at one speed in every direction."""
     return RobotKind(
         name=metaclass[1].lower(),
@@ -32,6 +34,7 @@ def kind(metaclass=ROBOT, launches=False, floor=-inf, ceiling=inf, speed=2.0, ac
             floor=floor,
             ceiling=ceiling,
             launches=launches,
+            turning_radius=turning_radius,
         ),
         launch=lambda height: (),
         recover=lambda: (),

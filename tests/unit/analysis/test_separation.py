@@ -214,6 +214,20 @@ def test_a_robot_that_certainly_hovers_in_the_way_is_violated_however_uncertain_
     assert (verdict.status, verdict.margin) == (Status.VIOLATED, pytest.approx(-3.0))
 
 
+@pytest.mark.parametrize("moves", [None, uneven()], ids=["exact times", "uncertain times"])
+@pytest.mark.parametrize(
+    ("least", "status", "apart"),
+    [(3.0, Status.VIOLATED, 1.2), (1.3, Status.VIOLATED, 1.2), (1.1, Status.UNKNOWN, -1.2)],
+)
+def test_curves_of_a_robot_take_no_more_certainty_than_their_radius(least, status, apart, moves):
+    """One drives through another that is parked, off the line by its turning radius at most."""
+    more = {"robot_kind": kind(turning_radius=1.2)} | ({"moves": moves} if moves else {})
+    a = robot("a", [go("east", (40.0, 0.0, 0.0))], home=(0.0, 0.0, 0.0))
+    (verdict,) = separation(a, robot("c", [], home=(20.0, 0.0, 0.0)), least=least, **more)
+    assert (verdict.status, "is at most" in verdict.message) == (status, status is Status.VIOLATED)
+    assert verdict.margin == pytest.approx(apart - least)
+
+
 def test_a_robot_that_waits_for_the_one_that_passes_it_is_violated_though_no_time_is_certain():
     leave = go("off", (20.0, 90.0, 0.0))
     a = robot("a", [leave], waits={"start": ["go"]}, slots=["go"], home=(20.0, 0.0, 0.0))
