@@ -185,7 +185,8 @@ def _verdict(input: CheckInput, encounter: Encounter) -> Verdict:
     most = "at most " if encounter.decided and one.radius + other.radius > 0.0 else ""
     words = (
         f"{one.robot}: {_words(one)} '{move.id}' is {most}{max(0.0, encounter.apart):.2f} m from"
-        f" {other.robot} {_words(other)} '{meeting.id}' at {encounter.time:.1f} s, {encounter.needed:.2f} m are required"
+        f" {other.robot} {_words(other)} '{meeting.id}' at {encounter.time:.1f} s,"
+        f" {encounter.needed:.2f} m are required"
     )
     status = Status.VIOLATED if encounter.decided else Status.UNKNOWN
     if status is Status.UNKNOWN:
