@@ -76,7 +76,7 @@ def test_wheels_carry_the_licence_and_name_it(site):
 def test_an_installed_example_validates_from_another_directory(site, tmp_path):
     example = site / "mmrs_core" / "_shipped" / "examples" / "carbon-dioxide"
     out = run(site, tmp_path, "-m", "mmrs_core", "validate", str(example))
-    assert out == f"{example}: valid\n"
+    assert out == f"{example}: valid (1 note)\n"
 
 
 def test_wheels_carry_the_kit_of_extenders(site, tmp_path):

@@ -46,6 +46,11 @@ class Diagnosis:
     project: ModelSet | None = None
     robots: tuple[Element, ...] = ()
 
+    @property
+    def wrong(self) -> tuple[Diagnostic, ...]:
+        """Return the faults without the notes: fixes are judged by these."""
+        return tuple(each for each in self.faults if each.severity is not Severity.NOTE)
+
 
 @dataclass(frozen=True, slots=True)
 class Proposal:
@@ -290,7 +295,7 @@ def _is_better(before: Diagnosis, after: Diagnosis, mended: Sequence[Proposal]) 
     known = {(each.code, each.place.file, each.place.path) for each in before.faults}
     errors = (each for each in after.faults if each.severity is Severity.ERROR)
     worse = any((each.code, each.place.file, each.place.path) not in known for each in errors)
-    return not worse and len(after.faults) < len(before.faults)
+    return not worse and len(after.wrong) < len(before.wrong)
 
 
 def _vanished_elsewhere(before: Diagnosis, after: Diagnosis, mended: Sequence[Proposal]) -> list[Diagnostic]:
@@ -304,7 +309,7 @@ def _vanished_elsewhere(before: Diagnosis, after: Diagnosis, mended: Sequence[Pr
     changed = {_owner(each) for each in faults}
     return [
         each
-        for each in before.faults
+        for each in before.wrong
         if each not in faults and _owner(each) not in changed and not _stays(each, after)
     ]
 

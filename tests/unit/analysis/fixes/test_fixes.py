@@ -140,7 +140,7 @@ def test_a_prefix_is_declared_that_only_one_metamodel_has(workshop):
     repair = mended(workshop, DAM, {file: spoilt.encode()})
     assert b'xmlns:survey="urn:mmrs:survey:1.0"' in repair.texts[file]
     assert repair.diagnosis.complete
-    assert [each for each in repair.diagnosis.faults if each.code == "XMI014"] == []
+    assert [each for each in repair.diagnosis.wrong if each.code == "XMI014"] == []
 
 
 def test_a_fix_that_brings_another_error_is_refused(workshop):
@@ -203,8 +203,8 @@ def placed(relative, pattern, replacement, count=0):
 def test_two_files_that_disagree_are_both_named_and_neither_is_changed(workshop, relative):
     file, spoilt = placed(relative, PLACE, EXCHANGED)
     repair = mended(workshop, PARK, {file: spoilt.encode()})
-    assert [each.code for each in repair.diagnosis.faults] == ["CTX008", "MML028"]
-    assert {Path(each.place.file).name for each in repair.diagnosis.faults} == {"context.xmi", "mission.xmi"}
+    assert [each.code for each in repair.diagnosis.wrong] == ["CTX008", "MML028"]
+    assert {Path(each.place.file).name for each in repair.diagnosis.wrong} == {"context.xmi", "mission.xmi"}
     assert repair.applied == repair.refused == ()
 
 
@@ -216,8 +216,8 @@ def test_two_files_that_disagree_are_named_where_exchanged_figures_are_near(work
         file, text = placed(each, r'latitude="42\.(\d+)"', r'latitude="13.7\1"')
         texts[file] = (re.sub(PLACE, EXCHANGED, text) if each == relative else text).encode()
     repair = mended(workshop, PARK, texts)
-    assert [each.code for each in repair.diagnosis.faults[:2]] == ["CTX008", "MML028"]
-    assert "latitude and longitude may be exchanged" in repair.diagnosis.faults[0].hint
+    assert [each.code for each in repair.diagnosis.wrong[:2]] == ["CTX008", "MML028"]
+    assert "latitude and longitude may be exchanged" in repair.diagnosis.wrong[0].hint
     assert repair.applied == repair.refused == ()
 
 
@@ -226,7 +226,7 @@ def test_the_homes_are_mended_where_tasks_and_context_agree(workshop):
     repair = mended(workshop, PARK, {file: spoilt.encode()})
     assert [each.fault.code for each in repair.applied] == ["MML027"] * 3
     assert repair.texts[file] == file.read_bytes()
-    assert repair.diagnosis.faults == ()
+    assert repair.diagnosis.wrong == ()
 
 
 def test_one_home_with_two_wrong_signs_is_accused_and_left_as_it_is(workshop):
@@ -234,10 +234,10 @@ def test_one_home_with_two_wrong_signs_is_accused_and_left_as_it_is(workshop):
         "mission.xmi", '"42.370000" longitude="13.350097"', '"-42.37" longitude="-13.350097"'
     )
     repair = mended(workshop, PARK, {file: spoilt.encode()})
-    assert [(each.code, each.place.path) for each in repair.diagnosis.faults] == [
+    assert [(each.code, each.place.path) for each in repair.diagnosis.wrong] == [
         ("MML028", "/team/robots[1]")
     ]
-    assert repair.diagnosis.faults[0].message.endswith("with the other signs, it lies among them")
+    assert repair.diagnosis.wrong[0].message.endswith("with the other signs, it lies among them")
     assert repair.applied == repair.refused == ()
 
 
@@ -246,12 +246,12 @@ def test_a_fix_that_hides_another_fault_is_refused(workshop):
     file, spoilt = placed("mission.xmi", '"42.370000" longitude="13.350097"', '"13.395" longitude="42.37"')
     spoilt = spoilt.replace('longitude="13.350194"', 'longitude="14.58"')
     repair = mended(workshop, PARK, {file: spoilt.encode()})
-    assert [(each.code, each.place.path) for each in repair.diagnosis.faults] == [
+    assert [(each.code, each.place.path) for each in repair.diagnosis.wrong] == [
         ("MML027", "/team/robots[1]"),
         ("MML028", "/team/robots[2]"),
     ]
     assert repair.applied == ()
-    objection = f"that would hide MML028 at {repair.diagnosis.faults[1].place}, and not mend it"
+    objection = f"that would hide MML028 at {repair.diagnosis.wrong[1].place}, and not mend it"
     assert [each.objection for each in repair.refused] == [objection]
 
 
@@ -259,14 +259,14 @@ def test_faults_of_other_elements_go_with_the_value_that_they_stem_from(workshop
     file = (DAM / "mission.xmi").resolve()
     text = re.sub(f"(<home.*){PLACE}", r'\1latitude="\3" longitude="\2"', file.read_text("utf-8"))
     repairer, now = repair_of(workshop, DAM, {file: text.encode()})
-    assert "/tasks[8]" in {each.place.path for each in now.faults}  # it is placed relative to a home
+    assert "/tasks[8]" in {each.place.path for each in now.wrong}  # it is placed relative to a home
     assert repairer.repair(now, {file: text.encode()}).texts[file] == file.read_bytes()
 
 
 def test_one_home_with_the_wrong_sign_is_accused_and_not_its_neighbours(workshop):
     file, spoilt = placed("mission.xmi", 'longitude="13.350097"', 'longitude="-13.350097"')
     _repairer, now = repair_of(workshop, PARK, {file: spoilt.encode()})
-    assert [(each.code, each.place.path) for each in now.faults] == [("MML030", "/team/robots[1]")]
+    assert [(each.code, each.place.path) for each in now.wrong] == [("MML030", "/team/robots[1]")]
 
 
 def test_places_far_apart_are_sound_where_the_mission_says_so(workshop):
@@ -274,4 +274,4 @@ def test_places_far_apart_are_sound_where_the_mission_says_so(workshop):
     said = spoilt.replace('reserve="0.25"', 'largestGap="400000" reserve="0.25"')
     for text, codes in ((spoilt, ["MML028"]), (said, [])):
         _, now = repair_of(workshop, PARK, {file: text.encode()})
-        assert [each.code for each in now.faults] == codes
+        assert [each.code for each in now.wrong] == codes
