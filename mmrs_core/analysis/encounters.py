@@ -37,6 +37,7 @@ class Encounter:
     Attributes:
         apart: metres that the robots are then apart: at most if decided, at least if not.
         decided: whether both robots are certainly there at that time.
+        anyhow: whether they certainly come too near somewhere, if not there; apart is a lower bound then.
     """
 
     one: Occupation
@@ -45,6 +46,7 @@ class Encounter:
     apart: float
     needed: float
     decided: bool
+    anyhow: bool = False
 
 
 class Order:

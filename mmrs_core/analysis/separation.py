@@ -3,7 +3,8 @@
 Two occupations are apart if the paths are far enough from each other, if they never overlap in time, if
 one is over before the other begins because robots wait for each other, or if at every time the parts
 of the paths on which the robots may then be are far enough from each other. What then is left is
-violated where both are certainly there at one time, however uncertain times are, and otherwise undecided.
+violated where both are certainly there at one time, however uncertain times are, or cannot pass each
+other (see `passing`), and otherwise undecided.
 Times are those of the kinds of moves: where these reckon without wind and accelerations, so does this
 check, and only waits for each other are proof. Robots at homes that are nearer than that are excused as
 `columns` has it.
@@ -11,7 +12,7 @@ check, and only waits for each other are proof. Robots at homes that are nearer 
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import replace
 from math import dist, inf
 
@@ -30,6 +31,7 @@ from mmrs_core.analysis.encounters import (
 from mmrs_core.analysis.figures import MissingFigureError
 from mmrs_core.analysis.motion import motions
 from mmrs_core.analysis.occupations import Occupation, occupations_of
+from mmrs_core.analysis.passing import in_sequence, must_meet
 from mmrs_core.analysis.verdicts import TOLERANCE, Gap, unknown, unknown_moves
 from mmrs_core.behaviour.program import RobotProgram
 from mmrs_core.contributions.checks import Check, CheckInput, Status, Verdict
@@ -59,8 +61,8 @@ def _run(input: CheckInput) -> Iterator[Verdict]:
             yield unknown_moves(NAME, robot, gaps)
     needed = least + 2.0 * input.program.position_error
     excused: dict[tuple[str, str], float] = {}
-    encounters = _encounters(input, occupations, needed, excused)
-    worst = _worst(encounters)
+    encounters = list(_encounters(input, occupations, needed, excused))
+    worst = [_judged(input, each, encounters, occupations) for each in _worst(encounters)]
     yield from (_verdict(input, encounter) for encounter in worst)
     if not worst and not undecided:
         words = f"robots keep {needed:.2f} m apart wherever they may be at once"
@@ -167,7 +169,7 @@ def _box(occupation: Occupation) -> tuple[float, float, float, float]:
     return min(east), min(north), max(east), max(north)
 
 
-def _worst(encounters: Iterator[Encounter]) -> list[Encounter]:
+def _worst(encounters: Iterable[Encounter]) -> list[Encounter]:
     """Return, for each two robots, the encounter that says most: a decided one, then the nearest."""
     worst: dict[tuple[str, str], Encounter] = {}
     for encounter in encounters:
@@ -178,11 +180,26 @@ def _worst(encounters: Iterator[Encounter]) -> list[Encounter]:
     return list(worst.values())
 
 
+def _judged(
+    input: CheckInput, worst: Encounter, found: Iterable[Encounter], occupations: Collection[Occupation]
+) -> Encounter:
+    """Return the worst encounter of two robots, decided if they cannot but come too near somewhere."""
+    if worst.decided:
+        return worst
+    names = worst.one.robot, worst.other.robot
+    one, other = (in_sequence(input.program.robot(name), motions(input)[name], occupations) for name in names)
+    near = [(each.one, each.other) for each in found if (each.one.robot, each.other.robot) == names]
+    if one is None or other is None or not must_meet(one, other, near, worst.needed):
+        return worst
+    return replace(worst, decided=True, anyhow=True)
+
+
 def _verdict(input: CheckInput, encounter: Encounter) -> Verdict:
     one, other = encounter.one, encounter.other
     move = input.program.robot(one.robot).moves[one.move]
     meeting = input.program.robot(other.robot).moves[other.move]
-    most = "at most " if encounter.decided and one.radius + other.radius > 0.0 else ""
+    exact = encounter.anyhow or one.radius + other.radius == 0.0
+    most = "at most " if encounter.decided and not exact else ""
     words = (
         f"{one.robot}: {_words(one)} '{move.id}' is {most}{max(0.0, encounter.apart):.2f} m from"
         f" {other.robot} {_words(other)} '{meeting.id}' at {encounter.time:.1f} s,"
@@ -191,6 +208,8 @@ def _verdict(input: CheckInput, encounter: Encounter) -> Verdict:
     status = Status.VIOLATED if encounter.decided else Status.UNKNOWN
     if status is Status.UNKNOWN:
         words += "; times are not certain enough: let one wait for the other, or lead them apart"
+    if encounter.anyhow:
+        words += "; however long their moves take, they cannot pass each other without coming too near"
     margin = encounter.apart - encounter.needed
     return Verdict(NAME, status, one.robot, margin, "m", move.id, message=words, place=move.place)
 

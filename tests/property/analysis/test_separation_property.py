@@ -128,3 +128,33 @@ def test_robots_called_violated_beside_one_that_stands_come_too_near_however_lon
         )
         other = np.stack([np.interp(times, when, [c[i] for c in corners]) for i in range(3)], axis=1)
         assert np.linalg.norm(one - other, axis=1).min() < least + 4 * SPEED * STEP
+
+
+@st.composite
+def shuttles(draw):
+    """Draw a tour along a line, a little beside it."""
+    aside = st.floats(-0.5, 0.5).map(lambda x: round(x, 1))
+    places = draw(st.lists(st.tuples(LENGTHS, aside), min_size=2, max_size=4, unique=True))
+    return [(*place, 0.0) for place in places], [draw(st.floats(0.0, 5.0)) for _ in places]
+
+
+@settings(max_examples=15, deadline=None)
+@for_all(shuttles(), shuttles(), st.floats(1.5, 4.0), st.integers(0, 10**6))
+def test_robots_called_violated_on_one_line_come_too_near_however_long_their_moves_take(
+    first, second, least, seed
+):
+    random = Random(seed)
+    robots = (made("a", first), made("b", second))
+    found = findings("separation", given(*robots, minimum_separation=least, moves=uneven()))
+    if [verdict.status for verdict in found] == [Status.VIOLATED]:
+        times = np.arange(0.0, 400.0, STEP)
+        factors = [random.uniform(0.5, 2.0) for _ in range(2)] if seed % 2 else None
+
+        def factor(robot):
+            return factors[robot] if factors else random.uniform(0.5, 2.0)
+
+        one, other = (
+            sampled(tour, times, factor=lambda robot=robot: factor(robot))
+            for robot, tour in enumerate((first, second))
+        )
+        assert np.linalg.norm(one - other, axis=1).min() < least + 4 * SPEED * STEP

@@ -236,6 +236,30 @@ def test_a_robot_that_waits_for_the_one_that_passes_it_is_violated_though_no_tim
     assert (verdict.status, verdict.move) == (Status.VIOLATED, "start")
 
 
+def swap(aside=0.0, *detour):
+    """Return two robots that swap their places on one line, 80 m apart; the second may make a detour."""
+    a = flight("a", (0.0, 0.0, 0.0), (80.0, 0.0))
+    return a, flight("c", (80.0, aside, 0.0), *detour, (0.0, aside), before=50.0)
+
+
+@pytest.mark.parametrize("aside", [0.0, 2.5])
+def test_robots_that_swap_places_on_nearly_one_line_meet_however_long_their_moves_take(aside):
+    (verdict,) = separation(*swap(aside), moves=uneven(0.1, 10.0), **FLYERS)
+    assert verdict.status is Status.VIOLATED
+    assert "cannot pass each other" in verdict.message
+
+
+def test_robots_that_swap_places_but_for_a_detour_are_undecided():
+    (verdict,) = separation(*swap(0.0, (60.0, 20.0), (40.0, 0.0)), moves=uneven(0.1, 10.0), **FLYERS)
+    assert verdict.status is Status.UNKNOWN
+
+
+def test_robots_on_a_line_of_which_one_may_wait_for_the_other_elsewhere_are_undecided():
+    a = robot("a", [go("out", (0.0, 80.0, 0.0)), go("back", (0.0, 0.0, 0.0)), go("on", (40.0, 0.0, 0.0))])
+    c = robot("c", [go("over", (0.0, 0.0, 0.0)), go("away", (0.0, -80.0, 0.0))], home=(40.0, 0.0, 0.0))
+    assert [verdict.status for verdict in separation(a, c, moves=uneven())] == [Status.UNKNOWN]
+
+
 def test_a_robot_that_may_have_gone_before_another_passes_is_undecided():
     a = robot("a", [hold("look", 8.0), go("off", (20.0, 90.0, 0.0))], home=(20.0, 0.0, 0.0))
     b = robot("b", [go("east", (40.0, 0.0, 0.0))])
