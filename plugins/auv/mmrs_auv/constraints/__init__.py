@@ -9,11 +9,16 @@ from mmrs_auv.constraints.tasks import TASK_CONSTRAINTS
 from mmrs_auv.constraints.thrusters import THRUSTER_CONSTRAINTS
 from mmrs_auv.constraints.vehicles import VEHICLE_CONSTRAINTS
 
-CONSTRAINTS = (
-    *VEHICLE_CONSTRAINTS,
-    *MOUNTING_CONSTRAINTS,
-    *EQUIPMENT_CONSTRAINTS,
-    *TASK_CONSTRAINTS,
-    *PIPELINE_CONSTRAINTS,
-    *THRUSTER_CONSTRAINTS,
+CONSTRAINTS = tuple(
+    sorted(
+        (
+            *VEHICLE_CONSTRAINTS,
+            *MOUNTING_CONSTRAINTS,
+            *EQUIPMENT_CONSTRAINTS,
+            *TASK_CONSTRAINTS,
+            *PIPELINE_CONSTRAINTS,
+            *THRUSTER_CONSTRAINTS,
+        ),
+        key=lambda each: each.code,
+    )
 )
