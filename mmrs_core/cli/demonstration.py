@@ -22,6 +22,7 @@ from mmrs_core.contributions.targets import GeneratedFile
 from mmrs_core.errors import UnreadableError, UnsupportedError
 from mmrs_core.generation.writing import write
 from mmrs_core.pipeline import render, save
+from mmrs_core.resources import new_folders
 from mmrs_core.runtime.run import Run
 
 _MOST_REASONS = 3
@@ -153,8 +154,9 @@ def demonstrate(
     require_writable(journey, behaviour, "choose another folder")
     require_copies(folder, example, others)
     require_sound(journey, journey.scene.name or "mission")
-    folder.mkdir(parents=True, exist_ok=True)
-    save(journey.transformed[0], behaviour, workshop.contributions)
+    with new_folders() as make:
+        make(folder)
+        save(journey.transformed[0], behaviour, workshop.contributions)
     copied = copy_example(example, folder)
     files: list[tuple[str, Path, int]] = [
         ("the mission, its place, and types of robot", folder / "mission.xmi", copied),

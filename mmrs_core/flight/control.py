@@ -250,8 +250,12 @@ def _announce(folder: Path, text: str) -> Path:
             number = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600)
         except FileExistsError:
             continue
-        with os.fdopen(number, "w", encoding="ascii") as file:
-            file.write(text)
+        try:
+            with os.fdopen(number, "w", encoding="ascii") as file:
+                file.write(text)
+        except BaseException:
+            path.unlink(missing_ok=True)  # half of it would be taken for one that is being written
+            raise
         return path
     raise FileExistsError(EEXIST, "already there, of a process that still runs", str(usual))
 

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from mmrs_core.cli.pages.diagram import diagram, multiplicity, own_features, type_name
+from mmrs_core.cli.replacing import replace_files
 from mmrs_core.languages.metaclass import Enumeration, Feature, Metaclass, Package
 from mmrs_core.languages.registry import Registry
 
@@ -24,11 +25,9 @@ _INTRODUCTION = (
 
 def write_pages(registry: Registry, directory: Path) -> tuple[Path, ...]:
     """Write the page and its diagrams below a directory; return their paths."""
-    (directory / DIAGRAMS).mkdir(parents=True, exist_ok=True)
-    contents = pages(registry)
-    for path, content in contents.items():
-        (directory / path).write_text(content, encoding="utf-8", newline="\n")
-    return tuple(directory / path for path in contents)
+    contents = {directory / path: content.encode() for path, content in pages(registry).items()}
+    replace_files(contents)
+    return tuple(contents)
 
 
 def pages(registry: Registry) -> dict[str, str]:

@@ -141,9 +141,13 @@ class Signer:
             for stream, stamp in others_heard.items():
                 heard[stream] = max(stamp, heard.get(stream, 0))
         draft = path.with_name(f"{path.name}.{os.getpid()}.part")
-        with os.fdopen(os.open(draft, os.O_WRONLY | os.O_CREAT | os.O_TRUNC, 0o600), "w") as file:
-            json.dump({"sent": sent, "heard": heard}, file)
-        draft.replace(path)
+        try:
+            with os.fdopen(os.open(draft, os.O_WRONLY | os.O_CREAT | os.O_TRUNC, 0o600), "w") as file:
+                json.dump({"sent": sent, "heard": heard}, file)
+            draft.replace(path)
+        except BaseException:
+            draft.unlink(missing_ok=True)
+            raise
 
 
 class Signed(mavlink.MAVLink):  # type: ignore[misc]  # pymavlink is not typed

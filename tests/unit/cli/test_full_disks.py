@@ -13,12 +13,15 @@ import pytest
 from mmrs_core.behaviour.log import LogWriter, read_log
 from mmrs_core.behaviour.steps import StepRecord
 from mmrs_core.cli import run
+from mmrs_core.flight.control import Control
 from mmrs_core.flight.faults import Fault
+from mmrs_core.flight.orders.orders import Inbox
 from mmrs_core.flight.records.log import Log
 from mmrs_core.languages.writing import replace_file
 
 FULL = "/dev/full"
 HANDWRITTEN = Path(__file__).parents[3] / "examples" / "handwritten"
+POOL = HANDWRITTEN.parent / "pool"
 STEP = StepRecord("run-0", "alpha", 0, 1, 0.0, "begin", "start")
 
 
@@ -66,6 +69,38 @@ def test_a_folder_that_is_new_goes_again_where_what_it_is_for_cannot_be_written(
     limit(None)
     assert code == 3
     assert str(tmp_path / "new" / "folder") in capsys.readouterr().err
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize(
+    ("command", "output"),
+    [
+        (["preview", str(HANDWRITTEN)], "preview.html"),
+        (["can", "dbc", str(POOL), "--robot", "Naiad"], "naiad.dbc"),
+        (["auv", "sheet", str(POOL)], "Naiad.json"),
+    ],
+)
+def test_a_file_that_was_there_stays_whole_where_another_cannot_be_written(tmp_path, limit, command, output):
+    old, into = tmp_path / output, tmp_path / output if "dbc" in command else tmp_path
+    old.write_text("of yesterday")
+    limit(100)
+    assert run([*command, "-o", str(into)]) == 3
+    limit(None)
+    assert [(file.name, file.read_text()) for file in tmp_path.iterdir()] == [(output, "of yesterday")]
+
+
+def test_nothing_is_left_of_a_demonstration_whose_behaviour_cannot_be_written(tmp_path, limit):
+    limit(10)
+    assert run(["demo", "pool", "-o", str(tmp_path / "new")]) == 3
+    limit(None)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_channel_that_cannot_be_announced_is_not_taken_for_one_that_will_be(tmp_path, limit):
+    limit(10)
+    with pytest.raises(OSError, match="large"):
+        Control(tmp_path, "run-0", {"alpha": Inbox("alpha")}, lambda robot: {})
+    limit(None)
     assert list(tmp_path.iterdir()) == []
 
 

@@ -18,6 +18,7 @@ from typer.main import get_command
 from mmrs_core.behaviour.log import SUFFIX, log_name
 from mmrs_core.cli.interruption import INTERRUPTED
 from mmrs_core.cli.output import say, tell
+from mmrs_core.cli.replacing import replace_files
 from mmrs_core.cli.typed import typed_lines
 from mmrs_core.errors import UnreadableError
 
@@ -137,13 +138,14 @@ def sheet(
     from mmrs_auv.commands.modelled import sheets_in
     from mmrs_auv.vessel.sheet import to_json
 
-    sheets = sheets_in(path)
+    files = {
+        output / f"{log_name(robot).removesuffix(SUFFIX)}.json": to_json(found).encode()
+        for robot, found in sheets_in(path).items()
+    }
     try:
-        output.mkdir(parents=True, exist_ok=True)
-        for robot, found in sheets.items():
-            file = output / f"{log_name(robot).removesuffix(SUFFIX)}.json"
-            file.write_text(to_json(found), encoding="utf-8")
-            say(f"written: {file}")
+        replace_files(files)
     except OSError as error:
         raise UnreadableError(f"{output}: {error.strerror}") from error
+    for file in files:
+        say(f"written: {file}")
     return 0

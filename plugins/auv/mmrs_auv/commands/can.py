@@ -15,6 +15,7 @@ from mmrs_auv.commands.vehicles import RobotName, Vehicle, sheet_in
 from mmrs_core.cli.output import say, say_file, say_json, tell
 from mmrs_core.cli.settings import Json
 from mmrs_core.errors import LinkLostError, UnreadableError
+from mmrs_core.languages.writing import replace_file
 
 if TYPE_CHECKING:
     from mmrs_auv.vessel.wire.frame import Frame
@@ -71,7 +72,7 @@ def dbc(
         say_file(text.encode("ascii"))
         return 0
     try:
-        output.write_text(text, encoding="ascii")
+        replace_file(output, text.encode("ascii"))
     except OSError as error:
         raise UnreadableError(f"{output}: {error.strerror}") from error
     say(f"written: {output}")
