@@ -12,7 +12,7 @@ from shapely.geometry.base import BaseGeometry
 
 from mmrs_core.analysis.constraints.blocked import SEGMENTS, BlockedLine, blocked_line
 from mmrs_core.analysis.constraints.capabilities import able
-from mmrs_core.analysis.constraints.findings import MISSION, called, finding
+from mmrs_core.analysis.constraints.findings import BEHAVIOUR, MISSION, called, finding
 from mmrs_core.analysis.constraints.sketch import DrawnArea, Sketch, polygon_of, sketch_of
 from mmrs_core.contributions.constraints import Constraint, Finding
 from mmrs_core.diagnostics import Severity
@@ -225,6 +225,24 @@ def _separated(mission: Element, models: ModelSet) -> Iterator[Finding]:
             )
 
 
+def _bodies(owner: Element, models: ModelSet) -> Iterator[Finding]:
+    """Yield a breach if the two largest robots may overlap though they keep the minimum separation."""
+    separation = number(owner, "minimumSeparation")
+    sketch = sketch_of(models)
+    sizes = sorted(
+        (half, called(robot.element)) for robot in sketch.robots if (half := robot.half) is not None
+    )
+    if separation is None or separation < 0.0 or len(sizes) < 2:
+        return
+    (second, one), (first, other) = sizes[-2:]
+    if separation < first + second - EXACT:
+        yield finding(
+            owner,
+            f"minimumSeparation is {separation:g} m, but {one} and {other} need {first + second:.2f} m"
+            " for their sizes",
+        )
+
+
 _MOVE_HOME = "move the home away, or make the area smaller"
 _MOVE_TASK = "move the task away, or make the area or its safetyDistance smaller"
 
@@ -309,5 +327,16 @@ CONSTRAINTS = (
         _partly_covered,
         "cut a hole there if it need not be done",
         Severity.NOTE,
+    ),
+    *(
+        Constraint(
+            code,
+            "Robots that keep the minimum separation do not overlap.",
+            metaclass,
+            _bodies,
+            "raise minimumSeparation; it is between the middles of robots",
+            Severity.WARNING,
+        )
+        for code, metaclass in (("MML092", (MISSION, "Mission")), ("BL054", (BEHAVIOUR, "Behaviour")))
     ),
 )

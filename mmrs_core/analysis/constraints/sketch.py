@@ -54,12 +54,14 @@ class DrawnRobot:
     Attributes:
         type: None where there is no type of that name.
         home: None where it has no place.
-        clearance: half its diagonal plus the position error, metres; None where its size is not known.
+        half: half its diagonal, metres; None where its size is not known.
+        clearance: the same plus the position error.
     """
 
     element: Element
     type: Element | None
     home: Position | None
+    half: float | None
     clearance: float | None
 
 
@@ -141,6 +143,7 @@ class Sketch:
             element=element,
             type=robot_type,
             home=self.ground.positions.get(home) if home is not None else None,
+            half=None if half is None else min(half, _ROUND_THE_EARTH),
             clearance=None if half is None else min(half + error, _ROUND_THE_EARTH),
         )
 
