@@ -16,10 +16,12 @@ from mmrs_core.analysis.figures import (
 )
 from mmrs_core.analysis.motion import Leg, Motion
 from mmrs_core.analysis.verdicts import Gap
-from mmrs_core.behaviour.program import Action, Move, RobotProgram, SlotId
+from mmrs_core.behaviour.program import BEHAVIOUR, Action, Move, RobotProgram, SlotId
 from mmrs_core.behaviour.walk import reachable_moves
 from mmrs_core.contributions.checks import CheckInput
-from mmrs_core.scene import Kinematics, RobotType
+from mmrs_core.scene import Kinematics, Name, RobotType
+
+HOLD: Name = (BEHAVIOUR, "HoldPosition")
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,7 +79,10 @@ def durations_of(input: CheckInput, robot: RobotProgram, motion: Motion) -> Dura
         kinematics, robot_type = kinematics_of(input, robot), type_of(input, robot)
     except MissingFigureError as missing:
         gap = Gap(robot.start, str(missing).removeprefix(f"{robot.id}: "))
-        return Durations({index: _with_actions(robot.moves[index], UNKNOWN, None) for index in moves}, (gap,))
+        unclear = {index: robot.moves[index] for index in moves}
+        return Durations(
+            {index: _with_actions(move, _least(move), None) for index, move in unclear.items()}, (gap,)
+        )
     legs: dict[int, list[Leg]] = defaultdict(list)
     for leg in motion.legs:
         legs[leg.move].append(leg)
@@ -85,11 +90,17 @@ def durations_of(input: CheckInput, robot: RobotProgram, motion: Motion) -> Dura
     found: dict[int, Duration] = {}
     for index in moves:
         move = robot.moves[index]
-        moving = UNKNOWN if index in gaps else _moving(input, robot, move, legs[index], kinematics)
+        moving = _least(move) if index in gaps else _moving(input, robot, move, legs[index], kinematics)
         found[index] = _with_actions(move, moving, robot_type)
         if index not in gaps and found[index].whole.high == inf:
             gaps[index] = Gap(index, _why_unbounded(move, robot_type))
     return Durations(found, tuple(gaps[index] for index in sorted(gaps)))
+
+
+def _least(move: Move) -> Span:
+    """Return what is known of a move wherever it is made: robots hold for as long as the move says."""
+    held = move.attributes.get("duration") if move.is_a(HOLD) else None
+    return Span(float(held), inf) if isinstance(held, int | float) else UNKNOWN
 
 
 def _why_unbounded(move: Move, robot_type: RobotType) -> str:

@@ -9,6 +9,7 @@ moves; what these reckon without, the reserve must cover.
 from __future__ import annotations
 
 from collections.abc import Iterator
+from itertools import islice
 from math import dist, inf
 
 from mmrs_core.analysis.figures import (
@@ -19,7 +20,7 @@ from mmrs_core.analysis.figures import (
     type_of,
 )
 from mmrs_core.analysis.motion import Leg, motions
-from mmrs_core.analysis.sorties import RECHARGE, Sorties, sorties_of
+from mmrs_core.analysis.sorties import RECHARGE, Sorties, Use, sorties_of
 from mmrs_core.analysis.verdicts import (
     Gap,
     Margin,
@@ -67,7 +68,7 @@ def _judge_endurance(input: CheckInput, robot: RobotProgram) -> Iterator[Verdict
         return
     allowed = lifetime * (1.0 - input.program.reserve)
     sorties = _uses(input, robot)
-    yield from _judged_uses(ENDURANCE_NAME, robot, sorties, 1.0, allowed, "s")
+    yield from _judged_uses(ENDURANCE_NAME, robot, sorties, (1.0, 1.0), allowed, "s")
 
 
 def _judge_energy(input: CheckInput, robot: RobotProgram) -> Iterator[Verdict]:
@@ -79,7 +80,8 @@ def _judge_energy(input: CheckInput, robot: RobotProgram) -> Iterator[Verdict]:
     if not lifetime:
         raise MissingFigureError(f"{robot.id}: its lifetime, from which its power follows, is not given")
     allowed = stored * (1.0 - input.program.reserve)
-    power = stored / lifetime * kinematics_of(input, robot).draw
+    least = stored / lifetime
+    power = (least, least * kinematics_of(input, robot).draw)
     yield from _judged_uses(ENERGY_NAME, robot, _uses(input, robot), power, allowed, "J")
 
 
@@ -95,22 +97,31 @@ def _lifetime(input: CheckInput, robot: RobotProgram) -> float | None:
 
 
 def _judged_uses(
-    property: str, robot: RobotProgram, sorties: Sorties, rate: float, allowed: float, unit: str
+    property: str,
+    robot: RobotProgram,
+    sorties: Sorties,
+    rate: tuple[float, float],
+    allowed: float,
+    unit: str,
 ) -> Iterator[Verdict]:
-    """Judge the largest use; only there the robot may be short."""
+    """Judge the largest use, and the first that no run can keep; `rate` is the least and most a second."""
     largest = max(sorties.uses, key=lambda use: use.seconds, default=None)
     if largest is None and not sorties.gaps:
         yield safe(property, robot, "it never runs on its batteries")
         return
-    margins = []
-    if largest is not None:
-        used = rate * largest.seconds
-        move = robot.moves[largest.move]
+
+    def margin(use: Use, rate: float, bound: str) -> Margin:
+        used = rate * use.seconds
+        move = robot.moves[use.move]
         words = (
-            f"until {move.kind} '{move.id}' it needs up to {used:.1f} {unit} of one charge,"
+            f"until {move.kind} '{move.id}' it needs {bound} {used:.1f} {unit} of one charge,"
             f" {allowed:.1f} {unit} are allowed"
         )
-        margins.append(Margin(_rounded(allowed - used, allowed), largest.move, words))
+        return Margin(_rounded(allowed - used, allowed), use.move, words)
+
+    margins = [] if largest is None else [margin(largest, rate[1], "up to")]
+    certain = (margin(use, rate[0], "at least") for use in sorted(sorties.least, key=lambda use: use.seconds))
+    margins += islice((each for each in certain if each.value < 0.0), 1)
     yield from judged(property, robot, unit, margins, sorties.gaps)
 
 

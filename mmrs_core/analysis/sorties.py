@@ -1,5 +1,8 @@
 """How long robots run on one charge: from a launch, or from full batteries, until they are full again.
 
+The most is what may be used in some run, and has no bound behind a loop or a wait without one. The least
+is what is used in every run that comes to a move; it needs no such bound.
+
 A robot that launches uses its batteries while it is off the ground; it may wait on the ground as long
 as it likes. Any other robot uses them from the mission's start on. Waiting for other robots counts.
 A `Recharge` fills the batteries; landing alone does not.
@@ -8,9 +11,11 @@ A `Recharge` fills the batteries; landing alone does not.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from heapq import heapify, heappop, heappush
 from math import inf
 
 from mmrs_core.analysis.certainty import goes_round
+from mmrs_core.analysis.durations import Duration
 from mmrs_core.analysis.states import GROUNDED, States, states_of
 from mmrs_core.analysis.times import Times, times_of
 from mmrs_core.analysis.verdicts import Gap
@@ -47,21 +52,62 @@ class Use:
 
 @dataclass(frozen=True, slots=True)
 class Sorties:
-    """Attributes: the use at each move that runs on batteries; what of it has no bound, and why."""
+    """The use at each move that is made.
+
+    Attributes:
+        uses: the most, of moves that run on batteries and have a bound. gaps: what has none, and why.
+        least: the least with which any run comes past the move.
+    """
 
     uses: tuple[Use, ...]
     gaps: tuple[Gap, ...]
+    least: tuple[Use, ...]
 
 
 def sorties_of(input: CheckInput, robot: RobotProgram) -> Sorties:
-    """Return how long one robot runs on each charge, at most.
+    """Return how long one robot runs on each charge, at most and at least.
 
     Raises:
         MissingFigureError: nothing says whether the robot launches.
     """
     states = states_of(input, robot)
     times = times_of(input)
-    return _Walk(robot, states, times).run()
+    uses, gaps = _Walk(robot, states, times).run()
+    return Sorties(uses, gaps, _least_uses(robot, states, times))
+
+
+def _least_uses(robot: RobotProgram, states: States, times: Times) -> tuple[Use, ...]:
+    """Return the least use at each move that some run comes to: the shortest of all ways from a charge.
+
+    Dijkstra's algorithm, from the start and every Recharge at once.
+    """
+    found: dict[int, float] = {}
+    charges = [move for move in states.before if robot.moves[move].is_a(RECHARGE)]
+    pending = [(0.0, move) for move in (robot.start, *charges)]
+    heapify(pending)
+    while pending:
+        used, move = heappop(pending)
+        if move in found or (robot.id, move) not in times.earliest:
+            continue
+        if move not in charges:
+            used += _least_run(times.durations[robot.id].of[move], states, move)
+        transition = robot.transitions.get(move)
+        if transition is not None and GROUNDED not in states.after[move]:
+            release = times.earliest_release(robot, transition.waits)
+            used += max(0.0, release - times.latest_end(robot.id, move))
+        found[move] = used
+        for way in transition.ways if transition else ():
+            heappush(pending, (used, way))
+    return tuple(Use(move, seconds) for move, seconds in found.items())
+
+
+def _least_run(duration: Duration, states: States, move: int) -> float:
+    """Return how long a move runs on batteries at least; actions on the ground do not count."""
+    rests, lands = GROUNDED in states.before[move], GROUNDED in states.after[move]
+    if rests and lands:
+        return 0.0
+    end = duration.moved.low if lands else duration.whole.low
+    return end - (duration.before.low if rests else 0.0)
 
 
 class _Walk:
@@ -76,7 +122,7 @@ class _Walk:
         self.uses: list[Use] = []
         self.arrivals: dict[int, list[Running]] = {robot.start: [Running()]}
 
-    def run(self) -> Sorties:
+    def run(self) -> tuple[tuple[Use, ...], tuple[Gap, ...]]:
         graph = successors(self.robot)
         for group in reversed(components(graph)):
             if goes_round(group, graph):
@@ -85,7 +131,7 @@ class _Walk:
             for move in group:
                 if move in self.states.before:
                     self._pass(move, _merged(self.arrivals.get(move, [])))
-        return Sorties(tuple(self.uses), tuple(self.gaps[move] for move in sorted(self.gaps)))
+        return tuple(self.uses), tuple(self.gaps[move] for move in sorted(self.gaps))
 
     def _loop(self, group: tuple[int, ...]) -> None:
         """Let a robot out of a loop with no bound on what it has used, unless it stands meanwhile."""
@@ -133,12 +179,19 @@ class _Walk:
         """
         release = self.times.latest_release(self.robot, transition.waits)
         if release == inf and running.used < inf:
-            slots = ", ".join(f"'{slot}'" for slot in transition.waits)
+            slots = ", ".join(self._awaited(slot) for slot in transition.waits)
             self.gaps[move] = Gap(move, f"nothing bounds how long it then waits for {slots}")
+            self._note(move, running)
         waited = running.used + max(0.0, release - self.times.earliest_end(self.robot.id, move))
         since = running.since or 0.0
         whole = max(running.used, running.before + max(0.0, release - since))
         return Running(min(waited, whole), running.before, running.since)
+
+    def _awaited(self, slot: str) -> str:
+        """Return a slot with the robots that activate it."""
+        activations = self.times.dependencies.activations_of((self.robot.id, slot))
+        givers = dict.fromkeys(each.at[0] for each in activations)
+        return f"'{slot}' from {' or '.join(givers)}" if givers else f"'{slot}'"
 
     def _note(self, move: int, running: Running) -> None:
         if running.used < inf:

@@ -49,6 +49,11 @@ class Times:
         """Return when a move and its actions have ended at the latest."""
         return self.latest.get((robot, move), inf) + self.durations[robot].of[move].whole.high
 
+    def earliest_release(self, robot: RobotProgram, waits: tuple[str, ...]) -> float:
+        """Return before when not all these slots of a robot are active; 0 where none is ever activated."""
+        slots = ((robot.id, slot) for slot in waits)
+        return max((self.slots[slot][0] for slot in slots if slot in self.slots), default=0.0)
+
     def latest_release(self, robot: RobotProgram, waits: tuple[str, ...]) -> float:
         """Return by when all these slots of a robot have been activated; -inf where there are none."""
         unset = (inf, inf)

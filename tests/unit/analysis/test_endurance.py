@@ -83,7 +83,7 @@ def test_waiting_in_the_air_counts_from_the_launch():
     assert verdict.margin == pytest.approx(800.0 - 60.0 - 5.0)
 
 
-def sorties(*between):
+def sorties(*between, **more):
     return robot(
         "a",
         [
@@ -95,6 +95,7 @@ def sorties(*between):
             hold("h again", 400.0),
             land("down again"),
         ],
+        **more,
     )
 
 
@@ -128,8 +129,68 @@ def test_a_wait_that_nobody_certainly_ends_in_time_is_unknown():
     verdict = findings("endurance", given(waiting, looping))[0]
     assert (verdict.status, verdict.message) == (
         Status.UNKNOWN,
-        "a: HoldPosition 'h': nothing bounds how long it then waits for 'go'",
+        "a: HoldPosition 'h': nothing bounds how long it then waits for 'go' from b",
     )
+
+
+def loop(name, slot="a.go", seconds=50.0):
+    """Return a robot that activates a slot after some seconds and a loop without a bound."""
+    moves = [hold("long", seconds), hold("n", 5.0), hold("o", after=(notify(slot),))]
+    return robot(name, moves, choices={"n": ("again", "n", "o")})
+
+
+def test_what_is_certainly_used_is_violated_in_a_loop_without_a_bound():
+    made = robot("a", [hold("h", 801.0), hold("i", 1.0)], choices={"i": ("again", "h", "stop")})
+    for property in ("endurance", "energy"):
+        violated, unknown = findings(property, given(made))
+        assert (violated.status, violated.move) == (Status.VIOLATED, "h")
+        assert unknown.status is Status.UNKNOWN
+    assert violated.message.startswith("a: until HoldPosition 'h' it needs at least ")
+
+
+@pytest.mark.parametrize("waits", ["h", "up"])
+def test_what_is_certainly_used_is_violated_before_and_after_a_wait_without_a_bound(waits):
+    flight = [take_off("up", 10.0), hold("h", 800.0), land("down")]
+    waiting = robot("a", flight, waits={waits: ["go"]})
+    verdict = findings("endurance", given(waiting, loop("b"), **LAUNCHES))[0]
+    assert (verdict.status, verdict.move) == (Status.VIOLATED, "h")
+
+
+def test_a_wait_for_what_certainly_takes_long_is_violated_though_it_has_no_bound():
+    waiting = robot("a", [hold("h", 1.0)], waits={"h": ["go"]})
+    verdict = findings("endurance", given(waiting, loop("b"), type=rover(lifetime=60.0)))[0]
+    assert verdict.status is Status.VIOLATED
+    assert verdict.message == (
+        "a: until HoldPosition 'h' it needs at least 56.0 s of one charge, 48.0 s are allowed"
+    )
+
+
+def test_a_wait_is_not_certain_of_a_robot_that_may_launch_late():
+    moves = [take_off("up", 10.0), land("down")]
+    waiting = robot("a", moves, waits={"start": ["go"], "up": ["late"]})
+    made = given(waiting, loop("b"), loop("c", "a.late", 900.0), **LAUNCHES)
+    assert findings("endurance", made)[0].status is Status.UNKNOWN
+
+
+def test_the_longer_arm_of_a_choice_is_not_certain():
+    moves = [hold("fork"), hold("long", 500.0), hold("short", 5.0), hold("join", 400.0)]
+    choices = {"fork": ("c", "long", "short"), "join": ("again", "join", "stop")}
+    made = robot("a", moves, choices=choices, jumps={"long": "join"})
+    assert finding("endurance", given(made)).status is Status.UNKNOWN
+
+
+def test_what_was_used_before_a_recharge_is_not_certain_of_the_next_sortie():
+    again = {"h again": ("again", "h again", "down again")}
+    charged = given(sorties(recharge("charge", 60.0), choices=again), **LAUNCHES)
+    assert finding("endurance", charged).status is Status.UNKNOWN
+    assert findings("endurance", given(sorties(choices=again), **LAUNCHES))[0].status is Status.VIOLATED
+
+
+def test_a_hold_where_nobody_knows_takes_its_time():
+    lost = replace(go("g", (0.0, 0.0, 0.0)), target=Target(None, "buoy", None))
+    for property in ("endurance", "energy"):
+        verdict = findings(property, given(robot("a", [lost, hold("h", 801.0)])))[0]
+        assert (verdict.status, verdict.move) == (Status.VIOLATED, "h")
 
 
 def test_an_object_may_be_further_than_it_is_expected():
