@@ -125,7 +125,7 @@ def mixed() -> Program:
 def test_controllers_of_a_mixed_team_meet_by_zenoh(tmp_path: Path) -> None:
     for target, name in ((CAN_PYTHON, "can"), (MAVLINK_PYTHON, "mavlink")):
         write(render(target, given(mixed()), allow_lossy=True), tmp_path / name)
-    common = ("--dry-run", "--log", str(tmp_path / "logs"), "--speedup", "50")
+    common = ("--dry-run", "--log", str(tmp_path / "logs"), "--speedup", "10")
     endpoint = free_endpoint()
     naiad = begun(tmp_path / "can", "robot_naiad.py", *common, "--bus-listen", endpoint)
     words = [sys.executable, "robot_Kite.py", *common, "--bus-connect", endpoint]
