@@ -47,14 +47,16 @@ def _judge(input: CheckInput, robot: RobotProgram) -> Iterator[Verdict]:
     if not areas:
         yield safe(NAME, robot, "nothing in the context is forbidden or in the way")
         return
-    straight = half_diagonal_of(type_of(input, robot)) + input.program.position_error
+    own = input.program.position_error
     try:
+        own += half_diagonal_of(type_of(input, robot))
         turning = kinematics_of(input, robot).turning_radius
     except MissingFigureError:
-        # What is too near already if it turns on the spot is too near however it turns.
-        yield from (each for each in _kept(input, robot, areas, straight) if each.status is Status.VIOLATED)
+        # What is too near for the smallest robot that turns on the spot is too near for any.
+        kept = _kept(input, robot, areas, max(own, 2.0 * TOLERANCE))
+        yield from (each for each in kept if each.status is Status.VIOLATED)
         raise
-    yield from _kept(input, robot, areas, straight + turning)
+    yield from _kept(input, robot, areas, own + turning)
 
 
 def _kept(input: CheckInput, robot: RobotProgram, areas: list[Area], own: float) -> Iterator[Verdict]:

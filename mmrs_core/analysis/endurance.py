@@ -44,21 +44,8 @@ CHARGER_REACH = 1.0
 """Metres around home within which batteries can be recharged."""
 
 
-def _sorties(input: CheckInput) -> dict[str, Sorties | MissingFigureError]:
-    found: dict[str, Sorties | MissingFigureError] = {}
-    for robot in input.program.robots:
-        try:
-            found[robot.id] = sorties_of(input, robot)
-        except MissingFigureError as missing:
-            found[robot.id] = missing
-    return found
-
-
-def _uses(input: CheckInput, robot: RobotProgram) -> Sorties:
-    found = once(input, _sorties)[robot.id]
-    if isinstance(found, MissingFigureError):
-        raise found
-    return found
+def _sorties(input: CheckInput) -> dict[str, Sorties]:
+    return {robot.id: sorties_of(input, robot) for robot in input.program.robots}
 
 
 def _judge_endurance(input: CheckInput, robot: RobotProgram) -> Iterator[Verdict]:
@@ -67,7 +54,7 @@ def _judge_endurance(input: CheckInput, robot: RobotProgram) -> Iterator[Verdict
         yield not_checked(ENDURANCE_NAME, robot, "it has no batteries and no lifetime: it is wired")
         return
     allowed = lifetime * (1.0 - input.program.reserve)
-    sorties = _uses(input, robot)
+    sorties = once(input, _sorties)[robot.id]
     yield from _judged_uses(ENDURANCE_NAME, robot, sorties, (1.0, 1.0), allowed, "s")
 
 
@@ -80,9 +67,10 @@ def _judge_energy(input: CheckInput, robot: RobotProgram) -> Iterator[Verdict]:
     if not lifetime:
         raise MissingFigureError(f"{robot.id}: its lifetime, from which its power follows, is not given")
     allowed = stored * (1.0 - input.program.reserve)
-    least = stored / lifetime
-    power = (least, least * kinematics_of(input, robot).draw)
-    yield from _judged_uses(ENERGY_NAME, robot, _uses(input, robot), power, allowed, "J")
+    sorties = once(input, _sorties)[robot.id]
+    mean = stored / lifetime
+    most = mean * kinematics_of(input, robot).draw if sorties.uses else mean
+    yield from _judged_uses(ENERGY_NAME, robot, sorties, (mean, most), allowed, "J")
 
 
 def _lifetime(input: CheckInput, robot: RobotProgram) -> float | None:

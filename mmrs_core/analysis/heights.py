@@ -83,13 +83,12 @@ def _judge_depth(input: CheckInput, robot: RobotProgram) -> Iterator[Verdict]:
 
 
 def _above_water(robot: RobotProgram, allowed: float | None, motion: Motion) -> Iterator[Verdict]:
-    if motion.gaps and allowed is not None:
-        yield from judged(DEPTH_NAME, robot, "Pa", (), motion.gaps)
-    elif allowed is None:
+    if allowed is None:
         yield not_checked(DEPTH_NAME, robot, "no known move leads under the surface")
     else:
-        margin = Margin(allowed - ATMOSPHERE, None, "no move leads under the surface")
-        yield from judged(DEPTH_NAME, robot, "Pa", [margin])
+        known = " known" if motion.gaps else ""
+        margin = Margin(allowed - ATMOSPHERE, None, f"no{known} move leads under the surface")
+        yield from judged(DEPTH_NAME, robot, "Pa", [margin], motion.gaps)
 
 
 def _missing_for_depth(input: CheckInput, robot: RobotProgram, allowed: float | None) -> str:

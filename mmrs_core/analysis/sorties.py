@@ -16,7 +16,8 @@ from math import inf
 
 from mmrs_core.analysis.certainty import goes_round
 from mmrs_core.analysis.durations import Duration
-from mmrs_core.analysis.states import GROUNDED, States, states_of
+from mmrs_core.analysis.figures import MissingFigureError
+from mmrs_core.analysis.states import GROUNDED, States, possible_states, states_of
 from mmrs_core.analysis.times import Times, times_of
 from mmrs_core.analysis.verdicts import Gap
 from mmrs_core.behaviour.program import BEHAVIOUR, RobotProgram, Transition
@@ -67,11 +68,14 @@ class Sorties:
 def sorties_of(input: CheckInput, robot: RobotProgram) -> Sorties:
     """Return how long one robot runs on each charge, at most and at least.
 
-    Raises:
-        MissingFigureError: nothing says whether the robot launches.
+    Where nothing says whether it launches, it is a gap, and the least is what holds either way.
     """
-    states = states_of(input, robot)
     times = times_of(input)
+    try:
+        states = states_of(input, robot)
+    except MissingFigureError as missing:
+        gap = Gap(robot.start, str(missing).removeprefix(f"{robot.id}: "))
+        return Sorties((), (gap,), _least_uses(robot, possible_states(input, robot), times))
     uses, gaps = _Walk(robot, states, times).run()
     return Sorties(uses, gaps, _least_uses(robot, states, times))
 

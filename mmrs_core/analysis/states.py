@@ -9,7 +9,7 @@ from collections import deque
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
-from mmrs_core.analysis.figures import kinematics_of, move_kind_of
+from mmrs_core.analysis.figures import MissingFigureError, kinematics_of, move_kind_of
 from mmrs_core.analysis.verdicts import Gap, for_each_robot, safe, unknown_moves, violated
 from mmrs_core.behaviour.program import RobotProgram
 from mmrs_core.contributions.checks import Check, CheckInput, Verdict
@@ -47,10 +47,19 @@ def states_of(input: CheckInput, robot: RobotProgram) -> States:
         MissingFigureError: nothing says whether the robot launches.
     """
     first = GROUNDED if kinematics_of(input, robot).launches else MOVING
+    return _states_from(input, robot, frozenset({first}))
+
+
+def possible_states(input: CheckInput, robot: RobotProgram) -> States:
+    """Return the states of one robot whether it launches or not; linear in its moves."""
+    return _states_from(input, robot, frozenset({GROUNDED, MOVING}))
+
+
+def _states_from(input: CheckInput, robot: RobotProgram, first: frozenset[str]) -> States:
     before: dict[int, frozenset[str]] = {}
     after: dict[int, frozenset[str]] = {}
     gaps: dict[int, Gap] = {}
-    pending: deque[tuple[int, frozenset[str]]] = deque([(robot.start, frozenset({first}))])
+    pending: deque[tuple[int, frozenset[str]]] = deque([(robot.start, first)])
     while pending:
         index, states = pending.popleft()
         if states <= before.get(index, frozenset()):
@@ -68,25 +77,33 @@ def states_of(input: CheckInput, robot: RobotProgram) -> States:
 
 
 def _judge(input: CheckInput, robot: RobotProgram) -> Iterator[Verdict]:
-    states = states_of(input, robot)
-    broken = False
-    for index in sorted(states.before):
-        move = robot.moves[index]
-        kind = move_kind_of(input, move)
-        wrong = states.before[index] - kind.needs if kind and kind.needs else frozenset()
-        if kind and wrong:
-            broken = True
-            yield violated(
-                NAME,
-                robot,
-                f"{move.kind} '{move.id}' begins while the robot may be {_words(wrong)},"
-                f" it needs it to be {_words(kind.needs)}",
-                index,
-            )
+    try:
+        states = states_of(input, robot)
+    except MissingFigureError:
+        yield from _misplaced(input, robot, possible_states(input, robot), certainly=True)
+        raise
+    broken = tuple(_misplaced(input, robot, states))
+    yield from broken
     if states.gaps:
         yield unknown_moves(NAME, robot, states.gaps)
     elif not broken:
         yield safe(NAME, robot, "every move begins in a state that it needs")
+
+
+def _misplaced(
+    input: CheckInput, robot: RobotProgram, states: States, certainly: bool = False
+) -> Iterator[Verdict]:
+    """Yield the moves that may begin in a state that they cannot, or only those that certainly do."""
+    for index, before in sorted(states.before.items()):
+        move = robot.moves[index]
+        kind = move_kind_of(input, move)
+        wrong = before - kind.needs if kind and kind.needs else frozenset()
+        if kind and wrong and not (certainly and before & kind.needs):
+            words = (
+                f"{move.kind} '{move.id}' begins while the robot may be {_words(wrong)},"
+                f" it needs it to be {_words(kind.needs)}"
+            )
+            yield violated(NAME, robot, words, index)
 
 
 def _words(states: frozenset[str]) -> str:

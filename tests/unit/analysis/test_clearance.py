@@ -235,3 +235,10 @@ def test_a_way_that_goes_straight_on_cuts_nothing():
     flows = round_a_corner(fluid=True, away=3.0, end=(40.0, 0.0, 0.0))
     stops = round_a_corner(fluid=False, away=3.0, end=(40.0, 0.0, 0.0))
     assert flows.margin == pytest.approx(stops.margin)
+
+
+def test_a_way_through_an_obstacle_is_violated_though_the_type_is_not_described():
+    made = given(robot("a", [go("m1", (20.0, 0.0, 0.0))]), areas=(square(),))
+    found = findings("clearance", replace(made, types={}))
+    assert [verdict.status for verdict in found] == [Status.VIOLATED, Status.UNKNOWN]
+    assert found[0].area == "tower"

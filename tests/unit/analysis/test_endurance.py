@@ -193,6 +193,19 @@ def test_a_hold_where_nobody_knows_takes_its_time():
         assert (verdict.status, verdict.move) == (Status.VIOLATED, "h")
 
 
+@pytest.mark.parametrize("property", ["endurance", "energy"])
+def test_what_is_certainly_used_is_violated_though_a_robot_has_no_home(property):
+    made = robot("a", [take_off("up", 10.0), hold("h", 801.0), land("down")], home=None)
+    violated, unknown = findings(property, given(made, **LAUNCHES))
+    assert (violated.status, violated.move) == (Status.VIOLATED, "h")
+    assert unknown.message == "a: Start 'start': its home is not given"
+
+
+def test_a_robot_without_a_home_may_rest_on_the_ground():
+    made = robot("a", [hold("h", 801.0)], home=None)
+    assert finding("endurance", given(made, **LAUNCHES)).status is Status.UNKNOWN
+
+
 def test_an_object_may_be_further_than_it_is_expected():
     to_buoy = replace(go("m1", (100.0, 0.0, 0.0)), target=Target((100.0, 0.0, 0.0), "buoy", 6.0))
     assert seconds(robot("a", [to_buoy])) == 53.0

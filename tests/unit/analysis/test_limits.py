@@ -83,6 +83,11 @@ def test_a_dive_without_figures_is_unknown_and_says_which():
     )
 
 
+def test_a_type_for_less_than_the_pressure_of_the_air_is_violated_wherever_it_goes():
+    made = given(robot("a", [strange("dig")]), type=rover(attributes={"maxOperatingPressure": 1000.0}))
+    assert [verdict.status for verdict in findings("depth", made)] == [Status.VIOLATED, Status.UNKNOWN]
+
+
 def test_a_flying_robot_below_the_origin_is_not_taken_to_dive():
     verdict = finding("depth", dive(10.0, robot_kind=flyer()))
     assert verdict.status is Status.NOT_CHECKED

@@ -47,3 +47,10 @@ def test_recharging_in_the_air_is_violated():
 
 def test_a_robot_that_does_not_launch_is_under_way_from_the_beginning():
     assert finding("states", given(robot("a", [OVER]))).status is Status.SAFE
+
+
+def test_a_second_take_off_is_violated_though_nothing_says_whether_the_robot_launches():
+    made = robot("a", [take_off("up", 10.0), take_off("again", 10.0), land("down")], home=None)
+    violated, unknown = findings("states", given(made))
+    assert (violated.status, violated.move) == (Status.VIOLATED, "again")
+    assert (unknown.status, unknown.message) == (Status.UNKNOWN, "a: its home is not given")
