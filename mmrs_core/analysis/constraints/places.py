@@ -51,47 +51,50 @@ def _from(distance: float, area: DrawnArea) -> str:
 def _point(task: Element, models: ModelSet) -> Iterator[Finding]:
     point = child(task, "point")
     if point is not None and not number(task, "distance"):  # else the robot stays away from the point
-        yield from _unreachable(task, point, "its point", models)
+        yield from _found(task, unreachable(task, point, "its point", models))
 
 
 def _beginning(task: Element, models: ModelSet) -> Iterator[Finding]:
     point = child(task, "initialPosition")
     if point is not None:
-        yield from _unreachable(task, point, "its initialPosition", models)
+        yield from _found(task, unreachable(task, point, "its initialPosition", models))
 
 
-def _unreachable(task: Element, point: Element, what: str, models: ModelSet) -> Iterator[Finding]:
-    """Yield a breach if an area keeps every robot that could do the task from a point."""
+def _found(task: Element, messages: Iterable[str]) -> Iterator[Finding]:
+    return (finding(task, message) for message in messages)
+
+
+def unreachable(task: Element, point: Element, what: str, models: ModelSet) -> Iterator[str]:
+    """Yield what to say of areas that keep every robot that could do a task from a point, called `what`."""
     sketch = sketch_of(models)
-    position = _at_work(task, sketch.ground.positions.get(point))
-    smallest = _smallest_clearance(task, models)
+    position = _at_work(task, sketch.ground.positions.get(point), sketch)
+    smallest = smallest_clearance(task, models)
     if position is None or smallest is None:
         return
     for area, distance in sketch.distances(position):
         needed = area.safety_distance + smallest
         if distance < needed - EXACT:
-            yield finding(
-                task,
-                f"{what} is {_from(distance, area)}; every robot that can do it must keep {needed:.2f} m",
-            )
+            yield f"{what} is {_from(distance, area)}; every robot that can do it must keep {needed:.2f} m"
 
 
-def _at_work(task: Element, position: Position | None) -> Position | None:
+def _at_work(task: Element, position: Position | None, sketch: Sketch) -> Position | None:
     """Return a position at the height that the task is done at, if the task has one of its own."""
-    altitude = number(task, "altitude")
-    return position if position is None or altitude is None else (position[0], position[1], altitude)
+    altitude, depth = number(task, "altitude"), number(task, "depth")
+    up = altitude if depth is None else sketch.ground.frame.surface - depth
+    return position if position is None or up is None else (position[0], position[1], up)
 
 
-def _smallest_clearance(task: Element, models: ModelSet) -> float | None:
+def smallest_clearance(task: Element, models: ModelSet) -> float | None:
     """Return the clearance of the smallest robot that can do a task, metres; None if one is not known."""
     clearances = [robot.clearance for robot in able(task, models)]
     known = [each for each in clearances if each is not None]
     return min(known) if known and len(known) == len(clearances) else None
 
 
-def _positions(task: Element, feature: str, sketch: Sketch) -> list[Position]:
+def positions_of(task: Element, feature: str, sketch: Sketch) -> list[Position]:
+    """Return where the points of a feature lie, those that can be placed, at the height of the task."""
     found = (sketch.ground.positions.get(each) for each in children(task, feature))
-    return [placed for each in found if (placed := _at_work(task, each)) is not None]
+    return [placed for each in found if (placed := _at_work(task, each, sketch)) is not None]
 
 
 def _line_inside(task: Element, models: ModelSet) -> Iterator[Finding]:
@@ -114,26 +117,35 @@ def _line_through(task: Element, models: ModelSet) -> Iterator[Finding]:
 
 def _line_of(task: Element, models: ModelSet) -> BlockedLine | None:
     sketch = sketch_of(models)
-    points, smallest = _positions(task, "points", sketch), _smallest_clearance(task, models)
+    points, smallest = positions_of(task, "points", sketch), smallest_clearance(task, models)
     return blocked_line(sketch, points, smallest) if points and smallest is not None else None
 
 
 def _covered(task: Element, models: ModelSet) -> Iterator[Finding]:
+    return _found(task, covered(task, models))
+
+
+def covered(task: Element, models: ModelSet) -> Iterator[str]:
+    """Yield what to say if no robot that could do a task may reach any of its shell."""
     area = _area_of(task, models)
     if area is not None and area.closed and not area.left:
-        yield finding(task, "all of its area is too near to what every robot must keep away from")
+        yield "all of its area is too near to what every robot must keep away from"
 
 
 def _partly_covered(task: Element, models: ModelSet) -> Iterator[Finding]:
+    return _found(task, partly_covered(task, models))
+
+
+def partly_covered(task: Element, models: ModelSet) -> Iterator[str]:
+    """Yield what to say of pieces of a task's shell that no robot may reach, where others are left."""
     area = _area_of(task, models)
     if area is None or not area.left:
         return
     for piece in area.closed:
         spot = piece.representative_point()
-        yield finding(
-            task,
+        yield (
             f"about {_roughly(piece.area)} m² of its area, at ({spot.x:.1f}, {spot.y:.1f}), are too near to"
-            f" {area.names_at(spot)} for every robot",
+            f" {area.names_at(spot)} for every robot"
         )
 
 
@@ -157,7 +169,7 @@ class _Area:
 
 def _area_of(task: Element, models: ModelSet) -> _Area | None:
     sketch = sketch_of(models)
-    ring, smallest = sketch.ring(task, "shell"), _smallest_clearance(task, models)
+    ring, smallest = sketch.ring(task, "shell"), smallest_clearance(task, models)
     shape = polygon_of(ring) if ring is not None else None
     if shape is None or smallest is None:
         return None
@@ -170,7 +182,7 @@ def _area_of(task: Element, models: ModelSet) -> _Area | None:
 
 def _height(task: Element, sketch: Sketch) -> float | None:
     """Return the one height that an area task is done at; None where it has none or several."""
-    ups = {position[2] for position in _positions(task, "shell", sketch)}
+    ups = {position[2] for position in positions_of(task, "shell", sketch)}
     return ups.pop() if len(ups) == 1 else None
 
 
@@ -188,7 +200,7 @@ def _astray(task: Element, models: ModelSet) -> Iterator[Finding]:
     sketch = sketch_of(models)
     begin = child(task, "initialPosition")
     start = sketch.ground.positions.get(begin) if begin is not None else None
-    points = [*_positions(task, "shell", sketch), *_positions(task, "points", sketch)]
+    points = [*positions_of(task, "shell", sketch), *positions_of(task, "points", sketch)]
     if start is None or not points:
         return
     nearest = min(dist(start[:2], point[:2]) for point in points)

@@ -18,6 +18,7 @@ from mmrs_survey.grid_checks import (
     resolution_unfounded,
     seen_twice,
 )
+from mmrs_survey.reach_checks import nothing_reached, partly_reached
 from mmrs_survey.task_checks import (
     looks_at_itself,
     not_positive,
@@ -177,6 +178,29 @@ CONSTRAINTS = (
         names.PHOTO_GRID_TASK,
         resolution_coarse,
         "write 0.02 for 2 cm per pixel",
+        Severity.WARNING,
+    ),
+    Constraint(
+        "SUR021",
+        "Every point of a measurement, and some part of its line or area, is one that some robot can be at",
+        names.MEASURE_TASK,
+        nothing_reached,
+        "move it away, or make the area or its safetyDistance smaller",
+    ),
+    Constraint(
+        "SUR022",
+        "All of a measurement's line or area can be reached",
+        names.MEASURE_TASK,
+        partly_reached,
+        "lead the line around the area, or above it; or measure in the rest alone",
+        Severity.WARNING,
+    ),
+    Constraint(
+        "SUR023",
+        "All passes along a road can be followed",
+        names.ROAD_TASK,
+        partly_reached,
+        "lead the road around the area, or above it, or make it narrower",
         Severity.WARNING,
     ),
 )

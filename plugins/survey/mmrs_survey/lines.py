@@ -69,6 +69,15 @@ def cuts_between(points: Sequence[Position], actions: Sequence[float]) -> tuple[
     )[:-1]
 
 
+def lines_over(
+    line: tuple[Position, ...], width: float | None, strip: float | None
+) -> tuple[tuple[Position, ...], ...]:
+    """Return the passes over a road, as `passes`; the line alone where one strip is as wide as the road."""
+    if len(line) == 1 or strip is None or (width or 0.0) <= strip:
+        return (line,)
+    return passes(line, width or 0.0, strip)
+
+
 def passes(points: Sequence[Position], width: float, strip: float) -> tuple[tuple[Position, ...], ...]:
     """Return polylines to and fro, side by side, from which strips cover a corridor.
 

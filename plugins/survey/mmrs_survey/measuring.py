@@ -53,8 +53,8 @@ def _action(part: Part, robot: Robot) -> ActionAt:
 
 
 def _at_points(points: tuple[Position, ...], action: ActionAt, robot: Robot, scene: Scene) -> Work:
-    for index, point in enumerate(points):
-        refuse_blocked(robot, scene, (point,), f"point {index}")
+    for position, point in enumerate(points, 1):
+        refuse_blocked(robot, scene, (point,), f"point {position}")
     return Work(
         tuple(Stroke((point,), (action,)) for point in points), divisible=True, rule=RULE, ordered=False
     )

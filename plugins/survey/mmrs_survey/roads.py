@@ -11,7 +11,14 @@ from mmrs_core.planning.open_lines import open_lines
 from mmrs_core.planning.places import refuse_blocked, refuse_heights
 from mmrs_core.scene import ActionAt, Part, Position, Robot, Scene, Stroke, Task, Work
 from mmrs_core.scene.attributes import flag, number, position, positions, text
-from mmrs_survey.lines import at_altitude, cuts_between, even_distances, length_of, passes, without_repeats
+from mmrs_survey.lines import (
+    at_altitude,
+    cuts_between,
+    even_distances,
+    length_of,
+    lines_over,
+    without_repeats,
+)
 from mmrs_survey.names import ROAD_TASK
 
 
@@ -39,12 +46,8 @@ def _lines(part: Part) -> tuple[tuple[Position, ...], ...]:
     line = without_repeats(at_altitude(positions(part, "points"), number(part, "altitude")))
     if not line:
         raise InfeasibleError("points are missing")
-    if flag(part, "inverted"):
-        line = line[::-1]
-    width, strip = number(part, "width") or 0.0, number(part, "footprintWidth")
-    if len(line) == 1 or strip is None or width <= strip:
-        return (line,)
-    return passes(line, width, strip)
+    line = line[::-1] if flag(part, "inverted") else line
+    return lines_over(line, number(part, "width"), number(part, "footprintWidth"))
 
 
 def _stroke(part: Part, robot: Robot, line: tuple[Position, ...], *, free: bool) -> Stroke:

@@ -1,13 +1,16 @@
 from __future__ import annotations
 
+import re
+
 import pytest
 from mmrs_survey import plugin
 from mmrs_survey.constraints import CONSTRAINTS
 from mmrs_survey.names import SURVEY
 
+from mmrs_core.languages import context as cml
 from mmrs_core.languages import mission as mml
 from mmrs_core.testing.conformance import Case, ConstraintConformance
-from mmrs_core.testing.models import breaches
+from mmrs_core.testing.models import breaches, sample_mission
 
 ROBOT_LANGUAGE = "urn:mmrs:robot:1.0"
 OPTICS = {"sensor.width": "13.2", "sensor.height": "8.8", "focal.length": "8.8"}
@@ -80,6 +83,26 @@ def field(made, side=100.0):
     return mml.Mission(name="m", tasks=[made], origin=mml.RelativeCoordinate(x=0.0, y=0.0))
 
 
+def line(*places):
+    return [mml.RelativeCoordinate(x=float(x), y=float(y)) for x, y in places]
+
+
+def road(registry, north, width=20.0):
+    features = {"points": line((0, north), (99, north)), "width": width, "footprintWidth": 10.0}
+    return task(registry, "RoadTask", **features)
+
+
+def beside_a_tower(registry, made):
+    """Return a mission of one robot 2 m across with that task, and a tower from 45 to 55 m east."""
+    shell = line((45, -5), (55, -5), (55, 5), (45, 5))
+    tower = cml.Obstacle(name="tower", shell=shell, maxHeight=60.0)
+    size = registry.create(ROBOT_LANGUAGE, "Size", length=2.0, width=0.0, height=0.0)
+    rover = registry.create(
+        ROBOT_LANGUAGE, "Robot", name="Any", size=size, devices=[device(registry, "probe", action="Sample")]
+    )
+    return [sample_mission(made), cml.Context(name="c", obstacles=[tower]), rover]
+
+
 CASES = {
     "SUR001": Case(
         lambda r: [sized(r, gridResolution=12.0)],
@@ -137,6 +160,15 @@ CASES = {
         lambda r: [grid(r, groundResolution=2.0)],
         lambda r: [grid(r, groundResolution=0.49)],
     ),
+    "SUR021": Case(
+        lambda r: beside_a_tower(r, measure(r, points=line((0, 0), (50, 0), (99, 0)))),
+        lambda r: beside_a_tower(r, measure(r, points=line((0, 0), (99, 0)))),
+    ),
+    "SUR022": Case(
+        lambda r: beside_a_tower(r, measure(r, points=line((0, 0), (99, 0)), spacing=5.0)),
+        lambda r: beside_a_tower(r, measure(r, points=line((0, 0), (99, 0)), spacing=5.0, altitude=70.0)),
+    ),
+    "SUR023": Case(lambda r: beside_a_tower(r, road(r, -4)), lambda r: beside_a_tower(r, road(r, -15))),
 }
 BY_CODE = {constraint.code: constraint for constraint in CONSTRAINTS}
 
@@ -218,3 +250,47 @@ def test_photos_of_a_road_are_counted_on_every_pass(registry):
     road = task(registry, "RoadTask", photoDistance=0.001, width=20.0, footprintWidth=4.0, points=corners(6))
     made = mml.Mission(name="m", origin=mml.RelativeCoordinate(x=0.0, y=0.0), tasks=[road])
     assert breaches(BY_CODE["SUR018"], [made]) == ["task 'it' takes about 25,000 photos"]
+
+
+@pytest.mark.parametrize(
+    ("code", "made", "words"),
+    [
+        (
+            "SUR021",
+            lambda r: measure(r, points=line((0, 0), (50, 0), (99, 0))),
+            "point 2 is inside .* 'tower'; every robot that can do it must keep 1.00 m",
+        ),
+        (
+            "SUR021",
+            lambda r: measure(r, points=line((48, 0), (52, 0)), spacing=1.0),
+            "every part of its line is too near to .* 'tower' for every robot",
+        ),
+        (
+            "SUR021",
+            lambda r: measure(r, points=[], spacing=1.0, shell=line((48, 0), (52, 0), (52, 2))),
+            "all of its area is too near to what every robot must keep away from",
+        ),
+        (
+            "SUR022",
+            lambda r: measure(r, points=line((0, 0), (99, 0)), spacing=5.0),
+            "12.0 of the 99.0 m of its line are too near to .* 'tower' for every robot, from 44.0 m along it",
+        ),
+        (
+            "SUR022",
+            lambda r: measure(r, points=[], spacing=1.0, shell=line((40, 0), (60, 0), (60, 4), (40, 4))),
+            "about 48 m² of its area, at .*, are too near to .* 'tower' for every robot",
+        ),
+        (
+            "SUR023",
+            lambda r: road(r, -10),
+            "12.0 of the 99.0 m of pass 2 are too near to .* 'tower' for every robot, from 43.0 m along it",
+        ),
+    ],
+)
+def test_where_no_robot_can_be_is_told_as_planning_tells_it(code, made, words, registry):
+    (message,) = breaches(BY_CODE[code], beside_a_tower(registry, made(registry)))
+    assert re.search(words, message)
+
+
+def test_a_road_of_one_pass_is_judged_as_the_line_that_it_is(registry):
+    assert breaches(BY_CODE["SUR023"], beside_a_tower(registry, road(registry, 0, width=10.0))) == []

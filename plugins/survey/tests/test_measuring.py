@@ -68,7 +68,7 @@ def test_a_shell_whose_points_differ_in_height_needs_an_altitude(robot, scene, t
 
 
 def test_a_blocked_point_is_refused_with_its_number(robot, scene, task):
-    with pytest.raises(InfeasibleError, match="point 1 comes"):
+    with pytest.raises(InfeasibleError, match="point 2 comes"):
         measure_work(measure(task), robot(), scene((30.0, 0.0, 3.0, 90.0)))
 
 
