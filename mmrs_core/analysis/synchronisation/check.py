@@ -7,7 +7,7 @@ from dataclasses import replace
 from itertools import pairwise
 
 from mmrs_core.analysis.synchronisation.exploration import find_stuck
-from mmrs_core.analysis.synchronisation.fixpoint import must_fixpoint
+from mmrs_core.analysis.synchronisation.fixpoint import Fixpoint, may_fixpoint, must_fixpoint
 from mmrs_core.analysis.synchronisation.network import Network, Node, groups_of, network_of
 from mmrs_core.analysis.synchronisation.search import (
     LIMIT,
@@ -80,7 +80,7 @@ def _monotone(program: Program, network: Network, limit: int) -> Iterator[Verdic
         yield _free(program, network, "whatever ways Choices go")
         return
     if not any(net.chooses for net in network.nets):
-        yield from _certainly_stuck(program, network, fixpoint.active, fixpoint.blocked)
+        yield from _certainly_stuck(program, network, fixpoint)
         return
     endless = _endless(program, network)
     if endless:
@@ -89,7 +89,8 @@ def _monotone(program: Program, network: Network, limit: int) -> Iterator[Verdic
     try:
         trap = find_trap(network, fixpoint.active, limit=limit)
     except LimitExceededError:
-        yield _undecided("the Choices that robots make have more outcomes than were looked at")
+        reason = "the Choices that robots make have more outcomes than were looked at"
+        yield from _cut_short(program, network, reason)
         return
     if trap is None:
         yield _free(program, network, "whatever ways Choices go")
@@ -98,14 +99,20 @@ def _monotone(program: Program, network: Network, limit: int) -> Iterator[Verdic
 
 
 def _certainly_stuck(
-    program: Program, network: Network, active: frozenset[SlotId], blocked: dict[int, tuple[int, ...]]
+    program: Program, network: Network, fixpoint: Fixpoint, condition: str = ""
 ) -> Iterator[Verdict]:
     stuck = [
-        Stuck(number, node, network.nets[number].nodes[node].waits - active)
-        for number, nodes in blocked.items()
+        Stuck(number, node, network.nets[number].nodes[node].waits - fixpoint.active)
+        for number, nodes in fixpoint.blocked.items()
         for node in nodes
     ]
-    yield from _stuck_verdicts(program, network, stuck, "")
+    yield from _stuck_verdicts(program, network, stuck, condition)
+
+
+def _cut_short(program: Program, network: Network, reason: str) -> Iterator[Verdict]:
+    """Yield who waits for ever in every run, and that the others are not decided."""
+    yield from _certainly_stuck(program, network, may_fixpoint(network), " at the latest")
+    yield _undecided(reason)
 
 
 def _trapped(program: Program, network: Network, trap: Trap) -> Iterator[Verdict]:
@@ -127,7 +134,8 @@ def _with_resets(program: Program, network: Network) -> Iterator[Verdict]:
     try:
         stuck = find_stuck(network)
     except LimitExceededError:
-        yield _undecided("slots become inactive again, in more orders of events than were looked at")
+        reason = "slots become inactive again, in more orders of events than were looked at"
+        yield from _cut_short(program, network, reason)
         return
     if stuck is None:
         yield _free(program, network, "in any order of events")

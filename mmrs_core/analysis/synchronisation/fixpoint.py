@@ -12,6 +12,7 @@ from dataclasses import dataclass
 
 from mmrs_core.analysis.synchronisation.network import Net, Network
 from mmrs_core.behaviour.program import SlotId
+from mmrs_core.behaviour.walk import reachable
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,6 +47,36 @@ def must_fixpoint(network: Network) -> Fixpoint:
             active.add(slot)
             pending.extend(sorted(waiting.pop(slot, ())))
     return Fixpoint(frozenset(active), {number: ends for number, ends in blocked.items() if ends})
+
+
+def may_fixpoint(network: Network) -> Fixpoint:
+    """Return what comes of all Choices going every way at once with no slot made inactive again.
+
+    No run activates more: `active` are the slots that any may, `blocked` where robots wait for ever at
+    the latest that never come to Stop. Quadratic at worst.
+    """
+    active: set[SlotId] = set()
+    while True:
+        reached = [_passable(net, active) for net in network.nets]
+        given = {
+            slot
+            for net, nodes in zip(network.nets, reached, strict=True)
+            for node in nodes
+            for slot in net.nodes[node].gives
+        }
+        if given <= active:
+            break
+        active |= given
+    blocked = {
+        number: tuple(sorted(node for node in nodes if not net.nodes[node].waits <= active))
+        for number, (net, nodes) in enumerate(zip(network.nets, reached, strict=True))
+        if net.stop not in nodes
+    }
+    return Fixpoint(frozenset(active), {number: nodes for number, nodes in blocked.items() if nodes})
+
+
+def _passable(net: Net, active: set[SlotId]) -> frozenset[int]:
+    return reachable([node.ways if node.waits <= active else () for node in net.nodes], (0,))
 
 
 class _Progress:

@@ -5,7 +5,7 @@ from hypothesis import assume, given, settings
 from random_synchronisation import behaviours, deadlocks
 
 from mmrs_core.analysis.synchronisation.check import SYNCHRONISATION
-from mmrs_core.analysis.synchronisation.fixpoint import must_fixpoint
+from mmrs_core.analysis.synchronisation.fixpoint import may_fixpoint, must_fixpoint
 from mmrs_core.analysis.synchronisation.network import network_of
 from mmrs_core.analysis.synchronisation.search import find_trap
 from mmrs_core.behaviour.walk import moves_reaching_stop, reachable_moves
@@ -49,6 +49,13 @@ def test_with_loops_the_check_finds_deadlocks_exactly(behaviour):
 def test_with_resets_a_deadlock_is_never_called_safe(behaviour):
     if deadlocks(behaviour):
         assert found(behaviour).isdisjoint({Status.SAFE})
+
+
+@settings(max_examples=20, deadline=None)
+@given(behaviours(resets=True, loops=True).filter(lambda made: may_fixpoint(network_of(made)).blocked))
+def test_robots_that_wait_for_ever_at_the_latest_make_a_deadlock(behaviour):
+    assume(all(reachable_moves(robot) <= moves_reaching_stop(robot) for robot in behaviour.robots))
+    assert deadlocks(behaviour) is not False
 
 
 @settings(max_examples=20, deadline=None)

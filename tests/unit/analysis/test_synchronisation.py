@@ -112,6 +112,18 @@ def test_a_search_that_is_cut_short_is_unknown():
     assert verdict.status is Status.UNKNOWN
 
 
+def test_who_waits_for_ever_in_every_run_is_found_though_the_search_is_cut_short():
+    a = robot("a", [hold("h", after=(notify("b.go", "d.never"),))], waits={"start": ["go"]})
+    b = robot("b", [hold("i", after=(notify("a.go"),))], waits={"start": ["go"]})
+    fork = {"fork": ("c", "left", "right")}
+    c = robot("c", [hold("fork"), hold("left", after=(notify("d.go"),)), hold("right")], choices=fork)
+    d = robot("d", [hold("n")], waits={"start": ["go"], "n": ["never"]}, slots=["go", "never"])
+    found = list(verdicts_of(given(a, b, c, d), limit=0))
+    stuck = {(verdict.robot, verdict.move) for verdict in found if verdict.status is Status.VIOLATED}
+    assert stuck == {("a", "start"), ("b", "start"), ("d", "n")}
+    assert found[-1].status is Status.UNKNOWN
+
+
 def test_a_run_in_which_nobody_is_stuck_is_no_counterexample():
     network = network_of(program(robot("a", [hold("h", after=(notify("a.go"),))], waits={"h": ["go"]})))
     with pytest.raises(InternalError):
