@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from mmrs_core.analysis.figures import MissingFigureError, kinematics_of, type_of
-from mmrs_core.analysis.states import GROUNDED, States, states_of
+from mmrs_core.analysis.states import GROUNDED, States, possible_states, states_of
 from mmrs_core.analysis.verdicts import Margin, for_each_robot, judged, not_checked
 from mmrs_core.behaviour.program import RobotProgram
 from mmrs_core.contributions.checks import Check, CheckInput, Verdict
@@ -22,8 +22,14 @@ def _judge_wind(input: CheckInput, robot: RobotProgram) -> Iterator[Verdict]:
     if held is None and not kinematics_of(input, robot).launches:
         yield not_checked(WIND_NAME, robot, "it does not fly")
         return
-    hovers = _hovers(states_of(input, robot))
     wind = input.environment.get("windSpeed")
+    try:
+        hovers = _hovers(states_of(input, robot))
+    except MissingFigureError:
+        hovers = _certainly_hovers(possible_states(input, robot))
+        if hovers is not None and wind is not None and held is not None and held < wind:
+            yield from judged(WIND_NAME, robot, "m/s", [_held_against(wind, held, robot, hovers)])
+        raise
     if hovers is None:
         yield not_checked(WIND_NAME, robot, "it never leaves the ground")
     elif wind is None:
@@ -34,15 +40,24 @@ def _judge_wind(input: CheckInput, robot: RobotProgram) -> Iterator[Verdict]:
             f"{robot.id}: the positionHold of robot type '{robot.type_name}' is not given"
         )
     else:
-        move = robot.moves[hovers]
-        words = f"{move.kind} '{move.id}' is in a wind of {wind:g} m/s, the robot holds against {held:g} m/s"
-        yield from judged(WIND_NAME, robot, "m/s", [Margin(held - wind, hovers, words)])
+        yield from judged(WIND_NAME, robot, "m/s", [_held_against(wind, held, robot, hovers)])
+
+
+def _held_against(wind: float, held: float, robot: RobotProgram, hovers: int) -> Margin:
+    move = robot.moves[hovers]
+    words = f"{move.kind} '{move.id}' is in a wind of {wind:g} m/s, the robot holds against {held:g} m/s"
+    return Margin(held - wind, hovers, words)
 
 
 def _hovers(states: States) -> int | None:
     """Return the first move that ends off the ground; None if there is none."""
     off = [move for move, after in states.after.items() if after != {GROUNDED}]
     return off[0] if off else None
+
+
+def _certainly_hovers(states: States) -> int | None:
+    """Return the first move that ends off the ground whatever state the robot began in, or None."""
+    return next((move for move, after in states.after.items() if GROUNDED not in after), None)
 
 
 def _judge_temperature(input: CheckInput, robot: RobotProgram) -> Iterator[Verdict]:

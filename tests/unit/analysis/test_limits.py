@@ -191,6 +191,14 @@ def test_wind_is_compared_with_what_a_flying_robot_holds_against():
     assert (verdict.status, verdict.margin, verdict.unit) == (Status.VIOLATED, -1.0, "m/s")
 
 
+def test_a_wind_in_which_no_robot_of_the_type_holds_is_violated_though_it_has_no_home():
+    made = robot("a", [take_off("up", 10.0), land("down")], home=None)
+    type = rover(attributes={"positionHold": 8.0})
+    found = findings("wind", given(made, type=type, environment={"windSpeed": 9.0}))
+    assert [verdict.status for verdict in found] == [Status.VIOLATED, Status.UNKNOWN]
+    assert (found[0].move, found[0].margin) == ("up", pytest.approx(-1.0))
+
+
 def test_wind_without_a_position_hold_is_unknown():
     verdict = finding("wind", given(flight(), robot_kind=flyer(), environment={"windSpeed": 9.0}))
     assert (verdict.status, verdict.message) == (
