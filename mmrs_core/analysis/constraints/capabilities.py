@@ -39,7 +39,7 @@ def _type(robot: Element, models: ModelSet) -> Iterator[Finding]:
         message = f"its type {name!r} stands in {place_of(kept)}, in a language that is not installed"
         ns_uri = kept._mmrs_type.rpartition("#")[0]
         yield finding(robot, message, f"install the plug-in that brings {ns_uri}")
-    elif name and name not in models.robots:
+    elif name and name not in models.robots and "" not in models.robots:  # which may be the one that is meant
         known = f"known are {listed(sorted(models.robots))}"
         hint = guessed(known, name, models.robots) if models.robots else ""
         yield finding(robot, f"its type {name!r} is not known", hint)
@@ -78,25 +78,38 @@ def _action_asked(task: Element) -> str:
 
 
 def able(task: Element, models: ModelSet) -> tuple[DrawnRobot, ...]:
-    """Return the robots of the team whose type is known and has the devices and actions that a task names."""
+    """Return the robots of the team whose type has the devices and actions that a task names.
+
+    There is none where the type of one is not known: what it can do is not known either.
+    """
     team = sketch_of(models).robots
+    if any(robot.type is None for robot in team):
+        return ()
     types = {robot.type for robot in team if robot.type is not None}
     fit = {robot_type for robot_type in types if not lacks(task, robot_type)}
     return tuple(robot for robot in team if robot.type in fit)
 
 
+def undoable(task: Element, models: ModelSet) -> bool:
+    """Return whether it is known that no robot of the team has what a task names."""
+    team = sketch_of(models).robots
+    return bool(team) and all(robot.type is not None for robot in team) and not able(task, models)
+
+
 def _nobody(task: Element, models: ModelSet) -> Iterator[Finding]:
-    known = [robot for robot in sketch_of(models).robots if robot.type is not None]
-    if known and not able(task, models):
-        types = {text(robot.type, "name"): robot.type for robot in known if robot.type is not None}
+    if undoable(task, models):
+        types = {
+            text(robot.type, "name"): robot.type
+            for robot in sketch_of(models).robots
+            if robot.type is not None
+        }
         reasons = "; ".join(f"{name} lacks {' and '.join(lacks(task, each))}" for name, each in types.items())
         yield finding(task, f"no robot of the team can do it: {reasons}")
 
 
 def _too_many(task: Element, models: ModelSet) -> Iterator[Finding]:
     wanted, count = number(task, "robotsWanted"), len(able(task, models))
-    everybody = all(robot.type is not None for robot in sketch_of(models).robots)
-    if wanted is not None and everybody and 0 < count < wanted:
+    if wanted is not None and 0 < count < wanted:
         yield finding(task, f"wants {wanted:g} robots, but only {count} of the team can do it")
 
 

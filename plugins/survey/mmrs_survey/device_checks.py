@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from itertools import groupby
 
+from mmrs_core.analysis.constraints.capabilities import undoable
 from mmrs_core.contributions.constraints import Finding
 from mmrs_core.languages.element import Element, container_of, label_of, metaclass_of
 from mmrs_core.languages.grounding.values import children, number, text
@@ -40,8 +41,8 @@ def device_unclear(task: Element, models: ModelSet) -> Iterator[Finding]:
 
 
 def action_undone(task: Element, models: ModelSet) -> Iterator[Finding]:
-    """Yield survey tasks whose device or action no robot type has."""
-    if not _is_survey(task) or not models.robots:
+    """Yield survey tasks whose device or action no robot type has, unless the team lacks it by name."""
+    if not _is_survey(task) or not models.robots or undoable(task, models):
         return
     action, device_id = _action_asked(task), text(task, "deviceId")
     if action and not devices_for(models, action, device_id):

@@ -7,6 +7,7 @@ from mmrs_survey import plugin
 from mmrs_survey.constraints import CONSTRAINTS
 from mmrs_survey.names import SURVEY
 
+from mmrs_core.analysis.constraints import CONSTRAINTS as CORE
 from mmrs_core.languages import context as cml
 from mmrs_core.languages import mission as mml
 from mmrs_core.testing.conformance import Case, ConstraintConformance
@@ -216,6 +217,12 @@ def test_a_road_without_photos_needs_no_camera(registry):
 def test_a_device_that_only_looks_must_be_carried_too(registry):
     models = [task(registry, "ObserveTask", deviceId="telescope"), probe(registry)]
     assert "no robot type has it" in breaches(BY_CODE["SUR010"], models)[0]
+
+
+def test_a_device_that_the_team_lacks_is_told_once(registry):
+    made = beside_a_tower(registry, measure(registry, deviceId="prob"))
+    assert breaches(BY_CODE["SUR010"], made) == []
+    assert len([each for core in CORE if core.code == "MML064" for each in breaches(core, made)]) == 1
 
 
 def test_a_slip_of_the_unit_is_told_with_its_number(registry):

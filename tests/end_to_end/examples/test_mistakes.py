@@ -12,7 +12,7 @@ from mmrs_core.errors import InfeasibleError, InvalidModelError
 MISTAKES = [
     ("carbon-dioxide", "mission.xmi", 'altitude="15.0" grid', 'altitude="150.0" grid', "MUL009"),
     ("carbon-dioxide", "mission.xmi", "gridResolution=", 'footprintWidth="5.0" gridResolution=', "SUR001"),
-    ("carbon-dioxide", "mission.xmi", '"SampleGas"', '"Sniff"', "SUR010"),
+    ("carbon-dioxide", "mission.xmi", '"SampleGas"', '"Sniff"', "MML064"),
     ("carbon-dioxide", "mission.xmi", 'key="seconds"', 'key="minutes"', "SUR014"),
     ("carbon-dioxide", "context.xmi", 'windSpeed="3.5"', 'windSpeed="12.0"', "MUL008"),
     ("carbon-dioxide", "robots/quad-650.xmi", 'propellers="4"', 'propellers="2"', "MUL004"),

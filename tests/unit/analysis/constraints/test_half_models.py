@@ -146,3 +146,18 @@ def test_a_move_of_an_unknown_kind_may_end_anywhere(models):
     go.distance = 5.0
     models.transition("start").from_ = unknown
     assert "BL052" not in models.codes()
+
+
+@pytest.mark.parametrize(("name", "code"), [("Quad", "MML004"), ("", "MML013")])
+def test_nothing_is_derived_from_a_type_that_is_not_known(models, name, code):
+    models.put(models.mission.team.robots[1], type=name)
+    models.put(models.task("visit"), requiredDevices=["sonar"])
+    models.put(models.task("follow"), points=[models.at(510, 510), models.at(590, 590)])
+    assert models.codes() == {code}
+
+
+def test_a_type_without_a_name_may_be_the_one_that_robots_name(models):
+    models.quad.name = ""
+    nameless = ModelSet(models.mission, models.context, {"": models.quad}, ())
+    found = check_constraints(nameless, CONSTRAINTS, models.registry)
+    assert {fault.code for fault in found} == {"RL028"}
