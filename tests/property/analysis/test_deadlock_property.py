@@ -17,13 +17,18 @@ def found(behaviour):
 
 
 def agrees(behaviour):
-    """Compare, orphaned slots aside: these are reported though no run may come to wait for them."""
+    """Compare, orphaned slots aside: these are reported though no run may come to wait for them.
+
+    Robots that share no slots are judged apart, so that some may be safe beside others that are not.
+    """
     network = network_of(behaviour)
     assume(not network.awaited - network.givers.keys())
     assume(all(reachable_moves(robot) <= moves_reaching_stop(robot) for robot in behaviour.robots))
     truth = deadlocks(behaviour)
     assume(truth is not None)
-    assert found(behaviour) == ({Status.VIOLATED} if truth else {Status.SAFE})
+    told = found(behaviour)
+    assert (Status.VIOLATED in told) == truth
+    assert told <= {Status.SAFE, Status.VIOLATED}
 
 
 @settings(max_examples=20, deadline=None)
@@ -48,7 +53,7 @@ def test_with_loops_the_check_finds_deadlocks_exactly(behaviour):
 @given(behaviours(resets=True, loops=True))
 def test_with_resets_a_deadlock_is_never_called_safe(behaviour):
     if deadlocks(behaviour):
-        assert found(behaviour).isdisjoint({Status.SAFE})
+        assert found(behaviour) != {Status.SAFE}
 
 
 @settings(max_examples=20, deadline=None)
