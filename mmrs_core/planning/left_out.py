@@ -56,7 +56,8 @@ def _of(scene: Scene, task: str, robot: Robot, work: Work) -> Iterator[LeftOut]:
     for gap in work.gaps:
         if gap.length > _LEAST:
             place = f"from {gap.begin:.1f} m along {gap.line}, {_about(gap.at)}"
-            yield LeftOut(task, gap.length, "m", f"{place}, too near to {gap.area}", gap.at)
+            why = "closed in by" if gap.closed_in else "too near to"
+            yield LeftOut(task, gap.length, "m", f"{place}, {why} {gap.area}", gap.at)
     if work.coverage is not None:
         up = work.strokes[0].points[0][2]
         for piece in parts(uncovered(work.coverage), smallest=_LEAST):

@@ -7,9 +7,12 @@ from dataclasses import dataclass
 from itertools import pairwise
 from math import dist
 
+from shapely.geometry import Point, Polygon
+
 from mmrs_core.errors import InfeasibleError
 from mmrs_core.geometry.clearance import grow
 from mmrs_core.geometry.stretches import LEAST, between, blocked_stretches, open_stretches, part_of, point_at
+from mmrs_core.planning.pockets import pockets_of
 from mmrs_core.scene import Gap, Position, Robot, Scene
 
 
@@ -41,6 +44,8 @@ def open_line(
 ) -> OpenLine:
     """Return the parts of a line that keep the robot's clearance from every area, and the gaps.
 
+    Parts that areas close in so that no way leads there are gaps, too.
+
     Args:
         robot: for its clearance. scene: for its areas.
         line: to be followed.
@@ -48,7 +53,7 @@ def open_line(
         least: metres that a part is worth going to, where there are gaps.
 
     Raises:
-        NothingLeftError: nothing is left of a line; says what it is too near to.
+        NothingLeftError: nothing is left of a line; says what it is too near to, or what closes it in.
     """
     blocked = {
         area.name: stretches
@@ -60,14 +65,21 @@ def open_line(
         )
     }
     length = sum(dist(a, b) for a, b in pairwise(line))
-    if not blocked:
+    pockets = pockets_of(robot, scene)
+    free = open_stretches(blocked.values(), length, least) if blocked else [(0.0, length)]
+    closed = {each: walls for each in free if (walls := _walls_around(_middle(line, each), pockets))}
+    if not blocked and not closed:
         return OpenLine((tuple(line),), (), ((0, (0.0, length)),))
-    kept = open_stretches(blocked.values(), length, least)
+    kept = [each for each in free if each not in closed]
+    if closed and not kept:
+        (begin, end), walls = next(iter(closed.items()))
+        gap = Gap(what, begin, end - begin, _middle(line, (begin, end)), _names(walls), closed_in=True)
+        raise NothingLeftError(f"nothing is left of {what}: {_names(walls)} close it in", gap)
     if not kept:
         names = _names(blocked)
         gap = Gap(what, 0.0, length, point_at(line, length / 2.0), names)
         raise NothingLeftError(f"nothing is left of {what}: it is too near to {names}", gap)
-    gaps = tuple(
+    gaps = [
         Gap(
             what,
             begin,
@@ -75,9 +87,16 @@ def open_line(
             point_at(line, (begin + end) / 2.0),
             _names(name for name, found in blocked.items() if any(a <= end and b >= begin for a, b in found)),
         )
-        for begin, end in between(kept, length)
+        for begin, end in (between(free, length) if blocked else ())
+    ]
+    gaps += (
+        Gap(what, begin, end - begin, _middle(line, (begin, end)), _names(walls), closed_in=True)
+        for (begin, end), walls in closed.items()
     )
-    return OpenLine(tuple(part_of(line, *each) for each in kept), gaps, tuple((0, each) for each in kept))
+    gaps.sort(key=lambda gap: gap.begin)
+    return OpenLine(
+        tuple(part_of(line, *each) for each in kept), tuple(gaps), tuple((0, each) for each in kept)
+    )
 
 
 def open_lines(
@@ -103,6 +122,15 @@ def open_lines(
     if refusals and not parts:
         raise refusals[0]
     return OpenLine(tuple(parts), tuple(gaps), tuple(stretches))
+
+
+def _middle(line: Sequence[Position], stretch: tuple[float, float]) -> Position:
+    return point_at(line, sum(stretch) / 2.0) if len(line) > 1 else line[0]
+
+
+def _walls_around(at: Position, pockets: Iterable[tuple[Polygon, tuple[str, ...]]]) -> tuple[str, ...]:
+    """Return the names of the areas that close in a place; empty where it can be reached."""
+    return next((walls for pocket, walls in pockets if pocket.covers(Point(at[:2]))), ())
 
 
 def _names(names: Iterable[str]) -> str:

@@ -88,13 +88,13 @@ class Coverage:
 
 @dataclass(frozen=True, slots=True)
 class Gap:
-    """A stretch of a line that a work leaves out, since it is too near to an area.
+    """A stretch of a line that a work leaves out, since it is too near to an area, or closed in by areas.
 
     Attributes:
         line: which line, such as "the line" or "row 3".
         begin: where it begins, metres along that line; length: of it, metres.
         at: its middle, (east, north, up).
-        area: names of what it is too near to.
+        area: names of what it is too near to. closed_in: whether that is around it instead.
     """
 
     line: str
@@ -102,6 +102,7 @@ class Gap:
     length: float
     at: Position
     area: str
+    closed_in: bool = False
 
 
 @dataclass(frozen=True, slots=True)

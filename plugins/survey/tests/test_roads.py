@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+from dataclasses import replace
 from itertools import pairwise
 from math import cos, sin
 
@@ -113,6 +114,41 @@ def test_a_pass_of_which_nothing_is_left_is_left_out_as_a_whole(robot, scene, ta
 def test_a_line_of_which_nothing_is_left_is_refused_with_the_obstacles_name(robot, scene, task):
     with pytest.raises(InfeasibleError, match="nothing is left of the line: it is too near to 'block 0'"):
         road_work(road(task), robot(), scene((55.0, 40.0, 60.0, 90.0)))
+
+
+WALLS = (
+    (30.0, 0.0, 10.0, 150.0),
+    (70.0, 0.0, 10.0, 150.0),
+    (50.0, 20.0, 10.0, 150.0),
+    (50.0, -20.0, 10.0, 150.0),
+)
+
+
+def test_a_part_of_a_line_that_areas_close_in_is_left_out_and_they_are_named(robot, scene, task):
+    keep = 1.0 + robot().clearance
+    asked = road(task, points=((0.0, 0.0, 0.0), (100.0, 0.0, 0.0)))
+    work = road_work(asked, robot(), scene(*WALLS))
+    assert [stroke.points[0][0] for stroke in work.strokes] == pytest.approx([0.0, 80.0 + keep], abs=0.02)
+    before, inside, behind = work.gaps
+    assert (before.area, behind.area) == ("'block 0'", "'block 1'")
+    assert (inside.begin, inside.length) == pytest.approx((40.0 + keep, 20.0 - 2.0 * keep), abs=0.02)
+    assert (inside.area, inside.closed_in) == ("'block 0', 'block 1', 'block 2', 'block 3'", True)
+
+
+def test_a_line_that_areas_close_in_as_a_whole_is_refused_with_their_names(robot, scene, task):
+    asked = road(task, points=((48.0, 0.0, 0.0), (52.0, 0.0, 0.0)), initialPosition=(0.0, 0.0, 0.0))
+    with pytest.raises(InfeasibleError, match=r"nothing is left of the line: 'block 0', .* close it in"):
+        road_work(asked, robot(), scene(*WALLS))
+
+
+@pytest.mark.parametrize("top", [60.0, 150.0])
+def test_a_line_is_followed_whole_where_a_robot_can_get_over_the_areas_or_starts_between_them(
+    robot, scene, task, top
+):
+    inside = replace(robot(), home=(50.0 if top > 100.0 else 0.0, 0.0, 0.0))
+    asked = road(task, points=((48.0, 0.0, 0.0), (52.0, 0.0, 0.0)), initialPosition=(50.0, 0.0, 0.0))
+    walls = [(east, north, half, top) for east, north, half, _ in WALLS]
+    assert road_work(asked, inside, scene(*walls)).gaps == ()
 
 
 def test_photos_without_a_device_are_refused(robot, scene, task):
