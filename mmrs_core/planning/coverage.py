@@ -21,6 +21,7 @@ from mmrs_core.geometry.clearance import grow
 from mmrs_core.geometry.polygons import parts, polygon, rings
 from mmrs_core.planning.footprints import GRID
 from mmrs_core.planning.lines import Swath
+from mmrs_core.planning.pockets import pockets_of
 from mmrs_core.planning.swaths import swaths
 from mmrs_core.scene import ActionAt, Area, Coverage, Point, Ring, Robot, Scene, Stroke, Work
 
@@ -104,7 +105,9 @@ def work_over(scene: Scene, robot: Robot, shell: Ring, sweep: Sweep, holes: Sequ
     area = sum(piece.area for piece in target)
     if not target:
         asked = shapely.difference(polygon(shell), _union(holes), grid_size=GRID).area
-        raise InfeasibleError(f"polygon of {asked:.1f} m² lies within the clearance of areas as a whole")
+        raise InfeasibleError(
+            f"polygon of {asked:.1f} m² lies within the clearance of areas or is closed in by them"
+        )
     if length > 0 and width > 0 and area > MOST * length * width:
         wanted = area / length / width
         raise InfeasibleError(
@@ -127,8 +130,12 @@ def work_over(scene: Scene, robot: Robot, shell: Ring, sweep: Sweep, holes: Sequ
 def target_of(
     scene: Scene, robot: Robot, shell: Ring, holes: Sequence[Ring], altitude: float
 ) -> tuple[Polygon, ...]:
-    """Return the shell less its holes less what the robot must keep from at a height, largest first."""
+    """Return the shell less its holes less what the robot must keep from at a height, largest first.
+
+    What areas close in at all heights is not part of it either.
+    """
     taken = [polygon(hole) for hole in holes] + grown_areas(scene, robot, altitude)
+    taken += (pocket for pocket, _ in pockets_of(robot, scene))
     whole = polygon(shell)
     left = shapely.difference(whole, shapely.union_all(taken, grid_size=GRID), grid_size=GRID)
     return parts(left, smallest=_SMALLEST)

@@ -10,6 +10,7 @@ from shapely.geometry.base import BaseGeometry
 from mmrs_core.geometry.polygons import parts, polygon
 from mmrs_core.planning.coverage import blocks_at
 from mmrs_core.planning.footprints import GRID
+from mmrs_core.planning.pockets import pockets_of
 from mmrs_core.scene import Branch, Coverage, LeftOut, Position, Robot, Scene, Serve, Step, Work
 
 _LEAST = 0.05
@@ -60,10 +61,22 @@ def _of(scene: Scene, task: str, robot: Robot, work: Work) -> Iterator[LeftOut]:
             yield LeftOut(task, gap.length, "m", f"{place}, {why} {gap.area}", gap.at)
     if work.coverage is not None:
         up = work.strokes[0].points[0][2]
-        for piece in parts(uncovered(work.coverage), smallest=_LEAST):
-            spot = piece.representative_point()
-            at = (spot.x, spot.y, up)
+        left, pockets = uncovered(work.coverage), pockets_of(robot, scene)
+        beside = shapely.difference(
+            left, shapely.union_all([pocket for pocket, _ in pockets]), grid_size=GRID
+        )
+        for piece in parts(beside, smallest=_LEAST):
+            at = _spot(piece, up)
             yield LeftOut(task, piece.area, "m²", f"{_about(at)}, too near to {_near(scene, robot, at)}", at)
+        for pocket, walls in pockets:
+            for piece in parts(shapely.intersection(left, pocket, grid_size=GRID), smallest=_LEAST):
+                at, names = _spot(piece, up), ", ".join(f"'{name}'" for name in walls)
+                yield LeftOut(task, piece.area, "m²", f"{_about(at)}, closed in by {names}", at)
+
+
+def _spot(piece: shapely.Polygon, up: float) -> Position:
+    spot = piece.representative_point()
+    return (spot.x, spot.y, up)
 
 
 def _about(at: Position) -> str:

@@ -107,7 +107,7 @@ def test_an_overlap_that_leaves_no_distance_is_refused(robot, task):
 
 def test_an_area_within_the_clearance_of_obstacles_is_refused(robot, scene, task):
     asked = grid(task, gridResolution=5.0, initialPosition=(-200.0, 0.0, 0.0))
-    with pytest.raises(InfeasibleError, match="lies within the clearance of areas as a whole"):
+    with pytest.raises(InfeasibleError, match="lies within the clearance of areas or is closed in by them"):
         photo_grid_work(asked, robot(), scene((45.0, 30.0, 60.0, 90.0)))
 
 
@@ -128,3 +128,12 @@ def test_a_hole_is_left_out_of_the_target(robot, scene, task):
 def test_more_photos_than_can_be_planned_are_refused_at_once(robot, scene, task):
     with pytest.raises(InfeasibleError, match=r"takes about 40,500,000 photos or samples, of which 200,000"):
         photo_grid_work(grid(task, gridResolution=0.01), robot(), scene())
+
+
+def test_what_areas_close_in_is_no_part_of_the_target(robot, scene, task):
+    walls = [(*place, 10.0, 150.0) for place in ((30.0, 30.0), (70.0, 30.0), (50.0, 50.0), (50.0, 10.0))]
+    asked = {"shell": ((0.0, 0.0, 0.0), (100.0, 0.0, 0.0), (100.0, 60.0, 0.0), (0.0, 60.0, 0.0))}
+    work = photo_grid_work(grid(task, gridResolution=5.0, **asked), robot(), scene(*walls))
+    target = shapely.union_all([shapely.Polygon(*rings) for rings in work.coverage.target])
+    assert target.distance(shapely.Point(50.0, 30.0)) > 10.0
+    assert target.covers(shapely.Point(5.0, 30.0))

@@ -384,3 +384,20 @@ def test_a_plan_names_the_share_of_an_area_that_it_leaves_out():
     work = replace(road((100.0, 0.0, 20.0), (103.0, 0.0, 20.0)), coverage=covered)
     (left,) = plan(scene(TWO, {"a": work}, areas=[box("mast", 107, -5, 112, 15, high=20.0)])).left_out
     assert str(left) == "task 'a' leaves out 54.0 m² about (107.0, 4.5), too near to 'mast'"
+
+
+def test_a_plan_names_what_closes_in_a_part_that_it_leaves_out():
+    walls = [
+        box("west", 110, -20, 115, 30),
+        box("east", 145, -20, 150, 30),
+        box("south", 110, -20, 150, -15),
+        box("north", 110, 25, 150, 30),
+    ]
+    shell, west = box("", 100, 0, 140, 9).shell, ((100.0, 0.0), (104.0, 0.0), (104.0, 9.0), (100.0, 9.0))
+    covered = Coverage(shell, (), ((west, ()),), 5.0, 0.0)
+    gap = Gap("the line", 40.0, 4.5, (130.0, 0.0, 20.0), "'west', 'east'", closed_in=True)
+    work = replace(road((100.0, 0.0, 20.0), (103.0, 0.0, 20.0)), coverage=covered, gaps=(gap,))
+    line, beside, inside = map(str, plan(scene(TWO, {"a": work}, areas=walls)).left_out)
+    assert line.endswith("about (130.0, 0.0), closed in by 'west', 'east'")
+    assert beside.endswith("too near to 'west'")
+    assert inside.endswith("closed in by 'west', 'east', 'south', 'north'")
