@@ -97,7 +97,7 @@ def test_a_place_under_deep_water_is_refused_by_name(folder_of, contributions, t
     models, _ = pipeline.valid_models(folder_of("drone-and-rover"), contributions, context=place)
     with pytest.raises(InfeasibleError) as raised:
         pipeline.expand(pipeline.ground(models), contributions)
-    assert "Badger: point 3 comes 2.38 m too near to 'puddle'" in str(raised.value.reasons)
+    assert "Badger: point 4 comes 2.38 m too near to 'puddle'" in str(raised.value.reasons)
 
 
 def test_the_rovers_plan_for_a_ground_station_has_no_take_off_and_fences_the_basin(yard, contributions):
