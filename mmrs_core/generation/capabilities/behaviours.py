@@ -49,6 +49,7 @@ def of_behaviours() -> Iterator[Probe]:
         "Behaviour.minimumSeparation": replace(base.program, minimum_separation=5.0),
         "Behaviour.reserve": replace(base.program, reserve=0.4),
         "Behaviour.acceptedUnknowns": replace(base.program, accepted_unknowns=("energy",)),
+        "Behaviour.idleRobots": replace(base.program, idle=(robot(BETA, FLIGHT),)),
     }.items():
         yield Probe("behaviour", element, replace(base, program=program), base)
     careful = replace(base.program, position_error=3.0)

@@ -14,6 +14,7 @@ CAPABILITIES: Mapping[str, str] = {
     "Behaviour.geoidSeparation": "depths count from the surface",
     "Behaviour.minimumSeparation": "is for the planner and the checks",
     "Behaviour.acceptedUnknowns": "is for the checks",
+    "Behaviour.idleRobots": "are for the checks; nobody runs them",
     "Behaviour.positionError": "is for the planner and the checks",
     "Behaviour.name": "in comments",
     "Behaviour.reserve": "a battery with no more left is low",
