@@ -133,7 +133,7 @@ def stubs(
     Example: mmrs metamodel stubs mmrs_solar/metamodels/solar.ecore -o mmrs_solar
     """
     from mmrs_core.generation.stubs.write import write_stubs
-    from mmrs_core.languages.metamodels.files import registry_of_files
+    from mmrs_core.languages.metamodels.gathering import registry_of_files
 
     installed = settings_of(call).plugins().contributions.metamodels
     registry, ns_uris = registry_of_files([file], installed)

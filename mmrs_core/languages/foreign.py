@@ -9,7 +9,7 @@ from pathlib import Path
 
 from mmrs_core.errors import UnreadableError
 from mmrs_core.languages.element import Unknown
-from mmrs_core.languages.metamodels.gathering import beside, file_at, flat, gathered
+from mmrs_core.languages.metamodels.gathering import beside, file_at, gathered
 from mmrs_core.languages.model import Model
 from mmrs_core.languages.places import first_kind, stated_places
 from mmrs_core.languages.reading import read_model
@@ -98,9 +98,9 @@ def _candidates(model: Path, missing: frozenset[str]) -> Iterator[Path]:
     for ns_uri, place in stated_places(model).items():
         if ns_uri in missing and (file := file_at(place, model.parent)) is not None:
             yield file
-    for file, tables in beside(model.parent):
-        if any(table.ns_uri in missing for table in flat(tables)):
-            yield file
+    for path, other in beside(model.parent):
+        if not missing.isdisjoint(other.ns_uris):
+            yield path
 
 
 def kept_places(source: Path, target: Path) -> Mapping[str, str]:

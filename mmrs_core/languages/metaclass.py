@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from mmrs_core.languages.datatypes import DataType, shown
 from mmrs_core.languages.naming import nearest
@@ -14,6 +14,8 @@ if TYPE_CHECKING:
     from mmrs_core.languages.element import Element
 
 MANY = -1
+MAP_ENTRY = "java.util.Map$Entry"
+"""The Java class of an entry of a map."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,14 +75,14 @@ class Feature:
         name: as in the metamodel and in files.
         attribute: the name under which Python reaches it; differs for keywords, as in ``from_``.
         lower: fewest values.
-        upper: the upper bound as it stands in the metamodel; ``most`` says what it means.
+        upper: the upper bound as it stands in the metamodel; 1 where that is unspecified (-2), as in EMF.
         type: a metaclass for a reference, else a data type or an enumeration.
         default: what it holds when it was never set; None where an unset number is no number.
         unsettable: whether "never set" differs from "set to the default".
         unique: whether a value may occur only once among many.
         opposite: the reference that the other end keeps, or None.
         many: whether it holds a list.
-        most: most values, ``MANY`` (-1) for any number; 1 where the bound is unspecified (-2), as in EMF.
+        most: most values, ``MANY`` (-1) for any number.
         required: whether it needs at least one value.
         nullable: whether None is a value that a file can state, other than the default.
         is_container: whether it names the element that contains its owner.
@@ -154,6 +156,7 @@ class Metaclass:
         by_name: the features by their name in the metamodel.
         by_attribute: the features by their name in Python.
         is_entry: whether its elements are the entries of maps, of which each key has one.
+        eclass: the class as pyecore has it, an ``EClass``, from which all this was derived.
         package: the package that declares it.
         compiled: the functions that were compiled for its elements, by what they do; they live as long as it.
     """
@@ -171,6 +174,7 @@ class Metaclass:
     by_attribute: Mapping[str, Feature] = field(repr=False, default_factory=dict)
     package: Package | None = field(repr=False, default=None)
     is_entry: bool = False
+    eclass: Any = field(repr=False, default=None)  # pyecore has no types
     compiled: dict[str, object] = field(init=False, repr=False, default_factory=dict)
 
     if not TYPE_CHECKING:  # the fields are declared above
@@ -200,13 +204,6 @@ class Metaclass:
             hint = nearest(name, self.by_name)
             raise ValueError(f"{name}: no feature of {self.name}{hint and '; ' + hint}") from None
 
-    @property
-    def eclass(self) -> object:
-        """The same class as pyecore knows it, an ``EClass``; always the same object."""
-        from mmrs_core.languages.ecore_api.classes import eclass_of  # pyecore costs 0.2 s of start-up
-
-        return eclass_of(self)
-
     def is_kind(self, ns_uri: str, name: str) -> bool:
         """Return whether it is that metaclass or one of its subtypes."""
         return (ns_uri, name) in self.ancestry
@@ -231,7 +228,7 @@ class Package:
         parent: nsURI of the package it stands in; empty at the top.
         root: which of the elements at the top of its file it is, or stands in, counted from 0.
         known: the packages that its types may come from, by nsURI.
-        pyecore: the EPackage made of it, once somebody asked for it.
+        epackage: as pyecore has it, an ``EPackage``, from which all this was derived.
     """
 
     ns_uri: str
@@ -245,7 +242,7 @@ class Package:
     ecore: Path | object = field(repr=False, default=None)
     parent: str = ""
     known: Mapping[str, Package] = field(repr=False, default_factory=dict)
-    pyecore: object = field(repr=False, default=None)
+    epackage: Any = field(repr=False, default=None)
     root: int = 0
 
     @property

@@ -8,17 +8,17 @@ from functools import cache, cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from mmrs_core.errors import PluginError
 from mmrs_core.languages.element import Element
 from mmrs_core.languages.evolution.migration import Migration, chains
 from mmrs_core.languages.metaclass import Metaclass, Package
-from mmrs_core.languages.metamodels.assembly import Assembly
 from mmrs_core.languages.metamodels.ecore_itself import BUILT_IN
-from mmrs_core.languages.metamodels.locating import Located, locate_all
+from mmrs_core.languages.metamodels.shapes import packages_of
 from mmrs_core.languages.naming import nearest
 from mmrs_core.resources import shipped
 
 if TYPE_CHECKING:
+    from pyecore.ecore import EPackage
+
     from mmrs_core.languages.xmi.shapes import Maker
 
 CORE_LANGUAGES = ("robot", "mission", "context", "behaviour")
@@ -70,6 +70,14 @@ class Registry:
         except KeyError:
             hint = nearest(ns_uri, self._packages)
             raise ValueError(f"{ns_uri}: no such metamodel{hint and '; ' + hint}") from None
+
+    def epackage(self, ns_uri: str) -> EPackage:
+        """Return the package of that nsURI as pyecore has it.
+
+        Raises:
+            ValueError: if there is none, with the nearest nsURI.
+        """
+        return self.package(ns_uri).epackage
 
     def metaclass(self, ns_uri: str, name: str) -> Metaclass:
         """Return a metaclass.
@@ -139,12 +147,4 @@ def registry_with(sources: Iterable[MetamodelSource], migrations: Iterable[Migra
 
 
 def _assemble(sources: Iterable[MetamodelSource], known: tuple[Package, ...]) -> tuple[Package, ...]:
-    located: list[Located] = []
-    seen = {package.ns_uri: package.provider for package in known}
-    for entry in locate_all((source.ns_uri, source.ecore, source.provider) for source in sources):
-        ns_uri = entry.table.ns_uri
-        if ns_uri in seen:
-            raise PluginError(f"{entry.provider}: metamodel {ns_uri} is already provided by {seen[ns_uri]}")
-        seen[ns_uri] = entry.provider
-        located.append(entry)
-    return Assembly(known, located).packages()
+    return packages_of(((each.ns_uri, each.ecore, each.provider) for each in sources), known)

@@ -11,7 +11,7 @@ from mmrs_core.errors import MmrsError
 from mmrs_core.generation.scaffolding.files import TaskKind, metamodel_path, plugin_files
 from mmrs_core.generation.scaffolding.names import PluginNames
 from mmrs_core.generation.stubs.write import write_stubs
-from mmrs_core.languages.metamodels.files import registry_of_files
+from mmrs_core.languages.metamodels.gathering import registry_of_files
 from mmrs_core.languages.registry import MetamodelSource
 
 

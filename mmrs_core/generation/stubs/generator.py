@@ -13,7 +13,6 @@ from pyecoregen.ecore import EcorePackageModuleTask, EcoreTask
 from mmrs_core.generation.environment import environment_in, rendered
 from mmrs_core.generation.stubs.docstrings import docstring
 from mmrs_core.generation.stubs.view import module_view
-from mmrs_core.languages.ecore_api.classes import epackage_of
 from mmrs_core.languages.metaclass import Package
 from mmrs_core.resources import shipped
 
@@ -96,7 +95,7 @@ def stub_texts(packages: Iterable[Package], modules: Mapping[str, str], folder: 
     wanted = tuple(packages)
     task = StubTask(wanted, modules)
     generator = StubGenerator(task)
-    elements: list[EPackage] = [epackage_of(package) for package in wanted]
+    elements: list[EPackage] = [package.epackage for package in wanted]
     for root in dict.fromkeys(element.eRoot() for element in elements):
         generator.generate(root, str(folder))
     return {path: task.texts[path] for path in (folder / task.relative_path_for_element(e) for e in elements)}

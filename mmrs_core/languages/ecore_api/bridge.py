@@ -9,7 +9,6 @@ from pyecore import ecore
 
 from mmrs_core.errors import UnsupportedError
 from mmrs_core.languages.datatypes import ECORE
-from mmrs_core.languages.ecore_api.classes import eclass_of
 from mmrs_core.languages.element import Element, Unknown, held, holds, metaclass_of, path_of, root_of
 from mmrs_core.languages.metaclass import Enumeration, Feature, Metaclass
 from mmrs_core.languages.model import Model
@@ -90,7 +89,7 @@ class _Outward:
             if feature.name in _RESERVED:
                 message = f"{metaclass.name}.{feature.name}: pyecore has another attribute of this name"
                 raise UnsupportedError(message, [path_of(element)])
-        made = eclass_of(metaclass)()
+        made = metaclass.eclass()
         for feature in metaclass.features:
             if not feature.is_reference and holds(element, feature):
                 self._values(made, feature, held(element, feature))

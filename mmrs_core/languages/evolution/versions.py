@@ -8,8 +8,8 @@ from pathlib import Path
 
 from mmrs_core.languages.metaclass import Metaclass, Package
 from mmrs_core.languages.metamodels.ecore_itself import BUILT_IN
-from mmrs_core.languages.metamodels.gathering import documents_of, flat, gathered
-from mmrs_core.languages.metamodels.parsing import read_tables
+from mmrs_core.languages.metamodels.gathering import gathered
+from mmrs_core.languages.metamodels.source import read_ecore
 from mmrs_core.languages.registry import MetamodelSource, Registry
 
 
@@ -73,15 +73,14 @@ def _with_inner(ns_uris: Iterable[str], registry: Registry) -> tuple[Package, ..
 
 def _needed(sources: list[MetamodelSource], installed: Registry) -> Iterator[MetamodelSource]:
     """Yield the installed metamodels that others need, and those that these need."""
-    brought = {
-        table.ns_uri for s in sources if isinstance(s.ecore, Path) for table in flat(read_tables(s.ecore))
-    }
+    files = [source.ecore for source in sources if isinstance(source.ecore, Path)]
+    brought = {ns_uri for path in files for ns_uri in read_ecore(path).ns_uris}
     pending = [source.ecore for source in sources]
     while pending:
         ecore = pending.pop()
         if not isinstance(ecore, Path):
             continue
-        for document in documents_of(read_tables(ecore)):
+        for document in read_ecore(ecore).documents():
             if document in brought or document in BUILT_IN or not installed.has(document):
                 continue
             package = _outermost(document, installed)

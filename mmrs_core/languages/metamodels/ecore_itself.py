@@ -7,17 +7,14 @@ They hold what files can hold, and the ways back to containers. What Java works 
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Mapping
+from functools import cache
+from typing import Any
 
-from mmrs_core.languages.datatypes import ECORE, XML_TYPES
-from mmrs_core.languages.metamodels.locating import Located
-from mmrs_core.languages.metamodels.tables import (
-    MAP_ENTRY,
-    ClassTable,
-    DataTypeTable,
-    FeatureTable,
-    PackageTable,
-)
+from pyecore import ecore
+
+from mmrs_core.languages.datatypes import ECORE, XML_TYPES, builtin_type
+from mmrs_core.languages.metaclass import MAP_ENTRY
 from mmrs_core.languages.values.java_classes import ECORE_CLASSES, XML_CLASSES
 
 BUILT_IN = (ECORE, XML_TYPES)
@@ -133,45 +130,68 @@ _NOT_IN_FILES = {
 """Types of Ecore whose values live in Java only, with their Java classes."""
 
 
-def built_in() -> tuple[Located, ...]:
-    """Return Ecore and EMF's types of XML."""
-    known = tuple(map(DataTypeTable, ECORE_CLASSES))
-    types = (*known, *(DataTypeTable(name, java, False) for name, java in _NOT_IN_FILES.items()))
-    ecore = PackageTable(ECORE, "ecore", "ecore", "", tuple(_classes(_ECORE, ECORE)), (), types)
-    xml_types = tuple(map(DataTypeTable, (*XML_CLASSES, *_XML_TEXTS.split())))
-    xml = PackageTable(
-        XML_TYPES, "type", "ecore.xml.type", "", tuple(_classes(_XML, XML_TYPES)), (), xml_types
+@cache
+def built_in() -> tuple[ecore.EPackage, ecore.EPackage]:
+    """Return Ecore and EMF's types of XML; always the same objects.
+
+    pyecore's own classes of Ecore say less than EMF's: they are what metamodels refer to, and these say what
+    models of Ecore hold.
+    """
+    types = {**dict.fromkeys(ECORE_CLASSES, ""), **_NOT_IN_FILES}
+    texts = dict.fromkeys((*XML_CLASSES, *_XML_TEXTS.split()), "")
+    return (
+        _package("ecore", ECORE, _ECORE, types),
+        _package("type", XML_TYPES, _XML, texts),
     )
-    return Located(ecore, "core", None, None), Located(xml, "core", None, None)
 
 
-def _classes(text: str, ns_uri: str) -> Iterator[ClassTable]:
-    """Yield the classes of a table: a line for each with its supertypes, an indented one for each feature."""
-    blocks = text.strip().replace("\n  ", "\r").split("\n")
-    for head, *rows in (block.split("\r") for block in blocks):
+def _package(name: str, ns_uri: str, text: str, types: Mapping[str, str]) -> ecore.EPackage:
+    """Return the package of a table: a line for each class with its supertypes, one for each feature."""
+    prefix = name if ns_uri == ECORE else "ecore.xml.type"
+    package = ecore.EPackage(name, nsURI=ns_uri, nsPrefix=prefix)
+    for each, java in types.items():
+        known = builtin_type(ns_uri, each)
+        if known is None:
+            kind = ecore.EDataType(each, eType=object)
+        else:
+            kind = ecore.EDataType(each, eType=known.python, default_value=known.primitive_default)
+        kind.instanceClassName_ = java or None
+        kind.serializable = not java
+        package.eClassifiers.append(kind)
+    blocks = [block.split("\r") for block in text.strip().replace("\n  ", "\r").split("\n")]
+    for head, *_ in blocks:
         words = head.removeprefix("abstract ").split()
-        yield ClassTable(
-            words[0],
-            head.startswith("abstract "),
-            supertypes=tuple(f"{ns_uri}#//{name}" for name in words[1:]),
-            features=tuple(_feature(row.split(), ns_uri) for row in rows),
-            java_class=MAP_ENTRY if words[0].endswith("MapEntry") else "",
-        )
+        package.eClassifiers.append(ecore.EClass(words[0], abstract=head.startswith("abstract ")))
+    kinds: dict[str, Any] = {kind.name: kind for kind in package.eClassifiers}
+    for head, *rows in blocks:
+        words = head.removeprefix("abstract ").split()
+        eclass = kinds[words[0]]
+        eclass.eSuperTypes.extend(kinds[above] for above in words[1:])
+        if words[0].endswith("MapEntry"):
+            eclass.instanceClassName = MAP_ENTRY
+        for row in rows:
+            eclass.eStructuralFeatures.append(_feature(row.split(), kinds))
+    for head, *rows in blocks:
+        eclass = kinds[head.removeprefix("abstract ").split()[0]]
+        for row in rows:
+            for mark in row.split():
+                if mark.startswith("~"):
+                    owner, _, other = mark[1:].partition("/")
+                    feature = eclass.findEStructuralFeature(row.split()[0])
+                    feature.eOpposite = kinds[owner].findEStructuralFeature(other)
+    return package
 
 
-def _feature(words: list[str], ns_uri: str) -> FeatureTable:
+def _feature(words: list[str], kinds: Mapping[str, Any]) -> ecore.EStructuralFeature:
     name, *rest = words
     link = rest.pop(0) if rest[0] in (">", "-") else ""
     kind, *marks = rest
-    return FeatureTable(
-        name,
-        f"{ns_uri}#//{kind}",
-        is_reference=bool(link),
-        lower=1 if "1" in marks else 0,
-        upper=-1 if "*" in marks else 1,
-        containment=link == ">",
-        unsettable="unset" in marks,
-        stored="transient" not in marks,
-        opposite=next((f"{ns_uri}#//{mark[1:]}" for mark in marks if mark.startswith("~")), ""),
-        default=next((mark[1:] for mark in marks if mark.startswith("=")), None),
-    )
+    bounds = {"lower": 1 if "1" in marks else 0, "upper": -1 if "*" in marks else 1}
+    if link:
+        made = ecore.EReference(name, kinds[kind], containment=link == ">", **bounds)
+    else:
+        default = next((mark[1:] for mark in marks if mark.startswith("=")), None)
+        made = ecore.EAttribute(name, kinds.get(kind) or ecore.EString, defaultValueLiteral=default, **bounds)
+    made.unsettable = "unset" in marks
+    made.transient = "transient" in marks
+    return made

@@ -8,10 +8,9 @@ from pathlib import Path
 from urllib.parse import unquote
 
 from mmrs_core.errors import UnreadableError
-from mmrs_core.languages.metamodels.parsing import read_tables
-from mmrs_core.languages.metamodels.tables import PackageTable
+from mmrs_core.languages.metamodels.source import EcoreFile, read_ecore
 from mmrs_core.languages.references.hrefs import real_path
-from mmrs_core.languages.registry import MetamodelSource, Registry
+from mmrs_core.languages.registry import MetamodelSource, Registry, registry_with
 
 
 def gathered(files: Iterable[Path], registry: Registry) -> Iterator[MetamodelSource]:
@@ -23,42 +22,69 @@ def gathered(files: Iterable[Path], registry: Registry) -> Iterator[MetamodelSou
     pending, seen = list(files), set()
     brought: set[str] = set()
     while pending:
-        file = pending.pop(0)
-        if real_path(file) in seen:
+        path = pending.pop(0)
+        if real_path(path) in seen:
             continue
-        seen.add(real_path(file))
-        tables = read_tables(file)
-        names = {table.ns_uri for table in flat(tables)}
-        if any(registry.has(name) or name in brought for name in names):
+        seen.add(real_path(path))
+        file = read_ecore(path)
+        if any(registry.has(name) or name in brought for name in file.ns_uris):
             continue
-        brought |= names
-        yield MetamodelSource(tables[0].ns_uri, file, str(file))
-        for document in dict.fromkeys(documents_of(tables)):
-            pending += [other for other in _meant(document, file, registry) if real_path(other) not in seen]
+        brought.update(file.ns_uris)
+        yield MetamodelSource(file.ns_uris[0], path, str(path))
+        for document in dict.fromkeys(file.documents()):
+            pending += [other for other in _meant(document, path, registry) if real_path(other) not in seen]
 
 
-def documents_of(tables: Iterable[PackageTable]) -> Iterator[str]:
-    """Yield the documents that packages refer to."""
-    for table in flat(tables):
-        yield from (uri.partition("#")[0] for uri in table.elsewhere)
-        for row in table.classes:
-            uris = (
-                *row.supertypes,
-                *(uri for each in row.features for uri in (each.type, each.opposite, *each.keys)),
-            )
-            yield from (document for uri in uris if (document := uri.partition("#")[0]))
+def registry_of_files(
+    files: Iterable[Path], installed: Iterable[MetamodelSource]
+) -> tuple[Registry, tuple[str, ...]]:
+    """Return the metamodels of some .ecore files with those that are installed, and the files' nsURIs.
+
+    A file takes the place of an installed metamodel of the same nsURI. The .ecore files that it refers to
+    are taken along where they are there; where a path leads nowhere, as in a workspace of Eclipse projects
+    that were moved, a file of that name beside it.
+
+    Args:
+        files: the .ecore files.
+        installed: what plug-ins bring.
+
+    Raises:
+        UnreadableError: if a file is no metamodel.
+        PluginError: if a metamodel refers to one that is missing, or two files hold the same.
+    """
+    given = [real_path(file) for file in files]
+    held = {path: file.ns_uris for path, file in _with_neighbours(given).items()}
+    taken = {uri for uris in held.values() for uri in uris}
+    sources = [MetamodelSource(uris[0], path, path.name) for path, uris in held.items()]
+    others = [source for source in installed if source.ns_uri not in taken]
+    wanted = tuple(dict.fromkeys(uri for path in given for uri in held[path]))
+    return registry_with([*others, *sources]), wanted
+
+
+def _with_neighbours(files: Iterable[Path]) -> dict[Path, EcoreFile]:
+    found: dict[Path, EcoreFile] = {}
+    pending = list(files)
+    while pending:
+        path = pending.pop(0)
+        if path in found:
+            continue
+        found[path] = read_ecore(path)
+        for document in found[path].documents():
+            other = file_at(document, path.parent) or file_at(document.rpartition("/")[2], path.parent)
+            pending += [real_path(other)] if other is not None else []
+    return found
 
 
 def _meant(document: str, referrer: Path, registry: Registry) -> Iterator[Path]:
     """Yield the file that a metamodel refers to: by its path, or by nsURI where it lies beside."""
     if registry.has(document):
         return
-    file = file_at(document, referrer.parent)
-    if file is not None:
-        yield file
+    path = file_at(document, referrer.parent)
+    if path is not None:
+        yield path
         return
-    for other, tables in beside(referrer.parent):
-        if any(table.ns_uri == document for table in flat(tables)):
+    for other, file in beside(referrer.parent):
+        if document in file.ns_uris:
             yield other
 
 
@@ -73,17 +99,10 @@ def file_at(place: str, folder: Path) -> Path | None:
     return file if isfile(file) else None  # noqa: PTH113  Path.is_file raises for a name that is too long
 
 
-def beside(folder: Path) -> Iterator[tuple[Path, tuple[PackageTable, ...]]]:
+def beside(folder: Path) -> Iterator[tuple[Path, EcoreFile]]:
     """Yield the metamodels of a folder; a file that is none is not meant."""
-    for file in sorted(folder.glob("*.ecore")):
+    for path in sorted(folder.glob("*.ecore")):
         try:
-            yield file, read_tables(file)
+            yield path, read_ecore(path)
         except UnreadableError:
             continue
-
-
-def flat(tables: Iterable[PackageTable]) -> Iterator[PackageTable]:
-    """Yield packages, and those inside them."""
-    for table in tables:
-        yield table
-        yield from flat(table.subpackages)

@@ -1,4 +1,4 @@
-"""Which packages the given metamodels consist of, and which package a URI in one of them means."""
+"""Which package, class or feature a reference in an .ecore file means, without ever touching the network."""
 
 from __future__ import annotations
 
@@ -6,20 +6,21 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from os.path import isfile
 from pathlib import Path
+from typing import NoReturn
 from urllib.parse import unquote
 
 from mmrs_core.errors import PluginError
-from mmrs_core.languages.datatypes import ECORE, XML_TYPES
+from mmrs_core.languages.datatypes import ECORE, XML_TYPES, shown
 from mmrs_core.languages.metaclass import Package
-from mmrs_core.languages.metamodels.nodes import Tree, read_tree
-from mmrs_core.languages.metamodels.parsing import read_tables
-from mmrs_core.languages.metamodels.tables import PackageTable
+from mmrs_core.languages.metamodels.source import EcoreFile, Node, read_ecore
 from mmrs_core.languages.references.hrefs import real_path
 
 _OF_ECLIPSE = {
     "/org.eclipse.emf.ecore/model/Ecore.ecore": ECORE,
     "/org.eclipse.emf.ecore/model/XMLType.ecore": XML_TYPES,
 }
+Address = tuple[str, ...]
+"""nsURI and class name, with the feature's name behind them where a feature is meant."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -27,153 +28,154 @@ class Located:
     """A package, and where it came from.
 
     Attributes:
-        file: the real path of its .ecore file; None for a pyecore EPackage.
-        ecore: the file or EPackage as it was given.
+        ecore: the .ecore file or EPackage as it was given.
         parent: nsURI of the package it stands in; empty at the top.
+        root: which of the elements at the top of its file it is, or stands in, counted from 0.
+        path: the real path of its .ecore file; None for a pyecore EPackage.
+        file, node: the file and the element that describe it; None for an EPackage, and for what stands.
     """
 
-    table: PackageTable
+    ns_uri: str
+    name: str
     provider: str
-    file: Path | None
     ecore: Path | object
     parent: str = ""
+    root: int = 0
+    path: Path | None = None
+    file: EcoreFile | None = None
+    node: Node | None = None
+
+    def refuse(self, reason: str, node: Node | None = None, between: str = ": ") -> NoReturn:
+        """Raise the error for something in it, with the place of the element, if one is given."""
+        place = f"{self.file.name}:{node.line}: " if self.file is not None and node is not None else ""
+        known = place.startswith(self.provider) or place.rpartition("/")[2].startswith(f"{self.provider}:")
+        who = "" if known else f"{self.provider}: "
+        raise PluginError(f"{who}{place}{self.ns_uri}{between}{reason}")
 
 
-def locate_all(sources: Iterable[tuple[str, Path | object, str]]) -> list[Located]:
-    """Return the packages of all sources (nsURI, ecore, provider), those inside others included.
+def located_in(ecore: Path, provider: str) -> list[Located]:
+    """Return the packages of a file, those inside others included.
 
     Raises:
-        PluginError: if a source does not hold the nsURI that it announces.
-        UnreadableError: if a file is no metamodel.
+        UnreadableError: if the file is no metamodel.
     """
-    found: list[Located] = []
-    for ns_uri, ecore, provider in sources:
-        packages = list(_open(ecore, provider))
-        if ns_uri not in [package.table.ns_uri for package in packages]:
-            held = ", ".join(package.table.ns_uri for package in packages)
-            raise PluginError(f"{provider}: {_label(ecore)} holds {held}, not {ns_uri}")
-        found.extend(packages)
-    return found
+    file = read_ecore(ecore)
+    path = real_path(ecore)
+    return [
+        Located(node.get("nsURI"), node.get("name"), provider, ecore, parent, root, path, file, node)
+        for node, root, parent in file.packages()
+    ]
 
 
-def _open(ecore: Path | object, provider: str) -> Iterable[Located]:
-    if isinstance(ecore, Path):
-        for table in read_tables(ecore):
-            yield from _flat(Located(table, provider, real_path(ecore), ecore))
-        return
-    from mmrs_core.languages.ecore_api.tables import package_table  # pyecore costs 0.2 s of start-up
-
-    yield from _flat(Located(package_table(ecore), provider, None, ecore))
-
-
-def _flat(package: Located) -> Iterable[Located]:
-    yield package
-    for inner in package.table.subpackages:
-        parent = package.table.ns_uri
-        yield from _flat(Located(inner, package.provider, package.file, package.ecore, parent))
-
-
-def _label(ecore: Path | object) -> str:
-    return str(ecore) if isinstance(ecore, Path) else f"EPackage {getattr(ecore, 'name', '?')}"
+def standing(package: Package) -> Located:
+    """Return where a package that stands already came from."""
+    path = real_path(package.ecore) if isinstance(package.ecore, Path) else None
+    return Located(
+        package.ns_uri, package.name, package.provider, package.ecore, package.parent, package.root, path
+    )
 
 
 class Directory:
-    """Finds the package and class that a URI in an .ecore means, without ever touching the network.
+    """Finds what a URI in an .ecore file means.
 
     A document is named by an nsURI, by a path relative to the referring file, or by a ``platform:`` path of
     Eclipse. Where a relative path leads nowhere, as in a workspace of Eclipse projects that were moved,
     the only given file of the same name is taken.
     """
 
-    def __init__(self, located: Iterable[Located], known: Iterable[Package]) -> None:
-        """Take the packages being assembled, and those that stand already."""
+    def __init__(self, located: Iterable[Located], known: Iterable[Package], lenient: bool = False) -> None:
+        """Take the packages to be loaded, and those that stand; what others are called passes if lenient."""
+        self._lenient = lenient
         self._roots: dict[Path, dict[int, str]] = {}
-        self._files: dict[str, Path | None] = {}
+        self._paths: dict[str, Path | None] = {}
         self._parents: dict[str, str] = {}
         self._children: dict[tuple[str, str], str] = {}
-        self._trees: dict[Path, Tree] = {}
-        for package in known:
-            file = real_path(package.ecore) if isinstance(package.ecore, Path) else None
-            self._enter(package.ns_uri, package.name, package.parent, file, package.root)
+        self._files: dict[Path, EcoreFile] = {}
         self._given: dict[str, set[Path]] = {}
+        for package in known:
+            self._enter(standing(package))
         for entry in located:
-            self._enter(entry.table.ns_uri, entry.table.name, entry.parent, entry.file, entry.table.root)
-            if entry.file is not None:
-                self._given.setdefault(entry.file.name, set()).add(entry.file)
+            self._enter(entry)
+            if entry.path is not None:
+                self._given.setdefault(entry.path.name, set()).add(entry.path)
 
-    def _enter(self, ns_uri: str, name: str, parent: str, file: Path | None, root: int) -> None:
-        self._parents[ns_uri] = parent
-        self._children[parent, name] = ns_uri
-        self._files[ns_uri] = file
-        if file is not None and not parent:
-            self._roots.setdefault(file, {})[root] = ns_uri
+    def _enter(self, entry: Located) -> None:
+        self._parents[entry.ns_uri] = entry.parent
+        self._children[entry.parent, entry.name] = entry.ns_uri
+        self._paths[entry.ns_uri] = entry.path
+        if entry.path is not None and entry.file is not None:
+            self._files[entry.path] = entry.file
+        if entry.path is not None and not entry.parent:
+            self._roots.setdefault(entry.path, {})[entry.root] = entry.ns_uri
 
-    def find(self, uri: str, referrer: Located) -> tuple[str, str]:
-        """Return nsURI and class name of what the URI means.
-
-        Raises:
-            PluginError: if no package at hand is meant.
-        """
-        ns_uri, names = self._descend(uri, referrer, 1)
-        return ns_uri, names[0]
-
-    def find_feature(self, uri: str, referrer: Located) -> tuple[str, str, str]:
-        """Return nsURI, class name and name of the feature that the URI means; errors as in `find`."""
-        ns_uri, names = self._descend(uri, referrer, 2)
-        return ns_uri, names[0], names[1]
-
-    def document(self, document: str, referrer: Located, uri: str) -> tuple[str, Path | None]:
-        """Return the nsURI of the first package of the document that a name means, and its file.
-
-        A document that is named by an nsURI has that package as its first.
+    def find(self, uri: str, referrer: Located, node: Node, wanted: int, name: str) -> Address:
+        """Return what a URI means.
 
         Args:
-            document: the part of the URI before the hash; empty for the referring document itself.
+            uri: from the file, such as ``document#//Class``.
             referrer: the package whose file refers.
-            uri: the whole URI, for the message.
+            node: the element that refers, for the message.
+            wanted: 1 for a class, 2 for a feature.
+            name: of the reference, for the message.
+
+        Raises:
+            UnreadableError: if there is no such element in the file itself.
+            PluginError: if no package at hand is meant.
+        """
+        document, _, fragment = uri.rpartition("#")
+        ns_uri, path = self.document(document, referrer, uri, node)
+        names = self._by_names(fragment, path)
+        if names is None and not document and referrer.file is not None:
+            referrer.file.refuse(node, f"{name}: {shown(uri)} leads to no element")
+        if names is None and self._lenient:
+            names = ["", fragment]
+        top, *names = names or [""]
+        if len(names) < wanted or not names[-1]:
+            referrer.refuse(f"{_cut(uri)} names no {'class' if wanted == 1 else 'reference'}", node)
+        if top not in ("", "0"):
+            number = int(top) if len(top) < 9 and top.isdecimal() else -1
+            ns_uri = self._roots.get(path, {}).get(number, "") if path is not None else ""
+            if not ns_uri:
+                referrer.refuse(f"{_cut(uri)}: no package {_cut(top)} in that file", node)
+        for step in names[:-wanted]:
+            if (ns_uri, step) not in self._children and not self._lenient:
+                referrer.refuse(f"{_cut(uri)}: no package {_cut(step)}", node)
+            ns_uri = self._children.get((ns_uri, step), ns_uri)
+        return (ns_uri, *names[-wanted:])
+
+    def document(
+        self, document: str, referrer: Located, uri: str, node: Node | None = None
+    ) -> tuple[str, Path | None]:
+        """Return the nsURI of the first package of the document that a name means, and its file.
+
+        A document that is named by an nsURI has that package as its first; an empty name means the
+        referring document itself.
 
         Raises:
             PluginError: if no package at hand is meant.
         """
-        found = self._named(document) or self._file(document, referrer) if document else self._own(referrer)
+        found = self._named(document) or self._beside(document, referrer) if document else self._own(referrer)
+        if found is None and self._lenient:
+            return document, None
         if found is None:
-            beside = "" if ":" in document else f" beside {referrer.file or referrer.table.name}"
-            raise _fault(referrer, f"needs the metamodel {_cut(document)}{beside} ({_cut(uri)})", " ")
+            beside = "" if ":" in document else f" beside {referrer.path or referrer.name}"
+            referrer.refuse(f"needs the metamodel {_cut(document)}{beside} ({_cut(uri)})", node, " ")
         return found
 
-    def _descend(self, uri: str, referrer: Located, wanted: int) -> tuple[str, list[str]]:
-        """Return the package that a URI leads into, and so many names of what it leads to there."""
-        document, _, fragment = uri.partition("#")
-        ns_uri, file = self.document(document, referrer, uri)
-        top, *names = self._by_names(fragment, file)
-        if len(names) < wanted or not names[-1]:
-            raise _fault(referrer, f"{_cut(uri)} names no {'class' if wanted == 1 else 'reference'}")
-        if top not in ("", "0"):
-            number = int(top) if len(top) < 9 and top.isdecimal() else -1
-            ns_uri = self._roots.get(file, {}).get(number, "") if file is not None else ""
-            if not ns_uri:
-                raise _fault(referrer, f"{_cut(uri)}: no package {_cut(top)} in that file")
-        for step in names[:-wanted]:
-            if (ns_uri, step) not in self._children:
-                raise _fault(referrer, f"{_cut(uri)}: no package {_cut(step)}")
-            ns_uri = self._children[ns_uri, step]
-        return ns_uri, names[-wanted:]
-
-    def _by_names(self, fragment: str, file: Path | None) -> list[str]:
+    def _by_names(self, fragment: str, path: Path | None) -> list[str] | None:
         """Return the steps of a fragment; one with positions or by an id is looked up in the file."""
         if fragment.startswith("/") and "@" not in fragment and "%" not in fragment:
             return fragment[1:].split("/")
-        if file is None:
-            return [""]
-        if file not in self._trees:
-            self._trees[file] = read_tree(file)
-        found = self._trees[file].fragment(fragment)
-        return [""] if found is None else found[1:].split("/")
+        if path is None:
+            return None
+        if path not in self._files:
+            self._files[path] = read_ecore(path)
+        return self._files[path].named(fragment)
 
     def _own(self, referrer: Located) -> tuple[str, Path | None] | None:
-        if referrer.file is not None:
-            return self._first(referrer.file)
-        ns_uri = referrer.table.ns_uri
+        if referrer.path is not None:
+            return self._first(referrer.path)
+        ns_uri = referrer.ns_uri
         while parent := self._parents.get(ns_uri, ""):
             ns_uri = parent
         return ns_uri, None
@@ -182,32 +184,28 @@ class Directory:
         """Return the package that an nsURI or a place in Eclipse itself means."""
         known = next((uri for place, uri in _OF_ECLIPSE.items() if document.endswith(place)), document)
         if known in self._parents or known.startswith("http://www.eclipse.org/emf/200"):
-            return known, self._files.get(known)
+            return known, self._paths.get(known)
         return None
 
-    def _file(self, document: str, referrer: Located) -> tuple[str, Path | None] | None:
-        path = unquote(document)
-        if referrer.file is not None and ":" not in path and "\0" not in path:
-            beside = real_path(referrer.file.parent / path)
-            new = beside not in self._roots and not path.startswith(("/", "\\"))
+    def _beside(self, document: str, referrer: Located) -> tuple[str, Path | None] | None:
+        place = unquote(document)
+        if referrer.path is not None and ":" not in place and "\0" not in place:
+            beside = real_path(referrer.path.parent / place)
+            new = beside not in self._roots and not place.startswith(("/", "\\"))
             if new and isfile(beside):  # noqa: PTH113  Path.is_file raises for long names
-                tables = read_tables(beside)
-                known = {table.root: table.ns_uri for table in tables if table.ns_uri in self._parents}
-                self._roots[beside] = known
+                file = self._files[beside] = read_ecore(beside)
+                tops = {root: node.get("nsURI") for node, root, parent in file.packages() if not parent}
+                self._roots[beside] = {root: uri for root, uri in tops.items() if uri in self._parents}
             if found := self._first(beside):
                 return found
-        same = self._given.get(path.rpartition("/")[2], set())
+        same = self._given.get(place.rpartition("/")[2], set())
         return self._first(next(iter(same))) if len(same) == 1 else None
 
-    def _first(self, file: Path) -> tuple[str, Path | None] | None:
-        roots = self._roots.get(file)
-        return (roots[min(roots)], file) if roots else None
+    def _first(self, path: Path) -> tuple[str, Path | None] | None:
+        roots = self._roots.get(path)
+        return (roots[min(roots)], path) if roots else None
 
 
 def _cut(text: str) -> str:
     """Return a text for a message, not longer than anybody reads."""
     return text if len(text) <= 120 else f"{text[:117]}..."
-
-
-def _fault(referrer: Located, reason: str, between: str = ": ") -> PluginError:
-    return PluginError(f"{referrer.provider}: {referrer.table.ns_uri}{between}{reason}")

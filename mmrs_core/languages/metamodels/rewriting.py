@@ -10,11 +10,9 @@ from pathlib import Path
 from mmrs_core.errors import PluginError
 from mmrs_core.languages.datatypes import ECORE
 from mmrs_core.languages.metaclass import Package
-from mmrs_core.languages.metamodels.locating import Directory, Located
-from mmrs_core.languages.metamodels.nodes import LARGEST_METAMODEL
-from mmrs_core.languages.metamodels.tables import PackageTable
+from mmrs_core.languages.metamodels.locating import Directory, standing
+from mmrs_core.languages.metamodels.source import LARGEST_METAMODEL
 from mmrs_core.languages.metamodels.text import package_text
-from mmrs_core.languages.references.hrefs import real_path
 from mmrs_core.languages.registry import Registry
 from mmrs_core.languages.xmi.escapes import in_attribute
 from mmrs_core.languages.xmi.events import Document, read_bytes
@@ -33,7 +31,7 @@ class Rewriter:
         """Take the metamodels, and the name of the file that each of them gets, by nsURI."""
         self._names = names
         self._packages = {package.ns_uri: package for package in registry.packages}
-        self._located = {package.ns_uri: _located(package) for package in registry.packages}
+        self._located = {package.ns_uri: standing(package) for package in registry.packages}
         self._directory = Directory(self._located.values(), ())
 
     def text(self, package: Package) -> str:
@@ -71,7 +69,7 @@ class Rewriter:
                 return token
             if document == ns_uri and fragment.startswith("//"):
                 return self._address(ns_uri, package) + fragment.removeprefix("//")
-            return f"{'' if file == referrer.file else self._names[ns_uri]}#{fragment}"
+            return f"{'' if file == referrer.path else self._names[ns_uri]}#{fragment}"
         return token
 
     def _address(self, ns_uri: str, referrer: Package) -> str:
@@ -86,12 +84,6 @@ class Rewriter:
         file = self._names[package.ns_uri]
         own = "" if file == self._names[referrer.ns_uri] else file
         return f"{own}#/{package.root or ''}/{''.join(f'{step}/' for step in reversed(steps))}"
-
-
-def _located(package: Package) -> Located:
-    file = real_path(package.ecore) if isinstance(package.ecore, Path) else None
-    table = PackageTable(package.ns_uri, package.name, package.prefix, root=package.root)
-    return Located(table, package.provider, file, package.ecore, package.parent)
 
 
 def _as_utf8(data: bytes, file: str) -> bytes:

@@ -5,9 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 
 from mmrs_core.languages.datatypes import ECORE, DataType
-from mmrs_core.languages.metaclass import Enumeration, Feature, Metaclass, Package
-from mmrs_core.languages.metamodels.nodes import GENMODEL
-from mmrs_core.languages.metamodels.tables import MAP_ENTRY
+from mmrs_core.languages.metaclass import MAP_ENTRY, Enumeration, Feature, Metaclass, Package
+from mmrs_core.languages.metamodels.source import GENMODEL
 from mmrs_core.languages.xmi.escapes import in_attribute
 from mmrs_core.languages.xmi.events import XMI, XSI
 

@@ -11,7 +11,7 @@ from mmrs_core.errors import UnreadableError
 from mmrs_core.languages.datatypes import ECORE
 from mmrs_core.languages.json_form.tree import Node as Object
 from mmrs_core.languages.json_form.tree import Tree
-from mmrs_core.languages.metamodels.parsing import parse_tables
+from mmrs_core.languages.metamodels.source import EcoreFile
 from mmrs_core.languages.xmi.events import read_bytes
 from mmrs_core.migration.sources.from_json import CLASS, node_of, text_in
 from mmrs_core.migration.sources.from_xmi import parse_xmi
@@ -66,7 +66,7 @@ def open_document(path: Path, known: Iterable[KnownDocument]) -> Opened:
     document = parse_xmi(data, file)
     claims = [root.claim for root in document.roots]
     if any(claim is not None and claim.document == ECORE for claim in claims):
-        named = ", ".join(table.ns_uri for table in parse_tables(data, file))
+        named = ", ".join(EcoreFile(data, file).ns_uris)
         return Opened(file, f"a metamodel, {named}: nothing to migrate")
     return Opened(file, "a model", document)
 

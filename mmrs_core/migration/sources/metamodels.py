@@ -7,10 +7,11 @@ from dataclasses import dataclass
 from os.path import isfile
 from pathlib import Path
 
-from mmrs_core.errors import UnreadableError
-from mmrs_core.languages.metaclass import MANY
-from mmrs_core.languages.metamodels.parsing import read_tables
-from mmrs_core.languages.metamodels.tables import ClassTable, FeatureTable, PackageTable
+from pyecore.ecore import EClass, EClassifier, EPackage, EReference, EStructuralFeature
+
+from mmrs_core.errors import PluginError, UnreadableError
+from mmrs_core.languages.metamodels.loading import load
+from mmrs_core.languages.metamodels.locating import located_in
 from mmrs_core.migration.sources.nodes import Claim, SourceDocument
 from mmrs_core.migration.sources.structure import Sort, SourceClass, SourceFeature, Structure
 
@@ -46,7 +47,7 @@ class Found:
     """A metamodel at hand."""
 
     file: Path
-    table: PackageTable
+    epackage: EPackage
 
 
 def candidates(given: Sequence[Path], document: SourceDocument) -> Iterator[Path]:
@@ -74,8 +75,8 @@ def metamodels_for(document: SourceDocument, given: Sequence[Path], dialect: Dia
     named = _named_by(document)
     chosen: dict[str, tuple[tuple[bool, bool], Found]] = {}
     for found in _readable(dict.fromkeys(candidates(given, document)), frozenset(given)):
-        package = dialect.package(found.table.ns_uri)
-        exact = found.table.ns_uri in named or found.file.name in named
+        package = dialect.package(found.epackage.nsURI)
+        exact = found.epackage.nsURI in named or found.file.name in named
         rank = (_is_given(found.file, given), exact)
         if package and (package not in chosen or rank > chosen[package][0]):
             chosen[package] = (rank, found)
@@ -97,8 +98,10 @@ def _is_given(file: Path, given: Iterable[Path]) -> bool:
 def _readable(files: Iterable[Path], given: frozenset[Path]) -> Iterator[Found]:
     for file in files:
         try:
-            yield from (Found(file, table) for table in read_tables(file))
-        except UnreadableError:
+            located = located_in(file, file.name)
+            packages = load(located, (), lenient=True).packages
+            yield from (Found(file, packages[entry.ns_uri]) for entry in located if not entry.parent)
+        except (UnreadableError, PluginError):
             if _is_given(file, given):
                 raise
 
@@ -106,27 +109,29 @@ def _readable(files: Iterable[Path], given: frozenset[Path]) -> Iterator[Found]:
 def structure_of(metamodels: Mapping[str, Found], dialect: Dialect) -> Structure:
     """Return the classes of metamodels."""
     classes = {
-        f"{package}.{table.name}": _class(package, table, dialect)
+        f"{package}.{eclass.name}": _class(package, eclass, dialect)
         for package, found in metamodels.items()
-        for table in found.table.classes
+        for eclass in found.epackage.eClassifiers
+        if isinstance(eclass, EClass)
     }
     return Structure(classes)
 
 
-def _class(package: str, table: ClassTable, dialect: Dialect) -> SourceClass:
-    supertypes = tuple(_kind(uri, package, dialect) for uri in table.supertypes)
-    features = tuple(_feature(feature, package, dialect) for feature in table.features)
-    return SourceClass(f"{package}.{table.name}", supertypes, features)
+def _class(package: str, eclass: EClass, dialect: Dialect) -> SourceClass:
+    supertypes = tuple(_kind(above, dialect) for above in eclass.eSuperTypes)
+    features = tuple(_feature(feature, dialect) for feature in eclass.eStructuralFeatures)
+    return SourceClass(f"{package}.{eclass.name}", supertypes, features)
 
 
-def _feature(table: FeatureTable, package: str, dialect: Dialect) -> SourceFeature:
-    sort = Sort.CONTAINED if table.containment else Sort.REFERENCE if table.is_reference else Sort.ATTRIBUTE
-    return SourceFeature(
-        table.name, _kind(table.type, package, dialect), sort, table.upper > 1 or table.upper == MANY
-    )
+def _feature(feature: EStructuralFeature, dialect: Dialect) -> SourceFeature:
+    is_reference = isinstance(feature, EReference)
+    contained = is_reference and feature.containment
+    sort = Sort.CONTAINED if contained else Sort.REFERENCE if is_reference else Sort.ATTRIBUTE
+    return SourceFeature(feature.name, _kind(feature.eType, dialect), sort, feature.many)
 
 
-def _kind(uri: str, package: str, dialect: Dialect) -> str:
-    document, _, fragment = uri.partition("#")
-    owner = dialect.package(document) if document else package
-    return f"{owner or document}.{fragment.rpartition('/')[2]}"
+def _kind(classifier: EClassifier | None, dialect: Dialect) -> str:
+    if classifier is None:
+        return "."
+    document = classifier.ePackage.nsURI
+    return f"{dialect.package(document) or document}.{classifier.name}"

@@ -10,7 +10,7 @@ from mmrs_core.errors import PluginError, UnreadableError
 from mmrs_core.languages.conformance import check_conformance
 from mmrs_core.languages.datatypes import ECORE, XML_TYPES
 from mmrs_core.languages.metamodels.export import export_metamodels, exported_names
-from mmrs_core.languages.metamodels.parsing import read_tables
+from mmrs_core.languages.metamodels.source import read_ecore
 from mmrs_core.languages.reading import read_model
 from mmrs_core.languages.registry import MetamodelSource, core_registry, registry_with
 from mmrs_core.languages.writing import write_model
@@ -33,7 +33,7 @@ def written(tmp_path):
 
 
 def registry_of(files):
-    return registry_with([MetamodelSource(read_tables(file)[0].ns_uri, file, file.stem) for file in files])
+    return registry_with([MetamodelSource(read_ecore(file).ns_uris[0], file, file.stem) for file in files])
 
 
 def ours(registry):
@@ -72,7 +72,7 @@ def test_what_emf_calls_a_fault_is_refused_with_its_place(referee, written, form
     with referee.knowing(file) as verdict:
         assert not verdict.accepted
     with pytest.raises(UnreadableError) as refused:
-        read_tables(file)
+        registry_of([file])
     assert f"{file}:2: " in str(refused.value)
     assert message in str(refused.value)
 

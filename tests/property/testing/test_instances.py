@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from mmrs_core.languages.conformance import check_conformance
 from mmrs_core.languages.element import descendants, held, is_kind, metaclass_of
-from mmrs_core.languages.metamodels.files import registry_of_files
+from mmrs_core.languages.metamodels.gathering import registry_of_files
 from mmrs_core.languages.model import Model
 from mmrs_core.languages.reading import read_text
 from mmrs_core.languages.writing import to_xmi

@@ -7,7 +7,7 @@ import pytest
 
 from mmrs_core.errors import PluginError
 from mmrs_core.languages.metaclass import Metaclass
-from mmrs_core.languages.metamodels.assembly import DEEPEST_INHERITANCE
+from mmrs_core.languages.metamodels.loading import DEEPEST_INHERITANCE
 from mmrs_core.languages.registry import MetamodelSource, core_registry
 
 HEAD = (

@@ -8,7 +8,7 @@ import pytest
 
 from mmrs_core.errors import UnreadableError
 from mmrs_core.languages.conformance import check_conformance
-from mmrs_core.languages.metamodels.files import registry_of_files
+from mmrs_core.languages.metamodels.gathering import registry_of_files
 from mmrs_core.languages.model import Model
 from mmrs_core.languages.registry import MetamodelSource
 

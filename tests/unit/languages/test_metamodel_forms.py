@@ -10,9 +10,9 @@ import pytest
 from mmrs_core.errors import MmrsError, PluginError, UnreadableError
 from mmrs_core.languages.datatypes import ECORE
 from mmrs_core.languages.element import Element
-from mmrs_core.languages.metamodels import nodes
-from mmrs_core.languages.metamodels.files import registry_of_files
-from mmrs_core.languages.metamodels.parsing import MOST_REFERENCES, parse_tables, read_tables
+from mmrs_core.languages.metamodels import source
+from mmrs_core.languages.metamodels.gathering import registry_of_files
+from mmrs_core.languages.metamodels.source import MOST_REFERENCES, EcoreFile
 from mmrs_core.languages.registry import MetamodelSource
 
 NAMESPACES = (
@@ -84,7 +84,7 @@ def test_keys_by_id_lead_to_what_has_it(registry_of):
 def test_an_id_that_nothing_has_is_refused_with_its_place(tmp_path):
     (tmp_path / "a.ecore").write_text(packaged(classed("A", reference("r", "_9"))))
     with pytest.raises(UnreadableError, match=r"a\.ecore:2: eStructuralFeatures: eType: '_9' leads to no"):
-        read_tables(tmp_path / "a.ecore")
+        registry_of_files([tmp_path / "a.ecore"], ())
 
 
 def test_a_number_says_which_of_several_packages_is_meant(registry_of):
@@ -157,7 +157,7 @@ def test_an_unspecified_upper_bound_means_one_value(registry_of, upper, many):
 def test_bounds_and_flags_that_emf_cannot_read_are_refused_with_their_place(tmp_path, rest, message):
     (tmp_path / "a.ecore").write_text(packaged(classed("A", attribute("n", f"{NUMBER} {rest}"))))
     with pytest.raises(UnreadableError) as refused:
-        read_tables(tmp_path / "a.ecore")
+        registry_of_files([tmp_path / "a.ecore"], ())
     assert str(refused.value) == f"{tmp_path / 'a.ecore'}:2: {message}"
 
 
@@ -225,11 +225,11 @@ def test_a_link_that_leads_in_a_circle_cannot_be_read(tmp_path):
 
 
 def test_a_metamodel_that_is_too_large_is_refused(tmp_path, monkeypatch):
-    monkeypatch.setattr(nodes, "LARGEST_METAMODEL", 1024 * 1024)
+    monkeypatch.setattr(source, "LARGEST_METAMODEL", 1024 * 1024)
     with (tmp_path / "a.ecore").open("wb") as stream:
         stream.truncate(1024 * 1024 + 1)
     with pytest.raises(UnreadableError, match=r"a\.ecore: larger than 1 MB"):
-        read_tables(tmp_path / "a.ecore")
+        registry_of_files([tmp_path / "a.ecore"], ())
 
 
 @pytest.mark.parametrize(
@@ -252,7 +252,7 @@ def test_memory_for_a_metamodel_grows_with_its_size_only(one):
     text = packaged("".join(one % ((index,) * words) for index in range(count))).encode()
     tracemalloc.start()
     try:
-        parse_tables(text, "a.ecore")
+        EcoreFile(text, "a.ecore")
         _, peak = tracemalloc.get_traced_memory()
     finally:
         tracemalloc.stop()
@@ -263,26 +263,26 @@ def test_elements_that_say_nothing_of_classes_are_not_kept():
     text = packaged("<a/>" * (ONE_MEGABYTE // 8) + classed("A")).encode()
     tracemalloc.start()
     try:
-        (table,) = parse_tables(text, "a.ecore")
+        file = EcoreFile(text, "a.ecore")
         _, peak = tracemalloc.get_traced_memory()
     finally:
         tracemalloc.stop()
-    assert [each.name for each in table.classes] == ["A"]
+    assert [each.get("name") for each in file.roots[0].children] == ["A"]
     assert peak < 2 * len(text)
 
 
 @pytest.mark.parametrize("word", ["#//A ", "_ "])
-def test_more_supertypes_than_any_class_has_are_refused(word):
+def test_more_supertypes_than_any_class_has_are_refused(registry_of, word):
     text = packaged(classed("A", "", f'eSuperTypes="{word * (MOST_REFERENCES + 1)}"'))
     with pytest.raises(UnreadableError, match="eSuperTypes: more than 10000 references"):
-        parse_tables(text.encode(), "a.ecore")
+        registry_of({"a.ecore": text})
 
 
 @pytest.mark.parametrize("one", ["<a>", "<eSubpackages>", "<name>", "<eAnnotations>"])
 def test_what_nests_too_deeply_is_refused(one):
     text = packaged(one * 1000 + one.replace("<", "</") * 1000)
     with pytest.raises(MmrsError, match="nested deeper than 400 levels"):
-        parse_tables(text.encode(), "a.ecore")
+        EcoreFile(text.encode(), "a.ecore")
 
 
 def test_a_path_with_positions_is_found_among_many(registry_of):

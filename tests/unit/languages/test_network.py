@@ -8,7 +8,8 @@ from http.server import BaseHTTPRequestHandler, HTTPServer
 
 import pytest
 
-from mmrs_core.languages.metamodels.parsing import read_tables
+from mmrs_core.errors import PluginError
+from mmrs_core.languages.metamodels.gathering import registry_of_files
 from mmrs_core.languages.reading import read_model
 
 HEAD = 'xmlns:zoo="urn:test:zoo" xmlns:xsi="http://www.w3.org/2001/XMLSchema-instance"'
@@ -68,5 +69,6 @@ def test_no_metamodel_makes_us_call_an_address(server, tmp_path):
         f'<eClassifiers xsi:type="ecore:EClass" name="A" eSuperTypes="{address}/far.ecore#//B"/>'
         "</ecore:EPackage>"
     )
-    read_tables(tmp_path / "near.ecore")
+    with pytest.raises(PluginError, match="needs the metamodel http"):
+        registry_of_files([tmp_path / "near.ecore"], ())
     assert asked == []

@@ -131,42 +131,53 @@ def test_what_is_no_epackage_is_refused(tmp_path):
         registry_with([MetamodelSource("urn:x", pyecore.EPackage("x"), "p")])
 
 
-def test_the_tables_are_what_pyecore_loads(everything):
+def test_what_is_loaded_is_what_pyecore_itself_loads(everything):
     from pyecore.resources import URI, ResourceSet
-
-    from mmrs_core.languages.ecore_api.tables import package_table
-    from mmrs_core.languages.metamodels.parsing import read_tables
 
     resources = ResourceSet()
     for package in everything.packages:
         assert isinstance(package.ecore, Path)
         loaded = resources.get_resource(URI(str(package.ecore))).contents[0]
         resources.metamodel_registry[loaded.nsURI] = loaded
-        (ours,) = read_tables(package.ecore)
-        assert normal(package_table(loaded)) == normal(ours)
+        assert told(everything.epackage(package.ns_uri)) == told(loaded)
+        assert everything.epackage(package.ns_uri).eResource.uri.plain == str(package.ecore)
 
 
-def normal(table):
-    """Return a table as nested tuples, with references to the own package written like those to others."""
+STATED = ("name", "lowerBound", "upperBound", "unique", "ordered", "unsettable", "transient", "containment")
 
-    def uri(text):
-        return f"{table.ns_uri}{text}" if text.startswith("#") else text
 
-    def feature(row):
-        fields = {name: getattr(row, name) for name in row.__slots__}
-        return tuple((fields | {"type": uri(row.type), "opposite": uri(row.opposite)}).items())
+def told(epackage):
+    """Return all that an EPackage says, as nested tuples."""
+
+    def kind(classifier):
+        return classifier.ePackage.nsURI, classifier.name
+
+    def notes(element):
+        return [(note.source, dict(note.details)) for note in element.eAnnotations]
+
+    def feature(each):
+        opposite = getattr(each, "eOpposite", None)
+        other = (kind(opposite.eContainingClass), opposite.name) if opposite is not None else None
+        stated = [getattr(each, name, None) for name in STATED]
+        return *stated, each.defaultValueLiteral, kind(each.eType), other, notes(each)
 
     classes = [
         (
-            row.name,
-            row.abstract,
-            row.documentation,
-            [uri(above) for above in row.supertypes],
-            [feature(each) for each in row.features],
+            each.name,
+            each.abstract,
+            [kind(above) for above in each.eSuperTypes],
+            [feature(inner) for inner in each.eStructuralFeatures],
+            notes(each),
         )
-        for row in table.classes
+        for each in epackage.eClassifiers
+        if isinstance(each, pyecore.EClass)
     ]
-    return table.ns_uri, table.name, table.prefix, table.documentation, classes, table.enums, table.datatypes
+    values = [
+        (each.name, [(literal.name, literal.value, notes(literal)) for literal in each.eLiterals])
+        for each in epackage.eClassifiers
+        if isinstance(each, pyecore.EEnum)
+    ]
+    return epackage.name, epackage.nsURI, epackage.nsPrefix, classes, values, notes(epackage)
 
 
 def test_features_whose_names_python_keeps_for_classes_are_in_the_eclass(tmp_path):

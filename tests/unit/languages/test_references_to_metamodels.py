@@ -6,7 +6,7 @@ import pytest
 
 from mmrs_core.languages.conformance import check_conformance
 from mmrs_core.languages.datatypes import ECORE
-from mmrs_core.languages.metamodels.files import registry_of_files
+from mmrs_core.languages.metamodels.gathering import registry_of_files
 from mmrs_core.languages.reading import read_model
 from mmrs_core.languages.writing import write_model
 

@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import pytest
@@ -135,8 +136,8 @@ def test_packages_inside_packages_are_metamodels_of_their_own(zoo):
 @pytest.mark.parametrize(
     ("content", "message"),
     [
-        (eclass("A", "urn:t:gone#//B"), "plugin-bad: urn:t:bad needs the metamodel urn:t:gone"),
-        (eclass("A", "gone.ecore#//B"), "plugin-bad: urn:t:bad needs the metamodel gone.ecore beside"),
+        (eclass("A", "urn:t:gone#//B"), "urn:t:bad needs the metamodel urn:t:gone"),
+        (eclass("A", "gone.ecore#//B"), "urn:t:bad needs the metamodel gone.ecore beside"),
         (eclass("A", "http://127.0.0.1:1/x#//B"), "needs the metamodel http://127.0.0.1:1/x"),
         (eclass("A", "#//A"), "class A inherits from itself"),
         (eclass("A", "#//B") + eclass("B", "#//A"), "inherits from itself"),
@@ -152,6 +153,7 @@ def test_a_faulty_metamodel_names_its_provider_and_the_fault(package, content, m
     with pytest.raises(PluginError) as raised:
         registry_with([package("bad", content)])
     assert message in str(raised.value)
+    assert re.match(r"plugin-bad: \S+bad\.ecore:[0-9]+: ", str(raised.value))
     assert str(raised.value).startswith("plugin-bad: ")
 
 

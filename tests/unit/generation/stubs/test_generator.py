@@ -16,8 +16,7 @@ from mmrs_core.cli import run
 from mmrs_core.errors import InternalError
 from mmrs_core.generation.stubs import generator
 from mmrs_core.generation.stubs.write import write_stubs
-from mmrs_core.languages.ecore_api.classes import epackage_of
-from mmrs_core.languages.metamodels.files import registry_of_files
+from mmrs_core.languages.metamodels.gathering import registry_of_files
 
 HERE = Path(__file__).parent
 MODELS = HERE.parents[2] / "fixtures" / "models"
@@ -48,7 +47,7 @@ def test_pyecore_is_afterwards_as_it_was_before(file, tmp_path):
 def test_pyecore_answers_the_names_of_the_metamodel_while_stubs_are_made(tmp_path, monkeypatch):
     seen = []
     registry, ns_uris = registry_of_files([MODELS / "zoo.ecore"], ())
-    odd = epackage_of(registry.package(ns_uris[0])).getEClassifier("Odd")
+    odd = registry.epackage(ns_uris[0]).getEClassifier("Odd")
     path_of = generator.StubTask.relative_path_for_element
 
     def watched(task, element):

@@ -11,7 +11,7 @@ import pytest
 
 from mmrs_core.generation.stubs.write import write_stubs
 from mmrs_core.languages.element import metaclass_of
-from mmrs_core.languages.metamodels.files import registry_of_files
+from mmrs_core.languages.metamodels.gathering import registry_of_files
 from mmrs_core.languages.reading import read_model
 from mmrs_core.languages.writing import to_xmi
 

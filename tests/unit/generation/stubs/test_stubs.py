@@ -13,7 +13,7 @@ import pytest
 from mmrs_core.errors import MmrsError, PluginError
 from mmrs_core.generation.stubs.docstrings import docstring
 from mmrs_core.generation.stubs.write import write_stubs
-from mmrs_core.languages.metamodels.files import registry_of_files
+from mmrs_core.languages.metamodels.gathering import registry_of_files
 
 HERE = Path(__file__).parent
 PROJECT = HERE.parents[3]
