@@ -4,38 +4,15 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterator, Mapping
-from pathlib import Path
+from contextlib import suppress
 from typing import TYPE_CHECKING, Any, ClassVar, NoReturn, SupportsIndex
 
 from mmrs_core.diagnostics import Place
-from mmrs_core.languages.metaclass import Feature, Metaclass
+from mmrs_core.languages.metaclass import Enumeration, Feature, Metaclass
 from mmrs_core.languages.naming import nearest
-from mmrs_core.languages.values.dates import WrittenDate
+from mmrs_core.languages.source import Source
 
 _HIDDEN_STEP = re.compile(r"/@([^./\[]+)(?:\.([0-9]+))?")
-
-
-class Source:
-    """A file that elements were read from.
-
-    Attributes:
-        file: the path as the user gave it; what messages say.
-        path: where it lies; None for text that came from no file.
-        roots: the elements at its top.
-        ids: the identifiers that the file itself gave to elements (``xmi:id``).
-        blanks: the unsettable features that the file states to be nil or empty; EMF takes them for set.
-        ns_uri: of the metamodel whose description it is, where it is no file but was made of one; else empty.
-    """
-
-    __slots__ = ("blanks", "file", "ids", "ns_uri", "path", "roots")
-
-    def __init__(self, file: str, path: Path | None) -> None:
-        self.file = file
-        self.path = path
-        self.ns_uri = ""
-        self.roots: tuple[Element, ...] = ()
-        self.ids: dict[Element, str] = {}
-        self.blanks: set[tuple[Element, Feature]] = set()
 
 
 class ElementType(type):
@@ -75,8 +52,21 @@ class ElementType(type):
             return [cls, *reversed(dict.fromkeys(reversed(inherited)))]
 
 
+class _EClass:
+    """What ``eClass`` is of elements and their classes."""
+
+    def __get__(self, element: Element | None, kind: type[Element]) -> Any:  # pyecore has no types
+        try:
+            return metaclass_of(kind).eclass
+        except ValueError as unknown:
+            raise AttributeError(str(unknown)) from None
+
+
 class Element(metaclass=ElementType):
-    """An element of a model. Its attributes are the features of its metaclass, and nothing else."""
+    """An element of a model. Its attributes are the features of its metaclass.
+
+    It answers pyecore's reflective methods as well; a feature that has the name of one of them goes first.
+    """
 
     __slots__ = ("_mmrs_container", "_mmrs_feature", "_mmrs_line", "_mmrs_source")
 
@@ -109,6 +99,74 @@ class Element(metaclass=ElementType):
             raise AttributeError(
                 f"{name}: no feature of {type(self).__name__}{hint and '; ' + hint}", name=name, obj=self
             )
+
+    eClass = _EClass()
+    """The metaclass as pyecore knows it, an ``EClass``: the one in `Registry.epackage`."""
+
+    def eGet(self, feature: Any) -> Any:
+        """Return the value of a feature, given by its name or as pyecore's object of it.
+
+        Raises:
+            AttributeError: if there is no such feature; TypeError where it is neither name nor object.
+        """
+        return getattr(self, _feature(self, feature).attribute)
+
+    def eSet(self, feature: Any, value: object) -> None:
+        """Set a feature as the attribute does, or to literals of a pyecore ``EEnum``; errors as in `eGet`."""
+        meant = _feature(self, feature)
+        if isinstance(meant.type, Enumeration):
+            value = meant.type.named(value)
+        setattr(self, meant.attribute, value)
+
+    def eIsSet(self, feature: Any) -> bool:
+        """Return whether a feature was given a value, even its default; errors as in `eGet`.
+
+        As in pyecore, and not as in EMF, for which see `is_set`. A list counts while something is in it.
+        """
+        return given(self, _feature(self, feature))
+
+    def eUnset(self, feature: Any) -> None:
+        """Take the value of a feature away, so that it holds its default; errors as in `eGet`."""
+        with suppress(AttributeError):  # it was empty already
+            delattr(self, _feature(self, feature).attribute)
+
+    def eContainer(self) -> Element | None:
+        """Return the element that contains it, or None."""
+        return self._mmrs_container
+
+    def eContainmentFeature(self) -> Any:
+        """Return the ``EReference`` of its container that holds it, or None."""
+        feature = self._mmrs_feature
+        return None if feature is None else feature.owner.eclass.findEStructuralFeature(feature.name)
+
+    @property
+    def eContents(self) -> list[Element]:
+        """The elements directly inside it, in the order of features and lists."""
+        return list(contents(self))
+
+    def eAllContents(self) -> Iterator[Element]:
+        """Yield all elements inside it in document order, outer ones before inner ones."""
+        return descendants(self)
+
+    @property
+    def eResource(self) -> Source | None:
+        """The file that it stands in; None for elements that stand in none."""
+        root = root_of(self)
+        source = root._mmrs_source
+        return source if source is not None and source.path is not None and root in source.roots else None
+
+    def eURIFragment(self) -> str:
+        """Return the path that leads to it within its file, such as ``//@tasks.2/@shell.0``."""
+        if isinstance(self, Hidden):
+            rest = self._mmrs_rest
+            return f"{Element.eURIFragment(self._mmrs_outer)}{rest}" if rest.startswith("/") else rest
+        root, steps = _steps_to(self)
+        way = (f"/@{name}.{index}" if index else f"/@{name}" for name, index in steps)
+        return f"{_number_of(root) or '/'}{''.join(way)}"
+
+    def eRoot(self) -> Element:
+        """Return the outermost container; the element itself if it has none."""
+        return root_of(self)
 
     def __reduce_ex__(self, protocol: SupportsIndex) -> NoReturn:
         """Refuse to be copied or pickled: a copy would drag its container and all it refers to along."""
@@ -259,18 +317,23 @@ def holds(element: Element, feature: Feature) -> bool:
         return feature.nullable
     if feature.many:
         return len(value) > 0
-    return feature.unsettable or not _same(value, feature.default)
+    return feature.unsettable or not feature.is_default(value)
 
 
-def _same(value: object, default: object) -> bool:
-    """Compare as Java's equals does: 0.0 is not -0.0, and true is not 1."""
-    if isinstance(value, float) and isinstance(default, float):
-        return repr(value) == repr(default)
-    if isinstance(value, bytes):  # arrays of Java equal none but themselves
-        return False
-    if isinstance(value, WrittenDate) or isinstance(default, WrittenDate):
-        return value == default and getattr(value, "text", "") == getattr(default, "text", "")
-    return value == default and isinstance(value, bool) == isinstance(default, bool)
+def given(element: Element, feature: Feature) -> bool:
+    """Return whether a feature was given a value, even its default, or a list holds any."""
+    return holds(element, feature) or bool(held(element, feature))
+
+
+def _feature(element: Element, feature: object) -> Feature:
+    """Return the feature of that name, or of the name that a feature has."""
+    name = feature if isinstance(feature, str) else getattr(feature, "name", None)
+    if not isinstance(name, str):
+        raise TypeError(f"{feature!r}: neither the name of a feature nor a feature")
+    try:
+        return metaclass_of(element).feature(name)
+    except ValueError as unknown:
+        raise AttributeError(str(unknown)) from None
 
 
 def place_of(element: Element) -> Place:
@@ -285,15 +348,22 @@ def path_of(element: Element) -> str:
     Where its file has several roots, their number comes first: ``/1/shell[0]``.
     """
     if isinstance(element, Hidden):
-        way = _HIDDEN_STEP.sub(_as_step, element._mmrs_rest)
-        return f"{path_of(element._mmrs_outer).rstrip('/')}{way if way.startswith('/') else f'#{way}'}"
-    steps: list[str] = []
+        rest = _HIDDEN_STEP.sub(_as_step, element._mmrs_rest)
+        return f"{path_of(element._mmrs_outer).rstrip('/')}{rest if rest.startswith('/') else f'#{rest}'}"
+    root, steps = _steps_to(element)
+    way = (f"/{name}[{index}]" if index else f"/{name}" for name, index in steps)
+    return f"{_number_of(root)}{''.join(way)}" or "/"
+
+
+def _steps_to(element: Element) -> tuple[Element, list[tuple[str, str]]]:
+    """Return its root, and from there each feature with the position in it, if it is a list."""
+    steps: list[tuple[str, str]] = []
     while (container := element._mmrs_container) is not None:
         feature = element._mmrs_feature
         assert feature is not None  # set together with the container
-        steps.append(f"/{feature.name}{_index(container, feature, element)}")
+        steps.append((feature.name, _index(container, feature, element)))
         element = container
-    return f"{_number_of(element)}{''.join(reversed(steps))}" or "/"
+    return element, steps[::-1]
 
 
 def _as_step(step: re.Match[str]) -> str:
@@ -313,9 +383,9 @@ def _index(container: Element, feature: Feature, element: Element) -> str:
         return ""
     values = type(container)._mmrs_slots[feature.attribute].__get__(container)
     try:
-        return f"[{values.position(element)}]"
+        return str(values.position(element))
     except ValueError:  # it is not in there yet
-        return "[?]"
+        return "?"
 
 
 def label_of(element: Element) -> str:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from mmrs_core.languages.datatypes import DataType, shown
 from mmrs_core.languages.naming import nearest
+from mmrs_core.languages.values.dates import WrittenDate
 
 if TYPE_CHECKING:
     from mmrs_core.languages.element import Element
@@ -57,6 +58,12 @@ class Enumeration:
     def meant(self, text: str) -> str:
         """Return a hint that names the literal most like a text that is none, or an empty text."""
         return nearest(text, (literal.literal for literal in self.literals))
+
+    def named(self, value: object) -> object:
+        """Return the name of a pyecore ``EEnumLiteral``, also of each in a list; any other value as it is."""
+        if isinstance(value, list):
+            return [self.named(each) for each in value]
+        return value if value is None or isinstance(value, str) else getattr(value, "name", value)
 
     def render(self, value: object) -> str:
         """Return the literal of a name, which must be one."""
@@ -123,6 +130,17 @@ class Feature:
         absent = self.is_reference or self.many or self.default is None
         object.__setattr__(self, "nullable", not (absent or getattr(self.type, "primitive", True)))
         self.join(self.opposite)
+
+    def is_default(self, value: object) -> bool:
+        """Return whether a value is the default to Java's equals: 0.0 is not -0.0, and true is not 1."""
+        default = self.default
+        if isinstance(value, float) and isinstance(default, float):
+            return repr(value) == repr(default)
+        if isinstance(value, bytes):  # arrays of Java equal none but themselves
+            return False
+        if isinstance(value, WrittenDate) or isinstance(default, WrittenDate):
+            return value == default and getattr(value, "text", "") == getattr(default, "text", "")
+        return value == default and isinstance(value, bool) == isinstance(default, bool)
 
     def join(self, opposite: Feature | None) -> None:
         """Make another reference its opposite; a metamodel knows them only when all its classes stand."""

@@ -8,7 +8,6 @@ from pathlib import Path
 from mmrs_core.errors import UnreadableError
 from mmrs_core.languages.codes import explained
 from mmrs_core.languages.collector import collector_at_rest
-from mmrs_core.languages.element import Source
 from mmrs_core.languages.evolution.loading import may_be_old, read_json, read_old_xmi
 from mmrs_core.languages.json_form.text import is_json
 from mmrs_core.languages.metamodels.text import package_text
@@ -17,6 +16,7 @@ from mmrs_core.languages.references.documents import Draft
 from mmrs_core.languages.references.hrefs import real_path
 from mmrs_core.languages.references.resolution import resolve, tell_other_ends
 from mmrs_core.languages.registry import Registry
+from mmrs_core.languages.source import Source
 from mmrs_core.languages.xmi.events import Document, read_bytes
 from mmrs_core.languages.xmi.quick_reader import QuickReader
 

@@ -22,7 +22,7 @@ class EPackage(Protocol):
 
     nsURI: str  # noqa: N815  # pyecore's name
 
-    def eRoot(self) -> EPackage:  # noqa: N802  # this, too
+    def eRoot(self) -> EPackage:
         """Return the package at the top of those that it stands in."""
 
 

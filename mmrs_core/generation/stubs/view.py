@@ -9,18 +9,24 @@ from mmrs_core.generation.escaping import python_literal
 from mmrs_core.generation.stubs.bases import Lineage
 from mmrs_core.generation.stubs.names import Scope, member_names
 from mmrs_core.languages.datatypes import DataType
+from mmrs_core.languages.element import Element
 from mmrs_core.languages.metaclass import Enumeration, Feature, Metaclass, Package
 from mmrs_core.languages.metamodels.ecore_itself import BUILT_IN
 
 
 @dataclass(frozen=True, slots=True)
 class FeatureView:
-    """A feature as the template sees it: what it holds, and what a constructor takes for it."""
+    """A feature as the template sees it: what it holds, and what a constructor takes for it.
+
+    Attributes:
+        hides: whether it has the name of a method of all elements, and goes first.
+    """
 
     name: str
     held: str
     given: str
     documentation: str
+    hides: bool
 
 
 @dataclass(frozen=True, slots=True)
@@ -104,7 +110,8 @@ class _Module:
         else:
             always = feature.required or feature.default is not None
             held, given = value if always else f"{value} | None", f"{value} | None"
-        return FeatureView(feature.attribute, held, given, feature.documentation)
+        hides = feature.attribute in vars(Element)
+        return FeatureView(feature.attribute, held, given, feature.documentation, hides)
 
     def _base(self, kind: Metaclass) -> str:
         """Return a class as the head of another names it, where no feature hides it."""

@@ -9,7 +9,6 @@ from pathlib import Path
 from mmrs_core.languages.element import (
     Element,
     Hidden,
-    Source,
     Unknown,
     held,
     holds,
@@ -22,6 +21,7 @@ from mmrs_core.languages.metaclass import Feature, Metaclass
 from mmrs_core.languages.references.hidden import strayed
 from mmrs_core.languages.references.hrefs import relative_href
 from mmrs_core.languages.references.names import Names
+from mmrs_core.languages.source import Source
 
 _ID = re.compile(r"[^\s#:%/][^\s#:%]*")
 

@@ -9,10 +9,11 @@ from urllib.parse import unquote
 
 from mmrs_core.diagnostics import Diagnostic, Place, Severity
 from mmrs_core.errors import UnreadableError
-from mmrs_core.languages.element import Element, Source, Unknown, path_of
+from mmrs_core.languages.element import Element, Unknown, path_of
 from mmrs_core.languages.links import raw
 from mmrs_core.languages.metaclass import Feature, Metaclass
 from mmrs_core.languages.references.names import Names
+from mmrs_core.languages.source import Source
 
 MOST_FAULTS = 10_000
 

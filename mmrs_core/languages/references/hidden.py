@@ -6,9 +6,10 @@ import re
 from collections.abc import Iterable, Iterator, Sequence
 from html import unescape
 
-from mmrs_core.languages.element import Element, Hidden, Source, Unknown, descendants
+from mmrs_core.languages.element import Element, Hidden, Unknown, descendants
 from mmrs_core.languages.json_form.unknown import UnknownObject
 from mmrs_core.languages.references.documents import Draft
+from mmrs_core.languages.source import Source
 
 _LEAVE_UNKNOWN = frozenset(("XMI001", "XMI002", "XMI003", "XMI008", "XMI014", "XMI015"))
 """The faults that each unknown element goes with, one or the other."""

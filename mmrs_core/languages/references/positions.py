@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from mmrs_core.languages.element import Element, Source
+from mmrs_core.languages.element import Element
 from mmrs_core.languages.links import raw
+from mmrs_core.languages.source import Source
 
 
 class Positions(dict[Element, str]):

@@ -7,10 +7,11 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import NoReturn
 
-from mmrs_core.languages.element import Element, Source
+from mmrs_core.languages.element import Element
 from mmrs_core.languages.metaclass import Feature
 from mmrs_core.languages.references.positions import Positions
 from mmrs_core.languages.registry import Registry
+from mmrs_core.languages.source import Source
 from mmrs_core.languages.xmi.emitters import Emitter, Surroundings, UnusualError, emitter
 from mmrs_core.languages.xmi.writer import Job, Row, XmiWriter
 

@@ -18,7 +18,8 @@ from mmrs_core.languages.references.documents import Pending
 from mmrs_core.languages.values.real import LARGEST_SINGLE, parse_single
 
 if TYPE_CHECKING:
-    from mmrs_core.languages.element import Element, Source
+    from mmrs_core.languages.element import Element
+    from mmrs_core.languages.source import Source
 
     Frame = tuple[Element, Metaclass, Feature | None]
     Waiting = Callable[[Pending | tuple[Element, Feature, str, int]], None]

@@ -1,0 +1,45 @@
+"""Files that elements were read from."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from mmrs_core.languages.element import Element
+    from mmrs_core.languages.metaclass import Feature
+
+
+class Source:
+    """A file that elements were read from; to those who know pyecore, a resource that can only be read.
+
+    Attributes:
+        file: the path as the user gave it; what messages say.
+        path: where it lies; None for text that came from no file.
+        roots: the elements at its top.
+        ids: the identifiers that the file itself gave to elements (``xmi:id``).
+        blanks: the unsettable features that the file states to be nil or empty; EMF takes them for set.
+        ns_uri: of the metamodel whose description it is, where it is no file but was made of one; else empty.
+    """
+
+    __slots__ = ("blanks", "file", "ids", "ns_uri", "path", "roots")
+
+    def __init__(self, file: str, path: Path | None) -> None:
+        self.file = file
+        self.path = path
+        self.ns_uri = ""
+        self.roots: tuple[Element, ...] = ()
+        self.ids: dict[Element, str] = {}
+        self.blanks: set[tuple[Element, Feature]] = set()
+
+    @property
+    def uri(self) -> Any:  # pyecore has no types
+        """The path as the user gave it, as a pyecore ``URI``."""
+        from pyecore.resources import URI  # pyecore costs 0.2 s of start-up
+
+        return URI(self.file)
+
+    @property
+    def contents(self) -> list[Element]:
+        """The elements at its top."""
+        return list(self.roots)
