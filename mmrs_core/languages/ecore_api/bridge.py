@@ -9,7 +9,7 @@ from pyecore import ecore
 
 from mmrs_core.errors import UnsupportedError
 from mmrs_core.languages.datatypes import ECORE
-from mmrs_core.languages.element import Element, Unknown, held, holds, metaclass_of, path_of, root_of
+from mmrs_core.languages.element import Element, Unknown, given, held, holds, metaclass_of, path_of, root_of
 from mmrs_core.languages.metaclass import Enumeration, Feature, Metaclass
 from mmrs_core.languages.model import Model
 from mmrs_core.languages.registry import Registry
@@ -91,7 +91,7 @@ class _Outward:
                 raise UnsupportedError(message, [path_of(element)])
         made = metaclass.eclass()
         for feature in metaclass.features:
-            if not feature.is_reference and holds(element, feature):
+            if not feature.is_reference and given(element, feature):
                 self._values(made, feature, held(element, feature))
         return made
 
