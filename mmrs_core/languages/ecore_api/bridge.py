@@ -3,16 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
+from pathlib import Path
 from typing import Any
 
 from pyecore import ecore
+from pyecore.resources import URI
 
 from mmrs_core.errors import UnsupportedError
 from mmrs_core.languages.datatypes import ECORE
-from mmrs_core.languages.element import Element, Unknown, given, held, holds, metaclass_of, path_of, root_of
+from mmrs_core.languages.element import Element, Unknown, given, held, holds, metaclass_of, place_of, root_of
 from mmrs_core.languages.metaclass import Enumeration, Feature, Metaclass
 from mmrs_core.languages.model import Model
+from mmrs_core.languages.references.hrefs import real_path
 from mmrs_core.languages.registry import Registry
+from mmrs_core.languages.source import Source
 
 _RESERVED = frozenset((*dir(ecore.EObject), *vars(ecore.EObject())))
 """Names of features that pyecore's own attributes hide."""
@@ -32,7 +36,7 @@ def to_pyecore(model: Model, registry: Registry) -> list[Any]:
             that have the name of one of pyecore's own attributes, a reference that lists an element twice;
             and for elements of Ecore itself, which are pyecore's own.
     """
-    outward = _Outward(registry)
+    outward = Outward()
     for root in model.roots:
         outward.tree(root)
     outward.connect()
@@ -42,25 +46,34 @@ def to_pyecore(model: Model, registry: Registry) -> list[Any]:
 def from_pyecore(roots: Iterable[Any], registry: Registry) -> Model:
     """Return ``EObject`` instances as a model.
 
-    What the roots refer to outside themselves is in ``Model.linked``.
+    What the roots refer to outside themselves is in ``Model.linked``. What stands in a resource of pyecore
+    stands in its file, so that references to it can be written, and keeps the identifier it has there.
 
     Raises:
         UnsupportedError: if an object is of a class that the registry does not have.
     """
     inward = _Inward(registry)
-    tops = list(roots)
+    tops = [root.force_resolve() for root in roots]
     for top in tops:
         inward.tree(top)
     inward.connect()
+    inward.number_roots()
     own = {id(top) for top in tops}
     others = tuple(inward.made[id(top)] for top in inward.tops if id(top) not in own)
     linked = (Model("pyecore", others),) if others else ()
     return Model("pyecore", tuple(inward.made[id(top)] for top in tops), (), linked)
 
 
-class _Outward:
-    def __init__(self, registry: Registry) -> None:
-        self._registry = registry
+class Outward:
+    """The way of elements into pyecore.
+
+    Attributes:
+        made: the objects by the ``id`` of their elements.
+    """
+
+    def __init__(self, elsewhere: Callable[[Element], Any] = lambda element: None) -> None:
+        """Take what gives the object of an element that pyecore has already, or None."""
+        self._elsewhere = elsewhere
         self.made: dict[int, Any] = {}
         self._references: list[tuple[Element, Feature]] = []
 
@@ -81,25 +94,25 @@ class _Outward:
 
     def _object(self, element: Element) -> Any:
         if isinstance(element, Unknown):
-            raise UnsupportedError(f"{element._mmrs_type}: an element whose metamodel is not installed")
+            raise _refusal(element, f"{element._mmrs_type}: an element whose metamodel is not installed")
         metaclass = metaclass_of(element)
         if metaclass.ns_uri == ECORE and not metaclass.is_entry:
-            raise UnsupportedError(f"{metaclass.name}: an element of Ecore itself", [path_of(element)])
+            raise _refusal(element, f"{metaclass.name}: an element of Ecore itself")
         for feature in metaclass.features:
             if feature.name in _RESERVED:
                 message = f"{metaclass.name}.{feature.name}: pyecore has another attribute of this name"
-                raise UnsupportedError(message, [path_of(element)])
+                raise _refusal(element, message)
         made = metaclass.eclass()
         for feature in metaclass.features:
             if not feature.is_reference and given(element, feature):
-                self._values(made, feature, held(element, feature))
+                self._values(element, made, feature)
         return made
 
-    def _values(self, made: Any, feature: Feature, values: Iterable[object]) -> None:
-        converted = [_outward_value(made, feature, value) for value in values]
+    def _values(self, element: Element, made: Any, feature: Feature) -> None:
+        converted = [_outward_value(made, feature, value) for value in held(element, feature)]
         if feature.many:
             made.eGet(feature.name).extend(converted)
-            self._same(made, feature, converted)
+            self._same(element, made, feature, converted)
         else:
             made.eSet(feature.name, converted[0] if converted else None)
 
@@ -120,7 +133,7 @@ class _Outward:
                 targets = [
                     self._target(value) for value in held(element, feature) if isinstance(value, Element)
                 ]
-                self._same(made, feature, targets)
+                self._same(element, made, feature, targets)
 
     def _extend(self, collection: Any, targets: list[Any]) -> None:
         present = {id(value) for value in collection}
@@ -130,19 +143,28 @@ class _Outward:
 
     def _target(self, value: Element) -> Any:
         if id(value) not in self.made:
-            self.tree(root_of(value))
+            known = self._elsewhere(value)
+            if known is None:
+                self.tree(root_of(value))
+            else:
+                self.made[id(value)] = known
         return self.made[id(value)]
 
-    def _same(self, made: Any, feature: Feature, wanted: list[Any]) -> None:
+    def _same(self, element: Element, made: Any, feature: Feature, wanted: list[Any]) -> None:
         collection = made.eGet(feature.name)
         if len(collection) != len(wanted):
             message = f"{feature.owner.name}.{feature.name}: pyecore does not hold the same value twice"
-            raise UnsupportedError(message)
+            raise _refusal(element, message)
         if (
             any(one is not other for one, other in zip(collection, wanted, strict=True))
             and feature.is_reference
         ):
             _reorder(collection, wanted)
+
+
+def _refusal(element: Element, message: str) -> UnsupportedError:
+    place = place_of(element)
+    return UnsupportedError(f"{place}: {message}" if place.file else message, [place.path])
 
 
 def _reorder(collection: Any, wanted: list[Any]) -> None:
@@ -160,16 +182,21 @@ class _Inward:
         self._registry = registry
         self.made: dict[int, Element] = {}
         self.tops: list[Any] = []
+        self._homes: dict[int, tuple[Source, Any]] = {}
         self._references: list[tuple[Any, Feature]] = []
 
     def tree(self, top: Any) -> None:
         """Make the elements of a tree; references wait until all are made."""
         self.tops.append(top)
+        home = self._home(top.eResource)
         pending = [top]
         while pending:
             source = pending.pop()
             metaclass = self._metaclass(source.eClass)
             element = self.made[id(source)] = self._element(source, metaclass)
+            element._mmrs_source = home
+            if home is not None and source._internal_id:
+                home.ids[element] = source._internal_id
             for feature in metaclass.features:
                 if feature.is_reference and not feature.is_container:
                     self._references.append((source, feature))
@@ -177,6 +204,20 @@ class _Inward:
                         pending.extend(_held_by(source, feature))
                 elif not feature.is_reference:
                     self._value(element, source, feature)
+
+    def _home(self, resource: Any) -> Source | None:
+        """Return the file that a resource of pyecore stands for."""
+        if resource is None or resource.uri is None:
+            return None
+        if id(resource) not in self._homes:
+            self._homes[id(resource)] = Source(resource.uri.plain, file_of(resource.uri)), resource
+        return self._homes[id(resource)][0]
+
+    def number_roots(self) -> None:
+        """Let files know their roots, as far as these are made."""
+        for home, resource in self._homes.values():
+            made = (self.made.get(id(root.force_resolve())) for root in resource.contents)
+            home.roots = tuple(root for root in made if root is not None)
 
     def _metaclass(self, eclass: Any) -> Metaclass:
         package = eclass.ePackage
@@ -218,8 +259,15 @@ class _Inward:
             index += 1
             for target in _held_by(source, feature):
                 if id(target) not in self.made:
-                    self.tree(_top(target))
+                    self._file(_top(target))
             yield source, feature
+
+    def _file(self, top: Any) -> None:
+        """Make all trees of a file that one is needed of: their numbers lead to it."""
+        roots = [top] if top.eResource is None else top.eResource.contents
+        for root in (each.force_resolve() for each in roots):
+            if id(root) not in self.made:
+                self.tree(root)
 
     def _set(self, source: Any, feature: Feature) -> None:
         element = self.made[id(source)]
@@ -238,9 +286,15 @@ def _in_order(values: list[Element], wanted: list[Element]) -> None:
 
 def _held_by(source: Any, feature: Feature) -> list[Any]:
     value = source.eGet(feature.name)
-    if feature.many:
-        return list(value)
-    return [] if value is None else [value]
+    values = value if feature.many else [] if value is None else [value]
+    return [each.force_resolve() for each in values]
+
+
+def file_of(uri: Any) -> Path | None:
+    """Return the real path of the file that a ``URI`` means; None if it means anything else."""
+    if type(uri) is not URI or uri.protocol not in (None, "file"):
+        return None
+    return real_path(Path(uri.normalize()))
 
 
 def _top(target: Any) -> Any:
