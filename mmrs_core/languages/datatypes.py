@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cache
 
 from mmrs_core.languages.values.codecs import Codec, codec_of, schema_codec_of
 from mmrs_core.languages.values.dates import parse_date
@@ -12,6 +13,7 @@ from mmrs_core.languages.values.real import parse_real, render_real
 from mmrs_core.languages.values.texts import shown
 
 __all__ = [
+    "BUILT_IN",
     "ECORE",
     "XML_TYPES",
     "DataType",
@@ -25,6 +27,8 @@ __all__ = [
 
 ECORE = "http://www.eclipse.org/emf/2002/Ecore"
 XML_TYPES = "http://www.eclipse.org/emf/2003/XMLType"
+BUILT_IN = (ECORE, XML_TYPES)
+"""The nsURIs of metamodels that nobody brings."""
 
 
 _ONLY_ECORES = ("java.lang.Object", "java.lang.Class")
@@ -85,6 +89,7 @@ def declared_type(ns_uri: str, name: str, java_class: str, serializable: bool = 
     return _made(ns_uri, name, java_class, codec, serializable)
 
 
+@cache
 def builtin_type(ns_uri: str, name: str) -> DataType | None:
     """Return a data type of Ecore itself or of EMF's XML types; None where there is none of that name."""
     if ns_uri == ECORE and name in ECORE_CLASSES:

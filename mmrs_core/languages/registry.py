@@ -8,11 +8,10 @@ from functools import cache, cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from mmrs_core.languages.datatypes import BUILT_IN
 from mmrs_core.languages.element import Element
 from mmrs_core.languages.evolution.migration import Migration, chains
 from mmrs_core.languages.metaclass import Metaclass, Package
-from mmrs_core.languages.metamodels.ecore_itself import BUILT_IN
-from mmrs_core.languages.metamodels.shapes import packages_of
 from mmrs_core.languages.naming import nearest
 from mmrs_core.resources import shipped
 
@@ -44,20 +43,23 @@ class Registry:
 
     Attributes:
         packages: in the order in which they were given, a package before those inside it.
-        everything: the same, after Ecore itself and EMF's types of XML, as far as models may hold them.
         migrations: steps from older versions of them.
         makers: functions that readers compiled, for the next file.
     """
 
     def __init__(self, packages: Iterable[Package], migrations: Iterable[Migration] = ()) -> None:
-        self.everything = tuple(packages)
+        self.packages = tuple(package for package in packages if package.ns_uri not in BUILT_IN)
         self.migrations = tuple(migrations)
         self.makers: dict[tuple[object, ...], Maker | None] = {}
-        self.packages = tuple(package for package in self.everything if package.ns_uri not in BUILT_IN)
-        self._packages = {package.ns_uri: package for package in self.everything}
+        self._packages = {package.ns_uri: package for package in self.packages}
         self._metaclasses: Mapping[tuple[str, str], Metaclass] = {
-            metaclass.key: metaclass for package in self.everything for metaclass in package.metaclasses
+            metaclass.key: metaclass for package in self.packages for metaclass in package.metaclasses
         }
+
+    @property
+    def everything(self) -> tuple[Package, ...]:
+        """Its packages after Ecore itself and EMF's types of XML, as far as models may hold them."""
+        return (*_itself(), *self.packages)
 
     def package(self, ns_uri: str) -> Package:
         """Return the package of that nsURI.
@@ -65,6 +67,8 @@ class Registry:
         Raises:
             ValueError: if there is none, with the nearest nsURI.
         """
+        if ns_uri in BUILT_IN:
+            return _itself()[BUILT_IN.index(ns_uri)]
         try:
             return self._packages[ns_uri]
         except KeyError:
@@ -88,20 +92,22 @@ class Registry:
         try:
             return self._metaclasses[ns_uri, name]
         except KeyError:
-            names = [metaclass.name for metaclass in self.package(ns_uri).metaclasses]
-            hint = nearest(name, names)
+            kinds = {metaclass.name: metaclass for metaclass in self.package(ns_uri).metaclasses}
+            if name in kinds:  # one of Ecore itself
+                return kinds[name]
+            hint = nearest(name, kinds)
             raise ValueError(f"{name}: no class of {ns_uri}{hint and '; ' + hint}") from None
 
     def has(self, ns_uri: str) -> bool:
         """Return whether the metamodel of that nsURI is here."""
-        return ns_uri in self._packages
+        return ns_uri in self._packages or ns_uri in BUILT_IN
 
     def extended(self, sources: Iterable[MetamodelSource]) -> Registry:
         """Return these metamodels together with others; errors as in `registry_with`."""
         more = tuple(sources)
         if not more:
             return self
-        return Registry((*self.everything, *_assemble(more, self.everything)), self.migrations)
+        return Registry((*self.packages, *_assemble(more, self.packages)), self.migrations)
 
     @cached_property
     def chains(self) -> Mapping[str, tuple[Migration, ...]]:
@@ -142,9 +148,17 @@ def registry_with(sources: Iterable[MetamodelSource], migrations: Iterable[Migra
             from itself, or a file holds another metamodel than announced.
         UnreadableError: if a file is no metamodel.
     """
-    core = core_registry().everything
+    core = core_registry().packages
     return Registry((*core, *_assemble(tuple(sources), core)), migrations)
 
 
 def _assemble(sources: Iterable[MetamodelSource], known: tuple[Package, ...]) -> tuple[Package, ...]:
+    from mmrs_core.languages.metamodels.shapes import packages_of  # pyecore costs 0.1 s of start-up
+
     return packages_of(((each.ns_uri, each.ecore, each.provider) for each in sources), known)
+
+
+def _itself() -> tuple[Package, ...]:
+    from mmrs_core.languages.metamodels.shapes import itself  # as above
+
+    return itself()

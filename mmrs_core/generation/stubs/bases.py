@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+from mmrs_core.languages.datatypes import BUILT_IN
 from mmrs_core.languages.metaclass import Feature, Metaclass
-from mmrs_core.languages.metamodels.ecore_itself import BUILT_IN
 
 
 class Lineage:

@@ -8,10 +8,9 @@ from dataclasses import dataclass
 from mmrs_core.generation.escaping import python_literal
 from mmrs_core.generation.stubs.bases import Lineage
 from mmrs_core.generation.stubs.names import Scope, member_names
-from mmrs_core.languages.datatypes import DataType
+from mmrs_core.languages.datatypes import BUILT_IN, DataType
 from mmrs_core.languages.element import Element
 from mmrs_core.languages.metaclass import Enumeration, Feature, Metaclass, Package
-from mmrs_core.languages.metamodels.ecore_itself import BUILT_IN
 
 
 @dataclass(frozen=True, slots=True)

@@ -17,9 +17,6 @@ from mmrs_core.languages.datatypes import ECORE, XML_TYPES, builtin_type
 from mmrs_core.languages.metaclass import MAP_ENTRY
 from mmrs_core.languages.values.java_classes import ECORE_CLASSES, XML_CLASSES
 
-BUILT_IN = (ECORE, XML_TYPES)
-"""The nsURIs of metamodels that nobody brings."""
-
 _ECORE = """
 EObject
 abstract EModelElement

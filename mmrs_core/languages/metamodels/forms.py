@@ -115,9 +115,8 @@ class Forms:
         yield self._begin("eClassifiers", node, entry, "EEnum", {})
         yield from _annotations(node)
         for each in node.all("eLiterals"):
-            name = _needed(each, entry)
-            usual = {} if "literal" in each.attributes else {"literal": name}
-            yield self._begin("eLiterals", each, entry, "EEnumLiteral", usual)
+            _needed(each, entry)
+            yield self._begin("eLiterals", each, entry, "EEnumLiteral", {})
             yield from (*_annotations(each), "</eLiterals>\n")
         yield "</eClassifiers>\n"
 

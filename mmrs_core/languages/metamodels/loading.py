@@ -7,6 +7,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass, field
 from inspect import isdatadescriptor, ismodule
 from io import BytesIO
+from pathlib import Path
 from threading import RLock
 from typing import Any
 
@@ -15,11 +16,12 @@ from pyecore.resources.resource import URI
 from pyecore.resources.xmi import XMIResource
 
 from mmrs_core.errors import PluginError
+from mmrs_core.languages.collector import collector_at_rest
 from mmrs_core.languages.datatypes import ECORE, XML_TYPES, declared_type
 from mmrs_core.languages.metaclass import Package
 from mmrs_core.languages.metamodels.ecore_itself import built_in
 from mmrs_core.languages.metamodels.forms import Forms
-from mmrs_core.languages.metamodels.locating import Address, Directory, Located
+from mmrs_core.languages.metamodels.locating import Address, Directory, Located, located_in
 from mmrs_core.languages.metamodels.source import Node
 from mmrs_core.languages.naming import nearest
 
@@ -70,11 +72,23 @@ def load(located: Sequence[Located], known: Iterable[Package], *, lenient: bool 
     finder = _Finder(forms, packages, given, lenient)
     resource = _Resource(_Text(text), finder)
     finder.resource = resource
-    with _ONE_AT_A_TIME, _usual_order():
+    with _ONE_AT_A_TIME, _usual_order(), collector_at_rest():
         resource.load()
-    finder.finish()
+        finder.finish()
     _give_files(files, resource.contents)
     return Loaded({**given, **finder.packages}, forms.nodes)
+
+
+def load_alone(path: Path) -> list[Any]:
+    """Return the EPackages at the top of a file, with stand-ins for the classes of all other files.
+
+    Raises:
+        UnreadableError: if it is no metamodel.
+        PluginError: if a class is missing in it, or inherits from itself.
+    """
+    located = located_in(path, path.name)
+    packages = load(located, (), lenient=True).packages
+    return [packages[entry.ns_uri] for entry in located if not entry.parent]
 
 
 def _given(entry: Located) -> ecore.EPackage:
@@ -228,7 +242,7 @@ def _name_literals(enumeration: Any, names: Mapping[str, str]) -> None:
     """Let an enumeration read literals, as EMF does, and not names only."""
     for literal in enumeration.eLiterals:
         literal.name = names.get(literal.name, literal.name)
-    texts = {literal.literal: literal for literal in enumeration.eLiterals}
+    texts = {literal.literal: literal for literal in enumeration.eLiterals if literal.literal is not None}
     by_name = enumeration.getEEnumLiteral
     enumeration.from_string = lambda text: texts.get(text) or by_name(name=text)
 

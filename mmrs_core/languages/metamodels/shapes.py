@@ -10,7 +10,7 @@ from typing import Any, NoReturn
 from pyecore import ecore
 
 from mmrs_core.errors import InternalError, PluginError
-from mmrs_core.languages.datatypes import ECORE, DataType, builtin_type, declared_type
+from mmrs_core.languages.datatypes import BUILT_IN, ECORE, DataType, builtin_type, declared_type
 from mmrs_core.languages.element import Element
 from mmrs_core.languages.metaclass import MANY, MAP_ENTRY, Enumeration, Feature, Literal, Metaclass, Package
 from mmrs_core.languages.metamodels.ecore_itself import built_in
@@ -33,7 +33,7 @@ def packages_of(sources: Iterable[tuple[str, Any, str]], known: tuple[Package, .
 
     Args:
         sources: nsURI, .ecore file or EPackage, and the distribution that brings it.
-        known: packages that stand; without any, Ecore and the types of XML are returned as well.
+        known: packages that stand.
 
     Raises:
         PluginError: if a metamodel is already there, does not hold the nsURI that is announced, refers to
@@ -56,9 +56,7 @@ def packages_of(sources: Iterable[tuple[str, Any, str]], known: tuple[Package, .
                 raise PluginError(f"{provider}: metamodel {entry.ns_uri} is already provided by {before}")
             seen[entry.ns_uri] = provider
         located += found
-    first = () if known else itself()
-    above = known or first
-    return (*first, *_Shapes(above, load(located, above)).packages(located))
+    return _Shapes(known, load(located, known)).packages(located)
 
 
 @cache
@@ -88,15 +86,19 @@ class _Shapes:
         self._loaded = loaded
         self._metaclasses: dict[Address, Metaclass] = {}
         self._types: dict[Address, DataType | Enumeration] = {}
-        for package in known:
-            self._metaclasses |= {metaclass.key: metaclass for metaclass in package.metaclasses}
-            self._types |= {(kind.ns_uri, kind.name): kind for kind in package.enumerations}
-            self._types |= {(kind.ns_uri, kind.name): kind for kind in package.datatypes}
-        self._packages = {package.ns_uri: package for package in known}
+        self._packages: dict[str, Package] = {}
+        self._know(known)
         self._eclasses: dict[Address, tuple[Any, Located]] = {}
         self._done: set[Address] = set()
         self._count = 0
         self._unlinked: list[tuple[Feature, Any, Located]] = []
+
+    def _know(self, packages: Iterable[Package]) -> None:
+        for package in packages:
+            self._packages[package.ns_uri] = package
+            self._metaclasses |= {metaclass.key: metaclass for metaclass in package.metaclasses}
+            self._types |= {(kind.ns_uri, kind.name): kind for kind in package.enumerations}
+            self._types |= {(kind.ns_uri, kind.name): kind for kind in package.datatypes}
 
     def packages(self, located: Iterable[Located]) -> tuple[Package, ...]:
         """Return the packages to be made.
@@ -214,12 +216,19 @@ class _Shapes:
         return feature
 
     def _class(self, key: Address, entry: Located, address: Address) -> Metaclass:
+        if key == _ANYTHING:
+            return _any_object()
+        if key[0] in BUILT_IN and key not in self._metaclasses:
+            self._know(itself())
         if key not in self._metaclasses:
             self._refuse(entry, address, self._no_type(key, address))
         return self._metaclasses[key]
 
     def _value_type(self, key: Address, entry: Located, address: Address) -> DataType | Enumeration:
         found = self._types.get(key) or builtin_type(*key)
+        if found is None and key[0] in BUILT_IN:  # one whose values live in Java only
+            self._know(itself())
+            found = self._types.get(key)
         if found is None:
             self._refuse(entry, address, self._no_type(key, address))
         return found
@@ -270,6 +279,7 @@ def _eclass(ns_uri: str, kind: Any) -> Any:
     return kind if own is None else own.eClass
 
 
+@cache
 def _any_object() -> Metaclass:
     """Return Ecore's EObject, which every element is."""
     made = Metaclass(ECORE, "EObject", True, "Any element at all.", eclass=ecore.EObject.eClass)

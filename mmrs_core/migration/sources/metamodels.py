@@ -6,12 +6,10 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from os.path import isfile
 from pathlib import Path
-
-from pyecore.ecore import EClass, EClassifier, EPackage, EReference, EStructuralFeature
+from typing import Any
 
 from mmrs_core.errors import PluginError, UnreadableError
-from mmrs_core.languages.metamodels.loading import load
-from mmrs_core.languages.metamodels.locating import located_in
+from mmrs_core.languages.metamodels.loading import load_alone
 from mmrs_core.migration.sources.nodes import Claim, SourceDocument
 from mmrs_core.migration.sources.structure import Sort, SourceClass, SourceFeature, Structure
 
@@ -44,10 +42,10 @@ class Dialect:
 
 @dataclass(frozen=True, slots=True)
 class Found:
-    """A metamodel at hand."""
+    """A metamodel at hand, with the EPackage that pyecore loaded."""
 
     file: Path
-    epackage: EPackage
+    epackage: Any
 
 
 def candidates(given: Sequence[Path], document: SourceDocument) -> Iterator[Path]:
@@ -98,9 +96,7 @@ def _is_given(file: Path, given: Iterable[Path]) -> bool:
 def _readable(files: Iterable[Path], given: frozenset[Path]) -> Iterator[Found]:
     for file in files:
         try:
-            located = located_in(file, file.name)
-            packages = load(located, (), lenient=True).packages
-            yield from (Found(file, packages[entry.ns_uri]) for entry in located if not entry.parent)
+            yield from (Found(file, epackage) for epackage in load_alone(file))
         except (UnreadableError, PluginError):
             if _is_given(file, given):
                 raise
@@ -112,25 +108,24 @@ def structure_of(metamodels: Mapping[str, Found], dialect: Dialect) -> Structure
         f"{package}.{eclass.name}": _class(package, eclass, dialect)
         for package, found in metamodels.items()
         for eclass in found.epackage.eClassifiers
-        if isinstance(eclass, EClass)
+        if hasattr(eclass, "eStructuralFeatures")
     }
     return Structure(classes)
 
 
-def _class(package: str, eclass: EClass, dialect: Dialect) -> SourceClass:
+def _class(package: str, eclass: Any, dialect: Dialect) -> SourceClass:
     supertypes = tuple(_kind(above, dialect) for above in eclass.eSuperTypes)
     features = tuple(_feature(feature, dialect) for feature in eclass.eStructuralFeatures)
     return SourceClass(f"{package}.{eclass.name}", supertypes, features)
 
 
-def _feature(feature: EStructuralFeature, dialect: Dialect) -> SourceFeature:
-    is_reference = isinstance(feature, EReference)
-    contained = is_reference and feature.containment
-    sort = Sort.CONTAINED if contained else Sort.REFERENCE if is_reference else Sort.ATTRIBUTE
+def _feature(feature: Any, dialect: Dialect) -> SourceFeature:
+    contained = feature.is_reference and feature.containment
+    sort = Sort.CONTAINED if contained else Sort.REFERENCE if feature.is_reference else Sort.ATTRIBUTE
     return SourceFeature(feature.name, _kind(feature.eType, dialect), sort, feature.many)
 
 
-def _kind(classifier: EClassifier | None, dialect: Dialect) -> str:
+def _kind(classifier: Any, dialect: Dialect) -> str:
     if classifier is None:
         return "."
     document = classifier.ePackage.nsURI
