@@ -232,12 +232,12 @@ class _Inward:
         return metaclass.implementation.__new__(metaclass.implementation)
 
     def _value(self, element: Element, source: Any, feature: Feature) -> None:
-        value = source.eGet(feature.name)
+        value = _get(source, feature)
         if feature.many:
             if value:
                 setattr(element, feature.attribute, [_inward_value(feature, each) for each in value])
             return
-        is_set = source.eIsSet(source.eClass.findEStructuralFeature(feature.name))
+        is_set = source.eIsSet(feature.name) or source.eIsSet(feature.attribute)
         if is_set and not (value is None and feature.default is None):
             setattr(element, feature.attribute, None if value is None else _inward_value(feature, value))
 
@@ -284,8 +284,15 @@ def _in_order(values: list[Element], wanted: list[Element]) -> None:
         list.__setitem__(values, slice(None), wanted)
 
 
+def _get(source: Any, feature: Feature) -> Any:
+    try:
+        return source.eGet(feature.name)
+    except AttributeError:  # the modules that pyecoregen makes call it as Python does
+        return source.eGet(feature.attribute)
+
+
 def _held_by(source: Any, feature: Feature) -> list[Any]:
-    value = source.eGet(feature.name)
+    value = _get(source, feature)
     values = value if feature.many else [] if value is None else [value]
     return [each.force_resolve() for each in values]
 
