@@ -202,6 +202,11 @@ def test_what_is_said_to_differ_from_pyecore_differs(zoo, read_zoo):
     assert [each.name for each in theirs.eAllContents()] == ["l", "o", "c"]
     assert isinstance(theirs.animals[0], lion.eClass)
     assert not isinstance(lion, lion.eClass)
+    with pytest.raises(AttributeError):
+        lion.__getattribute__("teeth")
+    lion.teeth = "many"
+    with pytest.raises(ecore.BadValueError):
+        theirs.animals[0].teeth = "many"
     theirs.animals[0].teeth = None
     assert theirs.animals[0].eIsSet("teeth")
     theirs.animals[0].tags.append("t")
