@@ -3,16 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from typing import TYPE_CHECKING
 
-from mmrs_core.contributions.backends import BackendFactory
-from mmrs_core.contributions.checks import Check
-from mmrs_core.contributions.constraints import Constraint
-from mmrs_core.contributions.fixes import Fix
-from mmrs_core.contributions.rules import MoveKind, RobotKind
 from mmrs_core.contributions.symbols import CORE_SYMBOLS, MapSymbol
-from mmrs_core.contributions.targets import Target
-from mmrs_core.contributions.wiring import DeviceWiring
 from mmrs_core.hookspecs import hookimpl
+
+if TYPE_CHECKING:
+    from mmrs_core.contributions.backends import BackendFactory
+    from mmrs_core.contributions.checks import Check
+    from mmrs_core.contributions.constraints import Constraint
+    from mmrs_core.contributions.fixes import Fix
+    from mmrs_core.contributions.rules import MoveKind, RobotKind
+    from mmrs_core.contributions.targets import Target
+    from mmrs_core.contributions.wiring import DeviceWiring
 
 
 @hookimpl

@@ -9,23 +9,25 @@ metaclass, never by the order of registration.
 from __future__ import annotations
 
 from collections.abc import Iterable
+from typing import TYPE_CHECKING
 
 import pluggy
 
-from mmrs_core.behaviour.steps import StepRecord
-from mmrs_core.contributions.backends import BackendFactory
-from mmrs_core.contributions.checks import Check
-from mmrs_core.contributions.codecs import Codec
-from mmrs_core.contributions.commands import Command
-from mmrs_core.contributions.constraints import Constraint
-from mmrs_core.contributions.execution import Condition
-from mmrs_core.contributions.fixes import Fix
-from mmrs_core.contributions.rules import MoveKind, RobotKind, Rule
-from mmrs_core.contributions.symbols import MapSymbol
-from mmrs_core.contributions.targets import Target
-from mmrs_core.contributions.wiring import DeviceWiring
-from mmrs_core.languages.evolution.migration import Migration
-from mmrs_core.languages.registry import MetamodelSource
+if TYPE_CHECKING:
+    from mmrs_core.behaviour.steps import StepRecord
+    from mmrs_core.contributions.backends import BackendFactory
+    from mmrs_core.contributions.checks import Check
+    from mmrs_core.contributions.codecs import Codec
+    from mmrs_core.contributions.commands import Command
+    from mmrs_core.contributions.constraints import Constraint
+    from mmrs_core.contributions.execution import Condition
+    from mmrs_core.contributions.fixes import Fix
+    from mmrs_core.contributions.rules import MoveKind, RobotKind, Rule
+    from mmrs_core.contributions.symbols import MapSymbol
+    from mmrs_core.contributions.targets import Target
+    from mmrs_core.contributions.wiring import DeviceWiring
+    from mmrs_core.languages.evolution.migration import Migration
+    from mmrs_core.languages.sources import MetamodelSource
 
 hookspec = pluggy.HookspecMarker("mmrs")
 hookimpl = pluggy.HookimplMarker("mmrs")

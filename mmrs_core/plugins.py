@@ -5,19 +5,40 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cache
+from importlib import import_module
 from importlib.metadata import EntryPoint, entry_points
-from typing import Any, get_args, get_type_hints
+from typing import TYPE_CHECKING, Any
 
 import pluggy
 
 from mmrs_core import builtin, hookspecs
-from mmrs_core.behaviour.steps import StepRecord
 from mmrs_core.contributions.blame import guarded
 from mmrs_core.contributions.registry import Contributions, called
 from mmrs_core.errors import PluginError
 
+if TYPE_CHECKING:
+    from mmrs_core.behaviour.steps import StepRecord
+
 GROUP = "mmrs.plugins"
 _CORE = builtin.__name__
+_KINDS: Mapping[str, str] = {
+    "metamodels": "languages.sources.MetamodelSource",
+    "migrations": "languages.evolution.migration.Migration",
+    "constraints": "contributions.constraints.Constraint",
+    "fixes": "contributions.fixes.Fix",
+    "rules": "contributions.rules.Rule",
+    "robot_kinds": "contributions.rules.RobotKind",
+    "move_kinds": "contributions.rules.MoveKind",
+    "checks": "contributions.checks.Check",
+    "device_actions": "contributions.wiring.DeviceWiring",
+    "targets": "contributions.targets.Target",
+    "backends": "contributions.backends.BackendFactory",
+    "codecs": "contributions.codecs.Codec",
+    "conditions": "contributions.execution.Condition",
+    "map_symbols": "contributions.symbols.MapSymbol",
+    "commands": "contributions.commands.Command",
+}
+"""What each sort of contribution is, within this package."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -137,7 +158,7 @@ def _declared(
 
 
 def _kind(sort: str) -> type:
-    """Return what a hook declares, by its signature."""
-    declared = get_type_hints(getattr(hookspecs, f"mmrs_{sort}"))["return"]
-    kind: type = get_args(declared)[0]
+    """Return what a hook declares; imported now, since no command needs every sort."""
+    module, _, name = _KINDS[sort].rpartition(".")
+    kind: type = getattr(import_module(f"mmrs_core.{module}"), name)
     return kind

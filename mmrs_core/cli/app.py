@@ -2,77 +2,95 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable, Sequence
 from importlib import import_module
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated, Any
 
 import typer
 
-from mmrs_core.cli import (
-    bus,
-    check,
-    control,
-    convert,
-    demo,
-    diff,
-    explain,
-    generate,
-    live,
-    metamodel,
-    migrate,
-    plan,
-    plugin,
-    replay,
-    show,
-    simulate,
-    sitl,
-    validate,
-)
 from mmrs_core.cli.output import say, tell
-from mmrs_core.cli.preview import command as preview
-from mmrs_core.cli.report import command as report
 from mmrs_core.cli.settings import DEBUG, NO_PLUGINS, Settings
+from mmrs_core.contributions.commands import Command
 from mmrs_core.errors import MmrsError, PluginError
-
-if TYPE_CHECKING:
-    from mmrs_core.contributions.commands import Command
 
 _HELP = "Missions of mobile multi-robot systems: from a mission model to robots that carry it out."
 _EPILOG = (
     "Exit codes: 0 done, 1 model invalid or mission failed, 2 wrong usage, 3 file not readable or writable, "
     "4 no feasible plan, 5 link or robot lost, 130 interrupted."
 )
-_COMMANDS: tuple[tuple[str, Callable[..., int]], ...] = (
-    ("demo", demo.demo),
-    ("validate", validate.validate),
-    ("plan", plan.plan),
-    ("check", check.check),
-    ("generate", generate.generate),
-    ("explain", explain.explain),
-    ("simulate", simulate.simulate),
-    ("sitl", sitl.sitl),
-    ("run", live.run),
-    ("control", control.control),
-    ("replay", replay.replay),
-    ("report", report.report),
-    ("preview", preview.preview),
-    ("show", show.show),
-    ("convert", convert.convert),
-    ("diff", diff.diff),
-    ("migrate", migrate.migrate),
+_COMMANDS = (
+    Command("demo", "Take an example all the way, into one folder.", "mmrs_core.cli.demo:demo"),
+    Command(
+        "validate",
+        "List everything that is wrong with a mission's models.",
+        "mmrs_core.cli.validate:validate",
+    ),
+    Command("plan", "Plan a mission and write the behaviour of every robot.", "mmrs_core.cli.plan:plan"),
+    Command("check", "Say what is known of the safety of a behaviour.", "mmrs_core.cli.check:check"),
+    Command("generate", "Generate the code of every robot's controller.", "mmrs_core.cli.generate:generate"),
+    Command(
+        "explain", "Say which move a line of a generated file comes from.", "mmrs_core.cli.explain:explain"
+    ),
+    Command(
+        "simulate",
+        "Carry out a behaviour in simulation, faster than real time.",
+        "mmrs_core.cli.simulate:simulate",
+    ),
+    Command("sitl", "Start simulated vehicles that speak MAVLink.", "mmrs_core.cli.sitl:sitl"),
+    Command("run", "Carry out a behaviour with real robots.", "mmrs_core.cli.live:run"),
+    Command("control", "Give an order to robots that are running.", "mmrs_core.cli.control:control"),
+    Command(
+        "replay",
+        "Replay the logs of a run through the rules of its behaviour.",
+        "mmrs_core.cli.replay:replay",
+    ),
+    Command("report", "Tell people how a flight went.", "mmrs_core.cli.report.command:report"),
+    Command(
+        "preview",
+        "Draw a mission: map, timeline, heights, on one page.",
+        "mmrs_core.cli.preview.command:preview",
+    ),
+    Command("show", "Print a model as a tree, or what a path leads to.", "mmrs_core.cli.show:show"),
+    Command(
+        "convert",
+        "Write models in their other form: XMI as JSON, JSON as XMI.",
+        "mmrs_core.cli.convert:convert",
+    ),
+    Command("diff", "Say what differs between two models.", "mmrs_core.cli.diff:diff"),
+    Command("migrate", "Turn models of another dialect into a project.", "mmrs_core.cli.migrate:migrate"),
+)
+"""The help of all together imports none of them: each line is the first of the command's own help."""
+_GROUPS = (
+    Command("plugin", "Plug-ins: who contributed what, and new ones.", "mmrs_core.cli.plugin:app"),
+    Command("metamodel", "The languages that are installed.", "mmrs_core.cli.metamodel:app"),
+    Command("bus", "Slots of robots on different machines.", "mmrs_core.cli.bus:app"),
 )
 
 
 def app_for(arguments: Sequence[str], settings: Settings) -> typer.Typer:
     """Return the application for a command line.
 
+    Of the core's commands, only the called one is imported; the others are there by name and help.
     Plug-ins are asked for their commands only if no command of the core is called: for the help,
     or for a command that the core does not know.
     """
-    app = _core_app()
+    app = typer.Typer(rich_markup_mode=None, help=_HELP, epilog=_EPILOG, no_args_is_help=True)
+    app.callback()(_global_options)
     called = next((argument for argument in arguments if not argument.startswith("-")), None)
-    if called not in {*(name for name, _ in _COMMANDS), "plugin", "metamodel", "bus"}:
+    completing = "_MMRS_COMPLETE" in os.environ  # the shell asks, and not by the arguments
+    for command in _COMMANDS:
+        if completing or command.name == called:
+            app.command(command.name)(_imported(command))
+        else:
+            app.command(command.name, help=command.help)(_nothing)
+    if called not in {command.name for command in (*_COMMANDS, *_GROUPS)}:
         _add_plugin_commands(app, settings, called)
+    for group in _GROUPS:
+        if completing or group.name == called:
+            app.add_typer(_imported(group), name=group.name)
+        else:
+            app.command(group.name, help=group.help)(_nothing)
     return app
 
 
@@ -88,19 +106,22 @@ def app_of(program: str, arguments: Sequence[str], settings: Settings) -> tuple[
     if program != "mmrs-gen":
         return program, app_for(arguments, settings), list(arguments)
     if next(iter(arguments), None) == "explain":
+        from mmrs_core.cli import explain
+
         return f"{program} explain", generate_app(explain.explain), list(arguments[1:])
+    from mmrs_core.cli import generate
+
     return program, generate_app(generate.generate), list(arguments)
 
 
-def _core_app() -> typer.Typer:
-    app = typer.Typer(rich_markup_mode=None, help=_HELP, epilog=_EPILOG, no_args_is_help=True)
-    app.callback()(_global_options)
-    for name, command in _COMMANDS:
-        app.command(name)(command)
-    app.add_typer(plugin.app, name="plugin")
-    app.add_typer(metamodel.app, name="metamodel")
-    app.add_typer(bus.app, name="bus")
-    return app
+def _imported(command: Command) -> Any:
+    """Return what a command's entry names."""
+    module, _, name = command.entry.partition(":")
+    return getattr(import_module(module), name)
+
+
+def _nothing() -> None:
+    """Stand for a command that is not called."""
 
 
 def _print_version(wanted: bool) -> None:
@@ -140,9 +161,8 @@ def _add_plugin_commands(app: typer.Typer, settings: Settings, called: str | Non
 
 def _runner(command: Command, blamed: str) -> Callable[[typer.Context], int]:
     def run(context: typer.Context) -> int:
-        module, _, function = command.entry.partition(":")
         try:
-            entry = getattr(import_module(module), function)
+            entry = _imported(command)
         except Exception as error:
             raise PluginError(f"{blamed}: {command.entry} cannot be imported: {error!r}") from error
         try:

@@ -8,13 +8,14 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Protocol
+from typing import TYPE_CHECKING, Protocol
 
-from mmrs_core.behaviour.program import Action, Move, Program, RobotProgram
-from mmrs_core.contributions.execution import Clock, Fault, RobotState
-from mmrs_core.contributions.rules import MoveKind, RobotKind
-from mmrs_core.contributions.wiring import Wirings
-from mmrs_core.scene import Area, Name, Policy, RobotType
+if TYPE_CHECKING:
+    from mmrs_core.behaviour.program import Action, Move, Program, RobotProgram
+    from mmrs_core.contributions.execution import Clock, Fault, RobotState
+    from mmrs_core.contributions.rules import MoveKind, RobotKind
+    from mmrs_core.contributions.wiring import Wirings
+    from mmrs_core.scene import Area, Name, Policy, RobotType
 
 
 class Backend(Protocol):

@@ -5,11 +5,14 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 from enum import Enum
+from typing import TYPE_CHECKING
 
-from mmrs_core.behaviour.program import Program
-from mmrs_core.contributions.rules import MoveKind, RobotKind
 from mmrs_core.diagnostics import Place
-from mmrs_core.scene import Area, Name, RobotType
+
+if TYPE_CHECKING:
+    from mmrs_core.behaviour.program import Program
+    from mmrs_core.contributions.rules import MoveKind, RobotKind
+    from mmrs_core.scene import Area, Name, RobotType
 
 
 class Status(Enum):

@@ -4,11 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 from mmrs_core.diagnostics import Severity
-from mmrs_core.languages.element import Element
-from mmrs_core.languages.modelset import ModelSet
-from mmrs_core.scene import Name
+
+if TYPE_CHECKING:
+    from mmrs_core.languages.element import Element
+    from mmrs_core.languages.modelset import ModelSet
+    from mmrs_core.scene import Name
 
 
 @dataclass(frozen=True, slots=True)

@@ -7,9 +7,10 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from typing import Protocol
+from typing import TYPE_CHECKING, Protocol
 
-from mmrs_core.scene import Position
+if TYPE_CHECKING:
+    from mmrs_core.scene import Position
 
 
 @dataclass(frozen=True, slots=True)

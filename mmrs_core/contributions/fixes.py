@@ -4,15 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
-from mmrs_core.diagnostics import Diagnostic
-from mmrs_core.languages.element import Element
 from mmrs_core.languages.json_form.markup import Member, Thing, inserted, taken_away, written
 from mmrs_core.languages.json_form.values import quoted
-from mmrs_core.languages.modelset import ModelSet
-from mmrs_core.languages.registry import Registry
 from mmrs_core.languages.xmi.escapes import in_attribute
-from mmrs_core.languages.xmi.markup import Attribute, Markup, Tag
+
+if TYPE_CHECKING:
+    from mmrs_core.diagnostics import Diagnostic
+    from mmrs_core.languages.element import Element
+    from mmrs_core.languages.modelset import ModelSet
+    from mmrs_core.languages.registry import Registry
+    from mmrs_core.languages.xmi.markup import Attribute, Markup, Tag
 
 
 @dataclass(frozen=True, slots=True, order=True)

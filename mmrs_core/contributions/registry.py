@@ -6,23 +6,26 @@ import re
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
-from mmrs_core.contributions.backends import BackendFactory
-from mmrs_core.contributions.checks import Check
-from mmrs_core.contributions.codecs import Codec
 from mmrs_core.contributions.commands import CORE_COMMANDS, Command
-from mmrs_core.contributions.constraints import Constraint
-from mmrs_core.contributions.execution import Condition
-from mmrs_core.contributions.fixes import Fix
-from mmrs_core.contributions.rules import MoveKind, RobotKind, Rule
-from mmrs_core.contributions.symbols import MapSymbol
-from mmrs_core.contributions.targets import Target
-from mmrs_core.contributions.wiring import DeviceWiring
 from mmrs_core.errors import PluginError
-from mmrs_core.languages.evolution.migration import Migration, chains
-from mmrs_core.languages.registry import MetamodelSource, Registry, registry_with
-from mmrs_core.scene import Name
+
+if TYPE_CHECKING:
+    from mmrs_core.contributions.backends import BackendFactory
+    from mmrs_core.contributions.checks import Check
+    from mmrs_core.contributions.codecs import Codec
+    from mmrs_core.contributions.constraints import Constraint
+    from mmrs_core.contributions.execution import Condition
+    from mmrs_core.contributions.fixes import Fix
+    from mmrs_core.contributions.rules import MoveKind, RobotKind, Rule
+    from mmrs_core.contributions.symbols import MapSymbol
+    from mmrs_core.contributions.targets import Target
+    from mmrs_core.contributions.wiring import DeviceWiring
+    from mmrs_core.languages.evolution.migration import Migration
+    from mmrs_core.languages.registry import Registry
+    from mmrs_core.languages.sources import MetamodelSource
+    from mmrs_core.scene import Name
 
 Key = TypeVar("Key")
 Item = TypeVar("Item")
@@ -82,11 +85,15 @@ class Contributions:
     @cached_property
     def languages(self) -> Registry:
         """Return the registry of all metamodels, the core's included."""
+        from mmrs_core.languages.registry import registry_with  # the help needs plug-ins, but no language
+
         return registry_with(self.metamodels, self.migrations)
 
     @cached_property
     def migrations(self) -> tuple[Migration, ...]:
         """Return the steps from older versions of languages."""
+        from mmrs_core.languages.evolution.migration import chains
+
         found = tuple(self._by("migrations", lambda migration: migration.from_uri).values())
         chains(found, ())  # they must not lead in a circle
         return found

@@ -4,26 +4,28 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING
 
-from mmrs_core.behaviour.program import Move
-from mmrs_core.scene import (
-    ActionAt,
-    Area,
-    Kinematics,
-    Look,
-    Name,
-    Part,
-    PolicyEvent,
-    PolicyResponse,
-    Position,
-    Robot,
-    RobotType,
-    Scene,
-    Stroke,
-    Task,
-    Value,
-    Work,
-)
+if TYPE_CHECKING:
+    from mmrs_core.behaviour.program import Move
+    from mmrs_core.scene import (
+        ActionAt,
+        Area,
+        Kinematics,
+        Look,
+        Name,
+        Part,
+        PolicyEvent,
+        PolicyResponse,
+        Position,
+        Robot,
+        RobotType,
+        Scene,
+        Stroke,
+        Task,
+        Value,
+        Work,
+    )
 
 
 @dataclass(frozen=True, slots=True)

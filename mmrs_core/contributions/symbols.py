@@ -5,9 +5,12 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 from mmrs_core.contributions.rules import most_specific
-from mmrs_core.scene import Metaclasses, Name, Part, Ring
+
+if TYPE_CHECKING:
+    from mmrs_core.scene import Metaclasses, Name, Part, Ring
 
 _COLOUR = re.compile("#[0-9a-fA-F]{6}")
 _LONGEST_ICON = 2

@@ -5,12 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
-from mmrs_core.behaviour.program import Program
-from mmrs_core.contributions.rules import MoveKind, RobotKind
-from mmrs_core.contributions.wiring import Wirings
-from mmrs_core.scene import Area, Name, RobotType
+if TYPE_CHECKING:
+    from mmrs_core.behaviour.program import Program
+    from mmrs_core.contributions.rules import MoveKind, RobotKind
+    from mmrs_core.contributions.wiring import Wirings
+    from mmrs_core.scene import Area, Name, RobotType
 
 
 @dataclass(frozen=True, slots=True)

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import TypeAlias
+from typing import TYPE_CHECKING, TypeAlias
 
-from mmrs_core.behaviour.program import Action
-from mmrs_core.scene import Device
+if TYPE_CHECKING:
+    from mmrs_core.behaviour.program import Action
+    from mmrs_core.scene import Device
 
 
 @dataclass(frozen=True, slots=True)

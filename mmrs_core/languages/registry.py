@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
 from functools import cache, cached_property
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 from mmrs_core.languages.datatypes import BUILT_IN
@@ -13,6 +11,7 @@ from mmrs_core.languages.element import Element
 from mmrs_core.languages.evolution.migration import Migration, chains
 from mmrs_core.languages.metaclass import Metaclass, Package
 from mmrs_core.languages.naming import nearest
+from mmrs_core.languages.sources import MetamodelSource as MetamodelSource
 from mmrs_core.resources import shipped
 
 if TYPE_CHECKING:
@@ -21,21 +20,6 @@ if TYPE_CHECKING:
     from mmrs_core.languages.xmi.shapes import Maker
 
 CORE_LANGUAGES = ("robot", "mission", "context", "behaviour")
-
-
-@dataclass(frozen=True, slots=True)
-class MetamodelSource:
-    """A metamodel that somebody brings.
-
-    Attributes:
-        ns_uri: of the package, as its file states it.
-        ecore: the .ecore file, or a pyecore EPackage.
-        provider: the distribution that brings it.
-    """
-
-    ns_uri: str
-    ecore: Path | object
-    provider: str = "core"
 
 
 class Registry:

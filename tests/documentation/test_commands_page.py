@@ -13,14 +13,15 @@ PAGE = Path(__file__).parents[2] / "docs" / "commands.md"
 HEAD = "# Commands\n\nThis page is made from the help of the commands; do not edit it.\n"
 
 
-def names_of(group, before=""):
+def called(arguments):
+    """Return the core's commands by name, the called one with all that is in it."""
+    return typer.main.get_command(app_for(arguments, Settings(only_core=True))).commands
+
+
+def names_of_all():
     """Yield the names of all commands, those of a group behind it."""
-    for name, command in group.commands.items():
-        inner = getattr(command, "commands", None)
-        if inner is None:
-            yield before + name
-        else:
-            yield from names_of(command, f"{before}{name} ")
+    for name in called(["--help"]):
+        yield from (f"{name} {inner}".strip() for inner in getattr(called([name])[name], "commands", [""]))
 
 
 @pytest.fixture
@@ -28,7 +29,7 @@ def made(capsys, monkeypatch):
     """Return the page as the commands' help gives it."""
     monkeypatch.setenv("COLUMNS", "100")
     sections = [HEAD]
-    for command in ("", *names_of(typer.main.get_command(app_for(["--help"], Settings(only_core=True))))):
+    for command in ("", *names_of_all()):
         assert run([*command.split(), "--help", "--no-plugins"]) == 0
         name = f"mmrs {command}".strip()
         sections.append(f"## {name}\n\n```text\n{capsys.readouterr().out.strip()}\n```\n")

@@ -12,7 +12,7 @@ from mmrs_core.generation.scaffolding.files import TaskKind, metamodel_path, plu
 from mmrs_core.generation.scaffolding.names import PluginNames
 from mmrs_core.generation.stubs.write import write_stubs
 from mmrs_core.languages.metamodels.gathering import registry_of_files
-from mmrs_core.languages.registry import MetamodelSource
+from mmrs_core.languages.sources import MetamodelSource
 
 
 def write_plugin(

@@ -4,18 +4,21 @@ from __future__ import annotations
 
 from importlib.resources import files
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from mmrs_auv import names
-from mmrs_core.contributions.backends import BackendFactory
 from mmrs_core.contributions.commands import Command
-from mmrs_core.contributions.constraints import Constraint
-from mmrs_core.contributions.fixes import Fix
-from mmrs_core.contributions.rules import RobotKind, Rule
 from mmrs_core.contributions.symbols import MapSymbol
-from mmrs_core.contributions.targets import Target
 from mmrs_core.hookspecs import hookimpl
-from mmrs_core.languages.evolution.migration import Migration
-from mmrs_core.languages.registry import MetamodelSource
+from mmrs_core.languages.sources import MetamodelSource
+
+if TYPE_CHECKING:
+    from mmrs_core.contributions.backends import BackendFactory
+    from mmrs_core.contributions.constraints import Constraint
+    from mmrs_core.contributions.fixes import Fix
+    from mmrs_core.contributions.rules import RobotKind, Rule
+    from mmrs_core.contributions.targets import Target
+    from mmrs_core.languages.evolution.migration import Migration
 
 
 @hookimpl

@@ -4,14 +4,17 @@ from __future__ import annotations
 
 from importlib.resources import files
 from pathlib import Path
+from typing import TYPE_CHECKING
 
-from mmrs_core.contributions.constraints import Constraint
-from mmrs_core.contributions.execution import Condition
-from mmrs_core.contributions.rules import MoveKind, RobotKind
 from mmrs_core.contributions.symbols import MapSymbol
 from mmrs_core.hookspecs import hookimpl
-from mmrs_core.languages.registry import MetamodelSource
+from mmrs_core.languages.sources import MetamodelSource
 from mmrs_multicopter.names import DRONE, MULTICOPTER
+
+if TYPE_CHECKING:
+    from mmrs_core.contributions.constraints import Constraint
+    from mmrs_core.contributions.execution import Condition
+    from mmrs_core.contributions.rules import MoveKind, RobotKind
 
 
 @hookimpl

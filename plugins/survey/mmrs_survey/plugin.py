@@ -4,14 +4,17 @@ from __future__ import annotations
 
 from importlib.resources import files
 from pathlib import Path
+from typing import TYPE_CHECKING
 
-from mmrs_core.contributions.constraints import Constraint
-from mmrs_core.contributions.fixes import Fix
-from mmrs_core.contributions.rules import Rule
 from mmrs_core.contributions.symbols import MapSymbol
 from mmrs_core.hookspecs import hookimpl
-from mmrs_core.languages.registry import MetamodelSource
+from mmrs_core.languages.sources import MetamodelSource
 from mmrs_survey import names
+
+if TYPE_CHECKING:
+    from mmrs_core.contributions.constraints import Constraint
+    from mmrs_core.contributions.fixes import Fix
+    from mmrs_core.contributions.rules import Rule
 
 
 @hookimpl

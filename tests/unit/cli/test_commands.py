@@ -55,6 +55,26 @@ def test_every_command_has_help(name, capsys):
     assert capsys.readouterr().out.startswith(f"Usage: mmrs {name}")
 
 
+@pytest.mark.parametrize("name", CORE)
+def test_the_list_of_commands_says_what_each_command_says_of_itself(name):
+    settings = Settings(only_core=True)
+    listed, called = (typer.main.get_command(app_for([each], settings)) for each in ("--help", name))
+    shown = [group.commands[name].get_short_help_str(99) for group in (listed, called)]
+    assert shown[0] == shown[1]
+
+
+@pytest.mark.parametrize(
+    ("words", "completed"),
+    [("mmrs val", "validate"), ("mmrs validate --dr", "--dry-run"), ("mmrs bus k", "keys")],
+)
+def test_a_shell_completes_commands_and_their_options(words, completed, capfd, monkeypatch):
+    monkeypatch.setenv("_MMRS_COMPLETE", "complete_bash")
+    monkeypatch.setenv("COMP_WORDS", words)
+    monkeypatch.setenv("COMP_CWORD", str(words.count(" ")))
+    assert run(["--no-plugins"]) == 0
+    assert capfd.readouterr().out.split() == [completed]
+
+
 @pytest.mark.parametrize("group", ["", "plugin", "metamodel", "bus", "auv", "can"])
 def test_the_list_of_commands_cuts_no_sentence(group, capsys, monkeypatch):
     monkeypatch.setenv("COLUMNS", "80")

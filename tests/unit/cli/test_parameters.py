@@ -63,9 +63,11 @@ def test_what_follows_two_dashes_is_no_option():
     assert rest == ["plan", "--", "--debug"]
 
 
-@pytest.mark.parametrize("flag", ["--fix", "--json", "--force"])
-def test_a_flag_takes_no_file_away_from_the_robots(flag):
+@pytest.mark.parametrize(
+    ("command", "flag"), [("validate", "--fix"), ("validate", "--json"), ("convert", "--force")]
+)
+def test_a_flag_takes_no_file_away_from_the_robots(command, flag):
     """What takes no value is asked of the commands themselves."""
-    own = frozenset(flags_of(typer.main.get_command(app_for(["validate"], Settings()))))
+    own = frozenset(flags_of(typer.main.get_command(app_for([command], Settings()))))
     assert flag in own
     assert "--robots" not in own

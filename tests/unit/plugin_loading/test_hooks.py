@@ -51,6 +51,16 @@ def test_every_hook_has_a_test():
     assert [name for name in hooks if f"test_hook_{name}" not in here] == []
 
 
+def test_what_a_hook_declares_is_what_its_signature_says():
+    declaring = {
+        name: inspect.signature(hook).return_annotation
+        for name, hook in inspect.getmembers(hookspecs, inspect.isfunction)
+        if name.startswith("mmrs_") and not inspect.signature(hook).parameters
+    }
+    kinds = {f"mmrs_{sort}": f"Iterable[{plugins._kind(sort).__name__}]" for sort in plugins._KINDS}
+    assert kinds == declaring
+
+
 def test_hook_mmrs_metamodels(tmp_path):
     ecore = tmp_path / "kite.ecore"
     ecore.write_text(
