@@ -7,6 +7,7 @@ from collections.abc import Iterator, Sequence
 import typer
 
 from mmrs_core.cli.app import app_of
+from mmrs_core.cli.as_typed import take_as_typed
 from mmrs_core.cli.failures import MODEL_INVALID, ended_by
 from mmrs_core.cli.interruption import INTERRUPTED, interrupted
 from mmrs_core.cli.output import tell
@@ -21,6 +22,7 @@ def run_command(arguments: Sequence[str], program: str) -> int:
         name, app, rest = app_of(program, rest, settings)
         command = typer.main.get_command(app)
         line = spread(rest, frozenset(flags_of(command)))
+        take_as_typed(command, line)
         result = command.main(line, prog_name=name, standalone_mode=False, obj=settings)
         return result if isinstance(result, int) else 0
     except typer.Exit as ending:
