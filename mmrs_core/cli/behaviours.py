@@ -5,10 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from mmrs_core.analysis.constraints import check_behaviour
-from mmrs_core.behaviour.program import Program
-from mmrs_core.cli.journey import Workshop
 from mmrs_core.cli.output import report
 from mmrs_core.contributions.rules import barriers
 from mmrs_core.diagnostics import Diagnostic, has_errors, in_order
@@ -26,12 +25,16 @@ from mmrs_core.languages.grounding.scenes import (
     robot_type_of,
 )
 from mmrs_core.languages.grounding.values import children
-from mmrs_core.languages.model import Model
 from mmrs_core.languages.modelset import context_in, robot_files_in, types_by_name
 from mmrs_core.languages.reading import read_model
-from mmrs_core.languages.registry import Registry
 from mmrs_core.pipeline import Place, program_of
-from mmrs_core.scene import Area, Part
+
+if TYPE_CHECKING:
+    from mmrs_core.behaviour.program import Program
+    from mmrs_core.cli.journey import Workshop
+    from mmrs_core.languages.model import Model
+    from mmrs_core.languages.registry import Registry
+    from mmrs_core.scene import Area, Part
 
 
 @dataclass(frozen=True, slots=True)

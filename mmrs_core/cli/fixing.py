@@ -24,8 +24,13 @@ def repairer_for(contributions: Contributions, diagnose: Diagnose) -> Repairer:
     """Return what finds and tries the quick fixes of all plug-ins."""
     from mmrs_core.analysis.fixes.repair import Repairer
 
-    checks = (check.name for check in contributions.checks)
-    return Repairer(contributions.fixes, contributions.languages, checks, diagnose)
+    return Repairer(contributions.fixes, contributions.languages, _names_of_checks(contributions), diagnose)
+
+
+def _names_of_checks(contributions: Contributions) -> Iterator[str]:
+    """Yield them; the checks are imported only when a fix asks."""
+    for check in contributions.checks:
+        yield check.name
 
 
 def difference(changes: Iterable[Change]) -> str:

@@ -193,10 +193,13 @@ def called_type(robot_type: Element | None) -> str:
 
 
 def _accepted(root: Element, models: ModelSet) -> Iterator[Finding]:
+    accepted = texts(root, "acceptedUnknowns")
+    if not accepted:
+        return  # most missions accept none, and need no check to be imported
     from mmrs_core.analysis.checks import CHECKS
 
     known = sorted(check.name for check in CHECKS)
-    for name in texts(root, "acceptedUnknowns"):
+    for name in accepted:
         if name not in known:
             guess = nearest(name, known)
             yield finding(

@@ -6,6 +6,7 @@ import re
 from collections import Counter
 from collections.abc import Callable, Container, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from pathlib import Path
 
 from mmrs_core.contributions.fixes import Edit, Fix, Wrong, with_name
@@ -105,7 +106,7 @@ class Repairer:
 
     Args:
         fixes: by code.
-        checks: names of all checks of behaviours.
+        checks: names of all checks of behaviours; asked for when there is something to mend.
     """
 
     def __init__(
@@ -113,8 +114,12 @@ class Repairer:
     ) -> None:
         self._fixes = fixes
         self._registry = registry
-        self._checks = tuple(checks)
+        self._named = checks
         self._diagnose = diagnose
+
+    @cached_property
+    def _checks(self) -> tuple[str, ...]:
+        return tuple(self._named)
 
     def proposals(
         self, diagnosis: Diagnosis, texts: Mapping[Path, bytes] | None = None

@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from math import isfinite
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
-from mmrs_core.diagnostics import Diagnostic
 from mmrs_core.geometry.frames import LocalFrame, known_crs
 from mmrs_core.languages.element import Element, place_of
 from mmrs_core.languages.grounding.frame import (
@@ -26,7 +26,10 @@ from mmrs_core.languages.grounding.frame import (
     reference_in,
 )
 from mmrs_core.languages.grounding.values import child, number, text
-from mmrs_core.scene import Frame, Point, Position
+
+if TYPE_CHECKING:
+    from mmrs_core.diagnostics import Diagnostic
+    from mmrs_core.scene import Frame, Point, Position
 
 
 @dataclass(frozen=True, slots=True)

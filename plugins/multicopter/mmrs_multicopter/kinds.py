@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
-from mmrs_core.behaviour.program import Move
+from typing import TYPE_CHECKING
+
 from mmrs_core.contributions.rules import MoveKind, MoveSpec, RobotKind
 from mmrs_core.errors import InfeasibleError
 from mmrs_core.geometry.ground import ground_height
-from mmrs_core.scene import Kinematics, Position, Robot, Scene
 from mmrs_core.transformation.kinds import kinematics_for, path_seconds, stopping_seconds
 from mmrs_multicopter import trajectories
 from mmrs_multicopter.names import DRONE, GO_TO, LAND, TAKE_OFF
+
+if TYPE_CHECKING:
+    from mmrs_core.behaviour.program import Move
+    from mmrs_core.scene import Kinematics, Position, Robot, Scene
 
 LOWEST_FLIGHT = 1.0
 """Metres above home below which a drone only launches and lands."""

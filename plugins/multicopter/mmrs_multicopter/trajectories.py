@@ -8,12 +8,15 @@ from __future__ import annotations
 
 from itertools import pairwise
 from math import dist, hypot
+from typing import TYPE_CHECKING
 
-from mmrs_core.behaviour.program import Move
 from mmrs_core.contributions.rules import MoveSpec
-from mmrs_core.scene import Position
 from mmrs_core.transformation.kinds import before_target
 from mmrs_multicopter.names import GO_TO
+
+if TYPE_CHECKING:
+    from mmrs_core.behaviour.program import Move
+    from mmrs_core.scene import Position
 
 SAME = 1e-6
 """Metres within which two positions are one."""
