@@ -22,6 +22,8 @@ from mmrs_core.languages.naming import nearest, python_name
 MOST_FEATURES = 500_000
 """Of all classes together, inherited ones counted again in each; the largest metamodels have a tenth."""
 
+_STRAYS = (ecore.EEnum.eClass, ecore.EDataType.eClass)
+"""What modules that pyecoregen wrote take for classes of their own."""
 _Type = Metaclass | DataType | Enumeration
 _ANYTHING = (ECORE, "EObject")
 _OWN_ECORE = "EStringToStringMapEntry"
@@ -122,7 +124,8 @@ class _Shapes:
     def _declare(self, package: Any, entry: Located) -> list[_Type]:
         """Note the classifiers of a package, and return what they are to be."""
         ns_uri = entry.ns_uri
-        for kind in package.eClassifiers:
+        kinds = [kind for kind in package.eClassifiers if kind not in _STRAYS]
+        for kind in kinds:
             address = (ns_uri, kind.name)
             if address in self._metaclasses or address in self._types:
                 self._refuse(entry, address, f"class {kind.name} is declared twice")
@@ -143,7 +146,7 @@ class _Shapes:
                     is_entry=kind.instanceClassName == MAP_ENTRY,
                     eclass=_eclass(ns_uri, kind),
                 )
-        addresses = [(ns_uri, kind.name) for kind in package.eClassifiers]
+        addresses = [(ns_uri, kind.name) for kind in kinds]
         return [self._metaclasses.get(each) or self._types[each] for each in addresses]
 
     def _inherit(self, address: Address, eclass: Any, entry: Located) -> None:
@@ -288,7 +291,8 @@ def _any_object() -> Metaclass:
 
 
 def _address(kind: Any) -> Address:
-    return kind.ePackage.nsURI, kind.name
+    eclass = kind.dyn_inst  # where a Python class stands for it, as pyecoregen writes them
+    return eclass.ePackage.nsURI, eclass.name
 
 
 def _data_type(ns_uri: str, kind: Any) -> DataType:
@@ -305,7 +309,10 @@ def _literal(literal: Any) -> Literal:
 
 def _documentation(element: Any) -> str:
     annotation = element.getEAnnotation(GENMODEL)
-    text = annotation.details.get("documentation") if annotation is not None else ""
+    if annotation is not None:
+        text = annotation.details.get("documentation")
+    else:  # in modules that pyecoregen wrote, classes have it as Python's classes do
+        text = vars(element.python_class).get("__doc__") if isinstance(element, ecore.EClass) else ""
     return text if isinstance(text, str) else ""
 
 

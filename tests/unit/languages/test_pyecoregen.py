@@ -6,6 +6,7 @@ import subprocess
 import sys
 from pathlib import Path
 
+import pytest
 from pyecoregen.ecore import EcoreGenerator
 
 from mmrs_core.languages.reading import read_model
@@ -34,24 +35,57 @@ resource = resource_factory(registry)(URI("mission.xmi"))
 resource.append(made)
 resource.save()
 """
+TAKEN = """
+import sys
+from pathlib import Path
+from mmrs_core.languages.registry import MetamodelSource, registry_with
+import survey
+
+def told(ecore):  # all that such modules keep: neither order nor lower bounds
+    package = registry_with([MetamodelSource("urn:mmrs:survey:1.0", ecore)]).package("urn:mmrs:survey:1.0")
+    features = {
+        (kind.name, kind.abstract, kind.ancestry, kind.documentation, each.name, each.type.name, each.upper)
+        for kind in package.metaclasses
+        for each in kind.features
+    }
+    return features, {(each.name, each.names) for each in package.enumerations}
+
+assert told(survey) == told(Path(sys.argv[1]))
+"""
 
 
-def test_models_made_with_modules_of_pyecoregen_are_saved_by_our_writer(tmp_path, everything):
-    uris = [f"urn:mmrs:{name}:1.0" for name in LANGUAGES]
-    packages = [everything.epackage(ns_uri) for ns_uri in uris]
+@pytest.fixture(scope="module")
+def modules(tmp_path_factory, everything):
+    """Return the folder with the modules of the languages, and a function that runs code there."""
+    folder = tmp_path_factory.mktemp("modules")
     generator = EcoreGenerator()
     for task in generator.tasks:
         task.formatter = str  # the usual one takes most of the time
-    for package in packages:
-        generator.generate(package, str(tmp_path))
-    dependency = packages[1].getEClassifier("TaskDependency")
-    assert dependency.findEStructuralFeature("from") is not None  # pyecoregen has given the names back
-    run = subprocess.run(
-        [sys.executable, "-c", USE, SURVEY], cwd=tmp_path, capture_output=True, text=True, check=False
-    )
-    assert (run.returncode, run.stderr) == (0, "")
-    model = read_model(tmp_path / "mission.xmi", everything)
+    for name in LANGUAGES:
+        generator.generate(everything.epackage(f"urn:mmrs:{name}:1.0"), str(folder))
+
+    def run(code):
+        command = [sys.executable, "-c", code, SURVEY]
+        ran = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
+        assert (ran.returncode, ran.stderr) == (0, "")
+        return folder
+
+    return run
+
+
+def test_names_are_as_before_once_modules_were_made(modules, everything):
+    dependency = everything.epackage("urn:mmrs:mission:1.0").getEClassifier("TaskDependency")
+    assert dependency.findEStructuralFeature("from") is not None
+
+
+def test_models_made_with_modules_of_pyecoregen_are_saved_by_our_writer(modules, everything):
+    folder = modules(USE)
+    model = read_model(folder / "mission.xmi", everything)
     assert model.diagnostics == ()
     (root,) = model.roots
     assert (root.name, root.tasks[0].robotsWanted) == ("m", 2)
     assert root.taskDependencies[0].from_ is root.tasks[0]
+
+
+def test_a_module_of_pyecoregen_is_taken_in_the_place_of_its_metamodel(modules):
+    modules(TAKEN)
