@@ -38,8 +38,8 @@ class Forms:
     """Files that refer to each other, as the one document that pyecore reads.
 
     Attributes:
-        targets: what each reference in the text leads to, with the package and the element that refer; the
-            text has their numbers, as in ``k7``.
+        targets: what each reference in the text leads to, of which kind that must be, and the package and
+            the element that refer; the text has their numbers, as in ``k7``.
         supertypes: of each class.
         keys: of each reference that has some.
         names: the true names of what stands under others in the text, because pyecore or Python keeps them
@@ -55,7 +55,7 @@ class Forms:
         literals: AbstractSet[str],
     ) -> None:
         """Take the packages to be loaded, and the names that features and literals cannot have in pyecore."""
-        self.targets: list[tuple[Address, Located, Node]] = []
+        self.targets: list[tuple[Address, str, Located, Node]] = []
         self.supertypes: dict[Address, tuple[Address, ...]] = {}
         self.keys: dict[Address, tuple[Address, ...]] = {}
         self.names: dict[str, str] = {}
@@ -63,7 +63,7 @@ class Forms:
         self._directory = directory
         self._located = {id(entry.node): entry for entry in located if entry.node is not None}
         self._reserved = {"eStructuralFeatures": features, "eLiterals": literals}
-        self._tokens: dict[Address, str] = {}
+        self._tokens: dict[tuple[Address, str], str] = {}
 
     def document(self) -> bytes:
         """Return the text.
@@ -102,7 +102,7 @@ class Forms:
             supertypes += self._links(generic, entry, "eClassifier")
         supertypes = list(dict.fromkeys(supertypes))
         self.supertypes[entry.ns_uri, node.get("name")] = tuple(supertypes)
-        tokens = " ".join(self._token(above, entry, node) for above in supertypes)
+        tokens = " ".join(self._token(above, "EClass", entry, node) for above in supertypes)
         more = {"instanceClassName": _java_class(node)} if _java_class(node) else {}
         more |= {"eSuperTypes": tokens} if tokens else {}
         yield self._begin("eClassifiers", node, entry, "EClass", more)
@@ -131,10 +131,11 @@ class Forms:
         address = (entry.ns_uri, owner.get("name"), name)
         self.nodes[address] = (entry, node)
         target = self._type(node, owner, entry, kind == "EReference")
-        more = {"eType": self._token(target, entry, node)} if target else {}
+        wanted = "EClass" if kind == "EReference" else "EDataType"
+        more = {"eType": self._token(target, wanted, entry, node)} if target else {}
         opposite = self._links(node, entry, "eOpposite", 2)
         if opposite and kind == "EReference":
-            more["eOpposite"] = self._token(opposite[0], entry, node)
+            more["eOpposite"] = self._token(opposite[0], "EReference", entry, node)
         if keys := self._links(node, entry, "eKeys", 2):
             self.keys[address] = tuple(keys)
         if "defaultValueLiteral" in node.attributes:
@@ -177,11 +178,11 @@ class Forms:
         found = entry.file.uris(node, name)
         return [self._directory.find(uri, entry, node, wanted, name) for uri in found]
 
-    def _token(self, address: Address, entry: Located, node: Node) -> str:
-        if address not in self._tokens:
-            self._tokens[address] = f"k{len(self.targets)}"
-            self.targets.append((address, entry, node))
-        return self._tokens[address]
+    def _token(self, address: Address, kind: str, entry: Located, node: Node) -> str:
+        if (address, kind) not in self._tokens:
+            self._tokens[address, kind] = f"k{len(self.targets)}"
+            self.targets.append((address, kind, entry, node))
+        return self._tokens[address, kind]
 
     def _begin(self, tag: str, node: Node, entry: Located, kind: str, more: dict[str, str]) -> str:
         """Return the begin of an element; `more` is what is worked out, or not as the file has it."""

@@ -158,15 +158,17 @@ class _Finder:
             PluginError: if there is nothing of that name, with the nearest.
         """
         self._enter()
-        address, entry, node = self._forms.targets[int(token[1:])]
+        address, kind, entry, node = self._forms.targets[int(token[1:])]
         found = self._inside.get(address)
         if found is None:
             found = self._outside.get(address) or _of_ecore(address) or self._feature(address)
             if found is None and self._lenient:
-                found = self._stand_in(address)
+                found = self._stand_in(address, kind)
             if found is None:
                 entry.refuse(self._no_such(address, node), node)
             self._reached[id(found)] = found
+        if not isinstance(found, getattr(ecore, kind)):
+            entry.refuse(f"{self._where(node)}: {address[-1]} is no {kind}", node)
         return found
 
     def _enter(self) -> None:
@@ -190,15 +192,19 @@ class _Finder:
         owner = self._outside.get(address[:2]) if len(address) == 3 else None
         return owner and next((each for each in owner.eStructuralFeatures if each.name == address[2]), None)
 
-    def _stand_in(self, address: Address) -> Any:
+    def _stand_in(self, address: Address, kind: str) -> Any:
         package = self._strangers.setdefault(address[0], ecore.EPackage(address[0], nsURI=address[0]))
-        self._outside[address] = ecore.EClass(address[1])
-        package.eClassifiers.append(self._outside[address])
-        return self._outside[address]
+        made = ecore.EDataType(address[1]) if kind == "EDataType" else ecore.EClass(address[1])
+        package.eClassifiers.append(made)
+        self._outside[address] = made
+        return made
+
+    def _where(self, node: Node) -> str:
+        return next(".".join(known[1:]) for known, (_, each) in self._forms.nodes.items() if each is node)
 
     def _no_such(self, address: Address, node: Node) -> str:
         ns_uri, name = address[:2]
-        where = next(".".join(known[1:]) for known, (_, each) in self._forms.nodes.items() if each is node)
+        where = self._where(node)
         if len(address) == 3:
             return f"{where}: {'#//'.join(address[:2])}/{address[2]}: no such reference"
         if name == "EFeatureMapEntry":
@@ -220,7 +226,11 @@ class _Finder:
                 delattr(made.eContainingClass.python_class, made.name)
                 made.name = self._forms.names[made.name]
         for address, keys in self._forms.keys.items():
-            self._inside[address].eKeys = [self._inside.get(key) or self._feature(key) for key in keys]
+            found = [self._inside.get(key) or self._feature(key) for key in keys]
+            self._inside[address].eKeys = found
+            if None in found:
+                entry, node = self._forms.nodes[address]
+                entry.refuse(self._no_such(keys[found.index(None)], node), node)
         own = {id(each) for each in self._inside.values()}
         for reached in self._reached.values():  # pyecore would keep each metamodel as long as Ecore itself
             rels = reached._inverse_rels
