@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from mmrs_core.contributions.wiring import DeviceWiring
     from mmrs_core.languages.evolution.migration import Migration
     from mmrs_core.languages.sources import MetamodelSource
+    from mmrs_core.languages.subclasses import ElementClass
 
 hookspec = pluggy.HookspecMarker("mmrs")
 hookimpl = pluggy.HookimplMarker("mmrs")
@@ -39,6 +40,11 @@ def mmrs_metamodels() -> Iterable[MetamodelSource]:  # type: ignore[empty-body]
 
     They refer to each other and to the core's by nsURI, never by path. Two of one nsURI are an error.
     """
+
+
+@hookspec
+def mmrs_element_classes() -> Iterable[ElementClass]:  # type: ignore[empty-body]
+    """Contribute Python classes that elements are instances of; one for a metaclass."""
 
 
 @hookspec

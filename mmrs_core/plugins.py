@@ -18,11 +18,13 @@ from mmrs_core.errors import PluginError
 
 if TYPE_CHECKING:
     from mmrs_core.behaviour.steps import StepRecord
+    from mmrs_core.languages.metaclass import Package
 
 GROUP = "mmrs.plugins"
 _CORE = builtin.__name__
 _KINDS: Mapping[str, str] = {
     "metamodels": "languages.sources.MetamodelSource",
+    "element_classes": "languages.subclasses.ElementClass",
     "migrations": "languages.evolution.migration.Migration",
     "constraints": "contributions.constraints.Constraint",
     "fixes": "contributions.fixes.Fix",
@@ -102,6 +104,20 @@ def load_plugins(*, only_core: bool = False, extra: Mapping[str, object] | None 
         return tuple(_declared(manager, distributions, sort))
 
     return Plugins(Contributions(declared, distributions), distributions, manager)
+
+
+def language(ns_uri: str) -> Package:
+    """Return a language as the installed plug-ins bring it; its members are the classes to subclass.
+
+    A plug-in asks for it when its hooks are called, not when its module is imported.
+
+    Raises:
+        ValueError: if no plug-in brings it, with the nearest nsURI.
+        PluginError: as `load_plugins`.
+    """
+    from mmrs_core.languages.registry import registry_with  # the help needs plug-ins, but no language
+
+    return registry_with(load_plugins().contributions.metamodels).package(ns_uri)
 
 
 def _found(only_core: bool, extra: Mapping[str, object]) -> Iterator[tuple[str, str, object]]:

@@ -72,4 +72,5 @@ def guarded(descriptor: Descriptor, blamed: str) -> Descriptor:
     if not is_dataclass(descriptor) or isinstance(descriptor, type):
         return descriptor
     held = ((field.name, getattr(descriptor, field.name)) for field in fields(descriptor))
-    return replace(descriptor, **{name: Guarded(value, blamed) for name, value in held if callable(value)})
+    functions = ((name, value) for name, value in held if callable(value) and not isinstance(value, type))
+    return replace(descriptor, **{name: Guarded(value, blamed) for name, value in functions})

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, TypeVar
 
@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from mmrs_core.languages.evolution.migration import Migration
     from mmrs_core.languages.registry import Registry
     from mmrs_core.languages.sources import MetamodelSource
+    from mmrs_core.languages.subclasses import ElementClass
     from mmrs_core.scene import Name
 
 Key = TypeVar("Key")
@@ -36,6 +37,7 @@ Declared = Callable[[str], "Iterable[tuple[str, Any]]"]
 
 _SHOWN: Mapping[str, Callable[[Any], object]] = {
     "metamodels": lambda source: source.ns_uri,
+    "element_classes": lambda given: "#//".join(given.metaclass),
     "migrations": lambda migration: f"{migration.from_uri} to {migration.to_uri}",
     "constraints": lambda constraint: constraint.code,
     "fixes": lambda fix: fix.code,
@@ -87,7 +89,15 @@ class Contributions:
         """Return the registry of all metamodels, the core's included."""
         from mmrs_core.languages.registry import registry_with  # the help needs plug-ins, but no language
 
-        return registry_with(self.metamodels, self.migrations)
+        return registry_with(self.metamodels, self.migrations, self.element_classes)
+
+    @cached_property
+    def element_classes(self) -> tuple[ElementClass, ...]:
+        """Return the Python classes of elements; the registry refuses two for a metaclass."""
+        return tuple(
+            given if given.provider else replace(given, provider=self._whose(plugin))
+            for plugin, given in self._declared("element_classes")
+        )
 
     @cached_property
     def migrations(self) -> tuple[Migration, ...]:
@@ -189,9 +199,7 @@ class Contributions:
 
     def blamed(self, sort: str, item: object) -> str:
         """Return plug-in, distribution and name of a descriptor, for messages about its failures."""
-        plugin = self._plugin_of(sort, item)
-        distribution = self._distributions.get(plugin, "unknown distribution")
-        return f"plug-in '{plugin}' of distribution '{distribution}': {called(sort, item)}"
+        return f"{self._whose(self._plugin_of(sort, item))}: {called(sort, item)}"
 
     def check(self) -> None:
         """Look at every sort of contribution.
@@ -199,8 +207,13 @@ class Contributions:
         Raises:
             PluginError: if a plug-in is broken, or two conflict.
         """
-        for sort in _SHOWN:
+        for sort in ("languages", *_SHOWN):
             getattr(self, sort)
+
+    def _whose(self, plugin: str) -> str:
+        return (
+            f"plug-in '{plugin}' of distribution '{self._distributions.get(plugin, 'unknown distribution')}'"
+        )
 
     def _plugin_of(self, sort: str, item: object) -> str:
         return next((plugin for plugin, each in self._declared(sort) if each is item), "")
@@ -230,7 +243,7 @@ def called(sort: str, item: object) -> str:
 
 
 def _singular(sort: str) -> str:
-    return sort.removesuffix("es" if sort == "fixes" else "s").replace("_", " ")
+    return sort.removesuffix("es" if sort in ("fixes", "element_classes") else "s").replace("_", " ")
 
 
 def by_key(sort: str, items: Iterable[tuple[str, Item]], key: Callable[[Item], Key]) -> dict[Key, Item]:

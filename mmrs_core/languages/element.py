@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import suppress
+from contextvars import ContextVar
 from typing import TYPE_CHECKING, Any, ClassVar, NoReturn, SupportsIndex
 
 from mmrs_core.diagnostics import Place
@@ -15,8 +16,12 @@ from mmrs_core.languages.source import Source
 _HIDDEN_STEP = re.compile(r"/@([^./\[]+)(?:\.([0-9]+))?")
 
 
+chosen: ContextVar[Callable[[Metaclass], type[Element] | None] | None] = ContextVar("chosen", default=None)
+"""What gives the class to be made where a metaclass's own is called: that of the registry in use."""
+
+
 class ElementType(type):
-    """The type of interface and implementation classes: calling either makes an element."""
+    """The type of interface and implementation classes, and of subclasses: calling any makes an element."""
 
     _mmrs_metaclass: Metaclass | None = None
 
@@ -24,12 +29,17 @@ class ElementType(type):
         """Make an element whose features have the given values; None stands for "not given".
 
         Raises:
-            ValueError: if the class is abstract or a name is no feature of it.
+            ValueError: if the class is abstract, a name is no feature of it, or it is an unfit subclass.
         """
         metaclass = cls._mmrs_metaclass
         made = metaclass.implementation if metaclass else None
-        if made is None:
+        if metaclass is None or made is None:
             raise ValueError(f"{cls.__name__}: abstract, no element can be made of it")
+        if cls is metaclass.interface:
+            choose = chosen.get()
+            made = made if choose is None else choose(metaclass) or made
+        elif cls is not made:
+            made = _subclass(cls)
         element: Element = made.__new__(made)
         for attribute, value in features.items():
             if attribute not in made._mmrs_missing:
@@ -50,6 +60,12 @@ class ElementType(type):
             inherited = [ancestor for base in cls.__bases__ for ancestor in base.__mro__]
             # the last occurrence, so that no class comes before its own subclass
             return [cls, *reversed(dict.fromkeys(reversed(inherited)))]
+
+
+def _subclass(kind: Any) -> type[Element]:
+    from mmrs_core.languages.subclasses import class_of  # it is made of what stands here
+
+    return class_of(kind)
 
 
 class _EClass:
@@ -95,6 +111,9 @@ class Element(metaclass=ElementType):
                 pass
             if name.startswith("_mmrs_"):
                 return 0 if name == "_mmrs_line" else None
+            for kind in type(self).__mro__:
+                if name in vars(kind):  # a property of a subclass raised AttributeError: say which
+                    return vars(kind)[name].__get__(self, type(self))
             hint = nearest(name, type(self)._mmrs_missing)
             raise AttributeError(
                 f"{name}: no feature of {type(self).__name__}{hint and '; ' + hint}", name=name, obj=self
@@ -175,7 +194,8 @@ class Element(metaclass=ElementType):
     def __repr__(self) -> str:
         """Return the class, its name or id if it has one, and its place."""
         label = label_of(self)
-        return f"<{type(self).__name__}{label and ' ' + repr(label)} at {place_of(self)}>"
+        kind = type(self).__qualname__.rpartition(".")[2]
+        return f"<{kind}{label and ' ' + repr(label)} at {place_of(self)}>"
 
 
 class Unknown(Element):

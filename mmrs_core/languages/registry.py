@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
-from functools import cache, cached_property
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import contextmanager
+from functools import cache, cached_property, lru_cache
+from pathlib import Path
 from typing import TYPE_CHECKING
 
+from mmrs_core.errors import PluginError
 from mmrs_core.languages.datatypes import BUILT_IN
-from mmrs_core.languages.element import Element
+from mmrs_core.languages.element import Element, chosen
 from mmrs_core.languages.evolution.migration import Migration, chains
 from mmrs_core.languages.metaclass import Metaclass, Package
 from mmrs_core.languages.naming import nearest
 from mmrs_core.languages.sources import MetamodelSource as MetamodelSource
+from mmrs_core.languages.subclasses import ElementClass, joined, refuse_hiding
 from mmrs_core.resources import shipped
 
 if TYPE_CHECKING:
@@ -28,10 +32,17 @@ class Registry:
     Attributes:
         packages: in the order in which they were given, a package before those inside it.
         migrations: steps from older versions of them.
+        classes: the Python subclasses that elements are instances of, by the key of their metaclass.
         makers: functions that readers compiled, for the next file.
     """
 
-    def __init__(self, packages: Iterable[Package], migrations: Iterable[Migration] = ()) -> None:
+    def __init__(
+        self,
+        packages: Iterable[Package],
+        migrations: Iterable[Migration] = (),
+        classes: Iterable[ElementClass] = (),
+    ) -> None:
+        """Take packages that hold each other's types; errors of the classes as in `registry_with`."""
         self.packages = tuple(package for package in packages if package.ns_uri not in BUILT_IN)
         self.migrations = tuple(migrations)
         self.makers: dict[tuple[object, ...], Maker | None] = {}
@@ -39,6 +50,8 @@ class Registry:
         self._metaclasses: Mapping[tuple[str, str], Metaclass] = {
             metaclass.key: metaclass for package in self.packages for metaclass in package.metaclasses
         }
+        self.classes = self._fitting(classes)
+        self._joined: dict[Metaclass, type[Element] | None] = {}
 
     @property
     def everything(self) -> tuple[Package, ...]:
@@ -91,7 +104,8 @@ class Registry:
         more = tuple(sources)
         if not more:
             return self
-        return Registry((*self.packages, *_assemble(more, self.packages)), self.migrations)
+        packages = (*self.packages, *_assemble(more, self.packages))
+        return Registry(packages, self.migrations, self.classes.values())
 
     @cached_property
     def chains(self) -> Mapping[str, tuple[Migration, ...]]:
@@ -108,8 +122,59 @@ class Registry:
         Raises:
             ValueError: if the class is unknown or abstract, or has no such feature.
         """
-        element: Element = self.metaclass(ns_uri, name).interface(**features)
+        metaclass = self.metaclass(ns_uri, name)
+        element: Element = (self.implementation(metaclass) or metaclass.interface)(**features)
         return element
+
+    def implementation(self, metaclass: Metaclass) -> type[Element] | None:
+        """Return the class of a metaclass's elements; None for an abstract one.
+
+        It is a subclass of each Python class that is registered for the metaclass or one above it; where
+        these have something by the same name, the one for the most specific metaclass counts.
+        """
+        if not self.classes:
+            return metaclass.implementation
+        if metaclass not in self._joined:
+            kinds = [self.classes[key].python for key in metaclass.ancestry if key in self.classes]
+            first = tuple(
+                each for at, each in enumerate(kinds) if not any(issubclass(k, each) for k in kinds[:at])
+            )
+            plain = metaclass.implementation
+            self._joined[metaclass] = joined(metaclass, first) if plain and first else plain
+        return self._joined[metaclass]
+
+    @contextmanager
+    def in_use(self) -> Iterator[None]:
+        """Have the classes of languages make what `create` makes, while it lasts, in this thread or task."""
+        token = chosen.set(self.implementation)
+        try:
+            yield
+        finally:
+            chosen.reset(token)
+
+    def _fitting(self, classes: Iterable[ElementClass]) -> Mapping[tuple[str, str], ElementClass]:
+        found: dict[tuple[str, str], ElementClass] = {}
+        for each in classes:
+            other = found.setdefault(each.metaclass, each)
+            if other is not each:
+                both = f"{_told(other)} and {_told(each)}"
+                raise PluginError(f"{'#//'.join(each.metaclass)}: two Python classes for it, {both}")
+        for metaclass in self._metaclasses.values() if found else ():
+            for key in metaclass.ancestry:
+                if key in found:
+                    _refuse_hiding(found[key], metaclass)
+        return found
+
+
+def _told(given: ElementClass) -> str:
+    return given.python.__qualname__ + (given.provider and f" of {given.provider}")
+
+
+def _refuse_hiding(given: ElementClass, metaclass: Metaclass) -> None:
+    try:
+        refuse_hiding(given.python, metaclass)
+    except ValueError as error:
+        raise PluginError(f"{given.provider}: {error}" if given.provider else str(error)) from None
 
 
 @cache
@@ -120,20 +185,43 @@ def core_registry() -> Registry:
     return Registry(_assemble(sources, ()))
 
 
-def registry_with(sources: Iterable[MetamodelSource], migrations: Iterable[Migration] = ()) -> Registry:
+def registry_with(
+    sources: Iterable[MetamodelSource],
+    migrations: Iterable[Migration] = (),
+    classes: Iterable[ElementClass] = (),
+) -> Registry:
     """Return the core's metamodels together with others, which may build upon each other in any order.
 
     Args:
         sources: the others.
         migrations: from older versions of any of them.
+        classes: Python subclasses for elements, one for a metaclass; for whom this registry makes elements.
 
     Raises:
         PluginError: if a metamodel refers to one that is missing, two have the same nsURI, a class inherits
-            from itself, or a file holds another metamodel than announced.
+            from itself, a file holds another metamodel than announced, there are two Python classes for a
+            metaclass, or one hides a feature of a metaclass below its own.
         UnreadableError: if a file is no metamodel.
     """
-    core = core_registry().packages
-    return Registry((*core, *_assemble(tuple(sources), core)), migrations)
+    given = tuple(sources)
+    files = tuple(source.ecore for source in given if isinstance(source.ecore, Path))
+    assemble = _assembled if len(files) == len(given) else _assembled.__wrapped__
+    packages = assemble(given, tuple(map(_stamp, files)))
+    return Registry((*core_registry().packages, *packages), migrations, classes)
+
+
+@lru_cache(8)
+def _assembled(sources: tuple[MetamodelSource, ...], stamps: tuple[object, ...]) -> tuple[Package, ...]:
+    """Return the packages of files, the same ones while these stay: their classes are to be subclassed."""
+    return _assemble(sources, core_registry().packages)
+
+
+def _stamp(file: Path) -> tuple[int, int] | None:
+    try:
+        found = file.stat()
+    except OSError:  # whoever reads it has words for it
+        return None
+    return found.st_mtime_ns, found.st_size
 
 
 def _assemble(sources: Iterable[MetamodelSource], known: tuple[Package, ...]) -> tuple[Package, ...]:

@@ -97,11 +97,12 @@ def migrate(
     _refuse_unknown(types or {}, settled.values(), mapping)
     robots = RobotTypes(present or {}, {**mapping.types, **(types or {})})
     record, made = Record(), list[Made]()
-    for each in _types_first(settled.values(), mapping):
-        for root in _built(each, mapping, registry, robots, record):
-            made.append(root)
-            if registry.metaclass(*ROBOT_TYPE).accepts(root.element):
-                robots.known.setdefault(getattr(root.element, "name", None) or "", root.element)
+    with registry.in_use():
+        for each in _types_first(settled.values(), mapping):
+            for root in _built(each, mapping, registry, robots, record):
+                made.append(root)
+                if registry.metaclass(*ROBOT_TYPE).accepts(root.element):
+                    robots.known.setdefault(getattr(root.element, "name", None) or "", root.element)
     sources = tuple(_source(each, settled) for each in opened)
     return Migration(sources, outputs_of(made, registry, record), tuple(record.findings))
 

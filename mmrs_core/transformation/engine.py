@@ -54,7 +54,8 @@ def transform(
         each.robot: draft(each, scene.robot(each.robot), kinds[scene.robot(each.robot).kind], by_name)
         for each in plan.robots
     }
-    return _Assembly(scene, plan, chains, registry).behaviour()
+    with registry.in_use():
+        return _Assembly(scene, plan, chains, registry).behaviour()
 
 
 class _Assembly:

@@ -69,8 +69,10 @@ def test_every_field_of_what_is_declared_is_told():
         wiring,
     )
     from mmrs_core.languages.evolution.migration import Migration
+    from mmrs_core.languages.subclasses import ElementClass
 
     told = {
+        "mmrs_element_classes": ElementClass,
         "mmrs_migrations": Migration,
         "mmrs_constraints": constraints.Constraint,
         "mmrs_fixes": fixes.Fix,

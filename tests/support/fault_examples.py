@@ -196,11 +196,11 @@ def _wrapped(text: str) -> str:
 
 @cache
 def _zoo() -> Registry:
-    return _fresh_zoo()
+    return _zoo_of("zoo")
 
 
-def _fresh_zoo() -> Registry:
-    return registry_with([MetamodelSource("urn:test:zoo", ZOO, "zoo")])
+def _zoo_of(provider: str) -> Registry:
+    return registry_with([MetamodelSource("urn:test:zoo", ZOO, provider)])
 
 
 def _of_text(text: str) -> list[Diagnostic]:
@@ -219,7 +219,13 @@ def _of_files(files: dict[str, str], folder: Path) -> tuple[Diagnostic, ...]:
 
 def _of_program(program: str) -> tuple[Diagnostic, ...]:
     home = mission.GeoCoordinate(latitude=42.0, longitude=13.0)
-    names = {"mission": mission, "robot": robot, "zoo": _zoo(), "elsewhere": _fresh_zoo(), "home": home}
+    names = {
+        "mission": mission,
+        "robot": robot,
+        "zoo": _zoo(),
+        "elsewhere": _zoo_of("elsewhere"),
+        "home": home,
+    }
     exec(program, names)  # noqa: S102  our own fixtures
     root = names["root"]
     return check_conformance(Model("model", (root,)), _zoo())

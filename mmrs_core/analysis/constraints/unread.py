@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
 from dataclasses import dataclass
+from inspect import getattr_static
 from typing import Any, Generic, TypeVar, overload
 
 from mmrs_core.languages.element import Element, ElementType, metaclass_of
@@ -74,7 +75,7 @@ def _watched_class(kind: type[Element], names: frozenset[str]) -> type[Element]:
         "__module__": kind.__module__,
         "__qualname__": kind.__qualname__,
     }
-    namespace |= {each.attribute: _Watched(kind.__dict__[each.attribute]) for each in features}
+    namespace |= {each.attribute: _Watched(getattr_static(kind, each.attribute)) for each in features}
     namespace |= {"_mmrs_slots": slots, "_mmrs_inside": tuple(_inside(metaclass_of(kind).features, slots))}
     made = ElementType(kind.__name__, (kind,), namespace)
     assert issubclass(made, Element)  # its base is

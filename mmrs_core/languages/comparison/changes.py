@@ -86,8 +86,10 @@ class _Comparison:
 
     def _agree(self, one: Element, other: Element) -> bool:
         """Return whether two elements that were matched certainly agree; most of a large model does."""
-        same = self._matching.says_the_same(one, other) and one.__class__ is other.__class__
-        if not same or self._changed_container(one, other):
+        known = type(one)._mmrs_metaclass
+        if known is None or known is not type(other)._mmrs_metaclass:
+            return False
+        if not self._matching.says_the_same(one, other) or self._changed_container(one, other):
             return False
         second = self._matching.second
         for slot in traits_of(one.__class__).targets:

@@ -227,9 +227,10 @@ class _Inward:
             raise UnsupportedError(f"{eclass.name}: {fault}") from None
 
     def _element(self, source: Any, metaclass: Metaclass) -> Element:
-        if metaclass.implementation is None:
+        made = self._registry.implementation(metaclass)
+        if made is None:
             raise UnsupportedError(f"{metaclass.name}: abstract, but {source!r} is an instance of it")
-        return metaclass.implementation.__new__(metaclass.implementation)
+        return made.__new__(made)
 
     def _value(self, element: Element, source: Any, feature: Feature) -> None:
         value = _get(source, feature)

@@ -153,8 +153,9 @@ class Beginnings:
         return self._made(start, metaclass), event
 
     def _made(self, start: Begun, metaclass: Metaclass) -> Element:
-        assert metaclass.implementation is not None  # it was asked before
-        element = metaclass.implementation.__new__(metaclass.implementation)
+        made = self._types.implementation(metaclass)
+        assert made is not None  # it was asked before
+        element = made.__new__(made)
         self._stands(element, start.owner, start.feature, start.begin, start.line)
         for event in start.said:
             if event[1] != TYPE:

@@ -66,6 +66,10 @@ class Types:
             self._draft.fault("XMI014", message, self._stream.line(event[3]), owner, hint)
         return self.languages.get(prefix, ""), name
 
+    def implementation(self, metaclass: Metaclass) -> type[Element] | None:
+        """Return the class of a metaclass's elements; None for an abstract one."""
+        return self._registry.implementation(metaclass)
+
     def known(self, event: Event | None) -> Metaclass | None:
         """Return the class of that `$type` if it was asked for before."""
         return self._known.get(event[2]) if event is not None else None

@@ -141,7 +141,8 @@ class QuickReader(XmiReader):
         makers = self._registry.makers
         if key not in makers and len(makers) < _MOST_SHAPES:
             features = tuple(metaclass.by_name.get(name) for name in names)
-            makers[key] = maker(owner, feature, metaclass, tuple(names), features)
+            implementation = self._registry.implementation(metaclass)
+            makers[key] = maker(owner, feature, metaclass, implementation, tuple(names), features)
         return makers.get(key)
 
     def _known(self, kind: str) -> Metaclass | None:

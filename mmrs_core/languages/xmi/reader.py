@@ -183,16 +183,17 @@ class XmiReader:
 
     def _make(self, metaclass: Metaclass | None, claimed: str, owner: Element | None = None) -> Element:
         """Make an element; one of an unknown, wrong or abstract class is kept, and holds its place."""
-        if metaclass is not None and metaclass.implementation is None:
+        made = None if metaclass is None else self._registry.implementation(metaclass)
+        if metaclass is not None and made is None:
             self._fault("XMI003", f"{metaclass.name}: abstract; say which kind of it by xsi:type", owner)
-        if metaclass is None or metaclass.implementation is None:
+        if made is None:
             element: Element = Unknown.__new__(Unknown)
             assert isinstance(element, Unknown)
             element._mmrs_type = claimed
             self._kept = (element, self._document.offset)
             self._ignored = 1
         else:
-            element = metaclass.implementation.__new__(metaclass.implementation)
+            element = made.__new__(made)
         element._mmrs_line = self._document.line
         element._mmrs_source = self._draft.source
         return element

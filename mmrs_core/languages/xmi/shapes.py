@@ -36,23 +36,25 @@ def maker(
     owner: Metaclass,
     feature: Feature,
     metaclass: Metaclass,
+    implementation: type[Element] | None,
     names: tuple[str, ...],
     features: tuple[Feature | None, ...],
 ) -> Maker | None:
     """Return the function for elements of a metaclass in a containment feature of an owner.
 
     Args:
+        implementation: the class of the elements.
         names: those of the attributes, in order.
         features: what each of them gives; None where it says nothing of the element.
 
     Returns:
         None if the shape needs more than that: identifiers, lists of values, containment by reference.
     """
-    if metaclass.implementation is None or not all(each is None or _simple(each) for each in features):
+    if implementation is None or not all(each is None or _simple(each) for each in features):
         return None
     bound: dict[str, object] = {
         "new": object.__new__,
-        "cls": metaclass.implementation,
+        "cls": implementation,
         "feature": feature,
         "LinkedList": LinkedList,
         "append": list.append,

@@ -1,8 +1,10 @@
 """Every hook, shown by a plug-in object that uses it."""
 
 import inspect
+import re
 import sys
 from importlib.metadata import EntryPoint
+from pathlib import Path
 
 import pytest
 
@@ -21,11 +23,22 @@ from mmrs_core.contributions.targets import Target
 from mmrs_core.contributions.wiring import DeviceWiring
 from mmrs_core.errors import PluginError
 from mmrs_core.hookspecs import hookimpl
+from mmrs_core.languages import behaviour as bl
 from mmrs_core.languages.evolution.migration import Migration
 from mmrs_core.languages.registry import MetamodelSource
-from mmrs_core.plugins import load_plugins
+from mmrs_core.languages.subclasses import ElementClass
+from mmrs_core.plugins import language, load_plugins
 
 KITE = ("urn:test:kite:1.0", "Kite")
+ZOO = Path(__file__).parents[2] / "fixtures" / "models" / "zoo.ecore"
+
+
+class Leg(bl.GoTo):
+    """A subclass with a property of its own."""
+
+    @property
+    def twice(self):
+        return 2.0 * self.distance
 
 
 def plugin_with(hook, function):
@@ -73,6 +86,13 @@ def test_hook_mmrs_metamodels(tmp_path):
     contributions = contributions_with("mmrs_metamodels", MetamodelSource(KITE[0], ecore, "kites"))
     kite = contributions.languages.metaclass(*KITE)
     assert ("urn:mmrs:robot:1.0", "Robot") in kite.ancestry
+
+
+def test_hook_mmrs_element_classes():
+    contributions = contributions_with("mmrs_element_classes", ElementClass(Leg))
+    assert contributions.languages.create("urn:mmrs:behaviour:1.0", "GoTo", distance=2.0).twice == 4.0
+    told = [each.name for each in contributions.catalogue() if each.sort == "element_classes"]
+    assert told == ["urn:mmrs:behaviour:1.0#//GoTo"]
 
 
 def test_hook_mmrs_migrations():
@@ -185,6 +205,36 @@ def test_two_rules_for_one_metaclass_name_both_plug_ins():
     loaded = load_plugins(only_core=True, extra={"first": one, "second": two})
     with pytest.raises(PluginError, match="'first' and 'second'"):
         _ = loaded.contributions.rules
+
+
+def test_two_element_classes_for_one_metaclass_name_both_plug_ins_and_distributions():
+    one = plugin_with("mmrs_element_classes", lambda: [ElementClass(Leg)])
+    two = plugin_with("mmrs_element_classes", lambda: [ElementClass(type("Other", (bl.GoTo,), {}))])
+    loaded = load_plugins(only_core=True, extra={"first": one, "second": two})
+    words = (
+        "urn:mmrs:behaviour:1.0#//GoTo: two Python classes for it, "
+        "Leg of plug-in 'first' of distribution 'given by the caller' and "
+        "Other of plug-in 'second' of distribution 'given by the caller'"
+    )
+    with pytest.raises(PluginError, match=re.escape(words)):
+        _ = loaded.contributions.languages
+    with pytest.raises(PluginError, match=re.escape(words)):
+        loaded.contributions.check()
+
+
+def test_the_classes_that_a_plug_in_subclasses_are_those_of_the_languages_that_it_is_loaded_with():
+    installed = load_plugins().contributions.languages
+    drone = language("urn:mmrs:multicopter:1.0").member("Drone")
+    assert isinstance(installed.create("urn:mmrs:multicopter:1.0", "Drone"), drone)
+    tethered = type("Tethered", (drone,), {"length": 30.0})
+    plugin = plugin_with("mmrs_element_classes", lambda: [ElementClass(tethered)])
+    others = {
+        "kites": plugin,
+        "wings": plugin_with("mmrs_metamodels", lambda: [MetamodelSource("urn:test:zoo", ZOO)]),
+    }
+    for extra in ({"kites": plugin}, others):
+        made = load_plugins(extra=extra).contributions.languages.create("urn:mmrs:multicopter:1.0", "Drone")
+        assert (made.length, isinstance(made, drone), isinstance(made, tethered)) == (30.0, True, True)
 
 
 def test_two_migrations_from_one_version_name_both_plug_ins():
