@@ -159,6 +159,9 @@ class Registry:
             if other is not each:
                 both = f"{_told(other)} and {_told(each)}"
                 raise PluginError(f"{'#//'.join(each.metaclass)}: two Python classes for it, {both}")
+            ns_uri, name = each.metaclass
+            if self.has(ns_uri) and each.metaclass not in self._metaclasses:  # else its plug-in is missing
+                raise PluginError(f"{_told(each)}: {ns_uri} has no class {name} any more")
         for metaclass in self._metaclasses.values() if found else ():
             for key in metaclass.ancestry:
                 if key in found:

@@ -1,7 +1,7 @@
 """Python subclasses of metaclasses: whoever makes an element, it is an instance of them."""
 
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import pytest
 
@@ -14,7 +14,7 @@ from mmrs_core.languages.conformance import check_conformance
 from mmrs_core.languages.ecore_api.bridge import from_pyecore, to_pyecore
 from mmrs_core.languages.element import metaclass_of
 from mmrs_core.languages.reading import read_text
-from mmrs_core.languages.registry import core_registry, registry_with
+from mmrs_core.languages.registry import Registry, core_registry, registry_with
 from mmrs_core.languages.subclasses import ElementClass
 from mmrs_core.languages.writing import to_json, to_xmi
 
@@ -170,6 +170,13 @@ def test_one_that_hides_a_feature_of_a_class_below_is_an_error():
 
     with pytest.raises(PluginError, match=re.escape("kites: Aimed.target: hides the feature GoTo.target")):
         registry_with((), classes=[ElementClass(Aimed, "kites")])
+
+
+def test_one_for_a_class_that_its_language_has_no_more_is_an_error(zoo):
+    keeper = type("Guide", (zoo.metaclass("urn:test:zoo", "Keeper").interface,), {})
+    newer = [replace(each, metaclasses=()) for each in zoo.packages if each.ns_uri == "urn:test:zoo"]
+    with pytest.raises(PluginError, match="Guide of kites: urn:test:zoo has no class Keeper any more"):
+        Registry(newer, classes=[ElementClass(keeper, "kites")])
 
 
 def unfit():
