@@ -21,6 +21,7 @@ __all__ = [
     "declared_type",
     "parse_date",
     "parse_real",
+    "refusal",
     "render_real",
     "shown",
 ]
@@ -33,6 +34,14 @@ BUILT_IN = (ECORE, XML_TYPES)
 
 _ONLY_ECORES = ("java.lang.Object", "java.lang.Class")
 """A type of another package may name them for what only its own factory can read."""
+
+
+_TIMES = ("Date", "DateTime", "Time", "GDay", "GMonth", "GMonthDay", "GYear", "GYearMonth")
+_REFUSED = {
+    "Duration": "use EDouble, and state the unit in its documentation",
+    **dict.fromkeys(_TIMES, "use EDate, or EString for a part of a date"),
+}
+"""EMF's types of XML whose values are of no class that Ecore has a type for, and what to use instead."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -91,13 +100,20 @@ def declared_type(ns_uri: str, name: str, java_class: str, serializable: bool = 
 
 @cache
 def builtin_type(ns_uri: str, name: str) -> DataType | None:
-    """Return a data type of Ecore itself or of EMF's XML types; None where there is none of that name."""
+    """Return a data type of Ecore itself or of EMF's XML types; None for no such name, and a refused one."""
     if ns_uri == ECORE and name in ECORE_CLASSES:
         return declared_type(ns_uri, name, ECORE_CLASSES[name])
-    if ns_uri == XML_TYPES:
+    if ns_uri == XML_TYPES and name not in _REFUSED:
         java_class = XML_CLASSES.get(name, "java.lang.String")
         return _made(ns_uri, name, java_class, schema_codec_of(name, java_class), True)
     return None
+
+
+def refusal(ns_uri: str, name: str) -> str:
+    """Return why attributes cannot have a type of EMF's, and what to use instead; empty where they can."""
+    if ns_uri != XML_TYPES or name not in _REFUSED:
+        return ""
+    return f"the type {name} of XML Schema is not supported; {_REFUSED[name]}"
 
 
 def _made(ns_uri: str, name: str, java_class: str, codec: Codec, serializable: bool) -> DataType:

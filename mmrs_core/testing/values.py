@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from datetime import UTC, date, datetime, time
+from datetime import UTC, datetime
 from decimal import Decimal
 from typing import Any, TypeAlias
 
@@ -23,20 +23,6 @@ TEXTS = st.text(st.characters(codec="utf-8", exclude_characters=_NOT_IN_XML), ma
 """Any text that a file can hold."""
 
 WORDS = st.from_regex(r"[a-zA-Z][a-zA-Z0-9]{0,7}", fullmatch=True)
-
-_XML_TEXTS: Mapping[str, st.SearchStrategy[Any]] = {
-    "Date": st.dates(date(1, 1, 1)).map(date.isoformat),
-    "DateTime": st.datetimes().map(lambda moment: f"{moment.isoformat()}Z"),
-    "Time": st.times().map(time.isoformat),
-    "Duration": st.integers(0, 9999).map(lambda hours: f"PT{hours}H"),
-    "GYear": st.integers(1000, 9999).map(str),
-    "GYearMonth": st.dates(date(1000, 1, 1)).map(lambda day: f"{day:%Y-%m}"),
-    "GMonth": st.integers(10, 12).map(lambda month: f"--{month}"),
-    "GMonthDay": st.integers(10, 28).map(lambda day: f"--02-{day}"),
-    "GDay": st.integers(10, 31).map(lambda day: f"---{day}"),
-    "String": TEXTS,
-}
-"""XML types whose values are kept as texts of some form; of all others, words are values."""
 
 _BITS = {"byte": 8, "short": 16, "int": 32, "long": 64, "Byte": 8, "Short": 16, "Integer": 32, "Long": 64}
 _DATES = st.datetimes(datetime(1970, 1, 2), datetime(2100, 1, 1)).map(
@@ -95,7 +81,7 @@ def _of_type(kind: DataType) -> st.SearchStrategy[Any]:
     if java == "Class":
         return st.just("java.lang.String")
     if kind.ns_uri == XML_TYPES and kind.python is str:
-        return _XML_TEXTS.get(kind.name, WORDS)
+        return TEXTS if kind.name == "String" else WORDS
     return _BY_PYTHON_CLASS[kind.python]
 
 

@@ -10,7 +10,7 @@ from typing import Any, NoReturn
 from pyecore import ecore
 
 from mmrs_core.errors import InternalError, PluginError
-from mmrs_core.languages.datatypes import BUILT_IN, ECORE, DataType, builtin_type, declared_type
+from mmrs_core.languages.datatypes import BUILT_IN, ECORE, DataType, builtin_type, declared_type, refusal
 from mmrs_core.languages.element import Element
 from mmrs_core.languages.metaclass import MANY, MAP_ENTRY, Enumeration, Feature, Literal, Metaclass, Package
 from mmrs_core.languages.metamodels.ecore_itself import built_in
@@ -228,6 +228,8 @@ class _Shapes:
         return self._metaclasses[key]
 
     def _value_type(self, key: Address, entry: Located, address: Address) -> DataType | Enumeration:
+        if reason := refusal(*key):
+            self._refuse(entry, address, f"{'.'.join(address[1:])}: {reason}")
         found = self._types.get(key) or builtin_type(*key)
         if found is None and key[0] in BUILT_IN:  # one whose values live in Java only
             self._know(itself())

@@ -7,7 +7,7 @@ from datetime import datetime
 from decimal import Decimal
 from typing import NamedTuple
 
-from mmrs_core.languages.values import binary, dates, decimals, real, schema_times, texts, truth, whole
+from mmrs_core.languages.values import binary, dates, decimals, real, texts, truth, whole
 
 
 class Codec(NamedTuple):
@@ -74,11 +74,6 @@ _WORDS = Codec(str, texts.collapsed, texts.render_collapsed)
 _XML_CODECS = {
     "Base64Binary": Codec(bytes, binary.parse_base64, binary.render_base64),
     "HexBinary": Codec(bytes, binary.parse_schema_bytes, binary.render_bytes),
-    "Duration": Codec(str, schema_times.parse_duration, schema_times.render_duration),
-    **dict.fromkeys(
-        ("Date", "DateTime", "Time", "GDay", "GMonth", "GMonthDay", "GYear", "GYearMonth"),
-        Codec(str, schema_times.parse_moment, schema_times.render_moment),
-    ),
     **dict.fromkeys(
         ("Token", "Language", "Name", "NCName", "ID", "IDREF", "IDREFS", "IDREFSBase", "ENTITY", "ENTITIES"),
         _WORDS,

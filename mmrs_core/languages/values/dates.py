@@ -2,21 +2,21 @@
 
 EMF reads dates with Java's ``SimpleDateFormat``: it counts the digits behind the point of the seconds in
 milliseconds, knows a zone only behind them and only as +0200, GMT+2:00, GMT or UTC, takes the time zone of
-its machine where there is none, lets 13 months pass, and counts in the Julian calendar before 15 October
-1582. So do we, with UTC for the machine's zone; a date keeps the text of its file, and says what is
-doubtful about it.
+its machine where there is none, and lets 13 months pass. So do we, with UTC for the machine's zone; a date
+keeps the text of its file, and says what is doubtful about it. Before 15 October 1582, where Java counts in
+the Julian calendar, there are no dates here.
 """
 
 from __future__ import annotations
 
 import re
-from datetime import UTC, date, datetime, time, timedelta, timezone
+from datetime import UTC, date, datetime, timedelta, timezone
 from typing import Self
 
 from mmrs_core.languages.values.texts import shown
 
-_GREGORIAN = date(1582, 10, 15).toordinal()
-_CHANGE = 1582
+_GREGORIAN = date(1582, 10, 15)
+_OUTSIDE = "before 15 October 1582, when the calendar changed, or after the year 9999: not supported"
 _LONGEST = 9
 _BLANKS = "[ \t]*"
 _NUMBER = rf"{_BLANKS}(-?\d+)"
@@ -30,7 +30,6 @@ _FORM = re.compile(
     re.DOTALL,
 )
 _NAMED_ZONE = re.compile(rf"{_BLANKS}[A-Za-z]{{2}}")
-_DAYS_BEFORE = (0, 31, 59, 90, 120, 151, 181, 212, 243, 273, 304, 334)
 
 
 class WrittenDate(datetime):
@@ -70,8 +69,8 @@ def parse_date(text: str) -> datetime:
         A plain date if its text is the one that EMF writes, else a `WrittenDate`.
 
     Raises:
-        ValueError: if EMF reads none, or one outside the years 1 to 9999, or if a zone has another
-            name than GMT or UTC.
+        ValueError: if EMF reads none, or one before 15 October 1582 or after the year 9999, or if a zone
+            has another name than GMT or UTC.
     """
     found = _FORM.match(text)
     numbers = found.groups("0")[:7] if found is not None else ()
@@ -82,7 +81,7 @@ def parse_date(text: str) -> datetime:
     try:
         value = _instant(*map(int, numbers), zone=_zone(found))
     except (ValueError, OverflowError):
-        raise ValueError(f"{shown(text)}: outside the years 1 to 9999") from None
+        raise ValueError(f"{shown(text)}: {_OUTSIDE}") from None
     if found["zone"] and _render_plain(value) == text:
         return value
     return WrittenDate.of(value, text, local=not found["zone"])
@@ -97,34 +96,20 @@ def _zone(found: re.Match[str]) -> timezone:
 def _instant(
     year: int, month: int, day: int, hour: int, minute: int, second: int, milli: int, *, zone: timezone
 ) -> datetime:
-    """Return a date of parts none of which is bounded; raises ValueError if there is no such year."""
-    since = timedelta(hours=hour, minutes=minute, seconds=second, milliseconds=milli)
-    first = date.fromordinal(_ordinal(year, month, day + since.days))
-    return datetime.combine(first, time(tzinfo=zone)) + since % timedelta(days=1)
-
-
-def _ordinal(year: int, month: int, day: int) -> int:
-    """Return the number of a day in the calendar of its time, as `date.toordinal` counts."""
+    """Return a date of parts that have no bounds; raises ValueError or OverflowError for none of ours."""
     more, index = divmod(month - 1, 12)
-    before = year + more - 1
-    julian = _day_of_year(index, day, (before + 1) % 4 == 0) + 365 * before + before // 4 - 2
-    leap = (before + 1) % 4 == 0 and ((before + 1) % 100 != 0 or (before + 1) % 400 == 0)
-    centuries = before // 100 - before // 400
-    gregorian = _day_of_year(index, day, leap) + 365 * before + before // 4 - centuries
-    if year == _CHANGE:
-        return gregorian if gregorian >= _GREGORIAN else julian
-    return gregorian if year > _CHANGE else julian
-
-
-def _day_of_year(month: int, day: int, leap: bool) -> int:
-    return _DAYS_BEFORE[month] + (leap and month > 1) + day
+    since = timedelta(days=day - 1, hours=hour, minutes=minute, seconds=second, milliseconds=milli)
+    value = datetime(year + more, index + 1, 1, tzinfo=zone) + since
+    if year < _GREGORIAN.year or value.date() < _GREGORIAN:
+        raise ValueError
+    return value
 
 
 def render_date(value: object) -> str:
     """Write a date as its file did, or as EMF does if it comes from none; one without a zone is taken as UTC.
 
     Raises:
-        ValueError: if it is finer than EMF's milliseconds.
+        ValueError: if it is finer than EMF's milliseconds, or before 15 October 1582.
     """
     assert isinstance(value, datetime)  # accepts() vouches for it
     if isinstance(value, WrittenDate) and value.text:
@@ -136,28 +121,15 @@ def render_date(value: object) -> str:
 
 def _render_plain(value: datetime) -> str:
     offset = value.utcoffset()
-    if offset is not None and offset % timedelta(minutes=1):
-        try:
+    try:
+        if offset is not None and offset % timedelta(minutes=1):
             value = value.astimezone(UTC)  # its zone is one of the time before railways
-        except OverflowError:
-            raise ValueError(f"{value.isoformat()}: outside the years 1 to 9999") from None
-    year, month, day = _in_calendar_of_its_time(value.date())
+    except OverflowError:
+        raise ValueError(f"{value.isoformat()}: {_OUTSIDE}") from None
+    if value.date() < _GREGORIAN:
+        raise ValueError(f"{value.isoformat()}: {_OUTSIDE}")
     zone = f"{value:%z}" or "+0000"
-    clock = f"{value.hour:02}:{value.minute:02}:{value.second:02}.{value.microsecond // 1000:03}"
-    return f"{year:04}-{month:02}-{day:02}T{clock}{zone}"
-
-
-def _in_calendar_of_its_time(day: date) -> tuple[int, int, int]:
-    """Return year, month and day, of the Julian calendar before it was changed."""
-    ordinal = day.toordinal()
-    if ordinal >= _GREGORIAN:
-        return day.year, day.month, day.day
-    cycles, rest = divmod(ordinal + 1, 4 * 365 + 1)
-    years = min(rest // 365, 3)
-    in_year = rest - 365 * years
-    leap = years == 3
-    month = max(index for index in range(12) if _day_of_year(index, 0, leap) <= in_year)
-    return 4 * cycles + years + 1, month + 1, in_year - _day_of_year(month, 0, leap) + 1
+    return f"{value:%Y-%m-%dT%H:%M:%S}.{value.microsecond // 1000:03}{zone}"
 
 
 def doubt_of_date(value: object) -> str:

@@ -28,10 +28,6 @@ CERTAIN = [
     "9999-12-31T23:59:59.999+0000",
     "1970-01-01T00:00:00.000+0000",
     "1582-10-15T00:00:00.000+0000",
-    "1582-10-04T00:00:00.000+0000",
-    "1500-02-29T00:00:00.000+0000",
-    "0099-01-01T00:00:00.000+0000",
-    "0001-01-03T00:00:00.000+0000",
 ]
 """What EMF itself writes, but for signs of zero and blanks around."""
 SURPRISING = [
@@ -55,13 +51,9 @@ SURPRISING = [
     "2024-05-01T10:11:60.000+0000",
     "2024-05-01T99:99:99.999+0000",
     "1700-02-29T00:00:00.000+0000",
-    "1582-10-05T00:00:00.000+0000",
-    "1582-10-14T00:00:00.000+0000",
     "1582-10-14T24:00:00.000+0000",
     "1582-10-04T300:00:00.000-0200",
     "1582-13-01T00:00:00.000+0000",
-    "1581-30-01T00:00:00.000+0000",
-    "24-05-01T00:00:00.000+0000",
     "2024--5--1T-1:-1:-1.-1+0000",
 ]
 """What EMF takes for the same instant everywhere, though not for the one that people would think of."""
@@ -162,7 +154,7 @@ def test_a_date_that_depends_on_emfs_machine_is_told_as_such(known, far, values,
 
 
 ZONES = st.integers(-23 * 60 - 59, 23 * 60 + 59).map(lambda minutes: timezone(timedelta(minutes=minutes)))
-DATES = st.datetimes(datetime(1, 1, 3), datetime(9999, 12, 29), timezones=ZONES).map(
+DATES = st.datetimes(datetime(1582, 10, 15), datetime(9999, 12, 29), timezones=ZONES).map(
     lambda date: date.replace(microsecond=date.microsecond // 1000 * 1000, fold=0)
 )
 COUNTS = [pytest.param(100), pytest.param(1000, marks=pytest.mark.thorough)]

@@ -7,6 +7,7 @@ import pytest
 
 from mmrs_core.errors import PluginError, UnreadableError
 from mmrs_core.languages import mission
+from mmrs_core.languages.datatypes import XML_TYPES
 from mmrs_core.languages.registry import MetamodelSource, core_registry, registry_with
 
 HEAD = (
@@ -147,6 +148,10 @@ def test_packages_inside_packages_are_metamodels_of_their_own(zoo):
         (eclass("A", "", attribute("n", "EInt") * 2), "A has two features n"),
         (eclass("A", "", UNTYPED), "A.n: eType is missing"),
         (eclass("A", "urn:mmrs:mission:1.0#//Misson"), "did you mean Mission?"),
+        (
+            eclass("A", "", attribute("n", "EDate", 'defaultValueLiteral="1500-01-01"')),
+            "before 15 October 1582",
+        ),
     ],
 )
 def test_a_faulty_metamodel_names_its_provider_and_the_fault(package, content, message):
@@ -155,6 +160,20 @@ def test_a_faulty_metamodel_names_its_provider_and_the_fault(package, content, m
     assert message in str(raised.value)
     assert re.match(r"plugin-bad: \S+bad\.ecore:[0-9]+: ", str(raised.value))
     assert str(raised.value).startswith("plugin-bad: ")
+
+
+@pytest.mark.parametrize(
+    ("kind", "instead"),
+    [
+        ("Duration", "use EDouble"),
+        *((f"G{part}", "use EDate") for part in ("Day", "Month", "MonthDay", "Year")),
+    ],
+)
+def test_a_type_of_xml_schema_that_ecore_has_no_like_of_is_refused_by_name(package, kind, instead):
+    source = package("bad", eclass("A", "", attribute("n", f"ecore:EDataType {XML_TYPES}#//{kind}")))
+    words = f"A.n: the type {kind} of XML Schema is not supported; {instead}"
+    with pytest.raises(PluginError, match=f"^plugin-bad: .*{words}"):
+        registry_with([source])
 
 
 def test_one_ns_uri_twice_is_an_error_that_names_both(package):

@@ -23,8 +23,8 @@ def test_a_date_that_emf_wrote_is_a_plain_one():
         ("2024-05-01T10:11:12.123+02:00", datetime(2024, 5, 1, 10, 11, 12, 123000)),
         ("2024-05-01T10:11:12+0200", datetime(2024, 5, 1, 10, 11, 12)),
         ("2024-13-45", datetime(2025, 2, 14)),
-        ("1500-02-29T00:00:00.000+0000", datetime(1500, 3, 10)),
-        ("1582-10-04T00:00:00.000+0000", datetime(1582, 10, 14)),
+        ("1582-10-15T00:00:00.000+0000", datetime(1582, 10, 15)),
+        ("1582-10-14T24:00:00.000+0000", datetime(1582, 10, 15)),
     ],
 )
 def test_a_date_is_what_emf_takes_it_for(text, value):
@@ -76,9 +76,11 @@ def test_what_is_not_plain_from_a_text_is_told_with_what_to_write_instead(text, 
     assert doubt_of_date(parse_date(text)) == doubt
 
 
-def test_a_date_of_before_the_calendar_was_changed_is_written_in_the_old_one():
-    assert render_date(datetime(1500, 3, 10, tzinfo=UTC)) == "1500-02-29T00:00:00.000+0000"
-    assert render_date(datetime(1, 1, 1, tzinfo=UTC)) == "0001-01-03T00:00:00.000+0000"
+@pytest.mark.parametrize("zone", [UTC, timezone(timedelta(hours=2, seconds=1)), None])
+@pytest.mark.parametrize("moment", [datetime(1582, 10, 14, 23, 59), datetime(1500, 3, 10), datetime(1, 1, 1)])
+def test_a_date_of_before_the_calendar_was_changed_is_not_written(moment, zone):
+    with pytest.raises(ValueError, match=rf"^{moment.year:04}-\S*: before 15 October 1582, when the cal"):
+        render_date(moment.replace(tzinfo=zone))
 
 
 def test_a_date_in_a_zone_of_odd_seconds_is_written_in_utc():
@@ -97,17 +99,21 @@ def test_a_date_finer_than_milliseconds_is_refused():
 
 
 def test_a_date_that_leaves_the_years_of_python_by_its_zone_is_refused():
-    odd = timezone(timedelta(hours=2, seconds=1))
-    with pytest.raises(ValueError, match="outside the years 1 to 9999"):
-        render_date(datetime(1, 1, 1, tzinfo=odd))
+    odd = timezone(-timedelta(hours=2, seconds=1))
+    with pytest.raises(ValueError, match="or after the year 9999: not supported"):
+        render_date(datetime(9999, 12, 31, 23, tzinfo=odd))
 
 
 @pytest.mark.parametrize(
     ("text", "words"),
     [
-        ("12024-01-01", "outside the years 1 to 9999"),
-        ("0001-01-01", "outside the years 1 to 9999"),
-        ("999999999-01-01", "outside the years 1 to 9999"),
+        ("12024-01-01", "or after the year 9999"),
+        ("999999999-01-01", "or after the year 9999"),
+        ("1582-10-14T23:59:59.999+0000", "before 15 October 1582, when the calendar changed"),
+        ("1581-30-01", "before 15 October 1582"),
+        ("1583-01--999999999", "before 15 October 1582"),
+        ("0000-01-01", "before 15 October 1582"),
+        ("-44-03-15", "before 15 October 1582"),
         ("9999999999-01-01", "not a date such as"),
         ("2024-05-01T10:11:12.1234567890", "not a date such as"),
         ("2024-05-01T10:11:12.123 PST", "a zone by name; write it as"),
