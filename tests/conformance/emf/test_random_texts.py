@@ -68,7 +68,8 @@ def number(random):
 def date(random):
     """Return something like a date."""
     blank, figures = random.choice(["", "", "", " ", "\t"]), lambda most: str(random.randrange(most))
-    day = f"{random.choice(['2024', '1582', '1500', '24', figures(9999)])}-{figures(14)}-{blank}{figures(33)}"
+    year = random.choice(["2024", "1999", "1583", "1582", figures(9999)])
+    day = f"{year}-{figures(14)}-{blank}{figures(33)}"
     clock = f"{random.choice('TTTTt ')}{figures(30)}:{blank}{figures(70)}"
     seconds = f":{figures(70)}{random.choice(['', f'.{figures(10 ** random.randrange(1, 9))}', ',5', '.'])}"
     zone = random.choice(
