@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -61,9 +61,9 @@ class Enumeration:
 
     def named(self, value: object) -> object:
         """Return the name of a pyecore ``EEnumLiteral``, also of each in a list; any other value as it is."""
-        if isinstance(value, list):
+        if isinstance(value, Iterable) and not isinstance(value, str):
             return [self.named(each) for each in value]
-        return value if value is None or isinstance(value, str) else getattr(value, "name", value)
+        return getattr(value, "name", value)
 
     def render(self, value: object) -> str:
         """Return the literal of a name, which must be one."""

@@ -137,6 +137,12 @@ def test_literals_of_pyecore_become_their_names(zoo):
     lion.eSet("mood", mood.getEEnumLiteral("ANGRY"))
     lion.eSet("moods", [mood.getEEnumLiteral("CALM"), "HUNGRY"])
     assert (lion.mood, lion.moods) == ("ANGRY", ["CALM", "HUNGRY"])
+    other = zoo.epackage(ZOO).getEClassifier("Lion")(moods=[mood.getEEnumLiteral("ANGRY")])
+    lion.eSet("moods", other.moods)
+    lion.eSet("mood", None)
+    assert (lion.mood, lion.moods) == ("CALM", ["ANGRY"])
+    with pytest.raises(ValueError, match="takes a list"):
+        lion.eSet("moods", "ANGRY")
 
 
 def test_what_is_no_feature_is_refused():
@@ -218,3 +224,17 @@ def test_a_value_that_is_the_default_survives_the_way_to_pyecore_and_back(zoo, l
     (made,) = to_pyecore(Model("m", (lion('teeth="30"'),)), zoo)
     assert made.eIsSet("teeth")
     assert not made.eIsSet("hungry")
+
+
+def test_every_feature_of_every_class_is_understood(everything, zoo):
+    for package in (*everything.packages, *zoo.packages):
+        for metaclass in package.metaclasses:
+            features = metaclass.eclass.eAllStructuralFeatures()
+            assert {feature.name for feature in features} == set(metaclass.by_name)
+            if not metaclass.abstract:
+                element = metaclass.interface()
+                for feature in features:  # of Element, since features of these names go first
+                    assert Element.eGet(element, feature) == getattr(
+                        element, metaclass.by_name[feature.name].attribute
+                    )
+                    assert not Element.eIsSet(element, feature)
