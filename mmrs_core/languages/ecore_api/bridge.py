@@ -117,23 +117,23 @@ class Outward:
             made.eSet(feature.name, converted[0] if converted else None)
 
     def connect(self) -> None:
-        """Set all references, and bring lists into the model's order where opposites filled them first."""
-        index = 0
-        while index < len(self._references):  # it grows where a reference leads into another tree
-            element, feature = self._references[index]
-            index += 1
-            targets = [self._target(value) for value in held(element, feature) if isinstance(value, Element)]
+        """Set all references, and bring lists into the model's order where opposites filled them first.
+
+        Nothing is changed in what pyecore has already, before all that references lead to is found.
+        """
+        wanted: list[list[Any]] = []
+        for element, feature in self._references:  # it grows where a reference leads into another tree
+            values = held(element, feature)
+            wanted.append([self._target(value) for value in values if isinstance(value, Element)])
+        for (element, feature), targets in zip(self._references, wanted, strict=True):
+            made = self.made[id(element)]
             if feature.many:
-                self._extend(self.made[id(element)].eGet(feature.name), targets)
-            elif self.made[id(element)].eGet(feature.name) is not targets[0]:
-                self.made[id(element)].eSet(feature.name, targets[0])
-        for element, feature in self._references:
+                self._extend(made.eGet(feature.name), targets)
+            elif made.eGet(feature.name) is not targets[0]:
+                made.eSet(feature.name, targets[0])
+        for (element, feature), targets in zip(self._references, wanted, strict=True):
             if feature.many:
-                made = self.made[id(element)]
-                targets = [
-                    self._target(value) for value in held(element, feature) if isinstance(value, Element)
-                ]
-                self._same(element, made, feature, targets)
+                self._same(element, self.made[id(element)], feature, targets)
 
     def _extend(self, collection: Any, targets: list[Any]) -> None:
         present = {id(value) for value in collection}
@@ -265,8 +265,8 @@ class _Inward:
 
     def _file(self, top: Any) -> None:
         """Make all trees of a file that one is needed of: their numbers lead to it."""
-        roots = [top] if top.eResource is None else top.eResource.contents
-        for root in (each.force_resolve() for each in roots):
+        others = top.eResource.contents if top.eResource is not None else ()
+        for root in (top, *(each.force_resolve() for each in others)):
             if id(root) not in self.made:
                 self.tree(root)
 

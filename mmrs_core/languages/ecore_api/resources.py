@@ -62,6 +62,10 @@ class ModelResource(Resource):  # type: ignore[misc]  # pyecore has no types
         faults = [fault for each in (model, *model.linked) for fault in each.diagnostics]
         if has_errors(faults):
             raise _invalid(faults)
+        for root in (root for each in (model, *model.linked) for root in each.roots):
+            if root._mmrs_container is not None:
+                message = "the root of a file inside an element of another, which pyecore does not have"
+                raise UnsupportedError(f"{place_of(root)}: {message}")
         known = self._open()
         files = [model, *(each for each in model.linked if real_path(Path(each.file)) not in known)]
         outward = Outward(lambda element: _present(element, known))
@@ -69,10 +73,6 @@ class ModelResource(Resource):  # type: ignore[misc]  # pyecore has no types
             for root in each.roots:
                 outward.tree(root)
         outward.connect()
-        for root in (root for each in files for root in each.roots):
-            if root._mmrs_container is not None:
-                message = f"{place_of(root)}: a root inside an element of another file, which pyecore has not"
-                raise UnsupportedError(message)
         for each in files:
             resource = self if each is model else self._beside(str(each.file))
             resource._fill(each.roots, outward.made)
@@ -172,4 +172,4 @@ def _invalid(faults: Sequence[Diagnostic]) -> InvalidModelError:
 
 def _refuse(options: Mapping[object, object] | None) -> None:
     if options:
-        raise ValueError(f"options: our reader and writer have none, so not {', '.join(map(str, options))}")
+        raise ValueError(f"{', '.join(map(str, options))}: our reader and writer take no options")
