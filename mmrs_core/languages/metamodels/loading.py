@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
+from graphlib import CycleError, TopologicalSorter
 from inspect import isdatadescriptor, ismodule
 from io import BytesIO
 from pathlib import Path
@@ -15,7 +16,7 @@ from pyecore import ecore
 from pyecore.resources.resource import URI
 from pyecore.resources.xmi import XMIResource
 
-from mmrs_core.errors import PluginError
+from mmrs_core.errors import MmrsError, PluginError
 from mmrs_core.languages.collector import collector_at_rest
 from mmrs_core.languages.datatypes import ECORE, XML_TYPES, declared_type
 from mmrs_core.languages.metaclass import Package
@@ -26,6 +27,8 @@ from mmrs_core.languages.metamodels.source import Node
 from mmrs_core.languages.naming import nearest
 
 DEEPEST_INHERITANCE = 100
+MOST_WAYS = 20_000
+"""From a class to all that it inherits from; pyecore goes every way."""
 
 _PYTHONS = frozenset(name for name, held in vars(type).items() if isdatadescriptor(held))
 _RESERVED = frozenset((*dir(ecore.EObject), *vars(ecore.EObject()), *_PYTHONS, "_staticEClass"))
@@ -73,7 +76,14 @@ def load(located: Sequence[Located], known: Iterable[Package], *, lenient: bool 
     resource = _Resource(_Text(text), finder)
     finder.resource = resource
     with _ONE_AT_A_TIME, _usual_order(), collector_at_rest():
-        resource.load()
+        try:
+            resource.load()
+        except (MmrsError, MemoryError):
+            raise
+        except Exception as fault:  # whatever a strange file does to it
+            names = ", ".join(dict.fromkeys(entry.file.name for entry in files if entry.file is not None))
+            reason = "nested too deeply for it" if isinstance(fault, RecursionError) else fault
+            raise PluginError(f"{names}: pyecore cannot load this: {reason}") from fault
         finder.finish()
     _give_files(files, resource.contents)
     return Loaded({**given, **finder.packages}, forms.nodes)
@@ -275,35 +285,30 @@ def _give_files(files: Iterable[Located], contents: Sequence[Any]) -> None:
 
 
 def _check_inheritance(forms: Forms) -> None:
-    """Refuse classes that inherit from themselves, or through more than `DEEPEST_INHERITANCE` others.
+    """Refuse classes that inherit from themselves, or through more others than pyecore bears.
 
     Raises:
         PluginError: for the first such class.
     """
+    try:
+        order = tuple(TopologicalSorter(forms.supertypes).static_order())
+    except CycleError as fault:
+        address = fault.args[1][0]
+        entry, node = forms.nodes[address]
+        entry.refuse(f"class {address[1]} inherits from itself", node)
     depths: dict[Address, int] = {}
-    for first in forms.supertypes:
-        way: list[tuple[Address, Iterator[Address]]] = [(first, iter(forms.supertypes[first]))]
-        on_way = {first}
-        while way and first not in depths:
-            address, above = way[-1]
-            entry, node = forms.nodes[address]
-            following = next(
-                (each for each in above if each in forms.supertypes and each not in depths), None
-            )
-            if following is None:
-                way.pop()
-                on_way.discard(address)
-                depths[address] = 1 + max(
-                    (depths.get(each, 0) for each in forms.supertypes[address]), default=0
-                )
-            elif following in on_way:
-                entry.refuse(f"class {address[1]} inherits from itself", node)
-            else:
-                way.append((following, iter(forms.supertypes[following])))
-                on_way.add(following)
-            if len(way) > DEEPEST_INHERITANCE or depths.get(address, 0) > DEEPEST_INHERITANCE:
-                reason = f"class {address[1]} inherits through more than {DEEPEST_INHERITANCE} others"
-                entry.refuse(reason, node)
+    ways: dict[Address, int] = {}
+    for address in order:
+        if address not in forms.supertypes:
+            continue  # it stands already
+        above = [each for each in forms.supertypes[address] if each in depths]
+        depths[address] = 1 + max((depths[each] for each in above), default=0)
+        ways[address] = 1 + sum(ways[each] for each in above)
+        entry, node = forms.nodes[address]
+        if depths[address] > DEEPEST_INHERITANCE:
+            entry.refuse(f"class {address[1]} inherits through more than {DEEPEST_INHERITANCE} others", node)
+        if ways[address] > MOST_WAYS:
+            entry.refuse(f"class {address[1]} inherits in more than {MOST_WAYS} ways", node)
 
 
 @contextmanager

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import NoReturn
 from urllib.parse import unquote
 
-from mmrs_core.errors import PluginError
+from mmrs_core.errors import PluginError, UnreadableError
 from mmrs_core.languages.datatypes import ECORE, XML_TYPES, shown
 from mmrs_core.languages.metaclass import Package
 from mmrs_core.languages.metamodels.source import EcoreFile, Node, read_ecore
@@ -47,19 +47,26 @@ class Located:
 
     def refuse(self, reason: str, node: Node | None = None, between: str = ": ") -> NoReturn:
         """Raise the error for something in it, with the place of the element, if one is given."""
-        place = f"{self.file.name}:{node.line}: " if self.file is not None and node is not None else ""
-        known = place.startswith(self.provider) or place.rpartition("/")[2].startswith(f"{self.provider}:")
-        who = "" if known else f"{self.provider}: "
-        raise PluginError(f"{who}{place}{self.ns_uri}{between}{reason}")
+        place = (
+            f"{self.file.name}:{node.line}" if self.file is not None and node is not None else self.provider
+        )
+        raise PluginError(f"{place}: {self.ns_uri}{between}{reason}")
 
 
 def located_in(ecore: Path, provider: str) -> list[Located]:
-    """Return the packages of a file, those inside others included.
+    """Return the packages of a file, those inside others included; messages name who brings it.
 
     Raises:
         UnreadableError: if the file is no metamodel.
     """
-    file = read_ecore(ecore)
+    who = "" if provider in (str(ecore), ecore.name) else f"{provider}: "
+    try:
+        file = read_ecore(ecore)
+    except UnreadableError as fault:
+        raise UnreadableError(
+            f"{who}{fault}", code=fault.code, reason=fault.reason, file=fault.file, line=fault.line
+        ) from None
+    file.name = f"{who}{file.name}"
     path = real_path(ecore)
     return [
         Located(node.get("nsURI"), node.get("name"), provider, ecore, parent, root, path, file, node)

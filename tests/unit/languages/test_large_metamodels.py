@@ -89,6 +89,18 @@ def test_deeper_inheritance_is_refused(registry_of, turned, length):
         registry_of(*(reversed(classes) if turned else classes))
 
 
+def test_classes_that_inherit_in_countless_ways_are_refused(registry_of):
+    crossed = [classed(f"C{index}", f"C{index - 2} #//C{index - 1}") for index in range(2, 40)]
+    with pytest.raises(PluginError, match="inherits in more than 20000 ways"):
+        registry_of(classed("C0"), classed("C1", "C0"), *crossed)
+
+
+def test_packages_that_nest_deeper_than_pyecore_goes_are_refused_with_the_file(registry_of):
+    inner = "".join(f'<eSubpackages name="p{index}" nsURI="urn:p{index}">' for index in range(300))
+    with pytest.raises(PluginError, match=r"big\.ecore: pyecore cannot load this: Excessive depth"):
+        registry_of(inner + "</eSubpackages>" * 300)
+
+
 def test_features_that_multiply_by_inheritance_are_refused(registry_of):
     top = classed("Top", features=[f"f{index}" for index in range(1000)])
     with pytest.raises(PluginError, match="more than 500000 features"):

@@ -210,7 +210,8 @@ def test_a_file_that_holds_another_metamodel_is_an_error(package):
 def test_a_file_that_is_no_metamodel_is_unreadable(tmp_path, text, message):
     path = tmp_path / "a.ecore"
     path.write_text(text)
-    with pytest.raises(UnreadableError, match=message):
+    with pytest.raises(UnreadableError, match=message) as refused:
         registry_with([MetamodelSource("urn:a", path, "p")])
-    with pytest.raises(UnreadableError, match="no such file"):
+    assert re.match(r"p: \S+a\.ecore:[0-9]+: ", str(refused.value))
+    with pytest.raises(UnreadableError, match=r"^p: gone\.ecore: no such file"):
         registry_with([MetamodelSource("urn:a", Path("gone.ecore"), "p")])
