@@ -12,7 +12,7 @@ class MetamodelSource:
 
     Attributes:
         ns_uri: of the package, as its file states it.
-        ecore: the .ecore file, or a pyecore EPackage.
+        ecore: the .ecore file, a pyecore EPackage, or a module that pyecoregen wrote.
         provider: the distribution that brings it.
     """
 

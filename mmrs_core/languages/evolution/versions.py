@@ -8,8 +8,8 @@ from pathlib import Path
 
 from mmrs_core.languages.datatypes import BUILT_IN
 from mmrs_core.languages.metaclass import Metaclass, Package
+from mmrs_core.languages.metamodels.ecore_file import read_ecore
 from mmrs_core.languages.metamodels.gathering import gathered
-from mmrs_core.languages.metamodels.source import read_ecore
 from mmrs_core.languages.registry import MetamodelSource, Registry
 
 

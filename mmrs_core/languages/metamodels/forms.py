@@ -13,8 +13,8 @@ from typing import NoReturn
 
 from mmrs_core.errors import UnreadableError
 from mmrs_core.languages.datatypes import ECORE, builtin_type, shown
+from mmrs_core.languages.metamodels.ecore_file import FLAGS, WHOLE, Node
 from mmrs_core.languages.metamodels.locating import Address, Directory, Located
-from mmrs_core.languages.metamodels.source import FLAGS, WHOLE, Node
 from mmrs_core.languages.xmi.escapes import in_attribute
 from mmrs_core.languages.xmi.events import XMI, XSI
 

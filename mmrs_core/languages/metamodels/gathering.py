@@ -8,7 +8,7 @@ from pathlib import Path
 from urllib.parse import unquote
 
 from mmrs_core.errors import UnreadableError
-from mmrs_core.languages.metamodels.source import EcoreFile, read_ecore
+from mmrs_core.languages.metamodels.ecore_file import EcoreFile, read_ecore
 from mmrs_core.languages.references.hrefs import real_path
 from mmrs_core.languages.registry import MetamodelSource, Registry, registry_with
 

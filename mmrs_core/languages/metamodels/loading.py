@@ -20,10 +20,10 @@ from mmrs_core.errors import MmrsError, PluginError
 from mmrs_core.languages.collector import collector_at_rest
 from mmrs_core.languages.datatypes import ECORE, XML_TYPES, declared_type
 from mmrs_core.languages.metaclass import Package
+from mmrs_core.languages.metamodels.ecore_file import Node
 from mmrs_core.languages.metamodels.ecore_itself import built_in
 from mmrs_core.languages.metamodels.forms import Forms
 from mmrs_core.languages.metamodels.locating import Address, Directory, Located, located_in
-from mmrs_core.languages.metamodels.source import Node
 from mmrs_core.languages.naming import nearest
 
 DEEPEST_INHERITANCE = 100

@@ -12,7 +12,7 @@ from urllib.parse import unquote
 from mmrs_core.errors import PluginError, UnreadableError
 from mmrs_core.languages.datatypes import ECORE, XML_TYPES, shown
 from mmrs_core.languages.metaclass import Package
-from mmrs_core.languages.metamodels.source import EcoreFile, Node, read_ecore
+from mmrs_core.languages.metamodels.ecore_file import EcoreFile, Node, read_ecore
 from mmrs_core.languages.references.hrefs import real_path
 
 _OF_ECLIPSE = {

@@ -10,8 +10,8 @@ from pathlib import Path
 from mmrs_core.errors import PluginError
 from mmrs_core.languages.datatypes import ECORE
 from mmrs_core.languages.metaclass import Package
+from mmrs_core.languages.metamodels.ecore_file import LARGEST_METAMODEL
 from mmrs_core.languages.metamodels.locating import Directory, standing
-from mmrs_core.languages.metamodels.source import LARGEST_METAMODEL
 from mmrs_core.languages.metamodels.text import package_text
 from mmrs_core.languages.registry import Registry
 from mmrs_core.languages.xmi.escapes import in_attribute

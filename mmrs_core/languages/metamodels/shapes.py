@@ -13,10 +13,10 @@ from mmrs_core.errors import InternalError, PluginError
 from mmrs_core.languages.datatypes import BUILT_IN, ECORE, DataType, builtin_type, declared_type, refusal
 from mmrs_core.languages.element import Element
 from mmrs_core.languages.metaclass import MANY, MAP_ENTRY, Enumeration, Feature, Literal, Metaclass, Package
+from mmrs_core.languages.metamodels.ecore_file import GENMODEL
 from mmrs_core.languages.metamodels.ecore_itself import built_in
 from mmrs_core.languages.metamodels.loading import Loaded, epackage_of, load
 from mmrs_core.languages.metamodels.locating import Address, Located, located_in
-from mmrs_core.languages.metamodels.source import GENMODEL
 from mmrs_core.languages.naming import nearest, python_name
 
 MOST_FEATURES = 500_000

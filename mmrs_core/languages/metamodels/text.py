@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable
 
 from mmrs_core.languages.datatypes import ECORE, DataType
 from mmrs_core.languages.metaclass import MAP_ENTRY, Enumeration, Feature, Metaclass, Package
-from mmrs_core.languages.metamodels.source import GENMODEL
+from mmrs_core.languages.metamodels.ecore_file import GENMODEL
 from mmrs_core.languages.xmi.escapes import in_attribute
 from mmrs_core.languages.xmi.events import XMI, XSI
 

@@ -11,7 +11,7 @@ from mmrs_core.errors import UnreadableError
 from mmrs_core.languages.datatypes import ECORE
 from mmrs_core.languages.json_form.tree import Node as Object
 from mmrs_core.languages.json_form.tree import Tree
-from mmrs_core.languages.metamodels.source import EcoreFile
+from mmrs_core.languages.metamodels.ecore_file import EcoreFile
 from mmrs_core.languages.xmi.events import read_bytes
 from mmrs_core.migration.sources.from_json import CLASS, node_of, text_in
 from mmrs_core.migration.sources.from_xmi import parse_xmi

@@ -9,8 +9,8 @@ from metamodel_forms import FORMS, NAMESPACES, REFUSED, classed, packaged, refer
 from mmrs_core.errors import PluginError, UnreadableError
 from mmrs_core.languages.conformance import check_conformance
 from mmrs_core.languages.datatypes import ECORE, XML_TYPES
+from mmrs_core.languages.metamodels.ecore_file import read_ecore
 from mmrs_core.languages.metamodels.export import export_metamodels, exported_names
-from mmrs_core.languages.metamodels.source import read_ecore
 from mmrs_core.languages.reading import read_model
 from mmrs_core.languages.registry import MetamodelSource, core_registry, registry_with
 from mmrs_core.languages.writing import write_model

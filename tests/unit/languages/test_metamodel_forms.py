@@ -10,9 +10,9 @@ import pytest
 from mmrs_core.errors import MmrsError, PluginError, UnreadableError
 from mmrs_core.languages.datatypes import ECORE
 from mmrs_core.languages.element import Element
-from mmrs_core.languages.metamodels import source
+from mmrs_core.languages.metamodels import ecore_file
+from mmrs_core.languages.metamodels.ecore_file import MOST_REFERENCES, EcoreFile
 from mmrs_core.languages.metamodels.gathering import registry_of_files
-from mmrs_core.languages.metamodels.source import MOST_REFERENCES, EcoreFile
 from mmrs_core.languages.registry import MetamodelSource
 
 NAMESPACES = (
@@ -225,7 +225,7 @@ def test_a_link_that_leads_in_a_circle_cannot_be_read(tmp_path):
 
 
 def test_a_metamodel_that_is_too_large_is_refused(tmp_path, monkeypatch):
-    monkeypatch.setattr(source, "LARGEST_METAMODEL", 1024 * 1024)
+    monkeypatch.setattr(ecore_file, "LARGEST_METAMODEL", 1024 * 1024)
     with (tmp_path / "a.ecore").open("wb") as stream:
         stream.truncate(1024 * 1024 + 1)
     with pytest.raises(UnreadableError, match=r"a\.ecore: larger than 1 MB"):
