@@ -126,28 +126,26 @@ class Element(metaclass=ElementType):
         """Return the value of a feature, given by its name or as pyecore's object of it.
 
         Raises:
-            AttributeError: if there is no such feature; TypeError where it is neither name nor object.
+            AttributeError: if there is no such feature; TypeError where it is neither name nor object;
+                ValueError where the metamodel is not installed.
         """
-        return getattr(self, _feature(self, feature).attribute)
+        return getattr(self, metaclass_of(self).meant(feature).attribute)
 
     def eSet(self, feature: Any, value: object) -> None:
         """Set a feature as the attribute does, or to literals of a pyecore ``EEnum``; errors as in `eGet`."""
-        meant = _feature(self, feature)
+        meant = metaclass_of(self).meant(feature)
         if isinstance(meant.type, Enumeration):
             value = meant.type.named(value)
         setattr(self, meant.attribute, value)
 
     def eIsSet(self, feature: Any) -> bool:
-        """Return whether a feature was given a value, even its default; errors as in `eGet`.
-
-        As in pyecore, and not as in EMF, for which see `is_set`. A list counts while something is in it.
-        """
-        return given(self, _feature(self, feature))
+        """Return whether a feature has a value, even its default (EMF's is `is_set`); errors as in `eGet`."""
+        return given(self, metaclass_of(self).meant(feature))
 
     def eUnset(self, feature: Any) -> None:
         """Take the value of a feature away, so that it holds its default; errors as in `eGet`."""
         with suppress(AttributeError):  # it was empty already
-            delattr(self, _feature(self, feature).attribute)
+            delattr(self, metaclass_of(self).meant(feature).attribute)
 
     def eContainer(self) -> Element | None:
         """Return the element that contains it, or None."""
@@ -181,7 +179,8 @@ class Element(metaclass=ElementType):
             return f"{Element.eURIFragment(self._mmrs_outer)}{rest}" if rest.startswith("/") else rest
         root, steps = _steps_to(self)
         way = (f"/@{name}.{index}" if index else f"/@{name}" for name, index in steps)
-        return f"{_number_of(root) or '/'}{''.join(way)}"
+        source = root._mmrs_source
+        return f"{(source and source.number(root)) or '/'}{''.join(way)}"
 
     def eRoot(self) -> Element:
         """Return the outermost container; the element itself if it has none."""
@@ -345,17 +344,6 @@ def given(element: Element, feature: Feature) -> bool:
     return holds(element, feature) or bool(held(element, feature))
 
 
-def _feature(element: Element, feature: object) -> Feature:
-    """Return the feature of that name, or of the name that a feature has."""
-    name = feature if isinstance(feature, str) else getattr(feature, "name", None)
-    if not isinstance(name, str):
-        raise TypeError(f"{feature!r}: neither the name of a feature nor a feature")
-    try:
-        return metaclass_of(element).feature(name)
-    except ValueError as unknown:
-        raise AttributeError(str(unknown)) from None
-
-
 def place_of(element: Element) -> Place:
     """Return the file and line it was read from, and its path within its model."""
     source = element._mmrs_source
@@ -372,7 +360,8 @@ def path_of(element: Element) -> str:
         return f"{path_of(element._mmrs_outer).rstrip('/')}{rest if rest.startswith('/') else f'#{rest}'}"
     root, steps = _steps_to(element)
     way = (f"/{name}[{index}]" if index else f"/{name}" for name, index in steps)
-    return f"{_number_of(root)}{''.join(way)}" or "/"
+    source = root._mmrs_source
+    return f"{source.number(root) if source else ''}{''.join(way)}" or "/"
 
 
 def _steps_to(element: Element) -> tuple[Element, list[tuple[str, str]]]:
@@ -388,14 +377,6 @@ def _steps_to(element: Element) -> tuple[Element, list[tuple[str, str]]]:
 
 def _as_step(step: re.Match[str]) -> str:
     return f"/{step[1]}" if step[2] is None else f"/{step[1]}[{step[2]}]"
-
-
-def _number_of(root: Element) -> str:
-    """Return what tells a root from the others of its file; nothing if it is the only one."""
-    roots = root._mmrs_source.roots if root._mmrs_source is not None else ()
-    if len(roots) < 2:
-        return ""
-    return next((f"/{number}" for number, each in enumerate(roots) if each is root), "")
 
 
 def _index(container: Element, feature: Feature, element: Element) -> str:

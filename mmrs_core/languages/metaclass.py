@@ -222,6 +222,21 @@ class Metaclass:
             hint = nearest(name, self.by_name)
             raise ValueError(f"{name}: no feature of {self.name}{hint and '; ' + hint}") from None
 
+    def meant(self, feature: object) -> Feature:
+        """Return the feature of that name, or of the name that a feature of pyecore has.
+
+        Raises:
+            AttributeError: if it has none, with the nearest name; these are the errors that pyecore raises.
+            TypeError: if it is neither a name nor has one.
+        """
+        name = getattr(feature, "name", feature)
+        if not isinstance(name, str):
+            raise TypeError(f"{feature!r}: neither the name of a feature nor a feature")
+        try:
+            return self.feature(name)
+        except ValueError as unknown:
+            raise AttributeError(str(unknown)) from None
+
     def is_kind(self, ns_uri: str, name: str) -> bool:
         """Return whether it is that metaclass or one of its subtypes."""
         return (ns_uri, name) in self.ancestry

@@ -43,3 +43,9 @@ class Source:
     def contents(self) -> list[Element]:
         """The elements at its top."""
         return list(self.roots)
+
+    def number(self, root: Element) -> str:
+        """Return what tells a root from the others, such as ``/1``; nothing if there are no others."""
+        if len(self.roots) < 2:
+            return ""
+        return next((f"/{number}" for number, each in enumerate(self.roots) if each is root), "")
