@@ -7,6 +7,7 @@ from contextlib import suppress
 from pathlib import Path
 
 from mmrs_core.languages.evolution.migrating import class_of
+from mmrs_core.languages.json_form import is_json
 from mmrs_core.languages.json_form.stream import (
     END,
     LANGUAGES,
@@ -21,7 +22,7 @@ from mmrs_core.languages.json_form.stream import (
     skip,
     texts_in,
 )
-from mmrs_core.languages.json_form.text import Text, is_json
+from mmrs_core.languages.json_form.text import Text
 from mmrs_core.languages.json_form.tree import Node
 from mmrs_core.languages.xmi.events import XMI, XSI, Document, read_bytes
 

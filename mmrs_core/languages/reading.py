@@ -8,8 +8,8 @@ from pathlib import Path
 from mmrs_core.errors import UnreadableError
 from mmrs_core.languages.codes import explained
 from mmrs_core.languages.collector import collector_at_rest
-from mmrs_core.languages.evolution.loading import may_be_old, read_json, read_old_xmi
-from mmrs_core.languages.json_form.text import is_json
+from mmrs_core.languages.evolution.migration import may_be_old
+from mmrs_core.languages.json_form import is_json
 from mmrs_core.languages.metamodels.text import package_text
 from mmrs_core.languages.model import Model
 from mmrs_core.languages.references.documents import Draft
@@ -73,9 +73,14 @@ class Reading:
         """Read the text of a file; errors as in `open`."""
         draft = Draft(source)
         with collector_at_rest():
+            # most files are plain XMI, and importing the rest takes as long as reading one
             if is_json(source.file):
+                from mmrs_core.languages.evolution.loading import read_json
+
                 read_json(data, draft, self._registry)
             elif may_be_old(data, self._registry):
+                from mmrs_core.languages.evolution.loading import read_old_xmi
+
                 read_old_xmi(data, draft, self._registry)
             else:
                 document = Document(data, source.file)

@@ -14,8 +14,8 @@ from mmrs_core.diagnostics import Diagnostic, Place, Severity
 from mmrs_core.errors import UnreadableError
 from mmrs_core.languages.element import Element, Unknown
 from mmrs_core.languages.grounding.values import child, children
+from mmrs_core.languages.json_form import is_json
 from mmrs_core.languages.json_form.markup import JsonMarkup
-from mmrs_core.languages.json_form.text import is_json
 from mmrs_core.languages.model import Model
 from mmrs_core.languages.modelset import ModelSet
 from mmrs_core.languages.registry import Registry

@@ -15,7 +15,7 @@ from mmrs_core.errors import InvalidModelError, UnreadableError, UnsupportedErro
 from mmrs_core.languages.codes import explained
 from mmrs_core.languages.ecore_api.bridge import Outward, file_of, from_pyecore
 from mmrs_core.languages.element import Element, metaclass_of, place_of, root_of
-from mmrs_core.languages.json_form.text import is_json
+from mmrs_core.languages.json_form import is_json
 from mmrs_core.languages.model import Model
 from mmrs_core.languages.reading import read_model, read_text
 from mmrs_core.languages.references.hrefs import real_path

@@ -8,6 +8,7 @@ from functools import partial
 from mmrs_core.diagnostics import Severity
 from mmrs_core.errors import UnreadableError
 from mmrs_core.languages.evolution.migrating import Lost, Migrating, class_of, every_node
+from mmrs_core.languages.evolution.migration import may_be_old
 from mmrs_core.languages.evolution.old_xmi import OldXmi
 from mmrs_core.languages.json_form.reader import JsonReader
 from mmrs_core.languages.json_form.stream import LANGUAGES, ROOTS, TYPE
@@ -19,14 +20,7 @@ from mmrs_core.languages.references.documents import Draft
 from mmrs_core.languages.registry import Registry
 from mmrs_core.languages.xmi.events import Document
 
-_ENCODINGS = ("utf-8", "utf-16-le", "utf-16-be", "utf-32-le", "utf-32-be")
 MIGRATED, LOST = "MIG001", "MIG002"
-
-
-def may_be_old(data: bytes, registry: Registry) -> bool:
-    """Return whether a file mentions a version of a language from which a migration leads away."""
-    texts = (ns_uri.encode(form) for ns_uri in registry.chains for form in _ENCODINGS)
-    return any(text in data for text in texts)
 
 
 def read_old_xmi(data: bytes, draft: Draft, registry: Registry) -> None:

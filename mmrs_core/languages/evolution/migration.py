@@ -5,13 +5,18 @@ from __future__ import annotations
 from collections.abc import Callable, Container, Iterable, Mapping
 from dataclasses import dataclass, field
 from types import MappingProxyType
+from typing import TYPE_CHECKING
 
 from mmrs_core.errors import PluginError
-from mmrs_core.languages.json_form.tree import Node
 
-Refer = Callable[[Node], Node]
+if TYPE_CHECKING:
+    from mmrs_core.languages.json_form.tree import Node
+    from mmrs_core.languages.registry import Registry
+
+Refer = Callable[["Node"], "Node"]
 """Returns a reference to an element of the model."""
 
+_ENCODINGS = ("utf-8", "utf-16-le", "utf-16-be", "utf-32-le", "utf-32-be")
 _NOTHING: Mapping[str, str] = MappingProxyType({})
 
 
@@ -55,6 +60,12 @@ class Migration:
             owner, dot, feature = name.partition(".")
             if not (owner and dot and feature):
                 raise ValueError(f"{name!r}: a feature is written Class.feature")
+
+
+def may_be_old(data: bytes, registry: Registry) -> bool:
+    """Return whether a file mentions a version of a language from which a migration leads away."""
+    texts = (ns_uri.encode(form) for ns_uri in registry.chains for form in _ENCODINGS)
+    return any(text in data for text in texts)
 
 
 def chains(migrations: Iterable[Migration], installed: Container[str]) -> Mapping[str, tuple[Migration, ...]]:

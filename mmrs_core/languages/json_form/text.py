@@ -300,8 +300,3 @@ def _as_utf8(data: bytes, file: str) -> bytes:
     except UnicodeDecodeError as fault:
         line = data.count(b"\n", 0, fault.start) + 1
         raise UnreadableError.of("FIL007", f"not readable as {encoding.upper()} text", file, line) from None
-
-
-def is_json(file: str) -> bool:
-    """Return whether a file is one of JSON, by the ending of its name."""
-    return file.lower().endswith(".json")

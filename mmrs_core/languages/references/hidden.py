@@ -4,10 +4,8 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator, Sequence
-from html import unescape
 
 from mmrs_core.languages.element import Element, Hidden, Unknown, descendants
-from mmrs_core.languages.json_form.unknown import UnknownObject
 from mmrs_core.languages.references.documents import Draft
 from mmrs_core.languages.source import Source
 
@@ -51,7 +49,7 @@ def note_links(draft: Draft) -> None:
     if not any(fault.code in _LEAVE_UNKNOWN for fault in draft.diagnostics):
         return  # going over a large model takes its time
     for element in _unknown(draft.roots):
-        text = element._mmrs_json if isinstance(element, UnknownObject) else element._mmrs_xml
+        text = _json_of(element) or element._mmrs_xml
         found = {path: draft.find(path) for path in _paths(text)}
         links = tuple((path, target) for path, target in found.items() if target is not None)
         if links:
@@ -73,6 +71,8 @@ def strayed(element: Unknown, roots: Sequence[Element]) -> str:
 
 def _paths(text: str) -> Iterator[str]:
     """Yield the paths in a text that are about its own file."""
+    from html import unescape
+
     for match in _PATH.finditer(text):
         if _BEFORE.search(text, max(0, match.start() - 2), match.start()) is None:
             yield unescape(match.group())
@@ -93,8 +93,16 @@ def _unknown(roots: Iterable[Element]) -> Iterator[Unknown]:
         yield from (each for each in (root, *descendants(root)) if isinstance(each, Unknown))
 
 
+def _json_of(element: Unknown) -> str:
+    """Return the text of an element that was kept as JSON, else nothing."""
+    from mmrs_core.languages.json_form.unknown import UnknownObject  # most files hold nothing unknown
+
+    return element._mmrs_json if isinstance(element, UnknownObject) else ""
+
+
 def _texts(element: Unknown) -> Iterator[str]:
-    if isinstance(element, UnknownObject):
-        yield from (match[1] for match in _IN_JSON.finditer(element._mmrs_json))
+    from html import unescape
+
+    yield from (match[1] for match in _IN_JSON.finditer(_json_of(element)))
     for match in _IN_XML.finditer(element._mmrs_xml):
         yield unescape(match[1] if match[1] is not None else match[2])

@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator
 from math import inf
 
+from mmrs_core.analysis.constraints.sketch import sketch_of
 from mmrs_core.contributions.constraints import Finding
 from mmrs_core.languages.element import Element, is_kind, label_of
-from mmrs_core.languages.grounding.coordinates import Ground, ground_of
+from mmrs_core.languages.grounding.coordinates import Ground
 from mmrs_core.languages.grounding.heights import heights_of_task
 from mmrs_core.languages.grounding.values import child, children, number, text
 from mmrs_core.languages.modelset import ModelSet
@@ -20,7 +21,7 @@ EXACT = 1e-6
 
 def too_high(mission: Element, models: ModelSet) -> Iterator[Finding]:
     """Yield the tasks above the ceiling of every robot; none where some robot is no drone."""
-    ground = ground_of(mission, models.context)
+    ground = sketch_of(models).ground
     ceiling = _highest_ceiling(mission, models, ground)
     for task in children(mission, "tasks"):
         height = max(heights_of_task(task, ground), default=-inf)
@@ -33,7 +34,7 @@ def too_high(mission: Element, models: ModelSet) -> Iterator[Finding]:
 
 def too_low(mission: Element, models: ModelSet) -> Iterator[Finding]:
     """Yield the tasks below the floor of every robot; none where some robot is no drone."""
-    ground = ground_of(mission, models.context)
+    ground = sketch_of(models).ground
     floors = [_floor(member, models, ground) for member in children(child(mission, "team"), "robots")]
     floor = min(floors, default=-inf)
     for task in children(mission, "tasks"):
@@ -48,7 +49,7 @@ def too_low(mission: Element, models: ModelSet) -> Iterator[Finding]:
 
 def cut_transit(mission: Element, models: ModelSet) -> Iterator[Finding]:
     """Yield a mission whose transits are above the ceiling of every robot; none where some is no drone."""
-    ceiling = _highest_ceiling(mission, models, ground_of(mission, models.context))
+    ceiling = _highest_ceiling(mission, models, sketch_of(models).ground)
     transit = number(mission, "transitAltitude")
     if transit is not None and transit > ceiling:
         yield Finding(

@@ -8,9 +8,9 @@ from math import ceil, dist, inf
 
 from shapely.geometry import Polygon
 
+from mmrs_core.analysis.constraints.sketch import sketch_of
 from mmrs_core.contributions.constraints import Finding
 from mmrs_core.languages.element import Element, is_kind, label_of
-from mmrs_core.languages.grounding.coordinates import ground_of
 from mmrs_core.languages.grounding.values import children, number, text
 from mmrs_core.languages.modelset import ModelSet
 from mmrs_core.planning.coverage import MOST
@@ -31,7 +31,7 @@ def amount_over(least: float, most: float = inf) -> _Check:
     """Return the check that yields tasks with more photos or samples than `least`, up to `most`."""
 
     def check(mission: Element, models: ModelSet) -> Iterator[Finding]:
-        positions = ground_of(mission, models.context).positions
+        positions = sketch_of(models).ground.positions
         for task in children(mission, "tasks"):
             count = _amount(task, models, positions)
             if least < count <= most:

@@ -7,9 +7,10 @@ from math import inf
 
 from mmrs_auv.kinds import ATMOSPHERE, GRAVITY, SEA_WATER
 from mmrs_auv.names import AUV_MOVEMENT, FOLLOW_PIPELINE_TASK, YO_YO_TASK
+from mmrs_core.analysis.constraints.sketch import sketch_of
 from mmrs_core.contributions.constraints import Finding
 from mmrs_core.languages.element import Element, is_kind, label_of
-from mmrs_core.languages.grounding.coordinates import Ground, ground_of
+from mmrs_core.languages.grounding.coordinates import Ground
 from mmrs_core.languages.grounding.heights import heights_of_task
 from mmrs_core.languages.grounding.values import child, children, number, text
 from mmrs_core.languages.modelset import ModelSet
@@ -24,7 +25,7 @@ def too_deep(mission: Element, models: ModelSet) -> Iterator[Finding]:
     team = children(child(mission, "team"), "robots") if child(mission, "team") is not None else ()
     limits = [_limit(models.robots.get(text(member, "type")), models) for member in team]
     deepest = max((limit for limit in limits if limit is not None), default=inf)
-    ground = ground_of(mission, models.context)
+    ground = sketch_of(models).ground
     for task in children(mission, "tasks"):
         depth = _deepest(task, ground)
         if depth > deepest + 1e-6:
