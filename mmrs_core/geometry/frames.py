@@ -97,6 +97,7 @@ def known_crs(crs: str) -> str | None:
     return None
 
 
+@lru_cache(maxsize=64)
 def _crs(crs: str) -> CRS:
     from pyproj import CRS
 

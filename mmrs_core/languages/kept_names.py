@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-from html import unescape
 
 from mmrs_core.languages.element import Unknown
 from mmrs_core.languages.json_form.unknown import UnknownObject, stated
@@ -26,6 +25,8 @@ def name_in_tag(xml: str) -> str:
     >>> name_in_tag('<tasks name="a &gt; b" x=">"><y name="c"/></tasks>')
     'a > b'
     """
+    from html import unescape
+
     tag = _TAG.match(xml)
     attributes = _ATTRIBUTE.findall(tag[0]) if tag else []
     return next((unescape(value[1:-1]) for name, value in attributes if name == "name"), "")

@@ -20,13 +20,11 @@ from mmrs_core.errors import InfeasibleError
 from mmrs_core.geometry.clearance import grow
 from mmrs_core.geometry.polygons import parts, polygon, rings
 from mmrs_core.planning.footprints import GRID
+from mmrs_core.planning.limits import MOST
 from mmrs_core.planning.lines import Swath
 from mmrs_core.planning.pockets import pockets_of
 from mmrs_core.planning.swaths import swaths
 from mmrs_core.scene import ActionAt, Area, Coverage, Point, Ring, Robot, Scene, Stroke, Work
-
-MOST = 200_000
-"""Actions at most that one area may take: more, nobody means, and nobody waits for their planning."""
 
 _SMALLEST = 1e-6
 """Square metres under which a part of a target is rounding."""

@@ -7,22 +7,10 @@ carries its metaclasses as ((nsURI, name), ...), most specific first, so that pl
 metaclass without seeing a model.
 """
 
+from typing import TYPE_CHECKING
+
 from mmrs_core.scene.missions import Dependency, Scene, Task
 from mmrs_core.scene.places import Area, AreaUse, Frame
-from mmrs_core.scene.plans import (
-    Await,
-    Branch,
-    Launch,
-    LeftOut,
-    Plan,
-    Recharge,
-    Recover,
-    RobotPlan,
-    Serve,
-    Signal,
-    Step,
-    Transit,
-)
 from mmrs_core.scene.robots import (
     Battery,
     Capability,
@@ -47,6 +35,22 @@ from mmrs_core.scene.values import (
     Value,
 )
 from mmrs_core.scene.works import ActionAt, Coverage, Gap, Look, Stroke, Work
+
+if TYPE_CHECKING:
+    from mmrs_core.scene.plans import (
+        Await,
+        Branch,
+        Launch,
+        LeftOut,
+        Plan,
+        Recharge,
+        Recover,
+        RobotPlan,
+        Serve,
+        Signal,
+        Step,
+        Transit,
+    )
 
 __all__ = [
     "ActionAt",
@@ -93,3 +97,12 @@ __all__ = [
     "Value",
     "Work",
 ]
+
+
+def __getattr__(name: str) -> object:
+    """Return a class of plans; their module is imported late, since validating needs none of its many."""
+    if name not in __all__:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    from mmrs_core.scene import plans
+
+    return getattr(plans, name)

@@ -5,13 +5,17 @@ from __future__ import annotations
 from collections.abc import Callable
 from itertools import pairwise
 from math import dist, hypot, inf, sqrt
+from typing import TYPE_CHECKING
 
-from mmrs_core.behaviour.program import BEHAVIOUR, Move
 from mmrs_core.contributions.rules import MoveKind, MoveSpec, RobotKind
 from mmrs_core.errors import InfeasibleError
 from mmrs_core.scene import Capability, Kinematics, Position, Robot, RobotType, Scene
 
+if TYPE_CHECKING:
+    from mmrs_core.behaviour.program import Move
+
 ROBOT = ("urn:mmrs:robot:1.0", "Robot")
+BEHAVIOUR = "urn:mmrs:behaviour:1.0"
 SHARE_OF_LARGEST_SPEED = {"SAFE": 0.5, "NORMAL": 0.75, "AGGRESSIVE": 1.0}
 ANYWHERE = frozenset({"grounded", "airborne", "moving"})
 AFLOAT = frozenset({"airborne", "moving"})
@@ -245,7 +249,7 @@ PLAIN_ROBOT = RobotKind(
     vehicle="rover",
 )
 
-_Seconds = Callable[[Move, tuple[Position, ...], Kinematics, str], tuple[float, float]]
+_Seconds = Callable[["Move", tuple[Position, ...], Kinematics, str], tuple[float, float]]
 
 
 def _on_the_spot(name: str, seconds: _Seconds, needs: frozenset[str] = ANYWHERE) -> MoveKind:

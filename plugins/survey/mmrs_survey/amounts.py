@@ -13,8 +13,8 @@ from mmrs_core.contributions.constraints import Finding
 from mmrs_core.languages.element import Element, is_kind, label_of
 from mmrs_core.languages.grounding.values import children, number, text
 from mmrs_core.languages.modelset import ModelSet
-from mmrs_core.planning.coverage import MOST
 from mmrs_core.planning.devices import figure
+from mmrs_core.planning.limits import MOST
 from mmrs_core.scene import Position
 from mmrs_survey import names
 from mmrs_survey.camera import IMAGE_KEYS, Footprint

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from mmrs_core.contributions.constraints import Constraint
 from mmrs_core.diagnostics import Severity
-from mmrs_core.planning.coverage import MOST
+from mmrs_core.planning.limits import MOST
 from mmrs_survey import names
 from mmrs_survey.amounts import MANY, amount_over
 from mmrs_survey.device_checks import action_undone, camera_unreadable, device_unclear, parameter_unknown

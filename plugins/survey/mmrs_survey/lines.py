@@ -9,7 +9,7 @@ from math import ceil, dist, floor
 import shapely
 
 from mmrs_core.errors import InfeasibleError
-from mmrs_core.planning.coverage import MOST
+from mmrs_core.planning.limits import MOST
 from mmrs_core.scene import Position
 
 LONGEST_SHARE = 50.0
