@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from mmrs_core.languages.evolution.migration import Migration
     from mmrs_core.languages.sources import MetamodelSource
     from mmrs_core.languages.subclasses import ElementClass
+    from mmrs_core.migration.dialect import ForeignDialect
 
 hookspec = pluggy.HookspecMarker("mmrs")
 hookimpl = pluggy.HookimplMarker("mmrs")
@@ -50,6 +51,11 @@ def mmrs_element_classes() -> Iterable[ElementClass]:  # type: ignore[empty-body
 @hookspec
 def mmrs_migrations() -> Iterable[Migration]:  # type: ignore[empty-body]
     """Contribute steps from older versions of languages; one for each nsURI that they begin at."""
+
+
+@hookspec
+def mmrs_dialects() -> Iterable[ForeignDialect]:  # type: ignore[empty-body]
+    """Contribute dialects of other tools, whose models every command takes; one for a name."""
 
 
 @hookspec

@@ -26,6 +26,7 @@ _KINDS: Mapping[str, str] = {
     "metamodels": "languages.sources.MetamodelSource",
     "element_classes": "languages.subclasses.ElementClass",
     "migrations": "languages.evolution.migration.Migration",
+    "dialects": "migration.dialect.ForeignDialect",
     "constraints": "contributions.constraints.Constraint",
     "fixes": "contributions.fixes.Fix",
     "rules": "contributions.rules.Rule",
@@ -77,12 +78,18 @@ class Plugins:
         return failed
 
 
-def load_plugins(*, only_core: bool = False, extra: Mapping[str, object] | None = None) -> Plugins:
+def load_plugins(
+    *,
+    only_core: bool = False,
+    extra: Mapping[str, object] | None = None,
+    quiet_migration: bool = False,
+) -> Plugins:
     """Return the installed plug-ins, loaded in the order of their names.
 
     Args:
         only_core: leave out everything but the core's own contributions.
         extra: plug-in objects beside the installed ones, by name.
+        quiet_migration: note nothing of values that were defaulted or changed in models of dialects.
 
     Raises:
         PluginError: if a plug-in does not import, misspells a hook, or two have one name; names the
@@ -103,7 +110,8 @@ def load_plugins(*, only_core: bool = False, extra: Mapping[str, object] | None 
     def declared(sort: str) -> tuple[tuple[str, Any], ...]:
         return tuple(_declared(manager, distributions, sort))
 
-    return Plugins(Contributions(declared, distributions), distributions, manager)
+    contributions = Contributions(declared, distributions, quiet_migration=quiet_migration)
+    return Plugins(contributions, distributions, manager)
 
 
 def language(ns_uri: str) -> Package:

@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from mmrs_core.languages.foreign import ForeignModel
 
 NOT_INSTALLED = "XMI001"
+MIGRATE = "'mmrs migrate' makes a project of it"
 
 Metamodels = Annotated[
     list[Path] | None,
@@ -86,9 +87,12 @@ def _strange(found: ForeignModel) -> frozenset[str]:
 def is_foreign(workshop: Workshop, file: Path) -> bool:
     """Return whether a file holds a model, and its first element is of no language of MMRS's own.
 
+    A model of a dialect is none: it becomes one of MMRS's own while it is read.
+
     Raises:
         UnreadableError: if it is missing or no model at all.
     """
+    from mmrs_core.languages.dialects import is_of_dialect
     from mmrs_core.languages.places import first_kind
     from mmrs_core.languages.registry import core_registry
 
@@ -100,6 +104,8 @@ def is_foreign(workshop: Workshop, file: Path) -> bool:
     if not ns_uri or ns_uri in registry.chains:
         return False
     own = {package.ns_uri for package in core_registry().packages}
+    if not registry.has(ns_uri) and is_of_dialect(file, registry):
+        return False
     kinds = registry.package(ns_uri).metaclasses if registry.has(ns_uri) else ()
     ancestry = next((kind.ancestry for kind in kinds if kind.name == name), ((ns_uri, name),))
     return not any(above in own for above, _ in ancestry)

@@ -10,7 +10,7 @@ from typing import Annotated, Any
 import typer
 
 from mmrs_core.cli.output import say, tell
-from mmrs_core.cli.settings import DEBUG, NO_PLUGINS, Settings
+from mmrs_core.cli.settings import DEBUG, NO_PLUGINS, QUIET_MIGRATION, Settings
 from mmrs_core.contributions.commands import Command
 from mmrs_core.errors import MmrsError, PluginError
 
@@ -138,6 +138,13 @@ def _global_options(
     ] = False,
     no_plugins: Annotated[bool, typer.Option(NO_PLUGINS, help="Load nothing but the core.")] = False,
     debug: Annotated[bool, typer.Option(DEBUG, help="Show where errors come from.")] = False,
+    quiet_migration: Annotated[
+        bool,
+        typer.Option(
+            QUIET_MIGRATION,
+            help="Do not list what is defaulted or changed in models of FLYAQ 2015 while they are read.",
+        ),
+    ] = False,
 ) -> None:
     """Describe the global options, which `taken_from` has taken off the command line before."""
 

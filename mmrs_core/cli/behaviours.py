@@ -115,14 +115,18 @@ def read_behaviour_files(
 
 
 def _read_all(files: Sequence[Path], registry: Registry, unsaved: Mapping[Path, bytes] | None) -> list[Model]:
-    """Return what files hold; whether one or all of them cannot be read, everything is told at once."""
+    """Return what files hold; whether one or all of them cannot be read, everything is told at once.
+
+    The last ones, which describe robot types, are read first: models of dialects are migrated by these.
+    """
     models: list[Model] = []
     refused: list[UnreadableError] = []
-    for file in files:
+    for file in reversed(files):
+        known = [root for model in models for root in model.roots]
         try:
-            models.append(read_model(file, registry, unsaved=unsaved))
+            models.insert(0, read_model(file, registry, unsaved=unsaved, known=known))
         except UnreadableError as error:
-            refused.append(error)
+            refused.insert(0, error)
     if refused:
         faults = [fault for error in refused for fault in refusal(error)]
         faults += [fault for model in models for fault in model.diagnostics]

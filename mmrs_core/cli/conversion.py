@@ -10,7 +10,7 @@ from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from mmrs_core.cli.any_model import is_mistake, read_foreign
+from mmrs_core.cli.any_model import MIGRATE, is_mistake, read_foreign
 from mmrs_core.cli.protection import ProtectedError, refuse_inputs
 from mmrs_core.cli.schema_places import places_in
 from mmrs_core.errors import InvalidModelError, UnreadableError, UnsupportedError
@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from mmrs_core.cli.journey import Workshop
     from mmrs_core.diagnostics import Diagnostic
     from mmrs_core.languages.element import Element
+    from mmrs_core.languages.model import Model
     from mmrs_core.languages.registry import Registry
 
 _ENDINGS = (".xmi", ".json")
@@ -108,6 +109,17 @@ def refuse_existing(targets: Sequence[Path], force: bool) -> None:
             raise ProtectedError(f"{target}: exists, and is not replaced; --force replaces it")
 
 
+def refuse_dialect(model: Model) -> None:
+    """Do nothing, unless a model was migrated from that of another tool: then it is not the same any more.
+
+    Raises:
+        UnsupportedError: if it was.
+    """
+    if model.dialect:
+        ways = f"{MIGRATE}, and --metamodel converts it as it is"
+        raise UnsupportedError(f"{model.file}: a model of {model.dialect}, not converted; {ways}")
+
+
 def refuse_links_outside(source: Path, target: Path, linked: Sequence[Path]) -> None:
     """Do nothing, unless a model would refer to files where nobody follows: outside its new folder.
 
@@ -179,8 +191,11 @@ def _registry_for(workshop: Workshop, files: Sequence[Path], metamodels: Sequenc
     from mmrs_core.languages.metamodels.gathering import gathered
 
     installed = workshop.contributions.languages
-    found = [each for file in files for each in read_foreign(workshop, file, metamodels).found]
-    return installed.extended(list(gathered(dict.fromkeys(found), installed)))
+    read = [read_foreign(workshop, file, metamodels) for file in files]
+    for each in read:
+        refuse_dialect(each.model)
+    found = dict.fromkeys(file for each in read for file in each.found)
+    return installed.extended(list(gathered(found, installed)))
 
 
 def text_of(

@@ -108,11 +108,12 @@ def _as_json(made: Converted) -> dict[str, object]:
 
 def _alone(asked: _Asked, source: Path, target: Path | None) -> int:
     from mmrs_core.cli.any_model import faults_in, read_foreign
-    from mmrs_core.cli.conversion import refuse_existing, refuse_links_outside, text_of
+    from mmrs_core.cli.conversion import refuse_dialect, refuse_existing, refuse_links_outside, text_of
     from mmrs_core.cli.protection import files_of, refuse_inputs
     from mmrs_core.languages.writing import replace_file
 
     found = read_foreign(asked.workshop, source, asked.metamodels)
+    refuse_dialect(found.model)
     faults = tuple(faults_in(found))
     if any(map(is_mistake, faults)):
         raise InvalidModelError(f"{source}: not converted, since something of it would be lost", faults)

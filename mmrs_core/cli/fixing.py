@@ -9,13 +9,16 @@ from typing import TYPE_CHECKING
 
 import typer
 
+from mmrs_core.cli.any_model import MIGRATE
 from mmrs_core.cli.output import counted, say, tell
+from mmrs_core.cli.protection import ProtectedError
 from mmrs_core.cli.replacing import replace_files
 from mmrs_core.errors import UnreadableError
 
 if TYPE_CHECKING:
     from mmrs_core.analysis.fixes.repair import Change, Diagnose, Proposal, Repair, Repairer
     from mmrs_core.contributions.registry import Contributions
+    from mmrs_core.languages.model import Model
 
 _COLOURS = {"+": "32", "-": "31", "@": "36"}
 
@@ -31,6 +34,24 @@ def _names_of_checks(contributions: Contributions) -> Iterator[str]:
     """Yield them; the checks are imported only when a fix asks."""
     for check in contributions.checks:
         yield check.name
+
+
+def refuse_foreign(models: Iterable[Model]) -> None:
+    """Tell which models are those of another tool, whose files are not mended.
+
+    Raises:
+        ProtectedError: if all are.
+    """
+    models = tuple(models)
+    refused = [
+        f"{model.file}: a model of {model.dialect}, whose file is not mended; {MIGRATE}, which can be mended"
+        for model in models
+        if model.dialect
+    ]
+    if refused and len(refused) == len(models):
+        raise ProtectedError(refused[0])
+    for words in refused:
+        tell(words)
 
 
 def difference(changes: Iterable[Change]) -> str:
@@ -59,8 +80,9 @@ def show(repair: Repair, mendable: Container[str]) -> None:
     for proposal in repair.refused:
         tell(f"{_where(proposal)}: not mended: {proposal.objection} [{proposal.fault.code}]")
     refused = {proposal.fault for proposal in repair.refused}
+    foreign = {str(model.file) for model in repair.diagnosis.models if model.dialect}
     for fault in repair.diagnosis.faults:
-        if fault.code in mendable and fault not in refused:
+        if fault.code in mendable and fault not in refused and fault.place.file not in foreign:
             tell(f"{fault.place}: not mended: no single right answer is seen here [{fault.code}]")
 
 

@@ -51,7 +51,8 @@ def generate(
 ) -> int:
     """Generate the code of every robot's controller.
 
-    'mmrs-gen explain FILE:LINE' says which move a line of it comes from.
+    'mmrs-gen explain FILE:LINE' says which move a line of it comes from. A behaviour of FLYAQ 2015 is taken
+    as it is; --quiet-migration does not list what was defaulted or changed in it.
 
     Example: mmrs-gen field --target mavlink-python -o code
     """

@@ -47,7 +47,8 @@ def migrate(
 ) -> int:
     """Turn models of another dialect into a project.
 
-    Tells every value that was defaulted, changed in meaning, or not carried over.
+    Tells every value that was defaulted, changed in meaning, or not carried over. The other commands take
+    models of FLYAQ 2015 as they are, and write no project.
 
     For example: mmrs migrate mission.json context.json Heron.xmi -o orchard
     """

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import typer
 
+from mmrs_core.builtin import FLYAQ
 from mmrs_core.cli.journey import Workshop
 from mmrs_core.cli.protection import ProtectedError, refuse_inputs
 from mmrs_core.languages import robot as robots
@@ -17,8 +18,6 @@ from mmrs_core.migration.migrate import Migration, UnknownTypeError
 from mmrs_core.migration.migrate import migrate as migrated
 from mmrs_core.migration.rules.mapping_file import read_mapping
 from mmrs_core.resources import shipped
-
-DEFAULT_MAPPING = "flyaq-2015.toml"
 
 
 def read_sources(
@@ -36,7 +35,7 @@ def read_sources(
         typer.BadParameter: if a robot type's name is not written as OLD=NAME, or OLD occurs nowhere.
     """
     registry = workshop.contributions.languages
-    rules = read_mapping(mapping or shipped("migrations") / DEFAULT_MAPPING, registry)
+    rules = read_mapping(mapping or shipped("migrations") / FLYAQ, registry)
     stands_for = _stands_for(types)
     present = _types_in(project, workshop)
 

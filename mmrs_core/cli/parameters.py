@@ -13,11 +13,18 @@ from mmrs_core.errors import UnreadableError
 
 ROBOTS = "--robots"
 
+_AS_THEY_ARE = "Models of FLYAQ 2015 are taken as they are."
 Project = Annotated[
-    Path, typer.Argument(metavar="PROJECT", help="The project's folder, or the file of its mission.")
+    Path,
+    typer.Argument(
+        metavar="PROJECT", help=f"The project's folder, or the file of its mission. {_AS_THEY_ARE}"
+    ),
 ]
 Behaviour = Annotated[
-    Path, typer.Argument(metavar="BEHAVIOUR", help="A behaviour, or the folder with a behaviour.xmi.")
+    Path,
+    typer.Argument(
+        metavar="BEHAVIOUR", help=f"A behaviour, or the folder with a behaviour.xmi. {_AS_THEY_ARE}"
+    ),
 ]
 Context = Annotated[
     Path | None,

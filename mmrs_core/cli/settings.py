@@ -13,6 +13,7 @@ if TYPE_CHECKING:
 
 NO_PLUGINS = "--no-plugins"
 DEBUG = "--debug"
+QUIET_MIGRATION = "--quiet-migration"
 
 
 @dataclass(frozen=True, slots=True)
@@ -23,11 +24,13 @@ class Settings:
         only_core: load no plug-in but the core's own.
         debug: show where unexpected errors come from.
         json: one JSON object is wanted on standard output.
+        quiet_migration: do not list what was defaulted or changed in models of other tools.
     """
 
     only_core: bool = False
     debug: bool = False
     json: bool = False
+    quiet_migration: bool = False
 
     def plugins(self) -> Plugins:
         """Return the plug-ins, loaded now.
@@ -37,7 +40,7 @@ class Settings:
         """
         from mmrs_core.plugins import load_plugins
 
-        return load_plugins(only_core=self.only_core)
+        return load_plugins(only_core=self.only_core, quiet_migration=self.quiet_migration)
 
 
 def taken_from(arguments: Sequence[str]) -> tuple[Settings, list[str]]:
@@ -48,8 +51,10 @@ def taken_from(arguments: Sequence[str]) -> tuple[Settings, list[str]]:
     """
     end = arguments.index("--") if "--" in arguments else len(arguments)
     options = arguments[:end]
-    settings = Settings(NO_PLUGINS in options, DEBUG in options, "--json" in options)
-    rest = [argument for argument in options if argument not in (NO_PLUGINS, DEBUG)]
+    settings = Settings(
+        NO_PLUGINS in options, DEBUG in options, "--json" in options, QUIET_MIGRATION in options
+    )
+    rest = [argument for argument in options if argument not in (NO_PLUGINS, DEBUG, QUIET_MIGRATION)]
     return settings, [*rest, *arguments[end:]]
 
 

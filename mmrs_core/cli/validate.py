@@ -47,7 +47,7 @@ def validate(
     Example: mmrs validate field --fix
     """
     from mmrs_core.cli.diagnosing import Subject
-    from mmrs_core.cli.fixing import agreed, repairer_for, show, write
+    from mmrs_core.cli.fixing import agreed, refuse_foreign, repairer_for, show, write
     from mmrs_core.cli.journey import Workshop
 
     if is_metamodel(project):
@@ -64,6 +64,8 @@ def validate(
     found, changed = subject.examined(), False
     repairer = repairer_for(workshop.contributions, subject.diagnose)
     report(found.faults)
+    if fix:
+        refuse_foreign(found.models)
     repair = repairer.repair(found) if fix else None
     if repair is not None:
         if not json:

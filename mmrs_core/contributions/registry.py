@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from mmrs_core.contributions.symbols import MapSymbol
     from mmrs_core.contributions.targets import Target
     from mmrs_core.contributions.wiring import DeviceWiring
+    from mmrs_core.languages.dialects import Dialect
     from mmrs_core.languages.evolution.migration import Migration
     from mmrs_core.languages.registry import Registry
     from mmrs_core.languages.sources import MetamodelSource
@@ -39,6 +40,7 @@ _SHOWN: Mapping[str, Callable[[Any], object]] = {
     "metamodels": lambda source: source.ns_uri,
     "element_classes": lambda given: "#//".join(given.metaclass),
     "migrations": lambda migration: f"{migration.from_uri} to {migration.to_uri}",
+    "dialects": lambda dialect: dialect.name,
     "constraints": lambda constraint: constraint.code,
     "fixes": lambda fix: fix.code,
     "rules": lambda rule: rule.name,
@@ -73,11 +75,19 @@ class Contributions:
     Args:
         declared: the (plug-in, descriptor) pairs of a sort, such as ``rules``, sorted by plug-in.
         distributions: where each plug-in comes from.
+        quiet_migration: note nothing of values that a dialect's models get or that change their meaning.
     """
 
-    def __init__(self, declared: Declared, distributions: Mapping[str, str] | None = None) -> None:
+    def __init__(
+        self,
+        declared: Declared,
+        distributions: Mapping[str, str] | None = None,
+        *,
+        quiet_migration: bool = False,
+    ) -> None:
         self._declared = declared
         self._distributions = distributions or {}
+        self._quiet_migration = quiet_migration
 
     @cached_property
     def metamodels(self) -> tuple[MetamodelSource, ...]:
@@ -89,7 +99,7 @@ class Contributions:
         """Return the registry of all metamodels, the core's included."""
         from mmrs_core.languages.registry import registry_with  # the help needs plug-ins, but no language
 
-        return registry_with(self.metamodels, self.migrations, self.element_classes)
+        return registry_with(self.metamodels, self.migrations, self.element_classes, self.dialects)
 
     @cached_property
     def element_classes(self) -> tuple[ElementClass, ...]:
@@ -107,6 +117,12 @@ class Contributions:
         found = tuple(self._by("migrations", lambda migration: migration.from_uri).values())
         chains(found, ())  # they must not lead in a circle
         return found
+
+    @cached_property
+    def dialects(self) -> tuple[Dialect, ...]:
+        """Return the dialects of other tools whose models are migrated while they are read."""
+        found: Iterable[Dialect] = self._by("dialects", lambda dialect: dialect.name).values()
+        return tuple(each.quiet() if self._quiet_migration else each for each in found)
 
     @cached_property
     def constraints(self) -> tuple[Constraint, ...]:

@@ -18,12 +18,14 @@ class Code:
         meaning: what is wrong.
         expected: what there ought to be instead.
         hint: how to mend it, where the fault itself knows nothing better.
+        brief: whether its faults, of which there may be long lists, are told without that.
     """
 
     meaning: str
     expected: str
     hint: str
     severity: Severity = Severity.ERROR
+    brief: bool = False
 
 
 CODES: Mapping[str, Code] = MappingProxyType(
@@ -224,6 +226,16 @@ CODES: Mapping[str, Code] = MappingProxyType(
             "a model of the languages that are installed",
             "mend what the first fault is about: most others follow from it",
         ),
+        "FIL009": Code(
+            "a file of another tool that holds no model",
+            "a file with a mission, context, robot type or behaviour",
+            "name the file that holds the model",
+        ),
+        "FIL010": Code(
+            "a model of another tool, and what migrates it does not work",
+            "a mapping whose languages are installed",
+            "install the plug-ins that the mapping names, or leave out --no-plugins",
+        ),
         "MIG001": Code(
             "a model of an older version of its language, migrated while it was read",
             "a model of the installed version",
@@ -235,6 +247,38 @@ CODES: Mapping[str, Code] = MappingProxyType(
             "only what the newer version knows",
             "see whether the value is needed; if so, say it in another way",
             Severity.WARNING,
+        ),
+        "MIG003": Code(
+            "a model of another tool, migrated while it was read",
+            "a model in the languages that are installed",
+            "the file is as it was; 'mmrs migrate' makes a project of it",
+            Severity.NOTE,
+            brief=True,
+        ),
+        "MIG004": Code(
+            "a model whose nsURI nobody knows, taken for one of another tool by the names of its classes",
+            "the nsURI that the tool gives its language",
+            "if it is of that tool, correct the nsURI; else read it by its own .ecore file: --metamodel",
+            Severity.WARNING,
+        ),
+        "MIG005": Code(
+            "values that were defaulted or changed in meaning in a model of another tool",
+            "values that mean the same here, and all that is needed",
+            "see whether that is right; --quiet-migration does not list them",
+            Severity.NOTE,
+            brief=True,
+        ),
+        "MIG006": Code(
+            "values of a model of another tool that are doubtful here, or not carried over",
+            "values that have one meaning, and a place here",
+            "see whether the mission still means what it did; if not, 'mmrs migrate' it and mend the result",
+            Severity.WARNING,
+            brief=True,
+        ),
+        "MIG007": Code(
+            "a root of another tool's model that nothing comes of",
+            "a mission, context, robot type or behaviour",
+            "name the file that holds the model, or take the element away",
         ),
         "GND001": Code(
             "a coordinate that has no place",
@@ -296,6 +340,6 @@ def is_refusal(fault: Diagnostic) -> bool:
 def explained(fault: Diagnostic) -> Diagnostic:
     """Return a fault with what its code expects, and with its code's hint if it has none of its own."""
     code = CODES.get(fault.code)
-    if code is None:
+    if code is None or code.brief:
         return fault
     return replace(fault, expected=fault.expected or code.expected, hint=fault.hint or code.hint)

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from mmrs_core.errors import UnreadableError
+from mmrs_core.languages.dialects import is_of_dialect
 from mmrs_core.languages.element import Unknown
 from mmrs_core.languages.metamodels.gathering import beside, file_at, gathered
 from mmrs_core.languages.model import Model
@@ -72,10 +73,14 @@ def read_any(
 
 
 def _root_needs(path: Path, registry: Registry) -> frozenset[str]:
-    """Return the language of a first element, unless it is known: what is unknown may not nest as deeply."""
+    """Return the language of a first element, unless it is known: what is unknown may not nest as deeply.
+
+    Models of dialects need none, since they are migrated.
+    """
     with suppress(UnreadableError):  # reading it says why
         ns_uri, _ = first_kind(path)
-        return frozenset((ns_uri,) if ns_uri and not registry.has(ns_uri) else ())
+        is_known = not ns_uri or registry.has(ns_uri) or is_of_dialect(path, registry)
+        return frozenset(() if is_known else (ns_uri,))
     return frozenset()
 
 

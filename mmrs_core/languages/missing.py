@@ -38,6 +38,13 @@ def stem_of(ns_uri: str) -> str:
     return match[1] if match else ns_uri
 
 
+def is_near(ns_uri: str, registry: Registry) -> bool:
+    """Return whether an nsURI is, or was meant to be, of a language that is installed or could be."""
+    installed = [package.ns_uri for package in registry.everything]
+    stems = {*map(stem_of, installed), *DISTRIBUTIONS}
+    return stem_of(ns_uri) in stems or bool(typo_of(ns_uri, installed))
+
+
 def hint_for(ns_uri: str, registry: Registry, kept: str = _KEPT) -> str:
     """Return what to do about a metamodel that a model needs and that is not installed, and what was `kept`.
 
@@ -51,7 +58,7 @@ def hint_for(ns_uri: str, registry: Registry, kept: str = _KEPT) -> str:
         known = " and ".join(others)
         return f"{known} is installed, but no migration leads there from this version; {kept}"
     if ns_uri.startswith(FORMER):
-        return f"a language of FLYAQ: 'mmrs migrate' turns its models into a project of ours; {kept}"
+        return f"a language of FLYAQ: 'mmrs migrate' turns files that are wholly of it into a project; {kept}"
     distribution = DISTRIBUTIONS.get(stem)
     if distribution:
         return f"a plug-in is missing: install {distribution}, which brings {ns_uri}; {kept}"

@@ -20,6 +20,8 @@ class Model:
         diagnostics: every fault found while reading this file.
         linked: the other files that references led to, in the order in which they were met.
         broken: the features (element, name) that a reported fault left without their value.
+        dialect: the name of the dialect that the file is in, from which it was migrated while it was read;
+            empty for a file in the languages of its elements.
     """
 
     file: Path | str
@@ -27,6 +29,7 @@ class Model:
     diagnostics: tuple[Diagnostic, ...] = ()
     linked: tuple[Model, ...] = ()
     broken: frozenset[tuple[Element, str]] = frozenset()
+    dialect: str = ""
 
     def elements(self) -> Iterator[Element]:
         """Yield all elements in document order."""

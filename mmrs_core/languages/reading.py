@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 
 from mmrs_core.errors import UnreadableError
 from mmrs_core.languages.codes import explained
 from mmrs_core.languages.collector import collector_at_rest
+from mmrs_core.languages.dialects import Foreign, recognised
+from mmrs_core.languages.element import Element, Unknown
 from mmrs_core.languages.evolution.migration import may_be_old
 from mmrs_core.languages.json_form import is_json
 from mmrs_core.languages.metamodels.text import package_text
@@ -25,19 +28,27 @@ class Reading:
     """Several files read together, so that references between them lead to the same elements."""
 
     def __init__(
-        self, registry: Registry, root: Path | None, unsaved: Mapping[Path, bytes] | None = None
+        self,
+        registry: Registry,
+        root: Path | None,
+        unsaved: Mapping[Path, bytes] | None = None,
+        known: Sequence[Element] = (),
     ) -> None:
         """Take the metamodels, and the folder that references must not leave (None: no file at all).
 
-        Texts that are not saved yet are read instead of what their files, by real path, hold.
+        Texts that are not saved yet are read instead of what their files, by real path, hold. What was
+        read before is known to models of dialects, which may name robot types.
         """
         self._registry = registry
+        self._known = tuple(known)
         self._unsaved = unsaved or {}
         self._root = real_path(root) if root is not None else None
         self._drafts: dict[Path, Draft] = {}
         self._described: dict[str, Draft] = {}
         self._refused: dict[Path, tuple[str, str, str, int]] = {}
         self._unresolved: list[Draft] = []
+        self._foreign: list[tuple[Draft, Foreign]] = []
+        self._following = False
 
     def open(self, path: Path) -> Draft:
         """Read a file, unless it was read already, without following its references yet.
@@ -70,7 +81,25 @@ class Reading:
         return self._described[ns_uri]
 
     def parse(self, data: bytes, source: Source) -> Draft:
-        """Read the text of a file; errors as in `open`."""
+        """Read the text of a file; errors as in `open`. One of a dialect is empty until `follow`."""
+        try:
+            draft, refusal = self._parsed(data, source), None
+        except UnreadableError as error:
+            draft, refusal = Draft(source), error
+        if all(isinstance(root, Unknown) for root in draft.roots):
+            foreign = recognised(data, source.file, self._registry, stored=source.path is not None)
+            if foreign is not None:
+                draft = Draft(Source(source.file, source.path), dialect=foreign.dialect.name)
+                self._foreign.append((draft, foreign))
+                if self._following:
+                    self._migrate()  # what refers to it looks into it at once
+            elif refusal is not None:
+                raise refusal
+        draft.number_roots()
+        self._unresolved.append(draft)
+        return draft
+
+    def _parsed(self, data: bytes, source: Source) -> Draft:
         draft = Draft(source)
         with collector_at_rest():
             # most files are plain XMI, and importing the rest takes as long as reading one
@@ -85,19 +114,34 @@ class Reading:
             else:
                 document = Document(data, source.file)
                 document.parse(QuickReader(document, draft, self._registry), counts_depth=True)
-        draft.number_roots()
-        self._unresolved.append(draft)
         return draft
 
     def follow(self) -> None:
         """Resolve the references of all files read so far, and of those that they lead to."""
         doubled = []
+        self._following = True
+        self._migrate()
         with collector_at_rest():
             while self._unresolved:
                 draft = self._unresolved.pop(0)
                 doubled.append((draft, resolve(draft, self, self._root, self._registry)))
             for draft, references in doubled:
                 tell_other_ends(draft, references)
+
+    def _migrate(self) -> None:
+        """Fill the files of dialects with what becomes of them, those of one dialect together."""
+        foreign, self._foreign = self._foreign, []
+        waiting = {id(draft) for draft, _ in foreign}
+        read = [
+            root for draft in self._drafts.values() if id(draft) not in waiting for root in draft.source.roots
+        ]
+        for dialect in dict.fromkeys(each.dialect for _, each in foreign):
+            own = [(draft, each) for draft, each in foreign if each.dialect is dialect]
+            files = [each for _, each in own]
+            for (draft, _), made in zip(
+                own, dialect.migrated(files, self._registry, (*self._known, *read)), strict=True
+            ):
+                draft.take(made.roots, made.diagnostics)
 
     def model(self, draft: Draft) -> Model:
         """Return what a file holds, with the other files read together with it."""
@@ -108,12 +152,12 @@ class Reading:
             if other is not draft and path.suffix != ".ecore"
         )
         plain = self._plain(draft)
-        return Model(plain.file, plain.roots, plain.diagnostics, tuple(others), plain.broken)
+        return replace(plain, linked=tuple(others))
 
     def _plain(self, draft: Draft) -> Model:
         file = Path(draft.source.file) if draft.source.path else draft.source.file
         faults = tuple(map(explained, draft.diagnostics))
-        return Model(file, draft.source.roots, faults, (), frozenset(draft.broken))
+        return Model(file, draft.source.roots, faults, (), frozenset(draft.broken), draft.dialect)
 
 
 def read_model(
@@ -122,6 +166,7 @@ def read_model(
     *,
     root: Path | None = None,
     unsaved: Mapping[Path, bytes] | None = None,
+    known: Sequence[Element] = (),
 ) -> Model:
     """Return the model in a file, and every fault of it.
 
@@ -130,11 +175,12 @@ def read_model(
         registry: the metamodels it may use.
         root: the folder that references to other files must not leave; by default the file's own.
         unsaved: texts to be read instead of what files hold, by real path.
+        known: roots of files read before, such as robot types, that a model of a dialect may name.
 
     Raises:
         UnreadableError: if the file is missing, not well-formed, has a DOCTYPE, is too large or too deep.
     """
-    reading = Reading(registry, root if root is not None else path.parent, unsaved)
+    reading = Reading(registry, root if root is not None else path.parent, unsaved, known)
     draft = reading.open(path)
     reading.follow()
     return reading.model(draft)

@@ -21,6 +21,7 @@ from mmrs_core.resources import shipped
 if TYPE_CHECKING:
     from pyecore.ecore import EPackage
 
+    from mmrs_core.languages.dialects import Dialect
     from mmrs_core.languages.xmi.shapes import Maker
 
 CORE_LANGUAGES = ("robot", "mission", "context", "behaviour")
@@ -33,6 +34,7 @@ class Registry:
         packages: in the order in which they were given, a package before those inside it.
         migrations: steps from older versions of them.
         classes: the Python subclasses that elements are instances of, by the key of their metaclass.
+        dialects: of other tools, whose models are migrated into them.
         makers: functions that readers compiled, for the next file.
     """
 
@@ -41,10 +43,12 @@ class Registry:
         packages: Iterable[Package],
         migrations: Iterable[Migration] = (),
         classes: Iterable[ElementClass] = (),
+        dialects: Iterable[Dialect] = (),
     ) -> None:
         """Take packages that hold each other's types; errors of the classes as in `registry_with`."""
         self.packages = tuple(package for package in packages if package.ns_uri not in BUILT_IN)
         self.migrations = tuple(migrations)
+        self.dialects = tuple(dialects)
         self.makers: dict[tuple[object, ...], Maker | None] = {}
         self._packages = {package.ns_uri: package for package in self.packages}
         self._metaclasses: Mapping[tuple[str, str], Metaclass] = {
@@ -105,7 +109,7 @@ class Registry:
         if not more:
             return self
         packages = (*self.packages, *_assemble(more, self.packages))
-        return Registry(packages, self.migrations, self.classes.values())
+        return Registry(packages, self.migrations, self.classes.values(), self.dialects)
 
     @cached_property
     def chains(self) -> Mapping[str, tuple[Migration, ...]]:
@@ -192,6 +196,7 @@ def registry_with(
     sources: Iterable[MetamodelSource],
     migrations: Iterable[Migration] = (),
     classes: Iterable[ElementClass] = (),
+    dialects: Iterable[Dialect] = (),
 ) -> Registry:
     """Return the core's metamodels together with others, which may build upon each other in any order.
 
@@ -199,6 +204,7 @@ def registry_with(
         sources: the others.
         migrations: from older versions of any of them.
         classes: Python subclasses for elements, one for a metaclass; for whom this registry makes elements.
+        dialects: of other tools.
 
     Raises:
         PluginError: if a metamodel refers to one that is missing, two have the same nsURI, a class inherits
@@ -210,7 +216,7 @@ def registry_with(
     files = tuple(source.ecore for source in given if isinstance(source.ecore, Path))
     assemble = _assembled if len(files) == len(given) else _assembled.__wrapped__
     packages = assemble(given, tuple(map(_stamp, files)))
-    return Registry((*core_registry().packages, *packages), migrations, classes)
+    return Registry((*core_registry().packages, *packages), migrations, classes, dialects)
 
 
 @lru_cache(8)

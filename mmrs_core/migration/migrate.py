@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from mmrs_core.errors import UnreadableError
@@ -15,6 +15,7 @@ from mmrs_core.migration.building.linking import Linker
 from mmrs_core.migration.building.robot_types import RobotTypes
 from mmrs_core.migration.findings import Finding
 from mmrs_core.migration.outputs import Made, Output, outputs_of
+from mmrs_core.migration.recognition import adopt
 from mmrs_core.migration.recording import Record
 from mmrs_core.migration.rules.mapping import DialectMapping
 from mmrs_core.migration.rules.rules_file import ROBOT_TYPE
@@ -63,7 +64,9 @@ class Migration:
 
 
 @dataclass(frozen=True, slots=True)
-class _Settled:
+class Settled:
+    """A document whose nodes know their classes."""
+
     document: SourceDocument
     structure: Structure
     source: Source
@@ -92,19 +95,36 @@ def migrate(
         UnknownTypeError: if types name what no file calls a robot type.
     """
     opened = [_opened(path, mapping) for path in files]
-    models = [each for each in opened if isinstance(each, Opened) and each.document is not None]
-    settled = {each.file: _settled(each, mapping, metamodels) for each in models}
+    models = [
+        _adopted(each, mapping, registry)
+        for each in opened
+        if isinstance(each, Opened) and each.document is not None
+    ]
+    settled = {each.file: settle(each, mapping, metamodels) for each in models}
     _refuse_unknown(types or {}, settled.values(), mapping)
     robots = RobotTypes(present or {}, {**mapping.types, **(types or {})})
-    record, made = Record(), list[Made]()
+    record = Record()
+    made = build(settled.values(), mapping, registry, robots, record)
+    sources = tuple(_source(each, settled) for each in opened)
+    return Migration(sources, outputs_of(made, registry, record), tuple(record.findings))
+
+
+def build(
+    documents: Iterable[Settled],
+    mapping: DialectMapping,
+    registry: Registry,
+    robots: RobotTypes,
+    record: Record,
+) -> list[Made]:
+    """Return what documents become, robot types first; these are known to the others then."""
+    made: list[Made] = []
     with registry.in_use():
-        for each in _types_first(settled.values(), mapping):
+        for each in _types_first(documents, mapping):
             for root in _built(each, mapping, registry, robots, record):
                 made.append(root)
                 if registry.metaclass(*ROBOT_TYPE).accepts(root.element):
                     robots.known.setdefault(getattr(root.element, "name", None) or "", root.element)
-    sources = tuple(_source(each, settled) for each in opened)
-    return Migration(sources, outputs_of(made, registry, record), tuple(record.findings))
+    return made
 
 
 def _opened(path: Path, mapping: DialectMapping) -> Opened | Source:
@@ -114,25 +134,41 @@ def _opened(path: Path, mapping: DialectMapping) -> Opened | Source:
         return Source(str(path), "not readable", {}, fault=str(fault))
 
 
-def _source(opened: Opened | Source, settled: Mapping[str, _Settled]) -> Source:
+def _adopted(opened: Opened, mapping: DialectMapping, registry: Registry) -> Opened:
+    """Return a document of the dialect, whichever nsURI its metamodels have."""
+    assert opened.document is not None  # asked before
+    strange = adopt(opened.document, mapping, registry)
+    if not strange:
+        return opened
+    named = ", ".join(strange)
+    return replace(
+        opened, what=f"{opened.what} by what its classes are called, with an nsURI of its own, {named}"
+    )
+
+
+def _source(opened: Opened | Source, settled: Mapping[str, Settled]) -> Source:
     if isinstance(opened, Source):
         return opened
     return settled[opened.file].source if opened.file in settled else Source(opened.file, opened.what, {})
 
 
-def _settled(opened: Opened, mapping: DialectMapping, given: Sequence[Path]) -> _Settled:
-    """Return a document whose nodes know their classes, by the metamodels at hand and by the mapping."""
+def settle(opened: Opened, mapping: DialectMapping, given: Sequence[Path], *, stored: bool = True) -> Settled:
+    """Return a document whose nodes know their classes, by the metamodels at hand and by the mapping.
+
+    Args:
+        stored: whether there is such a file, beside which metamodels may lie.
+    """
     document = opened.document
     assert document is not None  # asked before
-    found = metamodels_for(document, given, mapping.dialect)
+    found = metamodels_for(document, given, mapping.dialect) if stored else {}
     structure = structure_of(found, mapping.dialect).over(mapping.structure, found)
     Reader(structure, mapping.dialect).settle(document)
     used = {node.kind.partition(".")[0] for root in document.roots for node in root.inside()}
     places = {package: each.file for package, each in found.items() if package in used}
-    return _Settled(document, structure, Source(opened.file, opened.what, places, is_model=True))
+    return Settled(document, structure, Source(opened.file, opened.what, places, is_model=True))
 
 
-def _refuse_unknown(types: Mapping[str, str], settled: Iterable[_Settled], mapping: DialectMapping) -> None:
+def _refuse_unknown(types: Mapping[str, str], settled: Iterable[Settled], mapping: DialectMapping) -> None:
     """Do nothing if every name that is to stand for a robot type occurs in the files."""
     if not types:
         return
@@ -144,7 +180,7 @@ def _refuse_unknown(types: Mapping[str, str], settled: Iterable[_Settled], mappi
             raise UnknownTypeError(f"{name!r}: no robot type of this name occurs; {occur}")
 
 
-def _type_names(settled: _Settled, mapping: DialectMapping) -> Iterator[str]:
+def _type_names(settled: Settled, mapping: DialectMapping) -> Iterator[str]:
     """Yield the robot types that a document names."""
     for root in settled.document.roots:
         for node in root.inside():
@@ -155,10 +191,10 @@ def _type_names(settled: _Settled, mapping: DialectMapping) -> Iterator[str]:
                 yield from (use.values.get(text, text) for text in texts)
 
 
-def _types_first(settled: Iterable[_Settled], mapping: DialectMapping) -> list[_Settled]:
+def _types_first(settled: Iterable[Settled], mapping: DialectMapping) -> list[Settled]:
     """Return documents with robot types before all others, which may name them."""
 
-    def rank(each: _Settled) -> bool:
+    def rank(each: Settled) -> bool:
         kinds = [mapping.rule(root.kind, "", each.structure) for root in each.document.roots]
         return not any(rule is not None and rule.robot_type for rule in kinds)
 
@@ -166,7 +202,7 @@ def _types_first(settled: Iterable[_Settled], mapping: DialectMapping) -> list[_
 
 
 def _built(
-    settled: _Settled, mapping: DialectMapping, registry: Registry, types: RobotTypes, record: Record
+    settled: Settled, mapping: DialectMapping, registry: Registry, types: RobotTypes, record: Record
 ) -> list[Made]:
     builder = Builder(mapping, settled.structure, registry, types, record)
     draft = builder.build(settled.document.roots)

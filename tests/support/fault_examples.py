@@ -30,6 +30,7 @@ from mmrs_core.languages.modelset import read_project
 from mmrs_core.languages.reading import read_model, read_text
 from mmrs_core.languages.registry import MetamodelSource, Registry, core_registry, registry_with
 from mmrs_core.languages.writing import to_xmi
+from mmrs_core.migration.dialect import ForeignDialect
 from mmrs_core.scene import Part
 from mmrs_core.testing.conformance import ConstraintConformance
 from mmrs_core.testing.models import breaches
@@ -161,6 +162,7 @@ def reading_cases(
         "PROGRAMS": _of_program,
         "GROUNDED": lambda edit: _of_ground(edit, fresh_models()),
         "VERSIONS": _of_version,
+        "DIALECTS": lambda text: _of_dialect(text, folder),
         "LINES": lambda line: _of_log(line, folder),
         "RAW": _of_raw,
         "OPENED": lambda program: _of_program_on_files(program, folder),
@@ -238,6 +240,21 @@ def _of_version(text: str) -> tuple[Diagnostic, ...]:
     )
     registry = registry_with([MetamodelSource("urn:test:zoo", ZOO, "zoo")], [step])
     return read_text(text.encode(), "zoo.xmi", registry).diagnostics
+
+
+def _of_dialect(text: str, folder: Path) -> tuple[Diagnostic, ...]:
+    place, port = Path(mkdtemp(dir=folder)), runpy.run_path(str(READING))["PORT"]
+    (place / "port.toml").write_text(port, encoding="utf-8")
+    gulls = port.replace("urn:mmrs:robot:1.0", "urn:gulls:1.0").replace(
+        "urn:example:port", "urn:example:gulls"
+    )
+    (place / "gulls.toml").write_text(gulls, encoding="utf-8")
+    dialects = [ForeignDialect("Port", place / "port.toml"), ForeignDialect("Gulls", place / "gulls.toml")]
+    try:
+        file = "tug.json" if text.startswith("{") else "tug.xmi"
+        return read_text(text.encode(), file, registry_with([], dialects=dialects)).diagnostics
+    except UnreadableError as error:
+        return tuple(replace(each, message=each.message.replace(f"{place}/", "")) for each in refusal(error))
 
 
 def _of_ground(edit: str, models: object) -> tuple[Diagnostic, ...]:

@@ -32,7 +32,8 @@ def preview(
     project: Annotated[
         Path,
         typer.Argument(
-            metavar="PROJECT", help="The project's folder, the file of its mission, or a behaviour."
+            metavar="PROJECT",
+            help="The project's folder, the file of its mission, or a behaviour; FLYAQ 2015's, too.",
         ),
     ],
     output: Annotated[

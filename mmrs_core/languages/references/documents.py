@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, replace
 from urllib.parse import unquote
 
 from mmrs_core.diagnostics import Diagnostic, Place, Severity
 from mmrs_core.errors import UnreadableError
-from mmrs_core.languages.element import Element, Unknown, path_of
+from mmrs_core.languages.element import Element, Unknown, descendants, path_of
 from mmrs_core.languages.links import raw
 from mmrs_core.languages.metaclass import Feature, Metaclass
 from mmrs_core.languages.references.names import Names
@@ -42,7 +42,11 @@ Quick = tuple[Element, Feature, str, int]
 
 @dataclass(slots=True)
 class Draft:
-    """A file between its parsing and the resolution of its references."""
+    """A file between its parsing and the resolution of its references.
+
+    Attributes:
+        dialect: the name of the dialect that it is in; empty for one in our own form.
+    """
 
     source: Source
     roots: list[Element] = field(default_factory=list)
@@ -54,6 +58,7 @@ class Draft:
     lists: dict[str, list[object]] = field(default_factory=dict)
     names: Names = field(default_factory=Names)
     said_within: dict[str, Unknown] | None = None
+    dialect: str = ""
     _read_below: list[int] = field(default_factory=list)
 
     def fault(
@@ -79,6 +84,15 @@ class Draft:
         self.diagnostics.append(
             Diagnostic(code, severity, message, Place(self.source.file, line, path), hint)
         )
+
+    def take(self, roots: Sequence[Element], diagnostics: Iterable[Diagnostic]) -> None:
+        """Take elements that were made of the file, and what there is to say of them."""
+        self.roots += roots
+        self.source.roots = tuple(self.roots)
+        self.diagnostics += diagnostics
+        for root in roots:
+            for element in (root, *descendants(root)):
+                element._mmrs_source = self.source
 
     def number_roots(self) -> None:
         """Take all roots as read: if there are several, their numbers lead the paths of what was noted.

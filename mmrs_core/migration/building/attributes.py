@@ -5,7 +5,7 @@ from __future__ import annotations
 from mmrs_core.languages.element import Element, metaclass_of
 from mmrs_core.languages.grounding.values import text as text_of
 from mmrs_core.migration.building.converting import number_in, put, scaled
-from mmrs_core.migration.building.drafts import Draft
+from mmrs_core.migration.building.drafts import Draft, placed
 from mmrs_core.migration.building.robot_types import RobotTypes
 from mmrs_core.migration.findings import Category
 from mmrs_core.migration.recording import Record
@@ -113,7 +113,7 @@ class Attributes:
         if target is None or not target.many:
             raise ValueError(f"{metaclass_of(root).name} has no {use.hoist} to hold it")
         held_by: list[Element] = getattr(root, target.attribute)
-        return held_by.append
+        return lambda made: held_by.append(placed(made, node))
 
     def _takes_several(self, node: SourceNode, element: Element, use: Use) -> bool:
         return bool(use.to) and reach(element, use.to[0], self._keep(node, element, use))[1].many

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from mmrs_core.languages.element import Element, metaclass_of
 from mmrs_core.languages.grounding.values import number
 from mmrs_core.languages.registry import Registry
+from mmrs_core.migration.building.drafts import placed
 from mmrs_core.migration.building.shapes import Corner, border_of
 from mmrs_core.migration.findings import Category
 from mmrs_core.migration.recording import Record
@@ -58,4 +59,6 @@ def border_around(
     key = metaclass_of(vertices[0]).key
     places = ", ".join(f"({north!r}, {east!r})" for north, east in known)
     record.value(Category.DOUBTFUL, f"{mended.reason}: draw it anew", node, feature, Text(places, node.line))
-    return [registry.create(*key, latitude=north, longitude=east) for north, east in mended.corners]
+    return [
+        placed(registry.create(*key, latitude=north, longitude=east), node) for north, east in mended.corners
+    ]

@@ -10,7 +10,7 @@ from mmrs_core.migration.building.attributes import Attributes, is_given
 from mmrs_core.migration.building.borders import border_around, without_repeats
 from mmrs_core.migration.building.converting import put
 from mmrs_core.migration.building.copying import copied
-from mmrs_core.migration.building.drafts import Draft
+from mmrs_core.migration.building.drafts import Draft, placed
 from mmrs_core.migration.building.robot_types import RobotTypes
 from mmrs_core.migration.findings import Category
 from mmrs_core.migration.recording import Record
@@ -75,7 +75,7 @@ class Builder:
             self.draft.waits.append((node, rule))
         if rule.to is None:
             return None
-        element = self._registry.create(*rule.to)
+        element = placed(self._registry.create(*rule.to), node)
         if not self._has_device(node, element, rule):
             return None
         self.draft.made[node] = element
@@ -136,7 +136,7 @@ class Builder:
         """Give a feature what stands for a value or an element that the source does not have."""
         first = next((self.draft.made.get(each) for each in node.nodes(use.first_of)), None)
         if use.make is not None:
-            made = self._registry.create(*use.make.to)
+            made = placed(self._registry.create(*use.make.to), node)
             for path, value in use.make.set.items():
                 put(made, path, value)
             values = "; ".join(f"{path} {said(value)}" for path, value in use.make.set.items())
@@ -146,7 +146,7 @@ class Builder:
         elif first is not None:
             reason = f"{feature} is not given: the first of {use.first_of} is taken"
             self._record.value(Category.DEFAULTED, reason, node, feature)
-            self._hold(node, feature, element, use, [copied(first, self._registry)])
+            self._hold(node, feature, element, use, [placed(copied(first, self._registry), node)])
         else:
             self._attributes.default(node, feature, element, use)
             if use.bearing is not None and use.absent is not None:

@@ -12,7 +12,7 @@ from mmrs_core.languages.element import container_of, metaclass_of, root_of
 from mmrs_core.languages.grounding.values import number
 from mmrs_core.languages.registry import Registry
 from mmrs_core.migration.building.converting import number_in
-from mmrs_core.migration.building.drafts import Draft
+from mmrs_core.migration.building.drafts import Draft, placed
 from mmrs_core.migration.building.headings import towards
 from mmrs_core.migration.building.robot_types import RobotTypes, Speeds
 from mmrs_core.migration.findings import Category
@@ -77,18 +77,19 @@ def draw_ring(
         reason = "the altitude of a circle counts from its centre here"
         record.value(Category.CHANGED, reason, node, ring.height)
     if circle.duration > 0.0:
-        category, reason = _pace(rounds, speed, robot.typeName if speeds is None else None)
+        category, reason = _pace(rounds, speed, _unknown(robot, types) if speeds is None else "")
         record.value(category, reason, node, ring.duration)
     offsets = circle.offsets(rounds)
     moves = [first, *_further(first, len(offsets) - 1, robot, registry)]
     at = robot.moves.index(first) + 1
     robot.moves[at:at] = moves[1:]
     for move, (x, y, z) in zip(moves, offsets, strict=True):
-        move.target = bl.RelativeCoordinate(x=x, y=y, z=z, reference=centre)
+        move.target = placed(bl.RelativeCoordinate(x=x, y=y, z=z, reference=centre), node)
         _behaviour(robot).targets.append(move.target)
     for move in moves[1:]:
-        move.speed = speed
-    _join(robot, moves)
+        placed(move, node).speed = speed
+    for transition in _join(robot, moves):
+        placed(transition, node)
     moves[-1].postActions.extend(list(first.postActions))
 
 
@@ -125,33 +126,42 @@ def _rounds(circle: Circle, speeds: Speeds | None) -> tuple[int, float | None]:
     return rounds, speed or None if fits else None
 
 
-def _pace(rounds: int, speed: float | None, unknown: str | None) -> tuple[Category, str]:
+def _unknown(robot: bl.Robot, types: RobotTypes) -> str:
+    """Return how to mend that nothing tells the speeds of a robot."""
+    name = robot.typeName or ""
+    how = types.how(name)
+    return f"the speeds of robot type {name!r} are not known, so the robot goes round once at its own: {how}"
+
+
+def _pace(rounds: int, speed: float | None, unknown: str) -> tuple[Category, str]:
     """Return what becomes of the time that a circle lasts, and why.
 
     Args:
         rounds: that are flown.
         speed: at which; None: at the robot's own.
-        unknown: the name of the robot's type, where nothing says how fast that is.
+        unknown: what to say where nothing tells how fast the robot's type is.
     """
     times = "once" if rounds == 1 else f"{rounds} times"
     if speed is not None:
         return Category.CHANGED, f"a circle is flown by rounds here: {times} at {speed} m/s takes so long"
-    if unknown is not None:
-        reason = (
-            f"the speeds of robot type {unknown!r} are not known, so the robot goes round once at its own"
-        )
-        return Category.LOST, f"{reason}: migrate the type, too"
+    if unknown:
+        return Category.LOST, unknown
     return Category.LOST, f"the robot goes round {times}, and no speed that it has makes that last so long"
 
 
-def _join(robot: bl.Robot, moves: Sequence[bl.GoTo]) -> None:
-    """Lead from each way point to the next, and from the last where the first led before."""
+def _join(robot: bl.Robot, moves: Sequence[bl.GoTo]) -> Sequence[bl.MoveTransition]:
+    """Lead from each way point to the next, and from the last where the first led before.
+
+    Returns:
+        The transitions between way points.
+    """
     onward = [each for each in robot.moveTransitions if each.from_ is moves[0]]
     for transition in onward:
         transition.from_ = moves[-1]
     at = robot.moveTransitions.index(onward[0]) if onward else len(robot.moveTransitions)
     between = [bl.MoveTransition(from_=one, to=other, fluid=True) for one, other in pairwise(moves)]
     robot.moveTransitions[at:at] = between
+    return between
 
 
 def _further(first: bl.GoTo, count: int, robot: bl.Robot, registry: Registry) -> list[bl.GoTo]:

@@ -4,10 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field
+from typing import TypeVar
 
 from mmrs_core.languages.element import Element
 from mmrs_core.migration.rules.mapping import Rule, Use
 from mmrs_core.migration.sources.nodes import SourceNode
+
+Made = TypeVar("Made", bound=Element)
+
+
+def placed(element: Made, node: SourceNode) -> Made:
+    """Return an element, which counts from now on as standing where the node does that it is made of."""
+    element._mmrs_line = node.line
+    return element
 
 
 @dataclass(slots=True, eq=False)

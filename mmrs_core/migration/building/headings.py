@@ -7,7 +7,7 @@ from math import cos, radians, sin
 from mmrs_core.languages import behaviour as bl
 from mmrs_core.languages.element import Element, metaclass_of, root_of
 from mmrs_core.migration.building.converting import number_in
-from mmrs_core.migration.building.drafts import Draft
+from mmrs_core.migration.building.drafts import Draft, placed
 from mmrs_core.migration.findings import Category
 from mmrs_core.migration.recording import Record
 from mmrs_core.migration.rules.mapping import Use
@@ -53,7 +53,7 @@ def set_heading(
         record.value(Category.LOST, str(fault), node, feature, value)
         return
     reference = base if isinstance(base, bl.Coordinate) else None
-    place = bl.RelativeCoordinate(x=east, y=north, reference=reference)
+    place = placed(bl.RelativeCoordinate(x=east, y=north, reference=reference), node)
     behaviour.targets.append(place)
     setattr(owner, target.attribute, bl.Heading(target=place))
     reason = use.changed or f"headings lead to a place: one {use.bearing.distance:g} m away in this direction"

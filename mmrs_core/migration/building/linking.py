@@ -14,7 +14,7 @@ from mmrs_core.languages.element import (
 )
 from mmrs_core.languages.grounding.values import child, children
 from mmrs_core.languages.registry import Registry
-from mmrs_core.migration.building.drafts import Draft
+from mmrs_core.migration.building.drafts import Draft, placed
 from mmrs_core.migration.building.headings import set_heading
 from mmrs_core.migration.findings import Category
 from mmrs_core.migration.recording import Record
@@ -126,7 +126,7 @@ class Linker:
             return element
         found = next((each for each in children(owner, other.within) if label_of(each) == name), None)
         if found is None and other.make and "name" in metaclass_of(element).by_name:
-            found = self._registry.create(*metaclass_of(element).key, name=name)
+            found = placed(self._registry.create(*metaclass_of(element).key, name=name), node)
             getattr(owner, kind.attribute).append(found)
             reason = f"{label_of(owner)!r} had no {type(found).__name__} of this name, so one is made for it"
             self._record.value(Category.DEFAULTED, reason, node, feature, Text(repr(name), node.line))

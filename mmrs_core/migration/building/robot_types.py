@@ -47,11 +47,15 @@ class RobotTypes:
     Attributes:
         known: the types themselves.
         named: what names of the source stand for.
+        beside: whether models are read where they are, beside the robot types, and none is written.
     """
 
-    def __init__(self, known: Mapping[str, Element], named: Mapping[str, str]) -> None:
+    def __init__(
+        self, known: Mapping[str, Element], named: Mapping[str, str], *, beside: bool = False
+    ) -> None:
         self.known = dict(known)
         self.named = dict(named)
+        self.beside = beside
 
     def resolved(self, name: str, otherwise: str) -> tuple[str, str]:
         """Return the name of a type, and what has to be told about it: an empty text if nothing has.
@@ -62,16 +66,24 @@ class RobotTypes:
         if name in self.named and name != self.named[name]:
             taken = self.named[name]
             told = f"the robot type {name!r} is taken for {taken!r}"
-            return taken, told if taken in self.known else f"{told}, and no such type is known: {_how(taken)}"
+            unknown = f"{told}, and no such type is known: {self.how(taken)}"
+            return taken, told if taken in self.known else unknown
         if name in self.known:
             return name, ""
-        unknown, option = f"no robot type {name!r} is known", quote(f"{name}=NAME")
+        unknown, option = f"no robot type {name!r} is known", f"--type {quote(f'{name}=NAME')}"
+        option = f"'mmrs migrate {option}'" if self.beside else option
         if otherwise in self.known:
             return (
                 otherwise,
-                f"{unknown}; {otherwise!r} stands in for it: say what it is by --type {option}",
+                f"{unknown}; {otherwise!r} stands in for it: say what it is by {option}",
             )
-        return name, f"{unknown}: {_how(name)}, or say what it is by --type {option}"
+        return name, f"{unknown}: {self.how(name)}, or say what it is by {option}"
+
+    def how(self, name: str) -> str:
+        """Return how a robot type of a name becomes known."""
+        if self.beside:
+            return f"give the file that describes it by --robots, or as robots/{name}.xmi"
+        return f"migrate the file that describes it, too, or write robots/{name}.xmi"
 
     def speeds(self, robot: bl.Robot) -> Speeds | None:
         """Return the speeds of a robot by its type and travel mode; None where they are not known."""
@@ -95,8 +107,3 @@ class RobotTypes:
             if any(text(each, "name") == action for each in children(device, "supportedActions"))
         ]
         return found[0] if len(found) == 1 else ""
-
-
-def _how(name: str) -> str:
-    """Return how a robot type of a name becomes known."""
-    return f"migrate the file that describes it, too, or write robots/{name}.xmi"

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import re
 import tomllib
+from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 from mmrs_core.errors import UnreadableError
@@ -31,6 +33,19 @@ def read_mapping(path: Path, registry: Registry) -> DialectMapping:
         UnreadableError: if it is no mapping, or leads to a class or feature that no installed language has;
             says where.
     """
+    return _read(path, lambda top: _mapping(top, registry))
+
+
+def read_dialect(path: Path) -> DialectMapping:
+    """Return the mapping in a file without its rules, which tells the files that it is for.
+
+    Raises:
+        UnreadableError: if it is no mapping; says where.
+    """
+    return _read(path, _without_rules)
+
+
+def _read(path: Path, made_of: Callable[[Table], DialectMapping]) -> DialectMapping:
     try:
         text = read_bytes(path, LARGEST).decode()
         value = parsed(text)
@@ -46,11 +61,9 @@ def read_mapping(path: Path, registry: Registry) -> DialectMapping:
     if not value.get("rules"):
         raise top.fault("holds no rules, so it says of no class what becomes of it")
     try:
-        mapping = _mapping(top, registry)
-        top.done()
+        return made_of(top)
     except UnreadableError as fault:
         raise UnreadableError(_with_line(str(fault), str(path), text)) from None
-    return mapping
 
 
 def _with_line(message: str, path: str, text: str) -> str:
@@ -65,6 +78,13 @@ def _mapping(top: Table, registry: Registry) -> DialectMapping:
     for prefix, ns_uri in languages.items():
         if not registry.has(ns_uri):
             raise top.fault(f"languages: {prefix}: {ns_uri} is not installed")
+    found = _without_rules(top)
+    rules = read_rules(top.table("rules"), Classes(registry, languages), found.structure)
+    top.done()
+    return replace(found, rules=rules)
+
+
+def _without_rules(top: Table) -> DialectMapping:
     structure = _structure(top)
     dialect = _dialect(top.table("packages"))
     for package in sorted({kind.partition(".")[0] for kind in structure.classes} - set(dialect.uris)):
@@ -73,7 +93,7 @@ def _mapping(top: Table, registry: Registry) -> DialectMapping:
         name=top.take("name", str, "") or top.where,
         dialect=dialect,
         structure=structure,
-        rules=read_rules(top.table("rules"), Classes(registry, languages), structure),
+        rules={},
         types=top.table("types").text_by_key(),
         documents=tuple(_document(name, table) for name, table in top.table("documents").tables().items()),
     )

@@ -9,6 +9,7 @@ from pathlib import Path
 
 from mmrs_core.errors import UnreadableError
 from mmrs_core.languages.datatypes import ECORE
+from mmrs_core.languages.json_form.text import is_json
 from mmrs_core.languages.json_form.tree import Node as Object
 from mmrs_core.languages.json_form.tree import Tree
 from mmrs_core.languages.metamodels.ecore_file import EcoreFile
@@ -42,11 +43,13 @@ class Opened:
     Attributes:
         what: what it is called: "a model", "a metamodel", or as the mapping says.
         document: its elements; None where there is nothing to migrate.
+        form: as which it was recognised; None where its elements say what it is.
     """
 
     file: str
     what: str
     document: SourceDocument | None = None
+    form: KnownDocument | None = None
 
 
 def open_document(path: Path, known: Iterable[KnownDocument]) -> Opened:
@@ -55,13 +58,16 @@ def open_document(path: Path, known: Iterable[KnownDocument]) -> Opened:
     Raises:
         UnreadableError: if it cannot be read, is neither XML nor JSON, or is of no known form.
     """
-    file, data = str(path), read_bytes(path)
+    return open_text(read_bytes(path), str(path), known)
+
+
+def open_text(data: bytes, file: str, known: Iterable[KnownDocument]) -> Opened:
+    """Return what the text of a file is; errors as in `open_document`."""
     start = _first_letter(data)
     if start in ("{", "["):
         return _json(Tree(data, file), known)
     if start != "<":
-        is_json = path.suffix.lower() == ".json"
-        reason = "no model: its root is no object and no list" if is_json else "neither XML nor JSON"
+        reason = "no model: its root is no object and no list" if is_json(file) else "neither XML nor JSON"
         raise UnreadableError(f"{file}:1: {reason}")
     document = parse_xmi(data, file)
     claims = [root.claim for root in document.roots]
@@ -86,9 +92,9 @@ def _json(tree: Tree, known: Iterable[KnownDocument]) -> Opened:
     for form in known:
         items = _items_of(top, form)
         if items and form.holds:
-            return Opened(tree.file, form.name, _document(tree, items))
+            return Opened(tree.file, form.name, _document(tree, items), form)
         if items:
-            return Opened(tree.file, f"{form.name}: nothing to migrate")
+            return Opened(tree.file, f"{form.name}: nothing to migrate", None, form)
     if isinstance(top, Object) and text_in(top, "nsURI"):
         return Opened(tree.file, f"a metamodel, {text_in(top, 'nsURI')}: nothing to migrate")
     message = f"no model: the root names no class by {CLASS!r}, and no list that the mapping knows is like it"

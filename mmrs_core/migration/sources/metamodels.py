@@ -26,6 +26,10 @@ class Dialect:
     uris: Mapping[str, tuple[str, ...]]
     files: Mapping[str, tuple[str, ...]]
 
+    def has(self, ns_uri: str) -> bool:
+        """Return whether an nsURI is that of a package, in any spelling."""
+        return any(ns_uri in uris for uris in self.uris.values())
+
     def package(self, document: str) -> str:
         """Return the package that an nsURI, a prefix or an .ecore file means, or an empty text."""
         name = document.replace("\\", "/").rpartition("/")[2]

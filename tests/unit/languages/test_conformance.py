@@ -158,6 +158,7 @@ def test_every_code_has_a_meaning_and_every_meaning_a_code():
 
     import mmrs_core.languages as languages
 
-    sources = Path(languages.__file__).parent.rglob("*.py")
+    core = Path(languages.__file__).parents[1]
+    sources = [file for folder in ("languages", "migration") for file in (core / folder).rglob("*.py")]
     text = "".join(source.read_text() for source in sources if source.name != "codes.py")
     assert set(re.findall(r'"((?:XMI|ECO|PRJ|MIG|GND|FIL)\d{3})"', text)) == set(CODES) - {"LOG001"}

@@ -25,8 +25,10 @@ from mmrs_core.errors import PluginError
 from mmrs_core.hookspecs import hookimpl
 from mmrs_core.languages import behaviour as bl
 from mmrs_core.languages.evolution.migration import Migration
+from mmrs_core.languages.reading import read_text
 from mmrs_core.languages.registry import MetamodelSource
 from mmrs_core.languages.subclasses import ElementClass
+from mmrs_core.migration.dialect import ForeignDialect
 from mmrs_core.plugins import language, load_plugins
 
 KITE = ("urn:test:kite:1.0", "Kite")
@@ -100,6 +102,20 @@ def test_hook_mmrs_migrations():
     contributions = contributions_with("mmrs_migrations", migration)
     assert contributions.migrations == (migration,)
     assert contributions.languages.migrations == (migration,)
+
+
+def test_hook_mmrs_dialects(tmp_path):
+    mapping = tmp_path / "kites.toml"
+    mapping.write_text(
+        '[languages]\nrobot = "urn:mmrs:robot:1.0"\n[packages]\nkite.uris = "urn:toy:kites"\n'
+        '[structure.kite]\nKite = ["line: text"]\n'
+        '[rules.kite.Kite]\nto = "robot:Robot"\nfeatures.line = "name"\n'
+    )
+    contributions = contributions_with("mmrs_dialects", ForeignDialect("Kites", mapping))
+    text = b'<k:Kite xmlns:k="urn:toy:kites" line="red"/>'
+    model = read_text(text, "red.xmi", contributions.languages)
+    assert [(type(root).__name__, root.name) for root in model.roots] == [("Robot", "red")]
+    assert model.dialect == "Kites"
 
 
 def test_hook_mmrs_fixes():

@@ -1,0 +1,70 @@
+"""Dialects whose files are read as if they were models of ours: migrated in memory."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from mmrs_core.errors import PluginError, UnreadableError
+from mmrs_core.languages.dialects import Foreign, Migrated
+from mmrs_core.languages.element import Element
+
+if TYPE_CHECKING:
+    from mmrs_core.languages.registry import Registry
+
+
+@dataclass(frozen=True, slots=True)
+class ForeignDialect:
+    """Models of another tool, which every command takes.
+
+    Attributes:
+        name: what messages call the dialect.
+        mapping: the file that says what becomes of what; docs/migrate.md explains its keys.
+        notes: whether values that were defaulted or changed are told.
+    """
+
+    name: str
+    mapping: Path
+    notes: bool = True
+
+    def quiet(self) -> ForeignDialect:
+        """Return the same dialect, which notes nothing of values that it defaulted or changed."""
+        return replace(self, notes=False)
+
+    def recognised(
+        self, data: bytes, file: str, registry: Registry, *, by_names: bool, stored: bool
+    ) -> Foreign | None:
+        """Return a file of this dialect, as `Dialect` says.
+
+        Raises:
+            PluginError: if the mapping is none.
+        """
+        from mmrs_core.migration.recognition import recognised
+        from mmrs_core.migration.rules.mapping_file import read_dialect, read_mapping
+
+        try:
+            dialect = read_dialect(self.mapping)
+        except UnreadableError as fault:
+            raise PluginError(f"dialect '{self.name}': {fault}") from fault
+        found = recognised(data, file, dialect, registry)
+        if found is None or (found.is_guess and not by_names):
+            return None
+        if found.opened.document is None:
+            raise UnreadableError.of("FIL009", found.opened.what, file)
+        try:
+            mapping = read_mapping(self.mapping, registry)
+        except UnreadableError as fault:
+            raise UnreadableError.of("FIL010", f"of {self.name}, and not migrated: {fault}", file) from fault
+        return Foreign(self, replace(found, mapping=mapping, stored=stored))
+
+    def migrated(
+        self, files: Sequence[Foreign], registry: Registry, known: Sequence[Element]
+    ) -> tuple[Migrated, ...]:
+        """Return what files became, as `Dialect` says."""
+        from mmrs_core.migration.in_memory import migrated
+        from mmrs_core.migration.recognition import Recognised
+
+        found = [each.content for each in files if isinstance(each.content, Recognised)]
+        return migrated(found, self.name, registry, known, notes=self.notes)
