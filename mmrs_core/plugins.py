@@ -89,7 +89,7 @@ def load_plugins(
     Args:
         only_core: leave out everything but the core's own contributions.
         extra: plug-in objects beside the installed ones, by name.
-        quiet_migration: note nothing of values that were defaulted or changed in models of dialects.
+        quiet_migration: do not list what is not just as it was in models of dialects.
 
     Raises:
         PluginError: if a plug-in does not import, misspells a hook, or two have one name; names the

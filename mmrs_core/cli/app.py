@@ -142,7 +142,7 @@ def _global_options(
         bool,
         typer.Option(
             QUIET_MIGRATION,
-            help="Do not list what is defaulted or changed in models of FLYAQ 2015 while they are read.",
+            help="Do not list what is defaulted or changed in models of FLYAQ 2015.",
         ),
     ] = False,
 ) -> None:

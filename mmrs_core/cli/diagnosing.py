@@ -2,30 +2,33 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+from mmrs_core.analysis.constraints import check_constraints
 from mmrs_core.analysis.fixes.repair import Diagnosis
 from mmrs_core.cli.any_model import faults_in, is_foreign, read_foreign
-from mmrs_core.cli.behaviours import faults_of, is_behaviour, read_behaviour_files
+from mmrs_core.cli.behaviours import faults_of, read_behaviour_files
 from mmrs_core.cli.journey import Workshop
 from mmrs_core.diagnostics import Diagnostic, Severity, in_order
 from mmrs_core.errors import InvalidModelError, UnreadableError
-from mmrs_core.languages.codes import refusal
+from mmrs_core.languages import behaviour, context, mission, robot
+from mmrs_core.languages.codes import explained, refusal
 from mmrs_core.languages.conformance import check_conformance
 from mmrs_core.languages.model import Model
+from mmrs_core.languages.modelset import ModelSet, types_by_name
 from mmrs_core.languages.reading import read_model
 from mmrs_core.pipeline import check_models, read_models
 
 _NOT_FINITE = "ECO009"
-_FOREIGN, _BEHAVIOUR, _MISSION = "foreign", "behaviour", "mission"
+_FOREIGN, _BEHAVIOUR, _PARTS, _MISSION = "foreign", "behaviour", "parts", "mission"
 
 
 @dataclass(frozen=True, slots=True)
 class Subject:
-    """What is examined: a mission with what belongs to it, a behaviour, or a model of any other language."""
+    """What is examined: a mission with what belongs to it, a behaviour, a part of either, or any model."""
 
     workshop: Workshop
     file: Path
@@ -54,7 +57,12 @@ class Subject:
             UnreadableError: if it is no file of a model that is missing or no model at all.
             InvalidModelError: if the behaviour's file, as it is, holds no behaviour.
         """
-        ways = {_FOREIGN: self._alone, _BEHAVIOUR: self._behaviour, _MISSION: self._mission}
+        ways = {
+            _FOREIGN: self._alone,
+            _BEHAVIOUR: self._behaviour,
+            _PARTS: self._parts,
+            _MISSION: self._mission,
+        }
         try:
             return ways[self._sort()](unsaved)
         except UnreadableError as error:
@@ -68,9 +76,14 @@ class Subject:
         try:
             if self.metamodels or is_foreign(self.workshop, self.file):
                 return _FOREIGN
-            return _BEHAVIOUR if is_behaviour(self.workshop, self.file) else _MISSION
+            registry = self.workshop.contributions.languages
+            roots = () if self.file.is_dir() else read_model(self.file, registry).roots
         except UnreadableError:
             return {"mission": _MISSION, "behaviour": _BEHAVIOUR}.get(self.file.stem, _FOREIGN)
+        if any(isinstance(root, behaviour.Behaviour) for root in roots):
+            return _BEHAVIOUR
+        is_part = [isinstance(root, robot.Robot | context.Context) for root in roots]
+        return _PARTS if is_part and all(is_part) else _MISSION
 
     def _alone(self, unsaved: Mapping[Path, bytes]) -> Diagnosis:
         """Return the faults of a model by its metamodels only: nobody knows what else belongs to it."""
@@ -79,6 +92,10 @@ class Subject:
         breaches = (fault for each in models for fault in check_conformance(each, found.registry))
         faults = (*faults_in(found), *(_as_emf_takes_it(fault) for fault in breaches))
         return Diagnosis(True, in_order(faults), models)
+
+    def _parts(self, unsaved: Mapping[Path, bytes]) -> Diagnosis:
+        files = (self.file, *([self.context] if self.context else []), *self.robots)
+        return diagnosed_parts(self.workshop, files, unsaved)
 
     def _mission(self, unsaved: Mapping[Path, bytes]) -> Diagnosis:
         contributions = self.workshop.contributions
@@ -112,6 +129,27 @@ class Subject:
             if not unsaved:
                 raise
             return Diagnosis(False, error.diagnostics, files.models, None, robots)
+
+
+def diagnosed_parts(workshop: Workshop, files: Iterable[Path], unsaved: Mapping[Path, bytes]) -> Diagnosis:
+    """Return the faults of robot types and of a context that no mission holds together.
+
+    Args:
+        unsaved: texts to be read instead of what files hold, by real path.
+    """
+    contributions = workshop.contributions
+    registry = contributions.languages
+    models = tuple(read_model(file, registry, unsaved=unsaved) for file in files)
+    faults = [fault for model in models for fault in model.diagnostics]
+    faults += [fault for model in models for fault in check_conformance(model, registry)]
+    roots = [root for model in models for root in model.roots]
+    place = next((root for root in roots if isinstance(root, context.Context)), None)
+    types = types_by_name((root for root in roots if isinstance(root, robot.Robot)), faults)
+    # a blank mission carries the rest; its own faults do not count
+    carried = ModelSet(mission.Mission(), place, types, models)
+    checked = check_constraints(carried, contributions.constraints, registry)
+    faults += [fault for fault in checked if fault.place.file]
+    return Diagnosis(True, in_order(map(explained, faults)), models, None, tuple(types.values()))
 
 
 def _as_emf_takes_it(fault: Diagnostic) -> Diagnostic:

@@ -7,18 +7,15 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TypeVar
 
-from mmrs_core.analysis.constraints import check_constraints
 from mmrs_core.analysis.fixes.repair import Diagnosis
-from mmrs_core.cli.diagnosing import Subject
+from mmrs_core.cli.diagnosing import Subject, diagnosed_parts
 from mmrs_core.cli.journey import Workshop
-from mmrs_core.diagnostics import Diagnostic, has_errors, in_order
+from mmrs_core.diagnostics import Diagnostic, has_errors
 from mmrs_core.errors import InvalidModelError, UnreadableError
-from mmrs_core.languages import behaviour, context, mission, robot
+from mmrs_core.languages import behaviour, robot
 from mmrs_core.languages.codes import is_refusal
-from mmrs_core.languages.conformance import check_conformance
 from mmrs_core.languages.element import Element
-from mmrs_core.languages.modelset import ModelSet, context_in, model_in, robot_files_in
-from mmrs_core.languages.reading import read_model
+from mmrs_core.languages.modelset import context_in, model_in, robot_files_in
 
 Root = TypeVar("Root", bound=Element)
 
@@ -70,7 +67,7 @@ def _of_folder(folder: Path, files: Sequence[Path], workshop: Workshop) -> Itera
         if model_in(folder, "mission") is not None:
             yield _judged(Subject(workshop, folder))
         elif len(behaviours) < len(files) or not behaviours:
-            faults = in_order(_faults_of(_with_rest(folder, files), workshop))
+            faults = diagnosed_parts(workshop, _with_rest(folder, files), {}).faults
             yield Verdict(folder, not has_errors(faults), faults, alone=True)
         for file in behaviours:
             yield _judged(Subject(workshop, file))
@@ -99,23 +96,6 @@ def _with_rest(folder: Path, files: Iterable[Path]) -> list[Path]:
     place = context_in(folder)
     rest = (*robot_files_in(folder / _ROBOTS), *([place] if place else []))
     return [file for file in dict.fromkeys((*files, *rest)) if file.stem != "behaviour"]
-
-
-def _faults_of(files: Iterable[Path], workshop: Workshop) -> Iterator[Diagnostic]:
-    """Yield the faults of robot types and of a context that no mission holds together."""
-    contributions = workshop.contributions
-    registry = contributions.languages
-    models = [read_model(file, registry) for file in files]
-    for model in models:
-        yield from model.diagnostics
-        yield from check_conformance(model, registry)
-    roots = [root for model in models for root in model.roots]
-    place = next(iter(_of(roots, context.Context)), None)
-    types = {each.name or "": each for each in _of(roots, robot.Robot)}
-    # a blank mission carries the rest; its own faults do not count
-    carried = ModelSet(mission.Mission(), place, types, tuple(models))
-    checked = check_constraints(carried, contributions.constraints, registry)
-    yield from (fault for fault in checked if fault.place.file)
 
 
 def _of(roots: Iterable[Element], kind: type[Root]) -> list[Root]:

@@ -24,7 +24,7 @@ class Settings:
         only_core: load no plug-in but the core's own.
         debug: show where unexpected errors come from.
         json: one JSON object is wanted on standard output.
-        quiet_migration: do not list what was defaulted or changed in models of other tools.
+        quiet_migration: do not list what is not just as it was in models of other tools.
     """
 
     only_core: bool = False

@@ -40,9 +40,9 @@ def validate(
     """List everything that is wrong with a mission's models.
 
     With --fix, what can only be meant in one way is mended. Robot types and context are checked with the
-    mission. A behaviour is checked by itself, and so is a model of any other language whose .ecore file is
-    given, pointed to or beside it: by its metamodel only. An .ecore file is checked for whether models can be
-    read by it.
+    mission, or by themselves where their file is named. A behaviour is checked by itself, and so is a model
+    of any other language whose .ecore file is given, pointed to or beside it: by its metamodel only. An
+    .ecore file is checked for whether models can be read by it.
 
     Example: mmrs validate field --fix
     """

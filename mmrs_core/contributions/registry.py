@@ -75,7 +75,7 @@ class Contributions:
     Args:
         declared: the (plug-in, descriptor) pairs of a sort, such as ``rules``, sorted by plug-in.
         distributions: where each plug-in comes from.
-        quiet_migration: note nothing of values that a dialect's models get or that change their meaning.
+        quiet_migration: do not list what is not just as it was in models of dialects.
     """
 
     def __init__(

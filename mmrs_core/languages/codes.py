@@ -271,7 +271,7 @@ CODES: Mapping[str, Code] = MappingProxyType(
         "MIG006": Code(
             "values of a model of another tool that are doubtful here, or not carried over",
             "values that have one meaning, and a place here",
-            "see whether the mission still means what it did; if not, 'mmrs migrate' it and mend the result",
+            "see whether the mission still means what it did; if not, 'mmrs migrate' it, and mend the result",
             Severity.WARNING,
             brief=True,
         ),

@@ -71,7 +71,7 @@ class Dialect(Protocol):
         """
 
     def quiet(self) -> Dialect:
-        """Return the same dialect, which notes nothing of values that it defaulted or changed."""
+        """Return the same dialect, which does not list what is not just as it was."""
 
 
 def is_of_dialect(path: Path, registry: Registry) -> bool:

@@ -22,7 +22,7 @@ class ForeignDialect:
     Attributes:
         name: what messages call the dialect.
         mapping: the file that says what becomes of what; docs/migrate.md explains its keys.
-        notes: whether values that were defaulted or changed are told.
+        notes: whether all that is not just as it was is listed; else what was lost or is doubtful is counted.
     """
 
     name: str
@@ -30,7 +30,7 @@ class ForeignDialect:
     notes: bool = True
 
     def quiet(self) -> ForeignDialect:
-        """Return the same dialect, which notes nothing of values that it defaulted or changed."""
+        """Return the same dialect, which does not list what is not just as it was."""
         return replace(self, notes=False)
 
     def recognised(

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections import Counter
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from mmrs_core.diagnostics import Diagnostic, Place, Severity
 from mmrs_core.languages.dialects import Migrated
@@ -10,12 +11,14 @@ from mmrs_core.languages.element import Element, container_of, descendants, is_k
 from mmrs_core.languages.registry import Registry
 from mmrs_core.migration.building.robot_types import RobotTypes
 from mmrs_core.migration.findings import Category, Finding, Group, grouped
-from mmrs_core.migration.migrate import Settled, build, settle
+from mmrs_core.migration.migrate import build, settle
 from mmrs_core.migration.recognition import Recognised
 from mmrs_core.migration.recording import Record
 from mmrs_core.migration.rules.rules_file import ROBOT_TYPE
+from mmrs_core.migration.sources.nodes import SourceNode
 
 MIGRATED, BY_NAMES, CHANGED, DOUBTFUL, NOTHING = "MIG003", "MIG004", "MIG005", "MIG006", "MIG007"
+_DOUBTFUL = (Category.LOST, Category.DOUBTFUL)
 _LONGEST_LIST = 1000
 """Characters of what one note names; the rest of it is counted."""
 
@@ -28,7 +31,7 @@ def migrated(
     Args:
         name: of the dialect.
         known: elements of other files, among which may be robot types that these files name.
-        notes: whether to tell what was defaulted or changed.
+        notes: whether to list what is not just as it was; else only what was lost or is doubtful is counted.
     """
     mapping = files[0].mapping
     settled = [settle(each.opened, mapping, (), stored=each.stored) for each in files]
@@ -41,8 +44,11 @@ def migrated(
         roots = tuple(became[id(node)] for node in document.document.roots if id(node) in became)
         _tell_lines(roots)
         own = [each for each in record.findings if each.place.file == file.opened.file]
-        lost = {node.place() for node in document.document.roots if id(node) not in became}
-        faults = (*_of_file(file, document, name), *_of_values(own, lost))
+        lost = _words_by_place(node for node in document.document.roots if id(node) not in became)
+        place = Place(file.opened.file, document.document.roots[0].line)
+        faults = [*_of_file(file, place, name), *(_of_root(each) for each in own if _is_among(each, lost))]
+        rest = [each for each in own if not _is_among(each, lost)]
+        faults += _of_values(rest) if notes else _counted(rest, place)
         told = (each for each in faults if notes or each.severity is not Severity.NOTE)
         found.append(Migrated(roots, tuple(told)))
     return tuple(found)
@@ -57,8 +63,7 @@ def _tell_lines(roots: Iterable[Element]) -> None:
                 element._mmrs_line = outer._mmrs_line
 
 
-def _of_file(file: Recognised, settled: Settled, name: str) -> Iterator[Diagnostic]:
-    place = Place(file.opened.file, settled.document.roots[0].line)
+def _of_file(file: Recognised, place: Place, name: str) -> Iterator[Diagnostic]:
     message = (
         f"{file.opened.what} of {name}, migrated while it was read; 'mmrs migrate' makes a project of it"
     )
@@ -68,21 +73,41 @@ def _of_file(file: Recognised, settled: Settled, name: str) -> Iterator[Diagnost
         yield Diagnostic(BY_NAMES, Severity.WARNING, message, place)
 
 
-def _of_values(findings: Iterable[Finding], lost: set[Place]) -> Iterator[Diagnostic]:
-    """Yield a fault for each reason, and one for each root that became nothing, at these places."""
-    rest = []
-    for finding in findings:
-        if finding.category is Category.LOST and finding.place in lost:
-            message = f"{finding.subject}: not carried over: {finding.reason}"
-            yield Diagnostic(NOTHING, Severity.ERROR, message, finding.place)
-        else:
-            rest.append(finding)
-    for group in grouped(rest):
-        is_doubtful = group.category in (Category.LOST, Category.DOUBTFUL)
+def _words_by_place(nodes: Iterable[SourceNode]) -> Mapping[Place, tuple[str, ...]]:
+    """Return what roots are called, by where they stand: several may stand on one line."""
+    found: dict[Place, dict[str, None]] = {}
+    for node in nodes:
+        found.setdefault(node.place(), {})[node.called()] = None
+    return {place: tuple(words) for place, words in found.items()}
+
+
+def _is_among(finding: Finding, lost: Mapping[Place, tuple[str, ...]]) -> bool:
+    """Return whether a finding tells that a root became nothing."""
+    return finding.category is Category.LOST and finding.subject.startswith(lost.get(finding.place, ()))
+
+
+def _of_root(finding: Finding) -> Diagnostic:
+    message = f"{finding.subject}: not carried over: {finding.reason}"
+    return Diagnostic(NOTHING, Severity.ERROR, message, finding.place)
+
+
+def _of_values(findings: Iterable[Finding]) -> Iterator[Diagnostic]:
+    """Yield a fault for each reason."""
+    for group in grouped(findings):
+        is_doubtful = group.category in _DOUBTFUL
         code, severity = (DOUBTFUL, Severity.WARNING) if is_doubtful else (CHANGED, Severity.NOTE)
         first = group.findings[0].place
         message = f"{group.category.value}: {group.reason} ({_listed(group)})"
         yield Diagnostic(code, severity, message, Place(first.file, first.line))
+
+
+def _counted(findings: Iterable[Finding], place: Place) -> Iterator[Diagnostic]:
+    """Yield how many values were lost or are doubtful, if any are."""
+    counts = Counter(finding.category for finding in findings)
+    words = ", ".join(f"{each.value}: {counts[each]}" for each in _DOUBTFUL if counts[each])
+    if words:
+        message = f"values {words}; without --quiet-migration, each is told"
+        yield Diagnostic(DOUBTFUL, Severity.WARNING, message, place)
 
 
 def _listed(group: Group) -> str:

@@ -68,7 +68,7 @@ class Builder:
         """Return the element that a node becomes; None for one that becomes none, which is recorded."""
         rule = self._mapping.rule(node.kind, variant, self._structure)
         reason = _NO_RULE if rule is None else rule.drop or (node not in self._referred and rule.unreferred)
-        if rule is None or reason:
+        if rule is None or reason or (rule.to is None and rule.wait is None):
             self._record.element(Category.LOST, reason or _NO_RULE, node)
             return None
         if rule.wait is not None:

@@ -51,7 +51,7 @@ class Reader:
                 node.values[name] = [link for value in node.values[name] for link in _links(value)]
             for inner in node.nodes(name):
                 inner.many = feature.many
-                inner.kind = self.dialect.kind(inner.claim) or feature.type
+                inner.kind = self.dialect.kind(inner.claim) if inner.claim else feature.type
                 known.append(inner)
         return known
 
