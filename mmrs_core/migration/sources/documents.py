@@ -9,7 +9,7 @@ from pathlib import Path
 
 from mmrs_core.errors import UnreadableError
 from mmrs_core.languages.datatypes import ECORE
-from mmrs_core.languages.json_form.text import is_json
+from mmrs_core.languages.json_form import is_json
 from mmrs_core.languages.json_form.tree import Node as Object
 from mmrs_core.languages.json_form.tree import Tree
 from mmrs_core.languages.metamodels.ecore_file import EcoreFile
