@@ -56,6 +56,8 @@ def ours(ecores: list[Path]) -> Subject:
     from mmrs_core.languages.registry import core_registry
     from mmrs_core.languages.writing import write_model
 
+    core_registry()  # as the others have their metamodels before they read
+
     def read(path: Path) -> object:
         model = read_model(path, core_registry())
         assert not model.diagnostics

@@ -9,7 +9,7 @@ from contextlib import contextmanager
 
 @contextmanager
 def collector_at_rest() -> Iterator[None]:
-    """Keep the collector from walking a large model again and again while it is read or written."""
+    """Keep the collector from walking what is being made again and again while it is read or written."""
     was_on = gc.isenabled()
     gc.disable()
     try:

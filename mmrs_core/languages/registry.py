@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from mmrs_core.errors import PluginError
+from mmrs_core.languages.collector import collector_at_rest
 from mmrs_core.languages.datatypes import BUILT_IN
 from mmrs_core.languages.element import Element, chosen
 from mmrs_core.languages.evolution.migration import Migration, chains
@@ -234,9 +235,10 @@ def _stamp(file: Path) -> tuple[int, int] | None:
 
 
 def _assemble(sources: Iterable[MetamodelSource], known: tuple[Package, ...]) -> tuple[Package, ...]:
-    from mmrs_core.languages.metamodels.shapes import packages_of  # pyecore costs 0.1 s of start-up
+    with collector_at_rest():
+        from mmrs_core.languages.metamodels.shapes import packages_of  # pyecore costs 0.1 s of start-up
 
-    return packages_of(((each.ns_uri, each.ecore, each.provider) for each in sources), known)
+        return packages_of(((each.ns_uri, each.ecore, each.provider) for each in sources), known)
 
 
 def _itself() -> tuple[Package, ...]:

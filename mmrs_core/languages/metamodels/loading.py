@@ -17,7 +17,6 @@ from pyecore.resources.resource import URI
 from pyecore.resources.xmi import XMIResource
 
 from mmrs_core.errors import MmrsError, PluginError
-from mmrs_core.languages.collector import collector_at_rest
 from mmrs_core.languages.datatypes import ECORE, XML_TYPES, declared_type
 from mmrs_core.languages.metaclass import Package
 from mmrs_core.languages.metamodels.ecore_file import Node
@@ -75,7 +74,7 @@ def load(located: Sequence[Located], known: Iterable[Package], *, lenient: bool 
     finder = _Finder(forms, packages, given, lenient)
     resource = _Resource(_Text(text), finder)
     finder.resource = resource
-    with _ONE_AT_A_TIME, _usual_order(), collector_at_rest():
+    with _ONE_AT_A_TIME, _usual_order():
         try:
             resource.load()
         except (MmrsError, MemoryError):
