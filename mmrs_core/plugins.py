@@ -114,6 +114,7 @@ def load_plugins(
     return Plugins(contributions, distributions, manager)
 
 
+@cache
 def language(ns_uri: str) -> Package:
     """Return a language as the installed plug-ins bring it; its members are the classes to subclass.
 
