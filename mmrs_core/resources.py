@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
-from importlib.resources import files
 from pathlib import Path
 
 from mmrs_core.errors import InternalError
@@ -19,7 +18,7 @@ def shipped(folder: str) -> Path:
     Raises:
         InternalError: if neither the wheel nor the checkout has it.
     """
-    package = Path(str(files("mmrs_core")))
+    package = Path(__file__).parent
     for place in (package / "_shipped" / folder, package.parent / folder):
         if place.is_dir():
             return place
