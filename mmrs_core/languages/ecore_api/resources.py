@@ -38,6 +38,7 @@ class ModelResource(Resource):  # type: ignore[misc]  # pyecore has no types
 
     Attributes:
         notices: the diagnostics of the last load that are no errors.
+        dialect: of the file, from which it was migrated by the last load; empty for one of ours.
     """
 
     def __init__(
@@ -47,6 +48,7 @@ class ModelResource(Resource):  # type: ignore[misc]  # pyecore has no types
         self._registry = registry
         self._root = root
         self.notices: tuple[Diagnostic, ...] = ()
+        self.dialect = ""
 
     def load(self, options: Mapping[object, object] | None = None) -> None:
         """Read the file, and those that it refers to into resources of the same set, unless open there.
@@ -76,6 +78,7 @@ class ModelResource(Resource):  # type: ignore[misc]  # pyecore has no types
         for each in files:
             resource = self if each is model else self._beside(str(each.file))
             resource._fill(each.roots, outward.made)
+            resource.dialect = each.dialect
         self.notices = tuple(faults)
 
     def save(self, output: Any = None, options: Mapping[object, object] | None = None) -> None:
@@ -86,12 +89,16 @@ class ModelResource(Resource):  # type: ignore[misc]  # pyecore has no types
             options: none; the writer has none.
 
         Raises:
-            UnsupportedError: if an object is of a class that the registry does not have.
+            UnsupportedError: if an object is of a class that the registry does not have, or the file is of a
+                dialect: it stays as it is.
             ValueError: if a value cannot be written, or a reference leads to an object in no file; options.
             OSError: if the file cannot be written.
         """
         _refuse(options)
         uri = self.uri if output is None else output if isinstance(output, URI) else URI(str(output))
+        if self.dialect and file_of(uri) == file_of(self.uri):
+            message = f"a model of {self.dialect}, which is not replaced; save it as another file"
+            raise UnsupportedError(f"{self.uri.plain}: {message}")
         if self.use_uuid:
             for root in self.contents:
                 for each in (root, *root.eAllContents()):

@@ -304,3 +304,17 @@ def test_a_resource_works_without_a_set(park, everything):
     assert isinstance(resource, Resource)
     resource.load()
     assert resource.contents[0].tasks[0].group.eResource.uri.last_segment == "context.xmi"
+
+
+def test_a_model_of_flyaq_opens_as_what_it_becomes_and_its_file_is_not_replaced(contributions, tmp_path):
+    file = tmp_path / "round.xmi"
+    before = (EXAMPLES.parent / "tests" / "fixtures" / "flyaq" / "round.xmi").read_bytes()
+    file.write_bytes(before)
+    resource = resource_set(contributions.languages).get_resource(URI(str(file)))
+    assert [robot.id for robot in resource.contents[0].robots] == ["scout", "follower"]
+    assert "MIG003" in [notice.code for notice in resource.notices]
+    with pytest.raises(UnsupportedError, match="a model of FLYAQ 2015, which is not replaced"):
+        resource.save()
+    assert file.read_bytes() == before
+    resource.save(output=tmp_path / "ours.xmi")
+    assert read_model(tmp_path / "ours.xmi", contributions.languages).dialect == ""
