@@ -17,7 +17,7 @@ Files = Annotated[list[Path], typer.Argument(metavar="FILE...", help="Models, in
 Output = Annotated[Path, typer.Option("-o", "--output", metavar="DIR", help="The project's folder.")]
 Mapping = Annotated[
     Path | None,
-    typer.Option("--mapping", metavar="FILE", help="What becomes of what; else that of FLYAQ 2015."),
+    typer.Option("--mapping", metavar="FILE", help="What becomes of what; else that of the files' dialect."),
 ]
 Metamodels = Annotated[
     list[Path] | None,

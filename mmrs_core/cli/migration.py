@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
+from contextlib import suppress
 from pathlib import Path
 
 import typer
@@ -10,10 +11,15 @@ import typer
 from mmrs_core.builtin import FLYAQ
 from mmrs_core.cli.journey import Workshop
 from mmrs_core.cli.protection import ProtectedError, refuse_inputs
+from mmrs_core.errors import UnreadableError
 from mmrs_core.languages import robot as robots
+from mmrs_core.languages.dialects import recognised
 from mmrs_core.languages.modelset import robot_files_in
 from mmrs_core.languages.reading import read_model
+from mmrs_core.languages.registry import Registry
 from mmrs_core.languages.writing import replace_file, to_xmi
+from mmrs_core.languages.xmi.events import read_bytes
+from mmrs_core.migration.dialect import ForeignDialect
 from mmrs_core.migration.migrate import Migration, UnknownTypeError
 from mmrs_core.migration.migrate import migrate as migrated
 from mmrs_core.migration.rules.mapping_file import read_mapping
@@ -35,7 +41,7 @@ def read_sources(
         typer.BadParameter: if a robot type's name is not written as OLD=NAME, or OLD occurs nowhere.
     """
     registry = workshop.contributions.languages
-    rules = read_mapping(mapping or shipped("migrations") / FLYAQ, registry)
+    rules = read_mapping(mapping or _mapping_for(files, registry), registry)
     stands_for = _stands_for(types)
     present = _types_in(project, workshop)
 
@@ -46,6 +52,16 @@ def read_sources(
         return workshop.stage("migrate", "migrating", migrating)
     except UnknownTypeError as fault:
         raise typer.BadParameter(f"--type: {fault}") from None
+
+
+def _mapping_for(files: Iterable[Path], registry: Registry) -> Path:
+    """Return the mapping of the first dialect that knows one of the files; else that of FLYAQ 2015."""
+    for file in files:
+        with suppress(UnreadableError):  # that is told when it is migrated
+            found = recognised(read_bytes(file), str(file), registry)
+            if found is not None and isinstance(found.dialect, ForeignDialect):
+                return found.dialect.mapping
+    return shipped("migrations") / FLYAQ
 
 
 def _stands_for(given: Sequence[str]) -> dict[str, str]:

@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 FLYAQ = Path(__file__).parents[2] / "fixtures" / "flyaq"
+DIALECTS = FLYAQ.parent / "dialects"
 HERON = FLYAQ / "Heron.xmi"
 QUIET = "--quiet-migration"
 FILES = {
@@ -221,3 +222,28 @@ def test_robot_types_of_ours_serve_a_mission_of_theirs(mmrs, orchard, tmp_path):
     assert code == 0
     assert "no robot type" not in err
     assert f"{orchard / 'robots'}" not in err
+
+
+def test_a_dialect_of_a_plug_in_enters_the_same_way(mmrs, monkeypatch, tmp_path):
+    from mmrs_core.cli.settings import Settings
+    from mmrs_core.hookspecs import hookimpl
+    from mmrs_core.migration.dialect import ForeignDialect
+    from mmrs_core.plugins import load_plugins
+
+    class Harbour:
+        @hookimpl
+        def mmrs_dialects(self):
+            return (ForeignDialect("Harbour", DIALECTS / "harbour.toml"),)
+
+    def plugins(settings):
+        return load_plugins(extra={"harbour": Harbour()}, quiet_migration=settings.quiet_migration)
+
+    monkeypatch.setattr(Settings, "plugins", plugins)
+    code, out, err = mmrs("show", DIALECTS / "tug.xmi")
+    assert (code, out.partition(" ")[0]) == (0, "Robot")
+    assert "a model of Harbour, migrated while it was read" in err
+    _, _, quiet = mmrs("show", DIALECTS / "tug.xmi", QUIET)
+    assert told(quiet, "MIG003") + told(quiet, "MIG005") == []
+    code, out, _ = mmrs("migrate", DIALECTS / "tug.xmi", "-o", tmp_path / "harbour")  # by the same mapping
+    assert code == 0
+    assert (tmp_path / "harbour" / "robots").is_dir()
