@@ -8,7 +8,8 @@ from mmrs_core.contributions.rules import MoveSpec, Rule
 from mmrs_core.errors import InfeasibleError
 from mmrs_core.languages import behaviour as bl
 from mmrs_core.languages.element import metaclass_of
-from mmrs_core.languages.registry import core_registry
+from mmrs_core.languages.registry import core_registry, registry_with
+from mmrs_core.languages.subclasses import ElementClass
 from mmrs_core.scene import (
     ActionAt,
     Area,
@@ -64,7 +65,7 @@ def robot(name="one", home=HOME, **features):
     return replace(made, **features)
 
 
-def behaviour_of(*plans, robots=None, areas=(), frame=None, rules=(), kinds=(PLAIN_ROBOT,)):
+def behaviour_of(*plans, robots=None, areas=(), frame=None, rules=(), kinds=(PLAIN_ROBOT,), registry=None):
     robots = robots or tuple(robot(plan.robot) for plan in plans)
     frame = frame or Frame("EPSG:4326", None, None)
     scene = Scene("test", frame, (), (), tuple(robots), areas=tuple(areas))
@@ -73,7 +74,7 @@ def behaviour_of(*plans, robots=None, areas=(), frame=None, rules=(), kinds=(PLA
         Plan(tuple(plans), 0.0, {}, {}),
         rules={rule.metaclass: rule for rule in rules},
         robot_kinds={(kind.name, ""): kind for kind in kinds},
-        registry=core_registry(),
+        registry=registry or core_registry(),
     )
     return model, trace
 
@@ -111,6 +112,15 @@ def test_a_cruise_that_the_wind_slows_down_is_commanded(fastest, speed):
     steps = transit(HOME, (10.0, 0.0, 0.0))
     model, _ = behaviour_of(plan_of(steps), robots=[replace(made, kinematics=slowed)])
     assert model.robots[0].moves[1].speed == speed
+
+
+def test_what_plug_ins_subclass_is_made_of_their_subclasses():
+    kinds = [type("Mine", (each,), {}) for each in (bl.Behaviour, bl.Target, bl.Move, bl.MoveTransition)]
+    registry = registry_with((), classes=map(ElementClass, kinds))
+    model, _ = behaviour_of(plan_of(transit(HOME, (10.0, 0.0, 0.0))), registry=registry)
+    (robot,) = model.robots
+    for kind, made in zip(kinds, ([model], model.targets, robot.moves, robot.moveTransitions), strict=True):
+        assert [isinstance(each, kind) for each in made] == [True] * len(made) != []
 
 
 def test_robots_without_work_are_idle():
