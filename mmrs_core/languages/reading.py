@@ -5,15 +5,13 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from mmrs_core.errors import UnreadableError
-from mmrs_core.languages.codes import explained
 from mmrs_core.languages.collector import collector_at_rest
-from mmrs_core.languages.dialects import Foreign, recognised
 from mmrs_core.languages.element import Element, Unknown
 from mmrs_core.languages.evolution.migration import may_be_old
 from mmrs_core.languages.json_form import is_json
-from mmrs_core.languages.metamodels.text import package_text
 from mmrs_core.languages.model import Model
 from mmrs_core.languages.references.documents import Draft
 from mmrs_core.languages.references.hrefs import real_path
@@ -22,6 +20,10 @@ from mmrs_core.languages.registry import Registry
 from mmrs_core.languages.source import Source
 from mmrs_core.languages.xmi.events import Document, read_bytes
 from mmrs_core.languages.xmi.quick_reader import QuickReader
+
+if TYPE_CHECKING:
+    from mmrs_core.diagnostics import Diagnostic
+    from mmrs_core.languages.dialects import Foreign
 
 
 class Reading:
@@ -72,6 +74,8 @@ class Reading:
     def described(self, ns_uri: str) -> Draft:
         """Return a metamodel of the registry as a model of Ecore, whose classes others may refer to."""
         if ns_uri not in self._described:
+            from mmrs_core.languages.metamodels.text import package_text
+
             text = package_text(
                 self._registry.package(ns_uri), lambda other: f"{'' if other == ns_uri else other}#//"
             )
@@ -87,6 +91,8 @@ class Reading:
         except UnreadableError as error:
             draft, refusal = Draft(source), error
         if all(isinstance(root, Unknown) for root in draft.roots):
+            from mmrs_core.languages.dialects import recognised
+
             foreign = recognised(data, source.file, self._registry, stored=source.path is not None)
             if foreign is not None:
                 draft = Draft(Source(source.file, source.path), dialect=foreign.dialect.name)
@@ -156,8 +162,15 @@ class Reading:
 
     def _plain(self, draft: Draft) -> Model:
         file = Path(draft.source.file) if draft.source.path else draft.source.file
-        faults = tuple(map(explained, draft.diagnostics))
-        return Model(file, draft.source.roots, faults, (), frozenset(draft.broken), draft.dialect)
+        return Model(file, draft.source.roots, _explained(draft), (), frozenset(draft.broken), draft.dialect)
+
+
+def _explained(draft: Draft) -> tuple[Diagnostic, ...]:
+    if not draft.diagnostics:
+        return ()
+    from mmrs_core.languages.codes import explained  # most files are right, and need none of the many words
+
+    return tuple(map(explained, draft.diagnostics))
 
 
 def read_model(
