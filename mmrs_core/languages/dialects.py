@@ -21,10 +21,12 @@ class Foreign:
 
     Attributes:
         content: what the dialect makes elements of; means nothing to anybody else.
+        is_guess: whether nobody knows its nsURI, and its classes are only called as the dialect's are.
     """
 
     dialect: Dialect
     content: object
+    is_guess: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,17 +49,18 @@ class Dialect(Protocol):
     def name(self) -> str:
         """Return what messages call it."""
 
-    def recognised(
-        self, data: bytes, file: str, registry: Registry, *, by_names: bool, stored: bool
-    ) -> Foreign | None:
+    def recognised(self, data: bytes, file: str, registry: Registry, *, stored: bool) -> Foreign | None:
         """Return a file of this dialect; None for any other, and for what is no model at all.
 
         Args:
-            by_names: take one whose nsURI nobody knows, if its classes are called as the dialect's are.
             stored: whether there is such a file, beside which metamodels may lie.
+        """
+
+    def ready(self, file: Foreign, registry: Registry) -> Foreign:
+        """Return a file that it recognised, with all that is needed to migrate it.
 
         Raises:
-            UnreadableError: with a code, if it is of this dialect and cannot be migrated.
+            UnreadableError: with a code, if it cannot be migrated.
         """
 
     def migrated(
@@ -78,16 +81,13 @@ def is_of_dialect(path: Path, registry: Registry) -> bool:
     """Return whether a file is one of the registry's dialects.
 
     Raises:
-        UnreadableError: as `Dialect`, or if the file is missing.
+        UnreadableError: as `Dialect.ready`, or if the file is missing.
     """
     return recognised(read_bytes(path), str(path), registry) is not None
 
 
 def recognised(data: bytes, file: str, registry: Registry, *, stored: bool = True) -> Foreign | None:
-    """Return a file of one of the registry's dialects; None for any other. Errors as in `Dialect`."""
-    found = (
-        each.recognised(data, file, registry, by_names=by_names, stored=stored)
-        for by_names in (False, True)
-        for each in registry.dialects
-    )
-    return next((each for each in found if each is not None), None)
+    """Return a file of one of the registry's dialects; None for any other. Errors as in `Dialect.ready`."""
+    known = [each.recognised(data, file, registry, stored=stored) for each in registry.dialects]
+    found = sorted((each for each in known if each is not None), key=lambda each: each.is_guess)
+    return found[0].dialect.ready(found[0], registry) if found else None

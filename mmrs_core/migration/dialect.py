@@ -33,31 +33,37 @@ class ForeignDialect:
         """Return the same dialect, which does not list what is not just as it was."""
         return replace(self, notes=False)
 
-    def recognised(
-        self, data: bytes, file: str, registry: Registry, *, by_names: bool, stored: bool
-    ) -> Foreign | None:
+    def recognised(self, data: bytes, file: str, registry: Registry, *, stored: bool) -> Foreign | None:
         """Return a file of this dialect, as `Dialect` says.
 
         Raises:
             PluginError: if the mapping is none.
         """
         from mmrs_core.migration.recognition import recognised
-        from mmrs_core.migration.rules.mapping_file import read_dialect, read_mapping
+        from mmrs_core.migration.rules.mapping_file import read_dialect
 
         try:
             dialect = read_dialect(self.mapping)
         except UnreadableError as fault:
             raise PluginError(f"dialect '{self.name}': {fault}") from fault
         found = recognised(data, file, dialect, registry)
-        if found is None or (found.is_guess and not by_names):
-            return None
+        return Foreign(self, replace(found, stored=stored), found.is_guess) if found is not None else None
+
+    def ready(self, file: Foreign, registry: Registry) -> Foreign:
+        """Return a file with the rules by which it is migrated, as `Dialect` says."""
+        from mmrs_core.migration.recognition import Recognised
+        from mmrs_core.migration.rules.mapping_file import read_mapping
+
+        found = file.content
+        assert isinstance(found, Recognised)  # as `recognised` made it
+        name = found.opened.file
         if found.opened.document is None:
-            raise UnreadableError.of("FIL009", found.opened.what, file)
+            raise UnreadableError.of("FIL009", found.opened.what, name)
         try:
             mapping = read_mapping(self.mapping, registry)
         except UnreadableError as fault:
-            raise UnreadableError.of("FIL010", f"of {self.name}, and not migrated: {fault}", file) from fault
-        return Foreign(self, replace(found, mapping=mapping, stored=stored))
+            raise UnreadableError.of("FIL010", f"of {self.name}, and not migrated: {fault}", name) from fault
+        return replace(file, content=replace(found, mapping=mapping))
 
     def migrated(
         self, files: Sequence[Foreign], registry: Registry, known: Sequence[Element]

@@ -60,10 +60,12 @@ def adopt(document: SourceDocument, mapping: DialectMapping, registry: Registry)
     adopted = []
     for name, nodes in claiming.items():
         package = "" if not name or is_near(name, registry) else _package_of(name, nodes, mapping)
-        for node in nodes if package else ():
+        by_file = name != package == mapping.dialect.package(name)  # so do the dialect's own files in JSON
+        if not package or by_file:
+            continue
+        adopted.append(name)
+        for node in nodes:
             node.claim = Claim(package, _class_of(node))
-        if package and not name.endswith(".ecore"):  # by such files, JSON names the metamodels themselves
-            adopted.append(name)
     return tuple(adopted)
 
 

@@ -41,8 +41,6 @@ def project(tmp_path):
         ("behaviour-example.xmi",),
         ("behaviour-example.json",),
         ("behaviour-old-multidrone.json",),
-        ("context-demo.json",),
-        ("mission-demo.json", PARROT.name),
         ("drone-parrot-sample.xmi",),
         ("drones-list-demo.json",),
     ],
@@ -54,9 +52,24 @@ def test_a_model_of_2015_migrates_to_a_valid_one(mmrs, project, files):
     assert re.search(r": valid(, with no mission beside it yet)?\n$", out)
 
 
+@pytest.mark.parametrize(
+    ("files", "code"), [(("context-demo.json",), "CTX008"), (("mission-demo.json", PARROT.name), "MML028")]
+)
+def test_what_is_wrong_with_the_nonsense_places_of_2015_is_how_far_they_lie_apart(mmrs, project, files, code):
+    exit_code, _, err = mmrs("migrate", *(FOLDER / file for file in files), "-o", project)
+    errors = [line for line in err.splitlines() if ": error: " in line]
+    assert exit_code == 1
+    assert errors
+    assert [line for line in errors if not line.endswith(f"[{code}]")] == []
+
+
 def test_the_mission_of_2015_is_refused_by_the_planner_for_its_millions_of_photos(mmrs, project):
     _, _, err = mmrs("migrate", FOLDER / "mission-demo.json", PARROT, "-o", project)
     assert "warning: task 'photoGridTask1' takes about 58,539,226 photos [SUR019]" in err
+    mission = project / "mission.xmi"
+    mission.write_text(
+        mission.read_text().replace(' name="mission1"', ' name="mission1" largestGap="1e8"', 1)
+    )
     code, _, err = mmrs("plan", project)
     assert code == 4
     assert "photos or samples, of which 200,000 can be planned" in err
@@ -117,3 +130,24 @@ def test_the_behaviour_of_2015_is_simulated_checked_and_generated(mmrs, project,
     code, out, _ = mmrs(project, "--target", "mavlink-python", "-o", tmp_path / "code", program="mmrs-gen")
     assert code == 0
     assert (tmp_path / "code" / "robot_Parrot1.py").is_file()
+
+
+@pytest.mark.parametrize("name", ["behaviour-example.xmi", "behaviour-example.json"])
+def test_a_behaviour_of_2015_is_simulated_and_generated_as_it_is(mmrs, tmp_path, name):
+    before = {file: file.read_bytes() for file in FOLDER.iterdir()}
+    code, out, err = mmrs("simulate", FOLDER / name, "--robots", PARROT)
+    assert (code, out.partition(" ")[0]) == (0, "success")
+    assert f"{FOLDER / name}:" in err
+    arguments = (FOLDER / name, "--robots", PARROT, "--target", "mavlink-python", "-o", tmp_path / "code")
+    code, _, _ = mmrs(*arguments, "--quiet-migration", program="mmrs-gen")
+    assert code == 0
+    assert (tmp_path / "code" / "robot_Parrot1.py").is_file()
+    assert {file: file.read_bytes() for file in FOLDER.iterdir()} == before
+
+
+@pytest.mark.parametrize("name", [*MODELS, PARROT.name])
+def test_every_model_of_2015_is_shown_as_it_is(mmrs, name):
+    code, out, err = mmrs("show", FOLDER / name)
+    assert code == 0
+    assert out.partition(" ")[0] in ("Behaviour", "Context", "Drone", "Mission")
+    assert "a model of FLYAQ 2015" in err or "a list of robot types of FLYAQ 2015" in err

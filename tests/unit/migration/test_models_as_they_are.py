@@ -124,6 +124,17 @@ def test_a_copy_in_json_is_recognised_by_its_classes_too(read, flyaq, written, r
     assert to_json(copy.roots, registry) == to_json(read(flyaq / "orchard-mission.json").roots, registry)
 
 
+@pytest.mark.parametrize(("file", "told"), [("mission.ecore", 0), ("copy.ecore", 1)])
+def test_a_metamodel_that_json_names_by_its_file_is_said_only_if_the_file_is_not_theirs(registry, file, told):
+    text = (
+        f'{{"eClass": "file:/C:/flyaq/{file}#//Mission", "name": "m",'
+        ' "swarm": {"drones": [{"name": "a", "type": "Parrot"}]}}'
+    )
+    model = read_text(text.encode(), "m.json", registry)
+    assert model.roots[0].team.robots[0].name == "a"
+    assert len(told_of(model, "MIG004")) == told
+
+
 def test_mmrs_migrate_takes_such_a_copy_and_says_so(migrated, flyaq, written):
     text = (flyaq / "round.xmi").read_text().replace("http://www.flyaql.it/", OTHER)
     migration = migrated(written("copy.xmi", text))
