@@ -112,7 +112,7 @@ def _loaded(settings: Settings) -> tuple[_Found, str]:
     Raises:
         PluginError: if one is broken by itself.
     """
-    from mmrs_core.errors import PluginError
+    from mmrs_core.errors import PluginError, UnreadableError
 
     plugins = settings.plugins()
     found: _Found = {
@@ -123,7 +123,7 @@ def _loaded(settings: Settings) -> tuple[_Found, str]:
         found[each.plugin][2].setdefault(each.sort, []).append(each.name)
     try:
         plugins.contributions.check()
-    except PluginError as error:
+    except (PluginError, UnreadableError) as error:
         return found, str(error)
     return found, ""
 

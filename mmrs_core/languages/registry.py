@@ -5,7 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from functools import cache, cached_property, lru_cache
+from inspect import ismodule
 from pathlib import Path
+from threading import RLock
 from typing import TYPE_CHECKING
 
 from mmrs_core.errors import PluginError
@@ -25,6 +27,7 @@ if TYPE_CHECKING:
     from mmrs_core.languages.dialects import Dialect
     from mmrs_core.languages.xmi.shapes import Maker
 
+_ONE_AT_A_TIME = RLock()
 CORE_LANGUAGES = ("robot", "mission", "context", "behaviour")
 
 
@@ -185,9 +188,14 @@ def _refuse_hiding(given: ElementClass, metaclass: Metaclass) -> None:
         raise PluginError(f"{given.provider}: {error}" if given.provider else str(error)) from None
 
 
-@cache
 def core_registry() -> Registry:
     """Return the four languages of the core; always the same registry."""
+    with _ONE_AT_A_TIME:
+        return _core_registry()
+
+
+@cache
+def _core_registry() -> Registry:
     folder = shipped("metamodels")
     sources = [MetamodelSource(f"urn:mmrs:{name}:1.0", folder / f"{name}.ecore") for name in CORE_LANGUAGES]
     return Registry(_assemble(sources, ()))
@@ -214,21 +222,23 @@ def registry_with(
         UnreadableError: if a file is no metamodel.
     """
     given = tuple(sources)
-    files = tuple(source.ecore for source in given if isinstance(source.ecore, Path))
-    assemble = _assembled if len(files) == len(given) else _assembled.__wrapped__
-    packages = assemble(given, tuple(map(_stamp, files)))
+    packages = _assembled(given, tuple(_stamp(source.ecore) for source in given))
     return Registry((*core_registry().packages, *packages), migrations, classes, dialects)
 
 
 @lru_cache(8)
 def _assembled(sources: tuple[MetamodelSource, ...], stamps: tuple[object, ...]) -> tuple[Package, ...]:
-    """Return the packages of files, the same ones while these stay: their classes are to be subclassed."""
+    """Return packages, the same ones while their sources stay: their classes are to be subclassed."""
     return _assemble(sources, core_registry().packages)
 
 
-def _stamp(file: Path) -> tuple[int, int] | None:
+def _stamp(ecore: Path | object) -> object:
+    """Return what changes with a source: of an EPackage, the names in it."""
+    if not isinstance(ecore, Path):
+        inside = getattr(getattr(ecore, "eClass", None) if ismodule(ecore) else ecore, "eAllContents", tuple)
+        return tuple(getattr(each, "name", None) for each in inside())
     try:
-        found = file.stat()
+        found = ecore.stat()
     except OSError:  # whoever reads it has words for it
         return None
     return found.st_mtime_ns, found.st_size

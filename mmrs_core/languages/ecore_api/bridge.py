@@ -194,6 +194,10 @@ class _Inward:
             source = pending.pop()
             metaclass = self._metaclass(source.eClass)
             element = self.made[id(source)] = self._element(source, metaclass)
+            for each in source._isset:
+                if each.name not in metaclass.by_name and each.name not in metaclass.by_attribute:
+                    message = f"{metaclass.name}.{each.name}: added to the EClass after it was loaded"
+                    raise UnsupportedError(message)
             element._mmrs_source = home
             if home is not None and source._internal_id:
                 home.ids[element] = source._internal_id

@@ -11,7 +11,8 @@ from typing import NoReturn
 from urllib.parse import unquote
 
 from mmrs_core.errors import UnreadableError
-from mmrs_core.languages.datatypes import ECORE
+from mmrs_core.languages.datatypes import ECORE, shown
+from mmrs_core.languages.naming import nearest
 from mmrs_core.languages.xmi.events import DEEPEST_NESTING, XMI, XSI, Document, read_bytes
 
 GENMODEL = "http://www.eclipse.org/emf/2002/GenModel"
@@ -28,8 +29,12 @@ _TEXTS = FLAGS | WHOLE | {*_NAMES, "defaultValueLiteral"}
 _LINKS = frozenset(("eSuperTypes", "eType", "eOpposite", "eKeys", "eClassifier", "eTypeParameter"))
 _PARTS = ("eSubpackages", "eClassifiers", "eStructuralFeatures", "eLiterals", "eAnnotations", "details")
 _GENERICS = ("eGenericSuperTypes", "eTypeParameters", "eBounds", "eGenericType")
+_LEFT_OUT = ("eOperations", "eTypeArguments", "eUpperBound", "eLowerBound", "contents", "references")
+_UPWARDS = ("eModelElement", "ePackage", "eSuperPackage", "eContainingClass", "eEnum")
 _ELEMENTS = _LINKS | {*_PARTS, *_GENERICS}
 _ATTRIBUTES = _TEXTS | _LINKS | {"href"}
+_KNOWN = _ATTRIBUTES | _ELEMENTS | {*_LEFT_OUT, *_UPWARDS}
+"""All that Ecore's own features are called, as far as files can hold them."""
 _NOTHING: Mapping[str, str] = {}
 _NAMED = re.compile(r"""@(\w+)\[name=['"](.*)['"]\]""")
 _WORD = re.compile(r"\S+")
@@ -215,8 +220,16 @@ class _Listener:
                 outer.children = [node]
             self._enter(node)
         else:
+            if not tag.startswith(f"{XMI} "):
+                self._refuse_unknown(name)
             self._text = [] if name in _TEXTS else None
             self._passed = 1
+
+    def _refuse_unknown(self, name: str) -> None:
+        if name not in _KNOWN:
+            hint = nearest(name, _KNOWN)
+            place = f"{self._document.file}:{self._document.line}"
+            raise UnreadableError(f"{place}: {shown(name)}: Ecore has no such feature{hint and '; ' + hint}")
 
     def end(self, tag: str) -> None:
         """Close what was opened."""
@@ -257,6 +270,8 @@ class _Listener:
                 found["xmi:idref"] = value
             elif name == f"{XMI} id":
                 identifier = value
+            elif " " not in name:
+                self._refuse_unknown(name)
         node = Node(tag, self._document.line, found or _NOTHING)
         if identifier:
             self._ids.setdefault(identifier, node)

@@ -178,6 +178,9 @@ class _Finder:
             self._reached[id(found)] = found
         if not isinstance(found, getattr(ecore, kind)):
             entry.refuse(f"{self._where(node)}: {address[-1]} is no {kind}", node)
+        if kind == "EReference" and address not in self._inside:  # pyecore would change it for everybody
+            opposite = f"{address[1]}.{address[2]}"
+            entry.refuse(f"{self._where(node)}: its opposite {opposite} does not name it back", node)
         return found
 
     def _enter(self) -> None:

@@ -10,14 +10,15 @@ from typing import Any, NoReturn
 from pyecore import ecore
 
 from mmrs_core.errors import InternalError, PluginError
-from mmrs_core.languages.datatypes import BUILT_IN, ECORE, DataType, builtin_type, declared_type, refusal
+from mmrs_core.languages.datatypes import BUILT_IN, ECORE, DataType, builtin_type, refusal
 from mmrs_core.languages.element import Element
-from mmrs_core.languages.metaclass import MANY, MAP_ENTRY, Enumeration, Feature, Literal, Metaclass, Package
-from mmrs_core.languages.metamodels.ecore_file import GENMODEL
+from mmrs_core.languages.metaclass import MAP_ENTRY, Enumeration, Feature, Metaclass, Package
 from mmrs_core.languages.metamodels.ecore_itself import built_in
 from mmrs_core.languages.metamodels.loading import Loaded, epackage_of, load
 from mmrs_core.languages.metamodels.locating import Address, Located, located_in
+from mmrs_core.languages.metamodels.values import data_type, default_of, documentation_of, enumeration_of
 from mmrs_core.languages.naming import nearest, python_name
+from mmrs_core.languages.values.texts import described
 
 MOST_FEATURES = 500_000
 """Of all classes together, inherited ones counted again in each; the largest metamodels have a tenth."""
@@ -71,10 +72,11 @@ def itself() -> tuple[Package, ...]:
 
 def _flat(package: Any, given: object, provider: str, parent: str = "") -> Iterable[Located]:
     if not isinstance(package, ecore.EPackage):
-        raise PluginError(f"{package!r}: neither the path of an .ecore file nor a pyecore EPackage")
+        what = f"neither the path of an .ecore file nor a pyecore EPackage, but {described(package)}"
+        raise PluginError(f"{provider}: {what}")
     package = epackage_of(package)
     if not package.name or not package.nsURI:
-        raise PluginError(f"EPackage {package.name or '?'}: name or nsURI is missing")
+        raise PluginError(f"{provider}: EPackage {package.name or '?'}: name or nsURI is missing")
     yield Located(package.nsURI, package.name, provider, given, parent)
     for inner in package.eSubpackages:
         yield from _flat(inner, given, provider, package.nsURI)
@@ -130,10 +132,9 @@ class _Shapes:
             if address in self._metaclasses or address in self._types:
                 self._refuse(entry, address, f"class {kind.name} is declared twice")
             if isinstance(kind, ecore.EEnum):
-                literals = tuple(map(_literal, kind.eLiterals))
-                self._types[address] = Enumeration(ns_uri, kind.name, literals, _documentation(kind))
+                self._types[address] = enumeration_of(ns_uri, kind)
             elif isinstance(kind, ecore.EDataType):
-                self._types[address] = _data_type(ns_uri, kind)
+                self._types[address] = data_type(ns_uri, kind, entry.file is None)
             elif address == _ANYTHING:
                 self._metaclasses[address] = _any_object()
             else:
@@ -142,7 +143,7 @@ class _Shapes:
                     ns_uri,
                     kind.name,
                     bool(kind.abstract or kind.interface),
-                    _documentation(kind),
+                    documentation_of(kind),
                     is_entry=kind.instanceClassName == MAP_ENTRY,
                     eclass=_eclass(ns_uri, kind),
                 )
@@ -156,7 +157,7 @@ class _Shapes:
         metaclass = self._metaclasses[address]
         supertypes = []
         for above in eclass.eSuperTypes:
-            other = _address(above)
+            other = self._address_of(above, entry, address)
             if other in self._eclasses:
                 self._inherit(other, *self._eclasses[other])
             supertypes.append(self._class(other, entry, address))
@@ -189,18 +190,18 @@ class _Shapes:
         if given.eType is None:
             self._refuse(entry, address, f"{owner.name}.{given.name}: eType is missing")
         is_reference = isinstance(given, ecore.EReference)
-        key = _address(given.eType)
+        key = self._address_of(given.eType, entry, address)
         kind = self._class(key, entry, address) if is_reference else self._value_type(key, entry, address)
         upper = 1 if given.upperBound == _UNSPECIFIED else given.upperBound
         is_entry = isinstance(kind, Metaclass) and kind.is_entry
         try:
-            default = _default(given, kind, upper)
+            default = default_of(given, kind, upper)
         except ValueError as fault:
             self._refuse(entry, address, f"{owner.name}.{given.name}: default {fault}")
         feature = Feature(
             name=given.name,
             attribute=attribute,
-            documentation=_documentation(given),
+            documentation=documentation_of(given),
             lower=given.lowerBound,
             upper=upper,
             is_reference=is_reference,
@@ -217,6 +218,12 @@ class _Shapes:
         if is_reference and given.eOpposite is not None:
             self._unlinked.append((feature, given.eOpposite, entry))
         return feature
+
+    def _address_of(self, kind: Any, entry: Located, address: Address) -> Address:
+        try:
+            return _address(kind)
+        except ValueError as fault:
+            self._refuse(entry, address, f"{'.'.join(address[1:])}: {fault}")
 
     def _class(self, key: Address, entry: Located, address: Address) -> Metaclass:
         if key == _ANYTHING:
@@ -240,12 +247,14 @@ class _Shapes:
 
     def _no_type(self, key: Address, address: Address) -> str:
         ns_uri, name = key
+        if ns_uri not in self._loaded.packages and ns_uri not in (*self._packages, *BUILT_IN):
+            return f"{'.'.join(address[1:])}: needs the metamodel {ns_uri} (for {name})"
         hint = nearest(name, [known for uri, known in (*self._metaclasses, *self._types) if uri == ns_uri])
         return f"{'.'.join(address[1:])}: no type {name} in {ns_uri}{hint and '; ' + hint}"
 
     def _join(self, feature: Feature, opposite: Any, entry: Located) -> None:
         address = (*feature.owner.key, feature.name)
-        owner = self._class(_address(opposite.eContainingClass), entry, address)
+        owner = self._class(self._address_of(opposite.eContainingClass, entry, address), entry, address)
         other = owner.by_name.get(opposite.name)
         if other is None or not other.is_reference:
             self._refuse(entry, address, f"{feature.name}: {owner.name}/{opposite.name}: no such reference")
@@ -258,7 +267,7 @@ class _Shapes:
             entry.name,
             entry.name if epackage.nsPrefix is None else epackage.nsPrefix,
             entry.provider,
-            _documentation(epackage),
+            documentation_of(epackage),
             tuple(kind for kind in kinds if isinstance(kind, Metaclass)),
             tuple(kind for kind in kinds if isinstance(kind, Enumeration)),
             tuple(kind for kind in kinds if isinstance(kind, DataType)),
@@ -293,29 +302,19 @@ def _any_object() -> Metaclass:
 
 
 def _address(kind: Any) -> Address:
-    eclass = kind.dyn_inst  # where a Python class stands for it, as pyecoregen writes them
-    return eclass.ePackage.nsURI, eclass.name
+    """Return what a classifier is known by.
 
-
-def _data_type(ns_uri: str, kind: Any) -> DataType:
-    # pyecore knows no default for the flag, and EMF's is true
-    serializable = bool(kind.serializable) or not kind.eIsSet("serializable")
-    known = builtin_type(ns_uri, kind.name)
-    return known or declared_type(ns_uri, kind.name, kind.instanceClassName or "", serializable)
-
-
-def _literal(literal: Any) -> Literal:
-    text = literal.name if literal.literal is None else literal.literal
-    return Literal(literal.name, text, literal.value, _documentation(literal))
-
-
-def _documentation(element: Any) -> str:
-    annotation = element.getEAnnotation(GENMODEL)
-    if annotation is not None:
-        text = annotation.details.get("documentation")
-    else:  # in modules that pyecoregen wrote, classes have it as Python's classes do
-        text = vars(element.python_class).get("__doc__") if isinstance(element, ecore.EClass) else ""
-    return text if isinstance(text, str) else ""
+    Raises:
+        ValueError: if it is in no package, or in a file that pyecore does not find.
+    """
+    try:
+        eclass = kind.dyn_inst  # where a Python class stands for it, as pyecoregen writes them
+        package = eclass.ePackage
+    except Exception as fault:  # a proxy, whatever it runs into
+        raise ValueError(f"pyecore does not find what it refers to: {fault}") from None
+    if package is None:
+        raise ValueError(f"{eclass.name} is in no EPackage")
+    return package.nsURI, eclass.name
 
 
 def _one_name(metaclass: Metaclass, features: Iterable[Feature]) -> str:
@@ -329,23 +328,6 @@ def _one_name(metaclass: Metaclass, features: Iterable[Feature]) -> str:
                 f"{metaclass.name} inherits {both}, which are both {feature.attribute} in Python; rename one"
             )
     raise InternalError(f"{metaclass.name}: no two features share an attribute")
-
-
-def _default(feature: Any, kind: _Type, upper: int) -> object:
-    if isinstance(kind, Metaclass) or upper > 1 or upper == MANY:
-        return None
-    text = feature.defaultValueLiteral
-    if text is not None and (text or kind.name == "EString"):
-        return kind.parse(text)
-    given = feature.default_value  # of one that was made in Python
-    value = given.name if isinstance(given, ecore.EEnumLiteral) else given
-    if value is not None and value != feature.eType.default_value and kind.accepts(value):
-        return value
-    if feature.unsettable:
-        return None
-    if isinstance(kind, Enumeration):
-        return kind.names[0] if kind.literals else None
-    return kind.primitive_default
 
 
 def _complete(metaclass: Metaclass, **fields: object) -> None:

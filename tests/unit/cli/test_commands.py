@@ -12,6 +12,7 @@ from mmrs_core.cli.settings import Settings
 from mmrs_core.contributions.commands import CORE_COMMANDS, Command
 from mmrs_core.errors import PluginError
 from mmrs_core.hookspecs import hookimpl
+from mmrs_core.languages.sources import MetamodelSource
 from mmrs_core.plugins import load_plugins
 
 CORE = sorted(CORE_COMMANDS)
@@ -221,6 +222,27 @@ def test_plugins_in_conflict_are_told_in_json(with_usurper, capsys):
     told = json.loads(capsys.readouterr().out)
     assert told["error"] == USURPED
     assert "usurper" in told["plugins"]
+
+
+class Torn:
+    """A plug-in whose metamodel is no XML."""
+
+    def __init__(self, ecore):
+        self.ecore = ecore
+
+    @hookimpl
+    def mmrs_metamodels(self):
+        return (MetamodelSource("urn:torn", self.ecore, "torn"),)
+
+
+def test_a_plugin_whose_metamodel_cannot_be_read_is_listed(monkeypatch, tmp_path, capsys):
+    torn = Torn(tmp_path / "torn.ecore")
+    torn.ecore.write_text("<ecore:EPackage")
+    monkeypatch.setattr(Settings, "plugins", lambda _: load_plugins(only_core=True, extra={"torn": torn}))
+    assert run(["plugin", "list"]) == 1
+    captured = capsys.readouterr()
+    assert f"torn: {torn.ecore}:1: not well-formed XML" in captured.err
+    assert "torn (given by the caller)\n  metamodels: urn:torn" in captured.out
 
 
 def test_help_and_list_work_with_a_broken_plugin(monkeypatch, capsys):
