@@ -76,10 +76,10 @@ def _with_neighbours(files: Iterable[Path]) -> dict[Path, EcoreFile]:
 
 
 def _meant(document: str, referrer: Path, registry: Registry) -> Iterator[Path]:
-    """Yield the file that a metamodel refers to: by its path, or by nsURI where it lies beside."""
+    """Yield the file that a metamodel refers to: by its path, or its name or nsURI where it lies beside."""
     if registry.has(document):
         return
-    path = file_at(document, referrer.parent)
+    path = file_at(document, referrer.parent) or file_at(document.rpartition("/")[2], referrer.parent)
     if path is not None:
         yield path
         return

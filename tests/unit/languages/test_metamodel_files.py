@@ -8,9 +8,9 @@ import pytest
 
 from mmrs_core.errors import UnreadableError
 from mmrs_core.languages.conformance import check_conformance
-from mmrs_core.languages.metamodels.gathering import registry_of_files
+from mmrs_core.languages.metamodels.gathering import gathered, registry_of_files
 from mmrs_core.languages.model import Model
-from mmrs_core.languages.registry import MetamodelSource
+from mmrs_core.languages.registry import MetamodelSource, core_registry
 
 HEAD = (
     '<ecore:EPackage xmi:version="2.0" xmlns:xmi="http://www.omg.org/XMI"'
@@ -47,6 +47,7 @@ def test_a_metamodel_that_a_file_refers_to_is_taken_along(tmp_path, place, refer
     registry, wanted = registry_of_files([zoo], ())
     assert wanted == ("urn:test:zoo",)
     assert registry.metaclass("urn:test:zoo", "Lion").is_kind("urn:test:animals", "Animal")
+    assert [each.ns_uri for each in gathered([zoo], core_registry())] == ["urn:test:zoo", "urn:test:animals"]
 
 
 def test_a_file_takes_the_place_of_what_is_installed(tmp_path):
