@@ -75,8 +75,13 @@ def first_kind(path: Path) -> tuple[str, str]:
     """
     data = read_bytes(path)
     if not is_json(path.name):
-        return _top_of(data, str(path)).kind
+        return first_kind_in_xmi(data, str(path))
     return _kind_in_json(Text(data, str(path)))
+
+
+def first_kind_in_xmi(data: bytes, file: str) -> tuple[str, str]:
+    """Return the same of the text of an XMI file; errors as in `first_kind`."""
+    return _top_of(data, file).kind
 
 
 def _kind_in_json(text: Text) -> tuple[str, str]:

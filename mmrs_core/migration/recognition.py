@@ -7,9 +7,10 @@ from dataclasses import dataclass
 
 from mmrs_core.errors import UnreadableError
 from mmrs_core.languages.missing import is_near
+from mmrs_core.languages.places import first_kind_in_xmi
 from mmrs_core.languages.registry import Registry
 from mmrs_core.migration.rules.mapping import DialectMapping
-from mmrs_core.migration.sources.documents import Opened, open_text
+from mmrs_core.migration.sources.documents import Opened, first_letter, open_text
 from mmrs_core.migration.sources.nodes import Claim, SourceDocument, SourceNode
 
 
@@ -34,6 +35,8 @@ class Recognised:
 def recognised(data: bytes, file: str, mapping: DialectMapping, registry: Registry) -> Recognised | None:
     """Return a file all of whose roots are of a dialect; None for any other."""
     try:
+        if first_letter(data) == "<" and not _may_be(first_kind_in_xmi(data, file), mapping):
+            return None  # to read all of a large file takes long
         opened = open_text(data, file, mapping.documents)
     except UnreadableError:
         return None
@@ -67,6 +70,13 @@ def adopt(document: SourceDocument, mapping: DialectMapping, registry: Registry)
         for node in nodes:
             node.claim = Claim(package, _class_of(node))
     return tuple(adopted)
+
+
+def _may_be(kind: tuple[str, str], mapping: DialectMapping) -> bool:
+    ns_uri, name = kind
+    return mapping.dialect.has(ns_uri) or any(
+        each.rpartition(".")[2] == name for each in mapping.structure.classes
+    )
 
 
 def _is_own(root: SourceNode, mapping: DialectMapping) -> bool:

@@ -63,7 +63,7 @@ def open_document(path: Path, known: Iterable[KnownDocument]) -> Opened:
 
 def open_text(data: bytes, file: str, known: Iterable[KnownDocument]) -> Opened:
     """Return what the text of a file is; errors as in `open_document`."""
-    start = _first_letter(data)
+    start = first_letter(data)
     if start in ("{", "["):
         return _json(Tree(data, file), known)
     if start != "<":
@@ -77,7 +77,7 @@ def open_text(data: bytes, file: str, known: Iterable[KnownDocument]) -> Opened:
     return Opened(file, "a model", document)
 
 
-def _first_letter(data: bytes) -> str:
+def first_letter(data: bytes) -> str:
     """Return the first letter that is no blank, whichever Unicode encoding the text is in."""
     letters = data[:4096].translate(None, b"\0").removeprefix(BOM_UTF8)
     for mark in (BOM_UTF16_LE, BOM_UTF16_BE):
