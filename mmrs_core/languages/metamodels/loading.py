@@ -83,7 +83,10 @@ def load(located: Sequence[Located], known: Iterable[Package], *, lenient: bool 
             names = ", ".join(dict.fromkeys(entry.file.name for entry in files if entry.file is not None))
             reason = "nested too deeply for it" if isinstance(fault, RecursionError) else fault
             raise PluginError(f"{names}: pyecore cannot load this: {reason}") from fault
-        finder.finish()
+        else:
+            finder.finish()
+        finally:
+            finder.forget()
     _give_files(files, resource.contents)
     return Loaded({**given, **finder.packages}, forms.nodes)
 
@@ -158,6 +161,7 @@ class _Finder:
             for kind in package.eClassifiers
         }
         self._inside: dict[Address, Any] = {}
+        self._entered = False
         self._reached: dict[int, Any] = {}
 
     def __call__(self, token: str) -> Any:
@@ -178,15 +182,18 @@ class _Finder:
             self._reached[id(found)] = found
         if not isinstance(found, getattr(ecore, kind)):
             entry.refuse(f"{self._where(node)}: {address[-1]} is no {kind}", node)
-        if kind == "EReference" and address not in self._inside:  # pyecore would change it for everybody
+        if (
+            kind == "EReference" and address not in self._inside and not self._lenient
+        ):  # pyecore would change it for everybody
             opposite = f"{address[1]}.{address[2]}"
             entry.refuse(f"{self._where(node)}: its opposite {opposite} does not name it back", node)
         return found
 
     def _enter(self) -> None:
         """Note all that the document holds, once it is there."""
-        if self._inside:
+        if self._entered:
             return
+        self._entered = True
         names = self._forms.names
         pending = list(self.resource.contents)
         while pending:
@@ -198,13 +205,14 @@ class _Finder:
                 for feature in getattr(kind, "eStructuralFeatures", ()):
                     name = names.get(feature.name, feature.name)
                     self._inside[package.nsURI, kind.name, name] = feature
-        self._inside[("",)] = None
 
     def _feature(self, address: Address) -> Any:
         owner = self._outside.get(address[:2]) if len(address) == 3 else None
         return owner and next((each for each in owner.eStructuralFeatures if each.name == address[2]), None)
 
     def _stand_in(self, address: Address, kind: str) -> Any:
+        if kind == "EReference":
+            return ecore.EReference(address[2])
         package = self._strangers.setdefault(address[0], ecore.EPackage(address[0], nsURI=address[0]))
         made = ecore.EDataType(address[1]) if kind == "EDataType" else ecore.EClass(address[1])
         package.eClassifiers.append(made)
@@ -227,7 +235,7 @@ class _Finder:
         return f"{where}: no type {name} in {ns_uri}{hint and '; ' + hint}"
 
     def finish(self) -> None:
-        """Give everything what the text could not say, and let what stands outside forget it."""
+        """Give everything what the text could not say."""
         self._enter()
         for made in self._inside.values():
             if isinstance(made, ecore.EEnum):
@@ -240,9 +248,12 @@ class _Finder:
         for address, keys in self._forms.keys.items():
             found = [self._inside.get(key) or self._feature(key) for key in keys]
             self._inside[address].eKeys = found
-            if None in found:
+            if None in found and not self._lenient:
                 entry, node = self._forms.nodes[address]
                 entry.refuse(self._no_such(keys[found.index(None)], node), node)
+
+    def forget(self) -> None:
+        """Let what stands outside forget what was loaded, also where that was refused."""
         own = {id(each) for each in self._inside.values()}
         for reached in self._reached.values():  # pyecore would keep each metamodel as long as Ecore itself
             rels = reached._inverse_rels

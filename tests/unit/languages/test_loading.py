@@ -16,6 +16,7 @@ from pyecore.resources.xmi import XMIResource
 from mmrs_core.errors import PluginError, UnsupportedError
 from mmrs_core.languages.datatypes import ECORE
 from mmrs_core.languages.ecore_api.bridge import from_pyecore
+from mmrs_core.languages.metamodels.loading import load_alone
 from mmrs_core.languages.reading import read_text
 from mmrs_core.languages.registry import MetamodelSource, registry_with
 from mmrs_core.languages.writing import to_xmi
@@ -109,6 +110,24 @@ def test_what_is_of_another_kind_than_needed_is_refused_with_its_place(loaded, f
         loaded(features)
     assert str(refused.value).startswith("plugin-a: ")
     assert str(refused.value).endswith(f"a.ecore:3: urn:a: {message}")
+
+
+def test_a_metamodel_that_was_refused_leaves_nothing_behind(loaded):
+    before = set(ecore.EInt._inverse_rels)
+    with pytest.raises(PluginError, match="is no EReference"):
+        loaded(number("y", "EInt") + feature("EReference", "x", "#//A", 'eOpposite="#//A/y"'))
+    assert ecore.EInt._inverse_rels == before
+
+
+def test_alone_a_metamodel_is_loaded_whatever_it_refers_to_elsewhere(tmp_path):
+    links = 'eOpposite="gone.ecore#//B/a" eKeys="gone.ecore#//B/n"'
+    features = feature("EReference", "x", "ecore:EClass gone.ecore#//B", links)
+    (tmp_path / "a.ecore").write_text(
+        f'{HEAD}<eClassifiers xsi:type="ecore:EClass" name="A">{features}</eClassifiers></ecore:EPackage>'
+    )
+    (package,) = load_alone(tmp_path / "a.ecore")
+    (reference,) = package.getEClassifier("A").eStructuralFeatures
+    assert (reference.eType.name, reference.eType.ePackage.nsURI) == ("B", "gone.ecore")
 
 
 def test_a_metamodel_that_nobody_uses_any_more_is_forgotten(core):
