@@ -182,9 +182,8 @@ class _Finder:
             self._reached[id(found)] = found
         if not isinstance(found, getattr(ecore, kind)):
             entry.refuse(f"{self._where(node)}: {address[-1]} is no {kind}", node)
-        if (
-            kind == "EReference" and address not in self._inside and not self._lenient
-        ):  # pyecore would change it for everybody
+        if kind == "EReference" and address not in self._inside and not self._lenient:
+            # pyecore would change it for everybody
             opposite = f"{address[1]}.{address[2]}"
             entry.refuse(f"{self._where(node)}: its opposite {opposite} does not name it back", node)
         return found
@@ -247,7 +246,7 @@ class _Finder:
                 made.name = self._forms.names[made.name]
         for address, keys in self._forms.keys.items():
             found = [self._inside.get(key) or self._feature(key) for key in keys]
-            self._inside[address].eKeys = found
+            self._inside[address].eKeys = [key for key in found if key is not None]
             if None in found and not self._lenient:
                 entry, node = self._forms.nodes[address]
                 entry.refuse(self._no_such(keys[found.index(None)], node), node)
