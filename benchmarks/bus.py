@@ -32,11 +32,7 @@ from mmrs_core.behaviour.log import LogWriter, read_logs
 from mmrs_core.behaviour.program import Program
 from mmrs_core.behaviour.replay import Outcome, replay
 from mmrs_core.contributions.backends import BackendInput
-from mmrs_core.flight.bus import begin_together
-from mmrs_core.flight.bus.carriers.over_zenoh import ZenohCarrier
-from mmrs_core.flight.bus.carriers.sessions import Endpoints, configuration
 from mmrs_core.flight.program import Local, Notify, Robot, Start, Step
-from mmrs_core.flight.records.log import Log
 from mmrs_core.flight.slots import BusSlots, LocalSlots, shared_slots
 from mmrs_core.runtime.attention import Attention
 from mmrs_core.runtime.clock import RealClock
@@ -46,6 +42,10 @@ from mmrs_core.runtime.slots import shared_bus
 from mmrs_core.runtime.terms import Terms
 from mmrs_core.testing.small_programs import go, notify, program, robot, robot_type
 from mmrs_core.transformation.kinds import MOVE_KINDS, PLAIN_ROBOT
+from mmrs_runtime.bus import begin_together
+from mmrs_runtime.bus.carriers.over_zenoh import ZenohCarrier
+from mmrs_runtime.bus.carriers.sessions import Endpoints, configuration
+from mmrs_runtime.records.log import Log
 
 PROCESSES, ROUNDS, SPEEDUP = 4, 5, 10.0
 

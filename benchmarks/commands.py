@@ -27,7 +27,6 @@ from pymavlink import mavutil
 
 from mmrs_core.behaviour.program import Program
 from mmrs_core.cli.orders_heard import hear_orders
-from mmrs_core.flight.orders.ordering import give
 from mmrs_core.mavlink.backend import MAVLINK
 from mmrs_core.runtime.live import Venture, run_live
 from mmrs_core.runtime.orders import LAND, Orders
@@ -35,6 +34,7 @@ from mmrs_core.runtime.run import inputs_of
 from mmrs_core.runtime.slots import InProcessBus
 from mmrs_core.sitl import Settings, SimulatedVehicle
 from mmrs_core.testing.programs import move, program, quad, robot_program, take_off
+from mmrs_runtime.orders.ordering import give
 
 ROBOT = "drone"
 HEIGHT = 10.0

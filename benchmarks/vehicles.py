@@ -139,8 +139,8 @@ def total(vehicles) -> int:
 
 
 def hear_by_links(given: argparse.Namespace) -> None:
-    from mmrs_core.flight.clock import Clock
     from mmrs_core.flight.links.radios import Radios
+    from mmrs_runtime.clock import Clock
 
     radios = Radios(Clock())
     count = [0] * given.count

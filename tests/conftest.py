@@ -19,6 +19,7 @@ IN_REAL_TIME = {
         "tests/end_to_end/faults",
         "tests/end_to_end/vehicles",
         "tests/unit/flight",
+        "tests/unit/mmrs_runtime",
         "tests/unit/mavlink/backend/test_response.py",
         "tests/unit/runtime",
         "tests/unit/sitl",

@@ -16,9 +16,9 @@ from urllib.parse import quote
 from mmrs_core.behaviour.steps import StepRecord
 from mmrs_core.diagnostics import Diagnostic, Place, Severity
 from mmrs_core.errors import InvalidModelError, UnreadableError
-from mmrs_core.flight.records.lines import append_whole, keep_whole_lines, whole_lines
 from mmrs_core.languages.codes import explained
 from mmrs_core.resources import named
+from mmrs_runtime.records.lines import append_whole, keep_whole_lines, whole_lines
 
 SCHEMA = Path(__file__).with_name("log.schema.json")
 SUFFIX = ".jsonl"

@@ -23,9 +23,9 @@ if TYPE_CHECKING:
 
     from mmrs_core.behaviour.program import Program
     from mmrs_core.cli.bus_access import Holder
-    from mmrs_core.flight.bus import Node, Recorded
-    from mmrs_core.flight.bus.carriers.sessions import Endpoints
-    from mmrs_core.flight.bus.gateway.server import Gateway
+    from mmrs_runtime.bus import Node, Recorded
+    from mmrs_runtime.bus.carriers.sessions import Endpoints
+    from mmrs_runtime.bus.gateway.server import Gateway
 
 app = typer.Typer(
     rich_markup_mode=None,
@@ -156,10 +156,10 @@ def gateway(
     """
     from mmrs_core.cli.behaviours import load_program
     from mmrs_core.cli.journey import Workshop
-    from mmrs_core.flight.screen import unfailing
+    from mmrs_runtime.screen import unfailing
 
     with _needing("eclipse-zenoh"):
-        from mmrs_core.flight.bus.carriers.sessions import Endpoints
+        from mmrs_runtime.bus.carriers.sessions import Endpoints
     program = load_program(Workshop(settings_of(call)), behaviour_file(behaviour))
     if robot not in {each.id for each in program.robots}:
         raise typer.BadParameter(f"--robot {robot}: not in the behaviour")
@@ -195,8 +195,8 @@ def state(
     Example: mmrs bus state survey --connect tcp/10.0.0.2:7447 --robot Drone1
     """
     with _needing("eclipse-zenoh"):
-        from mmrs_core.flight.bus.carriers.looking import reasons, states_of
-        from mmrs_core.flight.bus.carriers.sessions import Endpoints
+        from mmrs_runtime.bus.carriers.looking import reasons, states_of
+        from mmrs_runtime.bus.carriers.sessions import Endpoints
     _refuse_endpoints(listen, connect)
     endpoints = Endpoints(tuple(listen or ()), tuple(connect or ()), config)
     try:
@@ -223,7 +223,7 @@ def _said(key: str, text: str) -> tuple[str, dict[str, dict[str, object]]]:
     Whoever answers with the name of another is known by the key alone, which certificates protect;
     whoever answers something else shows no slots.
     """
-    from mmrs_core.flight.bus.words import digest
+    from mmrs_runtime.bus.words import digest
 
     found = _object_in(text)
     name = found.get("robot")
@@ -312,9 +312,9 @@ def _refuse_endpoints(listen: list[str] | None, connect: list[str] | None) -> No
 def _gateway(
     program: Program, robot: str, endpoints: Endpoints, run: str, folder: Path, port: int
 ) -> Gateway:
-    from mmrs_core.flight.bus.carriers.over_zenoh import ZenohCarrier
-    from mmrs_core.flight.bus.gateway.server import Gateway
     from mmrs_core.runtime.slots import node_of
+    from mmrs_runtime.bus.carriers.over_zenoh import ZenohCarrier
+    from mmrs_runtime.bus.gateway.server import Gateway
 
     names = [each.id for each in program.robots]
 

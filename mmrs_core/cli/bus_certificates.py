@@ -22,7 +22,7 @@ from cryptography.hazmat.primitives.serialization import (
 from cryptography.x509.oid import ExtendedKeyUsageOID, NameOID
 
 from mmrs_core.cli.bus_access import Holder, configuration
-from mmrs_core.flight.bus.carriers.revocation import REVOKED, serial_of, valid_name
+from mmrs_runtime.bus.carriers.revocation import REVOKED, serial_of, valid_name
 
 AUTHORITY = "authority"
 """Stem of the files of whoever signs the certificates; its key belongs on no robot."""

@@ -9,7 +9,7 @@ import typer
 
 from mmrs_core.behaviour.program import Program
 from mmrs_core.contributions.execution import Clock
-from mmrs_core.flight.bus.carriers.carrier import Carrier
+from mmrs_runtime.bus.carriers.carrier import Carrier
 
 
 def bus_faults(

@@ -12,11 +12,11 @@ from mmrs_core.behaviour.program import Program
 from mmrs_core.behaviour.steps import StepRecord
 from mmrs_core.cli.output import tell
 from mmrs_core.errors import LinkLostError, UnreadableError, UnsupportedError
-from mmrs_core.flight.bus import Incomplete, Unwelcome, begin_together
-from mmrs_core.flight.bus.carriers.carrier import Carrier
-from mmrs_core.flight.bus.carriers.endpoints import first_fault
 from mmrs_core.runtime.resuming import restore
 from mmrs_core.runtime.slots import InProcessBus, ProgramBus, members_of, shared_bus
+from mmrs_runtime.bus import Incomplete, Unwelcome, begin_together
+from mmrs_runtime.bus.carriers.carrier import Carrier
+from mmrs_runtime.bus.carriers.endpoints import first_fault
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,8 +72,8 @@ def bus_for(
         restore(bus, program, resumed or ())
         return bus
     try:
-        from mmrs_core.flight.bus.carriers.over_zenoh import ZenohCarrier
-        from mmrs_core.flight.bus.carriers.sessions import Endpoints
+        from mmrs_runtime.bus.carriers.over_zenoh import ZenohCarrier
+        from mmrs_runtime.bus.carriers.sessions import Endpoints
     except ModuleNotFoundError as error:
         raise UnsupportedError("--bus: needs Zenoh; pip install 'mmrs-core[bus]'") from error
     refuse_endpoints("--bus-listen", wishes.listen)

@@ -40,10 +40,10 @@ def control(
     Example: mmrs control hold Drone1 --log logs
     """
     from mmrs_core.errors import LinkLostError
-    from mmrs_core.flight.orders.calling import Unreachable
-    from mmrs_core.flight.orders.ordering import words
-    from mmrs_core.flight.orders.orders import STATUS
-    from mmrs_core.flight.orders.standing import lines_of
+    from mmrs_runtime.orders.calling import Unreachable
+    from mmrs_runtime.orders.ordering import words
+    from mmrs_runtime.orders.orders import STATUS
+    from mmrs_runtime.orders.standing import lines_of
 
     _check(order, question, says)
     replies = []
@@ -67,13 +67,13 @@ def control(
 def _replies(
     log: Path, order: str, robots: list[str], question: str, answer: bool, seconds: float
 ) -> Iterator[dict[str, Any]]:
-    from mmrs_core.flight.orders.ordering import give
+    from mmrs_runtime.orders.ordering import give
 
     return give(log, order, robots, question=question, answer=answer, seconds=seconds)
 
 
 def _check(order: str, question: str, says: str) -> None:
-    from mmrs_core.flight.orders.orders import ANSWER, ORDERS
+    from mmrs_runtime.orders.orders import ANSWER, ORDERS
 
     if order not in ORDERS:
         raise typer.BadParameter(f"{order}: is none of {', '.join(ORDERS)}")

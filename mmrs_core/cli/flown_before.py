@@ -16,9 +16,9 @@ from mmrs_core.cli.figures import clock
 from mmrs_core.cli.output import counted, tell
 from mmrs_core.cli.wishes import Wishes
 from mmrs_core.errors import InvalidModelError
-from mmrs_core.flight.records.blackbox import black_box_path, last_time, plan_of
 from mmrs_core.runtime.resuming import over_by
 from mmrs_core.runtime.slots import slots_path
+from mmrs_runtime.records.blackbox import black_box_path, last_time, plan_of
 
 
 def resumed_steps(program: Program, wishes: Wishes, here: tuple[str, ...]) -> tuple[StepRecord, ...]:

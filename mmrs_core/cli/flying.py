@@ -33,13 +33,13 @@ from mmrs_core.cli.wishes import (
     stop_response,
 )
 from mmrs_core.errors import LinkLostError
-from mmrs_core.flight.faults import ORDERED, STOPPED
-from mmrs_core.flight.screen import unfailing
 from mmrs_core.pipeline import backend_for, conditions_for, inputs_of
 from mmrs_core.runtime.clock import RealClock
 from mmrs_core.runtime.live import Venture, run_live
 from mmrs_core.runtime.orders import STOP, Orders
 from mmrs_core.runtime.terms import Ending
+from mmrs_runtime.faults import ORDERED, STOPPED
+from mmrs_runtime.screen import unfailing
 
 FAILED = 1
 

@@ -14,7 +14,7 @@ from mmrs_core.cli.output import tell
 from mmrs_core.runtime.orders import Orders
 
 if TYPE_CHECKING:
-    from mmrs_core.flight.orders.orders import Inbox, Receipt
+    from mmrs_runtime.orders.orders import Inbox, Receipt
 
 Status = Callable[[str], Mapping[str, object]]
 
@@ -32,7 +32,7 @@ def hear_orders(
         tell("no orders are heard: that needs pymavlink; pip install 'mmrs-core[mavlink]'")
         yield
         return
-    from mmrs_core.flight.control import Control, Taken
+    from mmrs_runtime.control import Control, Taken
 
     inboxes = {robot: _inbox(robot, orders) for robot in robots}
     try:
@@ -48,7 +48,7 @@ def hear_orders(
 
 
 def _inbox(robot: str, orders: Orders) -> Inbox:
-    from mmrs_core.flight.orders.orders import Inbox
+    from mmrs_runtime.orders.orders import Inbox
 
     def arrived() -> None:
         while (receipt := inbox.take()) is not None:

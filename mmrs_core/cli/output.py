@@ -180,6 +180,6 @@ def _unwritten(stream: TextIO, error: OSError) -> OSError:
 
 
 def _close(stream: TextIO) -> None:
-    from mmrs_core.flight.screen import let_end_in_nothing
+    from mmrs_runtime.screen import let_end_in_nothing
 
     let_end_in_nothing(stream)

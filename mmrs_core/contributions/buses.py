@@ -6,9 +6,9 @@ from collections.abc import Callable, Iterable
 from typing import Protocol
 
 from mmrs_core.behaviour.program import SlotId
-from mmrs_core.flight.bus.words import CommandId as CommandId
-from mmrs_core.flight.bus.words import Find as Find
-from mmrs_core.flight.bus.words import SlotState as SlotState
+from mmrs_runtime.bus.words import CommandId as CommandId
+from mmrs_runtime.bus.words import Find as Find
+from mmrs_runtime.bus.words import SlotState as SlotState
 
 
 class Delivery(Protocol):

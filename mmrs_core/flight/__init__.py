@@ -1,16 +1,17 @@
 """The runtime of generated controllers: readable, standalone, on top of pymavlink.
 
 Read ``program.py`` first: the words that programs are written in. ``steps/`` carries programs out,
-``vehicles/`` says it to vehicles, by ``services/`` and ``links/`` of MAVLink. ``orders/`` are people's,
-``records/`` what is written down, ``bus/`` the slots of robots in many processes, ``injection/`` faults
+``vehicles/`` says it to vehicles, by ``services/`` and ``links/`` of MAVLink; ``injection/`` are faults
 made on purpose. ``main.py`` runs all robots, ``session.py`` one of them from the opening of its link to
-its end, and ``options.py`` is the command line.
+its end, and ``options.py`` is the command line. What needs no MAVLink is in the package mmrs_runtime: the
+orders of people, what is written down, the slots of robots in many processes.
 """
 
 from importlib import import_module
 from typing import TYPE_CHECKING
 
-from .conditions import standard, undecided
+from mmrs_runtime.conditions import standard, undecided
+
 from .program import (
     Choose,
     Geographic,
@@ -41,7 +42,7 @@ from .program import (
 )
 
 if TYPE_CHECKING:
-    from .conditions import Condition
+    from .judgement import Condition
     from .main import main
     from .objects import Locator, not_looked_for, where_expected
     from .vehicles.vehicle import State
@@ -84,7 +85,7 @@ __all__ = [
 ]
 
 _NEED_A_LINK = {
-    "Condition": "conditions",
+    "Condition": "judgement",
     "Locator": "objects",
     "State": "vehicles.vehicle",
     "main": "main",

@@ -5,10 +5,11 @@ from __future__ import annotations
 import threading
 from collections.abc import Callable, Collection, Mapping, Sequence
 
-from .orders.orders import Inbox, Receipt
-from .phases import ENDED, LOST, SUSPENDED, WAITS, WORKS, answering, if_held
-from .questions import Questions
-from .records.blackbox import plain
+from mmrs_runtime.orders.orders import Inbox, Receipt
+from mmrs_runtime.phases import ENDED, LOST, SUSPENDED, WAITS, WORKS, answering, if_held
+from mmrs_runtime.questions import Questions
+from mmrs_runtime.records.blackbox import plain
+
 from .steps.journal import Journal
 from .vehicles.vehicle import State
 

@@ -6,14 +6,15 @@ import threading
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 
-from .bus import Beginning
-from .clock import Clock
-from .conditions import Condition
+from mmrs_runtime.bus import Beginning
+from mmrs_runtime.clock import Clock
+from mmrs_runtime.questions import Questions
+from mmrs_runtime.records.blackbox import BlackBox
+from mmrs_runtime.records.log import Log
+
+from .judgement import Condition
 from .objects import Locator
 from .program import Place
-from .questions import Questions
-from .records.blackbox import BlackBox
-from .records.log import Log
 from .slots import Slots
 
 Say = Callable[[str], None]

@@ -2,12 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING, TypeAlias
 
-from .conditions import Condition, is_standard, standard, undecided
+from mmrs_runtime.conditions import is_standard, standard, undecided
+
 from .objects import Locator, not_looked_for
 from .program import Choose, GoTo, Movement, Object, Robot, Turn
+
+if TYPE_CHECKING:
+    from .vehicles.vehicle import State
+
+Condition: TypeAlias = "Callable[[State], bool | None]"
+"""Whether a condition holds, by what a robot knows; None while that cannot be said yet."""
 
 
 @dataclass(frozen=True, slots=True)

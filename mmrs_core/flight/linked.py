@@ -7,14 +7,15 @@ from contextlib import ExitStack
 from dataclasses import dataclass
 from math import inf
 
-from .clock import Clock
+from mmrs_runtime.clock import Clock
+from mmrs_runtime.records.blackbox import BlackBox, black_box_path
+from mmrs_runtime.screen import say
+
 from .links.link import Link
 from .links.radios import Radios
 from .options import Options
 from .program import Geographic, Place, Robot
-from .records.blackbox import BlackBox, black_box_path
 from .records.recording import Recording
-from .screen import say
 from .vehicles.mavlink_vehicle import MavlinkVehicle
 from .vehicles.recognition import recognise, system_of
 

@@ -10,17 +10,17 @@ from contextlib import ExitStack
 from queue import SimpleQueue
 from typing import TYPE_CHECKING
 
-from .bus import Recorded
-from .conditions import Condition
-from .control import Control, Taken
+from mmrs_runtime.bus import Recorded
+from mmrs_runtime.control import Control, Taken
+from mmrs_runtime.records.log import read
+from mmrs_runtime.screen import bear_all_characters, say, unfailing
+
 from .crews import Crews
 from .injection import Rehearsal
-from .judgement import Judgement, conditions_of
+from .judgement import Condition, Judgement, conditions_of
 from .objects import Locator
 from .options import Options, options_of, parser_for
 from .program import Robot
-from .records.log import read
-from .screen import bear_all_characters, say, unfailing
 from .session import Shared, Vehicles, run_robot
 from .slots import BusSlots, LocalSlots, recorded_of, shared_slots, strangers_of, team_of
 from .steps.ending import FAILED, INTERRUPTED, LINK, OK
@@ -107,8 +107,8 @@ def _slots(
     stack: ExitStack,
 ) -> BusSlots:
     if options.bus.used:
-        from .bus.carriers.over_zenoh import ZenohCarrier
-        from .bus.carriers.sessions import Endpoints
+        from mmrs_runtime.bus.carriers.over_zenoh import ZenohCarrier
+        from mmrs_runtime.bus.carriers.sessions import Endpoints
 
         reached = Endpoints(options.bus.listen, options.bus.connect, options.bus.file)
         zenoh = ZenohCarrier(robots[0].mission, options.run, team_of(robots), reached, plan=robots[0].plan)

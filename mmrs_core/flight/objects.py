@@ -6,7 +6,8 @@ from collections.abc import Callable, Mapping
 from dataclasses import replace
 from math import isfinite
 
-from .faults import FAILURES, OBJECT_NOT_FOUND, Fault
+from mmrs_runtime.faults import FAILURES, OBJECT_NOT_FOUND, Fault
+
 from .places import distance
 from .program import Look, Object, Place
 from .vehicles.vehicle import State

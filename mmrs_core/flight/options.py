@@ -9,15 +9,16 @@ from math import inf
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from .bus import PATIENCE
-from .clock import Clock
-from .faults import Fault
+from mmrs_runtime.bus import PATIENCE
+from mmrs_runtime.clock import Clock
+from mmrs_runtime.faults import Fault
+from mmrs_runtime.records.blackbox import black_box_path, last_time, plan_of
+from mmrs_runtime.records.log import read
+
 from .injection import HELP, Injections, injections
 from .links.ports import address_of, split_system
 from .links.retries import ANSWER_SECONDS, ITEM_SECONDS, TRIES, Retries
 from .program import Robot
-from .records.blackbox import black_box_path, last_time, plan_of
-from .records.log import read
 
 if TYPE_CHECKING:
     from .links.signing import Signer
@@ -111,7 +112,7 @@ def parser_for(robots: Sequence[Robot]) -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
         description=f"Flies {', '.join(repr(robot.id) for robot in robots)}.",
         epilog="Exit codes: 0 done, 1 ended early, 2 usage, 5 link lost, 130 stopped."
-        " While it runs: python -m mmrs_flight.control ORDER --log FOLDER.",
+        " While it runs: python -m mmrs_runtime.control ORDER --log FOLDER.",
     )
     _add_reach(parser)
     add = parser.add_argument

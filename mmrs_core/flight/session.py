@@ -11,22 +11,22 @@ from functools import partial
 from traceback import format_exception
 from typing import TYPE_CHECKING
 
-from .bus import begin_together
-from .conditions import Condition
+from mmrs_runtime.bus import begin_together
+from mmrs_runtime.faults import CRASHED, FAILURES, Alone, Fault, Refused, Strange
+from mmrs_runtime.orders.orders import RESUME, RETURN
+from mmrs_runtime.policies import NOTHING
+from mmrs_runtime.records.blackbox import BlackBox, black_box_path
+from mmrs_runtime.records.log import Log
+from mmrs_runtime.screen import say
+
 from .crews import Crews
 from .desk import Desk, Meet
-from .faults import CRASHED, FAILURES, Alone, Fault, Refused, Strange
 from .injection import Rehearsal
-from .judgement import Judgement
+from .judgement import Condition, Judgement
 from .options import Options
 from .orders.obedience import Obedience, Ordered
-from .orders.orders import RESUME, RETURN
-from .policies import NOTHING
 from .program import Place, Robot
-from .records.blackbox import BlackBox, black_box_path
-from .records.log import Log
 from .records.start import start_of
-from .screen import say
 from .slots import BusSlots
 from .steps.ending import CODES, FAILED, OK, Crew, Ending
 from .steps.guarding import guarding

@@ -11,8 +11,19 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any, Protocol
 
-from .bus import Carrier, CommandId, Delivery, FileJournal, Member, Node, NoJournal, Owned, Recorded
-from .faults import PEER_LOST, Fault
+from mmrs_runtime.bus import (
+    Carrier,
+    CommandId,
+    Delivery,
+    FileJournal,
+    Member,
+    Node,
+    NoJournal,
+    Owned,
+    Recorded,
+)
+from mmrs_runtime.faults import PEER_LOST, Fault
+
 from .program import Action, Notify, Robot
 
 Record = Callable[[int], None]

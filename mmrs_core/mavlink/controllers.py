@@ -9,7 +9,6 @@ from pathlib import Path
 
 from mmrs_core.behaviour.program import Program, RobotProgram
 from mmrs_core.contributions.targets import FileSpec, Target, TargetInput, TracedStep
-from mmrs_core.flight.conditions import is_standard
 from mmrs_core.flight.options import FIRST_PORT, PORT_STEP
 from mmrs_core.generation.escaping import file_stems
 from mmrs_core.mavlink.actions import action_losses
@@ -23,10 +22,15 @@ from mmrs_core.mavlink.safety import areas_of, policies_of
 from mmrs_core.mavlink.vehicles import PX4, autopilot_of
 from mmrs_core.resources import shipped
 from mmrs_core.scene import Policy
+from mmrs_runtime.conditions import is_standard
 
 RUNTIME = "mmrs_flight"
 FINDING_ITS_WAY = frozenset({"RETURN", "EMERGENCY_AREA"})
-RUNTIME_SOURCES = Path(str(files_of("mmrs_core"))) / "flight"
+RUNTIMES = {
+    RUNTIME: Path(str(files_of("mmrs_core"))) / "flight",
+    "mmrs_runtime": Path(str(files_of("mmrs_runtime"))),
+}
+"""Folders of what controllers carry, by the names of the packages there."""
 TEMPLATES = shipped("codegen_templates") / "mavlink-python"
 
 
@@ -55,8 +59,14 @@ def files(input: TargetInput) -> Iterator[FileSpec]:
             f"{module}.py", "robot.py.jinja", {"robot": robot_view(robot, input)}, trace=trace_of(robot)
         )
     yield from fleet_files(input.program, modules, tuple(_rehearsal(input)))
-    for path in sorted(RUNTIME_SOURCES.rglob("*.py")):
-        yield FileSpec(f"{RUNTIME}/{path.relative_to(RUNTIME_SOURCES).as_posix()}", path.name, source=path)
+    yield from runtime_files()
+
+
+def runtime_files() -> Iterator[FileSpec]:
+    """Yield what all controllers carry beside their programs."""
+    for package, folder in RUNTIMES.items():
+        for path in sorted(folder.rglob("*.py")):
+            yield FileSpec(f"{package}/{path.relative_to(folder).as_posix()}", path.name, source=path)
 
 
 def _rehearsal(input: TargetInput) -> Iterator[str]:

@@ -9,9 +9,9 @@ from mmrs_core.behaviour.policies import LAST_RESORT, patience, policy_for, resp
 from mmrs_core.contributions.abilities import Bearing
 from mmrs_core.contributions.backends import Backend
 from mmrs_core.contributions.execution import Fault
-from mmrs_core.flight.faults import TAKEN_OVER
-from mmrs_core.flight.policies import NOTHING, UNDECLARED
 from mmrs_core.scene import Policy
+from mmrs_runtime.faults import TAKEN_OVER
+from mmrs_runtime.policies import NOTHING, UNDECLARED
 
 
 @dataclass(frozen=True, slots=True)

@@ -9,11 +9,11 @@ from mmrs_core.behaviour.program import RobotProgram
 from mmrs_core.contributions.abilities import Noting
 from mmrs_core.contributions.backends import Backend
 from mmrs_core.contributions.execution import Fault, RobotState
-from mmrs_core.flight.conditions import awaiting, question_of
-from mmrs_core.flight.questions import Questions
 from mmrs_core.runtime.conditions import decided
 from mmrs_core.runtime.rules import Rules
 from mmrs_core.runtime.waiting import Wait
+from mmrs_runtime.conditions import awaiting, question_of
+from mmrs_runtime.questions import Questions
 
 
 class Choosing:

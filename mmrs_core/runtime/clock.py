@@ -7,7 +7,7 @@ from contextlib import suppress
 from math import inf
 from queue import Empty, SimpleQueue
 
-from mmrs_core.flight.clock import SIGNAL_SECONDS
+from mmrs_runtime.clock import SIGNAL_SECONDS
 
 
 class SimulatedClock:

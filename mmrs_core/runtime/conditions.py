@@ -7,15 +7,15 @@ from collections.abc import Callable, Collection, Iterable
 from mmrs_core.behaviour.program import Program
 from mmrs_core.contributions.execution import Condition, Fault, RobotState
 from mmrs_core.errors import LinkLostError, UsageError
-from mmrs_core.flight.conditions import is_standard, standard, truth
-from mmrs_core.flight.faults import CONDITION_FAILED, FAILURES
 from mmrs_core.languages.naming import nearest
+from mmrs_runtime.conditions import is_standard, standard, truth
+from mmrs_runtime.faults import CONDITION_FAILED, FAILURES
 
 
 def standard_conditions(identifiers: Iterable[str]) -> dict[str, Condition]:
     """Return those of the conditions that are standard, by identifier.
 
-    They are those of generated controllers: `mmrs_core.flight.conditions` says what each asks. Until
+    They are those of generated controllers: `mmrs_runtime.conditions` says what each asks. Until
     there is an answer, or a figure to go by, the robot waits.
 
     >>> sorted(standard_conditions(["battery-below:0.3", "is it sunny", "wind-above:gale"]))

@@ -5,8 +5,8 @@ from __future__ import annotations
 from enum import Enum
 
 from mmrs_core.contributions.execution import Fault
-from mmrs_core.flight.faults import TAKEN_OVER
-from mmrs_core.flight.policies import OVERTAKES
+from mmrs_runtime.faults import TAKEN_OVER
+from mmrs_runtime.policies import OVERTAKES
 
 OVERTAKING = OVERTAKES | {TAKEN_OVER}
 

@@ -21,7 +21,6 @@ from mmrs_core.behaviour.steps import StepRecord
 from mmrs_core.contributions.backends import Backend
 from mmrs_core.contributions.buses import Bus, CommandId
 from mmrs_core.contributions.execution import Clock, Condition, Fault
-from mmrs_core.flight.faults import LOG_FAILED
 from mmrs_core.runtime.agenda import Agenda
 from mmrs_core.runtime.attention import BUS
 from mmrs_core.runtime.finding import finds_of, names_told, teach
@@ -34,6 +33,7 @@ from mmrs_core.runtime.stopping import Stopping
 from mmrs_core.runtime.terms import TO_THE_END, Ending, Terms
 from mmrs_core.runtime.unready import note, reason_of
 from mmrs_core.scene import Policy
+from mmrs_runtime.faults import LOG_FAILED
 
 PACE = 0.05
 """Seconds between two looks at a backend, or a bus, that cannot say when to look again."""

@@ -17,8 +17,6 @@ from mmrs_core.contributions.backends import Backend, BackendFactory, BackendInp
 from mmrs_core.contributions.buses import Bus
 from mmrs_core.contributions.execution import Condition
 from mmrs_core.errors import LinkLostError
-from mmrs_core.flight.clock import SIGNAL_SECONDS
-from mmrs_core.flight.faults import ORDERED, STOPPED
 from mmrs_core.runtime.attention import Attention
 from mmrs_core.runtime.clock import RealClock
 from mmrs_core.runtime.interpreter import PACE, interpret
@@ -27,6 +25,8 @@ from mmrs_core.runtime.resuming import over_by
 from mmrs_core.runtime.standing import Standing
 from mmrs_core.runtime.terms import Ending, Terms
 from mmrs_core.runtime.unready import Unready, note_alone, record, unready
+from mmrs_runtime.clock import SIGNAL_SECONDS
+from mmrs_runtime.faults import ORDERED, STOPPED
 
 GATHERING_SECONDS = 0.5
 """Real seconds for which more is waited for, once something keeps a robot from getting ready."""

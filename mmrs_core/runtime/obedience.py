@@ -7,11 +7,11 @@ from collections.abc import Sequence
 from mmrs_core.contributions.abilities import Doubting, Pausable, Recovering, Watched
 from mmrs_core.contributions.execution import Clock, Fault
 from mmrs_core.errors import LinkLostError
-from mmrs_core.flight.faults import ORDERED, STOPPED
-from mmrs_core.flight.policies import NOTHING
 from mmrs_core.runtime.halting import Progress
 from mmrs_core.runtime.orders import ANSWER, ENDINGS, HOLD, RESUME, RETURN, STOP, Order, Orders
 from mmrs_core.runtime.robot import RunningRobot
+from mmrs_runtime.faults import ORDERED, STOPPED
+from mmrs_runtime.policies import NOTHING
 
 
 class Obedience:

@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 
 from mmrs_core.contributions.abilities import Noting
-from mmrs_core.flight.orders.orders import ordered
+from mmrs_runtime.orders.orders import ordered
 
 HOLD, RESUME, RETURN, LAND, STOP, ANSWER = "hold", "resume", "return", "land", "stop", "answer"
 KINDS = (HOLD, RESUME, RETURN, LAND, STOP, ANSWER)

@@ -13,8 +13,6 @@ from mmrs_core.contributions.backends import Backend
 from mmrs_core.contributions.buses import Bus
 from mmrs_core.contributions.execution import Fault
 from mmrs_core.errors import LinkLostError
-from mmrs_core.flight.faults import BATTERY_LOW, LINK_LOST, LOG_FAILED, PEER_LOST, STOPPED
-from mmrs_core.flight.policies import COMES_DOWN, NOTHING, still_low
 from mmrs_core.runtime.answers import Answers
 from mmrs_core.runtime.doing import Doing
 from mmrs_core.runtime.halting import Halt
@@ -26,6 +24,8 @@ from mmrs_core.runtime.resuming import step_of
 from mmrs_core.runtime.rules import Rules
 from mmrs_core.runtime.stages import Stage
 from mmrs_core.runtime.waiting import Wait
+from mmrs_runtime.faults import BATTERY_LOW, LINK_LOST, LOG_FAILED, PEER_LOST, STOPPED
+from mmrs_runtime.policies import COMES_DOWN, NOTHING, still_low
 
 
 class RunningRobot:

@@ -10,8 +10,8 @@ from mmrs_core.behaviour.program import Program, RobotProgram, SlotId
 from mmrs_core.behaviour.steps import StepRecord
 from mmrs_core.contributions.buses import CommandId, Find, SlotState
 from mmrs_core.errors import InternalError
-from mmrs_core.flight.bus import Carrier, Delivery, FileJournal, Member, Node, Owned, Recorded
 from mmrs_core.flight.slots import SETTLING_SECONDS
+from mmrs_runtime.bus import Carrier, Delivery, FileJournal, Member, Node, Owned, Recorded
 
 
 class ProgramBus:

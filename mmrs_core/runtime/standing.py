@@ -6,9 +6,9 @@ from collections.abc import Collection, Iterable, Mapping
 
 from mmrs_core.contributions.abilities import Telling
 from mmrs_core.contributions.backends import Backend
-from mmrs_core.flight.faults import LINK_LOST
-from mmrs_core.flight.phases import ENDED, LOST, SUSPENDED, WAITS, WORKS, answering, if_held
 from mmrs_core.runtime.robot import RunningRobot
+from mmrs_runtime.faults import LINK_LOST
+from mmrs_runtime.phases import ENDED, LOST, SUSPENDED, WAITS, WORKS, answering, if_held
 
 
 class Standing:

@@ -7,10 +7,10 @@ from collections.abc import Callable, Mapping, Sequence
 from mmrs_core.contributions.abilities import Noting, Recovering, Watched
 from mmrs_core.contributions.execution import Clock, Fault
 from mmrs_core.errors import LinkLostError
-from mmrs_core.flight.faults import BATTERY_LOW, LINK_LOST
-from mmrs_core.flight.policies import CAME_DOWN_AWAY, COMES_DOWN, NOTHING
 from mmrs_core.runtime.obedience import Obedience
 from mmrs_core.runtime.robot import RunningRobot
+from mmrs_runtime.faults import BATTERY_LOW, LINK_LOST
+from mmrs_runtime.policies import CAME_DOWN_AWAY, COMES_DOWN, NOTHING
 
 
 class Stopping:

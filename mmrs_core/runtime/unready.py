@@ -8,8 +8,8 @@ from mmrs_core.contributions.abilities import Noting, Telling
 from mmrs_core.contributions.backends import Backend
 from mmrs_core.contributions.execution import Fault
 from mmrs_core.errors import LinkLostError, MmrsError
-from mmrs_core.flight.faults import LINK_LOST, PEER_LOST
-from mmrs_core.flight.policies import NOTHING
+from mmrs_runtime.faults import LINK_LOST, PEER_LOST
+from mmrs_runtime.policies import NOTHING
 
 
 class Unready(Exception):  # noqa: N818  # it is no error yet: whoever raises it has still to be let go of

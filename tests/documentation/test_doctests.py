@@ -7,10 +7,12 @@ import pkgutil
 import pytest
 
 import mmrs_core
+import mmrs_runtime
 
 MODULES = [
     name
-    for _, name, _ in pkgutil.walk_packages(mmrs_core.__path__, "mmrs_core.")
+    for package in (mmrs_core, mmrs_runtime)
+    for _, name, _ in pkgutil.walk_packages(package.__path__, f"{package.__name__}.")
     if not name.endswith("__main__")
 ]
 

@@ -9,7 +9,11 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).parents[2]
-PROJECTS = (ROOT, *(folder.parent for folder in sorted(ROOT.glob("plugins/*/pyproject.toml"))))
+PROJECTS = (
+    ROOT,
+    ROOT / "runtime",
+    *(folder.parent for folder in sorted(ROOT.glob("plugins/*/pyproject.toml"))),
+)
 
 QUESTION = """
 import json, sys

@@ -20,7 +20,7 @@ _BOUNDED = {"mmrs_core.sitl.schedule._PATTERN"}
 
 
 def _sources() -> Iterator[tuple[str, Path]]:
-    for folder in (ROOT, *sorted((ROOT / "plugins").iterdir())):
+    for folder in (ROOT, ROOT / "runtime", *sorted((ROOT / "plugins").iterdir())):
         for package in sorted(folder.glob("mmrs_*")):
             for path in sorted(package.rglob("*.py")):
                 if re.search(r"^(import re$|from re )", path.read_text("utf-8"), re.MULTILINE):
@@ -30,7 +30,7 @@ def _sources() -> Iterator[tuple[str, Path]]:
 def _uses() -> dict[str, set[str]]:
     """Return by which methods the names of compiled expressions are used, wherever that is."""
     found: dict[str, set[str]] = defaultdict(set)
-    for folder in (ROOT / "mmrs_core", ROOT / "plugins"):
+    for folder in (ROOT / "mmrs_core", ROOT / "runtime", ROOT / "plugins"):
         for path in folder.rglob("*.py"):
             text = path.read_text("utf-8")
             for name, method in re.findall(r"\b(_?[A-Z][A-Z_]*)(?:\[[^\]]*\])?\.([a-z]+)\b", text):

@@ -1,10 +1,25 @@
 """The house rules: who may import whom."""
 
+import ast
 import subprocess
 import sys
+from collections import defaultdict
 from pathlib import Path
 
 ROOT = Path(__file__).parents[2]
+
+
+def test_the_runtime_needs_the_standard_library_and_its_bus_zenoh():
+    package = ROOT / "runtime" / "mmrs_runtime"
+    needed = defaultdict(set)
+    for path in package.rglob("*.py"):
+        for node in ast.walk(ast.parse(path.read_text("utf-8"))):
+            names = [each.name for each in node.names] if isinstance(node, ast.Import) else []
+            if isinstance(node, ast.ImportFrom) and not node.level:
+                names = [node.module]
+            for top in {name.partition(".")[0] for name in names} - sys.stdlib_module_names:
+                needed[top].add(path.relative_to(package).parts[0])
+    assert needed == {"zenoh": {"bus"}}
 
 
 def test_imports_point_downwards():

@@ -11,9 +11,9 @@ import sys
 import time
 from pathlib import Path
 
-from mmrs_core.flight.bus import CommandId, FileJournal, Member, Node, Owned
-from mmrs_core.flight.bus.carriers.over_zenoh import ZenohCarrier
-from mmrs_core.flight.bus.carriers.sessions import Endpoints
+from mmrs_runtime.bus import CommandId, FileJournal, Member, Node, Owned
+from mmrs_runtime.bus.carriers.over_zenoh import ZenohCarrier
+from mmrs_runtime.bus.carriers.sessions import Endpoints
 
 ROBOTS = ("a", "b", "c", "d")
 RUN = "run-0"

@@ -21,9 +21,9 @@ from mmrs_core.behaviour.log import log_name, read_log, to_line
 from mmrs_core.behaviour.program import Program
 from mmrs_core.behaviour.semantics import Phase, entry, steps
 from mmrs_core.behaviour.steps import StepRecord
-from mmrs_core.flight.bus import CommandId
 from mmrs_core.runtime.slots import recorded_of, shared_bus
 from mmrs_core.testing.small_programs import hold, notify, program, robot
+from mmrs_runtime.bus import CommandId
 
 RUN = "run-0"
 
@@ -352,8 +352,8 @@ def _main() -> int:
 
 
 def _zenoh_bus(made, given, folder, records):
-    from mmrs_core.flight.bus.carriers.over_zenoh import ZenohCarrier
-    from mmrs_core.flight.bus.carriers.sessions import Endpoints
+    from mmrs_runtime.bus.carriers.over_zenoh import ZenohCarrier
+    from mmrs_runtime.bus.carriers.sessions import Endpoints
 
     names = [each.id for each in made.robots]
     carrier = ZenohCarrier(

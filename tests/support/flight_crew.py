@@ -13,14 +13,11 @@ from pathlib import Path
 from patience import until
 from ports import free_port
 
-from mmrs_core.flight.clock import Clock
 from mmrs_core.flight.desk import Desk
-from mmrs_core.flight.faults import Fault
 from mmrs_core.flight.links.link import Link
 from mmrs_core.flight.links.ports import NOTHING, Port, Received, open_port
 from mmrs_core.flight.links.radio import Radio
 from mmrs_core.flight.orders.obedience import Obedience
-from mmrs_core.flight.orders.orders import Inbox
 from mmrs_core.flight.places import distance
 from mmrs_core.flight.program import (
     Geographic,
@@ -35,8 +32,6 @@ from mmrs_core.flight.program import (
     TakeOff,
     Then,
 )
-from mmrs_core.flight.records.blackbox import BlackBox
-from mmrs_core.flight.records.log import Log, read
 from mmrs_core.flight.services.uploads import Uploads
 from mmrs_core.flight.slots import LocalSlots
 from mmrs_core.flight.steps.ending import Crew, Ending
@@ -46,6 +41,11 @@ from mmrs_core.flight.steps.watch import Watch
 from mmrs_core.flight.vehicles.mavlink_vehicle import MavlinkVehicle
 from mmrs_core.sitl import Settings, SimulatedVehicle
 from mmrs_core.sitl.hosting import LONGEST_STEP
+from mmrs_runtime.clock import Clock
+from mmrs_runtime.faults import Fault
+from mmrs_runtime.orders.orders import Inbox
+from mmrs_runtime.records.blackbox import BlackBox
+from mmrs_runtime.records.log import Log, read
 
 HOME = Geographic(42.37, 13.35, 0.0)
 SPEEDUP = 30.0

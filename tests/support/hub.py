@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from mmrs_core.flight.bus.carriers.carrier import Answered, Station
+from mmrs_runtime.bus.carriers.carrier import Answered, Station
 
 
 class Hub:

@@ -7,8 +7,8 @@ from math import dist
 from fault_table.fleet import wait_for
 from fault_table.project import Pad
 
-from mmrs_core.flight.orders.ordering import give
 from mmrs_core.sitl.commands import obey
+from mmrs_runtime.orders.ordering import give
 
 PATIENCE = 60.0
 UNHURRIED = 15.0

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from mmrs_core.flight.records.log import read
+from mmrs_runtime.records.log import read
 
 
 def phase(shared, robot="alpha"):

@@ -20,12 +20,9 @@ from ports import free_port
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 from virtual_link import Air
 
-from mmrs_core.flight.clock import Clock
-from mmrs_core.flight.faults import Fault
 from mmrs_core.flight.links.link import Link
 from mmrs_core.flight.links.ports import NOTHING
 from mmrs_core.flight.links.radio import Radio
-from mmrs_core.flight.orders.orders import Inbox, Order, Receipt
 from mmrs_core.flight.program import (
     Geographic,
     GoTo,
@@ -41,6 +38,9 @@ from mmrs_core.flight.program import (
 )
 from mmrs_core.flight.steps.ending import Crew, Ending
 from mmrs_core.sitl import Settings, SimulatedVehicle
+from mmrs_runtime.clock import Clock
+from mmrs_runtime.faults import Fault
+from mmrs_runtime.orders.orders import Inbox, Order, Receipt
 
 TICK = 0.05
 THERE = ("127.0.0.1", 1)

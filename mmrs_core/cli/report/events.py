@@ -11,8 +11,8 @@ from mmrs_core.cli.flights.places import Place
 from mmrs_core.cli.flights.values import Flown
 from mmrs_core.cli.report.privacy import without_secrets
 from mmrs_core.cli.report.values import Event, Reading
-from mmrs_core.flight.policies import NOTHING
 from mmrs_core.scene import Position
+from mmrs_runtime.policies import NOTHING
 
 MOST_TEXTS = 50
 """How many warnings of one vehicle are told."""

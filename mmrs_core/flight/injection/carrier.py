@@ -6,8 +6,9 @@ import threading
 from collections.abc import Callable, Sequence
 from random import Random
 
-from ..bus.carriers.carrier import Answered, Carrier, Station
-from ..clock import Clock
+from mmrs_runtime.bus.carriers.carrier import Answered, Carrier, Station
+from mmrs_runtime.clock import Clock
+
 from .spec import Injection
 
 UNREAD = ""

@@ -14,7 +14,8 @@ from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from random import Random
 
-from ..clock import Clock
+from mmrs_runtime.clock import Clock
+
 from ..links.ports import NOTHING, Address, Port, Received
 from .spec import Injection
 

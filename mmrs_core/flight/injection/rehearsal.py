@@ -7,8 +7,9 @@ from collections.abc import Callable, Collection, Iterable, Mapping
 from math import inf
 from typing import TYPE_CHECKING
 
-from ..bus.carriers.carrier import Carrier
-from ..clock import Clock
+from mmrs_runtime.bus.carriers.carrier import Carrier
+from mmrs_runtime.clock import Clock
+
 from ..links.ports import Port
 from .carrier import InjectedCarrier
 from .port import InjectedPort, Line

@@ -10,8 +10,9 @@ from contextlib import AbstractContextManager
 from math import inf
 from typing import Any, TypeVar
 
-from ..clock import Clock
-from ..faults import LINK_LOST, Fault
+from mmrs_runtime.clock import Clock
+from mmrs_runtime.faults import LINK_LOST, Fault
+
 from .identity import LATE_MILLISECONDS, Identity
 from .messages import Messages
 from .ports import Address, Port

@@ -8,7 +8,8 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Any
 
-from ..clock import Clock
+from mmrs_runtime.clock import Clock
+
 from .numbering import Numbering
 
 Message = Any

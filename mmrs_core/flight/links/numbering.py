@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from math import inf
 
-from ..clock import Clock
+from mmrs_runtime.clock import Clock
 
 LATE_FRAMES = 64
 """How many frames of the vehicle may have overtaken one that is late."""

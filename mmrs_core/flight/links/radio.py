@@ -9,7 +9,8 @@ from typing import Any, Protocol
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from ..clock import Clock
+from mmrs_runtime.clock import Clock
+
 from .ourselves import GROUND_COMPONENT, GROUND_SYSTEM
 from .ports import Address, Port
 from .signing import Signed, Signer

@@ -5,8 +5,9 @@ from __future__ import annotations
 import threading
 from collections.abc import Callable
 
-from ..clock import Clock
-from ..faults import LINK_LOST, Fault, Refused
+from mmrs_runtime.clock import Clock
+from mmrs_runtime.faults import LINK_LOST, Fault, Refused
+
 from .link import Link
 from .ports import Port, open_port
 from .radio import Radio

@@ -1,1 +1,1 @@
-"""Orders of people to running robots."""
+"""How a vehicle obeys the orders of people."""

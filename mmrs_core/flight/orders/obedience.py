@@ -6,11 +6,12 @@ import threading
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 
-from ..clock import Clock
-from ..faults import ORDERED, STOPPED, Fault, Stopped
+from mmrs_runtime.clock import Clock
+from mmrs_runtime.faults import ORDERED, STOPPED, Fault, Stopped
+from mmrs_runtime.orders.orders import ENDINGS, HOLD, RESUME, STOP, Inbox, Receipt
+
 from ..vehicles import modes
 from ..vehicles.vehicle import Vehicle
-from .orders import ENDINGS, HOLD, RESUME, STOP, Inbox, Receipt
 
 OVERTAKEN = "something else was ordered since"
 GLANCE_SECONDS = 0.1

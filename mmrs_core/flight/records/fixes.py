@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from mmrs_runtime.records.blackbox import BlackBox
+
 from ..program import Place
 from ..vehicles.vehicle import State
-from .blackbox import BlackBox
 
 FIX_SECONDS = 0.19
 """Least time between two fixes: five in a second, and a little for uneven sending."""

@@ -10,7 +10,9 @@ from typing import Any
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from ..clock import Clock
+from mmrs_runtime.clock import Clock
+from mmrs_runtime.records.blackbox import BlackBox
+
 from ..links.link import Message
 from ..links.messages import tells_place
 from ..program import Geographic
@@ -18,7 +20,6 @@ from ..services.items import NAMES
 from ..vehicles.telemetry import NO_HEADING
 from ..vehicles.trail import place_in
 from ..vehicles.vehicle import State
-from .blackbox import BlackBox
 from .fixes import FIX_SECONDS, fix
 
 OTHER_SECONDS = 1.0

@@ -12,7 +12,8 @@ from contextlib import suppress
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from ..faults import Refused
+from mmrs_runtime.faults import Refused
+
 from ..links.link import Link, Message
 from .exchanges import concerns, first, lacks_kinds, old_port
 from .items import MISSION, NAMES

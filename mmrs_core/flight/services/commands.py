@@ -8,7 +8,8 @@ from collections.abc import Callable, Sequence
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from ..faults import Refused, Unanswered
+from mmrs_runtime.faults import Refused, Unanswered
+
 from ..links.link import Link, Message
 from ..links.ourselves import GROUND_COMPONENT, GROUND_SYSTEM
 from ..program import Geographic

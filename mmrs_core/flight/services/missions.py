@@ -7,7 +7,8 @@ from collections.abc import Sequence
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from ..faults import Refused
+from mmrs_runtime.faults import Refused
+
 from ..links.link import Link, Message
 from .clearing import break_off, clear, left_of
 from .exchanges import words_of

@@ -13,7 +13,8 @@ from dataclasses import dataclass
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from ..faults import Refused
+from mmrs_runtime.faults import Refused
+
 from ..links.link import Link, Message
 from .exchanges import concerns, first, lacks_kinds, old_port, words_of
 from .items import MISSION, NAMES, Item

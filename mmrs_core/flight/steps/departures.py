@@ -6,8 +6,9 @@ from collections.abc import Callable
 from math import inf
 from typing import TYPE_CHECKING
 
-from ..clock import Clock
-from ..faults import TAKEN_OVER, VEHICLE_RESTARTED, Fault
+from mmrs_runtime.clock import Clock
+from mmrs_runtime.faults import TAKEN_OVER, VEHICLE_RESTARTED, Fault
+
 from ..program import Robot
 from ..vehicles import modes
 from ..vehicles.signs import STARTED_ANEW, Signs

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+from mmrs_runtime.faults import DEVICE_SILENT, Fault, Unanswered
+from mmrs_runtime.screen import words_of
+
 from ..desk import Desk
-from ..faults import DEVICE_SILENT, Fault, Unanswered
 from ..program import Action, Measure, NoEffect, Notify, Operate, Report, Robot
-from ..screen import words_of
 from ..vehicles.vehicle import Vehicle
 from .journal import Journal
 from .waits import Waits

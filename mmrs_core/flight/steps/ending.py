@@ -6,8 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from ..desk import Desk
-from ..faults import (
+from mmrs_runtime.faults import (
     BATTERY_LOW,
     LINK_LOST,
     ORDERED,
@@ -19,8 +18,10 @@ from ..faults import (
     Stopped,
     Strange,
 )
+from mmrs_runtime.policies import COMES_DOWN, NOTHING, OVERTAKES
+
+from ..desk import Desk
 from ..orders.obedience import Obedience, Ordered
-from ..policies import COMES_DOWN, NOTHING, OVERTAKES
 from ..program import Robot
 from ..vehicles import modes
 from ..vehicles.vehicle import Vehicle

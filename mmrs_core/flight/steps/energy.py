@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from math import cos, hypot, inf, radians, sqrt
 
+from mmrs_runtime.policies import COMES_DOWN
+
 from ..places import bearing, distance, offset
-from ..policies import COMES_DOWN
 from ..program import Place, Robot
 from ..vehicles.vehicle import State
 from .ways import Track, way_back

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
-from ..faults import FENCE_BREACHED, Refused
+from mmrs_runtime.faults import FENCE_BREACHED, Refused
+
 from ..program import Robot
 from ..vehicles.vehicle import Vehicle
 from .responses import policy_for

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from ..faults import GROUND_LOST
+from mmrs_runtime.faults import GROUND_LOST
+
 from ..links.autopilots import is_px4
 from ..links.ourselves import GROUND_SYSTEM
 from ..program import Policy, Robot

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from ..faults import Displaced
+from mmrs_runtime.faults import Displaced
+
 from ..orders.obedience import Obedience
 from .watch import Watch
 

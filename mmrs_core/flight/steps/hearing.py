@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from ..clock import Clock
+from mmrs_runtime.clock import Clock
 
 if TYPE_CHECKING:
     from ..links.link import Link

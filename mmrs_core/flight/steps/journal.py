@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
+from mmrs_runtime.orders.orders import Receipt
+
 from ..desk import Desk
-from ..orders.orders import Receipt
 from ..program import Robot
 from ..vehicles.vehicle import Vehicle
 from .resuming import progress_of

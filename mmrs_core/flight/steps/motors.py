@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from ..faults import MOTORS_OFF, VEHICLE_RESTARTED, Fault
+from mmrs_runtime.faults import MOTORS_OFF, VEHICLE_RESTARTED, Fault
+
 from ..vehicles import modes
 from .responses import HOLD, LAND
 

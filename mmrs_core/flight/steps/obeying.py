@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from ..policies import CAME_DOWN_AWAY
+from mmrs_runtime.policies import CAME_DOWN_AWAY
+
 from ..program import Robot
 from ..vehicles.footing import aside, misplaced
 from ..vehicles.vehicle import Vehicle

@@ -6,13 +6,14 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 
-from ..bus import Incomplete
+from mmrs_runtime.bus import Incomplete
+from mmrs_runtime.faults import BATTERY_LOW, NO_PROGRESS, REFUSED, Alone, Fault, Refused, Strange
+from mmrs_runtime.policies import still_low
+
 from ..desk import Desk, Meet
-from ..faults import BATTERY_LOW, NO_PROGRESS, REFUSED, Alone, Fault, Refused, Strange
 from ..objects import look_at, place_of
 from ..orders.obedience import Obedience
 from ..places import at_height, ends_of
-from ..policies import still_low
 from ..program import GoTo, Hold, Land, Look, Object, Place, Recharge, Robot, Step, TakeOff, Then, Turn
 from ..records.fixes import fix
 from ..services.uploads import Flight, uploads_of

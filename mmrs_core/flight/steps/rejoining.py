@@ -10,7 +10,8 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
-from ..faults import Refused
+from mmrs_runtime.faults import Refused
+
 from ..places import at_height, distance, distance_to_leg, ends_of
 from ..program import GoTo, Land, Place, Robot, TakeOff
 

@@ -6,8 +6,9 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 
-from ..faults import LINK_LOST, NO_PROGRESS, REFUSED, Fault
-from ..policies import COMES_DOWN, NOTHING
+from mmrs_runtime.faults import LINK_LOST, NO_PROGRESS, REFUSED, Fault
+from mmrs_runtime.policies import COMES_DOWN, NOTHING
+
 from ..program import Place, Policy, Robot
 from ..vehicles import modes
 from ..vehicles.vehicle import Vehicle

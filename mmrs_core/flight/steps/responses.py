@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
-from ..faults import OBJECT_NOT_FOUND, POSITION_LOST, TAKEN_OVER
-from ..policies import NOTHING, UNDECLARED
+from mmrs_runtime.faults import OBJECT_NOT_FOUND, POSITION_LOST, TAKEN_OVER
+from mmrs_runtime.policies import NOTHING, UNDECLARED
+
 from ..program import Policy, Robot
 
 CONTINUE = "CONTINUE"

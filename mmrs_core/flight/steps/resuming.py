@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
-from ..faults import Refused
+from mmrs_runtime.faults import Refused
+
 from ..places import at_height, ends_of
 from ..program import (
     Choose,

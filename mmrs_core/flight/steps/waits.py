@@ -6,9 +6,10 @@ from collections.abc import Callable, Iterable
 from dataclasses import replace
 from math import inf
 
-from ..conditions import awaiting, question_of, truth
+from mmrs_runtime.conditions import awaiting, question_of, truth
+from mmrs_runtime.faults import CONDITION_FAILED, FAILURES, LINK_LOST, PEER_LOST, WAIT_TOO_LONG, Fault
+
 from ..desk import Desk
-from ..faults import CONDITION_FAILED, FAILURES, LINK_LOST, PEER_LOST, WAIT_TOO_LONG, Fault
 from ..program import Choose, Policy, Robot, Then
 from ..vehicles.vehicle import Vehicle
 from .journal import Journal

@@ -7,8 +7,8 @@ from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from ..clock import Clock
-from ..faults import (
+from mmrs_runtime.clock import Clock
+from mmrs_runtime.faults import (
     BATTERY_LOW,
     GROUND_LOST,
     LINK_LOST,
@@ -21,7 +21,8 @@ from ..faults import (
     Fault,
     Stopped,
 )
-from ..policies import COMES_DOWN
+from mmrs_runtime.policies import COMES_DOWN
+
 from ..program import Policy, Robot
 from ..vehicles.signs import Signs
 from .departures import Departures

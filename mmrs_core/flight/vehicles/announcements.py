@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterable
 from math import inf
 
-from ..clock import Clock
-from ..faults import BATTERY_LOW, FENCE_BREACHED, LINK_LOST, POSITION_LOST
+from mmrs_runtime.clock import Clock
+from mmrs_runtime.faults import BATTERY_LOW, FENCE_BREACHED, LINK_LOST, POSITION_LOST
+
 from ..links.link import Message
 from ..links.radio import is_autopilot
 from .texts import Text, Texts

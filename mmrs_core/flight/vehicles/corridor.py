@@ -9,7 +9,8 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from itertools import pairwise
 
-from ..faults import NO_PROGRESS, Fault
+from mmrs_runtime.faults import NO_PROGRESS, Fault
+
 from ..links.autopilots import is_px4
 from ..links.link import Link
 from ..places import distance_to_leg

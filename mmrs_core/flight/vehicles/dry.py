@@ -6,7 +6,8 @@ import time
 from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING
 
-from ..clock import Clock
+from mmrs_runtime.clock import Clock
+
 from ..places import at_height, bearing, distance
 from ..program import Geographic, Look, Place
 from .modes import GUIDED, HOLD, LAND, SURFACE

@@ -11,7 +11,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from math import hypot
 
-from ..faults import Refused
+from mmrs_runtime.faults import Refused
+
 from ..links.autopilots import is_px4
 from ..links.link import Link
 from ..places import distance, offset

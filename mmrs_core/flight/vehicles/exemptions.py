@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from ..faults import Refused
+from mmrs_runtime.faults import Refused
+
 from ..links.autopilots import is_px4
 from ..links.link import Link
 from ..services import parameters

@@ -10,7 +10,8 @@ from __future__ import annotations
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from ..faults import Refused
+from mmrs_runtime.faults import Refused
+
 from ..links.link import Link
 from .telemetry import Telemetry
 

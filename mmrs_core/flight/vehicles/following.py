@@ -8,7 +8,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 
-from ..faults import NO_PROGRESS, Fault
+from mmrs_runtime.faults import NO_PROGRESS, Fault
+
 from ..places import distance, distance_to_leg
 from ..program import Place
 from .corridor import Corridor

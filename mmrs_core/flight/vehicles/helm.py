@@ -8,7 +8,8 @@ from math import inf
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from ..faults import NO_PROGRESS, TAKEN_OVER, Fault, Refused, Unanswered
+from mmrs_runtime.faults import NO_PROGRESS, TAKEN_OVER, Fault, Refused, Unanswered
+
 from ..links.autopilots import is_px4
 from ..links.link import Link
 from ..services.commands import ask, command

@@ -8,7 +8,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from ..faults import Refused
+from mmrs_runtime.faults import Refused
+
 from ..links.autopilots import is_px4
 from ..links.link import Link
 from ..links.ourselves import GROUND_SYSTEM

@@ -13,7 +13,8 @@ from math import inf
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from ..faults import LINK_LOST, Fault, Refused, Unanswered
+from mmrs_runtime.faults import LINK_LOST, Fault, Refused, Unanswered
+
 from ..links.link import Link, Message
 from ..links.messages import ANYBODY
 from ..places import at_height

@@ -6,7 +6,8 @@ from collections.abc import Callable, Sequence
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from ..faults import NO_PROGRESS, Fault, Refused
+from mmrs_runtime.faults import NO_PROGRESS, Fault, Refused
+
 from ..links.autopilots import is_px4
 from ..links.link import Link
 from ..program import Geographic, Place

@@ -6,8 +6,9 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, TypeAlias
 
-from ..faults import BATTERY_LOW, FENCE_BREACHED, POSITION_LOST
-from ..faults import LINK_LOST as LOST_LINK
+from mmrs_runtime.faults import BATTERY_LOW, FENCE_BREACHED, POSITION_LOST
+from mmrs_runtime.faults import LINK_LOST as LOST_LINK
+
 from ..links.autopilots import is_px4
 
 if TYPE_CHECKING:

@@ -7,7 +7,8 @@ from __future__ import annotations
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from ..faults import Refused
+from mmrs_runtime.faults import Refused
+
 from ..links.link import Link, Message
 from ..places import distance
 from ..program import Geographic, Place

@@ -7,7 +7,8 @@ from contextlib import suppress
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from ..faults import Refused
+from mmrs_runtime.faults import Refused
+
 from ..links.link import Link
 from ..program import Place
 from ..services import parameters

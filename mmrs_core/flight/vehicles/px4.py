@@ -19,7 +19,8 @@ from math import nan, radians
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from ..faults import Refused
+from mmrs_runtime.faults import Refused
+
 from ..links.link import Link
 from ..places import between, distance
 from ..program import Place

@@ -7,7 +7,8 @@ from collections.abc import Sequence
 from math import inf
 from pathlib import Path
 
-from ..faults import Refused
+from mmrs_runtime.faults import Refused
+
 from ..links.link import Link
 from ..program import Geographic, Place, Robot
 from ..services import parameters

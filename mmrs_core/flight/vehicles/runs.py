@@ -15,7 +15,8 @@ from collections.abc import Sequence
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from ..faults import Refused
+from mmrs_runtime.faults import Refused
+
 from ..links.autopilots import is_px4
 from ..links.link import Link
 from ..services import parameters

@@ -6,7 +6,8 @@ from math import atan2, degrees, hypot, nan, radians
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from ..faults import NO_PROGRESS, Fault
+from mmrs_runtime.faults import NO_PROGRESS, Fault
+
 from ..links.link import Link
 from ..places import bearing, distance, offset
 from ..program import Geographic, Local, Look, Object, Place

@@ -8,7 +8,8 @@ from math import atan2, degrees, hypot
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from ..faults import FENCE_BREACHED, POSITION_LOST
+from mmrs_runtime.faults import FENCE_BREACHED, POSITION_LOST
+
 from ..links.link import Link, Message
 from ..links.messages import tells_place
 from ..program import Geographic, Local, Place

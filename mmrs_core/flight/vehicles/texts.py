@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections import deque
 from dataclasses import dataclass
 
-from ..clock import Clock
+from mmrs_runtime.clock import Clock
+
 from ..links.link import Message
 
 KEPT = 200

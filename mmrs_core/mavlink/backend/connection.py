@@ -14,8 +14,6 @@ from mmrs_core.contributions.backends import BackendInput, Live
 from mmrs_core.contributions.execution import Clock as RunClock
 from mmrs_core.contributions.targets import TargetInput
 from mmrs_core.errors import LinkLostError, UnsupportedError, UsageError
-from mmrs_core.flight.clock import Clock
-from mmrs_core.flight.faults import Fault
 from mmrs_core.flight.injection import Rehearsal, injections
 from mmrs_core.flight.linked import at_end_of
 from mmrs_core.flight.links.link import Link
@@ -25,7 +23,6 @@ from mmrs_core.flight.links.retries import Retries
 from mmrs_core.flight.links.signing import Signer, signer_for
 from mmrs_core.flight.objects import Locator, where_expected
 from mmrs_core.flight.program import Action, Robot
-from mmrs_core.flight.records.blackbox import BlackBox, black_box_path
 from mmrs_core.flight.vehicles.recognition import system_of
 from mmrs_core.mavlink.actions import action_of
 from mmrs_core.mavlink.backend.equipment import Equipment
@@ -36,6 +33,9 @@ from mmrs_core.mavlink.built import built, robot_of
 from mmrs_core.mavlink.context import context_of
 from mmrs_core.mavlink.controllers import refusals
 from mmrs_core.mavlink.program import objects_in
+from mmrs_runtime.clock import Clock
+from mmrs_runtime.faults import Fault
+from mmrs_runtime.records.blackbox import BlackBox, black_box_path
 
 FIRST_PORT, PORT_STEP = 14_550, 10
 SHARED = "mavlink"

@@ -6,14 +6,14 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 from mmrs_core.behaviour.program import Action
-from mmrs_core.flight.clock import Clock
 from mmrs_core.flight.links.link import Link
 from mmrs_core.flight.links.radios import Radios
 from mmrs_core.flight.objects import Locator
 from mmrs_core.flight.program import Action as VehicleAction
-from mmrs_core.flight.records.blackbox import BlackBox
 from mmrs_core.flight.vehicles.mavlink_vehicle import MavlinkVehicle
 from mmrs_core.mavlink.backend.whereabouts import Ground
+from mmrs_runtime.clock import Clock
+from mmrs_runtime.records.blackbox import BlackBox
 
 
 @dataclass(frozen=True, slots=True)

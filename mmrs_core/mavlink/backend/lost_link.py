@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 
-from mmrs_core.flight.faults import LINK_LOST
 from mmrs_core.flight.program import Policy, Robot
 from mmrs_core.flight.steps.responses import BLOCKED, alone, policy_for
 from mmrs_core.flight.vehicles.vehicle import Vehicle
+from mmrs_runtime.faults import LINK_LOST
 
 
 class LostLink:

@@ -5,8 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from functools import partial
 
-from mmrs_core.flight.clock import Clock
-from mmrs_core.flight.faults import BATTERY_LOW, DEVICE_SILENT, Fault, Unanswered
 from mmrs_core.flight.objects import Locator, look_at, place_of
 from mmrs_core.flight.places import at_height, ends_of
 from mmrs_core.flight.program import (
@@ -29,7 +27,6 @@ from mmrs_core.flight.program import (
     Then,
     Turn,
 )
-from mmrs_core.flight.screen import words_of
 from mmrs_core.flight.services.uploads import Flight
 from mmrs_core.flight.steps.doing import SILENCE_SECONDS, VALUE_SECONDS
 from mmrs_core.flight.steps.energy import FULL, RECHARGE_FACTOR
@@ -37,6 +34,9 @@ from mmrs_core.flight.steps.responses import policy_for
 from mmrs_core.flight.vehicles.corners import goes_through
 from mmrs_core.flight.vehicles.vehicle import Vehicle
 from mmrs_core.mavlink.backend.worker import Job
+from mmrs_runtime.clock import Clock
+from mmrs_runtime.faults import BATTERY_LOW, DEVICE_SILENT, Fault, Unanswered
+from mmrs_runtime.screen import words_of
 
 IN_THE_AIR = 1.0
 """Metres above home from which on a vehicle climbs by going up, not by taking off."""

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from mmrs_core.flight.clock import Clock
-from mmrs_core.flight.faults import Fault
 from mmrs_core.flight.links.link import Link
 from mmrs_core.flight.steps.hearing import is_heard, listening
+from mmrs_runtime.clock import Clock
+from mmrs_runtime.faults import Fault
 
 
 class Reach:

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from mmrs_core.flight.faults import BATTERY_LOW, FAILURES, LINK_LOST, POSITION_LOST, TAKEN_OVER, Fault
-from mmrs_core.flight.policies import NOTHING
 from mmrs_core.flight.program import Robot
 from mmrs_core.flight.steps.obeying import obeying, undone
 from mmrs_core.flight.steps.responding import HINDRANCES, comes_down_alone, respond_or_less
@@ -14,6 +12,8 @@ from mmrs_core.flight.steps.watch import Decide, Watch
 from mmrs_core.flight.vehicles.mavlink_vehicle import MavlinkVehicle
 from mmrs_core.mavlink.backend.moves import Moves
 from mmrs_core.mavlink.backend.worker import Interrupted, Job
+from mmrs_runtime.faults import BATTERY_LOW, FAILURES, LINK_LOST, POSITION_LOST, TAKEN_OVER, Fault
+from mmrs_runtime.policies import NOTHING
 
 KEPT_UP = "hands off until its motors are off; it still hears heartbeats, so end this later"
 

@@ -11,16 +11,6 @@ from traceback import format_exception
 from mmrs_core.behaviour.program import Action, Move
 from mmrs_core.contributions.execution import Fault, RobotState
 from mmrs_core.flight.crews import told_of
-from mmrs_core.flight.faults import (
-    BATTERY_LOW,
-    CRASHED,
-    DEVICE_SILENT,
-    LINK_LOST,
-    VEHICLE_RESTARTED,
-    Displaced,
-)
-from mmrs_core.flight.faults import Fault as VehicleFault
-from mmrs_core.flight.policies import NOTHING
 from mmrs_core.flight.program import GoTo, Land, Recharge, Robot, TakeOff
 from mmrs_core.flight.services.uploads import uploads_of
 from mmrs_core.flight.steps.obeying import astray, away, obeying
@@ -36,6 +26,16 @@ from mmrs_core.mavlink.backend.response import Response
 from mmrs_core.mavlink.backend.setup import Setup
 from mmrs_core.mavlink.backend.way_back import WayBack
 from mmrs_core.mavlink.backend.worker import Interrupted, Job, Worker
+from mmrs_runtime.faults import (
+    BATTERY_LOW,
+    CRASHED,
+    DEVICE_SILENT,
+    LINK_LOST,
+    VEHICLE_RESTARTED,
+    Displaced,
+)
+from mmrs_runtime.faults import Fault as VehicleFault
+from mmrs_runtime.policies import NOTHING
 
 FAREWELL_SECONDS = 5.0
 """Real seconds that a vehicle has to be told to stay where it is."""

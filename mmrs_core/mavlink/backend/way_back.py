@@ -5,9 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from itertools import pairwise
 
-from mmrs_core.flight.faults import BATTERY_LOW, Fault, Refused
 from mmrs_core.flight.places import at_height, distance_to_leg, ends_of
-from mmrs_core.flight.policies import still_low
 from mmrs_core.flight.program import GoTo, Land, Place, Recharge, Robot, Start, TakeOff
 from mmrs_core.flight.steps.rejoining import ALIKE, OFF_ITS_WAY, way_ahead
 from mmrs_core.flight.steps.responses import CONTINUE, policy_for
@@ -15,6 +13,8 @@ from mmrs_core.flight.vehicles.footing import aside, footing, misplaced, there
 from mmrs_core.flight.vehicles.vehicle import Vehicle
 from mmrs_core.mavlink.backend.moves import IN_THE_AIR, Moves
 from mmrs_core.mavlink.backend.worker import Job
+from mmrs_runtime.faults import BATTERY_LOW, Fault, Refused
+from mmrs_runtime.policies import still_low
 
 Point = tuple[str, Place]
 

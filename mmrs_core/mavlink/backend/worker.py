@@ -6,7 +6,7 @@ import threading
 from collections import deque
 from collections.abc import Callable
 
-from mmrs_core.flight.faults import CRASHED, FAILURES, Fault
+from mmrs_runtime.faults import CRASHED, FAILURES, Fault
 
 IDLE_SECONDS = 0.1
 """Real seconds between two looks at a vehicle that has nothing to do."""

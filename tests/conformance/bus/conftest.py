@@ -17,8 +17,8 @@ from hub import Hub
 from ports import free_port
 
 from mmrs_core.behaviour.replay import replay
-from mmrs_core.flight.bus import FileJournal, Node
 from mmrs_core.runtime.slots import ProgramBus, members_of, recorded_of
+from mmrs_runtime.bus import FileJournal, Node
 
 PATIENCE = 60.0
 SCRIPT = Path(bus_walking.__file__)
@@ -299,7 +299,7 @@ sys.path.insert(0, {str(SCRIPT.parent)!r})
 from pathlib import Path
 from bus_walking import BEHAVIOURS, RUN, die_after_applying
 from mmrs_core.cli.bus import _gateway, _until_interrupted
-from mmrs_core.flight.bus.carriers.sessions import Endpoints
+from mmrs_runtime.bus.carriers.sessions import Endpoints
 behaviour, size, robot, folder, die, *ways = sys.argv[1:]
 listen = tuple(ways[i + 1] for i, word in enumerate(ways) if word == "--listen")
 connect = tuple(ways[i + 1] for i, word in enumerate(ways) if word == "--connect")

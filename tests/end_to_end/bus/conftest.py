@@ -13,9 +13,9 @@ from ports import free_port
 
 from mmrs_core.cli.bus_access import Holder
 from mmrs_core.cli.bus_certificates import make_keys
-from mmrs_core.flight.bus import CommandId, FileJournal, Member, Node, Owned
-from mmrs_core.flight.bus.carriers.over_zenoh import ZenohCarrier
-from mmrs_core.flight.bus.carriers.sessions import Endpoints
+from mmrs_runtime.bus import CommandId, FileJournal, Member, Node, Owned
+from mmrs_runtime.bus.carriers.over_zenoh import ZenohCarrier
+from mmrs_runtime.bus.carriers.sessions import Endpoints
 
 NAMES = ("a", "b", "c")
 RUN = "run-0"

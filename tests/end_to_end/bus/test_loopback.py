@@ -9,8 +9,8 @@ from pathlib import Path
 import pytest
 from ports import free_port
 
-from mmrs_core.flight.bus.carriers import looking, over_zenoh, sessions
-from mmrs_core.flight.bus.carriers.sessions import Endpoints, exposed
+from mmrs_runtime.bus.carriers import looking, over_zenoh, sessions
+from mmrs_runtime.bus.carriers.sessions import Endpoints, exposed
 
 SOCKETS = Path("/proc/self/net")
 LISTENS = {"tcp": "0A", "tcp6": "0A", "udp": "07", "udp6": "07"}

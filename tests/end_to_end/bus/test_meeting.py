@@ -8,7 +8,7 @@ import time
 import pytest
 from stalls import Stalls
 
-from mmrs_core.flight.bus import Incomplete, begin_together
+from mmrs_runtime.bus import Incomplete, begin_together
 
 NAMES = ("a", "b", "c")
 CLOCKS_AGREE = 1e-4

@@ -13,10 +13,10 @@ import pytest
 from bus_walking import RUN, exchange
 from stalls import Stalls
 
-from mmrs_core.flight.bus import Unwelcome
-from mmrs_core.flight.bus.carriers.over_zenoh import ZenohCarrier
-from mmrs_core.flight.bus.carriers.sessions import Endpoints
 from mmrs_core.runtime.slots import shared_bus
+from mmrs_runtime.bus import Unwelcome
+from mmrs_runtime.bus.carriers.over_zenoh import ZenohCarrier
+from mmrs_runtime.bus.carriers.sessions import Endpoints
 
 SCRIPT = Path(bus_walking.__file__)
 LEASE = 1.5

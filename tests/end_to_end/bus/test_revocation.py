@@ -8,8 +8,8 @@ from datetime import UTC, datetime
 import pytest
 
 from mmrs_core.cli.bus_certificates import revoke
-from mmrs_core.flight.bus.carriers import over_zenoh, renewing
-from mmrs_core.flight.bus.watching import Unwelcome
+from mmrs_runtime.bus.carriers import over_zenoh, renewing
+from mmrs_runtime.bus.watching import Unwelcome
 
 LONG_ENOUGH = 1.5
 

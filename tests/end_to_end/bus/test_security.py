@@ -11,8 +11,8 @@ import pytest
 from cryptography import x509
 
 from mmrs_core.cli.running import run_command
-from mmrs_core.flight.bus.carriers.over_zenoh import ZenohCarrier
-from mmrs_core.flight.bus.carriers.sessions import Endpoints
+from mmrs_runtime.bus.carriers.over_zenoh import ZenohCarrier
+from mmrs_runtime.bus.carriers.sessions import Endpoints
 
 LONG_ENOUGH = 1.5
 

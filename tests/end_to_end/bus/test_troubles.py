@@ -8,9 +8,9 @@ import time
 import pytest
 import zenoh
 
-from mmrs_core.flight.bus.carriers.looking import states_of
-from mmrs_core.flight.bus.carriers.sessions import Endpoints
-from mmrs_core.flight.bus.words import digest
+from mmrs_runtime.bus.carriers.looking import states_of
+from mmrs_runtime.bus.carriers.sessions import Endpoints
+from mmrs_runtime.bus.words import digest
 
 
 @pytest.fixture

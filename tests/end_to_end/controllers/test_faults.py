@@ -9,7 +9,6 @@ import pytest
 from patience import until
 
 from mmrs_core.behaviour.program import Transition
-from mmrs_core.flight.orders.ordering import give
 from mmrs_core.scene import Policy
 from mmrs_core.sitl.commands import obey
 from mmrs_core.testing.programs import (
@@ -22,6 +21,7 @@ from mmrs_core.testing.programs import (
     robot_program,
     take_off,
 )
+from mmrs_runtime.orders.ordering import give
 
 BRAKE = 17
 LOITER = 5

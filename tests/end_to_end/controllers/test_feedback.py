@@ -10,9 +10,9 @@ import pytest
 from ports import free_port
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from mmrs_core.flight.orders.ordering import give
 from mmrs_core.sitl import Settings, SimulatedVehicle
 from mmrs_core.testing.programs import LAND, feedback, move, program, robot_program, take_off
+from mmrs_runtime.orders.ordering import give
 
 LONG = "a word that is longer than one frame of MAVLink can carry"
 STAYS = replace(move("stay", "HoldPosition", duration=40.0), before=(feedback("seen", ("what", LONG)),))

@@ -14,7 +14,6 @@ from peer_lines import said_in
 from ports import free_port
 
 from mmrs_core import flight
-from mmrs_core.flight.clock import Clock
 from mmrs_core.flight.links.link import Link
 from mmrs_core.flight.links.ports import open_port
 from mmrs_core.flight.links.retries import Retries
@@ -26,6 +25,7 @@ from mmrs_core.generation.writing import write
 from mmrs_core.mavlink.plans.qgc import QGC_PLAN
 from mmrs_core.sitl import Settings, SimulatedVehicle
 from mmrs_core.testing.programs import target_input, two_drones
+from mmrs_runtime.clock import Clock
 
 PEERS = Path(__file__).parents[2] / "peers"
 

@@ -9,9 +9,9 @@ import pytest
 from stalls import Stalls
 
 from mmrs_core.behaviour.program import Transition
-from mmrs_core.flight.orders.calling import Unreachable
-from mmrs_core.flight.orders.ordering import give
 from mmrs_core.testing.programs import LAND, go_to, move, photo, program, robot_program, take_off
+from mmrs_runtime.orders.calling import Unreachable
+from mmrs_runtime.orders.ordering import give
 
 BRAKE, GUIDED, LANDING = 17, 4, 9
 AT_HOME = 0.6

@@ -7,13 +7,13 @@ from dataclasses import replace
 import pytest
 from ports import free_port
 
-from mmrs_core.flight.clock import Clock
-from mmrs_core.flight.faults import Refused
 from mmrs_core.flight.links.link import Link
 from mmrs_core.flight.links.ports import open_port
 from mmrs_core.flight.services import missions
 from mmrs_core.flight.services.items import Item
 from mmrs_core.sitl import Settings, SimulatedVehicle
+from mmrs_runtime.clock import Clock
+from mmrs_runtime.faults import Refused
 
 WAYPOINT, SPEED, VERTEX, RALLY_POINT = 16, 178, 5002, 5100
 SEA, RELATIVE, SEA_INT, RELATIVE_INT, TERRAIN, TERRAIN_INT, NO_FRAME = 0, 3, 5, 6, 10, 11, 2

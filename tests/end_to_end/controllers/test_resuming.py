@@ -11,7 +11,6 @@ import pytest
 from patience import until
 
 from mmrs_core.behaviour.program import Transition
-from mmrs_core.flight.orders.ordering import give
 from mmrs_core.scene import Policy
 from mmrs_core.testing.programs import (
     LAND,
@@ -24,6 +23,7 @@ from mmrs_core.testing.programs import (
     robot_program,
     take_off,
 )
+from mmrs_runtime.orders.ordering import give
 
 TAKE_OFF = 22
 AT_HOME = 0.6

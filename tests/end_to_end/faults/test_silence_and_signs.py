@@ -13,7 +13,7 @@ from fault_table.fleet import EXECUTIONS, GENERATED, INTERPRETED, Fleet, mainly,
 from fault_table.project import Pad
 from stalls import Stalls
 
-from mmrs_core.flight.orders.ordering import give
+from mmrs_runtime.orders.ordering import give
 
 PATIENCE = 60.0
 SPEEDUP = 10.0

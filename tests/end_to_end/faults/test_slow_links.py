@@ -8,7 +8,7 @@ import pytest
 from fault_table.fleet import EXECUTIONS, Fleet, wait_for
 from fault_table.project import Pad
 
-from mmrs_core.flight.orders.ordering import give
+from mmrs_runtime.orders.ordering import give
 
 DELAY = 0.15
 """Real seconds, either way."""

@@ -11,10 +11,10 @@ from hub import Hub
 from hypothesis import given
 from hypothesis import strategies as st
 
-from mmrs_core.flight.bus import Member, Node, Owned
-from mmrs_core.flight.bus.admission import AHEAD, LATE, STRANGE
-from mmrs_core.flight.bus.reading import written
-from mmrs_core.flight.bus.words import (
+from mmrs_runtime.bus import Member, Node, Owned
+from mmrs_runtime.bus.admission import AHEAD, LATE, STRANGE
+from mmrs_runtime.bus.reading import written
+from mmrs_runtime.bus.words import (
     Answer,
     Begin,
     CommandId,

@@ -15,7 +15,7 @@ from fault_table.orders import RESUMED_AFTER, to_all
 from fault_table.process import Process
 from fault_table.row import Outcome, Row, leave_alone
 from fault_table.trial import Blow, fly
-from mmrs_core.flight.orders.ordering import give
+from mmrs_runtime.orders.ordering import give
 
 AT = "at its place"
 INJECTED_AT = 40

@@ -10,8 +10,8 @@ from math import inf
 from fault_table.fleet import Fleet
 from fault_table.record import MOMENTS, Answer, Struck, ending, stops_short, story, strayed, struck, talked
 from fault_table.row import Outcome, Row, within
-from mmrs_core.flight.orders.calling import Unreachable
-from mmrs_core.flight.orders.ordering import give
+from mmrs_runtime.orders.calling import Unreachable
+from mmrs_runtime.orders.ordering import give
 
 HANDS_OFF_SECONDS = 3.0
 """Seconds of the run after which nothing may be said any more to a vehicle whose pilot has taken over: a

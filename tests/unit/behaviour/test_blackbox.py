@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from mmrs_core.behaviour.blackbox import LONGEST_LINE, entries_of
 from mmrs_core.behaviour.box_files import black_boxes, is_part
 from mmrs_core.errors import UnreadableError
-from mmrs_core.flight.records.blackbox import BlackBox as Writer
+from mmrs_runtime.records.blackbox import BlackBox as Writer
 
 
 def line(time: float = 0.0, kind: str = "text", **content: object) -> str:

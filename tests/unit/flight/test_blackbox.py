@@ -8,7 +8,7 @@ from math import nan
 import pytest
 
 from mmrs_core.flight.program import Geographic
-from mmrs_core.flight.records.blackbox import BlackBox, black_box_path, last_time, plan_of
+from mmrs_runtime.records.blackbox import BlackBox, black_box_path, last_time, plan_of
 
 
 @pytest.fixture

@@ -5,10 +5,10 @@ from dataclasses import replace
 import pytest
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from mmrs_core.flight.conditions import is_standard, question_of, standard
 from mmrs_core.flight.program import Geographic, Local
 from mmrs_core.flight.vehicles.detections import Detections
 from mmrs_core.flight.vehicles.vehicle import State
+from mmrs_runtime.conditions import is_standard, question_of, standard
 
 GEOGRAPHIC = Geographic(42.0, 13.0, 20.0)
 HERE = State(0.0, Local(0.0, 0.0, 5.0), 0.0, 0.0, None)

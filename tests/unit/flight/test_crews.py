@@ -5,8 +5,8 @@ from __future__ import annotations
 import pytest
 
 from mmrs_core.flight.crews import Crews
-from mmrs_core.flight.orders.orders import Order
-from mmrs_core.flight.phases import ENDED, HELD, HELD_EARLY, SUSPENDED, WAITS, WORKS
+from mmrs_runtime.orders.orders import Order
+from mmrs_runtime.phases import ENDED, HELD, HELD_EARLY, SUSPENDED, WAITS, WORKS
 
 
 @pytest.fixture

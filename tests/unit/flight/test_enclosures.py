@@ -6,9 +6,9 @@ import pytest
 from mavlink_peer import ARDUPILOT, PX4, linked, value
 
 from mmrs_core.flight import Geographic
-from mmrs_core.flight.faults import Refused
 from mmrs_core.flight.services.items import Item
 from mmrs_core.flight.vehicles.enclosure import enclose
+from mmrs_runtime.faults import Refused
 
 HOME = Geographic(42.37, 13.35, 0.0)
 USUAL = {"FENCE_ENABLE": 0.0, "FENCE_TYPE": 7.0, "FENCE_RADIUS": 300.0, "FENCE_ALT_MAX": 100.0}

@@ -6,8 +6,8 @@ import pytest
 from flight_crew import manned
 from mavlink_peer import linked, value
 
-from mmrs_core.flight.faults import Refused
 from mmrs_core.flight.vehicles.exemptions import end_exemption
+from mmrs_runtime.faults import Refused
 
 
 def answering(options: float, *, keeps: bool = False):

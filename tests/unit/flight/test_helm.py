@@ -7,12 +7,12 @@ from mavlink_peer import acknowledged, eventually, linked
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from mmrs_core.flight import Geographic
-from mmrs_core.flight.faults import Fault, Refused, Unanswered
 from mmrs_core.flight.links.retries import Retries
 from mmrs_core.flight.vehicles import modes
 from mmrs_core.flight.vehicles.helm import Helm
 from mmrs_core.flight.vehicles.mavlink_vehicle import MavlinkVehicle
 from mmrs_core.flight.vehicles.telemetry import Telemetry
+from mmrs_runtime.faults import Fault, Refused, Unanswered
 
 HOME = Geographic(42.37, 13.35, 0.0)
 ARM, TAKE_OFF, PHOTO = 400, 22, 2000

@@ -5,9 +5,9 @@ from __future__ import annotations
 import pytest
 from mavlink_peer import PX4, linked, value
 
-from mmrs_core.flight.faults import Refused
 from mmrs_core.flight.program import Policy
 from mmrs_core.flight.vehicles.listening import check_listening
+from mmrs_runtime.faults import Refused
 
 OTHER = "zzz"
 """The parameter that is asked for by its number."""

@@ -9,12 +9,12 @@ import pytest
 from flight_crew import NORTH, in_background, manned
 from patience import until
 
-from mmrs_core.flight.clock import Clock
-from mmrs_core.flight.faults import Fault, Stopped
 from mmrs_core.flight.orders.obedience import Obedience, Ordered
-from mmrs_core.flight.orders.orders import Inbox, Order
 from mmrs_core.flight.places import distance
 from mmrs_core.flight.services.uploads import Uploads
+from mmrs_runtime.clock import Clock
+from mmrs_runtime.faults import Fault, Stopped
+from mmrs_runtime.orders.orders import Inbox, Order
 
 ARM = (400, 1.0)
 """MAV_CMD_COMPONENT_ARM_DISARM, and its first parameter."""

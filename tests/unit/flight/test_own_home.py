@@ -6,12 +6,12 @@ import pytest
 from flight_crew import HOME, manned
 from patience import until
 
-from mmrs_core.flight.faults import Refused
 from mmrs_core.flight.links.retries import Retries
 from mmrs_core.flight.program import Geographic
 from mmrs_core.flight.services.uploads import Uploads
 from mmrs_core.flight.vehicles.footing import aside, footing
 from mmrs_core.sitl import commands
+from mmrs_runtime.faults import Refused
 
 SET_HOME = 179
 HILL = 6.0

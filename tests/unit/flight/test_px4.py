@@ -12,13 +12,13 @@ from mavlink_peer import ARDUPILOT, PX4, acknowledged, eventually, linked
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from mmrs_core.flight import Geographic
-from mmrs_core.flight.faults import Fault
 from mmrs_core.flight.services.items import Item
 from mmrs_core.flight.vehicles import modes
 from mmrs_core.flight.vehicles.habits import ArduPilot
 from mmrs_core.flight.vehicles.helm import Helm
 from mmrs_core.flight.vehicles.px4 import Px4
 from mmrs_core.flight.vehicles.telemetry import Telemetry
+from mmrs_runtime.faults import Fault
 
 HOME = Geographic(42.37, 13.35, 0.0)
 NORTH = Geographic(42.371, 13.35, 20.0)

@@ -8,14 +8,14 @@ import pytest
 from mavlink_peer import HERE, QUICK, THERE, Wire, eventually, heartbeat, linked, two_linked
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from mmrs_core.flight.clock import Clock
-from mmrs_core.flight.faults import Fault, Refused
 from mmrs_core.flight.links.link import Link
 from mmrs_core.flight.links.messages import ANYBODY
 from mmrs_core.flight.links.ports import split_system
 from mmrs_core.flight.links.radio import Radio
 from mmrs_core.flight.links.radios import Radios
 from mmrs_core.flight.vehicles.preparation import HEARING_SECONDS, hear_out
+from mmrs_runtime.clock import Clock
+from mmrs_runtime.faults import Fault, Refused
 
 ELSEWHERE = ("10.0.0.3", 14_550)
 ITEM = mavlink.MAVLink_mission_current_message(3)

@@ -9,11 +9,11 @@ import pytest
 from patience import until
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from mmrs_core.flight.clock import Clock
 from mmrs_core.flight.program import Geographic
-from mmrs_core.flight.records.blackbox import BlackBox, black_box_path
 from mmrs_core.flight.records.recording import Recording
 from mmrs_core.flight.vehicles.vehicle import State
+from mmrs_runtime.clock import Clock
+from mmrs_runtime.records.blackbox import BlackBox, black_box_path
 
 BEFORE = State(0.0, Geographic(42.0, 13.0, 5.0), 9.0, 90.0, 0.5, "guided", True)
 

@@ -6,9 +6,9 @@ from dataclasses import replace
 
 import pytest
 
-from mmrs_core.flight.faults import Refused
 from mmrs_core.flight.program import GoTo, Land, Local, Robot, Run, Step, Stop, TakeOff, Then
 from mmrs_core.flight.steps.rejoining import Rejoined, rejoined, way_ahead
+from mmrs_runtime.faults import Refused
 
 HOME, OVERHEAD = Local(0.0, 0.0, 0.0), Local(0.0, 0.0, 40.0)
 WEST, EAST = Local(100.0, 0.0, 15.0), Local(100.0, 50.0, 15.0)

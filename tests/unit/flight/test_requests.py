@@ -9,10 +9,10 @@ import pytest
 from mavlink_peer import acknowledged, eventually, heartbeat, linked
 
 from mmrs_core.flight import Geographic
-from mmrs_core.flight.faults import Fault, Stopped
 from mmrs_core.flight.vehicles import modes
 from mmrs_core.flight.vehicles.helm import Helm
 from mmrs_core.flight.vehicles.telemetry import Telemetry
+from mmrs_runtime.faults import Fault, Stopped
 
 HOME = Geographic(42.37, 13.35, 0.0)
 STABILIZE, GUIDED, LOITER, LAND, BRAKE = 0, 4, 5, 9, 17

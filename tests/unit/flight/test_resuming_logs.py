@@ -7,7 +7,6 @@ from dataclasses import replace
 
 import pytest
 
-from mmrs_core.flight.faults import Fault, Refused
 from mmrs_core.flight.program import (
     Choose,
     Geographic,
@@ -24,7 +23,6 @@ from mmrs_core.flight.program import (
     TakeOff,
     Then,
 )
-from mmrs_core.flight.records.log import Log, read
 from mmrs_core.flight.steps.resuming import (
     Progress,
     began_at,
@@ -34,6 +32,8 @@ from mmrs_core.flight.steps.resuming import (
     still_on,
     track_of,
 )
+from mmrs_runtime.faults import Fault, Refused
+from mmrs_runtime.records.log import Log, read
 
 FAR, NEAR = Local(100.0, 0.0, 10.0), Local(0.0, 50.0, 10.0)
 TRIGGER = Operate("camera", "every metre", 206, (1.0,))

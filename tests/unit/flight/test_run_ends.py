@@ -7,9 +7,9 @@ from dataclasses import replace
 import pytest
 from flight_crew import OVERHEAD, manned, robot_of
 
-from mmrs_core.flight.faults import REFUSED, Refused
 from mmrs_core.flight.program import GoTo, Run, Step, Then
-from mmrs_core.flight.records.log import read
+from mmrs_runtime.faults import REFUSED, Refused
+from mmrs_runtime.records.log import read
 
 
 def test_a_run_whose_vehicle_cannot_be_stepped_at_its_end_has_not_ended(tmp_path, monkeypatch):

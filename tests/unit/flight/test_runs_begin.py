@@ -8,7 +8,6 @@ import pytest
 from flight_crew import manned, robot_of
 from patience import until
 
-from mmrs_core.flight.faults import Refused
 from mmrs_core.flight.places import distance
 from mmrs_core.flight.program import Geographic, GoTo, Land, Run, Start, Step, Stop, TakeOff, Then
 from mmrs_core.flight.services import parameters
@@ -17,6 +16,7 @@ from mmrs_core.flight.services.uploads import mission_of, uploads_of
 from mmrs_core.flight.vehicles import px4
 from mmrs_core.flight.vehicles.feasibility import check_feasible
 from mmrs_core.flight.vehicles.runs import first_flown, keep_place, speed_before
+from mmrs_runtime.faults import Refused
 
 WAYS = {
     name: Geographic(42.37 + north / 111_080.0, 13.35, 10.0)

@@ -10,10 +10,10 @@ import pytest
 from mavlink_peer import HERE, QUICK, Wire, eventually, heartbeat
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from mmrs_core.flight.clock import Clock
 from mmrs_core.flight.links.link import Link
 from mmrs_core.flight.links.radio import Radio
 from mmrs_core.flight.links.signing import BEHIND, EPOCH, TICKS, Signed, Signer, signer_for
+from mmrs_runtime.clock import Clock
 
 KEY = bytes(range(32))
 ITEM = mavlink.MAVLink_mission_current_message(3)

@@ -11,7 +11,6 @@ from mavlink_peer import acknowledged, linked, value
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 from stalls import Stalls
 
-from mmrs_core.flight.faults import LINK_LOST, Fault, Refused
 from mmrs_core.flight.program import Geographic
 from mmrs_core.flight.services import parameters
 from mmrs_core.flight.services.commands import command
@@ -20,6 +19,7 @@ from mmrs_core.flight.services.missions import upload
 from mmrs_core.flight.services.reading import download
 from mmrs_core.flight.vehicles.px4 import Px4
 from mmrs_core.flight.vehicles.telemetry import Telemetry
+from mmrs_runtime.faults import LINK_LOST, Fault, Refused
 
 ARM = mavlink.MAV_CMD_COMPONENT_ARM_DISARM
 HOME = Geographic(42.37, 13.35, 0.0)

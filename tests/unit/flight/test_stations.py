@@ -9,13 +9,13 @@ from flight_crew import robot_of
 from mavlink_peer import HERE, PX4, THERE, eventually, heartbeat, linked, two_linked
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from mmrs_core.flight.clock import Clock
-from mmrs_core.flight.faults import Fault
 from mmrs_core.flight.links.radio import GROUND_COMPONENT, GROUND_SYSTEM
 from mmrs_core.flight.program import Policy
 from mmrs_core.flight.steps.ground import ANY_STATION, SAME_SYSTEM, Ground
 from mmrs_core.flight.steps.watch import Watch
 from mmrs_core.flight.vehicles.mavlink_vehicle import MavlinkVehicle
+from mmrs_runtime.clock import Clock
+from mmrs_runtime.faults import Fault
 
 ELSEWHERE = ("10.0.0.3", 14_550)
 STATION = heartbeat(kind=mavlink.MAV_TYPE_GCS, autopilot=mavlink.MAV_AUTOPILOT_INVALID)

@@ -5,10 +5,10 @@ from __future__ import annotations
 import pytest
 from flight_crew import manned, robot_of
 
-from mmrs_core.flight.faults import MOTORS_OFF, Refused
 from mmrs_core.flight.program import Geographic
 from mmrs_core.flight.services.uploads import Uploads
 from mmrs_core.flight.steps.obeying import undone
+from mmrs_runtime.faults import MOTORS_OFF, Refused
 
 BELOW = Geographic(42.37, 13.35, -4.0)
 

@@ -9,14 +9,14 @@ from hypothesis import strategies as st
 from mavlink_peer import HERE, linked
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from mmrs_core.flight.clock import Clock
 from mmrs_core.flight.links.radio import GROUND_COMPONENT
 from mmrs_core.flight.program import Report
-from mmrs_core.flight.screen import words_of
 from mmrs_core.flight.services.telling import CHUNK, MOST_CHUNKS, pieces_of
 from mmrs_core.flight.vehicles.mavlink_vehicle import MavlinkVehicle
 from mmrs_core.flight.vehicles.texts import Texts
 from mmrs_core.mavlink.backend.moves import Moves
+from mmrs_runtime.clock import Clock
+from mmrs_runtime.screen import words_of
 
 ASCII = st.characters(min_codepoint=32, max_codepoint=126)
 

@@ -8,10 +8,10 @@ import pytest
 from flight_crew import OVERHEAD, SPEEDUP, in_background, robot_of
 from patience import until
 
-from mmrs_core.flight.clock import Clock
-from mmrs_core.flight.faults import Fault, Stopped
 from mmrs_core.flight.program import Policy
 from mmrs_core.flight.steps.watch import Watch
+from mmrs_runtime.clock import Clock
+from mmrs_runtime.faults import Fault, Stopped
 
 
 def test_only_a_stop_ends_what_has_no_vehicle_yet():

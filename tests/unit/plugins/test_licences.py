@@ -11,7 +11,7 @@ import pytest
 from packaging.requirements import Requirement
 
 ROOT = Path(__file__).parents[3]
-PROJECTS = [ROOT, *(path.parent for path in sorted(ROOT.glob("plugins/*/pyproject.toml")))]
+PROJECTS = [ROOT, ROOT / "runtime", *(path.parent for path in sorted(ROOT.glob("plugins/*/pyproject.toml")))]
 PAGE = (ROOT / "docs" / "licences.md").read_text(encoding="utf-8")
 ROWS = re.findall(r"^\| ([\w.-]+) \| `(\S+)` \| (.+) \|$", PAGE, re.MULTILINE)
 FAMILY = re.compile(r"0BSD|LGPL|BSD|MIT|Apache|EPL|Eclipse|Zlib|CC0|MPL|Mozilla|GNU")

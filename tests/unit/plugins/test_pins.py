@@ -8,7 +8,7 @@ from packaging.utils import canonicalize_name
 
 ROOT = Path(__file__).parents[3]
 PLUGINS = {"multicopter": "", "auv": "[vision]", "survey": "", "rover": "", "solar": "", "dronecan": ""}
-OURS = {"mmrs-core", *(f"mmrs-{name}" for name in PLUGINS)}
+OURS = {"mmrs-core", "mmrs-runtime", *(f"mmrs-{name}" for name in PLUGINS)}
 
 
 def needed():
@@ -48,7 +48,7 @@ def test_every_version_that_is_installed_is_pinned():
 def test_the_requirements_name_the_core_and_every_plugin_and_no_address():
     assert {path.parent.name for path in (ROOT / "plugins").glob("*/pyproject.toml")} == PLUGINS.keys()
     plugins = (f"-e plugins/{name}{extras}" for name, extras in PLUGINS.items())
-    wanted = ["-c constraints.txt", "-e .[dev]", *plugins]
+    wanted = ["-c constraints.txt", "-e runtime", "-e .[dev]", *plugins]
     assert sorted(lines("requirements-dev.txt")) == sorted(wanted)
     assert not any(
         "://" in line for file in ("requirements-dev.txt", "constraints.txt") for line in lines(file)

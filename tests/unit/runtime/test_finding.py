@@ -11,9 +11,6 @@ from mmrs_core.behaviour.program import BEHAVIOUR, Move
 from mmrs_core.contributions.backends import BackendFactory, BackendInput, Live
 from mmrs_core.contributions.buses import CommandId
 from mmrs_core.errors import UnreadableError, UsageError
-from mmrs_core.flight.bus.outgoing.notifying import fitting
-from mmrs_core.flight.bus.reading import request_in, written
-from mmrs_core.flight.bus.words import LONGEST, LONGEST_NAME, MOST_FINDS, Commit
 from mmrs_core.runtime.clock import RealClock
 from mmrs_core.runtime.conditions import standard_conditions
 from mmrs_core.runtime.finding import finds_of, names_told
@@ -22,6 +19,9 @@ from mmrs_core.runtime.run import simulate
 from mmrs_core.runtime.simulation import SIMULATION
 from mmrs_core.runtime.slots import InProcessBus
 from mmrs_core.testing.small_programs import ROBOT_TYPE, go, hold, notify, program, robot, robot_type, use
+from mmrs_runtime.bus.outgoing.notifying import fitting
+from mmrs_runtime.bus.reading import request_in, written
+from mmrs_runtime.bus.words import LONGEST, LONGEST_NAME, MOST_FINDS, Commit
 
 FLYER, RISE = ("urn:test", "Flyer"), ("urn:test", "Rise")
 

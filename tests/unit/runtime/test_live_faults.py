@@ -16,12 +16,12 @@ from stalls import Stalls
 
 from mmrs_core.behaviour.replay import Outcome
 from mmrs_core.errors import MmrsError
-from mmrs_core.flight.bus import CommandId, Node, NoJournal
 from mmrs_core.runtime.live import _let_go
 from mmrs_core.runtime.orders import HOLD, LAND, RESUME, RETURN, STOP
 from mmrs_core.runtime.slots import ProgramBus, members_of
 from mmrs_core.scene import Policy
 from mmrs_core.testing.small_programs import hold, notify, program, robot
+from mmrs_runtime.bus import CommandId, Node, NoJournal
 
 
 def test_a_fault_is_answered_by_its_policy_and_the_run_waits_for_it(live):

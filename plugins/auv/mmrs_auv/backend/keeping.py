@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping
 from mmrs_core.behaviour.log import log_name
 from mmrs_core.contributions.backends import BackendInput, Live
 from mmrs_core.contributions.execution import RobotState
-from mmrs_core.flight.records.blackbox import BlackBox, black_box_path
+from mmrs_runtime.records.blackbox import BlackBox, black_box_path
 
 FIX = 0.2
 """Seconds between two places in the black box."""

@@ -18,10 +18,10 @@ from mmrs_core.behaviour.program import Action, Move
 from mmrs_core.contributions.backends import BackendInput
 from mmrs_core.contributions.execution import Fault, RobotState
 from mmrs_core.errors import UnreachableError
-from mmrs_core.flight.policies import NOTHING
 from mmrs_core.runtime.escape import Escapes
 from mmrs_core.runtime.known import DEVICE_ACTION, kinematics_of
 from mmrs_core.scene import Position
+from mmrs_runtime.policies import NOTHING
 
 STAYS, RESTS, FINDS = ("HOLD", "CONTINUE"), ("STOP_THRUST", NOTHING), ("RETURN", "EMERGENCY_AREA")
 HINDRANCES = (LINK_LOST, POSITION_LOST, NO_PROGRESS)

@@ -16,15 +16,14 @@ from mmrs_auv.vessel.api import Connection
 from mmrs_auv.vessel.eyes import Detections
 from mmrs_auv.vessel.sheet import from_json
 from mmrs_auv.vessel.wire.ports import CHANNEL, open_port
-from mmrs_core.flight.conditions import Condition
-from mmrs_core.flight.faults import LINK_LOST, Fault
-from mmrs_core.flight.judgement import objects_of
+from mmrs_core.flight.judgement import Condition, objects_of
 from mmrs_core.flight.main import main as run
 from mmrs_core.flight.objects import Locator, not_looked_for, where_expected
 from mmrs_core.flight.options import Options
 from mmrs_core.flight.program import Robot
-from mmrs_core.flight.records.blackbox import BlackBox
-from mmrs_core.flight.screen import say
+from mmrs_runtime.faults import LINK_LOST, Fault
+from mmrs_runtime.records.blackbox import BlackBox
+from mmrs_runtime.screen import say
 
 FAREWELL = 0.5
 """Real seconds in which the last goal is still repeated."""

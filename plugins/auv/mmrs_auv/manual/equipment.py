@@ -6,8 +6,8 @@ from mmrs_auv.manual.autopilot import Autopilot
 from mmrs_auv.targets.moves import seconds_of
 from mmrs_core.behaviour.program import Action
 from mmrs_core.contributions.wiring import Wired
-from mmrs_core.flight import faults
 from mmrs_core.mavlink.context import RobotContext
+from mmrs_runtime import faults
 
 
 def carry_out(action: Action, context: RobotContext, autopilot: Autopilot) -> float:

@@ -17,13 +17,13 @@ from mmrs_core.behaviour.program import Action, Move
 from mmrs_core.contributions.backends import BackendInput, Live
 from mmrs_core.contributions.execution import Fault, RobotState
 from mmrs_core.errors import UnreachableError
-from mmrs_core.flight import faults
 from mmrs_core.flight.links.link import Link
-from mmrs_core.flight.policies import NOTHING
 from mmrs_core.flight.records.start import PROCESS
 from mmrs_core.mavlink.actions import DEVICE_ACTION
 from mmrs_core.mavlink.context import RobotContext
 from mmrs_core.scene import Position
+from mmrs_runtime import faults
+from mmrs_runtime.policies import NOTHING
 
 PERIOD = 0.1
 """Seconds from one message of the sticks to the next; ArduSub gives up after three."""

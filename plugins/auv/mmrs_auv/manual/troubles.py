@@ -8,8 +8,8 @@ from math import inf
 from mmrs_auv.manual.autopilot import STALL, Autopilot
 from mmrs_core.behaviour.policies import patience
 from mmrs_core.contributions.execution import Fault
-from mmrs_core.flight import faults
 from mmrs_core.scene import Policy
+from mmrs_runtime import faults
 
 LINK_PATIENCE = 5.0
 """Seconds of silence after which the link counts as lost, where no policy says."""

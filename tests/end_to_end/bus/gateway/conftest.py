@@ -14,11 +14,11 @@ from gateway_client import RunningGateway
 from waiting_pair import waiting_pair
 
 from mmrs_core import pipeline
-from mmrs_core.flight.bus import CommandId
-from mmrs_core.flight.bus.carriers.over_zenoh import ZenohCarrier
-from mmrs_core.flight.bus.carriers.sessions import Endpoints
 from mmrs_core.languages.reading import read_model
 from mmrs_core.runtime.slots import node_of
+from mmrs_runtime.bus import CommandId
+from mmrs_runtime.bus.carriers.over_zenoh import ZenohCarrier
+from mmrs_runtime.bus.carriers.sessions import Endpoints
 
 RUN = "run-0"
 

@@ -11,7 +11,7 @@ from contextlib import suppress
 import pytest
 from stalls import Stalls
 
-from mmrs_core.flight.bus.gateway.server import Gateway
+from mmrs_runtime.bus.gateway.server import Gateway
 
 LEASE = 1.5
 

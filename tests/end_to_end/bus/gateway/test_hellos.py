@@ -11,7 +11,7 @@ from contextlib import ExitStack, suppress
 
 import pytest
 
-from mmrs_core.flight.bus.gateway.server import MOST_CALLERS, Gateway
+from mmrs_runtime.bus.gateway.server import MOST_CALLERS, Gateway
 
 
 def test_only_its_user_can_read_the_token(gateway):

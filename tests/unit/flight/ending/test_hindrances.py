@@ -6,10 +6,10 @@ import pytest
 from flight_crew import HOME, in_background
 from patience import until
 
-from mmrs_core.flight.faults import Fault, Stopped
 from mmrs_core.flight.links.retries import Retries
-from mmrs_core.flight.orders.orders import Order
 from mmrs_core.flight.program import Policy
+from mmrs_runtime.faults import Fault, Stopped
+from mmrs_runtime.orders.orders import Order
 
 SET_MODE = 176
 

@@ -6,9 +6,9 @@ import pytest
 from flight_crew import HOME, NORTH, in_background
 from patience import until
 
-from mmrs_core.flight.faults import Fault
-from mmrs_core.flight.orders.orders import Order
 from mmrs_core.flight.program import Policy
+from mmrs_runtime.faults import Fault
+from mmrs_runtime.orders.orders import Order
 
 MODES = {"land": "land", "return": "return", "brake": "hold"}
 """What the runtime calls modes of the vehicle."""

@@ -9,10 +9,10 @@ from flight_crew import HOME, in_background
 from patience import until
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from mmrs_core.flight.faults import Strange
 from mmrs_core.flight.orders.obedience import Ordered
-from mmrs_core.flight.orders.orders import Order, Receipt
 from mmrs_core.flight.program import Geographic, Policy
+from mmrs_runtime.faults import Strange
+from mmrs_runtime.orders.orders import Order, Receipt
 
 FAR = Geographic(42.3710, 13.35, 0.0)
 """111 metres north of home."""

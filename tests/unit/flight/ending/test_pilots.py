@@ -6,9 +6,9 @@ import pytest
 from flight_crew import in_background
 from patience import until
 
-from mmrs_core.flight.faults import Fault
-from mmrs_core.flight.orders.orders import Order
 from mmrs_core.flight.program import Policy
+from mmrs_runtime.faults import Fault
+from mmrs_runtime.orders.orders import Order
 
 
 def test_nothing_is_sent_to_a_vehicle_that_a_pilot_has_until_its_motors_are_off(robot):

@@ -5,8 +5,8 @@ from __future__ import annotations
 from flight_crew import HOME, NORTH, in_background
 from patience import until
 
-from mmrs_core.flight.faults import Fault
 from mmrs_core.flight.program import Policy
+from mmrs_runtime.faults import Fault
 
 
 def test_a_robot_returns_by_the_way_it_came_and_says_so_in_its_log(robot):

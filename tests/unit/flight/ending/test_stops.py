@@ -6,9 +6,9 @@ import pytest
 from flight_crew import HOME, in_background
 from patience import until
 
-from mmrs_core.flight.faults import Fault, Stopped
-from mmrs_core.flight.orders.orders import Order
 from mmrs_core.flight.program import Policy
+from mmrs_runtime.faults import Fault, Stopped
+from mmrs_runtime.orders.orders import Order
 
 
 @pytest.mark.parametrize(("on_stop", "down"), [("hold", False), ("land", True), ("return", True)])

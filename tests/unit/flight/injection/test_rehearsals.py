@@ -10,7 +10,7 @@ from pathlib import Path
 
 PREFACE = """
 import json, sys, threading, time
-from mmrs_core.flight.clock import Clock
+from mmrs_runtime.clock import Clock
 from mmrs_core.flight.injection import Rehearsal, injections
 def begin(text, speedup=1.0):
     clock = Clock(speedup)

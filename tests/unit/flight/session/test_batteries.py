@@ -10,10 +10,10 @@ from patience import until
 from ports import free_port
 from sessions import labels, phase
 
-from mmrs_core.flight.orders.orders import Order
-from mmrs_core.flight.phases import SUSPENDED, WORKS
 from mmrs_core.flight.program import Policy
 from mmrs_core.flight.session import run_robot
+from mmrs_runtime.orders.orders import Order
+from mmrs_runtime.phases import SUSPENDED, WORKS
 
 OTHER = robot_of(id="beta")
 STEPS = robot_of().steps

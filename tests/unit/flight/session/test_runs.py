@@ -11,13 +11,13 @@ from patience import until
 from ports import free_port
 from sessions import labels, phase
 
-from mmrs_core.flight.orders.orders import Order
-from mmrs_core.flight.phases import ENDED, HELD, HELD_EARLY, WAITS, WORKS
 from mmrs_core.flight.program import GoTo
 from mmrs_core.flight.session import run_robot
 from mmrs_core.flight.slots import LocalSlots
 from mmrs_core.flight.vehicles.mavlink_vehicle import MavlinkVehicle
 from mmrs_core.sitl import Settings, SimulatedVehicle
+from mmrs_runtime.orders.orders import Order
+from mmrs_runtime.phases import ENDED, HELD, HELD_EARLY, WAITS, WORKS
 
 OTHER = robot_of(id="beta")
 STEPS = robot_of().steps

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from mmrs_core.flight.clock import Clock
 from mmrs_core.flight.program import Policy
 from mmrs_core.flight.steps.responses import BLOCKED
 from mmrs_core.flight.vehicles.dry import DryVehicle
 from mmrs_core.mavlink.backend.lost_link import LostLink
 from mmrs_core.mavlink.built import robot_of
 from mmrs_core.testing.programs import LAND, program, robot_program, take_off, target_input
+from mmrs_runtime.clock import Clock
 
 BEHAVIOUR = program(robot_program("r", [take_off("up", 20.0), LAND]))
 HOLDS = replace(

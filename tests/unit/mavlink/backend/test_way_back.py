@@ -7,8 +7,6 @@ from dataclasses import replace
 import pytest
 
 from mmrs_core.behaviour.program import Transition
-from mmrs_core.flight.clock import Clock
-from mmrs_core.flight.faults import BATTERY_LOW, Fault, Refused
 from mmrs_core.flight.places import distance, offset
 from mmrs_core.flight.program import Policy
 from mmrs_core.flight.vehicles.dry import DryVehicle
@@ -25,6 +23,8 @@ from mmrs_core.testing.programs import (
     take_off,
     target_input,
 )
+from mmrs_runtime.clock import Clock
+from mmrs_runtime.faults import BATTERY_LOW, Fault, Refused
 
 FLUID = {index: Transition(index, index + 1, fluid=True) for index in (3, 4, 5)}
 BEHAVIOUR = program(

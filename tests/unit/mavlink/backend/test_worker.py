@@ -7,8 +7,8 @@ import time
 
 import pytest
 
-from mmrs_core.flight.faults import CRASHED, LINK_LOST, Fault
 from mmrs_core.mavlink.backend.worker import Job, Worker
+from mmrs_runtime.faults import CRASHED, LINK_LOST, Fault
 
 
 class Yard:

@@ -24,7 +24,7 @@ from mmrs_core.errors import UnsupportedError
 from mmrs_core.generation.escaping import file_stems
 from mmrs_core.mavlink.actions import action_losses
 from mmrs_core.mavlink.context import RobotContext, context_of, homeless, require_home, vehicleless
-from mmrs_core.mavlink.controllers import RUNTIME, RUNTIME_SOURCES, fleet_files
+from mmrs_core.mavlink.controllers import RUNTIME, fleet_files, runtime_files
 from mmrs_core.mavlink.movements import losses_of
 from mmrs_core.mavlink.program import robot_view, trace_of
 from mmrs_core.mavlink.safety import policies_of
@@ -63,8 +63,7 @@ def files(input: TargetInput) -> Iterator[FileSpec]:
         yield FileSpec(f"{module}.json", "", data=sheet.encode())
         yield FileSpec(f"{module}.py", "robot.py.jinja", view, trace=trace_of(robot))
     yield from fleet_files(replace(local.program, robots=robots), modules)
-    for path in sorted(RUNTIME_SOURCES.rglob("*.py")):
-        yield FileSpec(f"{RUNTIME}/{path.relative_to(RUNTIME_SOURCES).as_posix()}", path.name, source=path)
+    yield from runtime_files()
     yield from _carried()
 
 

@@ -9,15 +9,15 @@ from collections.abc import Container
 import pytest
 from stalls import Stalls
 
-from mmrs_core.flight.bus import Incomplete, Member, Node, Owned, begin_together
-from mmrs_core.flight.bus.carriers.carrier import NoCarrier
-from mmrs_core.flight.bus.reading import request_in, written
-from mmrs_core.flight.bus.roster import Roster
-from mmrs_core.flight.bus.words import Meet
-from mmrs_core.flight.clock import Clock
 from mmrs_core.flight.orders.obedience import Obedience, Ordered
-from mmrs_core.flight.orders.orders import Inbox, Order
 from mmrs_core.flight.vehicles.dry import DryVehicle
+from mmrs_runtime.bus import Incomplete, Member, Node, Owned, begin_together
+from mmrs_runtime.bus.carriers.carrier import NoCarrier
+from mmrs_runtime.bus.reading import request_in, written
+from mmrs_runtime.bus.roster import Roster
+from mmrs_runtime.bus.words import Meet
+from mmrs_runtime.clock import Clock
+from mmrs_runtime.orders.orders import Inbox, Order
 
 AT_ONCE = 1.5
 """Seconds, on a busy machine; for an answer that does not come a robot waits for longer."""

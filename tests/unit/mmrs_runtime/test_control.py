@@ -16,11 +16,11 @@ import pytest
 from signals_elsewhere import broken_off
 from stalls import Stalls
 
-from mmrs_core.flight.control import CONNECTIONS, Control, Taken
-from mmrs_core.flight.orders.calling import CALL_SECONDS, Unreachable, asked_at_once, network
-from mmrs_core.flight.orders.ordering import give, main
-from mmrs_core.flight.orders.orders import Inbox, Order
-from mmrs_core.flight.questions import Questions
+from mmrs_runtime.control import CONNECTIONS, Control, Taken
+from mmrs_runtime.orders.calling import CALL_SECONDS, Unreachable, asked_at_once, network
+from mmrs_runtime.orders.ordering import give, main
+from mmrs_runtime.orders.orders import Inbox, Order
+from mmrs_runtime.questions import Questions
 
 
 @pytest.fixture
@@ -156,7 +156,7 @@ def test_status_tells_of_each_robot(tmp_path, opened, inboxes, capsys):
 )
 def test_names_are_shown_as_they_are_written_where_the_terminal_can(tmp_path, opened, encoding, shown):
     opened({"Ärger": Inbox("Ärger", questions=Questions())})
-    order = [sys.executable, "-m", "mmrs_core.flight.control", "status", "--log", str(tmp_path)]
+    order = [sys.executable, "-m", "mmrs_runtime.control", "status", "--log", str(tmp_path)]
     environment = {**os.environ, "PYTHONIOENCODING": encoding}
     done = subprocess.run(order, capture_output=True, env=environment, check=True, timeout=60)
     assert done.stdout.decode(encoding).startswith(shown)

@@ -9,8 +9,8 @@ from contextlib import ExitStack, suppress
 
 import pytest
 
-from mmrs_core.flight.orders.calling import Unreachable
-from mmrs_core.flight.orders.ordering import give, main
+from mmrs_runtime.orders.calling import Unreachable
+from mmrs_runtime.orders.ordering import give, main
 
 
 @pytest.fixture

@@ -188,7 +188,7 @@ def _tell(replies: Iterator[dict[str, Any]]) -> int:
 def _parser() -> argparse.ArgumentParser:
     orders = "; ".join(f"{name}: {meaning}" for name, meaning in ORDERS.items())
     parser = argparse.ArgumentParser(
-        prog="python -m mmrs_flight.control",
+        prog="python -m mmrs_runtime.control",
         description=f"Gives orders to robots that are running. {orders}.",
         epilog="Exit codes: 0 every robot has confirmed, 1 one has not, 2 usage, 5 no robots to be found.",
     )

@@ -6,9 +6,9 @@ from dataclasses import replace
 
 import pytest
 
-from mmrs_core.flight.bus.owners.journal import FileJournal
-from mmrs_core.flight.bus.owners.owner import KEPT_SECONDS, Owned, Owner
-from mmrs_core.flight.bus.words import REACH, Begin, CommandId, Commit, Prepare, Withdraw
+from mmrs_runtime.bus.owners.journal import FileJournal
+from mmrs_runtime.bus.owners.owner import KEPT_SECONDS, Owned, Owner
+from mmrs_runtime.bus.words import REACH, Begin, CommandId, Commit, Prepare, Withdraw
 
 OWNED = Owned("b", ("go", "stay"), {"go": ("a", "c"), "stay": ("a",)}, {"go": ("a", "c")})
 

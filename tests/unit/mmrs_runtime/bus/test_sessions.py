@@ -8,7 +8,7 @@ import pytest
 
 from mmrs_core.cli.bus_access import Holder
 from mmrs_core.cli.bus_access import configuration as secured
-from mmrs_core.flight.bus.carriers.sessions import Endpoints, configuration, exposed
+from mmrs_runtime.bus.carriers.sessions import Endpoints, configuration, exposed
 
 
 def listens(*listen, connect=()):

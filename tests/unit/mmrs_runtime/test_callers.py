@@ -7,7 +7,7 @@ from contextlib import ExitStack
 
 import pytest
 
-from mmrs_core.flight.callers import Callers
+from mmrs_runtime.callers import Callers
 
 
 class Door:

@@ -8,7 +8,7 @@ robots, readable by its user only. An order is one line::
 without `robots` it is for all of them; ``answer`` has `question` and `answer` beside. There is one line of
 answer for each robot, as soon as it has obeyed or refused, with the seconds that it took, then
 ``{"done": true}``; or one ``{"error": "…"}``. Whoever gives no order in time, or one without the token, is
-hung up on. Run this module to give orders: ``python -m mmrs_flight.control hold --log logs``.
+hung up on. Run this module to give orders: ``python -m mmrs_runtime.control hold --log logs``.
 """
 
 from __future__ import annotations

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 from hub import Hub, HubCarrier
 
-from mmrs_core.flight.bus import CommandId, Member, Node, Owned
+from mmrs_runtime.bus import CommandId, Member, Node, Owned
 
 RUN = "run-0"
 

@@ -14,10 +14,10 @@ from cryptography.hazmat.primitives.serialization import Encoding
 from mmrs_core.cli.bus_access import Holder
 from mmrs_core.cli.bus_certificates import make_keys, revoke
 from mmrs_core.cli.running import run_command
-from mmrs_core.flight.bus.carriers.renewing import Renewing
-from mmrs_core.flight.bus.carriers.revocation import REVOKED, read_list, serial_of, valid_name
-from mmrs_core.flight.bus.carriers.sessions import Endpoints, admitted, configuration, papers_of
-from mmrs_core.flight.bus.troubles import Net
+from mmrs_runtime.bus.carriers.renewing import Renewing
+from mmrs_runtime.bus.carriers.revocation import REVOKED, read_list, serial_of, valid_name
+from mmrs_runtime.bus.carriers.sessions import Endpoints, admitted, configuration, papers_of
+from mmrs_runtime.bus.troubles import Net
 
 NOW = datetime.now(UTC)
 ALL = ["a", "b", "observer"]

@@ -9,8 +9,8 @@ import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 
-from mmrs_core.flight.control import LONGEST_LINE, Control
-from mmrs_core.flight.orders.orders import ORDERS, Inbox
+from mmrs_runtime.control import LONGEST_LINE, Control
+from mmrs_runtime.orders.orders import ORDERS, Inbox
 
 ANYTHING = st.recursive(
     st.none() | st.booleans() | st.integers() | st.floats() | st.text(st.characters(), max_size=20),

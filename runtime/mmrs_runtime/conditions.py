@@ -11,13 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from math import isfinite
-from typing import TYPE_CHECKING, Protocol, TypeAlias
-
-if TYPE_CHECKING:
-    from .vehicles.vehicle import State
-
-Condition: TypeAlias = "Callable[[State], bool | None]"
-"""Whether a condition holds, by what a robot knows; None while that cannot be said yet."""
+from typing import Protocol, TypeAlias
 
 
 class Known(Protocol):
@@ -50,6 +44,7 @@ class Known(Protocol):
 
 
 Standard: TypeAlias = Callable[[Known], bool | None]
+"""Whether a condition holds, by what a robot knows; None while that cannot be said yet."""
 
 BATTERY, WIND, DETECTED, FOUND, ANSWER = "battery-below", "wind-above", "detected", "found", "answer"
 
@@ -90,7 +85,7 @@ def truth(found: object) -> bool:
     raise TypeError(f"{found!r} is neither True nor False")
 
 
-def undecided(state: State) -> bool | None:
+def undecided(known: Known) -> bool | None:
     """Decide nothing: stands in conditions.py until somebody writes what decides a choice.
 
     Raises:

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from mmrs_core.flight.bus.meeting import Beginning
-from mmrs_core.flight.bus.roster import Roster
-from mmrs_core.flight.bus.words import CommandId, Meet
+from mmrs_runtime.bus.meeting import Beginning
+from mmrs_runtime.bus.roster import Roster
+from mmrs_runtime.bus.words import CommandId, Meet
 
 
 def ready(robot: str, robots: int = 2) -> Meet:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from mmrs_core.cli.running import run_command
-from mmrs_core.flight.bus.carriers.endpoints import first_fault
+from mmrs_runtime.bus.carriers.endpoints import first_fault
 
 GOOD = ("tcp/10.0.0.2:7447", "tls/[::1]:0", "udp/drone.local:1?rel=0#iface=eth0", "unixsock-stream//run/bus")
 WRONG = (

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import pytest
 
-from mmrs_core.flight.faults import Fault
-from mmrs_core.flight.records.lines import keep_whole_lines, whole_lines
-from mmrs_core.flight.records.log import read
+from mmrs_runtime.faults import Fault
+from mmrs_runtime.records.lines import keep_whole_lines, whole_lines
+from mmrs_runtime.records.log import read
 
 TOO_DEEP = b"[" * 200_000
 

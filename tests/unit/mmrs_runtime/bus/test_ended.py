@@ -7,10 +7,10 @@ import time
 import pytest
 from hub import Hub
 
-from mmrs_core.flight.bus import Member, Node, Owned
-from mmrs_core.flight.bus.reading import written
-from mmrs_core.flight.bus.watching import Watching
-from mmrs_core.flight.bus.words import CommandId, Ended
+from mmrs_runtime.bus import Member, Node, Owned
+from mmrs_runtime.bus.reading import written
+from mmrs_runtime.bus.watching import Watching
+from mmrs_runtime.bus.words import CommandId, Ended
 
 RUN = "run-0"
 

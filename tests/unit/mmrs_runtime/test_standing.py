@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from mmrs_core.flight.orders.standing import lines_of
-from mmrs_core.flight.phases import WAITS, WORKS
+from mmrs_runtime.orders.standing import lines_of
+from mmrs_runtime.phases import WAITS, WORKS
 
 PLACE = {"latitude": 42.3503916, "longitude": 13.3908992, "height": 35.02}
 FLIES = {"robot": "Kestrel", "phase": WORKS, "mode": "guided", "armed": True, "speed": 3.31, "place": PLACE}

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from mmrs_core.flight.conditions import awaiting, truth
-from mmrs_core.flight.questions import Questions
+from mmrs_runtime.conditions import awaiting, truth
+from mmrs_runtime.questions import Questions
 
 
 def test_the_choice_that_an_answer_decides_uses_it_up():

@@ -12,7 +12,7 @@ import pytest
 from full_pipes import MOST, full_pipe
 from stalls import Stalls
 
-from mmrs_core.flight.screen import say, unfailing
+from mmrs_runtime.screen import say, unfailing
 
 LINE = "'Alba': LAND"
 

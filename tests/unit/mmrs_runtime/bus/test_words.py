@@ -8,8 +8,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from mmrs_core.flight.bus.reading import Unreadable, answer_in, request_in, written
-from mmrs_core.flight.bus.words import (
+from mmrs_runtime.bus.reading import Unreadable, answer_in, request_in, written
+from mmrs_runtime.bus.words import (
     LARGEST,
     LONGEST,
     MOST_FINDS,

@@ -5,7 +5,7 @@ from __future__ import annotations
 import threading
 from collections import deque
 
-from mmrs_core.flight.orders.orders import Inbox, Order
+from mmrs_runtime.orders.orders import Inbox, Order
 
 
 def test_an_order_that_is_given_while_the_inbox_is_being_closed_is_refused():
