@@ -23,6 +23,12 @@ class Code(str):
     __slots__ = ()
 
 
+class Name(str):
+    """A name of our own in generated Python code, which stands for a value that the code says elsewhere."""
+
+    __slots__ = ()
+
+
 @dataclass(frozen=True, slots=True)
 class Call:
     """A call in generated Python code: `function` is a name of our own, never one from a model."""
@@ -33,7 +39,7 @@ class Call:
 
 
 def python_literal(value: object) -> Code:
-    """Return a value as a Python expression in ASCII on one line: a literal, or a `Call` of literals.
+    """Return a value as a Python expression in ASCII on one line: a literal, a `Name`, or a `Call` of these.
 
     Raises:
         ValueError: it is a number that is not finite, or no plain value.
@@ -48,6 +54,8 @@ def python_literal(value: object) -> Code:
         return Code(repr(value))
     if value is None or isinstance(value, bool | int):
         return Code(repr(value))
+    if isinstance(value, Name):
+        return name(value)
     if isinstance(value, str):
         return _quoted(str(value))
     if isinstance(value, tuple | list):

@@ -17,6 +17,7 @@ from mmrs_core.mavlink.context import RobotContext, context_of, homeless, requir
 from mmrs_core.mavlink.earth import at_a_pole, degrees_of
 from mmrs_core.mavlink.fencing import fence_faults
 from mmrs_core.mavlink.movements import losses_of
+from mmrs_core.mavlink.naming import command_name, with_names
 from mmrs_core.mavlink.program import deciding, robot_view, seeking, trace_of
 from mmrs_core.mavlink.safety import areas_of, policies_of
 from mmrs_core.mavlink.vehicles import PX4, autopilot_of
@@ -55,9 +56,8 @@ def files(input: TargetInput) -> Iterator[FileSpec]:
     stems = file_stems([robot.id for robot in robots], hyphens=False)
     modules = [f"robot_{stems[robot.id]}" for robot in robots]
     for robot, module in zip(robots, modules, strict=True):
-        yield FileSpec(
-            f"{module}.py", "robot.py.jinja", {"robot": robot_view(robot, input)}, trace=trace_of(robot)
-        )
+        view = {"robot": with_names(robot_view(robot, input), command_name)}
+        yield FileSpec(f"{module}.py", "robot.py.jinja", view, trace=trace_of(robot))
     yield from fleet_files(input.program, modules, tuple(_rehearsal(input)))
     yield from runtime_files()
 

@@ -51,7 +51,13 @@ class StepView:
 
 @dataclass(frozen=True, slots=True)
 class RobotView:
-    """One robot as the template sees it; `head` is what is said of it before its steps, by name."""
+    """One robot as the template sees it.
+
+    Attributes:
+        words: of the runtime that its program needs.
+        head: what is said of it before its steps, by name.
+        names: values that the program says by a name, with that name.
+    """
 
     id: str
     mission: str
@@ -60,6 +66,7 @@ class RobotView:
     steps: tuple[StepView, ...]
     conditions: tuple[str, ...]
     objects: tuple[str, ...]
+    names: tuple[tuple[str, object], ...] = ()
 
     def trace(self, name: str) -> TracedStep:
         """Return what a line of the head serves: no move, but the robot."""

@@ -26,6 +26,7 @@ from mmrs_core.mavlink.actions import action_losses
 from mmrs_core.mavlink.context import RobotContext, context_of, homeless, require_home, vehicleless
 from mmrs_core.mavlink.controllers import RUNTIME, fleet_files, runtime_files
 from mmrs_core.mavlink.movements import losses_of
+from mmrs_core.mavlink.naming import with_names
 from mmrs_core.mavlink.program import robot_view, trace_of
 from mmrs_core.mavlink.safety import policies_of
 from mmrs_core.scene import Device, Policy, RobotType
@@ -59,7 +60,8 @@ def files(input: TargetInput) -> Iterator[FileSpec]:
     modules = [f"robot_{stems[robot.id]}" for robot in robots]
     for robot, module in zip(robots, modules, strict=True):
         sheet = to_json(_sheet(robot, input))
-        view = {"robot": robot_view(robot, local, input.program.fingerprint), "sheet": f"{module}.json"}
+        said = with_names(robot_view(robot, local, input.program.fingerprint))
+        view = {"robot": said, "sheet": f"{module}.json"}
         yield FileSpec(f"{module}.json", "", data=sheet.encode())
         yield FileSpec(f"{module}.py", "robot.py.jinja", view, trace=trace_of(robot))
     yield from fleet_files(replace(local.program, robots=robots), modules)
