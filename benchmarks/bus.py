@@ -28,7 +28,7 @@ from statistics import median
 
 import zenoh
 
-from mmrs_core.behaviour.log import LogWriter, read_logs
+from mmrs_core.behaviour.log import read_logs
 from mmrs_core.behaviour.program import Program
 from mmrs_core.behaviour.replay import Outcome, replay
 from mmrs_core.contributions.backends import BackendInput
@@ -45,7 +45,7 @@ from mmrs_core.transformation.kinds import MOVE_KINDS, PLAIN_ROBOT
 from mmrs_runtime.bus import begin_together
 from mmrs_runtime.bus.carriers.over_zenoh import ZenohCarrier
 from mmrs_runtime.bus.carriers.sessions import Endpoints, configuration
-from mmrs_runtime.records.log import Log
+from mmrs_runtime.records.log import Log, LogWriter
 
 PROCESSES, ROUNDS, SPEEDUP = 4, 5, 10.0
 

@@ -14,7 +14,6 @@ from typing import TYPE_CHECKING
 import pluggy
 
 if TYPE_CHECKING:
-    from mmrs_core.behaviour.steps import StepRecord
     from mmrs_core.contributions.backends import BackendFactory
     from mmrs_core.contributions.checks import Check
     from mmrs_core.contributions.codecs import Codec
@@ -30,6 +29,7 @@ if TYPE_CHECKING:
     from mmrs_core.languages.sources import MetamodelSource
     from mmrs_core.languages.subclasses import ElementClass
     from mmrs_core.migration.dialect import ForeignDialect
+    from mmrs_runtime.records.steps import StepRecord
 
 hookspec = pluggy.HookspecMarker("mmrs")
 hookimpl = pluggy.HookimplMarker("mmrs")

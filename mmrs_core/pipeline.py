@@ -15,7 +15,6 @@ from mmrs_core.errors import InternalError, InvalidModelError, PluginError, Unre
 
 if TYPE_CHECKING:
     from mmrs_core.behaviour.program import Program
-    from mmrs_core.behaviour.steps import StepRecord
     from mmrs_core.contributions.backends import BackendFactory, BackendInput
     from mmrs_core.contributions.checks import Verdict
     from mmrs_core.contributions.execution import Condition
@@ -27,6 +26,7 @@ if TYPE_CHECKING:
     from mmrs_core.runtime.run import Run
     from mmrs_core.scene import Area, Plan, RobotType, Scene
     from mmrs_core.transformation.engine import Trace
+    from mmrs_runtime.records.steps import StepRecord
 
 Contributed = TypeVar("Contributed")
 CORE_DISTRIBUTION = "mmrs-core"

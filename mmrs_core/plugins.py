@@ -17,8 +17,8 @@ from mmrs_core.contributions.registry import Contributions, called
 from mmrs_core.errors import PluginError
 
 if TYPE_CHECKING:
-    from mmrs_core.behaviour.steps import StepRecord
     from mmrs_core.languages.metaclass import Package
+    from mmrs_runtime.records.steps import StepRecord
 
 GROUP = "mmrs.plugins"
 _CORE = builtin.__name__

@@ -9,7 +9,7 @@ from itertools import pairwise
 from pathlib import Path
 
 from mmrs_core.behaviour.blackbox import Entry, Tell, entries_of
-from mmrs_core.behaviour.log import SUFFIX
+from mmrs_runtime.records.steps import SUFFIX
 
 BOX = ".blackbox"
 BOX_SUFFIX = ".ndjson"

@@ -9,7 +9,6 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from enum import Enum
 
-from mmrs_core.behaviour.log import merge
 from mmrs_core.behaviour.program import BEHAVIOUR, Program, RobotProgram, SlotId
 from mmrs_core.behaviour.semantics import (
     Phase,
@@ -23,7 +22,7 @@ from mmrs_core.behaviour.semantics import (
     told_by,
     waiting,
 )
-from mmrs_core.behaviour.steps import StepRecord
+from mmrs_runtime.records.steps import StepRecord, merge
 
 HOLD_POSITION = (BEHAVIOUR, "HoldPosition")
 

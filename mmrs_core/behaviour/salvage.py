@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterable
 from pathlib import Path
 
 from mmrs_core.behaviour.blackbox import Damage
-from mmrs_core.behaviour.log import LONGEST_LINE, SUFFIX, faults_of
-from mmrs_core.behaviour.steps import StepRecord
 from mmrs_core.errors import UnreadableError
+from mmrs_runtime.records.steps import SUFFIX, StepRecord, step_in
 
 
 def salvage_log(path: Path) -> tuple[tuple[StepRecord, ...], tuple[Damage, ...]]:
@@ -47,14 +45,10 @@ def logs_in(paths: Iterable[Path]) -> tuple[Path, ...]:
 
 
 def _record(line: bytes) -> tuple[StepRecord | None, str]:
-    if len(line) > LONGEST_LINE:
-        return None, "longer than any step"
     try:
-        value: object = json.loads(line)
-    except (ValueError, RecursionError):
-        return None, "zero bytes, as power loss leaves them" if b"\0" in line else "not JSON"
-    if faults := faults_of(value):
-        return None, "; ".join(faults)
-    assert isinstance(value, dict)
-    counts = {name: int(value[name]) for name in ("seq", "lamport")}
-    return StepRecord(**{**value, **counts, "time": float(value["time"])}), ""
+        return step_in(line.decode("utf-8")), ""
+    except UnicodeDecodeError:
+        fault = "not JSON"
+    except ValueError as error:
+        fault = str(error)
+    return None, "zero bytes, as power loss leaves them" if b"\0" in line else fault

@@ -17,7 +17,7 @@ from dataclasses import dataclass
 from enum import Enum
 
 from mmrs_core.behaviour.program import BEHAVIOUR, Action, Program, RobotProgram, SlotId
-from mmrs_core.behaviour.steps import StepRecord
+from mmrs_runtime.records.steps import StepRecord
 
 NOTIFY = (BEHAVIOUR, "Notify")
 
@@ -53,7 +53,7 @@ class Step:
     """A step that a robot may make.
 
     Attributes:
-        robot, label, move, detail, slot: as in `mmrs_core.behaviour.steps.StepRecord`.
+        robot, label, move, detail, slot: as in `mmrs_runtime.records.steps.StepRecord`.
         leads_to: where the robot is afterwards.
         sets: the slots that it sets to `active`; empty unless the label is ``ntf``.
     """

@@ -9,7 +9,6 @@ from pathlib import Path
 import typer
 
 from mmrs_core.behaviour.program import Program
-from mmrs_core.behaviour.steps import StepRecord
 from mmrs_core.cli.output import tell
 from mmrs_core.errors import LinkLostError, UnreadableError, UnsupportedError
 from mmrs_core.runtime.resuming import restore
@@ -17,6 +16,7 @@ from mmrs_core.runtime.slots import InProcessBus, ProgramBus, members_of, shared
 from mmrs_runtime.bus import Incomplete, Unwelcome, begin_together
 from mmrs_runtime.bus.carriers.carrier import Carrier
 from mmrs_runtime.bus.carriers.endpoints import first_fault
+from mmrs_runtime.records.steps import StepRecord
 
 
 @dataclass(frozen=True, slots=True)

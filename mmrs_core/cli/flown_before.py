@@ -7,11 +7,10 @@ from pathlib import Path
 
 import typer
 
-from mmrs_core.behaviour.log import SUFFIX, log_name, read_log, read_logs
+from mmrs_core.behaviour.log import read_log, read_logs
 from mmrs_core.behaviour.program import Program
 from mmrs_core.behaviour.replay import replay
 from mmrs_core.behaviour.salvage import salvage_log
-from mmrs_core.behaviour.steps import StepRecord
 from mmrs_core.cli.figures import clock
 from mmrs_core.cli.output import counted, tell
 from mmrs_core.cli.wishes import Wishes
@@ -19,6 +18,7 @@ from mmrs_core.errors import InvalidModelError
 from mmrs_core.runtime.resuming import over_by
 from mmrs_core.runtime.slots import slots_path
 from mmrs_runtime.records.blackbox import black_box_path, last_time, plan_of
+from mmrs_runtime.records.steps import SUFFIX, StepRecord, log_name
 
 
 def resumed_steps(program: Program, wishes: Wishes, here: tuple[str, ...]) -> tuple[StepRecord, ...]:

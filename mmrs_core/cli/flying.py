@@ -9,10 +9,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from types import FrameType
 
-from mmrs_core.behaviour.log import LogWriter, log_name
 from mmrs_core.behaviour.program import Program
 from mmrs_core.behaviour.replay import Outcome
-from mmrs_core.behaviour.steps import StepRecord
 from mmrs_core.cli.behaviours import Loaded
 from mmrs_core.cli.bus_faults import bus_faults
 from mmrs_core.cli.buses import begin_all, bus_for
@@ -39,6 +37,8 @@ from mmrs_core.runtime.live import Venture, run_live
 from mmrs_core.runtime.orders import STOP, Orders
 from mmrs_core.runtime.terms import Ending
 from mmrs_runtime.faults import ORDERED, STOPPED
+from mmrs_runtime.records.log import LogWriter
+from mmrs_runtime.records.steps import StepRecord, log_name
 from mmrs_runtime.screen import unfailing
 
 FAILED = 1

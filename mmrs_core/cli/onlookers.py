@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING
 from mmrs_core.cli.output import tell
 
 if TYPE_CHECKING:
-    from mmrs_core.behaviour.steps import StepRecord
     from mmrs_core.plugins import Plugins
+    from mmrs_runtime.records.steps import StepRecord
 
 FAREWELL_SECONDS = 5.0
 """For how long a run that has ended waits for those who have not seen all of it."""

@@ -41,7 +41,6 @@ def simulate(
     json: Json = False,
 ) -> int:
     """Carry out a behaviour in simulation, faster than real time."""
-    from mmrs_core.behaviour.log import log_name
     from mmrs_core.cli.behaviours import load_behaviour
     from mmrs_core.cli.journey import Workshop
     from mmrs_core.cli.protection import refuse_inputs
@@ -55,6 +54,7 @@ def simulate(
         succeeded,
         write_logs,
     )
+    from mmrs_runtime.records.steps import log_name
 
     workshop = Workshop(settings_of(call))
     usual, own = backends_of(backend, "simulation")

@@ -12,10 +12,9 @@ from tempfile import TemporaryDirectory
 
 import typer
 
-from mmrs_core.behaviour.log import SUFFIX, LogWriter, log_name, read_log
+from mmrs_core.behaviour.log import read_log
 from mmrs_core.behaviour.program import Program
 from mmrs_core.behaviour.replay import Outcome
-from mmrs_core.behaviour.steps import StepRecord
 from mmrs_core.cli.figures import clock, length
 from mmrs_core.cli.journey import Workshop
 from mmrs_core.cli.output import progress
@@ -25,6 +24,8 @@ from mmrs_core.pipeline import Place, simulate
 from mmrs_core.resources import new_folders
 from mmrs_core.runtime.run import Run
 from mmrs_core.scene import Name, RobotType
+from mmrs_runtime.records.log import LogWriter
+from mmrs_runtime.records.steps import SUFFIX, StepRecord, log_name
 
 _HOLDS = {"yes": True, "true": True, "no": False, "false": False}
 

@@ -251,14 +251,14 @@ def _run(parser: argparse.ArgumentParser, robots: Sequence[Robot], given: Any) -
         steps = [step for path in taken for step in read(path)]
     except Fault as fault:
         parser.error(f"--resume: {fault}")
-    runs = sorted({str(step["run"]) for step in steps})
+    runs = sorted({step.run for step in steps})
     if len(runs) > 1 or (runs and given.run and runs != [given.run]):
         parser.error(f"--resume: the logs are of run {', '.join(map(repr, runs))}")
     for robot in robots:
         if plan_of(black_box_path(given.log / robot.log)) not in ("", robot.plan):
             parser.error(f"--resume: {robot.id!r} flew by another plan of the mission in {given.log}")
     ends = (last_time(black_box_path(path)) for path in taken)
-    start = max((*(float(step["time"]) for step in steps), *ends), default=0.0)
+    start = max((*(step.time for step in steps), *ends), default=0.0)
     return (runs[0] if runs else given.run or FIRST_RUN), start
 
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 import itertools
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
-from typing import Any, Protocol
+from typing import Protocol
 
 from mmrs_runtime.bus import (
     Carrier,
@@ -23,6 +23,7 @@ from mmrs_runtime.bus import (
     Recorded,
 )
 from mmrs_runtime.faults import PEER_LOST, Fault
+from mmrs_runtime.records.steps import StepRecord
 
 from .program import Action, Notify, Robot
 
@@ -264,18 +265,18 @@ def team_of(robots: Sequence[Robot]) -> tuple[str, ...]:
     return tuple(sorted({robot.id for robot in robots} | {*robots[0].fleet} | {*strangers_of(robots)}))
 
 
-def recorded_of(robot: Robot, lines: Iterable[Mapping[str, Any]]) -> Recorded:
+def recorded_of(robot: Robot, records: Iterable[StepRecord]) -> Recorded:
     """Return what the bus must know of a robot that is started again.
 
     Args:
         robot: the robot.
-        lines: of its log, oldest first, each as the object that it holds.
+        records: the steps of its log, oldest first.
     """
     lamport, notifies = 0, {}
-    for line in lines:
-        lamport = int(line["lamport"])
-        if line["label"] == "ntf":
-            action = robot.step(str(line["move"])).action(str(line["detail"]))
+    for record in records:
+        lamport = record.lamport
+        if record.label == "ntf":
+            action = robot.step(record.move).action(record.detail)
             assert isinstance(action, Notify)
             notifies.update({slot: (action.active, lamport) for slot in action.slots})
     return Recorded(lamport, notifies)

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
-from mmrs_core.behaviour.log import log_name
 from mmrs_core.behaviour.program import Program, RobotProgram, Transition
 from mmrs_core.behaviour.refuges import Refuges, refuges_of
 from mmrs_core.behaviour.walk import in_order
@@ -21,6 +20,7 @@ from mmrs_core.mavlink.runs import Run, runs_of
 from mmrs_core.mavlink.safety import explicit, policies_of
 from mmrs_core.mavlink.vehicles import TRAVEL_FACTORS, capability_of, manner_of
 from mmrs_core.scene import Point, Policy
+from mmrs_runtime.records.steps import log_name
 
 
 @dataclass(frozen=True, slots=True)

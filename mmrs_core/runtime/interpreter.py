@@ -17,7 +17,6 @@ from math import inf
 from mmrs_core.behaviour.program import Program
 from mmrs_core.behaviour.replay import Outcome
 from mmrs_core.behaviour.semantics import Phase, Step, Waiting
-from mmrs_core.behaviour.steps import StepRecord
 from mmrs_core.contributions.backends import Backend
 from mmrs_core.contributions.buses import Bus, CommandId
 from mmrs_core.contributions.execution import Clock, Condition, Fault
@@ -34,6 +33,7 @@ from mmrs_core.runtime.terms import TO_THE_END, Ending, Terms
 from mmrs_core.runtime.unready import note, reason_of
 from mmrs_core.scene import Policy
 from mmrs_runtime.faults import LOG_FAILED
+from mmrs_runtime.records.steps import StepRecord
 
 PACE = 0.05
 """Seconds between two looks at a backend, or a bus, that cannot say when to look again."""

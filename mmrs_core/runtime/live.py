@@ -11,7 +11,6 @@ from math import inf
 from pathlib import Path
 
 from mmrs_core.behaviour.program import Program
-from mmrs_core.behaviour.steps import StepRecord
 from mmrs_core.contributions.abilities import Closing, Noting, Preparing, Telling
 from mmrs_core.contributions.backends import Backend, BackendFactory, BackendInput, Live
 from mmrs_core.contributions.buses import Bus
@@ -27,6 +26,7 @@ from mmrs_core.runtime.terms import Ending, Terms
 from mmrs_core.runtime.unready import Unready, note_alone, record, unready
 from mmrs_runtime.clock import SIGNAL_SECONDS
 from mmrs_runtime.faults import ORDERED, STOPPED
+from mmrs_runtime.records.steps import StepRecord
 
 GATHERING_SECONDS = 0.5
 """Real seconds for which more is waited for, once something keeps a robot from getting ready."""

@@ -4,12 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from mmrs_core.behaviour.log import merge
 from mmrs_core.behaviour.program import Program, RobotProgram
 from mmrs_core.behaviour.semantics import Point, Step, entry, told_by
-from mmrs_core.behaviour.steps import StepRecord
 from mmrs_core.contributions.buses import CommandId
 from mmrs_core.runtime.slots import InProcessBus
+from mmrs_runtime.records.steps import StepRecord, merge
 
 RESTORED = "restored"
 """Incarnation of senders whose notifies were sent before the run was broken off."""

@@ -7,7 +7,6 @@ from math import inf
 
 from mmrs_core.behaviour.program import Move, RobotProgram, SlotId
 from mmrs_core.behaviour.semantics import Phase, Step, entry, fault
-from mmrs_core.behaviour.steps import StepRecord
 from mmrs_core.contributions.abilities import Noting, Preparing, Recognising, Telling, Watched
 from mmrs_core.contributions.backends import Backend
 from mmrs_core.contributions.buses import Bus
@@ -26,6 +25,7 @@ from mmrs_core.runtime.stages import Stage
 from mmrs_core.runtime.waiting import Wait
 from mmrs_runtime.faults import BATTERY_LOW, LINK_LOST, LOG_FAILED, PEER_LOST, STOPPED
 from mmrs_runtime.policies import COMES_DOWN, NOTHING, still_low
+from mmrs_runtime.records.steps import StepRecord
 
 
 class RunningRobot:

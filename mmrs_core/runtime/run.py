@@ -7,7 +7,6 @@ from dataclasses import dataclass, field
 
 from mmrs_core.behaviour.policies import in_precedence
 from mmrs_core.behaviour.program import Program
-from mmrs_core.behaviour.steps import StepRecord
 from mmrs_core.contributions.abilities import Recorder
 from mmrs_core.contributions.backends import BackendFactory, BackendInput
 from mmrs_core.contributions.execution import Condition, RobotState, Sample
@@ -20,6 +19,7 @@ from mmrs_core.runtime.mixed import options_for, refuse_strange
 from mmrs_core.runtime.slots import InProcessBus
 from mmrs_core.runtime.terms import TO_THE_END, Ending, Terms
 from mmrs_core.scene import Area, Name, Policy, RobotType
+from mmrs_runtime.records.steps import StepRecord
 
 
 @dataclass(frozen=True, slots=True)

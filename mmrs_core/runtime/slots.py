@@ -5,13 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 
-from mmrs_core.behaviour.log import log_name
 from mmrs_core.behaviour.program import Program, RobotProgram, SlotId
-from mmrs_core.behaviour.steps import StepRecord
 from mmrs_core.contributions.buses import CommandId, Find, SlotState
 from mmrs_core.errors import InternalError
 from mmrs_core.flight.slots import SETTLING_SECONDS
 from mmrs_runtime.bus import Carrier, Delivery, FileJournal, Member, Node, Owned, Recorded
+from mmrs_runtime.records.steps import StepRecord, log_name
 
 
 class ProgramBus:

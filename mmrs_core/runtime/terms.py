@@ -8,11 +8,11 @@ from math import inf
 
 from mmrs_core.behaviour.replay import Outcome
 from mmrs_core.behaviour.semantics import Waiting
-from mmrs_core.behaviour.steps import StepRecord
 from mmrs_core.contributions.execution import Fault
 from mmrs_core.runtime.attention import Attention
 from mmrs_core.runtime.orders import Orders
 from mmrs_core.runtime.standing import Standing
+from mmrs_runtime.records.steps import StepRecord
 
 Observer = Callable[[StepRecord], None]
 

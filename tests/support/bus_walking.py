@@ -17,13 +17,13 @@ from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
 
-from mmrs_core.behaviour.log import log_name, read_log, to_line
+from mmrs_core.behaviour.log import read_log
 from mmrs_core.behaviour.program import Program
 from mmrs_core.behaviour.semantics import Phase, entry, steps
-from mmrs_core.behaviour.steps import StepRecord
 from mmrs_core.runtime.slots import recorded_of, shared_bus
 from mmrs_core.testing.small_programs import hold, notify, program, robot
 from mmrs_runtime.bus import CommandId
+from mmrs_runtime.records.steps import StepRecord, log_name, to_line
 
 RUN = "run-0"
 

@@ -12,8 +12,8 @@ from random import Random
 
 from mmrs_core.behaviour.program import Program
 from mmrs_core.behaviour.semantics import Phase, entry, steps
-from mmrs_core.behaviour.steps import StepRecord
 from mmrs_runtime.bus import CommandId, Member, Node, Owned, Recorded
+from mmrs_runtime.records.steps import StepRecord
 
 RUN = "run-0"
 

@@ -11,7 +11,7 @@ from mmrs_auv.backend.rehearsed import RehearsedRobot, rehearsed
 from mmrs_auv.kinds import AUV_KIND
 from mmrs_auv.plugin import mmrs_metamodels
 
-from mmrs_core.behaviour.log import LogWriter, read_logs
+from mmrs_core.behaviour.log import read_logs
 from mmrs_core.behaviour.program import Move, Program, Target
 from mmrs_core.behaviour.replay import replay
 from mmrs_core.contributions.backends import BackendInput
@@ -23,6 +23,7 @@ from mmrs_core.runtime.run import Run, simulate
 from mmrs_core.scene import Area, Frame, RobotType
 from mmrs_core.testing.programs import move, program, robot_program
 from mmrs_core.transformation.kinds import MOVE_KINDS
+from mmrs_runtime.records.log import LogWriter
 
 POOL = Frame("EPSG:4326", 41.18, -8.7, 0.0, "MSL", surface=0.0)
 TYPE = Path(__file__).parents[2] / "examples/pool/robots/pool-auv.xmi"

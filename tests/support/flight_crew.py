@@ -183,7 +183,7 @@ class Manned:
 
     def events(self) -> list[str]:
         """Return the faults in its log."""
-        return [str(line["detail"]) for line in read(self.log) if line["label"] == "fault"]
+        return [line.detail for line in read(self.log) if line.label == "fault"]
 
     def away(self, place: Geographic) -> float:
         """Return how far the vehicle is from a place, metres."""

@@ -12,4 +12,4 @@ def phase(shared, robot="alpha"):
 
 def labels(folder):
     """Return the labels of the steps in the log of alpha."""
-    return [line["label"] for line in read(folder / "alpha.jsonl")]
+    return [line.label for line in read(folder / "alpha.jsonl")]

@@ -12,13 +12,13 @@ from mmrs_core.behaviour.blackbox import Damage, Entry, number_of
 from mmrs_core.behaviour.box_files import BlackBox, black_boxes, is_part
 from mmrs_core.behaviour.program import Program, RobotProgram
 from mmrs_core.behaviour.salvage import logs_in, salvage_log
-from mmrs_core.behaviour.steps import StepRecord
 from mmrs_core.cli.flights.clocks import Readings, Shift, shifts_of
 from mmrs_core.cli.flights.fixes import Fixes, Zero, zero_of
 from mmrs_core.cli.flights.values import Flight, Flown
 from mmrs_core.contributions.rules import RobotKind
 from mmrs_core.errors import InvalidModelError, UnreadableError
 from mmrs_core.scene import Name, RobotType
+from mmrs_runtime.records.steps import StepRecord
 
 SIMULATION = "simulation"
 """What stands for the link where there was no vehicle."""

@@ -7,7 +7,6 @@ from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 
 from mmrs_core.behaviour.box_files import BOX, BOX_SUFFIX, black_boxes
-from mmrs_core.behaviour.log import log_name
 from mmrs_core.behaviour.program import Program, RobotProgram
 from mmrs_core.cli.flights.fixes import zero_of
 from mmrs_core.cli.flights.gathering import SIMULATION
@@ -18,6 +17,7 @@ from mmrs_core.mavlink.vehicles import vehicle_class
 from mmrs_core.resources import named
 from mmrs_core.runtime.run import Run
 from mmrs_core.scene import Name, RobotType
+from mmrs_runtime.records.steps import log_name
 
 
 def box_name(robot: str) -> str:

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from mmrs_core.behaviour.log import merge
 from mmrs_core.behaviour.program import Program
 from mmrs_core.cli.flights.places import Place, Places
 from mmrs_core.cli.flights.values import Flight
+from mmrs_runtime.records.steps import merge
 
 
 @dataclass(frozen=True, slots=True)

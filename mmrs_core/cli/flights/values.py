@@ -10,11 +10,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mmrs_core.behaviour.blackbox import Entry
-from mmrs_core.behaviour.steps import StepRecord
 from mmrs_core.geometry.frames import Floats
 from mmrs_core.scene import PolicyEvent, Position
 from mmrs_runtime.faults import TAKEN_OVER
 from mmrs_runtime.policies import NOTHING
+from mmrs_runtime.records.steps import StepRecord
 
 _OFTEN = 0.5
 EVENTS = frozenset(get_args(PolicyEvent))

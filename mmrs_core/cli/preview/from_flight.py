@@ -10,7 +10,6 @@ from math import dist
 import numpy as np
 
 from mmrs_core.behaviour.program import BEHAVIOUR, Move, Program, RobotProgram
-from mmrs_core.behaviour.steps import StepRecord
 from mmrs_core.cli.figures import clock, length
 from mmrs_core.cli.flights.away import away_of, without
 from mmrs_core.cli.flights.photos import SIMULATED, UNCONFIRMED, Shot, shots_in
@@ -29,6 +28,7 @@ from mmrs_core.cli.preview.picture import Arm, Bar, Leg, Mark, Picture, RobotPic
 from mmrs_core.contributions.registry import Contributions
 from mmrs_core.contributions.rules import MoveKind
 from mmrs_core.scene import Name, Position
+from mmrs_runtime.records.steps import StepRecord
 
 _HOLD = (BEHAVIOUR, "HoldPosition")
 _STILL = 0.3

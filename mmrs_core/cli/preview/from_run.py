@@ -9,7 +9,6 @@ from itertools import pairwise
 from math import dist
 
 from mmrs_core.behaviour.program import BEHAVIOUR, Move, Program, RobotProgram
-from mmrs_core.behaviour.steps import StepRecord
 from mmrs_core.cli.figures import clock, length
 from mmrs_core.cli.preview.picture import Bar, Handover, Leg, Picture, RobotPicture
 from mmrs_core.cli.preview.places import origin_of, symbol_of_robot, zones_of
@@ -18,6 +17,7 @@ from mmrs_core.contributions.execution import Sample
 from mmrs_core.contributions.rules import MoveKind, most_specific
 from mmrs_core.contributions.symbols import MapSymbol
 from mmrs_core.scene import Area, Name, Part, Position, RobotType
+from mmrs_runtime.records.steps import StepRecord
 
 _STANDSTILL = 1e-3
 _HOLD = (BEHAVIOUR, "HoldPosition")

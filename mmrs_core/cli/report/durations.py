@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 
 from mmrs_core.behaviour.program import Program, RobotProgram, SlotId
-from mmrs_core.behaviour.steps import StepRecord
 from mmrs_core.cli.flights.values import Flight
 from mmrs_core.cli.report.values import MoveReport, WaitReport
 from mmrs_core.cli.report.visits import Visit, visits_of
 from mmrs_core.runtime.run import Run
+from mmrs_runtime.records.steps import StepRecord
 
 SHORTEST_WAIT = 1.0
 """Seconds of a wait that is told."""

@@ -8,13 +8,13 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from mmrs_core.behaviour.program import Move, Program
-from mmrs_core.behaviour.steps import StepRecord
 from mmrs_core.cli.flights.nearest import along
 from mmrs_core.cli.flights.planned import PlannedLeg
 from mmrs_core.cli.flights.values import Flight, Track
 from mmrs_core.cli.report.values import Status, TaskReport
 from mmrs_core.cli.report.visits import Visit, visits_of
 from mmrs_core.runtime.run import Run
+from mmrs_runtime.records.steps import StepRecord
 
 ASIDE = frozenset({"launch", "transit", "recover", "wait", "recharge", "choice", "notify"})
 """Rules of moves that only lead to a task."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-from mmrs_core.behaviour.steps import StepRecord
+from mmrs_runtime.records.steps import StepRecord
 
 
 @dataclass(slots=True)

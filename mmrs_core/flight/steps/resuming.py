@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 
 from mmrs_runtime.faults import Refused
+from mmrs_runtime.records.steps import StepRecord, merge
 
 from ..places import at_height, ends_of
 from ..program import (
@@ -24,8 +25,6 @@ from ..program import (
     Then,
 )
 from ..vehicles.footing import footing
-
-Record = Mapping[str, object]
 
 CAMERA_STATES = {206: 206, 2500: 2500, 2501: 2500}
 """Commands after which a camera goes on by itself, and which of them concern the same."""
@@ -71,7 +70,7 @@ class Progress:
         return made
 
 
-def progress_of(robot: Robot, records: Iterable[Record]) -> Progress:
+def progress_of(robot: Robot, records: Iterable[StepRecord]) -> Progress:
     """Return where a robot is after the steps of its log.
 
     Raises:
@@ -80,16 +79,16 @@ def progress_of(robot: Robot, records: Iterable[Record]) -> Progress:
     steps = {step.move: step for step in robot.steps}
     here = Progress(robot.start)
     for number, record in enumerate(records, start=1):
-        if record["move"] != here.move or here.over:
+        if record.move != here.move or here.over:
             raise Refused(f"line {number} of the log is no step of this program after those before it")
         try:
-            here = here.then(str(record["label"]), str(record["detail"]), steps[here.move])
+            here = here.then(record.label, record.detail, steps[here.move])
         except (ValueError, KeyError) as error:
             raise Refused(f"line {number} of the log is no step of this program") from error
     return here
 
 
-def track_of(robot: Robot, records: Iterable[Record]) -> list[tuple[str, Place]]:
+def track_of(robot: Robot, records: Iterable[StepRecord]) -> list[tuple[str, Place]]:
     """Return the places that a robot has passed in its present sortie, with the moves that ended there.
 
     Raises:
@@ -98,7 +97,7 @@ def track_of(robot: Robot, records: Iterable[Record]) -> list[tuple[str, Place]]
     return _sortie(robot, records)[1]
 
 
-def began_at(robot: Robot, records: Iterable[Record]) -> Place:
+def began_at(robot: Robot, records: Iterable[StepRecord]) -> Place:
     """Return where a robot's present sortie began: where its program has landed last; else its home.
 
     Raises:
@@ -107,7 +106,7 @@ def began_at(robot: Robot, records: Iterable[Record]) -> Place:
     return _sortie(robot, records)[0]
 
 
-def starts_of(robot: Robot, records: Sequence[Record]) -> tuple[Place, ...]:
+def starts_of(robot: Robot, records: Sequence[StepRecord]) -> tuple[Place, ...]:
     """Return where a robot may stand whose log ends with these steps, if it stands on the ground.
 
     That is where its sortie began; or, where it was to land last, there.
@@ -118,25 +117,25 @@ def starts_of(robot: Robot, records: Sequence[Record]) -> tuple[Place, ...]:
     began = footing(robot.home, began_at(robot, records))
     if not records or not is_landing(robot, records[-1]):
         return (began,)
-    landed = [*records, {**records[-1], "label": "end"}]
+    landed = [*records, replace(records[-1], label="end")]
     return began, footing(robot.home, began_at(robot, landed))
 
 
-def is_landing(robot: Robot, last: Record) -> bool:
+def is_landing(robot: Robot, last: StepRecord) -> bool:
     """Return whether a robot was to land when its log ended with that step."""
-    return last["label"] == "begin" and isinstance(robot.step(str(last["move"])).movement, Land)
+    return last.label == "begin" and isinstance(robot.step(last.move).movement, Land)
 
 
-def _sortie(robot: Robot, records: Iterable[Record]) -> tuple[Place, list[tuple[str, Place]]]:
+def _sortie(robot: Robot, records: Iterable[StepRecord]) -> tuple[Place, list[tuple[str, Place]]]:
     steps = {step.move: step.movement for step in robot.steps}
     began = here = robot.home
     track: list[tuple[str, Place]] = []
     for record in records:
-        move = str(record["move"])
+        move = record.move
         movement = steps[move]
-        if record["label"] == "begin" and isinstance(movement, TakeOff):
+        if record.label == "begin" and isinstance(movement, TakeOff):
             track = []
-        if record["label"] != "end":
+        if record.label != "end":
             continue
         if isinstance(movement, TakeOff):
             here = at_height(began, movement.height)
@@ -151,35 +150,31 @@ def _sortie(robot: Robot, records: Iterable[Record]) -> tuple[Place, list[tuple[
     return began, track
 
 
-def slots_of(robots: Iterable[Robot], records: Iterable[Record]) -> tuple[set[tuple[str, str]], int]:
+def slots_of(robots: Iterable[Robot], records: Iterable[StepRecord]) -> tuple[set[tuple[str, str]], int]:
     """Return the slots that are active after the steps of these robots, and the last logical time."""
     steps = {(robot.id, step.move): step for robot in robots for step in robot.steps}
     active: set[tuple[str, str]] = set()
     last = 0
-    for record in sorted(records, key=_order):
-        last = _order(record)[0]
-        if record["label"] == "ntf":
-            action = steps[str(record["robot"]), str(record["move"])].action(str(record["detail"]))
+    for record in merge(records):
+        last = record.lamport
+        if record.label == "ntf":
+            action = steps[record.robot, record.move].action(record.detail)
             assert isinstance(action, Notify)
             active = active | set(action.slots) if action.active else active - set(action.slots)
     return active, last
 
 
-def still_on(robot: Robot, records: Iterable[Record]) -> Iterator[Operate]:
+def still_on(robot: Robot, records: Iterable[StepRecord]) -> Iterator[Operate]:
     """Yield what has to be told a camera again, since it went on by itself before the break."""
     steps = {step.move: step for step in robot.steps}
     last: dict[tuple[str, int], Operate] = {}
     for record in records:
-        if record["label"] != "act":
+        if record.label != "act":
             continue
-        action = steps[str(record["move"])].action(str(record["detail"]))
+        action = steps[record.move].action(record.detail)
         if isinstance(action, Operate) and action.command in CAMERA_STATES:
             last[action.device, CAMERA_STATES[action.command]] = action
     yield from last.values()
-
-
-def _order(record: Record) -> tuple[int, str, int]:
-    return int(str(record["lamport"])), str(record["robot"]), int(str(record["seq"]))
 
 
 def _next(label: str, detail: str, step: Step) -> str:

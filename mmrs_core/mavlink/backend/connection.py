@@ -8,7 +8,6 @@ from math import inf
 from pathlib import Path
 from typing import cast
 
-from mmrs_core.behaviour.log import log_name
 from mmrs_core.behaviour.program import Program
 from mmrs_core.contributions.backends import BackendInput, Live
 from mmrs_core.contributions.execution import Clock as RunClock
@@ -36,6 +35,7 @@ from mmrs_core.mavlink.program import objects_in
 from mmrs_runtime.clock import Clock
 from mmrs_runtime.faults import Fault
 from mmrs_runtime.records.blackbox import BlackBox, black_box_path
+from mmrs_runtime.records.steps import log_name
 
 FIRST_PORT, PORT_STEP = 14_550, 10
 SHARED = "mavlink"

@@ -38,7 +38,7 @@ def append_whole(file: IO[bytes], line: bytes, *, at_once: bool = False) -> None
         at_once: whether it is to be on the disk when this returns.
 
     Raises:
-        OSError: it cannot be written; nothing of it is left in the file then.
+        OSError: it cannot be written; nothing of it is left in the file then. It names the file.
     """
     end = os.fstat(file.fileno()).st_size
     try:
@@ -47,11 +47,13 @@ def append_whole(file: IO[bytes], line: bytes, *, at_once: bool = False) -> None
             left = left[file.write(left) :]
         if at_once:
             os.fsync(file.fileno())
-    except OSError:
+    except OSError as error:
         # What follows must not become part of half a line.
         with suppress(OSError):
             file.truncate(end)
             file.seek(end)
+        if error.filename is None:
+            error.filename = str(file.name)
         raise
 
 

@@ -1,23 +1,125 @@
-"""The log of a robot: what happened, in the order in which it happened, one JSON object a line."""
+"""Logs of robots, a file each: what happened, in the order in which it happened, one JSON object a line."""
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
-from typing import IO, Any
+from types import TracebackType
+from typing import IO, Literal
 
 from ..faults import LOG_FAILED, Fault
 from .lines import append_whole, keep_whole_lines, whole_lines
+from .steps import StepRecord, log_name, step_in, to_line
 
-FIELDS = frozenset({"run", "robot", "seq", "lamport", "time", "label", "move", "detail", "slot"})
 KEPT_AT_ONCE = frozenset({"ntf", "fault"})
 """Labels of steps that are on the disk when they have been written."""
 
 
+class LogFile:
+    """One robot's log. Every step is out of the process, a notify or a fault on the disk, once it is written.
+
+    So a notify that is written before it is delivered survives whatever happens next. Of what cannot be
+    written, nothing is left in the log; a fault is tried once more when it is closed.
+    """
+
+    def __init__(self, path: Path, mode: Literal["a", "w", "x"], *, spaced: bool = False) -> None:
+        """Open nothing yet.
+
+        Args:
+            path: of the log.
+            mode: ``a``: go on after its last whole line; ``w``: replace it; ``x``: refuse one that is there.
+            spaced: as `to_line` takes it.
+        """
+        self._path, self._mode, self._spaced = path, mode, spaced
+        self._file: IO[bytes] | None = None
+        self._owed: StepRecord | None = None
+
+    def open(self) -> IO[bytes]:
+        """Return the open file; its folder is made.
+
+        Raises:
+            OSError: it cannot be opened.
+        """
+        if self._file is None:
+            self._path.parent.mkdir(parents=True, exist_ok=True)
+            if self._mode == "a" and self._path.exists():
+                keep_whole_lines(self._path)
+            self._file = self._path.open(f"{self._mode}b", buffering=0)
+        return self._file
+
+    def write(self, record: StepRecord) -> None:
+        """Append a step.
+
+        Raises:
+            OSError: it cannot be written; it names the file.
+        """
+        if record.label == "fault":
+            self._owed = record
+        self._append(record)
+        self._owed = None
+
+    def close(self) -> None:
+        """Close the file, after a fault that could not be written before, as on a full disk.
+
+        One without steps is taken away, so that it is not taken for a run's.
+        """
+        with suppress(OSError):
+            if self._owed is not None:
+                self._append(self._owed)
+        if self._file is not None:
+            # Every line was written, or its fault raised, before: nothing new can fail here.
+            with suppress(OSError):
+                self._file.close()
+                if not self._path.stat().st_size:
+                    self._path.unlink()
+
+    def _append(self, record: StepRecord) -> None:
+        line = to_line(record, spaced=self._spaced).encode("utf-8") + b"\n"
+        append_whole(self.open(), line, at_once=record.label in KEPT_AT_ONCE)
+
+
+class LogWriter:
+    """Appends steps to one log a robot in a folder; the first step of a robot replaces an older log.
+
+    A run that is resumed goes on with its logs instead, after their last whole lines.
+    """
+
+    def __init__(self, folder: Path, *, resumed: bool = False) -> None:
+        """Open no file yet; make the folder where it is missing."""
+        folder.mkdir(parents=True, exist_ok=True)
+        self._folder, self._resumed = folder, resumed
+        self._files: dict[str, LogFile] = {}
+
+    def write(self, record: StepRecord) -> None:
+        """Append a step to its robot's log.
+
+        Raises:
+            OSError: it cannot be written.
+        """
+        if record.robot not in self._files:
+            path = self._folder / log_name(record.robot)
+            self._files[record.robot] = LogFile(path, "a" if self._resumed else "w")
+        self._files[record.robot].write(record)
+
+    def close(self) -> None:
+        """Close all files, after faults that could not be written before."""
+        while self._files:
+            self._files.popitem()[1].close()
+
+    def __enter__(self) -> LogWriter:
+        """Return the writer."""
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        """Close all files."""
+        self.close()
+
+
 class Log:
-    """Writes steps. Every line is out of the process before the robot goes on.
+    """Numbers and writes the steps of one controller.
 
     Attributes:
         steps: all that are in the file, those of before a break included.
@@ -30,17 +132,14 @@ class Log:
             Fault: it cannot be, or there is one already and it is not to be gone on with; logs are
                 never overwritten.
         """
-        self.steps: list[dict[str, Any]] = list(read(path)) if resume else []
+        self.steps: list[StepRecord] = list(read(path)) if resume else []
+        self._file = LogFile(path, "a" if resume else "x", spaced=True)
         with _writing(path):
-            path.parent.mkdir(parents=True, exist_ok=True)
-            if resume and path.exists():
-                keep_whole_lines(path)
-            self._file: IO[bytes] = path.open("ab" if resume else "xb", buffering=0)
-        self._owed: dict[str, Any] | None = None
+            self._file.open()
         self._path = path
         self._run = run
         self._robot = robot
-        self._time = float(self.steps[-1]["time"]) if self.steps else 0.0
+        self._time = self.steps[-1].time if self.steps else 0.0
 
     def write(
         self, label: str, move: str, *, lamport: int, time: float, detail: str = "", slot: str = ""
@@ -51,57 +150,38 @@ class Log:
             Fault: it cannot be written; nothing of it is left in the file then.
         """
         self._time = max(self._time, round(time, 3))
-        line: dict[str, Any] = {
-            "run": self._run,
-            "robot": self._robot,
-            "seq": len(self.steps),
-            "lamport": lamport,
-            "time": self._time,
-            "label": label,
-            "move": move,
-            "detail": detail,
-            "slot": slot,
-        }
-        self._owed = line if label == "fault" else None
+        seq = len(self.steps)
+        step = StepRecord(self._run, self._robot, seq, lamport, self._time, label, move, detail, slot)
         with _writing(self._path):
-            self._append(line)
+            self._file.write(step)
+        self.steps.append(step)
 
     def close(self) -> None:
-        """Close the file, after a fault that could not be written before, as on a full disk.
-
-        One without steps is taken away, so that nobody takes it for a run's.
-        """
-        with suppress(OSError):
-            if self._owed is not None:
-                self._append(self._owed)
-        # Every line was written, or its fault raised, before: nothing new can fail here.
-        with suppress(OSError):
-            self._file.close()
-            if not self.steps and not self._path.stat().st_size:
-                self._path.unlink()
-
-    def _append(self, line: dict[str, Any]) -> None:
-        data = json.dumps(line, ensure_ascii=True).encode("ascii") + b"\n"
-        append_whole(self._file, data, at_once=line["label"] in KEPT_AT_ONCE)
-        self.steps.append(line)
-        self._owed = None
+        """Close the file, as `LogFile.close` does."""
+        self._file.close()
 
 
-def read(path: Path) -> tuple[dict[str, Any], ...]:
-    """Return the whole lines of a log; none where there is no such file.
+def read(path: Path) -> tuple[StepRecord, ...]:
+    """Return the steps in the whole lines of a log; none where there is no such file.
 
     Raises:
         Fault: it cannot be read, or a line is no step.
     """
     try:
-        data = path.read_bytes() if path.exists() else b""
-        steps = tuple(json.loads(line) for line in whole_lines(data))
-    except (OSError, ValueError, RecursionError) as error:
+        lines = whole_lines(path.read_bytes()) if path.exists() else []
+    except OSError as error:
         raise Fault(LOG_FAILED, f"{path}: cannot be read: {error}") from error
-    for number, step in enumerate(steps):
-        if not isinstance(step, dict) or not step.keys() >= FIELDS or step["seq"] != number:
-            raise Fault(LOG_FAILED, f"{path}:{number + 1}: is not the next step of a log")
-    return steps
+    return tuple(_next_step(line, number, path) for number, line in enumerate(lines))
+
+
+def _next_step(line: bytes, number: int, path: Path) -> StepRecord:
+    try:
+        step = step_in(line.decode("utf-8"))
+    except ValueError as error:
+        raise Fault(LOG_FAILED, f"{path}:{number + 1}: cannot be read: {error}") from error
+    if step.seq != number:
+        raise Fault(LOG_FAILED, f"{path}:{number + 1}: is not the next step of a log")
+    return step
 
 
 @contextmanager

@@ -16,13 +16,14 @@ from mmrs_auv.rehearsal import Berth
 from mmrs_auv.sheets import sheet_of
 from mmrs_auv.vessel.body.surroundings import Surroundings
 
-from mmrs_core.behaviour.log import LogWriter, read_logs
+from mmrs_core.behaviour.log import read_logs
 from mmrs_core.behaviour.program import Program
 from mmrs_core.behaviour.replay import Outcome, replay
-from mmrs_core.behaviour.steps import StepRecord
 from mmrs_core.runtime.live import run_live
 from mmrs_core.runtime.terms import Ending
 from mmrs_core.testing.programs import use
+from mmrs_runtime.records.log import LogWriter
+from mmrs_runtime.records.steps import StepRecord
 
 
 def short_dive() -> Program:

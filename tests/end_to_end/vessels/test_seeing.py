@@ -21,11 +21,12 @@ from mmrs_auv.sheets import sheet_of
 from mmrs_auv.vessel.body.surroundings import BUOY, Surroundings, Thing, to_json
 from ports import free_port
 
-from mmrs_core.behaviour.log import LogWriter, read_logs
+from mmrs_core.behaviour.log import read_logs
 from mmrs_core.behaviour.program import Heading, Move, Program, Target, Transition
 from mmrs_core.behaviour.replay import Outcome, replay
 from mmrs_core.runtime.live import run_live
 from mmrs_core.testing.programs import feedback, move
+from mmrs_runtime.records.log import LogWriter
 
 pytestmark = pytest.mark.thorough
 

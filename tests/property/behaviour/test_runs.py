@@ -10,7 +10,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from mmrs_core.behaviour.log import LogWriter, merge, read_logs
+from mmrs_core.behaviour.log import read_logs
 from mmrs_core.behaviour.replay import Outcome, replay
 from mmrs_core.behaviour.semantics import apply, enabled, initial, is_deadlock, is_success
 from mmrs_core.runtime.run import assumed, simulate
@@ -19,6 +19,8 @@ from mmrs_core.runtime.terms import Terms
 from mmrs_core.testing.random_programs import CONDITIONS, answers, programs
 from mmrs_core.testing.small_programs import ROBOT_TYPE, robot_type
 from mmrs_core.transformation.kinds import MOVE_KINDS, PLAIN_ROBOT
+from mmrs_runtime.records.log import LogWriter
+from mmrs_runtime.records.steps import merge
 
 TYPE = robot_type(lifetime=None)
 KINDS = {

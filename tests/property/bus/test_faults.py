@@ -9,9 +9,9 @@ from bus_world import World, spoil
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from mmrs_core.behaviour.log import merge
 from mmrs_core.behaviour.replay import replay
 from mmrs_core.testing.random_programs import programs
+from mmrs_runtime.records.steps import merge
 
 SLOW = [HealthCheck.too_slow, HealthCheck.data_too_large]
 

@@ -200,7 +200,7 @@ def check(told) -> None:
     with TemporaryDirectory() as folder:
         world = World(told)
         code = fly(world, Path(folder))
-        labels = [step["label"] for step in read(Path(folder) / ROBOT.log)]
+        labels = [step.label for step in read(Path(folder) / ROBOT.log)]
     assert [receipt.confirmed for receipt in world.receipts if receipt.confirmed is None] == []
     assert [world.answers[id(receipt)] for receipt in world.receipts] == [1] * len(world.receipts)
     assert code in (0, 1, 5, 130)

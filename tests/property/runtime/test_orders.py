@@ -10,7 +10,6 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from live_runs import Idle
 
-from mmrs_core.behaviour.steps import StepRecord
 from mmrs_core.contributions.execution import Fault
 from mmrs_core.runtime.attention import Attention
 from mmrs_core.runtime.interpreter import interpret
@@ -19,6 +18,7 @@ from mmrs_core.runtime.slots import InProcessBus
 from mmrs_core.runtime.terms import Terms
 from mmrs_core.scene import Policy
 from mmrs_core.testing.small_programs import hold, program, robot
+from mmrs_runtime.records.steps import StepRecord
 
 ROBOTS = ("a", "b")
 KINDS = (HOLD, RESUME, RETURN, LAND, STOP)

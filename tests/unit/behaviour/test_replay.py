@@ -8,8 +8,8 @@ import pytest
 
 from mmrs_core.behaviour.replay import Outcome, replay
 from mmrs_core.behaviour.semantics import apply, enabled, initial
-from mmrs_core.behaviour.steps import StepRecord
 from mmrs_core.testing.small_programs import go, hold, notify, program, robot, use
+from mmrs_runtime.records.steps import StepRecord
 
 BEHAVIOUR = program(
     robot(

@@ -6,10 +6,9 @@ from pathlib import Path
 
 import pytest
 
-from mmrs_core.behaviour.log import to_line
 from mmrs_core.behaviour.salvage import logs_in, salvage_log
-from mmrs_core.behaviour.steps import StepRecord
 from mmrs_core.errors import UnreadableError
+from mmrs_runtime.records.steps import StepRecord, to_line
 
 STEPS = [StepRecord("r", "Ann", i, i, float(i), "begin", f"m{i}") for i in range(3)]
 
@@ -31,7 +30,7 @@ def test_a_last_line_that_was_cut_off_is_told(tmp_path):
     ("text", "what"),
     [
         (b"\0\0\0\0", "zero bytes, as power loss leaves them"),
-        (b"nonsense}", "not JSON"),
+        (b"nonsense}", "line is not JSON"),
         (b"[]", "list: not"),
     ],
 )

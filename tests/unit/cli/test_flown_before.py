@@ -5,11 +5,11 @@ from __future__ import annotations
 import pytest
 import typer
 
-from mmrs_core.behaviour.log import LogWriter
-from mmrs_core.behaviour.steps import StepRecord
 from mmrs_core.cli.flown_before import resumed_steps
 from mmrs_core.cli.wishes import Wishes
 from mmrs_core.testing.programs import two_drones
+from mmrs_runtime.records.log import LogWriter
+from mmrs_runtime.records.steps import StepRecord
 
 _ALPHA = two_drones().robot("alpha")
 START = _ALPHA.moves[_ALPHA.start].id

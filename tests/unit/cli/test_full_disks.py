@@ -10,14 +10,14 @@ from pathlib import Path
 
 import pytest
 
-from mmrs_core.behaviour.log import LogWriter, read_log
-from mmrs_core.behaviour.steps import StepRecord
+from mmrs_core.behaviour.log import read_log
 from mmrs_core.cli import run
 from mmrs_core.languages.writing import replace_file
 from mmrs_runtime.control import Control
 from mmrs_runtime.faults import Fault
 from mmrs_runtime.orders.orders import Inbox
-from mmrs_runtime.records.log import Log
+from mmrs_runtime.records.log import Log, LogWriter
+from mmrs_runtime.records.steps import StepRecord
 
 FULL = "/dev/full"
 HANDWRITTEN = Path(__file__).parents[3] / "examples" / "handwritten"

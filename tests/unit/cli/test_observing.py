@@ -6,14 +6,14 @@ from contextlib import contextmanager
 from dataclasses import replace
 from threading import Event
 
-from mmrs_core.behaviour.log import LogWriter
-from mmrs_core.behaviour.steps import StepRecord
 from mmrs_core.cli import onlookers
 from mmrs_core.cli.observing import Observer
 from mmrs_core.cli.onlookers import Gallery, Onlookers
 from mmrs_core.hookspecs import hookimpl
 from mmrs_core.plugins import load_plugins
 from mmrs_core.testing.programs import feedback, move, photo, program, robot_program
+from mmrs_runtime.records.log import LogWriter
+from mmrs_runtime.records.steps import StepRecord
 
 SEES = replace(move("looks", "HoldPosition"), before=(photo(), feedback("seen", ("what", "a goat"))))
 FLOCK = program(robot_program("alpha", [SEES]))

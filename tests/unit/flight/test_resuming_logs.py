@@ -34,6 +34,7 @@ from mmrs_core.flight.steps.resuming import (
 )
 from mmrs_runtime.faults import Fault, Refused
 from mmrs_runtime.records.log import Log, read
+from mmrs_runtime.records.steps import StepRecord
 
 FAR, NEAR = Local(100.0, 0.0, 10.0), Local(0.0, 50.0, 10.0)
 TRIGGER = Operate("camera", "every metre", 206, (1.0,))
@@ -69,12 +70,12 @@ WAY = (
 
 
 def records(count=12, *more):
-    lines = (*WAY[:count], *more)
-    fields = ("label", "move", "detail")
-    return [
-        dict(zip(fields, line, strict=True)) | {"robot": "r", "seq": n, "lamport": n + 1}
-        for n, line in enumerate(lines)
-    ]
+    return logged((*WAY[:count], *more))
+
+
+def logged(lines):
+    """Return steps of these labels, moves and details."""
+    return [StepRecord("run-0", "r", n, n + 1, float(n), *line) for n, line in enumerate(lines)]
 
 
 @pytest.mark.parametrize(
@@ -138,7 +139,7 @@ def test_a_sortie_begins_where_the_program_has_landed():
         for (name, movement), following in zip(moves.items(), names[1:], strict=True)
     )
     robot = Robot("r", "r.jsonl", "copter", Geographic(42.37, 13.35, 0.0), "up", steps)
-    log = [{"label": label, "move": name, "detail": ""} for name in moves for label in ("begin", "end")]
+    log = logged((label, name, "") for name in moves for label in ("begin", "end"))
     assert began_at(robot, log[:4]) == robot.home
     assert began_at(robot, log[:6]) == Geographic(42.3705, 13.35, 0.0)
     assert track_of(robot, log[:8]) == [("again", Geographic(42.3705, 13.35, 20.0))]
@@ -167,7 +168,7 @@ def test_a_robot_on_the_ground_stands_where_it_began_its_sortie_or_was_to_land(b
         "end": Land(),
     }
     robot = replace(ROBOT, steps=tuple(Step(name, movement) for name, movement in moves.items()))
-    log = [{"label": label, "move": name, "detail": ""} for name in moves for label in ("begin", "end")]
+    log = logged((label, name, "") for name in moves for label in ("begin", "end"))
     until = 2 * list(moves).index(begun) + 1
     assert starts_of(robot, log[:until]) == tuple(Local(each, 0.0, 0.0) for each in north)
 
@@ -192,7 +193,7 @@ def test_a_log_goes_on_after_its_last_whole_line(tmp_path):
     again = Log(path, "run-0", "r", resume=True)
     again.write("end", "start", lamport=2, time=0.5)
     again.close()
-    assert [(step["seq"], step["time"]) for step in read(path)] == [(0, 1.0), (1, 1.0)]
+    assert [(step.seq, step.time) for step in read(path)] == [(0, 1.0), (1, 1.0)]
 
 
 def test_a_log_with_a_gap_is_not_gone_on_with(tmp_path):
@@ -214,4 +215,4 @@ def test_a_log_goes_on_after_its_last_whole_line_whatever_a_loss_of_power_has_le
     again = Log(path, "run", "r", resume=True)
     again.write("end", "start", lamport=2, time=1.0)
     again.close()
-    assert [step["label"] for step in read(path)] == ["begin", "end"]
+    assert [step.label for step in read(path)] == ["begin", "end"]

@@ -33,6 +33,6 @@ def test_a_run_whose_vehicle_cannot_be_stepped_at_its_end_has_not_ended(tmp_path
         with pytest.raises(Refused) as refused:
             made.crew.pilot.fly()
         assert refused.value.event == REFUSED
-        steps = [(line["label"], line["move"]) for line in read(made.log)]
+        steps = [(line.label, line.move) for line in read(made.log)]
         assert [move for move, _ in made.crew.pilot.track][-1] == "back"
     assert steps[-4:] == [("begin", "out"), ("end", "out"), ("take", "out"), ("begin", "back")]

@@ -59,7 +59,7 @@ def test_a_sensor_that_gives_no_value_is_a_silent_device_after_the_seconds_of_it
 def test_a_policy_may_have_a_robot_carry_on_without_a_value(crew):
     made = crew(Policy(DEVICE_SILENT, "CONTINUE", 3.0))
     generated(made)
-    assert [line["label"] for line in made.crew.desk.log.steps] == ["act"]
+    assert [line.label for line in made.crew.desk.log.steps] == ["act"]
 
 
 @EXECUTIONS

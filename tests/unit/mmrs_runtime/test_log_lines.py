@@ -27,6 +27,6 @@ def test_rubbish_before_a_whole_line_is_kept():
 def test_a_line_that_is_too_deep_to_be_read_is_a_fault_of_the_log(tmp_path):
     path = tmp_path / "r.jsonl"
     path.write_bytes(TOO_DEEP + b"\n")
-    with pytest.raises(Fault, match=r"r\.jsonl: cannot be read") as fault:
+    with pytest.raises(Fault, match=r"r\.jsonl:1: cannot be read") as fault:
         read(path)
     assert fault.value.event == "LOG_FAILED"

@@ -9,7 +9,6 @@ from pathlib import Path
 import pytest
 
 from mmrs_core import hookspecs, plugins
-from mmrs_core.behaviour.steps import StepRecord
 from mmrs_core.contributions.backends import BackendFactory
 from mmrs_core.contributions.checks import Check
 from mmrs_core.contributions.codecs import Codec
@@ -30,6 +29,7 @@ from mmrs_core.languages.registry import MetamodelSource
 from mmrs_core.languages.subclasses import ElementClass
 from mmrs_core.migration.dialect import ForeignDialect
 from mmrs_core.plugins import language, load_plugins
+from mmrs_runtime.records.steps import StepRecord
 
 KITE = ("urn:test:kite:1.0", "Kite")
 ZOO = Path(__file__).parents[2] / "fixtures" / "models" / "zoo.ecore"

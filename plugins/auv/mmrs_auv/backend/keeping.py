@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 
-from mmrs_core.behaviour.log import log_name
 from mmrs_core.contributions.backends import BackendInput, Live
 from mmrs_core.contributions.execution import RobotState
 from mmrs_runtime.records.blackbox import BlackBox, black_box_path
+from mmrs_runtime.records.steps import log_name
 
 FIX = 0.2
 """Seconds between two places in the black box."""

@@ -15,12 +15,12 @@ from typing import Annotated
 import typer
 from typer.main import get_command
 
-from mmrs_core.behaviour.log import SUFFIX, log_name
 from mmrs_core.cli.interruption import INTERRUPTED
 from mmrs_core.cli.output import say, tell
 from mmrs_core.cli.replacing import replace_files
 from mmrs_core.cli.typed import typed_lines
 from mmrs_core.errors import UnreadableError
+from mmrs_runtime.records.steps import SUFFIX, log_name
 
 FIRST_PORT = 29_600
 

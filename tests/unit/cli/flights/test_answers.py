@@ -5,11 +5,11 @@ from __future__ import annotations
 import pytest
 
 from mmrs_core.behaviour.program import Transition
-from mmrs_core.behaviour.steps import StepRecord
 from mmrs_core.cli.flights.answers import choosing_as
 from mmrs_core.cli.flights.values import Flight, Flown
 from mmrs_core.contributions.execution import Condition, RobotState
 from mmrs_core.testing.programs import move, program, robot_program
+from mmrs_runtime.records.steps import StepRecord
 
 STATE = RobotState(0.0, (0.0, 0.0, 0.0), 0.0, 0.0, None)
 

@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 from mmrs_core.behaviour.program import Target
-from mmrs_core.behaviour.steps import StepRecord
 from mmrs_core.cli.flights.planned import legs_of
 from mmrs_core.cli.flights.values import NOWHERE, Flown, Track
 from mmrs_core.testing.programs import go_to, robot_program, take_off
+from mmrs_runtime.records.steps import StepRecord
 
 UP, EAST, NORTH = take_off("up", 5.0), go_to("east", (10.0, 0.0, 5.0)), go_to("north", (10.0, 20.0, 5.0))
 

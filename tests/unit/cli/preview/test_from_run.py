@@ -5,12 +5,12 @@ from dataclasses import replace
 import pytest
 
 from mmrs_core.behaviour.program import BEHAVIOUR, Action, Move, Program, RobotProgram, Target, Transition
-from mmrs_core.behaviour.steps import StepRecord
 from mmrs_core.cli.preview.from_run import Surroundings, picture_of_run
 from mmrs_core.contributions.execution import Sample
 from mmrs_core.contributions.rules import MoveKind
 from mmrs_core.contributions.symbols import MapSymbol
 from mmrs_core.scene import Area, AreaUse, Frame, Part, RobotType
+from mmrs_runtime.records.steps import StepRecord
 
 GO, HOLD, START, STOP = ((BEHAVIOUR, name) for name in ("GoTo", "HoldPosition", "Start", "Stop"))
 UP = ("urn:test", "Up")

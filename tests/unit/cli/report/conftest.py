@@ -8,8 +8,8 @@ import pytest
 from flights_by_hand import flight_as, track_of
 
 from mmrs_core.behaviour.blackbox import Entry
-from mmrs_core.behaviour.steps import StepRecord
 from mmrs_core.cli.flights.values import Flight, Flown
+from mmrs_runtime.records.steps import StepRecord
 
 
 def entry_of(time, kind, robot="alpha", **content):

@@ -22,9 +22,7 @@ def test_a_program_that_fails_itself_leaves_a_fault_in_the_log(process, tmp_path
     unsound = (replace(step, movement=Hold("long")) if step.move == "stay" else step for step in STEPS)
     broken = replace(robot_of(), steps=tuple(unsound))
     assert run_robot(broken, process(broken)) == 1
-    assert [line["detail"] for line in read(tmp_path / "alpha.jsonl") if line["label"] == "fault"] == [
-        "CRASHED"
-    ]
+    assert [line.detail for line in read(tmp_path / "alpha.jsonl") if line.label == "fault"] == ["CRASHED"]
     assert "TypeError: " in capsys.readouterr().err
 
 
@@ -58,9 +56,7 @@ def test_a_response_that_fails_itself_leaves_a_robot_that_holds_and_obeys(proces
     assert code.result(30.0) == 1
     assert landed.confirmed
     assert not simulated.autopilot.armed
-    assert [line["detail"] for line in read(tmp_path / "alpha.jsonl") if line["label"] == "fault"] == [
-        "OBSTACLE"
-    ]
+    assert [line.detail for line in read(tmp_path / "alpha.jsonl") if line.label == "fault"] == ["OBSTACLE"]
     box = map(json.loads, (tmp_path / "alpha.blackbox.ndjson").read_text("ascii").splitlines())
     (failed,) = (line for line in box if line["kind"] == "failed")
     assert "cannot convert float NaN" in failed["error"]

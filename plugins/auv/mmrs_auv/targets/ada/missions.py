@@ -16,7 +16,6 @@ from mmrs_auv.targets.moves import seconds_of
 from mmrs_auv.vessel.eyes import owner_of
 from mmrs_auv.vessel.goals import SLOWEST
 from mmrs_auv.vessel.refusals import MOST_SPEED
-from mmrs_core.behaviour.log import log_name
 from mmrs_core.behaviour.policies import patience
 from mmrs_core.behaviour.program import Action, Move, Program, RobotProgram, SlotId, Target, Transition
 from mmrs_core.behaviour.semantics import slot_text
@@ -25,6 +24,7 @@ from mmrs_core.mavlink.context import RobotContext
 from mmrs_core.mavlink.vehicles import TRAVEL_FACTORS, capability_of
 from mmrs_core.scene import Part, Policy, Position
 from mmrs_runtime.conditions import BATTERY, DETECTED, FOUND, is_standard
+from mmrs_runtime.records.steps import log_name
 
 KINDS: Mapping[str, str] = {
     "start": "Starts", "go": "Goes", "hold": "Holds", "charge": "Charges", "turn": "Turns", "stop": "Stops",
