@@ -183,7 +183,7 @@ def _robots() -> tuple[Robot, Robot]:
     home = Local(0.0, 0.0, 0.0)
     senders = (("go", ("a",)),)
     return (
-        Robot("a", "a.jsonl", "copter", home, "start", (step,)),
+        Robot("a", "a.jsonl", "copter", home, "start", (step,), volatile=(("b", "go"),)),
         Robot("b", "b.jsonl", "copter", home, "start", (), ("go",), senders, (("go", ("b",)),)),
     )
 

@@ -7,7 +7,7 @@ the (robot, slot) pairs that they set, positions are (east, north, up) in metres
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, fields
 from functools import cached_property
 from typing import TypeAlias
@@ -169,6 +169,12 @@ class RobotProgram:
         """Return the move of that identifier."""
         return next(move for move in self.moves if move.id == id)
 
+    @property
+    def settings(self) -> Iterator[tuple[SlotId, bool]]:
+        """Yield each slot that it sets or resets, with the value, as often as it does."""
+        actions = (action for move in self.moves for action in (*move.before, *move.after))
+        return ((slot, action.active) for action in actions for slot in action.sets)
+
 
 @dataclass(frozen=True)
 class Program:
@@ -200,6 +206,11 @@ class Program:
         return fingerprint(
             {each.name: getattr(self, each.name) for each in fields(self) if each.name != "idle"}
         )
+
+    @cached_property
+    def volatile(self) -> frozenset[SlotId]:
+        """Return the slots that any robot resets; all others are latched: once active, they stay so."""
+        return frozenset(slot for robot in self.robots for slot, active in robot.settings if not active)
 
     def robot(self, id: str) -> RobotProgram:
         """Return the robot of that identifier."""

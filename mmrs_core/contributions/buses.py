@@ -15,12 +15,13 @@ class Delivery(Protocol):
     """A notify on its way to the owners of its slots, in two steps.
 
     First every owner is asked: it keeps the slots for this sender and tells its logical time, so that
-    the sender can record the notify after all that has happened to them. Then it is sent.
+    the sender can record the notify after all that has happened to them. Then it is sent. Where no robot
+    ever resets any of the slots, that order does not matter, and nothing is asked.
     """
 
     @property
     def lamport(self) -> int | None:
-        """Return the least logical time that the notify may have; None until every owner has answered."""
+        """Return the least logical time that the notify may have; None until all who are asked answered."""
         ...
 
     @property

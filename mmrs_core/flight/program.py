@@ -278,6 +278,7 @@ class Robot:
         vehicle: ``copter``, ``sub`` or ``rover``.
         start: the first move.
         slots: its own; senders: robots that activate each of them; resets: robots that deactivate it.
+        volatile: of the (robot, slot) pairs that it notifies, those that any robot deactivates.
         reserve: part of the energy that must be left.
         endurance: seconds that a full battery lasts at the type's mean power; None where nobody knows.
         cruise: metres per second at which the robot goes back; None: the vehicle's own.
@@ -302,6 +303,7 @@ class Robot:
     slots: tuple[str, ...] = ()
     senders: tuple[tuple[str, tuple[str, ...]], ...] = ()
     resets: tuple[tuple[str, tuple[str, ...]], ...] = ()
+    volatile: tuple[tuple[str, str], ...] = field(default=(), kw_only=True)
     policies: tuple[Policy, ...] = ()
     reserve: float = 0.2
     endurance: float | None = None

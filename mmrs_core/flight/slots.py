@@ -250,8 +250,9 @@ def shared_slots(
 
 def member_of(robot: Robot) -> Member:
     """Return what the bus must know of a robot."""
-    targets = {owner for action in _actions(robot) if isinstance(action, Notify) for owner, _ in action.slots}
-    return Member(Owned(robot.id, robot.slots, dict(robot.senders), dict(robot.resets)), frozenset(targets))
+    sets = {slot for action in _actions(robot) if isinstance(action, Notify) for slot in action.slots}
+    owned = Owned(robot.id, robot.slots, dict(robot.senders), dict(robot.resets))
+    return Member(owned, frozenset(owner for owner, _ in sets), frozenset(sets - {*robot.volatile}))
 
 
 def strangers_of(robots: Sequence[Robot]) -> tuple[str, ...]:

@@ -148,11 +148,9 @@ def senders_of(
     """Return, for each slot that somebody activates, or deactivates, the robots that do."""
     found: dict[str, dict[str, None]] = {}
     for sender in program.robots:
-        for move in sender.moves:
-            for action in (*move.before, *move.after):
-                for owner, slot in action.sets:
-                    if owner == robot.id and action.active is active:
-                        found.setdefault(slot, {})[sender.id] = None
+        for (owner, slot), value in sender.settings:
+            if owner == robot.id and value is active:
+                found.setdefault(slot, {})[sender.id] = None
     return tuple((slot, tuple(senders)) for slot, senders in sorted(found.items()))
 
 
@@ -215,6 +213,7 @@ def _head(
     yield "slots", robot.slots
     yield "senders", senders_of(robot, program, active=True)
     yield "resets", senders_of(robot, program, active=False)
+    yield "volatile", tuple(sorted(program.volatile & {slot for slot, _ in robot.settings}))
     yield "policies", tuple(_policy(policy) for policy in policies_of(robot, input))
     yield "reserve", program.reserve
     yield from _endurance(context)

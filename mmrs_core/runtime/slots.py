@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 
-from mmrs_core.behaviour.program import Program, RobotProgram, SlotId
+from mmrs_core.behaviour.program import Program, SlotId
 from mmrs_core.contributions.buses import CommandId, Find, SlotState
 from mmrs_core.errors import InternalError
 from mmrs_core.flight.slots import SETTLING_SECONDS
@@ -160,7 +160,7 @@ def members_of(program: Program) -> dict[str, Member]:
     """Return by robot what the bus must know of it."""
     senders: dict[tuple[SlotId, bool], dict[str, None]] = {}
     for robot in program.robots:
-        for slot, active in _set_by(robot):
+        for slot, active in robot.settings:
             senders.setdefault((slot, active), {})[robot.id] = None
     return {
         robot.id: Member(
@@ -170,7 +170,8 @@ def members_of(program: Program) -> dict[str, Member]:
                 {name: tuple(senders.get(((robot.id, name), True), ())) for name in robot.slots},
                 {name: tuple(senders.get(((robot.id, name), False), ())) for name in robot.slots},
             ),
-            frozenset(owner for (owner, _), _ in _set_by(robot)),
+            frozenset(owner for (owner, _), _ in robot.settings),
+            frozenset(slot for slot, _ in robot.settings) - program.volatile,
         )
         for robot in program.robots
     }
@@ -195,10 +196,3 @@ def recorded_of(
                 notifies.update({slot: (action.active, lamport) for slot in action.sets})
         found[robot] = Recorded(lamport, notifies)
     return found
-
-
-def _set_by(robot: RobotProgram) -> Iterable[tuple[SlotId, bool]]:
-    for move in robot.moves:
-        for action in (*move.before, *move.after):
-            for slot in action.sets:
-                yield slot, action.active

@@ -107,6 +107,7 @@ class Node:
             self._owners,
             self._watching,
             self._outbox,
+            frozenset[SlotId]().union(*(member.latched for member in members)),
             self.pump,
             chance or random.Random(),
             alone=self._alone,

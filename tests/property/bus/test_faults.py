@@ -28,6 +28,7 @@ def check(program, seed, faults):
             assert walker.delivery is None, "a notify is still on its way"
             if not walker.point.is_final:
                 check_slots(process.node, walker.program, records)
+    return world.said
 
 
 def check_slots(node, robot, records):
@@ -46,12 +47,19 @@ def last_value(records, robot, slot):
 
 
 PROGRAMS = programs(robots=(2, 4), moves=(1, 4))
+LATCHED = programs(robots=(2, 4), moves=(1, 4), resets=False)
 
 
 @given(PROGRAMS, st.integers(0, 2**32), st.integers(0, 40))
 @settings(max_examples=100, deadline=None, suppress_health_check=SLOW)
 def test_a_hundred_histories_of_faults_replay(program, seed, faults):
     check(program, seed, faults)
+
+
+@given(LATCHED, st.integers(0, 2**32), st.integers(0, 40))
+@settings(max_examples=100, deadline=None, suppress_health_check=SLOW)
+def test_a_hundred_histories_of_faults_replay_where_no_slot_is_ever_reset(program, seed, faults):
+    assert not check(program, seed, faults) & {"prepare", "withdraw"}
 
 
 @pytest.mark.thorough

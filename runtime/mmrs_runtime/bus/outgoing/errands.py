@@ -42,6 +42,10 @@ class Errand:
     All owners are asked in rounds. A round in which one of them has the slot kept for somebody else,
     or does not answer, frees the others again, so that nobody is held up by those who are not there.
 
+    Nobody is asked where all slots are latched, that is never reset. Then the order of the notify and of what
+    else happens to them does not matter: a wait that it lets pass is given a later logical time by the owner,
+    and none that has passed before is undone by it.
+
     Attributes:
         phase: how far it is.
         due: when `tick` has something to do; inf: never.
@@ -58,6 +62,8 @@ class Errand:
         chance: random.Random,
         reach: int,
         finds: tuple[Find, ...] = (),
+        *,
+        latched: bool = False,
     ) -> None:
         """Ask nobody yet.
 
@@ -69,6 +75,7 @@ class Errand:
             chance: for pauses.
             reach: how far beyond the time granted the notify may be recorded.
             finds: what the sender knows to have been detected.
+            latched: whether no robot ever resets any of these slots, so that it is granted at once.
         """
         self.id, self.active = id, active
         self.phase, self.due, self.lamport = Phase.PAUSING, 0.0, 0
@@ -80,6 +87,8 @@ class Errand:
         self._busy, self._floor = False, 0
         self._granted: dict[str, int] = {}
         self._open = set(parts)
+        if latched:
+            self._grant(least := clock(), least + reach)
 
     @property
     def waiting(self) -> tuple[str, ...]:
@@ -145,7 +154,7 @@ class Errand:
         """Give it up; return what its owners must be told. None: it was sent, and goes on."""
         if self.phase in (Phase.SENDING, Phase.DONE, Phase.WITHDRAWN):
             return None
-        freed = {message.owner: message for message in self._free()}
+        freed = {message.owner: message for message in self._free()} if self._round else {}
         self.phase, self.due = Phase.WITHDRAWN, float("inf")
         return Notice(freed)
 
@@ -180,6 +189,9 @@ class Errand:
         if least > most:
             self._floor, self.due = least, 0.0
             return
+        self._grant(least, most)
+
+    def _grant(self, least: int, most: int) -> None:
         self.lamport, self._most, self.phase, self.due = least, most, Phase.GRANTED, float("inf")
 
     def _close(self, owner: str) -> None:

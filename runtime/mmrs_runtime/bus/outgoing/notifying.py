@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import random
 import threading
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
 from functools import partial
 from math import isfinite
@@ -32,6 +32,7 @@ class Notifying:
         owners: Owners,
         watching: Watching,
         outbox: Outbox,
+        latched: frozenset[SlotId],
         pump: Callable[[], None],
         chance: random.Random,
         *,
@@ -46,13 +47,14 @@ class Notifying:
             owners: of this process.
             watching: who has ended.
             outbox: takes what is to be sent.
+            latched: slots that no robot of the mission ever resets.
             pump: sends what is due; called without the lock.
             chance: for pauses between tries.
             alone: whether there are no robots of other processes.
         """
         self._lock, self._now, self._run = lock, now, run
         self._owners, self._watching, self._outbox = owners, watching, outbox
-        self._pump, self._chance, self._alone = pump, chance, alone
+        self._latched, self._pump, self._chance, self._alone = latched, pump, chance, alone
 
     def prepare(
         self, id: CommandId, slots: tuple[SlotId, ...], active: bool, finds: tuple[Find, ...]
@@ -69,8 +71,10 @@ class Notifying:
             id = replace(id, run=self._run, incarnation=self._owners.incarnation)
             self._take_part(id.sender)
         reach = LARGEST if self._alone else REACH
-        errand = Errand(id, parts, active, self._least, self._chance, reach, fitting(finds))
+        latched = active and self._latched.issuperset(slots)
+        least = partial(self._least, slots if latched else ())
         with self._lock:
+            errand = Errand(id, parts, active, least, self._chance, reach, fitting(finds), latched=latched)
             for owner in parts:
                 if self._watching.has_ended(owner) and owner not in self._owners:
                     errand.gone(owner)
@@ -99,8 +103,8 @@ class Notifying:
                 self._outbox.add(notice)
         self._pump()
 
-    def _least(self) -> int:
-        return 0 if self._alone else self._owners.lamport + 1
+    def _least(self, slots: Iterable[SlotId]) -> int:
+        return self._owners.latest(slots) + 1 if self._alone else self._owners.lamport + 1
 
 
 def fitting(finds: Sequence[Find]) -> tuple[Find, ...]:

@@ -29,10 +29,12 @@ class Member:
     Attributes:
         owned: its slots.
         targets: the robots whose slots it sets or resets.
+        latched: of the slots that it sets, those that no robot of the mission ever resets.
     """
 
     owned: Owned
     targets: frozenset[str] = frozenset()
+    latched: frozenset[SlotId] = frozenset()
 
     @property
     def contacts(self) -> frozenset[str]:

@@ -217,6 +217,10 @@ class Owner:
         self._end_if_lost(slot, now)
         return replace(slot.state, active=slot.is_active)
 
+    def lamport_of(self, name: str) -> int:
+        """Return the logical time of the last thing that happened to a slot."""
+        return self._slots[name].state.lamport
+
     def shown(self, now: float) -> dict[str, object]:
         """Return the state of all slots by name, as others see it."""
         states = {name: self.state(name, now) for name in self._slots}

@@ -98,6 +98,10 @@ class Owners:
         """
         return self._owners[slot[0]].state(slot[1], now)
 
+    def latest(self, slots: Iterable[SlotId]) -> int:
+        """Return the logical time of the last thing that happened to any of these slots; 0: to none."""
+        return max((self._owners[owner].lamport_of(slot) for owner, slot in slots), default=0)
+
     def finds(self, robot: str) -> tuple[Find, ...]:
         """Return what those that notified a robot of this process had detected."""
         return tuple(self._owners[robot].finds.values())

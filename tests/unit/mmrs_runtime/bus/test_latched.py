@@ -1,0 +1,147 @@
+"""Slots that no robot ever resets: a notify of them is one message, recorded before it is sent."""
+
+from __future__ import annotations
+
+import json
+
+import pytest
+from hub import Hub
+
+from mmrs_core.flight.slots import member_of
+from mmrs_core.mavlink.built import robot_of
+from mmrs_core.runtime.slots import members_of, recorded_of
+from mmrs_core.testing.programs import program, quad, robot_program, target_input
+from mmrs_core.testing.small_programs import hold, notify
+from mmrs_runtime.bus import CommandId, Node
+from mmrs_runtime.records.steps import StepRecord
+
+RUN = "run-0"
+
+
+@pytest.fixture
+def made():
+    """Return a behaviour in which 'a' sets two slots of 'b', and 'b' resets one of them."""
+    return program(
+        robot_program("a", [hold("tell", 0.0, after=(notify("b.go"), notify("b.go", "b.ball")))]),
+        robot_program(
+            "b", [hold("drop", 0.0, after=(notify("b.ball", active=False),))], slots=("go", "ball")
+        ),
+    )
+
+
+class Said(Hub):
+    """A hub that remembers what is asked of robots, and brings nothing while it is `cut`."""
+
+    def __init__(self):
+        super().__init__()
+        self.words, self.cut = [], False
+
+    def plug(self):
+        carrier = super().plug()
+        ask = carrier.ask
+        carrier.ask = lambda *asked: self._carry(ask, *asked)
+        return carrier
+
+    def _carry(self, ask, sender, owner, request, answered):
+        self.words.append(json.loads(request)["do"])
+        if not self.cut:
+            ask(sender, owner, request, answered)
+
+
+@pytest.fixture
+def hub():
+    return Said()
+
+
+@pytest.fixture
+def start(made, hub):
+    """Return a function by which a robot begins."""
+
+    def begin(robot, recorded=None):
+        member = members_of(made)[robot]
+        return Node([member], RUN, carrier=hub.plug(), recorded=recorded, threaded=False)
+
+    return begin
+
+
+def notifying(node, *slots, active=True, number=1):
+    return node.prepare(CommandId(RUN, "a", "", number), tuple(("b", slot) for slot in slots), active)
+
+
+def test_a_notify_of_latched_slots_is_one_message(start, hub):
+    b, a = start("b"), start("a")
+    hub.words.clear()
+    delivery = notifying(a, "go")
+    assert (delivery.lamport, delivery.waiting, hub.words) == (a.lamport + 1, (), [])
+    delivery.send(7)
+    assert hub.words == ["commit"]
+    assert delivery.is_over
+    assert b.state(("b", "go")).active
+    assert b.passed([("b", "go")], 8)
+
+
+def test_a_notify_of_a_slot_that_another_robot_resets_still_asks_first(start, hub):
+    b, a = start("b"), start("a")
+    hub.words.clear()
+    delivery = notifying(a, "go", "ball")
+    assert hub.words == ["prepare"]
+    delivery.send(delivery.lamport)
+    assert hub.words == ["prepare", "commit"]
+    assert b.state(("b", "ball")).active
+
+
+def test_a_wait_that_a_latched_notify_lets_pass_is_later_than_it(start):
+    b, a = start("b"), start("a")
+    a.use(40)
+    delivery = notifying(a, "go")
+    delivery.send(delivery.lamport)
+    assert delivery.lamport == 41
+    assert not b.passed([("b", "go")], 41)
+    assert b.passed([("b", "go")], 42)
+
+
+def test_a_latched_notify_is_sent_until_its_owner_answers_and_its_value_counts_once(start, hub):
+    b, a = start("b"), start("a")
+    hub.cut = True
+    delivery = notifying(a, "go")
+    delivery.send(delivery.lamport)
+    assert delivery.waiting == ("b",)
+    hub.cut = False
+    a.noticed("b", True)
+    a.pump()
+    assert delivery.is_over
+    assert b.state(("b", "go")).version == 1
+
+
+def test_a_latched_notify_that_was_recorded_and_not_sent_is_sent_when_its_robot_is_resumed(made, start, hub):
+    b = start("b")
+    hub.cut = True
+    a = start("a")
+    notifying(a, "go")
+    a.close()
+    hub.cut = False
+    log = [StepRecord(RUN, "a", 0, 9, 0.0, "ntf", "tell", "post:0", "+b.go")]
+    start("a", recorded_of(made, ["a"], log))
+    assert b.state(("b", "go")).active
+    assert not b.passed([("b", "go")], 9)
+    assert b.passed([("b", "go")], 10)
+
+
+def test_a_latched_notify_that_is_given_up_leaves_nothing_to_be_told(start, hub):
+    _, a = start("b"), start("a")
+    hub.words.clear()
+    notifying(a, "go").withdraw()
+    assert hub.words == []
+
+
+def test_a_latched_notify_is_granted_no_time_beyond_reach(start):
+    a = start("a")
+    with pytest.raises(ValueError, match="not from 1 to"):
+        notifying(a, "go").send(1 << 40)
+
+
+def test_controllers_and_interpreter_agree_which_slots_are_latched(made):
+    members, input = members_of(made), target_input(made, [quad()])
+    assert members["a"].latched == {("b", "go")}
+    for robot in made.robots:
+        assert member_of(robot_of(robot, input)).latched == members[robot.id].latched
