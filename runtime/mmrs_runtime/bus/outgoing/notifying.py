@@ -79,7 +79,8 @@ class Notifying:
                 if self._watching.has_ended(owner) and owner not in self._owners:
                     errand.gone(owner)
             self._outbox.add(errand)
-        self._pump()
+        if not latched:
+            self._pump()
         return Delivery(errand, self._lock, partial(self._send, errand), partial(self._withdraw, errand))
 
     def _take_part(self, robot: str) -> None:

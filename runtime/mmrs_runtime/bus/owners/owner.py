@@ -102,6 +102,7 @@ class Owner:
         self._owned, self._run, self._journal, self._trusting = owned, run, journal, trusting
         self._lost = lost or (lambda sender, now: False)
         self._slots = {name: Slot(SlotState(lamport=floor)) for name in owned.slots}
+        self._kept: set[str] = set()
         self._applied: set[CommandId] = set()
         self._latest, self._starts = Latest(), Starts()
         self._begun: dict[str, str] = {}
@@ -215,7 +216,7 @@ class Owner:
         """Return the state of a slot; one in doubt is not active."""
         slot = self._slots[name]
         self._end_if_lost(slot, now)
-        return replace(slot.state, active=slot.is_active)
+        return replace(slot.state, active=slot.is_active) if slot.doubts else slot.state
 
     def lamport_of(self, name: str) -> int:
         """Return the logical time of the last thing that happened to a slot."""
@@ -229,12 +230,18 @@ class Owner:
             for name, s in states.items()
         }
 
+    def kept(self) -> dict[str, Kept]:
+        """Return by slot for whom it is kept; takes time by how many are, not by how many there are."""
+        found = {name: kept for name in self._kept if (kept := self._slots[name].kept) is not None}
+        self._kept = set(found)
+        return found
+
     def end_lost(self, now: float) -> bool:
         """Stop keeping slots for senders that are lost; return whether there were any."""
-        before = [slot.kept for slot in self._slots.values()]
-        for slot in self._slots.values():
-            self._end_if_lost(slot, now)
-        return before != [slot.kept for slot in self._slots.values()]
+        before = self.kept()
+        for name in before:
+            self._end_if_lost(self._slots[name], now)
+        return before != self.kept()
 
     def next_end(self, lost_at: Callable[[str], float | None]) -> float | None:
         """Return when keeping a slot ends unless its sender is heard of; None: nothing is kept.
@@ -242,7 +249,7 @@ class Owner:
         Args:
             lost_at: when a sender counts as lost; None: it does not.
         """
-        kept = [slot.kept for slot in self._slots.values() if slot.kept is not None]
+        kept = self.kept().values()
         ends = [each.heard + KEPT_SECONDS for each in kept]
         ends += [at for each in kept if (at := lost_at(each.id.sender)) is not None]
         return min(ends, default=None)
@@ -266,6 +273,7 @@ class Owner:
         kept = Kept(asked.id, asked.round, asked.active, least + REACH, heard)
         if not asked.active:
             self._journal.keep(kept_line(asked, kept.most))
+        self._kept.update(asked.slots)
         for slot in slots:
             slot.keep(kept)
         self._open(asked)
@@ -332,6 +340,7 @@ class Owner:
 
     def _keep_again(self, asked: Prepare, most: int) -> None:
         """Keep slots as before; nothing was heard of the sender since, so it is in doubt at once."""
+        self._kept.update(asked.slots)
         for name in asked.slots:
             self._slots[name].kept = Kept(asked.id, asked.round, asked.active, most, float("-inf"))
         self._open(asked)

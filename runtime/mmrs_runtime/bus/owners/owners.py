@@ -57,6 +57,7 @@ class Owners:
             )
             for member in members
         }
+        self._keepers = {robot: owner for robot, owner in self._owners.items() if owner.kept()}
         logged = (each.lamport for each in recorded.values())
         self.lamport = max((*logged, *(owner.lamport for owner in self._owners.values())), default=0)
         self._watching, self._alone = watching, trusting
@@ -75,6 +76,7 @@ class Owners:
         """Return what the owner answers; `here`: the sender is of this process."""
         owner = self._owners[robot]
         if isinstance(request, Prepare):
+            self._keepers[robot] = owner
             return owner.prepare(request, now, here=here)
         if isinstance(request, Commit):
             answer = owner.commit(request)
@@ -124,11 +126,13 @@ class Owners:
 
     def end_lost(self, now: float) -> bool:
         """Stop keeping slots for senders that are lost; return whether there were any."""
-        return any([owner.end_lost(now) for owner in self._owners.values()])
+        ended = any([owner.end_lost(now) for owner in self._keepers.values()])
+        self._keepers = {robot: owner for robot, owner in self._keepers.items() if owner.kept()}
+        return ended
 
     def next_end(self) -> float:
         """Return when keeping a slot ends unless its sender is heard of; inf: nothing is kept."""
-        ends = (owner.next_end(self._watching.long_lost_at) for owner in self._owners.values())
+        ends = (owner.next_end(self._watching.long_lost_at) for owner in self._keepers.values())
         return min((end for end in ends if end is not None), default=float("inf"))
 
     def use(self, lamport: int) -> None:

@@ -13,6 +13,7 @@ from mmrs_core.runtime.slots import members_of, recorded_of
 from mmrs_core.testing.programs import program, quad, robot_program, target_input
 from mmrs_core.testing.small_programs import hold, notify
 from mmrs_runtime.bus import CommandId, Node
+from mmrs_runtime.bus.owners.owner import Owner
 from mmrs_runtime.records.steps import StepRecord
 
 RUN = "run-0"
@@ -145,3 +146,20 @@ def test_controllers_and_interpreter_agree_which_slots_are_latched(made):
     assert members["a"].latched == {("b", "go")}
     for robot in made.robots:
         assert member_of(robot_of(robot, input)).latched == members[robot.id].latched
+
+
+def test_sending_looks_at_no_owner_but_those_that_keep_a_slot(monkeypatch):
+    names = [f"r{number}" for number in range(20)]
+    robots = [robot_program(name, [], slots=("go",)) for name in names[1:]]
+    resets = hold("tell", 0.0, after=(notify("r1.go", "r7.go", active=False),))
+    everybody = members_of(program(robot_program("r0", [resets]), *robots))
+    node, looked = Node(list(everybody.values()), RUN, threaded=False), []
+    kept = Owner.kept
+    monkeypatch.setattr(Owner, "kept", lambda owner: looked.append(owner.robot) or kept(owner))
+    delivery = node.prepare(CommandId(RUN, "r0", "", 1), (("r1", "go"), ("r7", "go")), False)
+    node.pump()
+    assert {*looked} == {"r1", "r7"}
+    delivery.send(delivery.lamport)
+    looked.clear()
+    node.pump()
+    assert looked == []
