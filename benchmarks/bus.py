@@ -32,8 +32,6 @@ from mmrs_core.behaviour.log import read_logs
 from mmrs_core.behaviour.program import Program
 from mmrs_core.behaviour.replay import Outcome, replay
 from mmrs_core.contributions.backends import BackendInput
-from mmrs_core.flight.program import Local, Notify, Robot, Start, Step
-from mmrs_core.flight.slots import BusSlots, LocalSlots, shared_slots
 from mmrs_core.runtime.attention import Attention
 from mmrs_core.runtime.clock import RealClock
 from mmrs_core.runtime.interpreter import interpret
@@ -42,6 +40,8 @@ from mmrs_core.runtime.slots import shared_bus
 from mmrs_core.runtime.terms import Terms
 from mmrs_core.testing.small_programs import go, notify, program, robot, robot_type
 from mmrs_core.transformation.kinds import MOVE_KINDS, PLAIN_ROBOT
+from mmrs_mavlink.program import Local, Notify, Robot, Start, Step
+from mmrs_mavlink.slots import BusSlots, LocalSlots, shared_slots
 from mmrs_runtime.bus import begin_together
 from mmrs_runtime.bus.carriers.over_zenoh import ZenohCarrier
 from mmrs_runtime.bus.carriers.sessions import Endpoints, configuration

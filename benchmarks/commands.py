@@ -27,13 +27,13 @@ from pymavlink import mavutil
 
 from mmrs_core.behaviour.program import Program
 from mmrs_core.cli.orders_heard import hear_orders
-from mmrs_core.mavlink.backend import MAVLINK
 from mmrs_core.runtime.live import Venture, run_live
 from mmrs_core.runtime.orders import LAND, Orders
 from mmrs_core.runtime.run import inputs_of
 from mmrs_core.runtime.slots import InProcessBus
 from mmrs_core.sitl import Settings, SimulatedVehicle
 from mmrs_core.testing.programs import move, program, quad, robot_program, take_off
+from mmrs_mavlink.plugin.backend import MAVLINK
 from mmrs_runtime.orders.ordering import give
 
 ROBOT = "drone"

@@ -139,7 +139,7 @@ def total(vehicles) -> int:
 
 
 def hear_by_links(given: argparse.Namespace) -> None:
-    from mmrs_core.flight.links.radios import Radios
+    from mmrs_mavlink.links.radios import Radios
     from mmrs_runtime.clock import Clock
 
     radios = Radios(Clock())
@@ -222,7 +222,6 @@ def children() -> float:
 def generate(folder: Path, count: int) -> None:
     from mmrs_core.generation.render import render
     from mmrs_core.generation.writing import write
-    from mmrs_core.mavlink.controllers import MAVLINK_PYTHON
     from mmrs_core.scene import Frame
     from mmrs_core.testing.programs import (
         LAND,
@@ -232,6 +231,7 @@ def generate(folder: Path, count: int) -> None:
         take_off,
         target_input,
     )
+    from mmrs_mavlink.plugin.controllers import MAVLINK_PYTHON
 
     frame = Frame("EPSG:4326", 42.37 - NORTH / 111_070.0, 13.35)
     robots = []

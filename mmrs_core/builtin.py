@@ -14,7 +14,6 @@ if TYPE_CHECKING:
     from mmrs_core.contributions.constraints import Constraint
     from mmrs_core.contributions.fixes import Fix
     from mmrs_core.contributions.rules import MoveKind, RobotKind
-    from mmrs_core.contributions.targets import Target
     from mmrs_core.contributions.wiring import DeviceWiring
     from mmrs_core.migration.dialect import ForeignDialect
 
@@ -79,20 +78,11 @@ def mmrs_device_actions() -> Iterable[DeviceWiring]:
 
 
 @hookimpl
-def mmrs_targets() -> Iterable[Target]:
-    """Contribute the targets for code generation."""
-    from mmrs_core.mavlink.targets import TARGETS
-
-    return TARGETS
-
-
-@hookimpl
 def mmrs_backends() -> Iterable[BackendFactory]:
-    """Contribute the simulation, and vehicles at the ends of MAVLink links."""
-    from mmrs_core.mavlink.backend import MAVLINK
+    """Contribute the simulation."""
     from mmrs_core.runtime.simulation import SIMULATION
 
-    return (SIMULATION, MAVLINK)
+    return (SIMULATION,)
 
 
 @hookimpl

@@ -29,8 +29,8 @@ def bus_faults(
     """
     if "bus-" not in text:
         return lambda carrier: carrier
-    from mmrs_core.flight.injection import Rehearsal, injections
-    from mmrs_core.mavlink.backend.connection import FollowingClock
+    from mmrs_core.runtime.clock import FollowingClock
+    from mmrs_runtime.injection import Rehearsal, injections
 
     robots = [robot.id for robot in program.robots]
     try:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -11,12 +10,11 @@ import typer
 
 from mmrs_core.behaviour.program import Program
 from mmrs_core.cli.buses import BusWishes
+from mmrs_core.contributions.backends import BackendFactory
 from mmrs_core.runtime.mixed import options_for
 
 MAVLINK = "mavlink"
 ON_STOP = {"hold": "HOLD", "return": "RETURN", "land": "LAND"}
-_SERIAL = re.compile(r"/|COM\d+", re.IGNORECASE)
-"""How names of serial devices begin."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,69 +71,32 @@ def stop_response(word: str) -> str:
     return ON_STOP[word]
 
 
-def check_mavlink(wishes: Wishes, links: Mapping[str, str], robots: tuple[str, ...]) -> None:
-    """Refuse links, faults and keys that nobody can understand.
+def check_backends(
+    wishes: Wishes, links: Mapping[str, str], robots: tuple[str, ...], backends: Mapping[str, BackendFactory]
+) -> None:
+    """Refuse options and links that the backends of these robots make nothing of.
 
     Raises:
         typer.BadParameter: if there are any.
-        OSError: if a key cannot be read.
+        OSError: if a file that an option names cannot be read.
     """
-    flying = _by_mavlink(wishes, robots)
-    if not flying:
-        return
-    from mmrs_core.flight.injection import injections
-    from mmrs_core.flight.links.ports import address_of, split_system
-
-    for robot in flying:
-        _refuse_options(options_for(robot, wishes.options))
-    _refuse_key(wishes.options.get("signing-key"))
-    reached: dict[tuple[str, int], str] = {}
-    for robot, text in ((each, links[each]) for each in flying if each in links):
-        try:
-            url, system = split_system(text)
-            if address_of(url) is None and not _SERIAL.match(url):
-                raise ValueError(f"{url}: is neither udpin:, udpout: or tcp:HOST:PORT nor a serial device")
-        except ValueError as error:
-            raise typer.BadParameter(f"--connect {error}") from error
-        if system and (other := reached.setdefault((url, system), robot)) != robot:
-            raise typer.BadParameter(f"--connect {text}: is given to '{other}' and to '{robot}'")
-    if inject := wishes.options.get("inject"):
-        try:
-            injections([inject], {robot: links.get(robot, "") for robot in robots})
-        except ValueError as error:
-            raise typer.BadParameter(f"--inject {error}") from error
+    urls = {robot: links.get(robot, "") for robot in robots}
+    for name, backend in backends.items():
+        own = {robot: options_for(robot, wishes.options) for robot in _by(name, wishes, robots)}
+        for fault in backend.check(own, urls) if own else ():
+            raise typer.BadParameter(fault)
 
 
 def options_of_robots(wishes: Wishes, robots: tuple[str, ...]) -> dict[str, str]:
     """Return the options of backends; where these differ, the key to sign with is for MAVLink's only."""
     options = dict(wishes.options)
     if wishes.own_backends and (key := options.pop("signing-key", None)) is not None:
-        options |= {f"{robot}:signing-key": key for robot in _by_mavlink(wishes, robots)}
+        options |= {f"{robot}:signing-key": key for robot in _by(MAVLINK, wishes, robots)}
     return options
 
 
-def _by_mavlink(wishes: Wishes, robots: tuple[str, ...]) -> tuple[str, ...]:
-    return tuple(each for each in robots if wishes.own_backends.get(each, wishes.backend) == MAVLINK)
-
-
-def _refuse_options(given: Mapping[str, str]) -> None:
-    from mmrs_core.errors import UsageError
-    from mmrs_core.mavlink.backend.options import link_options
-
-    try:
-        link_options(given)
-    except UsageError as error:
-        raise typer.BadParameter(f"--backend-option {str(error).removeprefix('option ')}") from error
-
-
-def _refuse_key(path: str | None) -> None:
-    from mmrs_core.flight.links.signing import signer_for
-
-    try:
-        if path is not None:
-            signer_for(Path(path))
-    except ValueError as error:
-        raise typer.BadParameter(f"--signing-key {error}") from error
+def _by(backend: str, wishes: Wishes, robots: tuple[str, ...]) -> tuple[str, ...]:
+    return tuple(each for each in robots if wishes.own_backends.get(each, wishes.backend) == backend)
 
 
 def links_of(given: tuple[str, ...], robots: tuple[str, ...]) -> dict[str, str]:

@@ -5,7 +5,7 @@ Times are seconds of the run's clock throughout. `abilities` says what a backend
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Protocol
@@ -123,6 +123,9 @@ class BackendInput:
     types: Mapping[str, RobotType] = field(default_factory=dict)
 
 
+Check = Callable[[Mapping[str, Mapping[str, str]], Mapping[str, str]], Iterable[str]]
+
+
 @dataclass(frozen=True, slots=True)
 class BackendFactory:
     """What makes backends of one sort.
@@ -134,9 +137,13 @@ class BackendFactory:
             UnsupportedError for an option that it does not know and for what it cannot do.
         simulated: whether its time is simulated, so that a run jumps from event to event;
             ``mmrs simulate`` takes no other.
+        check: yields what is wrong with the options of its robots and with the links of all robots, each by
+            robot, as far as the command line alone shows it, such as ``--connect udp: is no address``. Raises
+            OSError where a file that they name cannot be read.
     """
 
     name: str
     description: str
     connect: Callable[[BackendInput], Backend]
     simulated: bool = False
+    check: Check = lambda options, links: ()

@@ -7,7 +7,9 @@ from contextlib import suppress
 from math import inf
 from queue import Empty, SimpleQueue
 
+from mmrs_core.contributions.execution import Clock
 from mmrs_runtime.clock import SIGNAL_SECONDS
+from mmrs_runtime.clock import Clock as RobotClock
 
 
 class SimulatedClock:
@@ -75,3 +77,16 @@ class RealClock:
     def wake(self) -> None:
         """End the present sleep, or the next one if nobody sleeps; from any thread or signal handler."""
         self._wakes.put(None)
+
+
+class FollowingClock(RobotClock):
+    """The clock of what a robot runs on, showing the time of a run of the interpreter."""
+
+    def __init__(self, clock: Clock) -> None:
+        """Follow that clock."""
+        super().__init__(float(getattr(clock, "speedup", 1.0)))
+        self._followed = clock
+
+    def now(self) -> float:
+        """Return the seconds since the run began."""
+        return self._followed.now()

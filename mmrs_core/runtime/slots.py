@@ -8,8 +8,8 @@ from pathlib import Path
 from mmrs_core.behaviour.program import Program, SlotId
 from mmrs_core.contributions.buses import CommandId, Find, SlotState
 from mmrs_core.errors import InternalError
-from mmrs_core.flight.slots import SETTLING_SECONDS
 from mmrs_runtime.bus import Carrier, Delivery, FileJournal, Member, Node, Owned, Recorded
+from mmrs_runtime.bus.watching import SETTLING_SECONDS
 from mmrs_runtime.records.steps import StepRecord, log_name
 
 

@@ -14,13 +14,14 @@ from mmrs_core.cli.pages.capabilities_page import page_of
 from mmrs_core.generation.capabilities.judging import capabilities_of
 from mmrs_core.pipeline import capabilities
 from mmrs_core.plugins import load_plugins
+from mmrs_mavlink import plugin as mavlink
 
 PAGE = Path(__file__).parents[2] / "docs" / "capabilities.md"
 UNDER_WATER = PAGE.with_name("capabilities-underwater.md")
 
 
 def test_the_page_is_current(update_golden):
-    contributions = load_plugins(only_core=True).contributions
+    contributions = load_plugins(only_core=True, extra={"mavlink": mavlink}).contributions
     descriptions = {name: target.description for name, target in contributions.targets.items()}
     made = page_of(capabilities(None, contributions), descriptions)
     if update_golden:

@@ -6,7 +6,7 @@ from random import Random
 
 from ada_crafts import bits
 
-from mmrs_core.flight.program import GoTo, Hold, Local, Robot, Step, Stop, Then
+from mmrs_mavlink.program import GoTo, Hold, Local, Robot, Step, Stop, Then
 
 GOES, HOLDS, STOPS = 1, 2, 5
 

@@ -13,13 +13,15 @@ from pathlib import Path
 from patience import until
 from ports import free_port
 
-from mmrs_core.flight.desk import Desk
-from mmrs_core.flight.links.link import Link
-from mmrs_core.flight.links.ports import NOTHING, Port, Received, open_port
-from mmrs_core.flight.links.radio import Radio
-from mmrs_core.flight.orders.obedience import Obedience
-from mmrs_core.flight.places import distance
-from mmrs_core.flight.program import (
+from mmrs_core.sitl import Settings, SimulatedVehicle
+from mmrs_core.sitl.hosting import LONGEST_STEP
+from mmrs_mavlink.desk import Desk
+from mmrs_mavlink.links.link import Link
+from mmrs_mavlink.links.ports import open_port
+from mmrs_mavlink.links.radio import Radio
+from mmrs_mavlink.orders.obedience import Obedience
+from mmrs_mavlink.places import distance
+from mmrs_mavlink.program import (
     Geographic,
     GoTo,
     Hold,
@@ -32,18 +34,17 @@ from mmrs_core.flight.program import (
     TakeOff,
     Then,
 )
-from mmrs_core.flight.services.uploads import Uploads
-from mmrs_core.flight.slots import LocalSlots
-from mmrs_core.flight.steps.ending import Crew, Ending
-from mmrs_core.flight.steps.guarding import guarding
-from mmrs_core.flight.steps.pilot import Pilot
-from mmrs_core.flight.steps.watch import Watch
-from mmrs_core.flight.vehicles.mavlink_vehicle import MavlinkVehicle
-from mmrs_core.sitl import Settings, SimulatedVehicle
-from mmrs_core.sitl.hosting import LONGEST_STEP
+from mmrs_mavlink.services.uploads import Uploads
+from mmrs_mavlink.slots import LocalSlots
+from mmrs_mavlink.steps.ending import Crew, Ending
+from mmrs_mavlink.steps.guarding import guarding
+from mmrs_mavlink.steps.pilot import Pilot
+from mmrs_mavlink.steps.watch import Watch
+from mmrs_mavlink.vehicles.mavlink_vehicle import MavlinkVehicle
 from mmrs_runtime.clock import Clock
 from mmrs_runtime.faults import Fault
 from mmrs_runtime.orders.orders import Inbox
+from mmrs_runtime.ports import NOTHING, Port, Received
 from mmrs_runtime.records.blackbox import BlackBox
 from mmrs_runtime.records.log import Log, read
 

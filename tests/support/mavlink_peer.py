@@ -12,11 +12,11 @@ from types import SimpleNamespace
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from mmrs_core.flight.links.link import Link
-from mmrs_core.flight.links.ports import NOTHING, Received
-from mmrs_core.flight.links.radio import Radio
-from mmrs_core.flight.links.retries import Retries
+from mmrs_mavlink.links.link import Link
+from mmrs_mavlink.links.radio import Radio
+from mmrs_mavlink.links.retries import Retries
 from mmrs_runtime.clock import Clock
+from mmrs_runtime.ports import NOTHING, Received
 
 HERE, THERE = ("10.0.0.1", 14_550), ("10.0.0.2", 14_550)
 ARDUPILOT, PX4 = mavlink.MAV_AUTOPILOT_ARDUPILOTMEGA, mavlink.MAV_AUTOPILOT_PX4

@@ -20,10 +20,10 @@ from ports import free_port
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 from virtual_link import Air
 
-from mmrs_core.flight.links.link import Link
-from mmrs_core.flight.links.ports import NOTHING
-from mmrs_core.flight.links.radio import Radio
-from mmrs_core.flight.program import (
+from mmrs_core.sitl import Settings, SimulatedVehicle
+from mmrs_mavlink.links.link import Link
+from mmrs_mavlink.links.radio import Radio
+from mmrs_mavlink.program import (
     Geographic,
     GoTo,
     Hold,
@@ -36,11 +36,11 @@ from mmrs_core.flight.program import (
     TakeOff,
     Then,
 )
-from mmrs_core.flight.steps.ending import Crew, Ending
-from mmrs_core.sitl import Settings, SimulatedVehicle
+from mmrs_mavlink.steps.ending import Crew, Ending
 from mmrs_runtime.clock import Clock
 from mmrs_runtime.faults import Fault
 from mmrs_runtime.orders.orders import Inbox, Order, Receipt
+from mmrs_runtime.ports import NOTHING
 
 TICK = 0.05
 THERE = ("127.0.0.1", 1)

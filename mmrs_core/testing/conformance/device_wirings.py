@@ -9,8 +9,8 @@ from typing import ClassVar
 from mmrs_core.behaviour.program import Action
 from mmrs_core.contributions.wiring import DeviceWiring, Unwired, Wiring
 from mmrs_core.generation.render import render
-from mmrs_core.mavlink.controllers import MAVLINK_PYTHON
 from mmrs_core.mavlink.wiring import wiring_of
+from mmrs_core.plugins import load_plugins
 from mmrs_core.scene import Device
 from mmrs_core.testing.conformance.declared import Conformance, declared
 from mmrs_core.testing.programs import go_to, program, quad, robot_program, take_off, target_input
@@ -55,13 +55,14 @@ class DeviceWiringConformance(Conformance):
             assert not isinstance(found, Unwired) or found.reason
 
     def test_it_reaches_controllers(self, device_action: DeviceWiring) -> None:
-        """A generated controller has the device act."""
+        """A generated controller has the device act, by the target ``mavlink-python`` of mmrs-mavlink."""
+        target = load_plugins().contributions.targets["mavlink-python"]
         device, name = self.devices[device_action.property]
         acts = replace(go_to("a", (0.0, 9.0, 5.0)), after=(use(device.id, name),))
         type = replace(quad(), devices={device.id: device})
         given = target_input(program(robot_program("alpha", [take_off("up", 5.0), acts])), [type])
-        files = render(MAVLINK_PYTHON, replace(given, device_actions={device_action.property: device_action}))
-        assert f'("{device.id}", "{name}", ' in files[0].content.decode("utf-8")
+        files = render(target, replace(given, device_actions={device_action.property: device_action}))
+        assert f'"{device.id}", "{name}", ' in " ".join(files[0].content.decode("utf-8").split())
 
     @staticmethod
     def _wired(wiring: DeviceWiring, device: Device, action: Action) -> Wiring:

@@ -8,6 +8,9 @@ from collections.abc import Callable, Iterable
 LEASE_SECONDS = 1.5
 """How long a robot may be out of reach before slots are no longer kept for it."""
 
+SETTLING_SECONDS = 1.0
+"""How long a process looks whether another one runs its robots, before it joins the bus."""
+
 DOUBLE_SECONDS = 3.0
 """How long a robot may still look as if another process ran it, which was killed on a machine of its own."""
 

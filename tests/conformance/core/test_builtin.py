@@ -12,16 +12,9 @@ from mmrs_core.testing.conformance import (
     DeviceWiringConformance,
     MoveKindConformance,
     RobotKindConformance,
-    TargetConformance,
 )
 from mmrs_core.testing.programs import (
-    LAND,
-    go_to,
     move,
-    program,
-    robot_program,
-    take_off,
-    target_input,
 )
 from mmrs_core.testing.scenes import sample_robot
 
@@ -36,8 +29,6 @@ MOVES = {
     "HeadTo": replace(move("head", "HeadTo"), heading=Heading(PLACE)),
     "GoTo": replace(move("go", "GoTo"), target=PLACE, distance=3.0, speed=4.0),
 }
-FLIGHT = [take_off("up", 20.0), go_to("out", (0.0, 30.0, 20.0)), LAND]
-ONE_DRONE = target_input(program(robot_program("alpha", FLIGHT)))
 
 
 class TestRobotKinds(RobotKindConformance):
@@ -70,11 +61,6 @@ class TestDeviceWirings(DeviceWiringConformance):
         "mavlink.winch": device("relax", mavlink__winch="1"),
         "mavlink.gimbal": device("lookDown", mavlink__gimbal="1", mavlink__gimbal__lookDown="-90 0"),
     }
-
-
-class TestTargets(TargetConformance):
-    plugin = builtin
-    inputs = {"qgc-plan": ONE_DRONE, "wpl": ONE_DRONE}
 
 
 class TestBackends(BackendConformance):

@@ -8,7 +8,6 @@ import pytest
 
 from mmrs_core.contributions.wiring import DeviceWiring, Wired
 from mmrs_core.generation.render import render
-from mmrs_core.mavlink.controllers import MAVLINK_PYTHON
 from mmrs_core.scene import Device, DeviceAction, Policy
 from mmrs_core.testing.programs import (
     LAND,
@@ -20,6 +19,7 @@ from mmrs_core.testing.programs import (
     take_off,
     target_input,
 )
+from mmrs_mavlink.plugin.controllers import MAVLINK_PYTHON
 
 ACTS = replace(go_to("a", (0.0, 12.0, 5.0)), after=(photo("device", "act"),))
 MADE = program(robot_program("alpha", [take_off("up", 5.0), ACTS, LAND]))

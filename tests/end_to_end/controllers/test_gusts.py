@@ -8,7 +8,6 @@ import pytest
 from shapely import LineString, Polygon
 
 from mmrs_core.generation.render import render
-from mmrs_core.mavlink.controllers import MAVLINK_PYTHON
 from mmrs_core.scene import Area, AreaUse
 from mmrs_core.testing.programs import (
     LAND,
@@ -18,6 +17,7 @@ from mmrs_core.testing.programs import (
     take_off,
     target_input,
 )
+from mmrs_mavlink.plugin.controllers import MAVLINK_PYTHON
 
 SHELL = ((20.0, 0.0), (60.0, 0.0), (60.0, 40.0), (20.0, 40.0))
 SAFETY, ERROR, HALF = 2.0, 0.5, 0.5

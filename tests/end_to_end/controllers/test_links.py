@@ -11,13 +11,14 @@ import pytest
 from ports import free_port
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from mmrs_core.flight.links.link import Link
-from mmrs_core.flight.links.ports import NOTHING, open_port
 from mmrs_core.mavlink.earth import degrees_of
 from mmrs_core.sitl import Settings, SimulatedVehicle
 from mmrs_core.testing.programs import LAND, program, robot_program, take_off, two_drones
+from mmrs_mavlink.links.link import Link
+from mmrs_mavlink.links.ports import open_port
 from mmrs_runtime.clock import Clock
 from mmrs_runtime.faults import Fault
+from mmrs_runtime.ports import NOTHING
 
 UP_AND_DOWN = program(robot_program("alpha", [take_off("up", 5.0), LAND]))
 TWO = two_drones()

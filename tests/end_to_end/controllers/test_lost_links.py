@@ -8,7 +8,6 @@ from dataclasses import replace
 import pytest
 
 from mmrs_core.behaviour.program import Transition
-from mmrs_core.flight.vehicles.modes import LINK_LOST
 from mmrs_core.scene import Policy
 from mmrs_core.testing.programs import (
     LAND,
@@ -20,6 +19,7 @@ from mmrs_core.testing.programs import (
     robot_program,
     take_off,
 )
+from mmrs_mavlink.vehicles.modes import LINK_LOST
 
 ARM = 400
 

@@ -13,18 +13,18 @@ from lossy_proxy import LossyProxy
 from peer_lines import said_in
 from ports import free_port
 
-from mmrs_core import flight
-from mmrs_core.flight.links.link import Link
-from mmrs_core.flight.links.ports import open_port
-from mmrs_core.flight.links.retries import Retries
-from mmrs_core.flight.services import missions, parameters
-from mmrs_core.flight.services.commands import command
-from mmrs_core.flight.services.uploads import mission_of
+import mmrs_mavlink as flight
 from mmrs_core.generation.render import render
 from mmrs_core.generation.writing import write
-from mmrs_core.mavlink.plans.qgc import QGC_PLAN
 from mmrs_core.sitl import Settings, SimulatedVehicle
 from mmrs_core.testing.programs import target_input, two_drones
+from mmrs_mavlink.links.link import Link
+from mmrs_mavlink.links.ports import open_port
+from mmrs_mavlink.links.retries import Retries
+from mmrs_mavlink.plugin.plans.qgc import QGC_PLAN
+from mmrs_mavlink.services import missions, parameters
+from mmrs_mavlink.services.commands import command
+from mmrs_mavlink.services.uploads import mission_of
 from mmrs_runtime.clock import Clock
 
 PEERS = Path(__file__).parents[2] / "peers"

@@ -15,9 +15,9 @@ from peer_lines import said_in
 
 from mmrs_core.generation.render import render
 from mmrs_core.generation.writing import write
-from mmrs_core.mavlink.plans.qgc import QGC_PLAN
-from mmrs_core.mavlink.plans.wpl import WPL
 from mmrs_core.testing.programs import quad, target_input, two_drones
+from mmrs_mavlink.plugin.plans.qgc import QGC_PLAN
+from mmrs_mavlink.plugin.plans.wpl import WPL
 
 IMPORTER = Path(__file__).parents[2] / "peers" / "mavsdk_import.py"
 

@@ -7,12 +7,12 @@ from dataclasses import replace
 import pytest
 from ports import free_port
 
-from mmrs_core.flight.links.link import Link
-from mmrs_core.flight.links.ports import open_port
-from mmrs_core.flight.program import Travel
-from mmrs_core.flight.vehicles.travel import set_up
 from mmrs_core.sitl import Settings, SimulatedVehicle
 from mmrs_core.testing.programs import LAND, go_to, program, robot_program, take_off
+from mmrs_mavlink.links.link import Link
+from mmrs_mavlink.links.ports import open_port
+from mmrs_mavlink.program import Travel
+from mmrs_mavlink.vehicles.travel import set_up
 from mmrs_runtime.clock import Clock
 
 SAFE = Travel("SAFE", radius=1.0, margin=4.0)

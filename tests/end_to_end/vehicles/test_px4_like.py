@@ -12,10 +12,10 @@ from mmrs_core.behaviour.log import read_logs
 from mmrs_core.behaviour.replay import Outcome, replay
 from mmrs_core.generation.render import render
 from mmrs_core.generation.writing import write
-from mmrs_core.mavlink.controllers import MAVLINK_PYTHON
 from mmrs_core.mavlink.earth import degrees_of
 from mmrs_core.sitl import Host, Settings, SimulatedVehicle
 from mmrs_core.testing.programs import target_input, two_drones
+from mmrs_mavlink.plugin.controllers import MAVLINK_PYTHON
 
 SPEEDUP = 10.0
 OFFBOARD, MISSION = "guided", "auto"

@@ -12,7 +12,6 @@ import pytest
 from mmrs_core.behaviour.program import Target, Transition
 from mmrs_core.errors import UnsupportedError
 from mmrs_core.generation.render import render
-from mmrs_core.mavlink.targets import TARGETS
 from mmrs_core.scene import Frame
 from mmrs_core.testing.programs import (
     LAND,
@@ -24,6 +23,7 @@ from mmrs_core.testing.programs import (
     target_input,
     two_drones,
 )
+from mmrs_mavlink.plugin.targets import TARGETS
 
 EXPECTED = Path(__file__).parent / "expected"
 BY_NAME = {target.name: target for target in TARGETS}

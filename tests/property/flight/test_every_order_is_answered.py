@@ -14,23 +14,23 @@ from flight_crew import robot_of
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
-from mmrs_core.flight.crews import Crews
-from mmrs_core.flight.desk import Desk
-from mmrs_core.flight.injection import Rehearsal
-from mmrs_core.flight.judgement import Judgement
-from mmrs_core.flight.links.radios import Radios
-from mmrs_core.flight.options import options_of, parser_for
-from mmrs_core.flight.orders.obedience import Obedience
-from mmrs_core.flight.program import Place, Policy
-from mmrs_core.flight.session import Session, Shared
-from mmrs_core.flight.slots import LocalSlots
-from mmrs_core.flight.steps.ending import Crew
-from mmrs_core.flight.steps.guarding import guarding
-from mmrs_core.flight.steps.pilot import Pilot
-from mmrs_core.flight.steps.watch import Watch
-from mmrs_core.flight.vehicles.dry import DryVehicle
+from mmrs_mavlink.crews import Crews
+from mmrs_mavlink.desk import Desk
+from mmrs_mavlink.judgement import Judgement
+from mmrs_mavlink.links.radios import Radios
+from mmrs_mavlink.options import options_of, parser_for
+from mmrs_mavlink.orders.obedience import Obedience
+from mmrs_mavlink.program import Place, Policy
+from mmrs_mavlink.session import Session, Shared
+from mmrs_mavlink.slots import LocalSlots
+from mmrs_mavlink.steps.ending import Crew
+from mmrs_mavlink.steps.guarding import guarding
+from mmrs_mavlink.steps.pilot import Pilot
+from mmrs_mavlink.steps.watch import Watch
+from mmrs_mavlink.vehicles.dry import DryVehicle
 from mmrs_runtime.clock import Clock
 from mmrs_runtime.faults import Fault
+from mmrs_runtime.injection import Rehearsal
 from mmrs_runtime.orders.orders import HOLD, LAND, RESUME, RETURN, STOP, Inbox, Order
 from mmrs_runtime.records.blackbox import BlackBox
 from mmrs_runtime.records.log import Log, read

@@ -9,10 +9,10 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 from pyproj import Geod
 
-from mmrs_core.flight import Geographic
-from mmrs_core.flight.places import between, distance
 from mmrs_core.sitl.autopilot import Autopilot
 from mmrs_core.sitl.settings import Settings
+from mmrs_mavlink import Geographic
+from mmrs_mavlink.places import between, distance
 
 GEOD = Geod(ellps="WGS84")
 

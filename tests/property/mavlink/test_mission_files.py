@@ -14,8 +14,6 @@ from pymavlink import mavwp
 
 from mmrs_core.behaviour.program import Transition
 from mmrs_core.generation.render import render
-from mmrs_core.mavlink.plans.qgc import QGC_PLAN
-from mmrs_core.mavlink.plans.wpl import WPL
 from mmrs_core.testing.programs import (
     LAND,
     go_to,
@@ -25,6 +23,8 @@ from mmrs_core.testing.programs import (
     take_off,
     target_input,
 )
+from mmrs_mavlink.plugin.plans.qgc import QGC_PLAN
+from mmrs_mavlink.plugin.plans.wpl import WPL
 
 lengths = st.floats(-5000.0, 5000.0, allow_nan=False)
 heights = st.floats(1.0, 120.0)

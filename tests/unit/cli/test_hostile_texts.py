@@ -8,11 +8,11 @@ from mmrs_core.behaviour.box_files import black_boxes
 from mmrs_core.behaviour.log import read_log
 from mmrs_core.cli import run
 from mmrs_core.errors import InvalidModelError, UnreadableError, UsageError
-from mmrs_core.flight.injection.spec import injections
-from mmrs_core.flight.links.ports import address_of, split_system
 from mmrs_core.generation.manifest import read_manifest
-from mmrs_core.mavlink.backend.options import link_options
 from mmrs_core.sitl.sights import sights_in
+from mmrs_mavlink.links.ports import address_of, split_system
+from mmrs_mavlink.plugin.backend.options import link_options
+from mmrs_runtime.injection.spec import injections
 
 LONG, DEEP = "9" * 5000, "[" * 200_000
 

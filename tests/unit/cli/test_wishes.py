@@ -8,9 +8,14 @@ import pytest
 import typer
 
 from mmrs_core.cli.simulation import backends_of
-from mmrs_core.cli.wishes import Wishes, check_mavlink, links_of, options_of_robots
+from mmrs_core.cli.wishes import Wishes, check_backends, links_of, options_of_robots
+from mmrs_mavlink.plugin.backend import MAVLINK
 
 LINK = "udpin:127.0.0.1:14550"
+
+
+def check(wishes, links, robots):
+    check_backends(wishes, links, robots, {"mavlink": MAVLINK})
 
 
 @pytest.mark.parametrize(
@@ -19,26 +24,26 @@ LINK = "udpin:127.0.0.1:14550"
 def test_an_option_of_the_backend_that_makes_no_sense_is_wrong_usage(options):
     (name,) = options
     with pytest.raises(typer.BadParameter, match=f"--backend-option '{name}'"):
-        check_mavlink(Wishes(Path("logs"), options=options), {}, ("alpha",))
+        check(Wishes(Path("logs"), options=options), {}, ("alpha",))
 
 
 def test_a_key_of_the_wrong_length_is_wrong_usage_and_one_that_is_not_there_cannot_be_read(tmp_path):
     key = tmp_path / "short.key"
     key.write_bytes(b"abc")
     with pytest.raises(typer.BadParameter, match=r"--signing-key .*short\.key: holds 3 bytes instead of 32"):
-        check_mavlink(Wishes(Path("logs"), options={"signing-key": str(key)}), {}, ("alpha",))
+        check(Wishes(Path("logs"), options={"signing-key": str(key)}), {}, ("alpha",))
     with pytest.raises(FileNotFoundError):
-        check_mavlink(Wishes(Path("logs"), options={"signing-key": str(tmp_path / "no")}), {}, ("alpha",))
+        check(Wishes(Path("logs"), options={"signing-key": str(tmp_path / "no")}), {}, ("alpha",))
 
 
 def test_two_robots_with_one_system_at_one_link_are_wrong_usage():
     links = {"alpha": f"{LINK}@3", "beta": f"{LINK}@3"}
     with pytest.raises(typer.BadParameter, match="is given to 'alpha' and to 'beta'"):
-        check_mavlink(Wishes(Path("logs")), links, ("alpha", "beta"))
+        check(Wishes(Path("logs")), links, ("alpha", "beta"))
 
 
 def test_two_robots_may_share_a_link():
-    check_mavlink(Wishes(Path("logs")), {"alpha": f"{LINK}@3", "beta": f"{LINK}@4"}, ("alpha", "beta"))
+    check(Wishes(Path("logs")), {"alpha": f"{LINK}@3", "beta": f"{LINK}@4"}, ("alpha", "beta"))
 
 
 def test_one_robot_has_one_link():
@@ -73,9 +78,9 @@ def test_two_backends_for_one_robot_are_wrong_usage(given, said):
 
 def test_links_and_options_of_other_backends_are_not_mavlinks():
     wishes = Wishes(Path("logs"), own_backends={"beta": "can"}, options={"beta:detections": "29700"})
-    check_mavlink(wishes, {"alpha": LINK, "beta": "can0@127.0.0.1:29600"}, BOTH)
+    check(wishes, {"alpha": LINK, "beta": "can0@127.0.0.1:29600"}, BOTH)
     with pytest.raises(typer.BadParameter, match="--backend-option 'detections'"):
-        check_mavlink(Wishes(Path("logs"), options={"alpha:detections": "1"}), {}, BOTH)
+        check(Wishes(Path("logs"), options={"alpha:detections": "1"}), {}, BOTH)
 
 
 def test_the_key_to_sign_with_is_for_robots_on_mavlink():

@@ -7,7 +7,7 @@ from math import nan
 
 import pytest
 
-from mmrs_core.flight.program import Geographic
+from mmrs_mavlink.program import Geographic
 from mmrs_runtime.records.blackbox import BlackBox, black_box_path, last_time, plan_of
 
 

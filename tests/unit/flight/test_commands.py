@@ -8,7 +8,7 @@ import pytest
 from mavlink_peer import acknowledged, eventually, linked
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from mmrs_core.flight.services.commands import CommandCancel, command
+from mmrs_mavlink.services.commands import CommandCancel, command
 from mmrs_runtime.faults import Fault, Refused, Unanswered
 
 ARM = mavlink.MAV_CMD_COMPONENT_ARM_DISARM

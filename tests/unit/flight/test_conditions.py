@@ -5,9 +5,9 @@ from dataclasses import replace
 import pytest
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from mmrs_core.flight.program import Geographic, Local
-from mmrs_core.flight.vehicles.detections import Detections
-from mmrs_core.flight.vehicles.vehicle import State
+from mmrs_mavlink.program import Geographic, Local
+from mmrs_mavlink.vehicles.detections import Detections
+from mmrs_mavlink.vehicles.vehicle import State
 from mmrs_runtime.conditions import is_standard, question_of, standard
 
 GEOGRAPHIC = Geographic(42.0, 13.0, 20.0)

@@ -6,8 +6,8 @@ from dataclasses import replace
 
 import pytest
 
-from mmrs_core.flight import GoTo, Hold, Local, Notify, Object, Operate, Step, Then
-from mmrs_core.flight.vehicles.corners import goes_through, turn
+from mmrs_mavlink import GoTo, Hold, Local, Notify, Object, Operate, Step, Then
+from mmrs_mavlink.vehicles.corners import goes_through, turn
 
 HERE = Local(0.0, 0.0, 10.0)
 FAR = Local(100.0, 0.0, 10.0)

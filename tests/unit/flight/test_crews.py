@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from mmrs_core.flight.crews import Crews
+from mmrs_mavlink.crews import Crews
 from mmrs_runtime.orders.orders import Order
 from mmrs_runtime.phases import ENDED, HELD, HELD_EARLY, SUSPENDED, WAITS, WORKS
 

@@ -7,8 +7,8 @@ from dataclasses import replace
 import pytest
 from flight_crew import robot_of
 
-from mmrs_core.flight.program import Geographic, GoTo, Run, Start, Step, Stop, Then
-from mmrs_core.flight.services.uploads import mission_of
+from mmrs_mavlink.program import Geographic, GoTo, Run, Start, Step, Stop, Then
+from mmrs_mavlink.services.uploads import mission_of
 
 WAYPOINT = 16
 DEPTHS = {"down": -8.0, "up": 0.0, "again": -0.5}

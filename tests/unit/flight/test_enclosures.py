@@ -5,9 +5,9 @@ from __future__ import annotations
 import pytest
 from mavlink_peer import ARDUPILOT, PX4, linked, value
 
-from mmrs_core.flight import Geographic
-from mmrs_core.flight.services.items import Item
-from mmrs_core.flight.vehicles.enclosure import enclose
+from mmrs_mavlink import Geographic
+from mmrs_mavlink.services.items import Item
+from mmrs_mavlink.vehicles.enclosure import enclose
 from mmrs_runtime.faults import Refused
 
 HOME = Geographic(42.37, 13.35, 0.0)

@@ -8,10 +8,10 @@ import pytest
 from mavlink_peer import ARDUPILOT, PX4, eventually, linked
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from mmrs_core.flight.program import Geographic
-from mmrs_core.flight.vehicles.evidence import LinkEvidence
-from mmrs_core.flight.vehicles.modes import GUIDED, HOLD, PX4_MODES, px4_number
-from mmrs_core.flight.vehicles.telemetry import Telemetry
+from mmrs_mavlink.program import Geographic
+from mmrs_mavlink.vehicles.evidence import LinkEvidence
+from mmrs_mavlink.vehicles.modes import GUIDED, HOLD, PX4_MODES, px4_number
+from mmrs_mavlink.vehicles.telemetry import Telemetry
 
 HOME = Geographic(42.37, 13.35, 10.0)
 FAR = Geographic(42.371, 13.35, 10.0)

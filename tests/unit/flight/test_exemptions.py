@@ -6,7 +6,7 @@ import pytest
 from flight_crew import manned
 from mavlink_peer import linked, value
 
-from mmrs_core.flight.vehicles.exemptions import end_exemption
+from mmrs_mavlink.vehicles.exemptions import end_exemption
 from mmrs_runtime.faults import Refused
 
 

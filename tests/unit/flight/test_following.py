@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from mmrs_core.flight import Local
-from mmrs_core.flight.vehicles.following import Following
+from mmrs_mavlink import Local
+from mmrs_mavlink.vehicles.following import Following
 from mmrs_runtime.faults import Fault
 
 PLACES = {2: Local(50.0, 0.0, 20.0), 3: Local(100.0, 0.0, 20.0), 4: Local(100.0, 50.0, 20.0)}

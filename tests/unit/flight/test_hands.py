@@ -9,9 +9,9 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 from still_crew import robot_of, still
 from virtual_link import Air
 
-from mmrs_core.flight.program import Policy
-from mmrs_core.flight.services.commands import ask
-from mmrs_core.flight.vehicles.requests import Requests
+from mmrs_mavlink.program import Policy
+from mmrs_mavlink.services.commands import ask
+from mmrs_mavlink.vehicles.requests import Requests
 
 KINDS = ("copter", "sub", "rover")
 AIRS = (

@@ -8,7 +8,7 @@ import pytest
 from flight_crew import in_background, manned, robot_of
 from patience import until
 
-from mmrs_core.flight.program import Choose, Operate, Policy, Then
+from mmrs_mavlink.program import Choose, Operate, Policy, Then
 from mmrs_runtime.faults import DEVICE_SILENT, PEER_LOST, WAIT_TOO_LONG, Fault
 from mmrs_runtime.orders.orders import Order
 

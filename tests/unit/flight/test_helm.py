@@ -6,12 +6,12 @@ import pytest
 from mavlink_peer import acknowledged, eventually, linked
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from mmrs_core.flight import Geographic
-from mmrs_core.flight.links.retries import Retries
-from mmrs_core.flight.vehicles import modes
-from mmrs_core.flight.vehicles.helm import Helm
-from mmrs_core.flight.vehicles.mavlink_vehicle import MavlinkVehicle
-from mmrs_core.flight.vehicles.telemetry import Telemetry
+from mmrs_mavlink import Geographic
+from mmrs_mavlink.links.retries import Retries
+from mmrs_mavlink.vehicles import modes
+from mmrs_mavlink.vehicles.helm import Helm
+from mmrs_mavlink.vehicles.mavlink_vehicle import MavlinkVehicle
+from mmrs_mavlink.vehicles.telemetry import Telemetry
 from mmrs_runtime.faults import Fault, Refused, Unanswered
 
 HOME = Geographic(42.37, 13.35, 0.0)
@@ -209,7 +209,7 @@ def test_an_image_that_was_promised_is_waited_for(camera, told, component):
 
 @pytest.mark.parametrize("told", [None, NO_IMAGE])
 def test_an_image_that_never_comes_is_a_silent_device(camera, monkeypatch, told):
-    monkeypatch.setattr("mmrs_core.flight.vehicles.mavlink_vehicle.IMAGE_SECONDS", 2.0)
+    monkeypatch.setattr("mmrs_mavlink.vehicles.mavlink_vehicle.IMAGE_SECONDS", 2.0)
     vehicle, wire = camera
     if told is not None:
         wire.say(told, component=100)

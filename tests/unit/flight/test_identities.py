@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from mmrs_core.flight.links.identity import Identity
+from mmrs_mavlink.links.identity import Identity
 
 
 def told(*milliseconds: float) -> Identity:

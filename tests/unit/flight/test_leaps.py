@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from mmrs_core.flight.vehicles.leaps import LEAP_METRES, Leaps
+from mmrs_mavlink.vehicles.leaps import LEAP_METRES, Leaps
 
 COMPONENT = 1
 LOCAL = "LOCAL_POSITION_NED"

@@ -5,8 +5,8 @@ from __future__ import annotations
 import pytest
 from mavlink_peer import PX4, linked, value
 
-from mmrs_core.flight.program import Policy
-from mmrs_core.flight.vehicles.listening import check_listening
+from mmrs_mavlink.program import Policy
+from mmrs_mavlink.vehicles.listening import check_listening
 from mmrs_runtime.faults import Refused
 
 OTHER = "zzz"

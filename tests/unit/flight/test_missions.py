@@ -6,10 +6,10 @@ import pytest
 from mavlink_peer import PX4, linked
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from mmrs_core.flight.services.exchanges import mark_of
-from mmrs_core.flight.services.items import FENCE, MISSION, Item
-from mmrs_core.flight.services.missions import upload, verify
-from mmrs_core.flight.services.reading import download
+from mmrs_mavlink.services.exchanges import mark_of
+from mmrs_mavlink.services.items import FENCE, MISSION, Item
+from mmrs_mavlink.services.missions import upload, verify
+from mmrs_mavlink.services.reading import download
 from mmrs_runtime.faults import Fault, Refused
 
 ITEMS = [Item(16, (float(n), 0.0, 0.0, 0.0), 423_700_000 + n, 133_500_000, 20.0 + n) for n in range(4)]

@@ -5,9 +5,9 @@ from __future__ import annotations
 import pytest
 from mavlink_peer import PX4, linked
 
-from mmrs_core.flight.vehicles import modes
 from mmrs_core.sitl import failsafes, px4_failsafes
 from mmrs_core.sitl.modes import MODES
+from mmrs_mavlink.vehicles import modes
 
 CASES = [
     *(

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from mmrs_core.flight.links.autopilots import PX4
-from mmrs_core.flight.services import items
-from mmrs_core.flight.vehicles.modes import MAV_PARAM_TYPE_INT32
+from mmrs_mavlink.links.autopilots import PX4
+from mmrs_mavlink.services import items
+from mmrs_mavlink.vehicles.modes import MAV_PARAM_TYPE_INT32
 
 
 def test_numbers_are_those_of_the_library() -> None:

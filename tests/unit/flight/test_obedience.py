@@ -9,9 +9,9 @@ import pytest
 from flight_crew import NORTH, in_background, manned
 from patience import until
 
-from mmrs_core.flight.orders.obedience import Obedience, Ordered
-from mmrs_core.flight.places import distance
-from mmrs_core.flight.services.uploads import Uploads
+from mmrs_mavlink.orders.obedience import Obedience, Ordered
+from mmrs_mavlink.places import distance
+from mmrs_mavlink.services.uploads import Uploads
 from mmrs_runtime.clock import Clock
 from mmrs_runtime.faults import Fault, Stopped
 from mmrs_runtime.orders.orders import Inbox, Order

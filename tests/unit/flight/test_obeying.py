@@ -9,9 +9,9 @@ from flight_crew import HOME, NORTH, robot_of
 from mavlink_peer import ARDUPILOT, PX4, eventually, linked
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from mmrs_core.flight.steps.obeying import obeying, undone
-from mmrs_core.flight.vehicles.mavlink_vehicle import MavlinkVehicle
-from mmrs_core.flight.vehicles.modes import MODES, PX4_MODES, px4_number
+from mmrs_mavlink.steps.obeying import obeying, undone
+from mmrs_mavlink.vehicles.mavlink_vehicle import MavlinkVehicle
+from mmrs_mavlink.vehicles.modes import MODES, PX4_MODES, px4_number
 
 NUMBERS = {
     **{(kind, ARDUPILOT): numbers for kind, numbers in MODES.items()},

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 from flight_crew import robot_of
 
-from mmrs_core.flight.options import options_of, parser_for
+from mmrs_mavlink.options import options_of, parser_for
 
 
 @pytest.fixture

@@ -8,8 +8,8 @@ import pytest
 from flight_crew import NORTH, in_background
 from patience import until
 
-from mmrs_core.flight.places import distance
-from mmrs_core.flight.program import Policy
+from mmrs_mavlink.places import distance
+from mmrs_mavlink.program import Policy
 from mmrs_runtime.faults import Fault
 
 ON = "BATT_FS_LOW_ACT"

@@ -8,8 +8,8 @@ from math import hypot
 import pytest
 from flight_crew import manned, robot_of
 
-from mmrs_core.flight.program import Geographic
-from mmrs_core.flight.services.uploads import Uploads
+from mmrs_mavlink.program import Geographic
+from mmrs_mavlink.services.uploads import Uploads
 
 LEVEL = Geographic(42.3704, 13.35, 0.0)
 

@@ -8,9 +8,9 @@ import pytest
 from mavlink_peer import ARDUPILOT, PX4, bytewise, linked, value
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from mmrs_core.flight.links.retries import Retries
-from mmrs_core.flight.services import parameters
-from mmrs_core.flight.vehicles import modes, preparation, safeguards
+from mmrs_mavlink.links.retries import Retries
+from mmrs_mavlink.services import parameters
+from mmrs_mavlink.vehicles import modes, preparation, safeguards
 from mmrs_runtime.faults import Refused
 
 INT = mavlink.MAV_PARAM_TYPE_INT32

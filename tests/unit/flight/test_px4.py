@@ -11,13 +11,13 @@ import pytest
 from mavlink_peer import ARDUPILOT, PX4, acknowledged, eventually, linked
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from mmrs_core.flight import Geographic
-from mmrs_core.flight.services.items import Item
-from mmrs_core.flight.vehicles import modes
-from mmrs_core.flight.vehicles.habits import ArduPilot
-from mmrs_core.flight.vehicles.helm import Helm
-from mmrs_core.flight.vehicles.px4 import Px4
-from mmrs_core.flight.vehicles.telemetry import Telemetry
+from mmrs_mavlink import Geographic
+from mmrs_mavlink.services.items import Item
+from mmrs_mavlink.vehicles import modes
+from mmrs_mavlink.vehicles.habits import ArduPilot
+from mmrs_mavlink.vehicles.helm import Helm
+from mmrs_mavlink.vehicles.px4 import Px4
+from mmrs_mavlink.vehicles.telemetry import Telemetry
 from mmrs_runtime.faults import Fault
 
 HOME = Geographic(42.37, 13.35, 0.0)

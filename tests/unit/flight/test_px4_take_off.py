@@ -8,7 +8,7 @@ import pytest
 from flight_crew import manned, robot_of
 from patience import until
 
-from mmrs_core.flight.services.uploads import uploads_of
+from mmrs_mavlink.services.uploads import uploads_of
 
 ROBOT = robot_of()
 

@@ -8,12 +8,12 @@ import pytest
 from mavlink_peer import HERE, QUICK, THERE, Wire, eventually, heartbeat, linked, two_linked
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from mmrs_core.flight.links.link import Link
-from mmrs_core.flight.links.messages import ANYBODY
-from mmrs_core.flight.links.ports import split_system
-from mmrs_core.flight.links.radio import Radio
-from mmrs_core.flight.links.radios import Radios
-from mmrs_core.flight.vehicles.preparation import HEARING_SECONDS, hear_out
+from mmrs_mavlink.links.link import Link
+from mmrs_mavlink.links.messages import ANYBODY
+from mmrs_mavlink.links.ports import split_system
+from mmrs_mavlink.links.radio import Radio
+from mmrs_mavlink.links.radios import Radios
+from mmrs_mavlink.vehicles.preparation import HEARING_SECONDS, hear_out
 from mmrs_runtime.clock import Clock
 from mmrs_runtime.faults import Fault, Refused
 
@@ -72,7 +72,7 @@ def position(milliseconds: int, north: float = 0.0):
 def test_a_vehicle_that_falls_silent_speaks_from_another_address_if_it_is_the_same(
     shared, monkeypatch, sign, same
 ):
-    monkeypatch.setattr("mmrs_core.flight.links.roaming.ROAMING_SECONDS", 0.05)
+    monkeypatch.setattr("mmrs_mavlink.links.roaming.ROAMING_SECONDS", 0.05)
     shared.wire.say(position(60_000), system=1, sender=HERE)
     shared.first.wait(lambda: shared.first.latest("GLOBAL_POSITION_INT"), 5.0)
     eventually(lambda: shared.first.silent_for() > 0.1)

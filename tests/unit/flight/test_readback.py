@@ -9,8 +9,8 @@ import pytest
 from mavlink_peer import ARDUPILOT, PX4
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from mmrs_core.flight.services.items import FENCE, MISSION, NO_FRAME, RALLY, Item
-from mmrs_core.flight.services.readback import alike
+from mmrs_mavlink.services.items import FENCE, MISSION, NO_FRAME, RALLY, Item
+from mmrs_mavlink.services.readback import alike
 
 GENERIC = mavlink.MAV_AUTOPILOT_GENERIC
 POINT = Item(16, (2.0, 1.5, 0.0, 90.0), 423_700_000, 133_500_000, 20.5)

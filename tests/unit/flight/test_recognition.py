@@ -10,9 +10,9 @@ import pytest
 from flight_crew import HOME, manned, robot_of
 from patience import until
 
-from mmrs_core.flight.program import Geographic
-from mmrs_core.flight.vehicles.footing import aside
-from mmrs_core.flight.vehicles.recognition import recognise, refuse_neighbours
+from mmrs_mavlink.program import Geographic
+from mmrs_mavlink.vehicles.footing import aside
+from mmrs_mavlink.vehicles.recognition import recognise, refuse_neighbours
 from mmrs_runtime.faults import Refused
 
 

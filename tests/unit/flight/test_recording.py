@@ -9,9 +9,9 @@ import pytest
 from patience import until
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from mmrs_core.flight.program import Geographic
-from mmrs_core.flight.records.recording import Recording
-from mmrs_core.flight.vehicles.vehicle import State
+from mmrs_mavlink.program import Geographic
+from mmrs_mavlink.records.recording import Recording
+from mmrs_mavlink.vehicles.vehicle import State
 from mmrs_runtime.clock import Clock
 from mmrs_runtime.records.blackbox import BlackBox, black_box_path
 

@@ -6,8 +6,8 @@ from dataclasses import replace
 
 import pytest
 
-from mmrs_core.flight.program import GoTo, Land, Local, Robot, Run, Step, Stop, TakeOff, Then
-from mmrs_core.flight.steps.rejoining import Rejoined, rejoined, way_ahead
+from mmrs_mavlink.program import GoTo, Land, Local, Robot, Run, Step, Stop, TakeOff, Then
+from mmrs_mavlink.steps.rejoining import Rejoined, rejoined, way_ahead
 from mmrs_runtime.faults import Refused
 
 HOME, OVERHEAD = Local(0.0, 0.0, 0.0), Local(0.0, 0.0, 40.0)

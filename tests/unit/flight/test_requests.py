@@ -8,10 +8,10 @@ from dataclasses import replace
 import pytest
 from mavlink_peer import acknowledged, eventually, heartbeat, linked
 
-from mmrs_core.flight import Geographic
-from mmrs_core.flight.vehicles import modes
-from mmrs_core.flight.vehicles.helm import Helm
-from mmrs_core.flight.vehicles.telemetry import Telemetry
+from mmrs_mavlink import Geographic
+from mmrs_mavlink.vehicles import modes
+from mmrs_mavlink.vehicles.helm import Helm
+from mmrs_mavlink.vehicles.telemetry import Telemetry
 from mmrs_runtime.faults import Fault, Stopped
 
 HOME = Geographic(42.37, 13.35, 0.0)

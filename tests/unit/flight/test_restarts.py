@@ -6,8 +6,8 @@ import pytest
 from flight_crew import HOME, SPEEDUP, in_background, manned, robot_of
 from patience import until
 
-from mmrs_core.flight.places import distance
-from mmrs_core.flight.program import Policy
+from mmrs_mavlink.places import distance
+from mmrs_mavlink.program import Policy
 from mmrs_runtime.faults import Fault
 
 CARRIES_ON = Policy("VEHICLE_RESTARTED", "CONTINUE")

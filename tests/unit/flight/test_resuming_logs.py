@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import pytest
 
-from mmrs_core.flight.program import (
+from mmrs_mavlink.program import (
     Choose,
     Geographic,
     GoTo,
@@ -23,7 +23,7 @@ from mmrs_core.flight.program import (
     TakeOff,
     Then,
 )
-from mmrs_core.flight.steps.resuming import (
+from mmrs_mavlink.steps.resuming import (
     Progress,
     began_at,
     progress_of,

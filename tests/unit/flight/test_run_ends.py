@@ -7,7 +7,7 @@ from dataclasses import replace
 import pytest
 from flight_crew import OVERHEAD, manned, robot_of
 
-from mmrs_core.flight.program import GoTo, Run, Step, Then
+from mmrs_mavlink.program import GoTo, Run, Step, Then
 from mmrs_runtime.faults import REFUSED, Refused
 from mmrs_runtime.records.log import read
 

@@ -8,14 +8,14 @@ import pytest
 from flight_crew import manned, robot_of
 from patience import until
 
-from mmrs_core.flight.places import distance
-from mmrs_core.flight.program import Geographic, GoTo, Land, Run, Start, Step, Stop, TakeOff, Then
-from mmrs_core.flight.services import parameters
-from mmrs_core.flight.services.missions import upload
-from mmrs_core.flight.services.uploads import mission_of, uploads_of
-from mmrs_core.flight.vehicles import px4
-from mmrs_core.flight.vehicles.feasibility import check_feasible
-from mmrs_core.flight.vehicles.runs import first_flown, keep_place, speed_before
+from mmrs_mavlink.places import distance
+from mmrs_mavlink.program import Geographic, GoTo, Land, Run, Start, Step, Stop, TakeOff, Then
+from mmrs_mavlink.services import parameters
+from mmrs_mavlink.services.missions import upload
+from mmrs_mavlink.services.uploads import mission_of, uploads_of
+from mmrs_mavlink.vehicles import px4
+from mmrs_mavlink.vehicles.feasibility import check_feasible
+from mmrs_mavlink.vehicles.runs import first_flown, keep_place, speed_before
 from mmrs_runtime.faults import Refused
 
 WAYS = {

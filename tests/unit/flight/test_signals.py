@@ -5,7 +5,7 @@ from __future__ import annotations
 import signal
 import threading
 
-from mmrs_core.flight.main import _stop_on_signals
+from mmrs_mavlink.main import _stop_on_signals
 
 SIGNS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 

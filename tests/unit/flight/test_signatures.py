@@ -10,9 +10,9 @@ import pytest
 from mavlink_peer import HERE, QUICK, Wire, eventually, heartbeat
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from mmrs_core.flight.links.link import Link
-from mmrs_core.flight.links.radio import Radio
-from mmrs_core.flight.links.signing import BEHIND, EPOCH, TICKS, Signed, Signer, signer_for
+from mmrs_mavlink.links.link import Link
+from mmrs_mavlink.links.radio import Radio
+from mmrs_mavlink.links.signing import BEHIND, EPOCH, TICKS, Signed, Signer, signer_for
 from mmrs_runtime.clock import Clock
 
 KEY = bytes(range(32))

@@ -5,8 +5,8 @@ from __future__ import annotations
 import pytest
 from flight_crew import manned, robot_of
 
-from mmrs_core.flight.program import Measure, Policy
-from mmrs_core.mavlink.backend.moves import Moves
+from mmrs_mavlink.plugin.backend.moves import Moves
+from mmrs_mavlink.program import Measure, Policy
 from mmrs_runtime.faults import DEVICE_SILENT, Fault
 
 SAMPLE = Measure("gas", "sample", "CO2")

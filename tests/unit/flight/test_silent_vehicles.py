@@ -11,14 +11,14 @@ from mavlink_peer import acknowledged, linked, value
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 from stalls import Stalls
 
-from mmrs_core.flight.program import Geographic
-from mmrs_core.flight.services import parameters
-from mmrs_core.flight.services.commands import command
-from mmrs_core.flight.services.items import FENCE, Item
-from mmrs_core.flight.services.missions import upload
-from mmrs_core.flight.services.reading import download
-from mmrs_core.flight.vehicles.px4 import Px4
-from mmrs_core.flight.vehicles.telemetry import Telemetry
+from mmrs_mavlink.program import Geographic
+from mmrs_mavlink.services import parameters
+from mmrs_mavlink.services.commands import command
+from mmrs_mavlink.services.items import FENCE, Item
+from mmrs_mavlink.services.missions import upload
+from mmrs_mavlink.services.reading import download
+from mmrs_mavlink.vehicles.px4 import Px4
+from mmrs_mavlink.vehicles.telemetry import Telemetry
 from mmrs_runtime.faults import LINK_LOST, Fault, Refused
 
 ARM = mavlink.MAV_CMD_COMPONENT_ARM_DISARM

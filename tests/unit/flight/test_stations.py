@@ -9,11 +9,11 @@ from flight_crew import robot_of
 from mavlink_peer import HERE, PX4, THERE, eventually, heartbeat, linked, two_linked
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from mmrs_core.flight.links.radio import GROUND_COMPONENT, GROUND_SYSTEM
-from mmrs_core.flight.program import Policy
-from mmrs_core.flight.steps.ground import ANY_STATION, SAME_SYSTEM, Ground
-from mmrs_core.flight.steps.watch import Watch
-from mmrs_core.flight.vehicles.mavlink_vehicle import MavlinkVehicle
+from mmrs_mavlink.links.radio import GROUND_COMPONENT, GROUND_SYSTEM
+from mmrs_mavlink.program import Policy
+from mmrs_mavlink.steps.ground import ANY_STATION, SAME_SYSTEM, Ground
+from mmrs_mavlink.steps.watch import Watch
+from mmrs_mavlink.vehicles.mavlink_vehicle import MavlinkVehicle
 from mmrs_runtime.clock import Clock
 from mmrs_runtime.faults import Fault
 

@@ -6,8 +6,8 @@ import pytest
 from mavlink_peer import acknowledged, eventually, linked
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from mmrs_core.flight import Geographic, Local, Look
-from mmrs_core.flight.vehicles.mavlink_vehicle import MavlinkVehicle
+from mmrs_mavlink import Geographic, Local, Look
+from mmrs_mavlink.vehicles.mavlink_vehicle import MavlinkVehicle
 
 ROI, ROI_NONE, GIMBAL, SPEED = 195, 197, 1000, 178
 RELATIVE = 3

@@ -5,9 +5,9 @@ from __future__ import annotations
 import pytest
 from flight_crew import manned, robot_of
 
-from mmrs_core.flight.program import Geographic
-from mmrs_core.flight.services.uploads import Uploads
-from mmrs_core.flight.steps.obeying import undone
+from mmrs_mavlink.program import Geographic
+from mmrs_mavlink.services.uploads import Uploads
+from mmrs_mavlink.steps.obeying import undone
 from mmrs_runtime.faults import MOTORS_OFF, Refused
 
 BELOW = Geographic(42.37, 13.35, -4.0)

@@ -6,8 +6,8 @@ import pytest
 from mavlink_peer import PX4, eventually, linked
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from mmrs_core.flight import Geographic, Local
-from mmrs_core.flight.vehicles.telemetry import Telemetry
+from mmrs_mavlink import Geographic, Local
+from mmrs_mavlink.vehicles.telemetry import Telemetry
 
 HOME = Geographic(42.37, 13.35, 0.0)
 PREARM = mavlink.MAV_SYS_STATUS_PREARM_CHECK
@@ -139,7 +139,7 @@ def test_a_position_that_was_never_there_is_not_lost(told):
 
 
 def test_a_position_that_comes_no_more_is_lost(told, monkeypatch):
-    monkeypatch.setattr("mmrs_core.flight.vehicles.telemetry.STALE_SECONDS", 0.1)
+    monkeypatch.setattr("mmrs_mavlink.vehicles.telemetry.STALE_SECONDS", 0.1)
     telemetry = told(*READY)
     link = telemetry._link
     monkeypatch.setattr(link.clock, "patience", lambda seconds, least=0.5: seconds)

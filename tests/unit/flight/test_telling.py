@@ -9,12 +9,12 @@ from hypothesis import strategies as st
 from mavlink_peer import HERE, linked
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from mmrs_core.flight.links.radio import GROUND_COMPONENT
-from mmrs_core.flight.program import Report
-from mmrs_core.flight.services.telling import CHUNK, MOST_CHUNKS, pieces_of
-from mmrs_core.flight.vehicles.mavlink_vehicle import MavlinkVehicle
-from mmrs_core.flight.vehicles.texts import Texts
-from mmrs_core.mavlink.backend.moves import Moves
+from mmrs_mavlink.links.radio import GROUND_COMPONENT
+from mmrs_mavlink.plugin.backend.moves import Moves
+from mmrs_mavlink.program import Report
+from mmrs_mavlink.services.telling import CHUNK, MOST_CHUNKS, pieces_of
+from mmrs_mavlink.vehicles.mavlink_vehicle import MavlinkVehicle
+from mmrs_mavlink.vehicles.texts import Texts
 from mmrs_runtime.clock import Clock
 from mmrs_runtime.screen import words_of
 

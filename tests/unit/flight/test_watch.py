@@ -8,8 +8,8 @@ import pytest
 from flight_crew import OVERHEAD, SPEEDUP, in_background, robot_of
 from patience import until
 
-from mmrs_core.flight.program import Policy
-from mmrs_core.flight.steps.watch import Watch
+from mmrs_mavlink.program import Policy
+from mmrs_mavlink.steps.watch import Watch
 from mmrs_runtime.clock import Clock
 from mmrs_runtime.faults import Fault, Stopped
 

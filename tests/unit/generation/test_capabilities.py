@@ -15,8 +15,8 @@ from mmrs_core.errors import UnsupportedError
 from mmrs_core.generation.capabilities.judging import capabilities_of, probes, suited
 from mmrs_core.generation.capabilities.probes import MOVE, MULTICOPTER
 from mmrs_core.generation.render import render
-from mmrs_core.mavlink.targets import TARGETS
 from mmrs_core.plugins import load_plugins
+from mmrs_mavlink.plugin.targets import TARGETS
 
 PROBES = probes()
 BY_NAME = {target.name: target for target in TARGETS}

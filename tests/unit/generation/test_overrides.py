@@ -9,8 +9,8 @@ from mmrs_core.contributions.targets import FileSpec, Target
 from mmrs_core.errors import MmrsError, UnreadableError
 from mmrs_core.generation.overrides import overrides_in
 from mmrs_core.generation.render import render
-from mmrs_core.mavlink.targets import TARGETS
 from mmrs_core.testing.programs import target_input, two_drones
+from mmrs_mavlink.plugin.targets import TARGETS
 
 
 @pytest.fixture

@@ -15,8 +15,6 @@ from mmrs_core.contributions.wiring import DeviceWiring, Wired
 from mmrs_core.errors import UnsupportedError
 from mmrs_core.generation.render import render
 from mmrs_core.generation.writing import write
-from mmrs_core.mavlink.controllers import MAVLINK_PYTHON
-from mmrs_core.mavlink.plans.qgc import QGC_PLAN
 from mmrs_core.scene import Device, DeviceAction, Frame, Policy
 from mmrs_core.testing.programs import (
     LAND,
@@ -32,6 +30,8 @@ from mmrs_core.testing.programs import (
     target_input,
     two_drones,
 )
+from mmrs_mavlink.plugin.controllers import MAVLINK_PYTHON
+from mmrs_mavlink.plugin.plans.qgc import QGC_PLAN
 
 HOSTILE = [
     '"; import os; os.mkdir("canary"); "',

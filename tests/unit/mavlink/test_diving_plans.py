@@ -11,10 +11,10 @@ from pymavlink import mavutil, mavwp
 from mmrs_core.behaviour.program import Target
 from mmrs_core.errors import UnsupportedError
 from mmrs_core.generation.render import render
-from mmrs_core.mavlink.plans.qgc import QGC_PLAN
-from mmrs_core.mavlink.plans.wpl import WPL
 from mmrs_core.scene import Frame
 from mmrs_core.testing.programs import move, program, quad, robot_program, target_input
+from mmrs_mavlink.plugin.plans.qgc import QGC_PLAN
+from mmrs_mavlink.plugin.plans.wpl import WPL
 
 LAKE = Frame("EPSG:4326", 46.2, 6.1, 372.0, "MSL", surface=-3.0)
 DIVER = replace(

@@ -10,9 +10,6 @@ from shapely import LineString, Polygon
 from mmrs_core import pipeline
 from mmrs_core.behaviour.refuges import refuges_of
 from mmrs_core.contributions.targets import TargetInput
-from mmrs_core.mavlink.escapes import escapes_of
-from mmrs_core.mavlink.program import robot_view
-from mmrs_core.mavlink.safety import clearance_of
 from mmrs_core.plugins import load_plugins
 from mmrs_core.resources import shipped
 from mmrs_core.scene import Area, AreaUse, Policy
@@ -25,6 +22,9 @@ from mmrs_core.testing.programs import (
     take_off,
     target_input,
 )
+from mmrs_mavlink.plugin.escapes import escapes_of
+from mmrs_mavlink.plugin.program import robot_view
+from mmrs_mavlink.plugin.safety import clearance_of
 
 
 def escapes(*moves) -> list[str]:

@@ -8,9 +8,9 @@ from hypothesis import assume, example, given, settings
 from hypothesis import strategies as st
 from shapely import LineString, Polygon
 
-from mmrs_core.mavlink.fencing import FINE, STRAY, Fence, fence_faults, fence_of, legs_of
 from mmrs_core.scene import Area, AreaUse
 from mmrs_core.testing.programs import go_to, move, robot_program, take_off
+from mmrs_mavlink.plugin.fencing import FINE, STRAY, Fence, fence_faults, fence_of, legs_of
 
 SQUARE = ((0.0, 0.0), (10.0, 0.0), (10.0, 10.0), (0.0, 10.0))
 YARD = Area("yard", AreaUse.FORBIDDEN, SQUARE, safety_distance=2.0)

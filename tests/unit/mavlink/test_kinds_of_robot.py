@@ -9,10 +9,7 @@ import pytest
 
 from mmrs_core.errors import UnsupportedError
 from mmrs_core.generation.render import render
-from mmrs_core.mavlink.controllers import MAVLINK_PYTHON
 from mmrs_core.mavlink.earth import degrees_of
-from mmrs_core.mavlink.plans.qgc import QGC_PLAN
-from mmrs_core.mavlink.plans.wpl import WPL
 from mmrs_core.mavlink.vehicles import VEHICLES, vehicle_class
 from mmrs_core.scene import Frame
 from mmrs_core.sitl.__main__ import parser_of_arguments
@@ -27,6 +24,9 @@ from mmrs_core.testing.programs import (
     two_drones,
 )
 from mmrs_core.transformation.kinds import PLAIN_ROBOT
+from mmrs_mavlink.plugin.controllers import MAVLINK_PYTHON
+from mmrs_mavlink.plugin.plans.qgc import QGC_PLAN
+from mmrs_mavlink.plugin.plans.wpl import WPL
 
 KITE = ("urn:kites:1.0", "Kite")
 KITES = replace(quad(), metaclasses=(KITE, ("urn:mmrs:robot:1.0", "Robot")))

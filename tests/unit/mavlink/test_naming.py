@@ -5,13 +5,10 @@ from dataclasses import replace
 
 import pytest
 
-import mmrs_core.flight
+import mmrs_mavlink
 from mmrs_core.behaviour.program import Program
 from mmrs_core.contributions.wiring import DeviceWiring, Wired
 from mmrs_core.generation.render import render
-from mmrs_core.mavlink.built import robot_of
-from mmrs_core.mavlink.controllers import MAVLINK_PYTHON
-from mmrs_core.mavlink.naming import command_name
 from mmrs_core.scene import Device, DeviceAction
 from mmrs_core.testing.programs import (
     LAND,
@@ -23,6 +20,9 @@ from mmrs_core.testing.programs import (
     take_off,
     target_input,
 )
+from mmrs_mavlink.plugin.built import robot_of
+from mmrs_mavlink.plugin.controllers import MAVLINK_PYTHON
+from mmrs_mavlink.plugin.naming import command_name
 
 REEL = Device("reel", {"pull": DeviceAction("pull", 2.0)}, {"kites.reel": "9"})
 REELS = DeviceWiring("kites.reel", "reels", lambda action, device: Wired(183, (9.0,), more=((31_999, ()),)))
@@ -59,7 +59,7 @@ def test_a_command_is_written_by_its_name_where_it_has_one(reeling):
 
 
 def test_the_program_is_the_same_with_names_as_without(reeling, monkeypatch):
-    monkeypatch.setitem(sys.modules, "mmrs_flight", mmrs_core.flight)
+    monkeypatch.setitem(sys.modules, "mmrs_flight", mmrs_mavlink)
     scope: dict[str, object] = {"__name__": "written"}
     exec(source(reeling), scope)  # noqa: S102
     assert scope["ROBOT"] == robot_of(reeling.robots[0], given(reeling))

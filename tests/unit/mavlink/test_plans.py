@@ -9,7 +9,6 @@ from mmrs_core.behaviour.program import Heading, Target, Transition
 from mmrs_core.errors import UnsupportedError
 from mmrs_core.generation.render import render
 from mmrs_core.geometry.frames import LocalFrame
-from mmrs_core.mavlink.plans.qgc import QGC_PLAN
 from mmrs_core.scene import Device, Frame, Policy
 from mmrs_core.testing.programs import (
     L_AQUILA,
@@ -24,6 +23,7 @@ from mmrs_core.testing.programs import (
     target_input,
     two_drones,
 )
+from mmrs_mavlink.plugin.plans.qgc import QGC_PLAN
 
 
 def plans(*moves, allow_lossy=False, transitions=None, frame=L_AQUILA, home=(0.0, 0.0, 0.0)):

@@ -12,8 +12,6 @@ from pymavlink import mavwp
 from mmrs_core.behaviour.program import Heading, Target
 from mmrs_core.errors import UnsupportedError
 from mmrs_core.generation.render import render
-from mmrs_core.mavlink.plans.qgc import QGC_PLAN
-from mmrs_core.mavlink.plans.wpl import WPL
 from mmrs_core.scene import Device, DeviceAction
 from mmrs_core.testing.programs import (
     MULTICOPTER,
@@ -26,6 +24,8 @@ from mmrs_core.testing.programs import (
     take_off,
     target_input,
 )
+from mmrs_mavlink.plugin.plans.qgc import QGC_PLAN
+from mmrs_mavlink.plugin.plans.wpl import WPL
 
 PX4 = {"mavlink.autopilot": "px4"}
 UP, LAND = take_off("up", 20.0), move("down", "Land", uri=MULTICOPTER)

@@ -9,9 +9,6 @@ import pytest
 from mmrs_core.behaviour.program import BEHAVIOUR
 from mmrs_core.errors import UnsupportedError
 from mmrs_core.generation.render import render
-from mmrs_core.mavlink.controllers import MAVLINK_PYTHON
-from mmrs_core.mavlink.plans.qgc import QGC_PLAN
-from mmrs_core.mavlink.plans.wpl import WPL
 from mmrs_core.testing.programs import (
     LAND,
     go_to,
@@ -21,6 +18,9 @@ from mmrs_core.testing.programs import (
     take_off,
     target_input,
 )
+from mmrs_mavlink.plugin.controllers import MAVLINK_PYTHON
+from mmrs_mavlink.plugin.plans.qgc import QGC_PLAN
+from mmrs_mavlink.plugin.plans.wpl import WPL
 
 STRANGE = replace(photo(), metaclasses=(("urn:x:1.0", "Sing"), (BEHAVIOUR, "Action")))
 SPIRAL = replace(go_to("a", (0.0, 9.0, 20.0)), metaclasses=(("urn:x:1.0", "Spiral"), (BEHAVIOUR, "GoTo")))

@@ -6,10 +6,7 @@ import pytest
 
 from mmrs_core.analysis.corners import RADIUS
 from mmrs_core.errors import UnsupportedError
-from mmrs_core.mavlink.context import context_of
-from mmrs_core.mavlink.controllers import MAVLINK_PYTHON
 from mmrs_core.mavlink.earth import degrees_of, metres, sea_level_of
-from mmrs_core.mavlink.plans.wpl import WPL
 from mmrs_core.mavlink.vehicles import COPTER, MANNERS, ROVER, SUB, manner_of, speed_of, vehicle_class
 from mmrs_core.scene import Capability, Frame
 from mmrs_core.testing.programs import (
@@ -23,6 +20,9 @@ from mmrs_core.testing.programs import (
     target_input,
 )
 from mmrs_core.transformation.fluid import LEAST_CUT
+from mmrs_mavlink.plugin.context import context_of
+from mmrs_mavlink.plugin.controllers import MAVLINK_PYTHON
+from mmrs_mavlink.plugin.plans.wpl import WPL
 
 DIVER = replace(
     quad(),

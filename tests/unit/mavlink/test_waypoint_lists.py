@@ -11,8 +11,6 @@ from pymavlink import mavutil, mavwp
 from mmrs_core.behaviour.program import Transition
 from mmrs_core.errors import UnsupportedError
 from mmrs_core.generation.render import render
-from mmrs_core.mavlink.plans.qgc import QGC_PLAN
-from mmrs_core.mavlink.plans.wpl import WPL
 from mmrs_core.scene import Device, Frame
 from mmrs_core.testing.programs import (
     LAND,
@@ -26,6 +24,8 @@ from mmrs_core.testing.programs import (
     target_input,
     two_drones,
 )
+from mmrs_mavlink.plugin.plans.qgc import QGC_PLAN
+from mmrs_mavlink.plugin.plans.wpl import WPL
 
 FLIGHT = (
     take_off("up", 20.0),

@@ -7,7 +7,15 @@ from packaging.requirements import Requirement
 from packaging.utils import canonicalize_name
 
 ROOT = Path(__file__).parents[3]
-PLUGINS = {"multicopter": "", "auv": "[vision]", "survey": "", "rover": "", "solar": "", "dronecan": ""}
+PLUGINS = {
+    "mavlink": "",
+    "multicopter": "",
+    "auv": "[vision]",
+    "survey": "",
+    "rover": "",
+    "solar": "",
+    "dronecan": "",
+}
 OURS = {"mmrs-core", "mmrs-runtime", *(f"mmrs-{name}" for name in PLUGINS)}
 
 

@@ -105,9 +105,7 @@ def test_without_a_name_the_core_simulates():
 
 
 def test_a_name_that_nobody_contributed_is_refused_with_the_nearest():
-    with pytest.raises(
-        UsageError, match=r"'jumpr': not known; there are jumper, mavlink, simulation; .*jumper"
-    ):
+    with pytest.raises(UsageError, match=r"'jumpr': not known; there are jumper, simulation; .*jumper"):
         simulated(Jumping(), backend="jumpr")
 
 

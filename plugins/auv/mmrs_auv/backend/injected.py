@@ -10,12 +10,12 @@ from mmrs_auv.vessel.wire import ports
 from mmrs_auv.vessel.wire.frame import Frame
 from mmrs_core.contributions.backends import BackendInput, Live
 from mmrs_core.errors import UsageError
-from mmrs_core.flight.injection import Rehearsal, injections
-from mmrs_core.flight.injection.port import Line
-from mmrs_core.flight.injection.spec import OF_STATIONS, OF_VEHICLE
-from mmrs_core.flight.links.ports import NOTHING, Address, Received
-from mmrs_core.flight.links.ports import Port as Carrier
-from mmrs_core.mavlink.backend.connection import FollowingClock
+from mmrs_core.runtime.clock import FollowingClock
+from mmrs_runtime.injection import Rehearsal, injections
+from mmrs_runtime.injection.port import Line
+from mmrs_runtime.injection.spec import OF_STATIONS, OF_VEHICLE
+from mmrs_runtime.ports import NOTHING, Address, Received
+from mmrs_runtime.ports import Port as Carrier
 
 SHARED = "faults made on purpose on CAN buses"
 EXTENDED, LONG, SHORT = 1 << 31, (1 << 29) - 1, (1 << 11) - 1

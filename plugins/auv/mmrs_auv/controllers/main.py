@@ -16,11 +16,11 @@ from mmrs_auv.vessel.api import Connection
 from mmrs_auv.vessel.eyes import Detections
 from mmrs_auv.vessel.sheet import from_json
 from mmrs_auv.vessel.wire.ports import CHANNEL, open_port
-from mmrs_core.flight.judgement import Condition, objects_of
-from mmrs_core.flight.main import main as run
-from mmrs_core.flight.objects import Locator, not_looked_for, where_expected
-from mmrs_core.flight.options import Options
-from mmrs_core.flight.program import Robot
+from mmrs_mavlink.judgement import Condition, objects_of
+from mmrs_mavlink.main import main as run
+from mmrs_mavlink.objects import Locator, not_looked_for, where_expected
+from mmrs_mavlink.options import Options
+from mmrs_mavlink.program import Robot
 from mmrs_runtime.faults import LINK_LOST, Fault
 from mmrs_runtime.records.blackbox import BlackBox
 from mmrs_runtime.screen import say

@@ -25,13 +25,13 @@ from mmrs_auv.vessel.decision.helm import COMES_UP, CRASHED, LINK_LOST, Helm, Wa
 from mmrs_auv.vessel.eyes import Detections
 from mmrs_auv.vessel.movement.abilities import abilities_of
 from mmrs_auv.vessel.sheet import Sheet, Vector
-from mmrs_core.flight.places import ends_of
-from mmrs_core.flight.program import GoTo, Local, Look, Object, Place, Robot
-from mmrs_core.flight.records.fixes import FIX_SECONDS, fix
-from mmrs_core.flight.services.uploads import Uploads
-from mmrs_core.flight.steps.responses import CONTINUE, policy_for
-from mmrs_core.flight.vehicles.modes import GUIDED, HOLD, SURFACE
-from mmrs_core.flight.vehicles.vehicle import State
+from mmrs_mavlink.places import ends_of
+from mmrs_mavlink.program import GoTo, Local, Look, Object, Place, Robot
+from mmrs_mavlink.records.fixes import FIX_SECONDS, fix
+from mmrs_mavlink.services.uploads import Uploads
+from mmrs_mavlink.steps.responses import CONTINUE, policy_for
+from mmrs_mavlink.vehicles.modes import GUIDED, HOLD, SURFACE
+from mmrs_mavlink.vehicles.vehicle import State
 from mmrs_runtime.clock import Clock
 from mmrs_runtime.faults import DEVICE_SILENT, OBJECT_NOT_FOUND, Fault, Refused, Unanswered
 from mmrs_runtime.records.blackbox import BlackBox

@@ -7,17 +7,12 @@ a current, and the longer the way, the less is known. What has a position flies 
 
 from __future__ import annotations
 
-from importlib.util import find_spec
-
 from mmrs_core.contributions.backends import Backend, BackendFactory, BackendInput
-from mmrs_core.errors import UnsupportedError
 
 NAME = "ardusub-manual"
 
 
 def _connect(given: BackendInput) -> Backend:
-    if find_spec("pymavlink") is None:
-        raise UnsupportedError(f"backend '{NAME}': needs pymavlink; pip install 'mmrs-core[mavlink]'")
     from mmrs_auv.manual.connecting import connect
 
     return connect(given)

@@ -9,12 +9,12 @@ from typing import Any
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from mmrs_auv.manual.helm import Sticks
-from mmrs_core.flight.links.link import Link
-from mmrs_core.flight.services.commands import ask, command
-from mmrs_core.flight.vehicles.modes import word_of
-from mmrs_core.flight.vehicles.preparation import VEHICLES, hear_out
-from mmrs_core.flight.vehicles.safeguards import Safeguard, report
-from mmrs_core.flight.vehicles.texts import Texts
+from mmrs_mavlink.links.link import Link
+from mmrs_mavlink.services.commands import ask, command
+from mmrs_mavlink.vehicles.modes import word_of
+from mmrs_mavlink.vehicles.preparation import VEHICLES, hear_out
+from mmrs_mavlink.vehicles.safeguards import Safeguard, report
+from mmrs_mavlink.vehicles.texts import Texts
 from mmrs_runtime import faults
 
 DEPTH_HOLD, SURFACE = 2, 9

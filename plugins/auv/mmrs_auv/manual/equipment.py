@@ -6,7 +6,7 @@ from mmrs_auv.manual.autopilot import Autopilot
 from mmrs_auv.targets.moves import seconds_of
 from mmrs_core.behaviour.program import Action
 from mmrs_core.contributions.wiring import Wired
-from mmrs_core.mavlink.context import RobotContext
+from mmrs_mavlink.plugin.context import RobotContext
 from mmrs_runtime import faults
 
 

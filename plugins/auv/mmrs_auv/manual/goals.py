@@ -8,8 +8,8 @@ from math import atan2, degrees
 from mmrs_auv.manual.helm import Goal, Helm
 from mmrs_auv.targets.moves import MOVES, above_surface, seconds_of_hold
 from mmrs_core.behaviour.program import Move
-from mmrs_core.mavlink.context import RobotContext
 from mmrs_core.transformation.kinds import before_target
+from mmrs_mavlink.plugin.context import RobotContext
 
 
 def refusals(context: RobotContext) -> Iterator[str]:

@@ -17,11 +17,11 @@ from mmrs_core.behaviour.program import Action, Move
 from mmrs_core.contributions.backends import BackendInput, Live
 from mmrs_core.contributions.execution import Fault, RobotState
 from mmrs_core.errors import UnreachableError
-from mmrs_core.flight.links.link import Link
-from mmrs_core.flight.records.start import PROCESS
-from mmrs_core.mavlink.actions import DEVICE_ACTION
-from mmrs_core.mavlink.context import RobotContext
 from mmrs_core.scene import Position
+from mmrs_mavlink.links.link import Link
+from mmrs_mavlink.plugin.actions import DEVICE_ACTION
+from mmrs_mavlink.plugin.context import RobotContext
+from mmrs_mavlink.records.start import PROCESS
 from mmrs_runtime import faults
 from mmrs_runtime.policies import NOTHING
 

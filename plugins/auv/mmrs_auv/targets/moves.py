@@ -6,9 +6,9 @@ from collections.abc import Mapping
 from typing import Literal, TypeAlias
 
 from mmrs_core.behaviour.program import BEHAVIOUR, Action, Move
-from mmrs_core.mavlink.context import RobotContext
 from mmrs_core.mavlink.earth import metres
 from mmrs_core.scene import Name, Position, RobotType
+from mmrs_mavlink.plugin.context import RobotContext
 
 Sort: TypeAlias = Literal["start", "stop", "go", "hold", "turn"]
 

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 from mmrs_auv.targets.moves import DEEPEST, FASTEST, MOVES, SLOWEST, above_surface
 from mmrs_core.behaviour.program import Move, RobotProgram, Target
-from mmrs_core.mavlink.context import RobotContext
 from mmrs_core.scene import Policy
+from mmrs_mavlink.plugin.context import RobotContext
 
 
 @dataclass(frozen=True, slots=True)

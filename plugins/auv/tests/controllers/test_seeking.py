@@ -16,10 +16,10 @@ from mmrs_auv.vessel.eyes import Detection, Detections, to_datagram
 from mmrs_auv.vessel.hosting import WireFault
 from vessel_rig import Rig
 
-from mmrs_core.flight.program import GoTo, Local, Object, Robot
-from mmrs_core.flight.services.uploads import Uploads
-from mmrs_core.flight.steps.responses import response_to
-from mmrs_core.flight.vehicles.vehicle import Seeking
+from mmrs_mavlink.program import GoTo, Local, Object, Robot
+from mmrs_mavlink.services.uploads import Uploads
+from mmrs_mavlink.steps.responses import response_to
+from mmrs_mavlink.vehicles.vehicle import Seeking
 from mmrs_runtime.clock import Clock
 from mmrs_runtime.faults import NO_PROGRESS, OBJECT_NOT_FOUND, OBSTACLE, Fault
 from mmrs_runtime.records.blackbox import BlackBox

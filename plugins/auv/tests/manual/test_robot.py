@@ -10,8 +10,8 @@ from mmrs_auv.manual.autopilot import TOLD
 from patience import until
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from mmrs_core.flight.services.commands import command
 from mmrs_core.scene import Area, AreaUse
+from mmrs_mavlink.services.commands import command
 
 
 def test_a_program_is_driven_to_its_end_without_any_position():

@@ -11,8 +11,8 @@ from patience import until
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from mmrs_core.behaviour.program import Action
-from mmrs_core.flight.services.commands import command
 from mmrs_core.scene import Policy
+from mmrs_mavlink.services.commands import command
 
 
 @pytest.mark.parametrize("number", TOLD)

@@ -37,8 +37,8 @@ from mmrs_auv.vessel.wire.codec import Codec
 from mmrs_auv.vessel.wire.frame import Frame
 from vessel_sheets import sheet
 
-from mmrs_core.flight.program import Local
-from mmrs_core.flight.steps.ways import way_back
+from mmrs_mavlink.program import Local
+from mmrs_mavlink.steps.ways import way_back
 
 COUNTS = [100, pytest.param(5000, marks=pytest.mark.thorough)]
 SEEDS = [0, *(pytest.param(seed, marks=pytest.mark.thorough) for seed in range(1, 12))]

@@ -19,13 +19,13 @@ from mmrs_core.behaviour.program import Program, Target, Transition
 from mmrs_core.behaviour.replay import Outcome, replay
 from mmrs_core.contributions.targets import TargetInput
 from mmrs_core.errors import UnsupportedError
-from mmrs_core.flight.program import Local, Robot
 from mmrs_core.generation.render import render
 from mmrs_core.generation.writing import write
-from mmrs_core.mavlink.controllers import MAVLINK_PYTHON
 from mmrs_core.scene import Policy
 from mmrs_core.testing.programs import feedback, move, notify, program, quad, robot_program, use
 from mmrs_core.transformation.kinds import MOVE_KINDS
+from mmrs_mavlink.plugin.controllers import MAVLINK_PYTHON
+from mmrs_mavlink.program import Local, Robot
 
 
 def given(behaviour: Program) -> TargetInput:

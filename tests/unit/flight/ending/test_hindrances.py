@@ -6,8 +6,8 @@ import pytest
 from flight_crew import HOME, in_background
 from patience import until
 
-from mmrs_core.flight.links.retries import Retries
-from mmrs_core.flight.program import Policy
+from mmrs_mavlink.links.retries import Retries
+from mmrs_mavlink.program import Policy
 from mmrs_runtime.faults import Fault, Stopped
 from mmrs_runtime.orders.orders import Order
 

@@ -6,7 +6,7 @@ import pytest
 from flight_crew import HOME, NORTH, in_background
 from patience import until
 
-from mmrs_core.flight.program import Policy
+from mmrs_mavlink.program import Policy
 from mmrs_runtime.faults import Fault
 from mmrs_runtime.orders.orders import Order
 

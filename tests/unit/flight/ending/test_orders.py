@@ -9,8 +9,8 @@ from flight_crew import HOME, in_background
 from patience import until
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from mmrs_core.flight.orders.obedience import Ordered
-from mmrs_core.flight.program import Geographic, Policy
+from mmrs_mavlink.orders.obedience import Ordered
+from mmrs_mavlink.program import Geographic, Policy
 from mmrs_runtime.faults import Strange
 from mmrs_runtime.orders.orders import Order, Receipt
 

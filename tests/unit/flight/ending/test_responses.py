@@ -5,7 +5,7 @@ from __future__ import annotations
 from flight_crew import HOME, NORTH, in_background
 from patience import until
 
-from mmrs_core.flight.program import Policy
+from mmrs_mavlink.program import Policy
 from mmrs_runtime.faults import Fault
 
 

@@ -8,8 +8,8 @@ import pytest
 from mavlink_peer import eventually, heartbeat, linked
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from mmrs_core.flight.injection import Rehearsal, injections
 from mmrs_runtime.clock import Clock
+from mmrs_runtime.injection import Rehearsal, injections
 
 STATION = heartbeat(kind=mavlink.MAV_TYPE_GCS, autopilot=mavlink.MAV_AUTOPILOT_INVALID)
 NOBODY = "'alpha': ground-cut@0+0.5: no ground station was heard yet"

@@ -5,8 +5,8 @@ import time
 import pytest
 from hub import Hub
 
-from mmrs_core.flight.injection import Rehearsal, injections
 from mmrs_runtime.clock import Clock
+from mmrs_runtime.injection import Rehearsal, injections
 
 
 class End:

@@ -7,9 +7,9 @@ from collections import deque
 import pytest
 from stalls import Stalls
 
-from mmrs_core.flight.injection import Rehearsal, injections
-from mmrs_core.flight.links.ports import NOTHING, Received
 from mmrs_runtime.clock import Clock
+from mmrs_runtime.injection import Rehearsal, injections
+from mmrs_runtime.ports import NOTHING, Received
 
 URLS = {"alpha": "udpin:127.0.0.1:1"}
 PIECES = [b"%04d" % number for number in range(2000)]

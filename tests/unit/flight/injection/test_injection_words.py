@@ -4,7 +4,7 @@ from math import inf
 
 import pytest
 
-from mmrs_core.flight.injection import injections
+from mmrs_runtime.injection import injections
 
 URLS = {"alpha": "udpin:127.0.0.1:1", "beta": "udpin:127.0.0.1:2", "a,b:c": "udpin:127.0.0.1:3"}
 

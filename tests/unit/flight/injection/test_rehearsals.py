@@ -11,7 +11,7 @@ from pathlib import Path
 PREFACE = """
 import json, sys, threading, time
 from mmrs_runtime.clock import Clock
-from mmrs_core.flight.injection import Rehearsal, injections
+from mmrs_runtime.injection import Rehearsal, injections
 def begin(text, speedup=1.0):
     clock = Clock(speedup)
     rehearsal = Rehearsal(injections([text], {"alpha": "udpin:127.0.0.1:1"}), clock, said.append)

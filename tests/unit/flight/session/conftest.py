@@ -9,14 +9,14 @@ import pytest
 from flight_crew import SPEEDUP, SteadyClock
 from ports import free_port
 
-from mmrs_core.flight.crews import Crews
-from mmrs_core.flight.injection import Rehearsal
-from mmrs_core.flight.judgement import Judgement
-from mmrs_core.flight.links.radios import Radios
-from mmrs_core.flight.options import options_of, parser_for
-from mmrs_core.flight.session import Shared
-from mmrs_core.flight.slots import LocalSlots
 from mmrs_core.sitl import Settings, SimulatedVehicle
+from mmrs_mavlink.crews import Crews
+from mmrs_mavlink.judgement import Judgement
+from mmrs_mavlink.links.radios import Radios
+from mmrs_mavlink.options import options_of, parser_for
+from mmrs_mavlink.session import Shared
+from mmrs_mavlink.slots import LocalSlots
+from mmrs_runtime.injection import Rehearsal
 
 
 @pytest.fixture

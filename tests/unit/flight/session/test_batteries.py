@@ -10,8 +10,8 @@ from patience import until
 from ports import free_port
 from sessions import labels, phase
 
-from mmrs_core.flight.program import Policy
-from mmrs_core.flight.session import run_robot
+from mmrs_mavlink.program import Policy
+from mmrs_mavlink.session import run_robot
 from mmrs_runtime.orders.orders import Order
 from mmrs_runtime.phases import SUSPENDED, WORKS
 

@@ -10,8 +10,8 @@ from flight_crew import in_background, robot_of
 from patience import until
 from sessions import labels
 
-from mmrs_core.flight.program import Geographic, Hold, Policy
-from mmrs_core.flight.session import run_robot
+from mmrs_mavlink.program import Geographic, Hold, Policy
+from mmrs_mavlink.session import run_robot
 from mmrs_runtime.orders.orders import Order
 from mmrs_runtime.records.log import read
 

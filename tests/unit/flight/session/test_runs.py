@@ -11,11 +11,11 @@ from patience import until
 from ports import free_port
 from sessions import labels, phase
 
-from mmrs_core.flight.program import GoTo
-from mmrs_core.flight.session import run_robot
-from mmrs_core.flight.slots import LocalSlots
-from mmrs_core.flight.vehicles.mavlink_vehicle import MavlinkVehicle
 from mmrs_core.sitl import Settings, SimulatedVehicle
+from mmrs_mavlink.program import GoTo
+from mmrs_mavlink.session import run_robot
+from mmrs_mavlink.slots import LocalSlots
+from mmrs_mavlink.vehicles.mavlink_vehicle import MavlinkVehicle
 from mmrs_runtime.orders.orders import Order
 from mmrs_runtime.phases import ENDED, HELD, HELD_EARLY, WAITS, WORKS
 

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from mmrs_core.flight.program import Policy
-from mmrs_core.flight.steps.responses import BLOCKED
-from mmrs_core.flight.vehicles.dry import DryVehicle
-from mmrs_core.mavlink.backend.lost_link import LostLink
-from mmrs_core.mavlink.built import robot_of
 from mmrs_core.testing.programs import LAND, program, robot_program, take_off, target_input
+from mmrs_mavlink.plugin.backend.lost_link import LostLink
+from mmrs_mavlink.plugin.built import robot_of
+from mmrs_mavlink.program import Policy
+from mmrs_mavlink.steps.responses import BLOCKED
+from mmrs_mavlink.vehicles.dry import DryVehicle
 from mmrs_runtime.clock import Clock
 
 BEHAVIOUR = program(robot_program("r", [take_off("up", 20.0), LAND]))

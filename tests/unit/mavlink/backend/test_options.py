@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from mmrs_core.errors import UsageError
-from mmrs_core.mavlink.backend.options import LinkOptions, link_options
+from mmrs_mavlink.plugin.backend.options import LinkOptions, link_options
 
 
 def test_options_are_read_by_their_keys():

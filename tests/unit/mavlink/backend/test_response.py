@@ -8,9 +8,9 @@ import pytest
 from flight_crew import manned, robot_of
 from patience import until
 
-from mmrs_core.flight.program import Geographic, Place, Policy
-from mmrs_core.mavlink.backend.moves import Moves
-from mmrs_core.mavlink.backend.response import Response
+from mmrs_mavlink.plugin.backend.moves import Moves
+from mmrs_mavlink.plugin.backend.response import Response
+from mmrs_mavlink.program import Geographic, Place, Policy
 from mmrs_runtime.faults import Fault
 
 NOWHERE = tuple((move, (Geographic(nan, nan, nan),)) for move in ("up", "out"))

@@ -7,12 +7,6 @@ from dataclasses import replace
 import pytest
 
 from mmrs_core.behaviour.program import Transition
-from mmrs_core.flight.places import distance, offset
-from mmrs_core.flight.program import Policy
-from mmrs_core.flight.vehicles.dry import DryVehicle
-from mmrs_core.mavlink.backend.moves import Moves
-from mmrs_core.mavlink.backend.way_back import WayBack, sortie_of
-from mmrs_core.mavlink.built import robot_of
 from mmrs_core.testing.programs import (
     LAND,
     MULTICOPTER,
@@ -23,6 +17,12 @@ from mmrs_core.testing.programs import (
     take_off,
     target_input,
 )
+from mmrs_mavlink.places import distance, offset
+from mmrs_mavlink.plugin.backend.moves import Moves
+from mmrs_mavlink.plugin.backend.way_back import WayBack, sortie_of
+from mmrs_mavlink.plugin.built import robot_of
+from mmrs_mavlink.program import Policy
+from mmrs_mavlink.vehicles.dry import DryVehicle
 from mmrs_runtime.clock import Clock
 from mmrs_runtime.faults import BATTERY_LOW, Fault, Refused
 

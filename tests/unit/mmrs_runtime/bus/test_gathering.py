@@ -9,8 +9,8 @@ from collections.abc import Container
 import pytest
 from stalls import Stalls
 
-from mmrs_core.flight.orders.obedience import Obedience, Ordered
-from mmrs_core.flight.vehicles.dry import DryVehicle
+from mmrs_mavlink.orders.obedience import Obedience, Ordered
+from mmrs_mavlink.vehicles.dry import DryVehicle
 from mmrs_runtime.bus import Incomplete, Member, Node, Owned, begin_together
 from mmrs_runtime.bus.carriers.carrier import NoCarrier
 from mmrs_runtime.bus.reading import request_in, written

@@ -7,11 +7,11 @@ import json
 import pytest
 from hub import Hub
 
-from mmrs_core.flight.slots import member_of
-from mmrs_core.mavlink.built import robot_of
 from mmrs_core.runtime.slots import members_of, recorded_of
 from mmrs_core.testing.programs import program, quad, robot_program, target_input
 from mmrs_core.testing.small_programs import hold, notify
+from mmrs_mavlink.plugin.built import robot_of
+from mmrs_mavlink.slots import member_of
 from mmrs_runtime.bus import CommandId, Node
 from mmrs_runtime.bus.owners.owner import Owner
 from mmrs_runtime.records.steps import StepRecord

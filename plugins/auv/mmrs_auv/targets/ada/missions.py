@@ -20,9 +20,9 @@ from mmrs_core.behaviour.policies import patience
 from mmrs_core.behaviour.program import Action, Move, Program, RobotProgram, SlotId, Target, Transition
 from mmrs_core.behaviour.semantics import slot_text
 from mmrs_core.contributions.targets import TracedStep
-from mmrs_core.mavlink.context import RobotContext
 from mmrs_core.mavlink.vehicles import TRAVEL_FACTORS, capability_of
 from mmrs_core.scene import Part, Policy, Position
+from mmrs_mavlink.plugin.context import RobotContext
 from mmrs_runtime.conditions import BATTERY, DETECTED, FOUND, is_standard
 from mmrs_runtime.records.steps import log_name
 

@@ -12,8 +12,8 @@ from mmrs_auv.targets.ada.policies import declared, obstacles_to
 from mmrs_auv.targets.moves import MOVES, above_surface
 from mmrs_core.behaviour.program import BEHAVIOUR, Action, Move, RobotProgram
 from mmrs_core.contributions.targets import TargetInput
-from mmrs_core.mavlink.context import RobotContext, context_of, vehicleless
 from mmrs_core.scene import Name, Policy
+from mmrs_mavlink.plugin.context import RobotContext, context_of, vehicleless
 
 DEVICE_ACTION, FEEDBACK, NOTIFY = ((BEHAVIOUR, name) for name in ("DeviceAction", "Feedback", "Notify"))
 

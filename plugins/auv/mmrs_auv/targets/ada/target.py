@@ -17,7 +17,7 @@ from mmrs_auv.targets.places import templates_of
 from mmrs_core.contributions.targets import FileSpec, Target, TargetInput
 from mmrs_core.errors import UnsupportedError
 from mmrs_core.generation.escaping import file_stems
-from mmrs_core.mavlink.context import context_of
+from mmrs_mavlink.plugin.context import context_of
 
 TEMPLATES = templates_of("ada")
 NO_VEHICLE = "no robot is an underwater vehicle"

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from mmrs_auv.targets.capabilities import OF_VEHICLES
-from mmrs_core.mavlink.capabilities import OF_THE_RUNTIME
+from mmrs_mavlink.plugin.capabilities import OF_THE_RUNTIME
 
 CAPABILITIES: Mapping[str, str] = {
     **OF_THE_RUNTIME,

@@ -22,14 +22,14 @@ from mmrs_core.contributions.targets import FileSpec, Target, TargetInput
 from mmrs_core.contributions.wiring import DeviceWiring, Unwired, Wired, Wiring
 from mmrs_core.errors import UnsupportedError
 from mmrs_core.generation.escaping import file_stems
-from mmrs_core.mavlink.actions import action_losses
-from mmrs_core.mavlink.context import RobotContext, context_of, homeless, require_home, vehicleless
-from mmrs_core.mavlink.controllers import RUNTIME, fleet_files, runtime_files
-from mmrs_core.mavlink.movements import losses_of
-from mmrs_core.mavlink.naming import with_names
-from mmrs_core.mavlink.program import robot_view, trace_of
-from mmrs_core.mavlink.safety import policies_of
 from mmrs_core.scene import Device, Policy, RobotType
+from mmrs_mavlink.plugin.actions import action_losses
+from mmrs_mavlink.plugin.context import RobotContext, context_of, homeless, require_home, vehicleless
+from mmrs_mavlink.plugin.controllers import RUNTIME, fleet_files, runtime_files
+from mmrs_mavlink.plugin.movements import losses_of
+from mmrs_mavlink.plugin.naming import with_names
+from mmrs_mavlink.plugin.program import robot_view, trace_of
+from mmrs_mavlink.plugin.safety import policies_of
 
 VESSEL = "mmrs_vessel"
 SOURCES = Path(str(files_of("mmrs_auv")))
@@ -37,7 +37,7 @@ CARRIED = ("vessel", "controllers")
 RENAMED = {
     "mmrs_auv.vessel": f"{VESSEL}.vessel",
     "mmrs_auv.controllers": f"{VESSEL}.controllers",
-    "mmrs_core.flight": RUNTIME,
+    "mmrs_mavlink": RUNTIME,
 }
 WIRED = "can.device"
 """A property that devices get here: their number on the bus, from 1 on."""

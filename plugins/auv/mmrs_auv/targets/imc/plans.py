@@ -27,11 +27,11 @@ from mmrs_auv.targets.moves import (
 )
 from mmrs_core.behaviour.program import Action, Move
 from mmrs_core.generation.escaping import file_stems
-from mmrs_core.mavlink.actions import DEVICE_ACTION
-from mmrs_core.mavlink.context import RobotContext
 from mmrs_core.mavlink.earth import metres
 from mmrs_core.scene import Position
 from mmrs_core.transformation.kinds import before_target
+from mmrs_mavlink.plugin.actions import DEVICE_ACTION
+from mmrs_mavlink.plugin.context import RobotContext
 
 LONGEST_TEXT = 200
 """Letters of a description at most."""

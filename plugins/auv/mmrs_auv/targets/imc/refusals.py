@@ -10,8 +10,8 @@ from mmrs_auv.targets.moves import seconds_of_hold
 from mmrs_auv.targets.refusing import Wording, of_movement, of_policies, of_policy
 from mmrs_core.behaviour.program import Action, Move, RobotProgram, Transition
 from mmrs_core.contributions.targets import TargetInput
-from mmrs_core.mavlink.actions import DEVICE_ACTION
-from mmrs_core.mavlink.context import RobotContext, context_of, homeless, vehicleless
+from mmrs_mavlink.plugin.actions import DEVICE_ACTION
+from mmrs_mavlink.plugin.context import RobotContext, context_of, homeless, vehicleless
 
 WORDING = Wording(
     turn="which no manoeuvre of IMC does",

@@ -19,7 +19,7 @@ from mmrs_auv.targets.places import templates_of
 from mmrs_core.contributions.targets import FileSpec, Target, TargetInput, TracedStep
 from mmrs_core.errors import UnsupportedError
 from mmrs_core.generation.escaping import file_stems
-from mmrs_core.mavlink.context import RobotContext, context_of, require_home
+from mmrs_mavlink.plugin.context import RobotContext, context_of, require_home
 
 
 def files(input: TargetInput) -> Iterator[FileSpec]:

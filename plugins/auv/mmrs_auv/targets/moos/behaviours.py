@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 from mmrs_auv.targets.moos.steps import TOLERANCE, Step
 from mmrs_auv.targets.moos.words import DEPLOY, DONE, STEP, text
-from mmrs_core.mavlink.context import RobotContext
 from mmrs_core.mavlink.vehicles import MANNERS
+from mmrs_mavlink.plugin.context import RobotContext
 
 WEIGHT = 100
 SLIP = 4.0

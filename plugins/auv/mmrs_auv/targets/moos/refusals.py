@@ -9,7 +9,7 @@ from mmrs_auv.targets.refusing import Wording, of_movement, of_policies, of_poli
 from mmrs_core.behaviour.program import Move, RobotProgram, Transition
 from mmrs_core.contributions.targets import TargetInput
 from mmrs_core.generation.escaping import file_stems
-from mmrs_core.mavlink.context import RobotContext, context_of, homeless, vehicleless
+from mmrs_mavlink.plugin.context import RobotContext, context_of, homeless, vehicleless
 
 WORDING = Wording(
     turn="which no behaviour of a helm does",

@@ -10,11 +10,11 @@ from mmrs_auv.targets.moos.words import MESSAGE, variables_of, words_of
 from mmrs_auv.targets.moves import DEEPEST, MOVES, above_surface, seconds_of, seconds_of_hold, writable_speed
 from mmrs_core.behaviour.program import BEHAVIOUR, Action, Move, SlotId
 from mmrs_core.contributions.targets import TargetInput
-from mmrs_core.mavlink.actions import DEVICE_ACTION
-from mmrs_core.mavlink.context import RobotContext
 from mmrs_core.mavlink.earth import metres
 from mmrs_core.scene import Position, RobotType
 from mmrs_core.transformation.kinds import before_target
+from mmrs_mavlink.plugin.actions import DEVICE_ACTION
+from mmrs_mavlink.plugin.context import RobotContext
 
 POSTS = "moos.post."
 """Property of a device before the name of an action: what is posted, as in ``SONAR=on;RANGE=50``."""

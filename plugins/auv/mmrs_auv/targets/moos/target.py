@@ -18,8 +18,8 @@ from mmrs_auv.targets.moos.words import text
 from mmrs_auv.targets.places import templates_of
 from mmrs_core.contributions.targets import FileSpec, Target, TargetInput, TracedStep
 from mmrs_core.errors import UnsupportedError
-from mmrs_core.mavlink.context import RobotContext, context_of, require_home
 from mmrs_core.scene import Frame
+from mmrs_mavlink.plugin.context import RobotContext, context_of, require_home
 
 
 def files(input: TargetInput) -> Iterator[FileSpec]:

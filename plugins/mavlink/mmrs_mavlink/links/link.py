@@ -1,0 +1,331 @@
+"""A link to one vehicle: what it says, waits for more of it, and what is sent to it."""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections import deque
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import AbstractContextManager
+from math import inf
+from typing import Any, TypeVar
+
+from mmrs_runtime.clock import Clock
+from mmrs_runtime.faults import LINK_LOST, Fault
+from mmrs_runtime.ports import Address, Port
+
+from .identity import LATE_MILLISECONDS, Identity
+from .messages import Messages
+from .radio import GLANCE_SECONDS, Radio, is_autopilot
+from .retries import Retries
+from .roaming import Roaming
+from .signing import Signer
+from .stations import Stations
+
+Message = Any
+Found = TypeVar("Found")
+Observer = Callable[[Message, bool], None]
+"""Is given every message and whether it goes out; called from whatever thread sends or reads."""
+
+FORSAKEN_SECONDS = 600.0
+"""Silence after which nobody waits for a vehicle any more, where no policy has said so before."""
+
+LEAST_SECONDS = 0.5
+"""Real seconds for an answer at least, unless less was asked for."""
+
+GAP_SECONDS, LEAST_GAP_SECONDS = 2.0, 0.5
+"""Silence of the vehicle, of the run and real, after which ground stations had no chance to be heard."""
+
+TELL_BOOT = frozenset({"GLOBAL_POSITION_INT", "LOCAL_POSITION_NED", "SYSTEM_TIME", "ATTITUDE"})
+
+
+def nobody() -> None:
+    """Watch over nothing."""
+
+
+class Link:
+    """Talks to one vehicle.
+
+    Attributes:
+        guard: called again and again during every wait; raises what should end it.
+        system, component: the vehicle's address; 0 until it was heard of.
+        retries: how often, and how long apart, to send what is not answered.
+        stations: of people, as far as they are heard over the link.
+    """
+
+    def __init__(
+        self,
+        port: Port | Radio,
+        clock: Clock,
+        system: int = 0,
+        key: bytes | None = None,
+        retries: Retries | None = None,
+    ) -> None:
+        """Listen to a vehicle.
+
+        Args:
+            port: open, for this vehicle alone; or a radio, which robots may share.
+            clock: of the run.
+            system: of the vehicle; 0 is whichever speaks first that no other robot has.
+            key: to sign with on a port of its own; what comes must then be signed with it, too.
+            retries: None: as published.
+
+        Raises:
+            ValueError: another robot has that vehicle.
+        """
+        radio = port if isinstance(port, Radio) else Radio(port, clock, Signer(key) if key else None)
+        self.clock = clock
+        self.guard: Callable[[], None] = nobody
+        self.system = system
+        self.component = 0
+        self.retries = retries or Retries()
+        self.stations = Stations()
+        self._radio = radio
+        self._wanted = system
+        late = max(LATE_MILLISECONDS, 1000.0 * self.clock.speedup)
+        self._identity, self._roaming = Identity(late), Roaming(late)
+        self._changed = threading.Condition()
+        self._messages = Messages(self._changed, clock)
+        self._observers: tuple[Observer, ...] = ()
+        self._given_up = -inf
+        self._heard: float | None = None
+        self._ended = ""
+        radio.join(self)
+
+    def close(self) -> None:
+        """Stop listening."""
+        self._radio.leave(self)
+
+    @property
+    def listening(self) -> bool:
+        """Return whether something may still come."""
+        return self._radio.listening
+
+    @property
+    def trouble(self) -> str:
+        """Return what the port has last complained of; empty once something is heard again."""
+        return self._radio.trouble
+
+    @property
+    def dropped(self) -> Mapping[str, int]:
+        """Return how many frames on the radio were not used, by type and reason."""
+        return dict(self._radio.dropped)
+
+    @property
+    def garbled(self) -> int:
+        """Return how many frames could not be read, or were not signed as they should be."""
+        return sum(self._radio.dropped[reason] for reason in ("unreadable", "not signed with the key"))
+
+    @property
+    def patience(self) -> float:
+        """Return the seconds of the run to wait for an answer: networks do not speed up with simulators."""
+        return self.clock.patience(self.retries.answer, min(LEAST_SECONDS, self.retries.answer))
+
+    @property
+    def starts(self) -> int:
+        """Return how often the vehicle was seen to start anew."""
+        return self._identity.starts
+
+    @property
+    def named(self) -> bool:
+        """Return whether it was said which system is meant, and not the first that speaks."""
+        return bool(self._wanted)
+
+    def doubt(self) -> str:
+        """Return why this may not be the robot's vehicle; empty if it is, as far as can be heard."""
+        twin = self._roaming.twin or self._identity.twin
+        if twin:
+            return f"there are two vehicles with system id {self.system}: {twin}"
+        others = sorted(each for each in self._radio.heard - {self.system} if not self._radio.claimed(each))
+        if not self._wanted and others:
+            shown = " and ".join(map(str, sorted([self.system, *others])))
+            return f"vehicles with the system ids {shown} speak on this link: say which, as URL@{self.system}"
+        return ""
+
+    def strangers(self) -> str:
+        """Return who speaks on the radio instead of the vehicle; empty if nobody does."""
+        shown = ", ".join(map(str, sorted(self._radio.heard)))
+        return f"heard system {shown}, and not {self._wanted}" if shown and self._wanted else ""
+
+    @property
+    def given_up(self) -> bool:
+        """Return whether the vehicle is to hear no heartbeats, so that it answers that by itself."""
+        return self.clock.now() < self._given_up
+
+    def give_up(self, seconds: float) -> None:
+        """Send a vehicle that is not heard no heartbeats for some time: it may still hear us.
+
+        They go on as soon as it is heard again, and later anyway: it may have forgotten where we are.
+        """
+        self._given_up = self.clock.now() + seconds
+
+    def observe(self, observer: Observer) -> None:
+        """Have every message told from now on: what is sent, and what the vehicle says.
+
+        An observer must neither raise nor wait: it runs in the thread that reads, or that sends.
+        """
+        self._observers = (*self._observers, observer)
+
+    def send(self, message: Message) -> None:
+        """Send one message; where the port does not take it, it is lost like any on a poor link."""
+        for observer in self._observers:
+            observer(message, True)
+        self._radio.send(message, self._roaming.sender)
+
+    def speak(self, message: Message) -> None:
+        """Send one message to everybody as a component of the vehicle, as its onboard computer does."""
+        for observer in self._observers:
+            observer(message, True)
+        self._radio.send(message, self._roaming.sender, self.system)
+
+    def latest(self, kind: str) -> Message | None:
+        """Return the last message of that name from the vehicle."""
+        return self._messages.latest(kind)
+
+    def since(self, kind: str) -> float:
+        """Return how long ago the last message of that name came, in seconds; inf if none did."""
+        return self._messages.since(kind)
+
+    def order(self, kind: str) -> int:
+        """Return which of the vehicle's frames the last message of that name was; -1 before one came.
+
+        Of two messages the one with the larger number was sent later, whichever has come first.
+        """
+        return self._messages.order(kind)
+
+    def silent_for(self) -> float:
+        """Return for how many seconds the vehicle has not been heard; 0 before it was first heard."""
+        return 0.0 if self._heard is None else self.clock.now() - self._heard
+
+    def unheard(self) -> bool:
+        """Return whether the vehicle is silent while a guard watches, which says when it is lost."""
+        return self._watched() and self.silent_for() >= self.patience
+
+    def silent_since(self, begun: float) -> bool:
+        """Return whether the vehicle has said nothing since then, while a guard watches the link."""
+        return self._watched() and (self._heard is not None and self._heard < begun)
+
+    def attempts(self, most: int | None = None) -> Iterator[int]:
+        """Yield how often something has been sent, as long as it may be sent again.
+
+        A try counts where the vehicle was heard since it was made. One that says nothing at all is not
+        one that does not answer: whoever watches the link says when it is lost, by the policy's seconds.
+
+        Args:
+            most: tries that count; None: as the link says.
+        """
+        most = self.retries.tries if most is None else most
+        sent = counted = 0
+        while counted < most:
+            begun = self.clock.now()
+            yield sent
+            sent, counted = sent + 1, counted + (not self.silent_since(begun))
+
+    def wait(self, test: Callable[[], Found | None], seconds: float, *, heard: bool = False) -> Found | None:
+        """Return what the test finds as soon as it finds something; None if time runs out.
+
+        Time that the guard takes, as for an order to hold, does not count.
+
+        Args:
+            test: asked again whenever something has come.
+            seconds: of the run.
+            heard: whether time in which the vehicle is silent does not count either, since a guard
+                says when it is lost.
+
+        Raises:
+            Fault: the port has ended, so that nothing will come any more; or what the guard raises.
+        """
+        before = self.clock.now()
+        until = before + seconds
+        while True:
+            if self._ended:
+                raise Fault(LINK_LOST, self._ended)
+            asked = self.clock.now()
+            if heard and self.unheard():
+                until += asked - before
+            self.guard()
+            before = self.clock.now()
+            until += before - asked
+            with self._changed:
+                found = test()
+                left = until - self.clock.now()
+                if found or left <= 0:
+                    return found or None
+                self._changed.wait(min(self.clock.real(left), GLANCE_SECONDS))
+
+    def wake(self) -> None:
+        """Have a wait ask its guard and its test again at once."""
+        with self._changed:
+            self._changed.notify_all()
+
+    def _watched(self) -> bool:
+        """Return whether somebody else says when the link is lost."""
+        return self.guard is not nobody and self.silent_for() < FORSAKEN_SECONDS
+
+    def inbox(self, *kinds: str, component: int | None = None) -> AbstractContextManager[deque[Message]]:
+        """Collect every message of these names from now on.
+
+        Args:
+            kinds: names of messages.
+            component: of the vehicle's system that must have sent them; None: the autopilot.
+        """
+        return self._messages.inbox(frozenset(kinds), self.component if component is None else component)
+
+    def trail(self, kind: str) -> AbstractContextManager[deque[Message]]:
+        """Collect every message of that name that is news, from now on, in the order they were sent in."""
+        return self._messages.trail(kind)
+
+    def meets(self, heartbeat: Message) -> bool:
+        """Return whether an autopilot's heartbeat is that of the vehicle; it is the link's from then on."""
+        system = heartbeat.get_srcSystem()
+        if self._wanted not in (0, system) or (not self._wanted and self._radio.claimed(system)):
+            return False
+        with self._changed:
+            self.system, self.component = system, heartbeat.get_srcComponent()
+            self._messages.put(heartbeat)
+            self._changed.notify_all()
+        return True
+
+    def hears(self, message: Message, sender: Address | None) -> None:
+        """Take a message from the vehicle's system, or from the radio itself (RADIO_STATUS)."""
+        own = (message.get_srcSystem(), message.get_srcComponent()) == (self.system, self.component)
+        if own and not self._is_own(message, sender):
+            self._radio.dropped[f"{message.get_type()}: from a second system {self.system}"] += 1
+            return
+        if own and message.get_type() == "HEARTBEAT" and not is_autopilot(message):
+            self._radio.dropped["HEARTBEAT: with the vehicle's ids, and no autopilot's"] += 1
+            return
+        for observer in self._observers:
+            observer(message, False)
+        with self._changed:
+            self._keep(message, own=own)
+            self._changed.notify_all()
+
+    def speaks_from(self, sender: Address | None) -> bool:
+        """Return whether that is where the vehicle speaks from."""
+        return bool(self.component) and sender == self._roaming.sender
+
+    def hears_station(self, heartbeat: Message) -> None:
+        """Take the heartbeat of a ground station."""
+        self.stations.hear(heartbeat, self.clock.now())
+
+    def learns(self, reason: str) -> None:
+        """Be told that nothing will come any more."""
+        with self._changed:
+            self._ended = reason
+            self._changed.notify_all()
+
+    def _is_own(self, message: Message, sender: Address | None) -> bool:
+        """Return whether a message with the vehicle's ids comes from the vehicle."""
+        real, now = time.monotonic(), self.clock.now()
+        return self._roaming.accepts(message, sender, real, now, heartbeat=is_autopilot(message))
+
+    def _keep(self, message: Message, *, own: bool) -> None:
+        if own:
+            if self.silent_for() > self.clock.patience(GAP_SECONDS, LEAST_GAP_SECONDS):
+                self.stations.pass_over(self.silent_for())
+            self._heard = self.clock.now()
+            self._given_up = -inf
+            if message.get_type() in TELL_BOOT:
+                self._identity.booted(message.time_boot_ms)
+        self._messages.take(message, own=own)

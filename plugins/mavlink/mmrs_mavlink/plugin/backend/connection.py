@@ -1,0 +1,212 @@
+"""Opens what the backend mavlink works with: radios that robots share, links, vehicles, black boxes."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from math import inf
+from pathlib import Path
+from typing import cast
+
+from mmrs_core.behaviour.program import Program
+from mmrs_core.contributions.backends import BackendInput, Live
+from mmrs_core.contributions.targets import TargetInput
+from mmrs_core.errors import LinkLostError, UnsupportedError, UsageError
+from mmrs_core.runtime.clock import FollowingClock
+from mmrs_mavlink.linked import at_end_of
+from mmrs_mavlink.links.link import Link
+from mmrs_mavlink.links.ports import address_of, split_system
+from mmrs_mavlink.links.radios import Radios
+from mmrs_mavlink.links.retries import Retries
+from mmrs_mavlink.links.signing import Signer, signer_for
+from mmrs_mavlink.objects import Locator, where_expected
+from mmrs_mavlink.plugin.actions import action_of
+from mmrs_mavlink.plugin.backend.equipment import Equipment
+from mmrs_mavlink.plugin.backend.options import LinkOptions, link_options
+from mmrs_mavlink.plugin.backend.robot import MavlinkBackend
+from mmrs_mavlink.plugin.backend.whereabouts import Ground
+from mmrs_mavlink.plugin.built import built, robot_of
+from mmrs_mavlink.plugin.context import context_of
+from mmrs_mavlink.plugin.controllers import refusals
+from mmrs_mavlink.plugin.program import objects_in
+from mmrs_mavlink.program import Action, Robot
+from mmrs_mavlink.services.satellites import attended
+from mmrs_mavlink.vehicles.recognition import system_of
+from mmrs_runtime.clock import Clock
+from mmrs_runtime.faults import Fault
+from mmrs_runtime.injection import Rehearsal, injections
+from mmrs_runtime.ports import Port
+from mmrs_runtime.records.blackbox import BlackBox, black_box_path
+from mmrs_runtime.records.steps import log_name
+
+FIRST_PORT, PORT_STEP = 14_550, 10
+SHARED = "mavlink"
+
+
+@dataclass(frozen=True, slots=True)
+class Fleet:
+    """What all robots of a run share; `users` are those that still do."""
+
+    clock: Clock
+    radios: Radios
+    rehearsal: Rehearsal
+    users: set[str]
+
+    def let_go(self, robot: str) -> None:
+        """End what concerns a robot, and everything with the last one."""
+        self.rehearsal.forget(robot)
+        self.users.discard(robot)
+        if not self.users:
+            self.rehearsal.close()
+
+
+def connect(given: BackendInput, live: Live) -> MavlinkBackend:
+    """Return a robot at the end of its link.
+
+    Raises:
+        UsageError: an option or a link is unknown or makes no sense.
+        UnsupportedError: the robot's program holds what vehicles cannot do; lists all of it.
+        LinkLostError: the port cannot be opened.
+    """
+    options = link_options(given.options)
+    types = {**given.types, given.type.name: given.type}
+    input = TargetInput(given.program, types, given.robot_kinds, given.move_kinds)
+    input = replace(input, areas=given.areas, device_actions=given.device_actions)
+    _refuse(given, input, options)
+    program = robot_of(given.robot, input)
+    fleet = _fleet(live, options, given.program)
+    url, system = _url(given, live)
+    try:
+        link = fleet.radios.open(url, system)
+    except Fault as fault:
+        raise LinkLostError(f"robot '{given.robot.id}': {fault}") from fault
+    return MavlinkBackend(program, _equipment(given, live, input, program, fleet, link), options)
+
+
+def _refuse(given: BackendInput, input: TargetInput, options: LinkOptions) -> None:
+    alone = replace(input, program=replace(given.program, robots=(given.robot,)))
+    found = list(refusals(alone))
+    if not options.objects:
+        found += [
+            f"robot '{given.robot.id}': object '{each}': nobody looks for it; say objects=expected to fly"
+            " where it is expected"
+            for each in objects_in(given.robot)
+        ]
+    if found:
+        raise UnsupportedError(f"robot '{given.robot.id}': its vehicle cannot do all of it", found)
+
+
+def _fleet(live: Live, options: LinkOptions, program: Program) -> Fleet:
+    found = live.shared.get(SHARED)
+    if isinstance(found, Fleet):
+        return found
+    clock = FollowingClock(live.clock)
+    urls = _urls(live, program)
+    try:
+        faults = injections([options.inject] if options.inject else [], urls)
+    except ValueError as error:
+        raise UsageError(f"option 'inject': {error}") from error
+    rehearsal = Rehearsal(faults, clock, live.announce)
+    retries = Retries(options.tries, options.answer_seconds, options.item_seconds)
+    sharers: dict[str, list[str]] = {}
+    for robot, url in urls.items():
+        sharers.setdefault(_split(url)[0], []).append(robot)
+
+    def wrap(port: Port, url: str) -> Port:
+        return rehearsal.wrap(port, sharers.get(url, []))
+
+    fleet = Fleet(clock, Radios(clock, _signer(options.signing_key), retries, wrap), rehearsal, set())
+    live.shared[SHARED] = fleet
+    return fleet
+
+
+def _signer(path: Path | None) -> Signer | None:
+    if path is None:
+        return None
+    try:
+        return signer_for(path)
+    except (OSError, ValueError) as error:
+        raise UsageError(f"option 'signing-key': {error}") from error
+
+
+def _urls(live: Live, program: Program) -> Mapping[str, str]:
+    usual = {
+        robot.id: f"udpin:127.0.0.1:{FIRST_PORT + PORT_STEP * number}"
+        for number, robot in enumerate(program.robots)
+    }
+    return {robot: live.links.get(robot, url) for robot, url in usual.items()}
+
+
+def _url(given: BackendInput, live: Live) -> tuple[str, int]:
+    return _split(_urls(live, given.program)[given.robot.id])
+
+
+def _split(text: str) -> tuple[str, int]:
+    try:
+        url, system = split_system(text)
+        address_of(url)
+    except ValueError as error:
+        raise UsageError(f"link {error}") from error
+    return url, system
+
+
+def _equipment(
+    given: BackendInput, live: Live, input: TargetInput, program: Robot, fleet: Fleet, link: Link
+) -> Equipment:
+    options = link_options(given.options)
+    home_tolerance = inf if live.resumed else options.home_tolerance
+    linked = at_end_of(link, program, options.acceptance, home_tolerance, live.say)
+    context = context_of(given.robot, input, geographic=False)
+    home = given.robot.home or (0.0, 0.0, 0.0)
+    box = _box(given, live, fleet.clock)
+    if box is not None:
+        linked.record(box, program, fleet.clock)
+        fleet.rehearsal.record(
+            given.robot.id, lambda text, content: box.write("injected", fault=text, **content)
+        )
+    fleet.users.add(given.robot.id)
+    fleet.rehearsal.attend(given.robot.id, attended(link))
+    locators: dict[str, Locator] = {each: where_expected for each in objects_in(given.robot)}
+    joules = sum(battery.energy for battery in given.type.batteries) or None
+    return Equipment(
+        url=_url(given, live)[0],
+        link=link,
+        vehicle=linked.vehicle,
+        radios=fleet.radios,
+        clock=fleet.clock,
+        ground=Ground(given.program.frame, home, context.zero),
+        joules=joules,
+        locators=locators,
+        box=box,
+        resumed=live.resumed,
+        passed=live.passed,
+        begun=live.begun,
+        system=_system_before(given, live),
+        say=live.say,
+        wake=live.wake,
+        action=lambda action: cast(Action, built(action_of(action, context))),
+        start=_once(fleet.rehearsal.start, live.shared),
+        let_go=lambda: fleet.let_go(given.robot.id),
+    )
+
+
+def _once(begin: Callable[[], None], shared: dict[str, object]) -> Callable[[], None]:
+    def start() -> None:
+        if shared.setdefault(f"{SHARED} faults", begin) is begin:
+            shared[f"{SHARED} faults"] = "begun"
+            begin()
+
+    return start
+
+
+def _system_before(given: BackendInput, live: Live) -> int:
+    if not live.resumed or live.folder is None:
+        return 0
+    return system_of(black_box_path(live.folder / log_name(given.robot.id)))
+
+
+def _box(given: BackendInput, live: Live, clock: Clock) -> BlackBox | None:
+    if live.folder is None:
+        return None
+    path = black_box_path(live.folder / log_name(given.robot.id))
+    return BlackBox(path, live.run, given.robot.id, clock.now, say=live.say)

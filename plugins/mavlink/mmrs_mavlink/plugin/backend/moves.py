@@ -1,0 +1,271 @@
+"""What a vehicle does for each movement and action of a program, as jobs for its worker."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from functools import partial
+
+from mmrs_mavlink.objects import Locator, look_at, place_of
+from mmrs_mavlink.places import at_height, ends_of
+from mmrs_mavlink.plugin.backend.worker import Job
+from mmrs_mavlink.program import (
+    Action,
+    GoTo,
+    Hold,
+    Land,
+    Look,
+    Measure,
+    Movement,
+    NoEffect,
+    Operate,
+    Place,
+    Recharge,
+    Report,
+    Robot,
+    Step,
+    Stop,
+    TakeOff,
+    Then,
+    Turn,
+)
+from mmrs_mavlink.services.uploads import Flight
+from mmrs_mavlink.steps.doing import SILENCE_SECONDS, VALUE_SECONDS
+from mmrs_mavlink.steps.energy import FULL, RECHARGE_FACTOR
+from mmrs_mavlink.steps.responses import policy_for
+from mmrs_mavlink.vehicles.corners import goes_through
+from mmrs_mavlink.vehicles.vehicle import Vehicle
+from mmrs_runtime.clock import Clock
+from mmrs_runtime.faults import BATTERY_LOW, DEVICE_SILENT, Fault, Unanswered
+from mmrs_runtime.screen import words_of
+
+IN_THE_AIR = 1.0
+"""Metres above home from which on a vehicle climbs by going up, not by taking off."""
+
+Told = Callable[[str, str, Mapping[str, object]], None]
+
+
+class Moves:
+    """Knows how a vehicle moves and acts.
+
+    Attributes:
+        track: places passed since the last take-off, with the moves that ended there.
+    """
+
+    def __init__(
+        self, robot: Robot, vehicle: Vehicle, clock: Clock, locators: Mapping[str, Locator], told: Told
+    ) -> None:
+        """Move that vehicle; `told` is called with what was reported or measured: kind, name, content."""
+        self.track: list[tuple[str, Place]] = []
+        self._steps = {step.move: step for step in robot.steps}
+        self._robot, self._home = robot.id, robot.home
+        after = policy_for(DEVICE_SILENT, robot).after
+        self._silence = SILENCE_SECONDS if after is None else after
+        self._silence_of_values = VALUE_SECONDS if after is None else after
+        self._vehicle, self._clock, self._locators, self._told = vehicle, clock, locators, told
+
+    def movement(self, move: str, *, through: bool = False) -> Job:
+        """Return what is to be done for a move; `through`: without a stop at its end."""
+        movement = self._steps[move].movement
+        if isinstance(movement, TakeOff):
+            return Job(partial(self.climb, move, movement.height))
+        if isinstance(movement, Land):
+            return Job(self._vehicle.land)
+        if isinstance(movement, GoTo):
+            return self._go(move, movement, through)
+        if isinstance(movement, Hold):
+            return Job(self._rest(movement.seconds))
+        if isinstance(movement, Recharge):
+            return self._recharge(movement.seconds)
+        if isinstance(movement, Turn):
+            return Job(lambda: self._turn(movement.look))
+        return Job(self._vehicle.finish) if isinstance(movement, Stop) else Job()
+
+    def run(self, flight: Flight, passed: Callable[[str], None]) -> Job:
+        """Return the flying of an uploaded run; `passed` is told every move of it but the last."""
+        return Job(_Flight(self, flight, passed))
+
+    def action(self, action: Action) -> Job:
+        """Return the carrying out of an action."""
+        if isinstance(action, Operate):
+            return Job(lambda: self._operate(action), self._rest(action.seconds))
+        if isinstance(action, Measure):
+            return Job(lambda: self._measure(action), self._rest(action.seconds))
+        if isinstance(action, Report):
+            return Job(lambda: self._report(action))
+        if isinstance(action, NoEffect):
+            return Job(lambda: self._told("text", action.name, {"text": f"no way to do it: {action.why}"}))
+        return Job()
+
+    def kind(self, move: str) -> type[Movement]:
+        """Return what sort of movement a move is."""
+        return type(self._steps[move].movement)
+
+    def above_home(self, height: float) -> Place:
+        """Return the place at that height above home."""
+        return at_height(self._home, height)
+
+    def target_of(self, movement: GoTo) -> Place:
+        """Return where a movement leads to, without the distance that it keeps.
+
+        Raises:
+            Fault: it leads to an object, and nobody finds it.
+        """
+        return place_of(movement.at, self._locators, self._vehicle.state())
+
+    def speed_of(self, move: str) -> float | None:
+        """Return how fast a move is, metres per second; None: as the vehicle likes."""
+        movement = self._steps[move].movement
+        return movement.speed if isinstance(movement, GoTo) else None
+
+    def climb(self, move: str, height: float) -> None:
+        """Take off, or climb on where the vehicle is in the air already."""
+        state = self._vehicle.state()
+        if state.armed and state.place.height > IN_THE_AIR:
+            self._vehicle.go_to(at_height(state.place, height), None, None, False)
+        else:
+            self.track = []
+            self._vehicle.take_off(height)
+        self.track.append((move, at_height(self._vehicle.state().place, height)))
+
+    def step(self, move: str) -> None:
+        """Go where a move of a run leads to, and stop there."""
+        movement = self._steps[move].movement
+        assert isinstance(movement, GoTo)
+        self._go(move, movement, through=False).run()
+
+    def fly(self, flight: Flight, passed: Callable[[str], None]) -> None:
+        """Fly an uploaded run."""
+
+        def reached(seq: int) -> None:
+            move = flight.ends.get(seq)
+            if move is not None:
+                self.note(move)
+                if move != flight.run.moves[-1]:
+                    passed(move)
+
+        self._vehicle.fly(flight.first, flight.last, reached)
+
+    def note(self, move: str) -> None:
+        """Remember that the place was passed where a move of a run ends."""
+        movement = self._steps[move].movement
+        assert isinstance(movement, GoTo)
+        self.track.append((move, place_of(movement.at, {}, self._vehicle.state())))
+
+    def _go(self, move: str, movement: GoTo, through: bool) -> Job:
+        job = Job()
+
+        def look_up() -> None:
+            state = self._vehicle.state()
+            if not self.track:
+                self.track.append((move, state.place))
+            here = at_height(state.place, self.track[-1][1].height)
+            target = self.target_of(movement)
+            look = look_at(movement.look, self._locators, state)
+            ends = ends_of(here, target, movement.legs, movement.distance)
+            on = through and goes_through(self._steps[move], self._following(move), here)
+            job.then(*(self._leg(move, end, movement, look, on and end == ends[-1]) for end in ends))
+
+        job.append(look_up)
+        return job
+
+    def _following(self, move: str) -> Step | None:
+        then = self._steps[move].then
+        return self._steps[then.move] if isinstance(then, Then) else None
+
+    def _leg(
+        self, move: str, end: Place, movement: GoTo, look: Look | None, through: bool
+    ) -> Callable[[], None]:
+        def go() -> None:
+            self._vehicle.go_to(end, movement.speed, look, through)
+            self.track.append((move, end))
+
+        return go
+
+    def _operate(self, action: Operate) -> None:
+        """Have a device do something; one that does not answer is asked for as long as policies bear it."""
+        begun = self._clock.now()
+        while True:
+            try:
+                self._vehicle.operate(action.command, action.params, confirmed=action.confirmed)
+                for command, params in action.more:
+                    self._vehicle.operate(command, params)
+            except Unanswered as error:
+                if self._clock.now() - begun >= self._silence:
+                    raise Fault(DEVICE_SILENT, f"{action.device}: {error}") from error
+            else:
+                return
+
+    def _turn(self, look: Look) -> None:
+        found = look_at(look, self._locators, self._vehicle.state())
+        assert found is not None
+        self._vehicle.turn(found)
+
+    def _measure(self, action: Measure) -> None:
+        try:
+            found = self._vehicle.measure(action.value, self._silence_of_values)
+        except Unanswered as error:
+            raise Fault(DEVICE_SILENT, f"{action.device}: {error}") from error
+        self._told("measured", action.value, {"device": action.device, "result": found})
+
+    def _report(self, action: Report) -> None:
+        self._vehicle.tell_ground(words_of(self._robot, action.name, dict(action.pairs)))
+        self._told("reported", action.name, dict(action.pairs))
+
+    def _rest(self, seconds: float) -> Callable[[], None]:
+        left = seconds
+
+        def rest() -> None:
+            nonlocal left
+            begun = self._clock.now()
+            try:
+                self._vehicle.rest(max(0.0, left))
+            finally:
+                left -= self._clock.now() - begun
+
+        return rest
+
+    def _recharge(self, seconds: float) -> Job:
+        begun: list[float] = []
+
+        def finish() -> None:
+            self.track = []
+            begun.append(self._clock.now())
+            self._vehicle.finish()
+
+        def top_up() -> None:
+            while (left := self._vehicle.state().energy) is not None and left < FULL:
+                taken = self._clock.now() - begun[0]
+                if taken >= RECHARGE_FACTOR * seconds:
+                    why = f"after {taken:.0f} s of charging the battery is at {left:.0%}"
+                    raise Fault(BATTERY_LOW, why)
+                self._vehicle.rest(min(5.0, seconds or 5.0))
+            if left is None:
+                self._told("text", "charging", {"text": f"charged for {seconds:.0f} s; nobody knows how far"})
+
+        return Job(finish, self._rest(seconds), top_up)
+
+
+class _Flight:
+    """A run that goes up as a mission; what is left of it after an interruption is stepped."""
+
+    def __init__(self, moves: Moves, flight: Flight, passed: Callable[[str], None]) -> None:
+        self._moves, self._flight, self._passed = moves, flight, passed
+        self._left = list(flight.run.moves)
+        self._stepped = False
+
+    def __call__(self) -> None:
+        if not self._stepped:
+            self._stepped = True
+            self._moves.fly(self._flight, self._pass)
+            return
+        while self._left:
+            move = self._left[0]
+            self._moves.step(move)
+            if len(self._left) > 1:
+                self._pass(move)
+            else:
+                return
+
+    def _pass(self, move: str) -> None:
+        self._left.remove(move)
+        self._passed(move)

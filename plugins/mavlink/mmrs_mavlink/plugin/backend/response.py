@@ -1,0 +1,132 @@
+"""What a robot does when its program is broken off, or has ended: how it responds, and what is seen of it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from mmrs_mavlink.plugin.backend.moves import Moves
+from mmrs_mavlink.plugin.backend.worker import Interrupted, Job
+from mmrs_mavlink.program import Robot
+from mmrs_mavlink.steps.obeying import obeying, undone
+from mmrs_mavlink.steps.responding import HINDRANCES, comes_down_alone, respond_or_less
+from mmrs_mavlink.steps.responses import HOLD, LAND, NEEDS_POSITION
+from mmrs_mavlink.steps.watch import Decide, Watch
+from mmrs_mavlink.vehicles.mavlink_vehicle import MavlinkVehicle
+from mmrs_runtime.faults import BATTERY_LOW, FAILURES, LINK_LOST, POSITION_LOST, TAKEN_OVER, Fault
+from mmrs_runtime.policies import NOTHING
+
+KEPT_UP = "hands off until its motors are off; it still hears heartbeats, so end this later"
+
+
+class Response:
+    """Has a vehicle respond, from any state.
+
+    Attributes:
+        name: of the response that it was told last; empty: it follows its program.
+        holds: whether it stays where it is with its motors running, so that somebody must watch it.
+        hands_off: whether somebody else has it.
+        failed: is told what comes out of code that is wrong, or somebody else's.
+    """
+
+    def __init__(
+        self,
+        robot: Robot,
+        vehicle: MavlinkVehicle,
+        watch: Watch,
+        moves: Moves,
+        say: Callable[[str], None],
+        near_home: float,
+    ) -> None:
+        """Respond to nothing yet; within `near_home` metres from home, it has come home."""
+        self.name = ""
+        self.holds = self.hands_off = False
+        self._robot, self._vehicle, self._watch, self._moves, self._say = robot, vehicle, watch, moves, say
+        self._near_home = near_home
+        self._handled: set[str] = set()
+        self._shown: Callable[[], bool] = lambda: False
+        self._instead = ""
+        self._decide: Decide = lambda event, why, response: None
+        self.failed: Callable[[BaseException], None] = lambda error: None
+
+    def begin(self, name: str, found: Fault | None, decide: Decide, *, heard: bool) -> Job | None:
+        """Return what is to be done about a fault; None where the vehicle cannot be told anything.
+
+        Args:
+            name: of the response, a literal of PolicyResponse or NOTHING.
+            found: None where somebody has ordered it.
+            decide: is told what is done instead.
+            heard: whether a vehicle whose link was lost is heard again.
+        """
+        self.name, self.holds, self._instead, self._shown = name, False, "", lambda: False
+        self._decide = decide
+        self._handled.add("" if found is None else found.event)
+        self._watch.relax(self._handled, name)
+        event = "" if found is None else found.event
+        if event == LINK_LOST and not heard:
+            return None
+        if name == NOTHING or event == TAKEN_OVER:
+            return self._let_go()
+        if event == POSITION_LOST and self._robot.vehicle == "copter" and name in NEEDS_POSITION:
+            decide(POSITION_LOST, f"{name} needs a position", LAND)
+            self._instead, name = f"without a position, it does {LAND}", LAND
+        self._shown = obeying(name, self._robot, self._vehicle, self._moves.track)
+        return Job(lambda: self._carry_out(name, event))
+
+    def forget(self) -> None:
+        """Be ready for whatever goes wrong next: the program goes on."""
+        self.name = ""
+        self._handled.clear()
+
+    @property
+    def is_shown(self) -> bool:
+        """Return whether the vehicle was seen to do it since it was told."""
+        return self._shown()
+
+    @property
+    def undone(self) -> str:
+        """Return why the vehicle has not done it, although nothing is left to do; empty where it has."""
+        return self._instead or undone(self.name, self._robot, self._vehicle, self._near_home)
+
+    def _let_go(self) -> Job:
+        self.hands_off = True
+        self._say(KEPT_UP)
+        self._watch.let_go()
+        return Job()
+
+    def _carry_out(self, name: str, event: str) -> None:
+        self._watch.check_hands(event)
+        self.holds = self._respond(name, low=event == BATTERY_LOW)
+        self._watch.moving = self.holds
+
+    def _respond(self, name: str, *, low: bool) -> bool:
+        """Do what was told, or what is plainer, or, where the program itself fails, halt.
+
+        Returns:
+            Whether it must be watched, as one that does nothing of what it is told, and would not come down
+            without us either.
+        """
+        robot, vehicle, track = self._robot, self._vehicle, self._moves.track
+        try:
+            return respond_or_less(
+                name, robot, vehicle, track, lambda movement: movement(), self._do_less, low=low
+            )
+        except Interrupted:
+            raise
+        except Fault as fault:
+            if fault.event not in HINDRANCES or comes_down_alone(robot, vehicle, self._watch.current()):
+                raise
+            self._instead = self._instead or f"{name} cannot be carried out: {fault}"
+            self._say(f"cannot carry out {name}: {fault}; take over by hand")
+            self._watch.relax(self._handled, HOLD)
+            return True
+        except FAILURES as error:
+            self.failed(error)
+            self._instead = f"the program itself fails: {error!r}: it does {HOLD}"
+            return self._vehicle.hold()
+
+    def _do_less(self, name: str, why: Fault, less: str) -> None:
+        """Tell that something plainer is done than what was told."""
+        self._instead = f"{name} cannot be carried out: {why}: it does {less}"
+        self._decide(why.event, f"{name} cannot be carried out: {why}", less)
+        self._say(f"cannot carry out {name}: {why}; response: {less}")
+        self._watch.relax(self._handled, less)

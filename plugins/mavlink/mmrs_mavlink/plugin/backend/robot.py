@@ -1,0 +1,378 @@
+"""One robot of a behaviour, driven over its link: what the interpreter asks of it, and the answers."""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections.abc import Callable, Mapping, Sequence
+from math import inf
+from traceback import format_exception
+
+from mmrs_core.behaviour.program import Action, Move
+from mmrs_core.contributions.execution import Fault, RobotState
+from mmrs_mavlink.crews import told_of
+from mmrs_mavlink.plugin.backend.equipment import Equipment
+from mmrs_mavlink.plugin.backend.lost_link import LostLink
+from mmrs_mavlink.plugin.backend.moves import Moves
+from mmrs_mavlink.plugin.backend.options import LinkOptions
+from mmrs_mavlink.plugin.backend.reach import Reach
+from mmrs_mavlink.plugin.backend.response import Response
+from mmrs_mavlink.plugin.backend.setup import Setup
+from mmrs_mavlink.plugin.backend.way_back import WayBack
+from mmrs_mavlink.plugin.backend.worker import Interrupted, Job, Worker
+from mmrs_mavlink.program import GoTo, Land, Recharge, Robot, TakeOff
+from mmrs_mavlink.services.uploads import uploads_of
+from mmrs_mavlink.steps.obeying import astray, away, obeying
+from mmrs_mavlink.steps.responses import CONTINUE
+from mmrs_mavlink.steps.watch import Watch
+from mmrs_mavlink.vehicles.footing import footing
+from mmrs_runtime.faults import (
+    BATTERY_LOW,
+    CRASHED,
+    DEVICE_SILENT,
+    LINK_LOST,
+    VEHICLE_RESTARTED,
+    Displaced,
+)
+from mmrs_runtime.faults import Fault as VehicleFault
+from mmrs_runtime.policies import NOTHING
+
+FAREWELL_SECONDS = 5.0
+"""Real seconds that a vehicle has to be told to stay where it is."""
+
+
+class MavlinkBackend:
+    """Drives one robot; a thread of its own waits for the vehicle, so that every call returns at once."""
+
+    def __init__(self, robot: Robot, equipment: Equipment, options: LinkOptions) -> None:
+        """Listen to the vehicle; it is told nothing before it is to get ready."""
+        self._robot, self._with = robot, equipment
+        self._lost_link = LostLink(robot, equipment.vehicle, equipment.say)
+        self._watch = self._new_watch()
+        self._moves = Moves(robot, equipment.vehicle, equipment.clock, equipment.locators, self._keep)
+        self._way = WayBack(robot, self._moves, equipment.vehicle, options.home_tolerance)
+        uploads = uploads_of(robot, fenced=options.fence)
+        self._flights = uploads.flights
+        self._setup = Setup(
+            robot, equipment, options, uploads, self._watch, self._lost_link, self._way, self.note
+        )
+        self._steps = {step.move: step for step in robot.steps}
+        self._move = ""
+        self._passed: set[str] = set()
+        self._under_way: tuple[str, ...] = ()
+        self._tolerance = options.home_tolerance
+        self._response = Response(
+            robot, equipment.vehicle, self._watch, self._moves, equipment.say, self._tolerance
+        )
+        self._reach = Reach(equipment.link, equipment.clock)
+        self._brakes: Callable[[], bool] = lambda: False
+        self._seen: VehicleFault | None = None
+        self._left: VehicleFault | None = None
+        # Last: it looks at all of the above from now on.
+        self._worker = Worker(
+            f"robot {robot.id!r}", self._look, self._idle, self._halt, equipment.vehicle.carry_on
+        )
+        self._worker.changed = equipment.wake
+        self._worker.faulty = self._come_back
+        self._worker.failed = self._response.failed = self._note_failure
+        equipment.link.guard = self._worker.guard
+
+    def prepare(self, now: float) -> None:
+        """Begin to wait for the vehicle, and to set it up."""
+        self._with.start()
+        self._begin(Job(self._setup.meet, self._setup.set_up))
+
+    def known(self, now: float) -> bool:
+        """Return whether the vehicle is known to be the robot's."""
+        return self._setup.is_known
+
+    def begin(self, move: Move, now: float, *, through: bool = False) -> None:
+        """Begin a movement; those in the midst of an uploaded run have begun with its first."""
+        self._lost_link.follow(())
+        self._move = move.id
+        if move.id in self._under_way[1:]:
+            return
+        self._passed.clear()
+        flight = self._flights.get(move.id)
+        self._under_way = () if flight is None else flight.run.moves
+        if flight is None:
+            job = self._moves.movement(move.id, through=through)
+        else:
+            job = self._moves.run(flight, self._pass)
+        if self._begins_sortie(move.id):
+            job.first(self._setup.begin_sortie)
+        if self._moves.kind(move.id) is Recharge:
+            self._watch.moving = False
+        if self._moves.kind(move.id) is Land:
+            job.append(self._landed)
+        self._begin(job)
+
+    def act(self, action: Action, now: float) -> None:
+        """Begin the action that comes next in the robot's program."""
+        self._under_way = ()
+        self._begin(self._moves.action(self._with.action(action)))
+
+    def finished(self, now: float) -> bool:
+        """Return whether what was begun last has finished."""
+        if self._under_way and self._move != self._under_way[-1] and self._move in self._passed:
+            return True
+        return self._worker.done
+
+    def fault(self, now: float) -> Fault | None:
+        """Return what went wrong."""
+        found = self._seen = self._worker.fault
+        return None if found is None else Fault(found.event, str(found), found.instead)
+
+    def bear(self, now: float) -> bool:
+        """Go on after a device that is silent, or with a battery that does not get full."""
+        found = self._worker.fault
+        if found is None:
+            return True
+        charging = bool(self._move) and self._moves.kind(self._move) is Recharge
+        if found.event != DEVICE_SILENT and not (found.event == BATTERY_LOW and charging):
+            return False
+        self._note_decision(found.event, str(found), CONTINUE)
+        self._with.say(f"carries on although {found}")
+        self._worker.forgive(found)
+        return True
+
+    def next_event(self, now: float) -> float | None:
+        """Return never: the worker wakes the interpreter."""
+        return inf
+
+    def wait(self, now: float) -> None:
+        """Hold the pose, with the policies of the wait."""
+        then = self._steps[self._move].then if self._move else None
+        self._lost_link.follow(then.policies if then is not None else ())
+        if self._lost_link.is_due:
+            self._begin(Job())
+
+    def state(self, now: float) -> RobotState:
+        """Return what the vehicle has told last."""
+        known = self._with.vehicle.state()
+        energy = (
+            None if known.energy is None or self._with.joules is None else known.energy * self._with.joules
+        )
+        place = self._with.ground.position(known.place)
+        places = {name: self._with.ground.position(each) for name, each in known.places.items()}
+        return RobotState(
+            now,
+            place,
+            known.speed,
+            known.heading,
+            energy,
+            known.energy,
+            known.wind,
+            known.detected,
+            places=places,
+        )
+
+    def told(self) -> Mapping[str, object]:
+        """Return what the vehicle has told last, as controllers say it; empty before it was heard."""
+        heard = self._with.link.latest("HEARTBEAT") is not None
+        return told_of(self._with.vehicle.state()) if heard else {}
+
+    def stop(self, now: float, response: str = "HOLD") -> None:
+        """Carry out a response, from any state, or what comes nearest to it that can be done then."""
+        found = self._worker.fault
+        if found is None and response == self._response.name:
+            return
+        self._under_way, self._brakes = (), lambda: False
+        job = self._response.begin(response, found, self._note_decision, heard=self._reach.is_heard)
+        if job is not None:
+            self._worker.begin(job, afresh=True)
+            self._with.link.wake()
+
+    def obeys(self, now: float) -> bool:
+        """Return whether the vehicle has carried out the response, or was seen to begin it since."""
+        if self._worker.fault is not None or not self._worker.started:
+            return False
+        return (self._worker.done or self._response.is_shown) and not self._response.undone
+
+    def undone(self, now: float) -> str:
+        """Return why nothing is left to do, and the vehicle has not done what it was told."""
+        return self._response.undone
+
+    def reachable(self, now: float) -> bool:
+        """Return whether the vehicle was heard lately."""
+        return self._reach.is_heard
+
+    def in_doubt(self, now: float) -> bool:
+        """Return whether the vehicle has left its mode and nobody knows why, or the program not yet."""
+        return self._watch.looking or (self._watch.taken and not self._response.hands_off)
+
+    def watched(self, now: float) -> bool:
+        """Return whether the motors run, and it holds, a pilot has it, its link is lost, or nothing works.
+
+        Without the heartbeats of this process, it might fly away from the pilot.
+        """
+        armed = self._with.vehicle.state().armed
+        if (found := self._worker.fault) is not None and found.event == CRASHED:
+            return armed
+        if found is not None:
+            return found.event == LINK_LOST and self._reach.may_come_back(found) and armed
+        return self._response.holds or (armed and (self._response.hands_off or not self._worker.done))
+
+    def hindrance(self, passed: Sequence[str], begun: str, now: float) -> str:
+        """Return why there is no way back now; empty where there is one."""
+        vehicle = self._with.vehicle
+        if not self._reach.is_heard:
+            return "its vehicle is not heard"
+        if not vehicle.state().armed and (why := astray(self._robot, vehicle, self._tolerance)):
+            return why
+        try:
+            self._way.check(passed, begun)
+        except VehicleFault as fault:
+            return str(fault)
+        return ""
+
+    def away(self, now: float) -> str:
+        """Return that the vehicle stands elsewhere than at home, or is not heard; empty where it is there."""
+        if not self._reach.is_heard:
+            return "its vehicle is not heard"
+        return away(self._robot, self._with.vehicle, self._tolerance)
+
+    def moves(self, now: float) -> bool:
+        """Return whether the motors run."""
+        return self._worker.fault is None and self._with.vehicle.state().armed
+
+    def recover(self, passed: Sequence[str], begun: str, now: float) -> None:
+        """Begin to go back to where the program was broken off."""
+        self._response.forget()
+        self._move = begun or (passed[-1] if passed else "")
+        if self._move:
+            self._with.say(f"goes on {'with' if begun else 'after'} {self._move!r}")
+            self._note_decision("resume", f"its log ends at {self._move}", "goes the way it came")
+        job = self._way.job(passed, begun)
+        job.first(self._setup.take_up)
+        self._begin(job, afresh=True)
+
+    def pause(self, now: float) -> None:
+        """Begin to halt."""
+        self._brakes = obeying("HOLD", self._robot, self._with.vehicle, self._moves.track)
+        self._worker.pause()
+        self._with.link.wake()
+
+    def resume(self, now: float) -> None:
+        """Go on."""
+        self._brakes = lambda: False
+        self._worker.resume()
+
+    def paused(self, now: float) -> bool:
+        """Return whether the vehicle stands or was seen to brake since, and has not gone on."""
+        return self._worker.halted or (self._worker.started and self._brakes())
+
+    def note(self, kind: str, content: Mapping[str, object]) -> None:
+        """Write a line into the black box."""
+        if self._with.box is not None:
+            move = self._move or self._with.begun or self._robot.start
+            self._with.box.write(kind, **{"move": move, **content})
+
+    def close(self) -> None:
+        """End the worker and the link; the vehicle keeps whatever it does."""
+        if self._response.holds and self._worker.fault is None:
+            self._leave_it_holding()
+        self._worker.close()
+        self._with.let_go()
+        self.note("counted", {"frames": dict(self._with.link.dropped)})
+        if self._with.link.garbled:
+            self._with.say(f"{self._with.link.garbled} frames from the link could not be read")
+        self._with.link.close()
+        if self._with.box is not None:
+            self._with.box.close()
+
+    def _begin(self, job: Job, *, afresh: bool = False) -> None:
+        if self._lost_link.is_due:
+            job.first(self._lost_link.tell_what_is_due)
+        fresh = afresh or (self._seen is not None and self._seen is self._worker.fault)
+        self._worker.begin(job, afresh=fresh)
+
+    def _new_watch(self) -> Watch:
+        watch = Watch(self._robot, self._with.clock, threading.Event())
+        watch.begin(self._with.link, self._with.vehicle)
+        watch.current = lambda: self._lost_link.policies
+        watch.track = lambda: self._moves.track
+        watch.decide, watch.say = self._note_decision, self._with.say
+        return watch
+
+    def _note_decision(self, what: str, why: str, response: str) -> None:
+        self.note("decision", {"what": what, "why": why, "response": response})
+
+    def _come_back(self, lost: VehicleFault) -> None:
+        """Have a vehicle that is heard again respond to its lost link, if it does nothing by itself."""
+        name, state = self._response.name, self._with.vehicle.state()
+        if lost.event != LINK_LOST or lost is self._left or name in ("", NOTHING):
+            return
+        if not (self._reach.is_heard and state.armed):
+            return
+        if self._watch.answers_alone():
+            self._left = lost
+            return
+        self._with.say(f"is heard again, in mode {state.mode}, and has done nothing by itself: {name}")
+        job = self._response.begin(name, lost, self._note_decision, heard=True)
+        if job is not None:
+            job.append(lambda: self._with.say(f"has done {name}"))
+            self._worker.instead(lost, job)
+
+    def _note_failure(self, error: BaseException) -> None:
+        """Tell people, and the black box, where the program itself has failed."""
+        trace = "".join(format_exception(error))
+        self._with.say(f"the program itself fails: {trace}")
+        self.note("failed", {"error": repr(error), "trace": trace})
+
+    def _look(self) -> None:
+        """Look after the vehicle, whatever it does; what it has left by itself is begun again.
+
+        One that has started anew before its take-off is first set up again. Of a vehicle that is not known
+        to be the robot's, nothing but its silence counts.
+        """
+        try:
+            self._watch.check()
+        except Displaced as displaced:
+            if displaced.event == VEHICLE_RESTARTED:
+                self._with.vehicle.take_back()
+                self._worker.first(self._setup.begin_sortie)
+            else:
+                self._with.vehicle.regain()
+            raise Interrupted from None
+        except VehicleFault as fault:
+            if self._setup.is_known or fault.event == LINK_LOST:
+                raise
+
+    def _idle(self) -> None:
+        """Look after a vehicle that has nothing to do, and that somebody else may take over."""
+        if self._setup.is_known and not self._response.hands_off:
+            self._with.vehicle.rest(0.0)
+        else:
+            self._look()
+
+    def _halt(self) -> None:
+        self._with.vehicle.hold()
+
+    def _leave_it_holding(self) -> None:
+        """Have a vehicle that holds stay where it is when nobody talks to it any more."""
+        self._worker.begin(Job(lambda: self._with.vehicle.answer_lost_link("HOLD")))
+        until = time.monotonic() + FAREWELL_SECONDS
+        while not self._worker.done and self._worker.fault is None and time.monotonic() < until:
+            time.sleep(0.01)
+        if not self._worker.done:
+            self._with.say("may not stay where it is when this program has ended")
+
+    def _begins_sortie(self, move: str) -> bool:
+        """Return whether the robot leaves the ground, or the place where it was charged, with a move."""
+        kind = self._moves.kind(move)
+        return kind is TakeOff or (kind is GoTo and not (self._watch.moving and self._moves.track))
+
+    def _landed(self) -> None:
+        self._watch.moving = False
+        vehicle = self._with.vehicle
+        vehicle.start = footing(self._robot.home, vehicle.state().place)
+
+    def _pass(self, move: str) -> None:
+        self._passed.add(move)
+        self._with.wake()
+
+    def _keep(self, kind: str, name: str, content: Mapping[str, object]) -> None:
+        self.note(kind, {"name": name, "content": dict(content)})
+        named = f" '{name}'" if name else ""
+        self._with.say(f"{kind}{named}: {', '.join(f'{key} {value}' for key, value in content.items())}")

@@ -1,0 +1,109 @@
+"""What comes before a robot's program: its vehicle is met, recognised, and told what it must know."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from math import inf
+
+from mmrs_mavlink.plugin.backend.equipment import Equipment
+from mmrs_mavlink.plugin.backend.lost_link import LostLink
+from mmrs_mavlink.plugin.backend.options import LinkOptions
+from mmrs_mavlink.plugin.backend.way_back import WayBack
+from mmrs_mavlink.program import Robot
+from mmrs_mavlink.records.start import start_of
+from mmrs_mavlink.services.uploads import Uploads
+from mmrs_mavlink.steps.equipping import equip
+from mmrs_mavlink.steps.watch import Watch
+from mmrs_mavlink.vehicles.recognition import recognise
+
+
+class Setup:
+    """Gets a vehicle ready, and again where it has started anew.
+
+    Attributes:
+        is_known: whether it is known to be the robot's, so that it may be told what to do.
+        is_done: whether it was ready once.
+    """
+
+    def __init__(
+        self,
+        robot: Robot,
+        equipment: Equipment,
+        options: LinkOptions,
+        uploads: Uploads,
+        watch: Watch,
+        lost_link: LostLink,
+        way: WayBack,
+        note: Callable[[str, Mapping[str, object]], None],
+    ) -> None:
+        """Do nothing yet; `note` writes into the black box."""
+        self.is_known = self.is_done = self._restarted = False
+        self._robot, self._with, self._options = robot, equipment, options
+        self._uploads, self._watch, self._lost_link = uploads, watch, lost_link
+        self._way, self._note = way, note
+
+    def meet(self) -> None:
+        """Wait for the vehicle.
+
+        Raises:
+            Fault: it does not come in time.
+        """
+        patience = self._options.patience * self._with.clock.speedup
+        self._with.say(f"waits for a vehicle at {self._with.url}")
+        try:
+            self._with.radios.meet(self._with.link, self._with.url, patience)
+        finally:
+            self._note("start", start_of(self._robot, self._with.url, self._with.link))
+
+    def set_up(self) -> None:
+        """Have the vehicle know what it must, once it is known to be the robot's.
+
+        Raises:
+            Refused: it is not the robot's, or refuses what it must know.
+        """
+        vehicle = self._with.vehicle
+        self._watch.renew()
+        self._recognise()
+        if self._with.resumed:
+            vehicle.hold()
+        self._lost_link.tell()
+        equip(self._robot, vehicle, self._uploads, self._with.say)
+        self.is_done = True
+        if vehicle.state().energy is None:
+            self._with.say("does not tell its battery: nobody will notice when it is low")
+        self._watch.forewarn()
+
+    def take_up(self) -> None:
+        """Heed everything again, and go on with the sortie."""
+        self._restarted = self._restarted or self._watch.restarted
+        self._watch.tighten()
+        self.begin_sortie()
+
+    def begin_sortie(self) -> None:
+        """Be under way.
+
+        A vehicle that has started anew, as with a new battery, or was not set up to the end, is set up first.
+        """
+        self._restarted = self._restarted or self._watch.restarted
+        if self._restarted or not self.is_done:
+            self.set_up()
+        self._restarted = False
+        self._watch.renew()
+        self._watch.moving = True
+
+    def _recognise(self) -> None:
+        """Refuse a vehicle that is not the robot's, or that somebody else flies, before it is touched."""
+        resumed, vehicle = self._with.resumed, self._with.vehicle
+        first = resumed and not self.is_done
+        recognise(
+            self._with.link,
+            vehicle,
+            self._robot,
+            inf if resumed and vehicle.state().armed else self._options.home_tolerance,
+            self._way.starts(self._with.passed, self._with.begun) if first else (vehicle.start,),
+            under_way=resumed,
+            system=self._with.system,
+        )
+        if first:
+            self._way.know(self._with.passed, self._with.begun)
+        self.is_known = True

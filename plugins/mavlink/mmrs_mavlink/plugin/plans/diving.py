@@ -1,0 +1,38 @@
+"""What missions of vehicles that dive ask for: heights count from the water surface, down.
+
+ArduSub takes its home to be at the surface, wherever it is armed. It skips what is above that, and
+takes a height of exactly 0 for the one that it is at: so a place at the surface is a little below it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from mmrs_core.behaviour.program import RobotProgram
+from mmrs_core.contributions.targets import TargetInput
+from mmrs_core.scene import Position
+from mmrs_mavlink.plugin.context import RobotContext, context_of
+
+AT_THE_SURFACE = -0.01
+"""Metres: the least that ArduSub tells from no height at all, as it counts in centimetres."""
+
+
+def height_in(context: RobotContext, position: Position) -> float:
+    """Return a position's height in a mission, metres above home; below the surface for what dives."""
+    height = context.height(position)
+    return min(height, AT_THE_SURFACE) if context.vehicle.dives else height
+
+
+def zero_of(context: RobotContext, home: Position) -> Position:
+    """Return where the heights of a mission count from: home, or the surface above it."""
+    return (home[0], home[1], context.zero) if context.vehicle.dives else home
+
+
+def above_water(robot: RobotProgram, input: TargetInput) -> Iterator[str]:
+    """Yield what leads a vehicle that dives out of the water."""
+    context = context_of(robot, input, geographic=False)
+    for move in robot.moves if context.vehicle.dives else ():
+        position = move.target.position if move.target is not None else None
+        if position is not None and context.height(position) > 0.0:
+            above = context.height(position)
+            yield f"{context.label(move)}: leads {above:g} m above the surface, which the vehicle skips"

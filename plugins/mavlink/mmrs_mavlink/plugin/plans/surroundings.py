@@ -1,0 +1,88 @@
+"""What goes with the missions of a robot: where home is, the geofence, the rally points."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import TypeAlias
+
+from mmrs_core.behaviour.program import RobotProgram
+from mmrs_core.behaviour.refuges import refuges_of
+from mmrs_core.contributions.targets import TargetInput
+from mmrs_core.generation.escaping import file_stems
+from mmrs_core.mavlink.earth import degrees_of, metres, sea_level_of
+from mmrs_core.scene import Point
+from mmrs_mavlink.plugin.context import RobotContext, context_of, require_home
+from mmrs_mavlink.plugin.escapes import escapes_of
+from mmrs_mavlink.plugin.fencing import fences_of
+from mmrs_mavlink.plugin.plans.diving import zero_of
+from mmrs_mavlink.plugin.plans.flight import sorties_of
+from mmrs_mavlink.plugin.plans.items import Item, Row, rows_of
+
+Vertex: TypeAlias = tuple[float, float]
+"""Latitude and longitude in degrees."""
+
+Spot: TypeAlias = tuple[float, float, float]
+"""Latitude, longitude in degrees, height in metres."""
+
+
+@dataclass(frozen=True, slots=True)
+class Mission:
+    """One sortie of a robot with all that goes into its file.
+
+    Attributes:
+        stem: of its file: the robot's, and the sortie's number where it is not the first.
+        home: its height is above mean sea level: 0 where that is not known and losses are allowed;
+            vehicles replace it by what they measure.
+        fence: polygons to stay out of.
+        rally: heights are above home: the greatest of the sortie, which is above what lies on its way.
+    """
+
+    context: RobotContext
+    stem: str
+    home: Spot
+    rows: tuple[Row, ...]
+    fence: tuple[tuple[Vertex, ...], ...]
+    rally: tuple[Spot, ...]
+
+
+def missions_of(input: TargetInput) -> Iterator[Mission]:
+    """Yield one mission for each sortie of each robot.
+
+    Raises:
+        UnsupportedError: the behaviour is local, or a robot has no home.
+    """
+    stems = file_stems([robot.id for robot in input.program.robots])
+    for robot in input.program.robots:
+        context = context_of(robot, input, geographic=True)
+        for number, sortie in enumerate(sorties_of(context), start=1):
+            suffix = f".sortie-{number}" if number > 1 else ""
+            yield _mission(context, input, stems[robot.id] + suffix, sortie)
+
+
+def _mission(context: RobotContext, input: TargetInput, stem: str, sortie: Sequence[Item]) -> Mission:
+    robot = context.robot
+    points = refuges_of(robot, input.program, input.types, input.areas).points
+    return Mission(
+        context,
+        stem,
+        _home(robot, context),
+        rows_of(context, sortie),
+        tuple(
+            degrees_of(fence.ring, context.frame)
+            for fence in fences_of(robot, input, escapes_of(robot, input, points))
+        ),
+        _rally(context, points, sortie),
+    )
+
+
+def _home(robot: RobotProgram, context: RobotContext) -> Spot:
+    home = require_home(robot)
+    ((latitude, longitude),) = degrees_of([(home[0], home[1])], context.frame)
+    return (latitude, longitude, sea_level_of(zero_of(context, home), context.frame) or 0.0)
+
+
+def _rally(context: RobotContext, points: Sequence[Point], sortie: Sequence[Item]) -> tuple[Spot, ...]:
+    highest = max(item.position[2] for item in sortie if item.position is not None)
+    up = metres(highest - context.zero)
+    return tuple((*degrees, up) for degrees in degrees_of(points, context.frame))
