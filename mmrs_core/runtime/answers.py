@@ -5,13 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 from math import inf
 
-from mmrs_core.behaviour.policies import LAST_RESORT, patience, policy_for, response_to
 from mmrs_core.contributions.abilities import Bearing
 from mmrs_core.contributions.backends import Backend
 from mmrs_core.contributions.execution import Fault
 from mmrs_core.scene import Policy
 from mmrs_runtime.faults import TAKEN_OVER
-from mmrs_runtime.policies import NOTHING, UNDECLARED
+from mmrs_runtime.policies import LAST_RESORT, NOTHING, UNDECLARED, patience, policy_for, response_to
 
 
 @dataclass(frozen=True, slots=True)

@@ -9,11 +9,11 @@ from __future__ import annotations
 from collections.abc import Iterator
 from math import inf
 
-from mmrs_core.behaviour.policies import response_to
 from mmrs_core.contributions.execution import Fault
 from mmrs_core.runtime.escape import Escapes
 from mmrs_core.runtime.legs import Flow, Leg, response_stretches
 from mmrs_core.scene import Kinematics, Policy
+from mmrs_runtime.policies import response_to
 
 SLACK = 1e-6
 """Seconds, and seconds at mean power, that rounding may cost."""

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable, Generator, Mapping
 from dataclasses import dataclass, field
 
-from mmrs_core.behaviour.policies import in_precedence
 from mmrs_core.behaviour.program import Program
 from mmrs_core.contributions.abilities import Recorder
 from mmrs_core.contributions.backends import BackendFactory, BackendInput
@@ -19,6 +18,7 @@ from mmrs_core.runtime.mixed import options_for, refuse_strange
 from mmrs_core.runtime.slots import InProcessBus
 from mmrs_core.runtime.terms import TO_THE_END, Ending, Terms
 from mmrs_core.scene import Area, Name, Policy, RobotType
+from mmrs_runtime.policies import in_precedence
 from mmrs_runtime.records.steps import StepRecord
 
 

@@ -15,7 +15,6 @@ from math import hypot, inf
 from pathlib import Path
 
 from mmrs_core.behaviour.as_scene import robot_of
-from mmrs_core.behaviour.policies import in_precedence
 from mmrs_core.behaviour.program import BEHAVIOUR, Action, Heading, Move
 from mmrs_core.contributions.backends import BackendFactory, BackendInput
 from mmrs_core.contributions.execution import Fault, RobotState, Sample
@@ -39,6 +38,7 @@ from mmrs_core.runtime.legs import (
 )
 from mmrs_core.scene import Position
 from mmrs_core.sitl.sights import Sight, seen, sights_in
+from mmrs_runtime.policies import in_precedence
 
 RECHARGE = (BEHAVIOUR, "Recharge")
 STOP = (BEHAVIOUR, "Stop")

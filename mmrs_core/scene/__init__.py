@@ -17,7 +17,6 @@ from mmrs_core.scene.robots import (
     Device,
     DeviceAction,
     Kinematics,
-    Policy,
     Robot,
     RobotType,
 )
@@ -27,14 +26,13 @@ from mmrs_core.scene.values import (
     Name,
     Part,
     Point,
-    PolicyEvent,
-    PolicyResponse,
     Position,
     Ring,
     TravelMode,
     Value,
 )
 from mmrs_core.scene.works import ActionAt, Coverage, Gap, Look, Stroke, Work
+from mmrs_runtime.policies import Policy, PolicyEvent, PolicyResponse
 
 if TYPE_CHECKING:
     from mmrs_core.scene.plans import (

@@ -7,9 +7,10 @@ from dataclasses import dataclass, field
 
 from mmrs_core.diagnostics import Place
 from mmrs_core.scene.places import Area, AreaUse, Frame
-from mmrs_core.scene.robots import Policy, Robot
+from mmrs_core.scene.robots import Robot
 from mmrs_core.scene.values import Part
 from mmrs_core.scene.works import Work
+from mmrs_runtime.policies import Policy
 
 
 @dataclass(frozen=True, slots=True)

@@ -7,7 +7,8 @@ from dataclasses import dataclass, field
 from math import inf
 
 from mmrs_core.diagnostics import Place
-from mmrs_core.scene.values import Metaclasses, Part, PolicyEvent, PolicyResponse, Position, TravelMode
+from mmrs_core.scene.values import Metaclasses, Part, Position, TravelMode
+from mmrs_runtime.policies import Policy
 
 
 @dataclass(frozen=True, slots=True)
@@ -162,12 +163,3 @@ class Robot:
     kind: str = ""
     kinematics: Kinematics | None = None
     place: Place = Place()
-
-
-@dataclass(frozen=True, slots=True)
-class Policy:
-    """What a robot does about a fault, once it has lasted `after` seconds (None: the platform's default)."""
-
-    event: PolicyEvent
-    response: PolicyResponse
-    after: float | None = None

@@ -16,22 +16,6 @@ Metaclasses: TypeAlias = tuple[Name, ...]
 
 TravelMode: TypeAlias = Literal["SAFE", "NORMAL", "AGGRESSIVE"]
 AltitudeReference: TypeAlias = Literal["ELLIPSOID", "MSL", "ORIGIN"]
-PolicyEvent: TypeAlias = Literal[
-    "LINK_LOST",
-    "PEER_LOST",
-    "BATTERY_LOW",
-    "WAIT_TOO_LONG",
-    "DEVICE_SILENT",
-    "POSITION_LOST",
-    "OBSTACLE",
-    "FENCE_BREACHED",
-    "VEHICLE_RESTARTED",
-    "LOG_FAILED",
-    "GROUND_LOST",
-]
-PolicyResponse: TypeAlias = Literal[
-    "HOLD", "RETURN", "EMERGENCY_AREA", "LAND", "SURFACE", "STOP_THRUST", "CONTINUE"
-]
 
 
 @dataclass(frozen=True, slots=True)

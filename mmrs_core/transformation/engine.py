@@ -4,12 +4,25 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from typing import cast
 
 from mmrs_core.contributions.rules import MoveSpec, RobotKind, Rule
 from mmrs_core.languages import behaviour as bl
 from mmrs_core.languages import robot as rl
 from mmrs_core.languages.registry import Registry
-from mmrs_core.scene import Branch, Name, Plan, Policy, Position, Robot, Scene, Signal, Step
+from mmrs_core.scene import (
+    Branch,
+    Name,
+    Plan,
+    Policy,
+    PolicyEvent,
+    PolicyResponse,
+    Position,
+    Robot,
+    Scene,
+    Signal,
+    Step,
+)
 from mmrs_core.transformation.chain import Chain, Deed, Edge, Give, Node, Report, UseDevice
 from mmrs_core.transformation.coordinates import Coordinates
 from mmrs_core.transformation.drafting import draft
@@ -232,4 +245,5 @@ def _policies(robot: Robot, scene: Scene) -> tuple[Policy, ...]:
 
 
 def _policy(policy: Policy) -> rl.Policy:
-    return rl.Policy(event=policy.event, response=policy.response, after=policy.after)
+    event, response = cast(PolicyEvent, policy.event), cast(PolicyResponse, policy.response)
+    return rl.Policy(event=event, response=response, after=policy.after)

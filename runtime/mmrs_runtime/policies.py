@@ -1,18 +1,98 @@
-"""What both executions of policies agree on: words of responses, and what goes before what."""
+"""What robots do when something goes wrong: events, responses, what counts first, how long it is borne."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from math import inf
+from typing import Literal, TypeAlias, get_args
 
-from .faults import BATTERY_LOW, GROUND_LOST, LINK_LOST, POSITION_LOST, VEHICLE_RESTARTED
+from .faults import (
+    BATTERY_LOW,
+    DEVICE_SILENT,
+    GROUND_LOST,
+    LINK_LOST,
+    PEER_LOST,
+    POSITION_LOST,
+    VEHICLE_RESTARTED,
+    WAIT_TOO_LONG,
+)
 
+PolicyEvent: TypeAlias = Literal[
+    "LINK_LOST",
+    "PEER_LOST",
+    "BATTERY_LOW",
+    "WAIT_TOO_LONG",
+    "DEVICE_SILENT",
+    "POSITION_LOST",
+    "OBSTACLE",
+    "FENCE_BREACHED",
+    "VEHICLE_RESTARTED",
+    "LOG_FAILED",
+    "GROUND_LOST",
+]
+PolicyResponse: TypeAlias = Literal[
+    "HOLD", "RETURN", "EMERGENCY_AREA", "LAND", "SURFACE", "STOP_THRUST", "CONTINUE"
+]
+EVENTS: tuple[PolicyEvent, ...] = get_args(PolicyEvent)
+RESPONSES: tuple[PolicyResponse, ...] = get_args(PolicyResponse)
+
+HOLD = "HOLD"
+RETURN = "RETURN"
+ESCAPE = "EMERGENCY_AREA"
+LAND = "LAND"
+SURFACE = "SURFACE"
+CONTINUE = "CONTINUE"
 NOTHING = "NOTHING"
 """Response to a pilot: no policy answers that, the program lets go of the vehicle."""
 
-UNDECLARED: Mapping[str, str] = {LINK_LOST: "RETURN", BATTERY_LOW: "RETURN", GROUND_LOST: "CONTINUE"}
+
+@dataclass(frozen=True, slots=True)
+class Policy:
+    """What a robot does about an event.
+
+    Attributes:
+        event: a literal of PolicyEvent; response: one of PolicyResponse, or NOTHING.
+        after: seconds that the event lasts before the robot responds; None: the platform's default.
+    """
+
+    event: str
+    response: str
+    after: float | None = None
+
+
+AFTER: Mapping[str, float] = {
+    PEER_LOST: 30.0,
+    LINK_LOST: 10.0,
+    DEVICE_SILENT: 30.0,
+    WAIT_TOO_LONG: inf,
+    GROUND_LOST: 10.0,
+}
+"""Seconds that an event lasts before the robot responds, where its policy in a model does not say; else 0.
+
+A wait is part of the plan, however long: it is too long only where somebody said how long that is.
+"""
+
+UNDECLARED_AFTER: Mapping[str, float] = {**AFTER, LINK_LOST: 5.0, DEVICE_SILENT: 5.0, POSITION_LOST: 2.0}
+"""Seconds that real robots bear an event whose policy has none when it comes to them; else 0.
+
+Programs are written with the seconds of `AFTER`: so these are of events that no model names, and of a lost
+position, which estimators report for moments.
+"""
+
+VALUE_SECONDS = 10.0
+"""The same of a sensor that publishes no value: some do every few seconds only."""
+
+LAST_RESORT = HOLD
+"""What a robot does about an event that nobody declared a response to."""
+
+BORNE: Mapping[str, str] = {GROUND_LOST: CONTINUE}
+"""What goes before that: nobody needs to look on for a robot to finish."""
+
+UNDECLARED: Mapping[str, str] = {**BORNE, LINK_LOST: RETURN, BATTERY_LOW: RETURN}
 """What real robots do where no policy says anything; to anything else they hold."""
 
-COMES_DOWN = frozenset({"RETURN", "EMERGENCY_AREA", "LAND", "SURFACE"})
+COMES_DOWN = frozenset({RETURN, ESCAPE, LAND, SURFACE})
 """Responses after which a battery can be changed."""
 
 OVERTAKES = frozenset({POSITION_LOST, VEHICLE_RESTARTED, BATTERY_LOW, GROUND_LOST})
@@ -20,6 +100,44 @@ OVERTAKES = frozenset({POSITION_LOST, VEHICLE_RESTARTED, BATTERY_LOW, GROUND_LOS
 
 CAME_DOWN_AWAY = "came down for its battery where its sortie began, away from home"
 """What people are told of a robot that can go on from there, once its battery has been changed."""
+
+
+def in_precedence(
+    transition: Iterable[Policy] = (),
+    mission: Iterable[Policy] = (),
+    robot_type: Iterable[Policy] = (),
+    kind: Mapping[PolicyEvent, PolicyResponse] | None = None,
+) -> tuple[Policy, ...]:
+    """Return policies such that the first for an event is the one that counts.
+
+    Those of a single wait go before the mission's, the robot type's, and its kind's defaults.
+    """
+    defaults = (Policy(event, response) for event, response in (kind or {}).items())
+    return (*transition, *mission, *robot_type, *defaults)
+
+
+def policy_for(event: str, policies: Iterable[Policy]) -> Policy | None:
+    """Return the policy that counts for an event; None where nobody declared one."""
+    return next((policy for policy in policies if policy.event == event), None)
+
+
+def response_to(event: str, policies: Iterable[Policy]) -> str:
+    """Return the response to an event, a literal of PolicyResponse."""
+    policy = policy_for(event, policies)
+    return policy.response if policy else BORNE.get(event, LAST_RESORT)
+
+
+def patience(event: str, policies: Iterable[Policy]) -> float | None:
+    """Return for how many seconds the robot bears an event; None: for ever, no policy names it."""
+    policy = policy_for(event, policies)
+    if policy is None:
+        return None
+    return AFTER.get(event, 0.0) if policy.after is None else policy.after
+
+
+def seconds_of(policy: Policy, usual: Mapping[str, float] = UNDECLARED_AFTER) -> float:
+    """Return for how many seconds a real robot bears the event of a policy; `usual` where it does not say."""
+    return usual.get(policy.event, 0.0) if policy.after is None else policy.after
 
 
 def still_low(charge: float | None, reserve: float) -> str:

@@ -4,20 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import TypeAlias, get_args
+from typing import TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
 from mmrs_core.behaviour.blackbox import Entry
 from mmrs_core.geometry.frames import Floats
-from mmrs_core.scene import PolicyEvent, Position
+from mmrs_core.scene import Position
 from mmrs_runtime.faults import TAKEN_OVER
-from mmrs_runtime.policies import NOTHING
+from mmrs_runtime.policies import EVENTS, NOTHING
 from mmrs_runtime.records.steps import StepRecord
 
 _OFTEN = 0.5
-EVENTS = frozenset(get_args(PolicyEvent))
 """Names of what policies answer."""
 Flags: TypeAlias = NDArray[np.bool_]
 
@@ -109,7 +108,7 @@ class Flown:
         return tuple(
             entry
             for entry in self.of_kind("decision")
-            if entry.content.get("what") in EVENTS - logged and entry not in self.given_up
+            if entry.content.get("what") in {*EVENTS} - logged and entry not in self.given_up
         )
 
     @property

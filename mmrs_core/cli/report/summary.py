@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from mmrs_core.cli.figures import clock
-from mmrs_core.cli.flights.values import EVENTS
 from mmrs_core.cli.preview.markup import element, text
 from mmrs_core.cli.report.values import Report, Status
 from mmrs_core.cli.report.words import metres, percent, spoken
+from mmrs_runtime.policies import EVENTS
 
 
 def verdict(report: Report) -> str:

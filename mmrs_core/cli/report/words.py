@@ -3,16 +3,13 @@
 from __future__ import annotations
 
 import re
-from typing import get_args
 
 from mmrs_core.cli.figures import clock, energy, length
 from mmrs_core.cli.flights.places import Place
-from mmrs_core.scene.values import PolicyEvent, PolicyResponse
+from mmrs_runtime.policies import EVENTS, RESPONSES
 
 UNKNOWN = "not known"
-_CODES = frozenset(
-    (*get_args(PolicyEvent), *get_args(PolicyResponse), "ORDERED", "REFUSED", "STOPPED", "CRASHED")
-)
+_CODES = frozenset((*EVENTS, *RESPONSES, "ORDERED", "REFUSED", "STOPPED", "CRASHED"))
 _CODE = re.compile(r"(?<![\w'])[A-Z]+(?:_[A-Z]+)*(?![\w'])")
 
 

@@ -4,15 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
-from typing import get_args
 
 from mmrs_core.behaviour.program import Transition
 from mmrs_core.generation.capabilities.probes import ALPHA, FLIGHT, KINDS, Probe, changed, given, plain, robot
-from mmrs_core.scene import Area, AreaUse, Policy, PolicyEvent, PolicyResponse, Ring
+from mmrs_core.scene import Area, AreaUse, Policy, Ring
+from mmrs_runtime.policies import EVENTS, RESPONSES
 
 MEADOW: Ring = ((-40.0, 0.0), (-20.0, 0.0), (-20.0, 20.0), (-40.0, 20.0))
-EVENTS: tuple[PolicyEvent, ...] = get_args(PolicyEvent)
-RESPONSES: tuple[PolicyResponse, ...] = get_args(PolicyResponse)
 
 
 def of_policies() -> Iterator[Probe]:

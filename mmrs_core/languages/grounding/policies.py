@@ -2,14 +2,10 @@
 
 from __future__ import annotations
 
-from typing import get_args
-
 from mmrs_core.languages.element import Element
 from mmrs_core.languages.grounding.values import children, literal, number
-from mmrs_core.scene import Policy, PolicyEvent, PolicyResponse
-
-EVENTS: tuple[PolicyEvent, ...] = get_args(PolicyEvent)
-RESPONSES: tuple[PolicyResponse, ...] = get_args(PolicyResponse)
+from mmrs_core.scene import Policy
+from mmrs_runtime.policies import EVENTS, RESPONSES
 
 
 def policies_of(element: Element) -> tuple[Policy, ...]:

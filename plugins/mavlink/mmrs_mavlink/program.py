@@ -10,6 +10,8 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import TypeAlias
 
+from mmrs_runtime.policies import Policy as Policy
+
 
 @dataclass(frozen=True, slots=True)
 class Geographic:
@@ -189,15 +191,6 @@ class NoEffect:
 
 
 Action: TypeAlias = Notify | Report | Operate | Measure | NoEffect
-
-
-@dataclass(frozen=True, slots=True)
-class Policy:
-    """What the robot does when something goes wrong; None for `after`: the platform's default."""
-
-    event: str
-    response: str
-    after: float | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -23,18 +23,17 @@ from mmrs_auv.vessel.decision.duties import (
     Use,
 )
 from mmrs_auv.vessel.sheet import Sheet, Vector
-from mmrs_core.behaviour.policies import patience
 from mmrs_core.behaviour.program import BEHAVIOUR, Action, Heading, Move
 from mmrs_core.contributions.backends import BackendInput
 from mmrs_core.errors import UnsupportedError
 from mmrs_core.runtime.known import DEVICE_ACTION, kinematics_of, move_kinds_of
 from mmrs_core.scene import Position
+from mmrs_runtime.faults import DEVICE_SILENT
+from mmrs_runtime.policies import AFTER, patience
 
 START, STOP, HEAD_TO, GO_TO, RECHARGE = (
     (BEHAVIOUR, name) for name in ("Start", "Stop", "HeadTo", "GoTo", "Recharge")
 )
-ANSWER = 30.0
-"""Seconds that a device may take beyond what its action takes, where no policy says."""
 
 
 class Waters:
@@ -109,9 +108,12 @@ class Duties:
         if number is None:
             return None
         seconds = self._given.type.devices[action.device].actions[action.name].duration
-        after = patience("DEVICE_SILENT", (*self._given.robot.policies, *self._given.policies))
+        after = patience(DEVICE_SILENT, (*self._given.robot.policies, *self._given.policies))
         return Use(
-            action.device, number, parameter_of(action), seconds + (ANSWER if after is None else after)
+            action.device,
+            number,
+            parameter_of(action),
+            seconds + (AFTER[DEVICE_SILENT] if after is None else after),
         )
 
     def path(self, move: Move, here: Position) -> tuple[Position, ...]:

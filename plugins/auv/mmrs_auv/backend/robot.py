@@ -13,7 +13,6 @@ from mmrs_auv.vessel.decision.duties import NO_PROGRESS, Duty, FailureError, Rea
 from mmrs_auv.vessel.decision.helm import COMES_UP, CRASHED, LINK_LOST, POSITION_LOST, SILENT, Helm, Watch
 from mmrs_auv.vessel.movement.abilities import abilities_of
 from mmrs_auv.vessel.sheet import Sheet, Vector
-from mmrs_core.behaviour.policies import AFTER, patience, response_to
 from mmrs_core.behaviour.program import Action, Move
 from mmrs_core.contributions.backends import BackendInput
 from mmrs_core.contributions.execution import Fault, RobotState
@@ -21,7 +20,7 @@ from mmrs_core.errors import UnreachableError
 from mmrs_core.runtime.escape import Escapes
 from mmrs_core.runtime.known import DEVICE_ACTION, kinematics_of
 from mmrs_core.scene import Position
-from mmrs_runtime.policies import NOTHING
+from mmrs_runtime.policies import AFTER, NOTHING, patience, response_to
 
 STAYS, RESTS, FINDS = ("HOLD", "CONTINUE"), ("STOP_THRUST", NOTHING), ("RETURN", "EMERGENCY_AREA")
 HINDRANCES = (LINK_LOST, POSITION_LOST, NO_PROGRESS)

@@ -29,11 +29,12 @@ from mmrs_mavlink.places import ends_of
 from mmrs_mavlink.program import GoTo, Local, Look, Object, Place, Robot
 from mmrs_mavlink.records.fixes import FIX_SECONDS, fix
 from mmrs_mavlink.services.uploads import Uploads
-from mmrs_mavlink.steps.responses import CONTINUE, policy_for
+from mmrs_mavlink.steps.responses import policy_for
 from mmrs_mavlink.vehicles.modes import GUIDED, HOLD, SURFACE
 from mmrs_mavlink.vehicles.vehicle import State
 from mmrs_runtime.clock import Clock
 from mmrs_runtime.faults import DEVICE_SILENT, OBJECT_NOT_FOUND, Fault, Refused, Unanswered
+from mmrs_runtime.policies import CONTINUE
 from mmrs_runtime.records.blackbox import BlackBox
 from mmrs_runtime.screen import say
 

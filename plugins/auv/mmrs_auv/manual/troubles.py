@@ -6,12 +6,12 @@ from collections.abc import Sequence
 from math import inf
 
 from mmrs_auv.manual.autopilot import STALL, Autopilot
-from mmrs_core.behaviour.policies import patience
 from mmrs_core.contributions.execution import Fault
 from mmrs_core.scene import Policy
 from mmrs_runtime import faults
+from mmrs_runtime.policies import UNDECLARED_AFTER, patience
 
-LINK_PATIENCE = 5.0
+LINK_PATIENCE = UNDECLARED_AFTER[faults.LINK_LOST]
 """Seconds of silence after which the link counts as lost, where no policy says."""
 
 

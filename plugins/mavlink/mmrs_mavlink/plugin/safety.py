@@ -5,11 +5,11 @@ from __future__ import annotations
 from dataclasses import replace
 from math import inf
 
-from mmrs_core.behaviour.policies import AFTER, in_precedence
 from mmrs_core.behaviour.program import RobotProgram
 from mmrs_core.contributions.rules import robot_kind_of
 from mmrs_core.contributions.targets import TargetInput
 from mmrs_core.scene import Area, Policy, RobotType
+from mmrs_runtime.policies import AFTER, in_precedence
 
 
 def areas_of(robot: RobotProgram, input: TargetInput) -> tuple[Area, ...]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from mmrs_runtime.faults import DEVICE_SILENT, Fault, Unanswered
+from mmrs_runtime.policies import VALUE_SECONDS
 from mmrs_runtime.screen import words_of
 
 from ..desk import Desk
@@ -10,12 +11,6 @@ from ..program import Action, Measure, NoEffect, Notify, Operate, Report, Robot
 from ..vehicles.vehicle import Vehicle
 from .journal import Journal
 from .waits import Waits
-
-SILENCE_SECONDS = 5.0
-"""How long a device may give no answer, where policies do not say."""
-
-VALUE_SECONDS = 10.0
-"""How long a sensor may publish no value, where policies do not say: some do every few seconds only."""
 
 
 class Doing:
@@ -62,21 +57,19 @@ class Doing:
         try:
             self._do(action)
         except Unanswered as error:
-            if not isinstance(action, Measure) and self._waits.now() - begun < self._silence():
+            borne = self._waits.patience(DEVICE_SILENT)
+            if not isinstance(action, Measure) and self._waits.now() - begun < borne:
                 return False
             self._waits.raise_unless_carried_on(Fault(DEVICE_SILENT, f"{_device(action)}{error}"))
         return True
-
-    def _silence(self, usual: float = SILENCE_SECONDS) -> float:
-        """Return for how many seconds a device may say nothing."""
-        return self._waits.patience(DEVICE_SILENT, usual)
 
     def _do(self, action: Action) -> None:
         if isinstance(action, Operate):
             self.operate(action)
             self._vehicle.rest(action.seconds)
         elif isinstance(action, Measure):
-            found = self._vehicle.measure(action.value, self._silence(VALUE_SECONDS))
+            silence = self._waits.patience(DEVICE_SILENT, {DEVICE_SILENT: VALUE_SECONDS})
+            found = self._vehicle.measure(action.value, silence)
             self._vehicle.rest(action.seconds)
             self._journal.record("measured", action.value, {"device": action.device, "result": found})
         elif isinstance(action, Report):

@@ -18,7 +18,7 @@ from mmrs_runtime.faults import (
     Stopped,
     Strange,
 )
-from mmrs_runtime.policies import COMES_DOWN, NOTHING, OVERTAKES
+from mmrs_runtime.policies import COMES_DOWN, HOLD, NOTHING, OVERTAKES
 
 from ..desk import Desk
 from ..orders.obedience import Obedience, Ordered
@@ -29,7 +29,7 @@ from .hearing import is_heard, lately, listening
 from .obeying import obeying, undone
 from .pilot import Pilot
 from .responding import HINDRANCES, comes_down_alone, respond_or_less
-from .responses import HOLD, response_to
+from .responses import response_to
 from .watch import Watch
 
 if TYPE_CHECKING:

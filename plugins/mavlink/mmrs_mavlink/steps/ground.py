@@ -5,17 +5,15 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from mmrs_runtime.faults import GROUND_LOST
+from mmrs_runtime.policies import CONTINUE, seconds_of
 
 from ..links.autopilots import is_px4
 from ..links.ourselves import GROUND_SYSTEM
 from ..program import Policy, Robot
-from .responses import CONTINUE, policy_for
+from .responses import policy_for
 
 if TYPE_CHECKING:
     from ..links.link import Link
-
-GROUND_SECONDS = 10.0
-"""For how long all ground stations must be silent where the policy does not say."""
 
 LEAST_GROUND_SECONDS = 3.0
 """Real seconds that they have at least, however fast the vehicle's time goes: they beat once a second."""
@@ -52,7 +50,7 @@ class Ground:
     def silence(self, policy: Policy) -> str:
         """Return why all stations count as lost, by the seconds of the policy; empty if they do not."""
         clock = self._link.clock
-        limit = clock.patience(GROUND_SECONDS if policy.after is None else policy.after, LEAST_GROUND_SECONDS)
+        limit = clock.patience(seconds_of(policy), LEAST_GROUND_SECONDS)
         silent = self._link.stations.silent_for(clock.now() - self._link.silent_for())
         if silent is None or silent <= limit:
             return ""

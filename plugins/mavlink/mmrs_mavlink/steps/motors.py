@@ -5,9 +5,10 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from mmrs_runtime.faults import MOTORS_OFF, VEHICLE_RESTARTED, Fault
+from mmrs_runtime.policies import HOLD
 
 from ..vehicles import modes
-from .responses import HOLD, LAND
+from .responses import DOWN
 
 if TYPE_CHECKING:
     from ..vehicles.mavlink_vehicle import MavlinkVehicle
@@ -17,9 +18,6 @@ TOUCHING = 1.0
 
 COMES_DOWN_IN = frozenset({modes.LAND, modes.SURFACE, "return", "smart return"})
 """Modes at whose end the motors stop."""
-
-DOWN = {"copter": LAND, "sub": "SURFACE", "rover": HOLD}
-"""What is done, by kind of vehicle, where nothing can be carried on: without a position, too."""
 
 
 class Motors:

@@ -4,14 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from mmrs_runtime.policies import CAME_DOWN_AWAY
+from mmrs_runtime.policies import CAME_DOWN_AWAY, HOLD, RETURN
 
 from ..program import Robot
 from ..vehicles.footing import aside, misplaced
 from ..vehicles.vehicle import Vehicle
 from .motors import TOUCHING
 from .responding import OFF, course_of
-from .responses import HOLD, RETURN
 from .ways import Track
 
 

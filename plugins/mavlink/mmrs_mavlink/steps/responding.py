@@ -7,12 +7,12 @@ from dataclasses import dataclass
 from functools import partial
 
 from mmrs_runtime.faults import LINK_LOST, NO_PROGRESS, REFUSED, Fault
-from mmrs_runtime.policies import COMES_DOWN, NOTHING
+from mmrs_runtime.policies import COMES_DOWN, ESCAPE, HOLD, LAND, NOTHING, RETURN
 
 from ..program import Place, Policy, Robot
 from ..vehicles import modes
 from ..vehicles.vehicle import Vehicle
-from .responses import ESCAPE, HOLD, LAND, RETURN, alone, policy_for
+from .responses import DOWN, alone, policy_for
 from .ways import Track, steps_back
 
 SURFACE = "SURFACE"
@@ -26,9 +26,6 @@ RESTS: Mapping[str, Mapping[str, str]] = {
     "rover": {LAND: modes.HOLD, SURFACE: modes.HOLD},
 }
 """The mode in which each kind of vehicle comes down, or up: a rover stops, and a copter cannot surface."""
-
-DOWN: Mapping[str, str] = {"copter": LAND, "sub": SURFACE, "rover": ""}
-"""What is left to be tried, by kind of vehicle, where it cannot even hold; a rover can do nothing less."""
 
 HINDRANCES = frozenset({NO_PROGRESS, REFUSED})
 """Faults that say that a vehicle does not do what it was told, while all else is well."""
@@ -161,7 +158,8 @@ def plainer(response: str, kind: str, *, low: bool) -> str:
     """
     if response in (LAND, SURFACE):
         return ""
-    return HOLD if response != HOLD and not (low and DOWN[kind]) else DOWN[kind]
+    left = DOWN[kind] if low or response == HOLD else HOLD
+    return "" if left == response else left
 
 
 def _come_to_rest(rest: str, vehicle: Vehicle, repeat: Repeat) -> None:

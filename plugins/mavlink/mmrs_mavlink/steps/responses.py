@@ -2,20 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
+from mmrs_runtime import policies
 from mmrs_runtime.faults import OBJECT_NOT_FOUND, POSITION_LOST, TAKEN_OVER
-from mmrs_runtime.policies import NOTHING, UNDECLARED
+from mmrs_runtime.policies import ESCAPE, HOLD, LAND, NOTHING, RETURN, SURFACE, UNDECLARED
 
 from ..program import Policy, Robot
-
-CONTINUE = "CONTINUE"
-HOLD = "HOLD"
-LAND = "LAND"
-SURFACE = "SURFACE"
-ESCAPE = "EMERGENCY_AREA"
-RETURN = "RETURN"
 
 BLOCKED = (
     "cannot fly straight to an emergency area from everywhere on its way: where nobody hears it, its vehicle"
@@ -27,14 +21,16 @@ NO_ESCAPE = "has no clear way to an emergency area: where it is to go there, it 
 NEEDS_POSITION = frozenset({RETURN, ESCAPE, HOLD})
 """Responses that nobody can carry out who does not know where it is."""
 
+DOWN: Mapping[str, str] = {"copter": LAND, "sub": SURFACE, "rover": HOLD}
+"""What is left, by kind of vehicle, where nothing else can be carried out: a rover halts."""
+
 
 def policy_for(event: str, robot: Robot, first: Sequence[Policy] = ()) -> Policy:
     """Return what a robot does about an event: by the wait's policies, its own, or the defaults."""
     if event == TAKEN_OVER:
         return Policy(event, NOTHING)
-    for policy in (*first, *robot.policies):
-        if policy.event == event:
-            return policy
+    if declared := policies.policy_for(event, (*first, *robot.policies)):
+        return declared
     if event == OBJECT_NOT_FOUND and robot.vehicle == "sub":
         return Policy(event, SURFACE)
     return Policy(event, UNDECLARED.get(event, HOLD))

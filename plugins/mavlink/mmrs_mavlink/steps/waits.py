@@ -2,21 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import replace
-from math import inf
 
 from mmrs_runtime.conditions import awaiting, question_of, truth
 from mmrs_runtime.faults import CONDITION_FAILED, FAILURES, LINK_LOST, PEER_LOST, WAIT_TOO_LONG, Fault
+from mmrs_runtime.policies import CONTINUE, UNDECLARED_AFTER, seconds_of
 
 from ..desk import Desk
 from ..program import Choose, Policy, Robot, Then
 from ..vehicles.vehicle import Vehicle
 from .journal import Journal
-from .responses import BLOCKED, CONTINUE, alone, policy_for
+from .responses import BLOCKED, alone, policy_for
 
 GLANCE_SECONDS = 0.1
-PEER_SECONDS = 30.0
 LEAST_PEER_SECONDS = 2.0
 """Real seconds that other processes have at least, however fast the vehicles run."""
 
@@ -88,10 +87,9 @@ class Waits:
         self._journal.decide(fault.event, str(fault), CONTINUE)
         self._desk.say(f"{self._robot.id!r} carries on although {fault}")
 
-    def patience(self, event: str, usual: float) -> float:
+    def patience(self, event: str, usual: Mapping[str, float] = UNDECLARED_AFTER) -> float:
         """Return for how many seconds the robot bears an event; `usual` where policies do not say."""
-        policy = policy_for(event, self._robot, self.policies)
-        return usual if policy.after is None else policy.after
+        return seconds_of(policy_for(event, self._robot, self.policies), usual)
 
     def tell_vehicle(self) -> None:
         """Tell the vehicle what it must do without us, here."""
@@ -177,10 +175,10 @@ class Waits:
             self.raise_unless_carried_on(Fault(PEER_LOST, f"no robot is left that sets {shown}"))
 
     def _peer_seconds(self) -> float:
-        return self._desk.clock.patience(self.patience(PEER_LOST, PEER_SECONDS), LEAST_PEER_SECONDS)
+        return self._desk.clock.patience(self.patience(PEER_LOST), LEAST_PEER_SECONDS)
 
     def _check_patience(self, what: str, begun: float) -> None:
-        limit = self.patience(WAIT_TOO_LONG, inf)
+        limit = self.patience(WAIT_TOO_LONG)
         if self.now() - begun > limit:
             self.raise_unless_carried_on(Fault(WAIT_TOO_LONG, f"waited more than {limit:.0f} s for {what}"))
 

@@ -21,28 +21,24 @@ from mmrs_runtime.faults import (
     Fault,
     Stopped,
 )
-from mmrs_runtime.policies import COMES_DOWN
+from mmrs_runtime.policies import COMES_DOWN, CONTINUE, LAND, UNDECLARED_AFTER, seconds_of
 
 from ..program import Policy, Robot
 from ..vehicles.signs import Signs
 from .departures import Departures
 from .energy import Reserve
 from .ground import WATCHED, Ground
-from .motors import DOWN, Motors
-from .responses import CONTINUE, LAND, NO_ESCAPE, lacks_escape, policy_for
+from .motors import Motors
+from .responses import DOWN, NO_ESCAPE, lacks_escape, policy_for
 from .ways import Track
 
 if TYPE_CHECKING:
     from ..links.link import Link
     from ..vehicles.mavlink_vehicle import MavlinkVehicle
 
-SILENCE_SECONDS = 5.0
 LEAST_SILENCE = 2.0
 BEAT_SECONDS = 3.0
 """For how long a heartbeat tells the mode of a vehicle that was out of reach, and is waited for."""
-
-LASTING = {POSITION_LOST: 2.0}
-"""Seconds that something must last before it counts, where policies do not say; else none."""
 
 ANYWHERE = frozenset({LAND, "SURFACE", "STOP_THRUST"})
 """Responses that need neither a position nor much energy."""
@@ -274,7 +270,7 @@ class Watch:
         if event in self._borne or not self._heeds(event):
             return
         policy = policy_for(event, self._robot, self.current())
-        limit = LASTING.get(event, 0.0) if policy.after is None else policy.after
+        limit = seconds_of(policy)
         since = self._since.setdefault(event, self._clock.now())
         if at_once or self._clock.now() - since >= limit:
             self._judge(event, why, policy)
@@ -295,12 +291,13 @@ class Watch:
         policy = policy_for(LINK_LOST, self._robot, self.current())
         if self.silence or policy.response == CONTINUE:
             return
-        limit = SILENCE_SECONDS if policy.after is None else policy.after
+        limit = seconds_of(policy)
         silent = link.silent_for()
         if silent > self._clock.patience(limit, LEAST_SILENCE):
             why = f" ({link.trouble})" if link.trouble else ""
             if not self._hands_off:
-                link.give_up(self._clock.patience(max(limit, SILENCE_SECONDS), LEAST_SILENCE) + silent)
+                given = max(limit, UNDECLARED_AFTER[LINK_LOST])
+                link.give_up(self._clock.patience(given, LEAST_SILENCE) + silent)
             raise Fault(LINK_LOST, f"the vehicle has been silent for {silent:.0f} s{why}")
 
     def _answer(self, event: str, said: str, watched: _Watched) -> None:

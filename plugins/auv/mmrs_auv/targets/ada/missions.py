@@ -6,7 +6,6 @@ import json
 from collections.abc import Iterator, Mapping, Sequence
 from math import isfinite
 
-from mmrs_auv.backend.duties_of import ANSWER
 from mmrs_auv.names import IN_WATER_SIZE
 from mmrs_auv.sayable import mount_of, parameter_of
 from mmrs_auv.sheets import action_number
@@ -16,7 +15,6 @@ from mmrs_auv.targets.moves import seconds_of
 from mmrs_auv.vessel.eyes import owner_of
 from mmrs_auv.vessel.goals import SLOWEST
 from mmrs_auv.vessel.refusals import MOST_SPEED
-from mmrs_core.behaviour.policies import patience
 from mmrs_core.behaviour.program import Action, Move, Program, RobotProgram, SlotId, Target, Transition
 from mmrs_core.behaviour.semantics import slot_text
 from mmrs_core.contributions.targets import TracedStep
@@ -24,6 +22,8 @@ from mmrs_core.mavlink.vehicles import TRAVEL_FACTORS, capability_of
 from mmrs_core.scene import Part, Policy, Position
 from mmrs_mavlink.plugin.context import RobotContext
 from mmrs_runtime.conditions import BATTERY, DETECTED, FOUND, is_standard
+from mmrs_runtime.faults import DEVICE_SILENT
+from mmrs_runtime.policies import AFTER, patience
 from mmrs_runtime.records.steps import log_name
 
 KINDS: Mapping[str, str] = {
@@ -197,8 +197,8 @@ class Mission:
             type = self._context.type
             number = action_number(type, action.device, action.name)
             told += [("Number", list(type.devices).index(action.device)), ("Does", number)]
-            answer = patience("DEVICE_SILENT", self._policies)
-            waits = seconds_of(action, type) + (ANSWER if answer is None else answer)
+            answer = patience(DEVICE_SILENT, self._policies)
+            waits = seconds_of(action, type) + (AFTER[DEVICE_SILENT] if answer is None else answer)
             told += [("Parameter", parameter_of(action)), ("Patience", waits)]
             return {"kind": "Device", "features": told}
         words = " ".join((action.name, *(f"{key}={text}" for key, text in action.parameters)))

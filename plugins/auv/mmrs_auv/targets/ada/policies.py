@@ -7,11 +7,11 @@ from dataclasses import replace
 from math import isfinite
 
 from mmrs_auv.kinds import AUV_KIND
-from mmrs_core.behaviour.policies import AFTER, LAST_RESORT, patience, response_to
 from mmrs_core.behaviour.program import RobotProgram
 from mmrs_core.contributions.targets import TargetInput
 from mmrs_core.scene import Policy, PolicyResponse
 from mmrs_mavlink.plugin.safety import policies_of
+from mmrs_runtime.policies import AFTER, LAST_RESORT, patience, response_to
 
 RESPONSES: Mapping[str, str] = {
     "HOLD": "Holds_Place", "RETURN": "Backs_Out", "LAND": "Comes_Up", "SURFACE": "Comes_Up",

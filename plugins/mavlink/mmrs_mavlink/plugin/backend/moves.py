@@ -29,13 +29,13 @@ from mmrs_mavlink.program import (
     Turn,
 )
 from mmrs_mavlink.services.uploads import Flight
-from mmrs_mavlink.steps.doing import SILENCE_SECONDS, VALUE_SECONDS
 from mmrs_mavlink.steps.energy import FULL, RECHARGE_FACTOR
 from mmrs_mavlink.steps.responses import policy_for
 from mmrs_mavlink.vehicles.corners import goes_through
 from mmrs_mavlink.vehicles.vehicle import Vehicle
 from mmrs_runtime.clock import Clock
 from mmrs_runtime.faults import BATTERY_LOW, DEVICE_SILENT, Fault, Unanswered
+from mmrs_runtime.policies import VALUE_SECONDS, seconds_of
 from mmrs_runtime.screen import words_of
 
 IN_THE_AIR = 1.0
@@ -58,9 +58,9 @@ class Moves:
         self.track: list[tuple[str, Place]] = []
         self._steps = {step.move: step for step in robot.steps}
         self._robot, self._home = robot.id, robot.home
-        after = policy_for(DEVICE_SILENT, robot).after
-        self._silence = SILENCE_SECONDS if after is None else after
-        self._silence_of_values = VALUE_SECONDS if after is None else after
+        policy = policy_for(DEVICE_SILENT, robot)
+        self._silence = seconds_of(policy)
+        self._silence_of_values = seconds_of(policy, {DEVICE_SILENT: VALUE_SECONDS})
         self._vehicle, self._clock, self._locators, self._told = vehicle, clock, locators, told
 
     def movement(self, move: str, *, through: bool = False) -> Job:

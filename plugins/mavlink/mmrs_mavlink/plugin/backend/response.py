@@ -9,11 +9,11 @@ from mmrs_mavlink.plugin.backend.worker import Interrupted, Job
 from mmrs_mavlink.program import Robot
 from mmrs_mavlink.steps.obeying import obeying, undone
 from mmrs_mavlink.steps.responding import HINDRANCES, comes_down_alone, respond_or_less
-from mmrs_mavlink.steps.responses import HOLD, LAND, NEEDS_POSITION
+from mmrs_mavlink.steps.responses import NEEDS_POSITION
 from mmrs_mavlink.steps.watch import Decide, Watch
 from mmrs_mavlink.vehicles.mavlink_vehicle import MavlinkVehicle
 from mmrs_runtime.faults import BATTERY_LOW, FAILURES, LINK_LOST, POSITION_LOST, TAKEN_OVER, Fault
-from mmrs_runtime.policies import NOTHING
+from mmrs_runtime.policies import HOLD, LAND, NOTHING
 
 KEPT_UP = "hands off until its motors are off; it still hears heartbeats, so end this later"
 

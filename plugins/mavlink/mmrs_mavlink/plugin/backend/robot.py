@@ -23,7 +23,6 @@ from mmrs_mavlink.plugin.backend.worker import Interrupted, Job, Worker
 from mmrs_mavlink.program import GoTo, Land, Recharge, Robot, TakeOff
 from mmrs_mavlink.services.uploads import uploads_of
 from mmrs_mavlink.steps.obeying import astray, away, obeying
-from mmrs_mavlink.steps.responses import CONTINUE
 from mmrs_mavlink.steps.watch import Watch
 from mmrs_mavlink.vehicles.footing import footing
 from mmrs_runtime.faults import (
@@ -35,7 +34,7 @@ from mmrs_runtime.faults import (
     Displaced,
 )
 from mmrs_runtime.faults import Fault as VehicleFault
-from mmrs_runtime.policies import NOTHING
+from mmrs_runtime.policies import CONTINUE, NOTHING
 
 FAREWELL_SECONDS = 5.0
 """Real seconds that a vehicle has to be told to stay where it is."""

@@ -10,11 +10,11 @@ from mmrs_mavlink.plugin.backend.moves import IN_THE_AIR, Moves
 from mmrs_mavlink.plugin.backend.worker import Job
 from mmrs_mavlink.program import GoTo, Land, Place, Recharge, Robot, Start, TakeOff
 from mmrs_mavlink.steps.rejoining import ALIKE, OFF_ITS_WAY, way_ahead
-from mmrs_mavlink.steps.responses import CONTINUE, policy_for
+from mmrs_mavlink.steps.responses import policy_for
 from mmrs_mavlink.vehicles.footing import aside, footing, misplaced, there
 from mmrs_mavlink.vehicles.vehicle import Vehicle
 from mmrs_runtime.faults import BATTERY_LOW, Fault, Refused
-from mmrs_runtime.policies import still_low
+from mmrs_runtime.policies import CONTINUE, still_low
 
 Point = tuple[str, Place]
 

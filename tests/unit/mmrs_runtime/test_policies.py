@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from math import inf
 
-from mmrs_core.behaviour.policies import in_precedence, patience, response_to
-from mmrs_core.scene import Policy
+from mmrs_runtime.policies import Policy, in_precedence, patience, response_to, seconds_of
 
 
 def test_the_policy_of_a_wait_goes_before_all_others():
@@ -39,3 +38,9 @@ def test_a_wait_without_a_policy_is_borne_for_ever():
 def test_a_robot_that_nobody_looks_on_any_more_finishes_unless_somebody_said_otherwise():
     assert response_to("GROUND_LOST", ()) == "CONTINUE"
     assert response_to("GROUND_LOST", [Policy("GROUND_LOST", "RETURN")]) == "RETURN"
+
+
+def test_real_robots_bear_an_event_that_no_model_names_for_as_long_as_the_platform_says():
+    seconds = {event: seconds_of(Policy(event, "HOLD")) for event in ("LINK_LOST", "PEER_LOST", "OBSTACLE")}
+    assert seconds == {"LINK_LOST": 5.0, "PEER_LOST": 30.0, "OBSTACLE": 0.0}
+    assert seconds_of(Policy("PEER_LOST", "HOLD", 7.0)) == 7.0
