@@ -23,6 +23,7 @@ class ProgramBus:
     def __init__(self, node: Node, program: Program) -> None:
         """Use an end of the bus for the robots of a program."""
         self.node = node
+        self._here = frozenset(node.robots)
         self._known = {(robot.id, slot) for robot in program.robots for slot in robot.slots}
 
     def prepare(
@@ -48,7 +49,7 @@ class ProgramBus:
             InternalError: if none of them has it.
         """
         self._refuse_unknown(slot)
-        if slot[0] not in self.node.robots:
+        if slot[0] not in self._here:
             raise InternalError(f"{slot[0]}.{slot[1]}: belongs to a robot of another process")
         return self.node.state(slot)
 
@@ -78,7 +79,7 @@ class ProgramBus:
 
     def apply(self, id: CommandId, slots: Iterable[SlotId], active: bool, lamport: int) -> None:
         """Set slots of this process's robots as a log says they were, unless that was done already."""
-        self.node.repeat(id, [slot for slot in slots if slot[0] in self.node.robots], active, lamport)
+        self.node.repeat(id, [slot for slot in slots if slot[0] in self._here], active, lamport)
 
     def close(self) -> None:
         """Leave the bus; robots that have not ended are lost to the others."""

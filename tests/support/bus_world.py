@@ -30,7 +30,7 @@ class MemoryDisk:
         yield from tuple(self.kept)
 
     def keep(self, line):
-        self.kept.append(dict(line))
+        self.kept.append(json.loads(json.dumps(line)))
 
 
 @dataclass

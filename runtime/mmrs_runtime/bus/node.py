@@ -7,24 +7,13 @@ import threading
 import time
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 
-from .admission import Admission
-from .answering import Answering
 from .carriers.carrier import Carrier, NoCarrier
-from .carriers.courier import Courier
-from .changes import Changes
-from .outgoing.announcing import FAREWELL_SECONDS, Announcing
-from .outgoing.delivery import Delivery
-from .outgoing.notifying import Notifying
-from .outgoing.outbox import Outbox
-from .owners.journal import Journal, NoJournal
-from .owners.members import Member, Recorded
-from .owners.owners import Owners
-from .pacing import Pacing
-from .reading import written
-from .sending import Sending
-from .troubles import Keeping, Net, Tell, tell_people
+from .journal import Journal, Keeping, NoJournal
+from .outgoing import FAREWELL_SECONDS, Delivery, Outgoing
+from .owners import Member, Owners, Recorded
+from .threads import Net, Pacing, Tell, tell_people
 from .watching import OTHERWISE, TWICE, Unwelcome, Watching, refuse_oddities
-from .words import Answer, Begin, CommandId, Commit, Find, Meet, Request, SlotId, SlotState
+from .words import Answer, Begin, CommandId, Commit, Find, Meet, SlotId, SlotState, written
 
 
 class Node:
@@ -88,63 +77,51 @@ class Node:
             lambda robot: keeping.watched(robot, journals(robot)),
             given,
             self._watching,
+            now=now,
+            net=self._net,
+            team=team,
+            ended=lambda robot: self._outgoing.gone(robot),
             trusting=self._alone,
         )
-        self._outbox = Outbox(self._net)
-        self._announcing = Announcing(
-            self._run, self._members, self._owners, self._watching, self._outbox, now
-        )
-        admission = Admission(self._run, team, lambda: self._owners.lamport, self._net.tell)
-        self._answering = Answering(self._owners, self._watching, self._outbox, self._net, now, admission)
-        self._pacing = Pacing(self.lock, now, self._next_due, self.pump, self._net, threaded=threaded)
-        self._changes = Changes(self.lock, self._net)
-        carrying = carrier or NoCarrier()
-        self._courier = Courier(carrying, self._net)
-        self._notifying = Notifying(
+        self._carrier = carrier or NoCarrier()
+        self._outgoing = Outgoing(
             self.lock,
             now,
             self._run,
+            self._members,
             self._owners,
             self._watching,
-            self._outbox,
-            frozenset[SlotId]().union(*(member.latched for member in members)),
-            self.pump,
+            self._carrier,
+            self._net,
             chance or random.Random(),
+            self.pump,
+            self._settle,
             alone=self._alone,
         )
-        self._sending = Sending(
-            self.lock,
-            now,
-            self._owners,
-            self._outbox,
-            self._answering,
-            self._courier,
-            self._changes,
-            self._net,
-            admission,
-        )
+        self._pacing = Pacing(self.lock, now, self._next_due, self.pump, self._net, threaded=threaded)
+        self._callbacks: list[Callable[[], None]] = []
         self._begin(given, settle)
         for robot in self._members:
-            carrying.appear(robot)
+            self._carrier.appear(robot)
         self.pump()
 
     def _begin(self, recorded: Mapping[str, Recorded], settle: float) -> None:
         """Open the carrier, and begin if these robots can take part."""
-        self._courier.open(self)
+        self._carrier.open(self)
         try:
             refuse_oddities(self._watching, settle, self.now)
             self._owners.begin()
             self._introduce(recorded, settle)
         except BaseException:
             self._pacing.is_over = True
-            self._courier.close()
+            self._carrier.close()
             raise
 
     def _introduce(self, recorded: Mapping[str, Recorded], settle: float) -> None:
         """Tell all that robots have to do with that they start, and wait for those who are there."""
         with self.lock:
             told = [
-                self._announcing.introduce(robot, recorded.get(robot, Recorded()))
+                self._outgoing.introduce(robot, recorded.get(robot, Recorded()))
                 for robot in self._members
                 if robot in recorded or not self._alone
             ]
@@ -169,7 +146,7 @@ class Node:
 
     def id_of(self, robot: str) -> CommandId:
         """Return what the words of a robot of this process are known by that are no notifies."""
-        return self._announcing.id_of(robot)
+        return self._outgoing.id_of(robot)
 
     def slots_of(self, robot: str) -> tuple[str, ...]:
         """Return the names of the slots of a robot of this process."""
@@ -184,10 +161,11 @@ class Node:
     ) -> Delivery:
         """Ask the owners of slots for setting them; returns at once.
 
-        Where there are robots of other processes, run and incarnation are those of this node. With the
-        notify goes what its sender knows to have been detected.
+        Owners are not asked where no robot ever resets the slots: it is granted then. Where there are robots
+        of other processes, run and incarnation are those of this node. With the notify goes what its
+        sender knows to have been detected.
         """
-        return self._notifying.prepare(id, slots, active, finds)
+        return self._outgoing.prepare(id, slots, active, finds)
 
     def finds(self, robot: str) -> tuple[Find, ...]:
         """Return what those that notified a robot of this process had detected."""
@@ -201,7 +179,7 @@ class Node:
             KeyError: it is none of theirs.
         """
         with self.lock:
-            return self._owners.state(slot, self.now())
+            return self._owners.state(slot)
 
     def passed(self, slots: Iterable[SlotId], lamport: int) -> bool:
         """Return whether a wait for own slots is passed at that time, and if so keep the time.
@@ -210,7 +188,7 @@ class Node:
             KeyError: a slot is none of this process's robots'.
         """
         with self.lock:
-            return self._owners.passed(slots, lamport, self.now())
+            return self._owners.passed(slots, lamport)
 
     def lost(self, robots: Iterable[str]) -> tuple[str, ...]:
         """Return those of these robots that have ended, or that were there and can no longer be reached."""
@@ -240,13 +218,13 @@ class Node:
             if robot in self._watching.left or robot not in self._members:
                 return
             self._watching.left[robot] = self._owners.lamport
-            self._announcing.bid_farewell(robot)
+            self._outgoing.bid_farewell(robot)
         self.pump()
-        self._changes.tell()
+        self._tell_changed()
 
     def hide(self, robot: str) -> None:
         """Have a robot of this process be out of reach, as one that is frozen; its slots are kept."""
-        self._courier.vanish([robot])
+        self._vanish([robot])
 
     def show(self, robot: str) -> None:
         """Have a robot of this process be in reach again, unless it has ended."""
@@ -273,7 +251,7 @@ class Node:
         """Set own slots as a log says they were, whoever may set them."""
         with self.lock:
             self._owners.repeat(id, slots, active, lamport)
-        self._changes.tell()
+        self._tell_changed()
 
     def restore(self, active: Iterable[SlotId], lamport: int) -> None:
         """Begin with these own slots active and at that logical time; others' slots are left alone."""
@@ -282,11 +260,13 @@ class Node:
 
     def on_change(self, callback: Callable[[], None]) -> None:
         """Have a function called, from any thread, when something may have changed; it must not block."""
-        self._changes.on(callback)
+        with self.lock:
+            self._callbacks.append(callback)
 
     def await_change(self, seconds: float) -> None:
         """Wait until something may have changed, but no longer than so many real seconds."""
-        self._changes.wait(seconds)
+        with self.lock:
+            self.lock.wait(seconds)
 
     def close(self) -> None:
         """Leave the bus, once; robots that have not ended are lost to the others."""
@@ -294,33 +274,36 @@ class Node:
             if self._pacing.is_over:
                 return
             until = self.now() + FAREWELL_SECONDS
-            while self._outbox.has_farewells and self._pacing.is_threaded and self.now() < until:
+            while self._outgoing.has_farewells and self._pacing.is_threaded and self.now() < until:
                 self.lock.wait(0.05)
             self._pacing.is_over = True
             self.lock.notify_all()
-        self._courier.vanish(self._members)
-        self._courier.close()
+        self._vanish(self._members)
+        self._carrier.close()
         self._pacing.join()
 
     def ask_once(self, sender: str, owner: str, request: Meet, taken: Callable[[Answer], None]) -> None:
         """Ask a robot once; `taken` is called with the answer, from any thread, or never."""
         if owner not in self._owners:
-            self._courier.ask(sender, owner, request, taken)
-        elif (answer := self._answer(owner, request)) is not None:
+            self._outgoing.ask(sender, owner, request, taken)
+            return
+        with self.lock:
+            answer = self._owners.answer(owner, request)
+        if answer is not None:
             taken(answer)
 
     def serve(self, owner: str, sender: str, request: str) -> str:
         """Return the answer of one of this process's robots to a request, whatever it is; empty: none now."""
-        found = self._answering.told(owner, sender, request)
+        found = self._owners.told(owner, sender, request)
         if isinstance(found, Answer):
             return written(found)
-        answer = self._answer(owner, found)
         with self.lock:
+            answer = self._owners.answer(owner, found)
             self._pacing.keep_going()
         if not isinstance(found, Meet):
-            self._changes.tell()
+            self._tell_changed()
         if isinstance(found, Commit | Begin):
-            self._courier.publish(owner)
+            self._outgoing.publish(owner)
         return "" if answer is None else written(answer)
 
     def noticed(self, robot: str, here: bool) -> None:
@@ -332,12 +315,12 @@ class Node:
                 self._pacing.keep_going()
                 return
             if here and not self._watching.is_here(robot):
-                self._announcing.inform(robot)
+                self._outgoing.inform(robot)
             self._watching.noticed(robot, here, now)
             if here:
-                self._outbox.back(robot, now)
+                self._outgoing.back(robot, now)
             self._pacing.keep_going()
-        self._changes.tell()
+        self._tell_changed()
 
     def stranger(self, robot: str, here: bool) -> None:
         """Take note that a robot is there by another plan of the mission, or no longer."""
@@ -348,23 +331,39 @@ class Node:
     def shown(self, robot: str) -> str:
         """Return the state of a robot's slots as a JSON object."""
         with self.lock:
-            return self._owners.shown(robot, self.now())
+            return self._owners.shown(robot)
 
     def pump(self) -> None:
         """Send what is due; called by itself where the bus is threaded."""
         with self.lock:
             now = self.now()
-            work = self._sending.begin(now)
-            gone = self._outbox.sweep()
+            work = self._outgoing.begin(now)
+            gone = self._outgoing.sweep()
             ended = self._owners.end_lost(now)
             silent, back = self._keeping.look()
             self._tell_oddities(now)
             self._pacing.keep_going()
-        self._sending.finish(work)
-        self._courier.vanish([*gone, *silent])
+        self._outgoing.finish(work)
+        self._vanish([*gone, *silent])
         self._appear(back)
         if work or ended or silent or back:
-            self._changes.tell()
+            self._tell_changed()
+
+    def _settle(self) -> None:
+        """Take note that an answer has come."""
+        with self.lock:
+            gone = self._outgoing.sweep()
+        self._vanish(gone)
+        self._tell_changed()
+
+    def _tell_changed(self) -> None:
+        """Tell all who want to know that something may have changed; to be called without the lock."""
+        with self.lock:
+            self.lock.notify_all()
+            callbacks = tuple(self._callbacks)
+        for callback in callbacks:
+            with self._net.under("telling of a change"):
+                callback()
 
     def _tell_oddities(self, now: float) -> None:
         for what in self._watching.lasting_oddities(now):
@@ -376,13 +375,15 @@ class Node:
             with self.lock:
                 ended = self._pacing.is_over or robot in self._watching.left
             if not ended:
-                self._courier.appear(robot)
+                with self._net.under(f"coming back as {robot!r}"):
+                    self._carrier.appear(robot)
 
-    def _answer(self, robot: str, request: Request) -> Answer | None:
-        with self.lock:
-            return self._answering.answer(robot, request)
+    def _vanish(self, robots: Iterable[str]) -> None:
+        for robot in robots:
+            with self._net.under(f"leaving as {robot!r}"):
+                self._carrier.vanish(robot)
 
     def _next_due(self) -> float:
         """Return when there is something to do; inf: never."""
         ends = (self._owners.next_end(), self._keeping.due, self._watching.next_oddity())
-        return min((*ends, self._outbox.due))
+        return min((*ends, self._outgoing.due))

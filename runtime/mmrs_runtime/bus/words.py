@@ -1,10 +1,15 @@
-"""What robots say to the owners of slots, and what these answer."""
+"""What robots say to the owners of slots, what these answer, and how it is written: one JSON object each.
+
+Everything that comes from outside is checked here, once: sizes are bounded, types are right.
+"""
 
 from __future__ import annotations
 
+import json
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from hashlib import sha256
-from typing import TypeAlias
+from typing import Any, TypeAlias
 
 SlotId: TypeAlias = tuple[str, str]
 
@@ -165,6 +170,211 @@ class Answer:
     ready: tuple[str, ...] = ()
 
 
+class Unreadable(ValueError):  # noqa: N818  # said of a message, as in 'unreadable message'
+    """A message that is none of ours."""
+
+
 def digest(name: str) -> str:
     """Return a name as keys hold it: nothing of it can be read as a part of a key."""
     return sha256(name.encode("utf-8", "surrogatepass")).hexdigest()[:24]
+
+
+def written(message: Request | Answer) -> str:
+    """Return a message as text."""
+    return json.dumps(_brief(message) if isinstance(message, Answer) else content_of(message))
+
+
+def content_of(message: Request) -> dict[str, object]:
+    """Return a request as the object that is written of it."""
+    content = {name: getattr(message, name) for name in message.__slots__ if name != "id"}
+    id = message.id
+    who = {"run": id.run, "sender": id.sender, "incarnation": id.incarnation, "sequence": id.sequence}
+    return {"do": type(message).__name__.lower(), **who, **content}
+
+
+def request_in(text: str | bytes) -> Request:
+    """Return the request in a text.
+
+    Raises:
+        Unreadable: there is none; says what is wrong.
+    """
+    return word_in(object_in(text))
+
+
+def word_in(content: Mapping[str, Any]) -> Request:
+    """Return the request that an object holds.
+
+    Raises:
+        Unreadable: there is none; says what is wrong.
+    """
+    known = _READERS.get(text_in(content, "do"))
+    if known is None:
+        raise Unreadable("asks for something that nobody knows")
+    id = CommandId(
+        text_in(content, "run"),
+        text_in(content, "sender"),
+        text_in(content, "incarnation"),
+        number_in(content, "sequence"),
+    )
+    return known(id, content)
+
+
+def answer_in(text: str | bytes) -> Answer:
+    """Return the answer in a text.
+
+    Raises:
+        Unreadable: there is none.
+    """
+    content = object_in(text)
+    return Answer(
+        text_in(content, "is"),
+        number_in(content, "lamport", 0),
+        text_in(content, "why", ""),
+        _real_in(content, "time", 0.0),
+        _real_in(content, "at", 0.0),
+        names_in(content, "ready") if "ready" in content else (),
+    )
+
+
+def object_in(text: str | bytes) -> Mapping[str, Any]:
+    """Return the JSON object in a text.
+
+    Raises:
+        Unreadable: there is none, or it is too long.
+    """
+    if len(text) > LONGEST:
+        raise Unreadable(f"{len(text)} bytes: longer than any message")
+    try:
+        content = json.loads(text)
+    except (ValueError, RecursionError) as error:
+        raise Unreadable(f"no JSON: {error}") from error
+    if not isinstance(content, dict):
+        raise Unreadable(f"{type(content).__name__}: not an object")
+    return content
+
+
+def text_in(content: Mapping[str, Any], name: str, usual: str | None = None) -> str:
+    """Return a text of an object.
+
+    Raises:
+        Unreadable: it is missing and there is no usual one, or it is no text or too long.
+    """
+    found = content.get(name, usual)
+    if not isinstance(found, str) or len(found) > LONGEST_NAME:
+        raise Unreadable(f"{name}: no text of at most {LONGEST_NAME} characters")
+    return found
+
+
+def number_in(content: Mapping[str, Any], name: str, usual: int | None = None) -> int:
+    """Return a whole number of an object, at least 0.
+
+    Raises:
+        Unreadable: it is missing and there is no usual one, or it is none.
+    """
+    found = content.get(name, usual)
+    if not isinstance(found, int) or isinstance(found, bool) or not 0 <= found <= LARGEST:
+        raise Unreadable(f"{name}: no whole number from 0 to {LARGEST}")
+    return found
+
+
+def flag_in(content: Mapping[str, Any], name: str) -> bool:
+    """Return a truth value of an object.
+
+    Raises:
+        Unreadable: it is missing or none.
+    """
+    found = content.get(name)
+    if not isinstance(found, bool):
+        raise Unreadable(f"{name}: neither true nor false")
+    return found
+
+
+def names_in(content: Mapping[str, Any], name: str) -> tuple[str, ...]:
+    """Return a list of texts of an object, each once and at least one.
+
+    Raises:
+        Unreadable: it is missing or none.
+    """
+    found = _list_in(content, name)
+    if not found:
+        raise Unreadable(f"{name}: no list of 1 to {MOST_SLOTS}")
+    return tuple(dict.fromkeys(text_in({name: each}, name) for each in found))
+
+
+def finds_in(content: Mapping[str, Any]) -> tuple[Find, ...]:
+    """Return what was detected, and where; nothing where an object does not say.
+
+    Raises:
+        Unreadable: it is no list of that.
+    """
+    return tuple(map(_find, _list_in({"finds": [], **content}, "finds", MOST_FINDS)))
+
+
+def _list_in(content: Mapping[str, Any], name: str, most: int = MOST_SLOTS) -> list[Any]:
+    found = content.get(name)
+    if not isinstance(found, list) or len(found) > most:
+        raise Unreadable(f"{name}: no list of at most {most}")
+    return found
+
+
+def _row(name: str, each: object, *parts: str) -> Mapping[str, Any]:
+    """Return by name the parts of a list within a list."""
+    if not isinstance(each, list) or len(each) != len(parts):
+        raise Unreadable(f"{name}: no lists of {', '.join(parts)}")
+    return dict(zip(parts, each, strict=True))
+
+
+def _find(each: object) -> Find:
+    row = _row("finds", each, "name", "place")
+    name, place = text_in({"finds": row["name"]}, "finds"), row["place"]
+    if place is None:
+        return name, None
+    axes = _row("finds", place, "east", "north", "up").values()
+    east, north, up = (_real_in({"finds": number}, "finds") for number in axes)
+    return name, (east, north, up)
+
+
+def _real_in(content: Mapping[str, Any], name: str, usual: float | None = None) -> float:
+    found = content.get(name, usual)
+    if not isinstance(found, int | float) or isinstance(found, bool) or not abs(found) < LARGEST:
+        raise Unreadable(f"{name}: no number")
+    return float(found)
+
+
+def _prepare(id: CommandId, content: Mapping[str, Any]) -> Request:
+    slots, active = names_in(content, "slots"), flag_in(content, "active")
+    return Prepare(id, number_in(content, "round"), slots, active, number_in(content, "lamport"))
+
+
+def _commit(id: CommandId, content: Mapping[str, Any]) -> Request:
+    slots, active = names_in(content, "slots"), flag_in(content, "active")
+    return Commit(id, slots, active, number_in(content, "lamport"), finds_in(content))
+
+
+def _begin(id: CommandId, content: Mapping[str, Any]) -> Request:
+    rows = [_row("recorded", each, "slot", "active", "lamport") for each in _list_in(content, "recorded")]
+    return Begin(
+        id, tuple((text_in(row, "slot"), flag_in(row, "active"), number_in(row, "lamport")) for row in rows)
+    )
+
+
+def _ended(id: CommandId, content: Mapping[str, Any]) -> Request:
+    rows = [_row("robots", each, "robot", "lamport") for each in _list_in(content, "robots")]
+    return Ended(id, tuple((text_in(row, "robot"), number_in(row, "lamport")) for row in rows))
+
+
+def _brief(answer: Answer) -> dict[str, object]:
+    usual = Answer(answer.what)
+    told = {name: getattr(answer, name) for name in ("lamport", "why", "time", "at", "ready")}
+    return {"is": answer.what, **{k: v for k, v in told.items() if v != getattr(usual, k)}}
+
+
+_READERS: Mapping[str, Callable[[CommandId, Mapping[str, Any]], Request]] = {
+    "prepare": _prepare,
+    "commit": _commit,
+    "withdraw": lambda id, content: Withdraw(id, number_in(content, "round")),
+    "begin": _begin,
+    "leave": lambda id, content: Leave(id, number_in(content, "lamport")),
+    "ended": _ended,
+    "meet": lambda id, content: Meet(id, number_in(content, "robots")),
+}

@@ -74,8 +74,8 @@ def test_what_a_robot_was_told_is_on_its_disk(controllers, endpoint):
         for process in start_all(made, stack, endpoint, "robot_alpha.py", "robot_beta.py", "--speedup", "50"):
             assert end(process)[0] == 0
     lines = map(json.loads, (made.logs / "beta.slots.ndjson").read_text("ascii").splitlines())
-    (told,) = (line for line in lines if "set" in line)
-    assert (told["sender"], told["set"], told["active"]) == ("alpha", ["go"], True)
+    (told,) = (line for line in lines if line.get("do") == "commit")
+    assert (told["sender"], told["slots"], told["active"]) == ("alpha", ["go"], True)
 
 
 def waiting(*policies: Policy):

@@ -12,8 +12,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from mmrs_runtime.bus import Member, Node, Owned
-from mmrs_runtime.bus.admission import AHEAD, LATE, STRANGE
-from mmrs_runtime.bus.reading import written
+from mmrs_runtime.bus.owners import AHEAD, LATE, STRANGE
 from mmrs_runtime.bus.words import (
     Answer,
     Begin,
@@ -25,6 +24,7 @@ from mmrs_runtime.bus.words import (
     Prepare,
     Request,
     Withdraw,
+    written,
 )
 
 RUN, PLAN = "harvest", "4f2a91"

@@ -19,9 +19,8 @@ from mmrs_core.runtime.run import simulate
 from mmrs_core.runtime.simulation import SIMULATION
 from mmrs_core.runtime.slots import InProcessBus
 from mmrs_core.testing.small_programs import ROBOT_TYPE, go, hold, notify, program, robot, robot_type, use
-from mmrs_runtime.bus.outgoing.notifying import fitting
-from mmrs_runtime.bus.reading import request_in, written
-from mmrs_runtime.bus.words import LONGEST, LONGEST_NAME, MOST_FINDS, Commit
+from mmrs_runtime.bus.outgoing import fitting
+from mmrs_runtime.bus.words import LONGEST, LONGEST_NAME, MOST_FINDS, Commit, request_in, written
 
 FLYER, RISE = ("urn:test", "Flyer"), ("urn:test", "Rise")
 

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from datetime import UTC, datetime
 from pathlib import Path
 
-from ..troubles import Net
+from ..threads import Net
 
 FIRST_SECONDS, THEN_SECONDS = 4.0, 30.0
 """After how long people are told why peers cannot be reached, and how often that is tried anew."""

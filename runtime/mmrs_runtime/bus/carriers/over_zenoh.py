@@ -19,7 +19,7 @@ from typing import Any
 
 import zenoh
 
-from ..troubles import Net, tell_people
+from ..threads import Net, tell_people
 from ..words import LONGEST, digest
 from .carrier import Answered, Station
 from .doubts import Doubts

@@ -8,7 +8,7 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
-from ..troubles import Net
+from ..threads import Net
 from .revocation import REVOKED
 from .sessions import Endpoints, admitted, configuration, revoked_by
 

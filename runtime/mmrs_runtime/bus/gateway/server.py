@@ -19,9 +19,8 @@ from typing import IO, Any
 
 from ...callers import Callers
 from ..node import Node
-from ..owners.members import Recorded
-from ..reading import Unreadable, number_in, object_in, text_in
-from ..words import LARGEST, LONGEST
+from ..owners import Recorded
+from ..words import LARGEST, LONGEST, Unreadable, number_in, object_in, text_in
 from .session import Session
 
 FILE = "gateway.json"

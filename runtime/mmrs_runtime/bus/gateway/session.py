@@ -13,10 +13,21 @@ from typing import IO, Any
 
 from ..meeting import Incomplete, begin_together
 from ..node import Node
-from ..outgoing.delivery import Delivery
-from ..reading import Unreadable, finds_in, flag_in, names_in, number_in, object_in, text_in
-from ..troubles import Net, tell_people
-from ..words import LONGEST, MOST_SLOTS, REACH, CommandId
+from ..outgoing import Delivery
+from ..threads import Net, tell_people
+from ..words import (
+    LONGEST,
+    MOST_SLOTS,
+    REACH,
+    CommandId,
+    Unreadable,
+    finds_in,
+    flag_in,
+    names_in,
+    number_in,
+    object_in,
+    text_in,
+)
 
 WAITING_SECONDS = 1.0
 """How often a program is told for whom its notify waits."""

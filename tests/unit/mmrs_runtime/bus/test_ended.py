@@ -8,9 +8,8 @@ import pytest
 from hub import Hub
 
 from mmrs_runtime.bus import Member, Node, Owned
-from mmrs_runtime.bus.reading import written
 from mmrs_runtime.bus.watching import Watching
-from mmrs_runtime.bus.words import CommandId, Ended
+from mmrs_runtime.bus.words import CommandId, Ended, written
 
 RUN = "run-0"
 

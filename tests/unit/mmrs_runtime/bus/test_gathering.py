@@ -13,9 +13,8 @@ from mmrs_mavlink.orders.obedience import Obedience, Ordered
 from mmrs_mavlink.vehicles.dry import DryVehicle
 from mmrs_runtime.bus import Incomplete, Member, Node, Owned, begin_together
 from mmrs_runtime.bus.carriers.carrier import NoCarrier
-from mmrs_runtime.bus.reading import request_in, written
-from mmrs_runtime.bus.roster import Roster
-from mmrs_runtime.bus.words import Meet
+from mmrs_runtime.bus.watching import Roster
+from mmrs_runtime.bus.words import Meet, request_in, written
 from mmrs_runtime.clock import Clock
 from mmrs_runtime.orders.orders import Inbox, Order
 

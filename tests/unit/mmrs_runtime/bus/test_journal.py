@@ -8,7 +8,7 @@ from contextlib import contextmanager
 
 import pytest
 
-from mmrs_runtime.bus.owners.journal import FileJournal
+from mmrs_runtime.bus.journal import FileJournal
 
 
 @contextmanager

@@ -13,7 +13,7 @@ from mmrs_core.testing.small_programs import hold, notify
 from mmrs_mavlink.plugin.built import robot_of
 from mmrs_mavlink.slots import member_of
 from mmrs_runtime.bus import CommandId, Node
-from mmrs_runtime.bus.owners.owner import Owner
+from mmrs_runtime.bus.owner import Owner
 from mmrs_runtime.records.steps import StepRecord
 
 RUN = "run-0"

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from mmrs_runtime.bus.meeting import Beginning
-from mmrs_runtime.bus.roster import Roster
+from mmrs_runtime.bus.watching import Roster
 from mmrs_runtime.bus.words import CommandId, Meet
 
 

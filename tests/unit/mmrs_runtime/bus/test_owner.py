@@ -6,8 +6,8 @@ from dataclasses import replace
 
 import pytest
 
-from mmrs_runtime.bus.owners.journal import FileJournal
-from mmrs_runtime.bus.owners.owner import KEPT_SECONDS, Owned, Owner
+from mmrs_runtime.bus.journal import FileJournal
+from mmrs_runtime.bus.owner import KEPT_SECONDS, Owned, Owner
 from mmrs_runtime.bus.words import REACH, Begin, CommandId, Commit, Prepare, Withdraw
 
 OWNED = Owned("b", ("go", "stay"), {"go": ("a", "c"), "stay": ("a",)}, {"go": ("a", "c")})
@@ -247,7 +247,7 @@ def test_a_journal_of_another_run_is_not_taken_up(owner, journal):
 def test_a_line_that_was_cut_off_counts_as_not_written(owner, journal):
     owner.commit(commit(1))
     with journal._path.open("a") as file:
-        file.write('{"set": ["go"], "acti')
+        file.write('{"do": "commit", "slots": ["go"], "acti')
     restarted = again(journal)
     assert restarted.state("go", 0.0).version == 1
     restarted.commit(commit(2, 2, active=False))
@@ -263,18 +263,20 @@ def test_a_damaged_line_is_told_with_its_place(owner, journal):
 
 
 DAMAGED = [
-    {"set": []},
-    {"set": 5},
-    {"set": ["nothing"], "active": True, "lamport": 1, "run": "run", "sender": "a", "incarnation": "1"},
-    {"set": ["go"], "active": 1, "lamport": 1},
-    {"set": ["go"], "active": True, "lamport": "x"},
+    {"do": "commit", "slots": []},
+    {"do": "commit", "slots": 5},
+    {"do": "commit", "slots": ["nothing"], "active": True, "lamport": 1},
+    {"do": "commit", "slots": ["go"], "active": 1, "lamport": 1},
+    {"do": "commit", "slots": ["go"], "active": True, "lamport": "x"},
     {"started": "x"},
     {"started": 1, "robot": "another", "run": "run"},
-    {"left": ["a"], "lamport": 1},
-    {"freed": None},
-    {"begun": [["go", True]]},
-    {"kept": ["nothing"], "round": 1, "most": 1},
-    {"kept": ["go"], "round": 1},
+    {"do": "leave", "sender": ["a"], "lamport": 1},
+    {"do": "withdraw", "round": None},
+    {"do": "begin", "recorded": [["go", True]]},
+    {"do": "begin", "recorded": [["nothing", True, 1]]},
+    {"do": "prepare", "slots": ["nothing"], "round": 1, "active": False, "lamport": 1},
+    {"do": "prepare", "slots": ["go"], "round": 1, "active": False},
+    {"do": "meet", "robots": 1},
 ]
 
 

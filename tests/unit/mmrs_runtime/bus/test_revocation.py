@@ -17,7 +17,7 @@ from mmrs_core.cli.running import run_command
 from mmrs_runtime.bus.carriers.renewing import Renewing
 from mmrs_runtime.bus.carriers.revocation import REVOKED, read_list, serial_of, valid_name
 from mmrs_runtime.bus.carriers.sessions import Endpoints, admitted, configuration, papers_of
-from mmrs_runtime.bus.troubles import Net
+from mmrs_runtime.bus.threads import Net
 
 NOW = datetime.now(UTC)
 ALL = ["a", "b", "observer"]

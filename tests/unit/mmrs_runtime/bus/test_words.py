@@ -8,7 +8,6 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from mmrs_runtime.bus.reading import Unreadable, answer_in, request_in, written
 from mmrs_runtime.bus.words import (
     LARGEST,
     LONGEST,
@@ -21,7 +20,11 @@ from mmrs_runtime.bus.words import (
     Leave,
     Meet,
     Prepare,
+    Unreadable,
     Withdraw,
+    answer_in,
+    request_in,
+    written,
 )
 
 NUMBERS = st.integers(0, LARGEST)

@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from enum import Enum
 
-from ..words import Answer, CommandId, Commit, Find, Prepare, Request, Withdraw
+from .words import Answer, CommandId, Commit, Find, Prepare, Request, Withdraw
 
 ROUND_SECONDS, LONGEST_ROUND = 0.6, 5.0
 """How long owners have to answer before all are asked anew, growing with each round: radios are slow."""
@@ -89,6 +89,11 @@ class Errand:
         self._open = set(parts)
         if latched:
             self._grant(least := clock(), least + reach)
+
+    @property
+    def is_granted(self) -> bool:
+        """Return whether its logical time is known, so that it can be recorded."""
+        return self.phase in (Phase.GRANTED, Phase.SENDING, Phase.DONE)
 
     @property
     def waiting(self) -> tuple[str, ...]:

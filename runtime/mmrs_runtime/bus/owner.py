@@ -17,29 +17,28 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
-from ..admission import STRANGE
-from ..reading import Unreadable
-from ..words import REACH, Answer, Begin, CommandId, Commit, Find, Prepare, SlotState, Withdraw
-from .journal import Journal
-from .latest import Latest, Starts
-from .remembered import (
-    Line,
-    begun_in,
-    begun_line,
-    freed_in,
-    freed_line,
-    kept_in,
-    kept_line,
-    left_in,
-    left_line,
-    set_in,
-    set_line,
-    started_in,
-    started_line,
-    tells_of_more_than_starts,
-    used_line,
+from .journal import Journal, Line
+from .slot import Kept, Latest, Slot, Starts
+from .words import (
+    REACH,
+    Answer,
+    Begin,
+    CommandId,
+    Commit,
+    Find,
+    Leave,
+    Prepare,
+    Request,
+    SlotState,
+    Unreadable,
+    Withdraw,
+    content_of,
+    number_in,
+    text_in,
+    word_in,
 )
-from .slot import Kept, Slot
+
+STRANGE = "not a word of this run and plan"
 
 KEPT_SECONDS = 10.0
 """How long a slot is kept for a sender from which nothing is heard; senders repeat themselves sooner."""
@@ -123,12 +122,12 @@ class Owner:
     def started(self, number: int) -> None:
         """Keep that this owner was started again."""
         self.start = number
-        self._journal.keep(started_line(number, self.robot, self._run))
+        self._journal.keep({"started": number, "robot": self.robot, "run": self._run})
 
     def use(self) -> None:
         """Keep that the robot itself takes part."""
         if not self.used:
-            self._journal.keep(used_line(self.robot))
+            self._journal.keep({"used": self.robot})
             self.used = True
 
     def prepare(self, asked: Prepare, now: float, *, here: bool = False) -> Answer:
@@ -155,7 +154,7 @@ class Owner:
         if why := self._fault(sent.id, sent.slots, sent.active):
             return Answer("refused", why=why)
         if sent.id not in self._applied:
-            self._journal.keep(set_line(sent))
+            self._keep(sent)
             self._apply(sent)
         return Answer("applied")
 
@@ -164,7 +163,7 @@ class Owner:
         if why := self._fault(given_up.id, (), True):
             return Answer("refused", why=why)
         if any(slot.may_be_reset_by(given_up.id) for slot in self._slots.values()):
-            self._journal.keep(freed_line(given_up))
+            self._keep(given_up)
         self._free(given_up)
         return Answer("done")
 
@@ -177,15 +176,15 @@ class Owner:
             return Answer("refused", why=why)
         if self._begun.get(begun.id.sender, "") < begun.id.incarnation:
             if begun.recorded or not self._starts.is_first(begun.id):
-                self._journal.keep(begun_line(begun))
+                self._keep(begun)
             self._apply_recorded(begun)
         return Answer("done")
 
-    def leave(self, sender: str, lamport: int) -> Answer:
-        """Note that a robot has ended at that logical time."""
-        if sender not in self._left:
-            self._journal.keep(left_line(sender, lamport))
-            self._see_off(sender, lamport)
+    def leave(self, farewell: Leave) -> Answer:
+        """Note that a robot has ended."""
+        if farewell.id.sender not in self._left:
+            self._keep(farewell)
+            self._see_off(farewell)
         return Answer("done")
 
     def repeat(self, sent: Commit) -> None:
@@ -272,12 +271,17 @@ class Owner:
         least = max(asked.lamport, *(slot.state.lamport + 1 for slot in slots))
         kept = Kept(asked.id, asked.round, asked.active, least + REACH, heard)
         if not asked.active:
-            self._journal.keep(kept_line(asked, kept.most))
+            self._keep(replace(asked, lamport=least))
         self._kept.update(asked.slots)
         for slot in slots:
             slot.keep(kept)
         self._open(asked)
         return Answer("granted", least)
+
+    def _keep(self, word: Request) -> None:
+        """Have the journal tell of a word that is obeyed, unless the slots end with this process."""
+        if not self._trusting:
+            self._journal.keep(content_of(word))
 
     def _apply(self, sent: Commit) -> None:
         self._applied.add(sent.id)
@@ -311,9 +315,9 @@ class Owner:
         self._starts.add(id)
         self._latest.settle(id, round, for_good=id in self._applied)
 
-    def _see_off(self, sender: str, lamport: int) -> None:
-        self._left[sender] = lamport
-        self.lamport = max(self.lamport, lamport)
+    def _see_off(self, farewell: Leave) -> None:
+        self._left[farewell.id.sender] = farewell.lamport
+        self.lamport = max(self.lamport, farewell.lamport)
 
     def _end_if_lost(self, slot: Slot, now: float) -> None:
         kept = slot.kept
@@ -324,23 +328,42 @@ class Owner:
         """Go through a line of the journal as through what it tells of."""
         if line.get("run", self._run) != self._run:
             raise ValueError(f"{self.robot!r}: slots were kept in run {line['run']!r}, not {self._run!r}")
-        self.used = self.used or tells_of_more_than_starts(line)
         if "started" in line:
-            self.start = started_in(line, self.robot)
-        elif "left" in line:
-            self._see_off(*left_in(line))
-        elif "set" in line:
-            self._apply(set_in(line, self._slots))
-        elif "freed" in line:
-            self._free(freed_in(line))
-        elif "begun" in line:
-            self._apply_recorded(begun_in(line, self._slots))
-        elif "kept" in line:
-            self._keep_again(*kept_in(line, self._slots))
+            self.start = number_in(line, "started")
+            if (robot := text_in(line, "robot")) != self.robot:
+                raise Unreadable(f"of robot {robot!r}, not {self.robot!r}")
+        elif "again" not in line:
+            self.used = True
+            if "used" not in line:
+                self._obey_again(word_in(line))
 
-    def _keep_again(self, asked: Prepare, most: int) -> None:
+    def _obey_again(self, word: Request) -> None:
+        if unknown := [name for name in _slots_in(word) if name not in self._slots]:
+            raise Unreadable(f"{unknown[0]!r}: no slot of {self.robot!r}")
+        match word:
+            case Commit():
+                self._apply(word)
+            case Prepare():
+                self._keep_again(word)
+            case Withdraw():
+                self._free(word)
+            case Begin():
+                self._apply_recorded(word)
+            case Leave():
+                self._see_off(word)
+            case _:
+                raise Unreadable("nothing that is kept")
+
+    def _keep_again(self, asked: Prepare) -> None:
         """Keep slots as before; nothing was heard of the sender since, so it is in doubt at once."""
+        kept = Kept(asked.id, asked.round, asked.active, asked.lamport + REACH, float("-inf"))
         self._kept.update(asked.slots)
         for name in asked.slots:
-            self._slots[name].kept = Kept(asked.id, asked.round, asked.active, most, float("-inf"))
+            self._slots[name].kept = kept
         self._open(asked)
+
+
+def _slots_in(word: Request) -> tuple[str, ...]:
+    if isinstance(word, Begin):
+        return tuple(name for name, _, _ in word.recorded)
+    return word.slots if isinstance(word, Prepare | Commit) else ()

@@ -1,14 +1,54 @@
-"""A thread that does what is due, as long as anything is."""
+"""The threads of one end of the bus: they do what is due, and whatever fails, go on and tell people."""
 
 from __future__ import annotations
 
+import sys
 import threading
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 
-from .troubles import SORE_SECONDS, Net
+SORE_SECONDS = 0.5
+"""How long something that fails is left alone."""
 
 LONGEST_SLEEP = 3600.0
+
+MOST_TOLD = 100
+"""What goes wrong in more different ways than that is no longer told each time."""
+
+Tell = Callable[[str], None]
+
+
+def tell_people(line: str) -> None:
+    """Write a line to standard error."""
+    print(f"bus: {line}\n", end="", file=sys.stderr, flush=True)
+
+
+class Net:
+    """Catches what nobody else does, and tells it once."""
+
+    def __init__(self, tell: Tell = tell_people) -> None:
+        """Tell people by a function, which may be called from any thread."""
+        self._tell = tell
+        self._told: set[str] = set()
+
+    @contextmanager
+    def under(self, what: str) -> Iterator[None]:
+        """Go on behind the block whatever it raises; `what` is being done."""
+        try:
+            yield
+        except Exception as error:
+            self.tell(f"{what}: fails, and goes on: {error!r}")
+
+    def tell(self, line: str) -> None:
+        """Tell people, unless they were told the same before."""
+        if line not in self._told and len(self._told) < MOST_TOLD:
+            self._told.add(line)
+            self._tell(line)
+
+    def forget(self, line: str) -> None:
+        """Have something told again when it happens again."""
+        self._told.discard(line)
 
 
 class Pacing:
@@ -50,8 +90,8 @@ class Pacing:
 
     def keep_going(self) -> None:
         """Take note that something may be due; to be called with the lock."""
-        due = self._next_due() < float("inf")
-        if self._threaded and self._thread is None and not self.is_over and due:
+        may_begin = self._threaded and self._thread is None and not self.is_over
+        if may_begin and self._next_due() < float("inf"):
             self._thread = threading.Thread(target=self._work, name="bus", daemon=True)
             self._thread.start()
         self._lock.notify_all()
