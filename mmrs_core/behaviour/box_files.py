@@ -8,11 +8,10 @@ from dataclasses import dataclass
 from itertools import pairwise
 from pathlib import Path
 
-from mmrs_core.behaviour.blackbox import Entry, Tell, entries_of
+from mmrs_core.errors import UnreadableError
+from mmrs_runtime.records.blackbox import BOX, BOX_SUFFIX
+from mmrs_runtime.records.entries import Entry, Tell, entries_of
 from mmrs_runtime.records.steps import SUFFIX
-
-BOX = ".blackbox"
-BOX_SUFFIX = ".ndjson"
 
 _PART = re.compile(rf"(?P<stem>.+){re.escape(BOX)}(?:\.(?P<number>\d+))?{re.escape(BOX_SUFFIX)}")
 
@@ -38,7 +37,11 @@ class BlackBox:
             UnreadableError: if a part cannot be opened.
         """
         for part in self.parts:
-            yield from entries_of(part, tell)
+            try:
+                yield from entries_of(part, tell)
+            except OSError as error:
+                why = error.strerror or error
+                raise UnreadableError(f"{part}: cannot be read as a black box: {why}") from error
 
 
 def black_boxes(paths: Iterable[Path]) -> tuple[BlackBox, ...]:

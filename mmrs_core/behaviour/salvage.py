@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable
 from pathlib import Path
 
-from mmrs_core.behaviour.blackbox import Damage
 from mmrs_core.errors import UnreadableError
+from mmrs_runtime.records.entries import Damage
 from mmrs_runtime.records.steps import SUFFIX, StepRecord, step_in
 
 

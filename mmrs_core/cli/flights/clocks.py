@@ -12,8 +12,8 @@ from datetime import datetime
 
 import numpy as np
 
-from mmrs_core.behaviour.blackbox import Entry
 from mmrs_core.geometry.frames import Floats
+from mmrs_runtime.records.entries import Entry
 
 SAME = 0.02
 """Seconds by which the clocks of robots of one process differ at most, as they are written."""

@@ -8,7 +8,6 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from types import MappingProxyType
 
-from mmrs_core.behaviour.blackbox import Damage, Entry, number_of
 from mmrs_core.behaviour.box_files import BlackBox, black_boxes, is_part
 from mmrs_core.behaviour.program import Program, RobotProgram
 from mmrs_core.behaviour.salvage import logs_in, salvage_log
@@ -18,6 +17,7 @@ from mmrs_core.cli.flights.values import Flight, Flown
 from mmrs_core.contributions.rules import RobotKind
 from mmrs_core.errors import InvalidModelError, UnreadableError
 from mmrs_core.scene import Name, RobotType
+from mmrs_runtime.records.entries import Damage, Entry, number_of
 from mmrs_runtime.records.steps import StepRecord
 
 SIMULATION = "simulation"

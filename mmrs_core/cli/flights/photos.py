@@ -7,13 +7,13 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
 
-from mmrs_core.behaviour.blackbox import number_of
 from mmrs_core.behaviour.program import Action, Move, Program, RobotProgram
 from mmrs_core.cli.flights.fixes import Zero, zero_of
 from mmrs_core.cli.flights.values import Flight, Flown
 from mmrs_core.contributions.rules import RobotKind
 from mmrs_core.mavlink.wiring import DIGICAM_CONTROL, IMAGE_START_CAPTURE, Unwired, Wired, wiring_of
 from mmrs_core.scene import Name, Position, RobotType
+from mmrs_runtime.records.entries import number_of
 
 TAKEN, UNCONFIRMED, SIMULATED = "taken", "not confirmed", "simulated"
 _LIKE_PHOTO = re.compile(r"photo|picture|image|snap|capture", re.IGNORECASE)

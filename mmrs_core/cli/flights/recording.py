@@ -6,7 +6,7 @@ import json
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 
-from mmrs_core.behaviour.box_files import BOX, BOX_SUFFIX, black_boxes
+from mmrs_core.behaviour.box_files import black_boxes
 from mmrs_core.behaviour.program import Program, RobotProgram
 from mmrs_core.cli.flights.fixes import zero_of
 from mmrs_core.cli.flights.gathering import SIMULATION
@@ -17,12 +17,13 @@ from mmrs_core.mavlink.vehicles import vehicle_class
 from mmrs_core.resources import named
 from mmrs_core.runtime.run import Run
 from mmrs_core.scene import Name, RobotType
+from mmrs_runtime.records.blackbox import black_box_path
 from mmrs_runtime.records.steps import log_name
 
 
 def box_name(robot: str) -> str:
     """Return the name of a robot's black box, which lies beside its log."""
-    return f"{Path(log_name(robot)).stem}{BOX}{BOX_SUFFIX}"
+    return black_box_path(Path(log_name(robot))).name
 
 
 def refuse_flights(folder: Path) -> None:

@@ -9,11 +9,11 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from mmrs_core.behaviour.blackbox import Entry
 from mmrs_core.geometry.frames import Floats
 from mmrs_core.scene import Position
 from mmrs_runtime.faults import TAKEN_OVER
 from mmrs_runtime.policies import EVENTS, NOTHING
+from mmrs_runtime.records.entries import Entry
 from mmrs_runtime.records.steps import StepRecord
 
 _OFTEN = 0.5

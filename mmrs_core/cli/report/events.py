@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
 
-from mmrs_core.behaviour.blackbox import Entry, number_of
 from mmrs_core.cli.figures import quantity
 from mmrs_core.cli.flights.fixes import Zero
 from mmrs_core.cli.flights.places import Place
@@ -13,6 +12,7 @@ from mmrs_core.cli.report.privacy import without_secrets
 from mmrs_core.cli.report.values import Event, Reading
 from mmrs_core.scene import Position
 from mmrs_runtime.policies import NOTHING
+from mmrs_runtime.records.entries import Entry, number_of
 
 MOST_TEXTS = 50
 """How many warnings of one vehicle are told."""

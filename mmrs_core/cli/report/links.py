@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import re
 
-from mmrs_core.behaviour.blackbox import number_of
 from mmrs_core.cli.flights.values import Flown
 from mmrs_core.cli.report.values import LinkReport
+from mmrs_runtime.records.entries import number_of
 
 _SORT = re.compile(r"(udp|tcp|serial|simulation|can)", re.IGNORECASE)
 _ACCEPTED = frozenset({"ACCEPTED", "IN_PROGRESS"})

@@ -37,6 +37,10 @@ from pathlib import Path
 from typing import IO
 
 from ..screen import say
+from .entries import entry_in
+
+BOX = ".blackbox"
+BOX_SUFFIX = ".ndjson"
 
 LARGEST_PART = 32 * 1024 * 1024
 """Bytes after which a new file is begun."""
@@ -54,7 +58,7 @@ OWED = 1000
 
 def black_box_path(log: Path) -> Path:
     """Return where the black box of a robot lies, given the path of its log of steps."""
-    return log.with_name(f"{log.stem}.blackbox.ndjson")
+    return log.with_name(f"{log.stem}{BOX}{BOX_SUFFIX}")
 
 
 def last_time(path: Path) -> float:
@@ -65,32 +69,25 @@ def last_time(path: Path) -> float:
             lines = file.read().splitlines()
     except OSError:
         return 0.0
-    return next((time for line in reversed(lines) if (time := _time_in(line))), 0.0)
+    entries = (entry_in(line)[0] for line in reversed(lines))
+    return next((entry.time for entry in entries if entry is not None), 0.0)
 
 
 def plan_of(path: Path) -> str:
     """Return which plan of the mission a black box tells of at its beginning; empty: it does not say."""
-    oldest = path.with_suffix(".0001.ndjson")
+    oldest = _part(path, 1)
     try:
         with (oldest if oldest.exists() else path).open("rb") as file:
             lines = file.read(LONGEST_END).splitlines()
     except OSError:
         return ""
-    told = (found.get("plan") for line in lines if (found := _object_in(line)).get("kind") == "start")
+    entries = (entry for line in lines if (entry := entry_in(line)[0]) is not None)
+    told = (entry.content.get("plan") for entry in entries if entry.kind == "start")
     return next((plan for plan in told if isinstance(plan, str)), "")
 
 
-def _time_in(line: bytes) -> float:
-    told = _object_in(line).get("time")
-    return float(told) if isinstance(told, int | float) and isfinite(told) and told > 0 else 0.0
-
-
-def _object_in(line: bytes) -> Mapping[str, object]:
-    try:
-        found = json.loads(line)
-    except (ValueError, RecursionError):
-        return {}
-    return found if isinstance(found, dict) else {}
+def _part(path: Path, number: int) -> Path:
+    return path.with_suffix(f".{number:04d}{BOX_SUFFIX}")
 
 
 class BlackBox:
@@ -168,7 +165,7 @@ class BlackBox:
         file = self._file if self._file is not None else self._open()
         if file.tell() + len(data) > self._largest and file.tell() > 0:
             self._let_go()
-            self._path.rename(self._part())
+            self._path.rename(self._next_part())
             file = self._open()
         file.write(data)
         file.flush()
@@ -185,9 +182,9 @@ class BlackBox:
                 file.write(b"\n")
         return file
 
-    def _part(self) -> Path:
+    def _next_part(self) -> Path:
         number = 1
-        while (part := self._path.with_suffix(f".{number:04d}.ndjson")).exists():
+        while (part := _part(self._path, number)).exists():
             number += 1
         return part
 

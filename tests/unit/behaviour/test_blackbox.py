@@ -9,10 +9,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from mmrs_core.behaviour.blackbox import LONGEST_LINE, entries_of
-from mmrs_core.behaviour.box_files import black_boxes, is_part
+from mmrs_core.behaviour.box_files import BlackBox, black_boxes, is_part
 from mmrs_core.errors import UnreadableError
 from mmrs_runtime.records.blackbox import BlackBox as Writer
+from mmrs_runtime.records.entries import LONGEST_LINE, entries_of
 
 
 def line(time: float = 0.0, kind: str = "text", **content: object) -> str:
@@ -86,7 +86,7 @@ def test_a_line_longer_than_any_entry_is_told_once(box):
 
 def test_a_file_that_cannot_be_opened_is_named(tmp_path):
     with pytest.raises(UnreadableError, match=r"gone\.blackbox\.ndjson: cannot be read"):
-        read(tmp_path / "gone.blackbox.ndjson")
+        list(BlackBox("gone", (tmp_path / "gone.blackbox.ndjson",)).entries(pytest.fail))
 
 
 def test_parts_are_read_oldest_first(tmp_path):

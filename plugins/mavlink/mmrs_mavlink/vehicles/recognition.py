@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Sequence
 from math import inf
 from pathlib import Path
 
 from mmrs_runtime.faults import Refused
+from mmrs_runtime.records.entries import entry_in
 
 from ..links.link import Link
 from ..program import Geographic, Place, Robot
@@ -102,16 +102,9 @@ def refuse_neighbours(robot: Robot, start: Place, here: Place) -> None:
 def system_of(box: Path) -> int:
     """Return the MAVLink system of the vehicle of a robot's black box; 0 where it does not say."""
     for path in (*sorted(box.parent.glob(f"{box.stem}.*.ndjson")), box):
-        for line in path.read_text("ascii", "replace").splitlines() if path.exists() else ():
-            if '"start"' in line and (found := _system(line)):
-                return found
+        for line in path.read_bytes().splitlines() if path.exists() else ():
+            entry = entry_in(line)[0] if b'"start"' in line else None
+            system = entry.content.get("system") if entry is not None and entry.kind == "start" else None
+            if isinstance(system, int) and system:
+                return system
     return 0
-
-
-def _system(line: str) -> int:
-    try:
-        content = json.loads(line)
-    except (ValueError, RecursionError):
-        return 0
-    system = content.get("system") if isinstance(content, dict) and content.get("kind") == "start" else None
-    return system if isinstance(system, int) else 0

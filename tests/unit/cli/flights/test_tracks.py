@@ -7,12 +7,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from mmrs_core.behaviour.blackbox import Entry
 from mmrs_core.cli.flights.fixes import Fixes, Zero, zero_of
 from mmrs_core.mavlink.earth import degrees_of
 from mmrs_core.scene import Frame
 from mmrs_core.testing.programs import L_AQUILA, program, quad, robot_program, take_off
 from mmrs_core.transformation.kinds import PLAIN_ROBOT
+from mmrs_runtime.records.entries import Entry
 
 HOME = (100.0, -50.0, 7.0)
 UP = [take_off("up", 5.0)]

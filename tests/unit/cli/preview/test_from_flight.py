@@ -7,12 +7,12 @@ from dataclasses import replace
 import pytest
 from flights_by_hand import flight_as, track_of
 
-from mmrs_core.behaviour.blackbox import Entry
 from mmrs_core.cli.flights.planned import Planned
 from mmrs_core.cli.preview.from_flight import picture_of_flight
 from mmrs_core.cli.preview.from_run import Surroundings
 from mmrs_core.cli.preview.map_drawing import map_markup
 from mmrs_core.cli.preview.page import page
+from mmrs_runtime.records.entries import Entry
 from mmrs_runtime.records.steps import StepRecord
 
 

@@ -13,8 +13,6 @@ from math import isfinite
 from pathlib import Path
 from typing import IO
 
-from mmrs_core.errors import UnreadableError
-
 LONGEST_LINE = 1_000_000
 
 _OWN = frozenset({"run", "robot", "time", "wall", "kind"})
@@ -59,18 +57,15 @@ def entries_of(path: Path, tell: Tell) -> Iterator[Entry]:
     """Yield the entries of one file; tell what cannot be read.
 
     Raises:
-        UnreadableError: if the file cannot be opened.
+        OSError: the file cannot be read.
     """
-    try:
-        with path.open("rb") as file:
-            for number, line in enumerate(_lines(file), start=1):
-                entry, fault = _entry(line)
-                if entry is not None:
-                    yield entry
-                elif fault:
-                    tell(Damage(path.name, number, fault))
-    except OSError as error:
-        raise UnreadableError(f"{path}: cannot be read as a black box: {error.strerror or error}") from error
+    with path.open("rb") as file:
+        for number, line in enumerate(_lines(file), start=1):
+            entry, fault = entry_in(line)
+            if entry is not None:
+                yield entry
+            elif fault:
+                tell(Damage(path.name, number, fault))
 
 
 def _lines(file: IO[bytes]) -> Iterator[bytes]:
@@ -81,7 +76,7 @@ def _lines(file: IO[bytes]) -> Iterator[bytes]:
             line = file.readline(LONGEST_LINE)
 
 
-def _entry(line: bytes) -> tuple[Entry | None, str]:
+def entry_in(line: bytes) -> tuple[Entry | None, str]:
     """Return an entry, or None and what keeps the line from being one; neither for an empty line."""
     if not line.strip():
         return None, ""
