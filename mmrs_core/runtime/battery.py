@@ -6,13 +6,14 @@ energy of its batteries.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from functools import lru_cache
 from math import inf
 
 from mmrs_core.contributions.execution import Fault
 from mmrs_core.runtime.escape import Escapes
 from mmrs_core.runtime.legs import Flow, Leg, response_stretches
-from mmrs_core.scene import Kinematics, Policy
+from mmrs_core.scene import Kinematics, Policy, Position
 from mmrs_runtime.policies import response_to
 
 SLACK = 1e-6
@@ -38,6 +39,7 @@ class Battery:
         self.capacity = nominal + self._extra
         self._kinematics, self._escapes = kinematics, escapes
         self._response = response_to("BATTERY_LOW", policies)
+        self._needs = lru_cache(maxsize=4)(self._response_needs)  # looked at again and again at one place
 
     def energy(self, charge: float) -> float | None:
         """Return joules; inf for a wired robot, None where the type does not tell."""
@@ -66,18 +68,32 @@ class Battery:
             yield leg.empty_at
         if late == inf or self._to_spare(leg, late, flow) > 0.0:
             return
+        if early == now and self._to_spare(leg, now, flow) <= 0.0:
+            return  # they have got low before
+        to_spare = self._to_spare_in(leg, flow)
         while late - early > SLACK:
             middle = (early + late) / 2.0
-            early, late = (middle, late) if self._to_spare(leg, middle, flow) > 0.0 else (early, middle)
+            early, late = (middle, late) if to_spare(middle) > 0.0 else (early, middle)
         yield late
+
+    def _to_spare_in(self, leg: Leg, flow: Flow) -> Callable[[float], float]:
+        """Return what gives `_to_spare` at any time of a leg, at little cost where the robot stays."""
+        if leg.start != leg.finish:
+            return lambda time: self._to_spare(leg, time, flow)
+        needs = self._needs(leg.start, False, flow)
+        return lambda time: leg.charge_at(time) - needs
 
     def _to_spare(self, leg: Leg, time: float, flow: Flow) -> float:
         """Return the seconds left beyond what the response takes; inf where it takes none."""
         if self._response in _STAYING:
             return inf
-        path = self._escapes.straight(self._response, leg.position(time))
-        way = response_stretches(path, self._kinematics, flow, under_way=leg.speed > 0.0)
-        return leg.charge_at(time) - sum(each.seconds * each.rate for each in way)
+        return leg.charge_at(time) - self._needs(leg.position(time), leg.speed > 0.0, flow)
+
+    def _response_needs(self, here: Position, under_way: bool, flow: Flow) -> float:
+        """Return the seconds at mean power that the response takes from there."""
+        path = self._escapes.straight(self._response, here)
+        way = response_stretches(path, self._kinematics, flow, under_way=under_way)
+        return sum([each.seconds * each.rate for each in way])
 
 
 def _capacity(kinematics: Kinematics) -> float:

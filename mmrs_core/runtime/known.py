@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from mmrs_core.behaviour.as_scene import scene_of
 from mmrs_core.behaviour.program import BEHAVIOUR, Action
 from mmrs_core.behaviour.semantics import NOTIFY
@@ -25,9 +27,10 @@ def kinematics_of(given: BackendInput) -> Kinematics:
     if kind is None:
         who = f"robot '{given.robot.id}': type '{given.type.name}'"
         raise UnsupportedError(f"{who}: nobody contributed how it moves", [who])
-    types = {robot.type_name: given.type for robot in given.program.robots}
-    scene = scene_of(given.program, types, environment=given.environment, reserve=0.0)
-    return kind.kinematics(scene.robot(given.robot.id), scene)
+    alone = replace(given.program, robots=(given.robot,))
+    types = {given.robot.type_name: given.type}
+    scene = scene_of(alone, types, environment=given.environment, reserve=0.0)
+    return kind.kinematics(scene.robots[0], scene)
 
 
 def move_kinds_of(given: BackendInput) -> dict[str, MoveKind]:

@@ -46,7 +46,7 @@ class Leg:
     @property
     def speed(self) -> float:
         """Return its speed in metres per second."""
-        way = hypot(*(b - a for a, b in zip(self.start, self.finish, strict=True)))
+        way = _length(self.start, self.finish)
         return way / (self.end - self.begin) if way > 0.0 else 0.0
 
     @property
@@ -66,9 +66,8 @@ class Leg:
 
     def position(self, time: float) -> Position:
         """Return where the robot is."""
-        part = self.part(time)
-        east, north, up = (a + part * (b - a) for a, b in zip(self.start, self.finish, strict=True))
-        return (east, north, up)
+        part, (east, north, up), goal = self.part(time), self.start, self.finish
+        return (east + part * (goal[0] - east), north + part * (goal[1] - north), up + part * (goal[2] - up))
 
     def heading(self, time: float) -> float:
         """Return degrees clockwise from north, 0 to 360."""
@@ -122,7 +121,7 @@ def stretches(
     legs = tuple(pairwise(path)) or ((path[0], path[0]),)
     nominal = [_leg_seconds(a, b, speed, kinematics) for a, b in legs]
     whole = sum(nominal)
-    length = sum(hypot(*(y - x for x, y in zip(a, b, strict=True))) for a, b in legs)
+    length = sum([_length(a, b) for a, b in legs])
     pace = length / whole if 0.0 < whole < inf else speed
     wanted = whole + _acceleration_seconds(length, pace, kinematics.acceleration, stops)
     seconds = min(max(wanted, bounds[0]), bounds[1])
@@ -197,12 +196,24 @@ def current(environment: Mapping[str, float]) -> Flow:
     return (speed * sin(direction), speed * cos(direction))
 
 
+def _length(start: Position, finish: Position) -> float:
+    return hypot(finish[0] - start[0], finish[1] - start[1], finish[2] - start[2])
+
+
 def _leg_seconds(start: Position, finish: Position, speed: float, kinematics: Kinematics) -> float:
     level, rise = hypot(finish[0] - start[0], finish[1] - start[1]), finish[2] - start[2]
-    times = [(level, speed), (rise, kinematics.climb), (-rise, kinematics.descent)]
-    return (
-        max(way / pace if pace > 0.0 else inf for way, pace in times if way > 0.0) if level or rise else 0.0
+    across = _seconds(level, speed)
+    if rise == 0.0:
+        return across
+    return max(
+        across, _seconds(rise, kinematics.climb) if rise > 0.0 else _seconds(-rise, kinematics.descent)
     )
+
+
+def _seconds(way: float, pace: float) -> float:
+    if way == 0.0:
+        return 0.0
+    return way / pace if pace > 0.0 else inf
 
 
 def _acceleration_seconds(length: float, speed: float, acceleration: float, stops: int) -> float:

@@ -12,6 +12,7 @@ from __future__ import annotations
 
 from bisect import bisect_right
 from math import hypot, inf
+from operator import attrgetter
 from pathlib import Path
 
 from mmrs_core.behaviour.as_scene import robot_of
@@ -43,6 +44,7 @@ from mmrs_runtime.policies import in_precedence
 RECHARGE = (BEHAVIOUR, "Recharge")
 STOP = (BEHAVIOUR, "Stop")
 SURROUNDINGS = "surroundings"
+_BEGIN = attrgetter("begin")
 
 
 class SimulatedRobot:
@@ -73,6 +75,7 @@ class SimulatedRobot:
         self._escapes = Escapes(given, self._kinematics, self._robot.home)
         self._battery = Battery(self._kinematics, self._escapes, policies)
         self.notes: list[str] = []
+        self._wind, self._current = wind(given.environment), current(given.environment)
         self._grounded, self._done, self._halted, self._rolling = True, False, False, False
         self._move: Move | None = None
         self._fault: Fault | None = None
@@ -135,9 +138,10 @@ class SimulatedRobot:
         if self._fault is not None:
             return now
         flow = self._flow()
-        pending = self._legs[self._leg_index(now) :]
-        events = (event for leg in pending for event in self._battery.events(leg, now, flow))
-        return min((event for event in (self._legs[-1].end, *events) if event > now), default=inf)
+        events = [self._legs[-1].end]
+        for leg in self._legs[self._leg_index(now) :]:
+            events += self._battery.events(leg, now, flow)
+        return min([event for event in events if event > now], default=inf)
 
     def state(self, now: float) -> RobotState:
         """Return where the robot is."""
@@ -268,10 +272,10 @@ class SimulatedRobot:
             self._append((Stretch(here, here, now - last.end, 1.0),), last.end)
 
     def _leg_index(self, now: float) -> int:
-        index = bisect_right(
-            self._legs, now, lo=min(self._first, len(self._legs) - 1), key=lambda leg: leg.begin
-        )
-        return max(0, index - 1)
+        last = len(self._legs) - 1
+        if self._legs[last].begin <= now:
+            return last
+        return max(0, bisect_right(self._legs, now, lo=min(self._first, last), key=_BEGIN) - 1)
 
     def _leg(self, now: float) -> Leg:
         return self._legs[self._leg_index(now)]
@@ -292,11 +296,11 @@ class SimulatedRobot:
     def _flow(self) -> Flow:
         """Return the velocity of what the robot moves in: the air, the water, or neither."""
         if self._kinematics.launches:
-            return STILL if self._grounded else wind(self._given.environment)
+            return STILL if self._grounded else self._wind
         surface = self._given.program.frame.surface
         dives = self._kinematics.floor < surface >= self._kinematics.ceiling
         in_water = dives or self._legs[-1].finish[2] < surface
-        return current(self._given.environment) if in_water else STILL
+        return self._current if in_water else STILL
 
     def _costs_nothing(self) -> bool:
         return self._done or (self._kinematics.launches and self._grounded)

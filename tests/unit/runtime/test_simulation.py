@@ -136,6 +136,19 @@ def test_an_empty_battery_is_a_fault_where_it_runs_out(fly):
     assert last(run).energy == pytest.approx(0.0)
 
 
+def test_a_battery_that_is_low_is_next_worth_a_look_when_it_is_empty(kinds):
+    away, policies = go("g", (30, 0, 0)), (Policy("BATTERY_LOW", "RETURN"),)
+    behaviour = program(robot("r", [away], policies=policies))
+    waiting = SimulatedRobot(given(behaviour, kinds, robot_type(lifetime=100.0)))
+    waiting.begin(away, 0.0)
+    assert waiting.finished(10.0)
+    waiting.wait(10.0)
+    low = waiting.next_event(10.0)
+    assert low == pytest.approx(90.0, abs=1e-3)
+    assert waiting.fault(low).which == "BATTERY_LOW"
+    assert waiting.next_event(low) == pytest.approx(100.0, abs=1e-3)
+
+
 def test_a_battery_also_runs_out_in_a_wait(fly):
     run = fly(
         program(
