@@ -40,7 +40,7 @@ def append_whole(file: IO[bytes], line: bytes, *, at_once: bool = False) -> None
     Raises:
         OSError: it cannot be written; nothing of it is left in the file then. It names the file.
     """
-    end = os.fstat(file.fileno()).st_size
+    end = file.tell()
     try:
         left = line
         while left:

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterable, Mapping
-from dataclasses import asdict, dataclass, fields
+from dataclasses import dataclass, fields
 from hashlib import sha256
 from math import inf
+from operator import attrgetter
 from pathlib import Path
 from urllib.parse import quote
 
@@ -48,6 +49,9 @@ class StepRecord:
 
 
 _FIELDS = tuple(field.name for field in fields(StepRecord))
+_VALUES = attrgetter(*_FIELDS)
+_DENSE = json.JSONEncoder(ensure_ascii=False, separators=(",", ":"), allow_nan=False)
+_SPACED = json.JSONEncoder(allow_nan=False)
 _COUNTS = ("seq", "lamport")
 _NEVER_EMPTY = ("run", "robot", "move")
 
@@ -72,8 +76,7 @@ def to_line(record: StepRecord, *, spaced: bool = False) -> str:
         record: the step.
         spaced: as controllers write it: with blanks between the fields, and in ASCII.
     """
-    separators = (", ", ": ") if spaced else (",", ":")
-    return json.dumps(asdict(record), ensure_ascii=spaced, separators=separators, allow_nan=False)
+    return (_SPACED if spaced else _DENSE).encode(dict(zip(_FIELDS, _VALUES(record), strict=True)))
 
 
 def step_in(line: str) -> StepRecord:
