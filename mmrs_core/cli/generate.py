@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -43,6 +44,14 @@ def generate(
     force: Annotated[
         bool, typer.Option("--force", help="Overwrite files that were changed by hand.")
     ] = False,
+    wheels: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--wheels",
+            metavar="PLATFORM",
+            help="Download the wheels that controllers require on a platform, such as manylinux2014_aarch64.",
+        ),
+    ] = None,
     list_targets: Annotated[bool, typer.Option("--list-targets", help="List the targets.")] = False,
     capabilities: Annotated[
         bool, typer.Option("--capabilities", help="Say what the target, or every target, can express.")
@@ -72,7 +81,7 @@ def generate(
             if value is None
         ]
         raise typer.BadParameter(f"missing: {', '.join(missing)}")
-    order = _Order(target, output, context, robot_files(robots), templates, allow_lossy, force)
+    order = _Order(target, output, context, robot_files(robots), templates, allow_lossy, force, wheels or [])
     written, manifest, asks = _generate(workshop, behaviour_file(behaviour), order)
     if json:
         left_out = {"losses": manifest.losses, "overrides": sorted(manifest.overrides), "asks": asks}
@@ -93,6 +102,7 @@ class _Order:
     templates: Path | None
     allow_lossy: bool
     force: bool
+    platforms: Sequence[str]
 
 
 _MANY = 20
@@ -135,6 +145,7 @@ def _generate(
     from mmrs_core.cli.behaviours import load_behaviour
     from mmrs_core.cli.journey import require_safe, verdicts_of
     from mmrs_core.cli.protection import refuse_inputs
+    from mmrs_core.generation.deployment import fetch
     from mmrs_core.generation.manifest import manifest_in
     from mmrs_core.generation.writing import write
     from mmrs_core.pipeline import render
@@ -156,6 +167,8 @@ def _generate(
     )
     refuse_inputs((order.output / file.path for file in files), workshop.inputs)
     written = write(files, order.output, force=order.force)
+    if order.platforms:
+        fetch(order.output, order.platforms)
     new = (file for file in files if order.output / file.path in written)
     asks = tuple(f"{file.path}: {each}" for file in new for each in file.asks)
     return written, manifest_in(files[-1].content), asks

@@ -74,8 +74,9 @@ class FileSpec:
 
     Attributes:
         path: relative to the folder of the output, with forward slashes, nothing but ASCII.
-        template: name in the target's folder of templates. One that ends in ``.jinja`` is rendered,
-            any other is copied as it is; empty where the file has `data`.
+        template: name in the target's folder of templates, or among the core's for programs in Python,
+            which a target's own may extend as ``python/NAME``. One that ends in ``.jinja`` is rendered, any
+            other is copied as it is; empty where the file has `data`.
         source: a file outside that folder that is copied instead of the template; None: the template.
         view: what the template sees.
         trace: which step serves which move and task, for the manifest.

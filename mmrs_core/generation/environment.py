@@ -33,9 +33,13 @@ from mmrs_core.generation.escaping import (
 )
 from mmrs_core.generation.overrides import Overrides
 from mmrs_core.generation.tracing import Served, Serves, taken_out, unforged
+from mmrs_core.resources import shipped
 
 SHIPPED = "shipped"
 """Before the name of a template: the target's own, also where another takes its place."""
+
+PYTHON = "python"
+"""Before the name of a template: the core's for programs in Python, which any target may use."""
 
 
 class _Rendered(Code):
@@ -56,10 +60,12 @@ class _Environment(Environment):
 def environment_of(target: Target, overrides: Overrides | None = None) -> Environment:
     """Return the environment in which a target's templates are rendered, or those that take their place."""
     environment = environment_in(target.templates, target.filters)
+    common = FileSystemLoader(shipped("codegen_templates") / PYTHON)
+    own = ChoiceLoader([FileSystemLoader(target.templates), common])
+    found: list[BaseLoader] = [own, PrefixLoader({PYTHON: common})]
     if overrides is not None:
-        own = FileSystemLoader(target.templates)
-        shadowing: list[BaseLoader] = [FileSystemLoader(overrides.folder), own, PrefixLoader({SHIPPED: own})]
-        environment.loader = ChoiceLoader(shadowing)
+        found = [FileSystemLoader(overrides.folder), *found, PrefixLoader({SHIPPED: own})]
+    environment.loader = ChoiceLoader(found)
     return environment
 
 

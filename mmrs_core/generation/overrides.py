@@ -75,6 +75,7 @@ def check_known(overrides: Overrides, target: Target, specs: Iterable[FileSpec])
         for path in target.templates.rglob("*")
         if path.is_file() and "__pycache__" not in path.parts
     }
+    templates |= {spec.template for spec in specs if spec.source is None and spec.template}
     copied = {spec.path for spec in specs if spec.source is not None}
     for name in overrides.hashes:
         if name not in templates | copied and not name.rpartition("/")[2].startswith(PART):

@@ -264,9 +264,11 @@ def test_a_vehicle_that_refuses_is_a_fault(controllers, hangar, command):
 
 def test_a_program_that_crashes_leaves_its_robot_holding(controllers, hangar):
     made = controllers(one_drone(hold=5.0))
-    actions = made.folder / "mmrs_flight/steps/doing.py"
-    broken = actions.read_text("utf-8").replace("self._vehicle.operate(", "self._vehicle.no_such_word(")
-    actions.write_text(broken, "utf-8")
+    fleet = made.folder / "fleet.py"
+    breaks = (
+        "from mmrs_mavlink.vehicles.mavlink_vehicle import MavlinkVehicle\n\ndel MavlinkVehicle.operate\n"
+    )
+    fleet.write_text(fleet.read_text("utf-8").replace("if __name__", f"{breaks}if __name__"), "utf-8")
     vehicles, links = hangar(made.program)
     with made.start("fleet.py", *links) as process:
         until(lambda: vehicles["alpha"].autopilot.mode == BRAKE)

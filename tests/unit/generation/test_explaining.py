@@ -53,8 +53,8 @@ def test_a_line_about_a_robot_comes_from_no_move(folder):
     assert serving(folder, "fleet.py", "import robot_beta") == [("controller", "beta", "")]
 
 
-def test_a_line_of_the_runtime_serves_no_robot_in_particular(folder):
-    found = explain(folder / "mmrs_flight" / "program.py", 1)
+def test_a_line_of_the_requirements_serves_no_robot_in_particular(folder):
+    found = explain(folder / "requirements.txt", 1)
     assert (found.target, found.entries) == ("mavlink-python", ())
 
 
@@ -88,8 +88,8 @@ def test_a_file_that_nobody_generated_is_unreadable(folder):
 def test_a_file_is_found_by_whatever_way_leads_to_it(folder, monkeypatch, tmp_path_factory):
     link = tmp_path_factory.mktemp("elsewhere") / "link"
     link.symlink_to(folder)
-    monkeypatch.chdir(folder / "mmrs_flight")
-    ways = (folder / "mmrs_flight" / ".." / "fleet.py", link / "fleet.py", Path("..") / "fleet.py")
+    monkeypatch.chdir(folder / "wheels")
+    ways = (folder / "wheels" / ".." / "fleet.py", link / "fleet.py", Path("..") / "fleet.py")
     assert [explain(way, 1).target for way in ways] == ["mavlink-python"] * 3
 
 

@@ -1,11 +1,9 @@
 from __future__ import annotations
 
-import sys
 from dataclasses import replace
 
 import pytest
 
-import mmrs_mavlink
 from mmrs_core.behaviour.program import Program
 from mmrs_core.contributions.wiring import DeviceWiring, Wired
 from mmrs_core.generation.render import render
@@ -58,8 +56,7 @@ def test_a_command_is_written_by_its_name_where_it_has_one(reeling):
     assert 'Operate("reel", "pull", MAV_CMD_DO_SET_SERVO, (9.0,), 2.0, more=((31999, ()),))' in text
 
 
-def test_the_program_is_the_same_with_names_as_without(reeling, monkeypatch):
-    monkeypatch.setitem(sys.modules, "mmrs_flight", mmrs_mavlink)
+def test_the_program_is_the_same_with_names_as_without(reeling):
     scope: dict[str, object] = {"__name__": "written"}
     exec(source(reeling), scope)  # noqa: S102
     assert scope["ROBOT"] == robot_of(reeling.robots[0], given(reeling))

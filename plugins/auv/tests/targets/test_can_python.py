@@ -78,14 +78,14 @@ def begun(folder: Path, module: str, *words: str) -> subprocess.Popen[str]:
 
 
 BOOT = f"""
-import sys, runpy
+import glob, sys, runpy
 sys.path += {[path for path in sys.path if path.endswith("site-packages")]!r}
 class Barred:
     def find_spec(self, name, path=None, target=None):
         if name.partition(".")[0] in ("mmrs_core", "mmrs_auv", "pymavlink"):
             raise ImportError(name)
 sys.meta_path.insert(0, Barred())
-sys.path.insert(0, ".")
+sys.path[:0] = [".", *glob.glob("wheels/*.whl")]
 runpy.run_path("fleet.py", run_name="__main__")
 """
 

@@ -4,11 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from importlib.resources import files as files_of
-from pathlib import Path
 
 from mmrs_core.behaviour.program import Program, RobotProgram
 from mmrs_core.contributions.targets import FileSpec, Target, TargetInput, TracedStep
+from mmrs_core.generation.deployment import Deployment, deployment_of
 from mmrs_core.generation.escaping import file_stems
 from mmrs_core.mavlink.earth import at_a_pole, degrees_of
 from mmrs_core.mavlink.vehicles import PX4, autopilot_of
@@ -25,13 +24,7 @@ from mmrs_mavlink.plugin.program import deciding, robot_view, seeking, trace_of
 from mmrs_mavlink.plugin.safety import areas_of, policies_of
 from mmrs_runtime.conditions import is_standard
 
-RUNTIME = "mmrs_flight"
 FINDING_ITS_WAY = frozenset({"RETURN", "EMERGENCY_AREA"})
-RUNTIMES = {
-    RUNTIME: Path(str(files_of("mmrs_mavlink"))),
-    "mmrs_runtime": Path(str(files_of("mmrs_runtime"))),
-}
-"""Folders of what controllers carry, by the names of the packages there."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,7 +37,7 @@ class ModuleView:
 
 
 def files(input: TargetInput) -> Iterator[FileSpec]:
-    """Yield one controller a robot, the fleet, the conditions where there are any, and the runtime.
+    """Yield one controller a robot, the fleet, the conditions where there are any, and what they need.
 
     Raises:
         UnsupportedError: a robot has no home.
@@ -57,17 +50,14 @@ def files(input: TargetInput) -> Iterator[FileSpec]:
     for robot, module in zip(robots, modules, strict=True):
         view = {"robot": with_names(robot_view(robot, input), command_name)}
         yield FileSpec(f"{module}.py", "robot.py.jinja", view, trace=trace_of(robot))
-    yield from fleet_files(input.program, modules, tuple(_rehearsal(input)))
-    yield from runtime_files()
+    needs = deployment_of(*carried(len(robots)))
+    yield from fleet_files(input.program, modules, needs, tuple(_rehearsal(input)))
 
 
-def runtime_files() -> Iterator[FileSpec]:
-    """Yield what all controllers carry beside their programs."""
-    for package, folder in RUNTIMES.items():
-        for path in sorted(folder.rglob("*.py")):
-            if path.is_relative_to(folder / "plugin"):
-                continue
-            yield FileSpec(f"{package}/{path.relative_to(folder).as_posix()}", path.name, source=path)
+def carried(robots: int) -> tuple[str, ...]:
+    """Return the distributions that controllers of so many robots carry: one alone meets nobody on a bus."""
+    bus, driver = ("mmrs-runtime[bus]" if robots > 1 else "mmrs-runtime"), "mmrs-mavlink"
+    return bus, driver
 
 
 def _rehearsal(input: TargetInput) -> Iterator[str]:
@@ -90,13 +80,14 @@ def _rehearsal(input: TargetInput) -> Iterator[str]:
 
 
 def fleet_files(
-    program: Program, modules: Sequence[str], rehearsal: Sequence[str] = ()
+    program: Program, modules: Sequence[str], needs: Deployment, rehearsal: Sequence[str] = ()
 ) -> Iterator[FileSpec]:
-    """Yield what controllers of a mission share: fleet, README, conditions and objects where there are any.
+    """Yield what controllers of a mission share: fleet, README, needs, and what people are asked for.
 
     Args:
         program: of the mission.
         modules: names of the controllers, in the order of its robots.
+        needs: what has to be installed where they run.
         rehearsal: arguments of the simulated vehicle of each robot.
     """
     conditions, objects = deciding(program), seeking(program)
@@ -112,6 +103,8 @@ def fleet_files(
         "objects": objects,
         "rehearsal": rehearsal,
         "local": program.frame.is_local,
+        "libraries": needs.libraries,
+        "bus": "eclipse-zenoh" in needs.libraries,
     }
     yield FileSpec("fleet.py", "fleet.py.jinja", common)
     yield FileSpec("README.md", "README.md.jinja", common)
@@ -121,6 +114,7 @@ def fleet_files(
     if objects:
         asks = tuple(f"how '{name}' is found" for name in objects)
         yield FileSpec("objects.py", "objects.py.jinja", common, once=True, asks=asks)
+    yield from needs.files(program.name, modules)
 
 
 def refusals(input: TargetInput) -> Iterator[str]:

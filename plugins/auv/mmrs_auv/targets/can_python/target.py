@@ -21,11 +21,12 @@ from mmrs_core.behaviour.program import Action, RobotProgram
 from mmrs_core.contributions.targets import FileSpec, Target, TargetInput
 from mmrs_core.contributions.wiring import DeviceWiring, Unwired, Wired, Wiring
 from mmrs_core.errors import UnsupportedError
+from mmrs_core.generation.deployment import deployment_of
 from mmrs_core.generation.escaping import file_stems
 from mmrs_core.scene import Device, Policy, RobotType
 from mmrs_mavlink.plugin.actions import action_losses
 from mmrs_mavlink.plugin.context import RobotContext, context_of, homeless, require_home, vehicleless
-from mmrs_mavlink.plugin.controllers import RUNTIME, fleet_files, runtime_files
+from mmrs_mavlink.plugin.controllers import carried, fleet_files
 from mmrs_mavlink.plugin.movements import losses_of
 from mmrs_mavlink.plugin.naming import with_names
 from mmrs_mavlink.plugin.program import robot_view, trace_of
@@ -34,10 +35,10 @@ from mmrs_mavlink.plugin.safety import policies_of
 VESSEL = "mmrs_vessel"
 SOURCES = Path(str(files_of("mmrs_auv")))
 CARRIED = ("vessel", "controllers")
+LIBRARIES = ("python-can", "cantools", "numpy")
 RENAMED = {
     "mmrs_auv.vessel": f"{VESSEL}.vessel",
     "mmrs_auv.controllers": f"{VESSEL}.controllers",
-    "mmrs_mavlink": RUNTIME,
 }
 WIRED = "can.device"
 """A property that devices get here: their number on the bus, from 1 on."""
@@ -64,8 +65,8 @@ def files(input: TargetInput) -> Iterator[FileSpec]:
         view = {"robot": said, "sheet": f"{module}.json"}
         yield FileSpec(f"{module}.json", "", data=sheet.encode())
         yield FileSpec(f"{module}.py", "robot.py.jinja", view, trace=trace_of(robot))
-    yield from fleet_files(replace(local.program, robots=robots), modules)
-    yield from runtime_files()
+    needs = deployment_of(*carried(len(robots)), more=LIBRARIES)
+    yield from fleet_files(replace(local.program, robots=robots), modules, needs)
     yield from _carried()
 
 
