@@ -22,12 +22,13 @@ from mmrs_auv.testing import random_start
 from mmrs_core import pipeline
 from mmrs_core.behaviour.log import read_logs
 from mmrs_core.behaviour.program import Program
-from mmrs_core.behaviour.replay import Outcome, replay
+from mmrs_core.behaviour.replay import replay
 from mmrs_core.cli.demonstration import manner_of
 from mmrs_core.cli.simulation import write_logs
 from mmrs_core.contributions.execution import Sample
 from mmrs_core.plugins import load_plugins
 from mmrs_core.resources import shipped
+from mmrs_runtime.semantics import Outcome
 
 GATE_EAST, POSTS, BAR = 7.0, (6.5, 9.5), (-2.7, -1.2)
 """Metres east and north, and heights, of the gate."""

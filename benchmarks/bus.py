@@ -30,14 +30,10 @@ import zenoh
 
 from mmrs_core.behaviour.log import read_logs
 from mmrs_core.behaviour.program import Program
-from mmrs_core.behaviour.replay import Outcome, replay
+from mmrs_core.behaviour.replay import replay
 from mmrs_core.contributions.backends import BackendInput
-from mmrs_core.runtime.attention import Attention
-from mmrs_core.runtime.clock import RealClock
-from mmrs_core.runtime.interpreter import interpret
 from mmrs_core.runtime.simulation import SIMULATION
 from mmrs_core.runtime.slots import shared_bus
-from mmrs_core.runtime.terms import Terms
 from mmrs_core.testing.small_programs import go, notify, program, robot, robot_type
 from mmrs_core.transformation.kinds import MOVE_KINDS, PLAIN_ROBOT
 from mmrs_mavlink.program import Local, Notify, Robot, Start, Step
@@ -45,7 +41,11 @@ from mmrs_mavlink.slots import BusSlots, LocalSlots, shared_slots
 from mmrs_runtime.bus import begin_together
 from mmrs_runtime.bus.carriers.over_zenoh import ZenohCarrier
 from mmrs_runtime.bus.carriers.sessions import Endpoints, configuration
+from mmrs_runtime.engine.clocks import RealClock
+from mmrs_runtime.engine.run import run as carry_out
+from mmrs_runtime.engine.terms import Attention, Terms
 from mmrs_runtime.records.log import Log, LogWriter
+from mmrs_runtime.semantics import Outcome
 
 PROCESSES, ROUNDS, SPEEDUP = 4, 5, 10.0
 
@@ -183,7 +183,7 @@ def _robots() -> tuple[Robot, Robot]:
     home = Local(0.0, 0.0, 0.0)
     senders = (("go", ("a",)),)
     return (
-        Robot("a", "a.jsonl", "copter", home, "start", (step,), volatile=(("b", "go"),)),
+        Robot("a", "a.jsonl", "copter", home, "start", (step,)),
         Robot("b", "b.jsonl", "copter", home, "start", (), ("go",), senders, (("go", ("b",)),)),
     )
 
@@ -331,8 +331,7 @@ def run_part(robots: int, seed: int, number: int, ports: list[int], folder: str)
     }
     with LogWriter(own) as log:
         terms = Terms("run-0", observe=log.write, attention=Attention(clock))
-        for _ in interpret(made, backends, bus=bus, clock=clock, conditions={}, terms=terms):
-            pass
+        carry_out(made.executable, backends, slots=bus, clock=clock, conditions={}, terms=terms)
     seconds, run = time.monotonic() - begun, _used(resource.RUSAGE_SELF) - before
     print(json.dumps({"seconds": seconds, "run": run, "skew": beginning.skew}), flush=True)
     bus.close()

@@ -28,13 +28,13 @@ from pymavlink import mavutil
 from mmrs_core.behaviour.program import Program
 from mmrs_core.cli.orders_heard import hear_orders
 from mmrs_core.runtime.live import Venture, run_live
-from mmrs_core.runtime.orders import LAND, Orders
 from mmrs_core.runtime.run import inputs_of
-from mmrs_core.runtime.slots import InProcessBus
 from mmrs_core.sitl import Settings, SimulatedVehicle
 from mmrs_core.testing.programs import move, program, quad, robot_program, take_off
 from mmrs_mavlink.plugin.backend import MAVLINK
+from mmrs_runtime.engine.orders import LAND, Orders
 from mmrs_runtime.orders.ordering import give
+from mmrs_runtime.slots import LocalSlots
 
 ROBOT = "drone"
 HEIGHT = 10.0
@@ -86,14 +86,14 @@ def hovering() -> Iterator[Path]:
         venture = Venture(
             made,
             inputs,
-            InProcessBus(made),
+            LocalSlots(made.executable),
             {},
             orders=control,
             folder=folder,
             links={ROBOT: f"udpin:127.0.0.1:{port}"},
             say=lambda words: None,
         )
-        flight = threading.Thread(target=lambda: list(run_live(venture, MAVLINK)))
+        flight = threading.Thread(target=lambda: run_live(venture, MAVLINK))
         with hear_orders(folder, venture.run, (ROBOT,), control, lambda robot: {}):
             flight.start()
             while vehicle.autopilot.body.position[2] < HEIGHT - 0.4:

@@ -19,6 +19,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, ClassVar
 
+from mmrs_runtime.vehicle import LinkLost
+
 if TYPE_CHECKING:
     from pathlib import Path
 
@@ -125,7 +127,7 @@ class PluginError(MmrsError):
     """A plug-in that is broken, missing or in conflict with another."""
 
 
-class LinkLostError(MmrsError):
+class LinkLostError(MmrsError, LinkLost):
     """A robot, vehicle or bus that stopped answering."""
 
     exit_code = 5

@@ -293,7 +293,7 @@ def simulate(
         UnsupportedError: if the behaviour holds what nobody contributed.
     """
     from mmrs_core.runtime.run import simulate as simulated
-    from mmrs_core.runtime.terms import Terms
+    from mmrs_runtime.engine.terms import Terms
 
     return simulated(
         program,
@@ -353,9 +353,9 @@ def conditions_for(
     Raises:
         UsageError: if no Choice asks for what is assumed.
     """
-    from mmrs_core.runtime.conditions import asked_by, refuse_unasked, standard_conditions
-    from mmrs_core.runtime.run import assumed
+    from mmrs_core.runtime.conditions import asked_by, refuse_unasked
     from mmrs_runtime.conditions import question_of
+    from mmrs_runtime.engine.judging import assumed, standard_conditions
 
     refuse_unasked(program, assume)
     asked = (each for each in asked_by(program) if asks or not question_of(each))

@@ -10,13 +10,13 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, fields
 from functools import cached_property
-from typing import TypeAlias
 
 from mmrs_core.behaviour.fingerprint import fingerprint
 from mmrs_core.diagnostics import Place
 from mmrs_core.scene import Frame, Metaclasses, Name, Policy, Position, TravelMode, Value
+from mmrs_runtime.program import Program as ExecutableProgram
+from mmrs_runtime.program import SlotId as SlotId
 
-SlotId: TypeAlias = tuple[str, str]
 BEHAVIOUR = "urn:mmrs:behaviour:1.0"
 
 
@@ -70,6 +70,11 @@ class Action:
     def is_a(self, name: Name) -> bool:
         """Return whether the action is of that metaclass or a subclass of it."""
         return name in self.metaclasses
+
+    @property
+    def notifies(self) -> bool:
+        """Return whether the action sets slots."""
+        return (BEHAVIOUR, "Notify") in self.metaclasses
 
 
 @dataclass(frozen=True, slots=True)
@@ -211,6 +216,13 @@ class Program:
     def volatile(self) -> frozenset[SlotId]:
         """Return the slots that any robot resets; all others are latched: once active, they stay so."""
         return frozenset(slot for robot in self.robots for slot, active in robot.settings if not active)
+
+    @cached_property
+    def executable(self) -> ExecutableProgram:
+        """Return the behaviour as the engine executes it, with the grounded moves as orders."""
+        from mmrs_core.behaviour.lowering import lowered
+
+        return lowered(self)
 
     def robot(self, id: str) -> RobotProgram:
         """Return the robot of that identifier."""

@@ -1,16 +1,18 @@
 """The judge of every log: replays it through the step rules and says where it goes wrong.
 
-The oracle for interpreter, simulators, exports, generated code and logs from the field.
+The oracle for engine, simulators, exports, generated code and logs from the field.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
-from enum import Enum
 
-from mmrs_core.behaviour.program import BEHAVIOUR, Program, RobotProgram, SlotId
-from mmrs_core.behaviour.semantics import (
+from mmrs_core.behaviour.program import BEHAVIOUR, Move, Program
+from mmrs_runtime.program import Robot, SlotId
+from mmrs_runtime.records.steps import StepRecord, merge
+from mmrs_runtime.semantics import (
+    Outcome,
     Phase,
     Point,
     State,
@@ -22,22 +24,12 @@ from mmrs_core.behaviour.semantics import (
     told_by,
     waiting,
 )
-from mmrs_runtime.records.steps import StepRecord, merge
 
 HOLD_POSITION = (BEHAVIOUR, "HoldPosition")
 
 
 _TOLERANCE = 1e-3
 """Seconds by which a hold may seem shorter than its duration."""
-
-
-class Outcome(Enum):
-    """How a run ended."""
-
-    SUCCESS = "success"
-    FAILED = "failed"
-    STUCK = "stuck"
-    INCOMPLETE = "incomplete"
 
 
 @dataclass(frozen=True, slots=True)
@@ -88,7 +80,7 @@ class ReplayResult:
 
 @dataclass(slots=True)
 class _Robot:
-    program: RobotProgram
+    program: Robot
     point: Point
     began: float = 0.0
     last: StepRecord | None = None
@@ -115,7 +107,7 @@ def replay(program: Program, records: Iterable[StepRecord], *, partial: bool = F
     """
     in_file_order = tuple(records)
     complaints = list(_order_complaints(in_file_order))
-    run = _Replay({robot.id: _Robot(robot, entry(robot, robot.start)) for robot in program.robots})
+    run = _Replay({robot.id: _Robot(robot, entry(robot, robot.start)) for robot in program.executable.robots})
     if not complaints:
         complaints.extend(_replayed(run, merge(in_file_order)))
     state = State(tuple(robot.point for robot in run.robots.values()), frozenset(run.active))
@@ -123,7 +115,9 @@ def replay(program: Program, records: Iterable[StepRecord], *, partial: bool = F
     if outcome is Outcome.INCOMPLETE and not complaints and not partial:
         complaints.extend(_unfinished(run))
     duration = max((record.time for record in in_file_order), default=0.0)
-    return ReplayResult(outcome, tuple(complaints), waiting(program, state), run.faults, run.steps, duration)
+    return ReplayResult(
+        outcome, tuple(complaints), waiting(program.executable, state), run.faults, run.steps, duration
+    )
 
 
 def _order_complaints(records: tuple[StepRecord, ...]) -> Iterable[Complaint]:
@@ -169,7 +163,8 @@ def _replayed(run: _Replay, records: tuple[StepRecord, ...]) -> Iterable[Complai
 def _too_short(robot: _Robot, record: StepRecord) -> str:
     if record.label != "end":
         return ""
-    move = robot.program.moves[robot.point.move]
+    move = robot.program.by_id[robot.point.move].order
+    assert isinstance(move, Move)
     duration = move.attributes.get("duration")
     if not move.is_a(HOLD_POSITION) or not isinstance(duration, int | float):
         return ""

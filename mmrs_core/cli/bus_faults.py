@@ -29,7 +29,7 @@ def bus_faults(
     """
     if "bus-" not in text:
         return lambda carrier: carrier
-    from mmrs_core.runtime.clock import FollowingClock
+    from mmrs_runtime.engine.clocks import FollowingClock
     from mmrs_runtime.injection import Rehearsal, injections
 
     robots = [robot.id for robot in program.robots]

@@ -11,12 +11,13 @@ import typer
 from mmrs_core.behaviour.program import Program
 from mmrs_core.cli.output import tell
 from mmrs_core.errors import LinkLostError, UnreadableError, UnsupportedError
-from mmrs_core.runtime.resuming import restore
-from mmrs_core.runtime.slots import InProcessBus, ProgramBus, members_of, shared_bus
+from mmrs_core.runtime.slots import ProgramBus, members_of, shared_bus
 from mmrs_runtime.bus import Incomplete, Unwelcome, begin_together
 from mmrs_runtime.bus.carriers.carrier import Carrier
 from mmrs_runtime.bus.carriers.endpoints import first_fault
+from mmrs_runtime.engine.resuming import restore
 from mmrs_runtime.records.steps import StepRecord
+from mmrs_runtime.slots import LocalSlots
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,8 +51,8 @@ def bus_for(
     wishes: BusWishes,
     resumed: tuple[StepRecord, ...] | None,
     wrap: Callable[[Carrier], Carrier],
-) -> ProgramBus:
-    """Return the bus of this process.
+) -> ProgramBus | LocalSlots:
+    """Return the slots of all robots, as this process reaches them.
 
     Args:
         here: the robots of this process.
@@ -68,9 +69,9 @@ def bus_for(
     """
     if not wishes.shared:
         _refuse_strangers(program, here)
-        bus = InProcessBus(program)
-        restore(bus, program, resumed or ())
-        return bus
+        slots = LocalSlots(program.executable)
+        restore(slots, program.executable, resumed or ())
+        return slots
     try:
         from mmrs_runtime.bus.carriers.over_zenoh import ZenohCarrier
         from mmrs_runtime.bus.carriers.sessions import Endpoints
@@ -100,7 +101,7 @@ def refuse_endpoints(option: str, endpoints: Sequence[str]) -> None:
 
 
 def begin_all(
-    bus: ProgramBus, program: Program, robots: Iterable[str], patience: float | None
+    bus: ProgramBus | LocalSlots, program: Program, robots: Iterable[str], patience: float | None
 ) -> Callable[[Callable[[], None]], Mapping[str, str]]:
     """Return what has robots of this process begin at one instant with those of all others.
 
@@ -113,7 +114,7 @@ def begin_all(
     here = tuple(robots)
 
     def begin(look: Callable[[], None]) -> Mapping[str, str]:
-        if patience is None or not here:
+        if patience is None or not here or isinstance(bus, LocalSlots):
             return {}
         told: set[str] = set()
 

@@ -15,8 +15,8 @@ from mmrs_core.cli.figures import clock
 from mmrs_core.cli.output import counted, tell
 from mmrs_core.cli.wishes import Wishes
 from mmrs_core.errors import InvalidModelError
-from mmrs_core.runtime.resuming import over_by
 from mmrs_core.runtime.slots import slots_path
+from mmrs_runtime.engine.resuming import over_by
 from mmrs_runtime.records.blackbox import black_box_path, last_time, plan_of
 from mmrs_runtime.records.steps import SUFFIX, StepRecord, log_name
 
@@ -47,7 +47,7 @@ def resumed_steps(program: Program, wishes: Wishes, here: tuple[str, ...]) -> tu
     if not result.accepted and len(here) == len(program.robots):
         raise InvalidModelError(f"{wishes.folder}: not logs of this behaviour: {result.complaints[0]}")
     try:
-        over = over_by(program, records)
+        over = over_by(program.executable, records)
     except ValueError as error:
         raise InvalidModelError(f"{wishes.folder}: {error}") from error
     for robot, why in over.items():

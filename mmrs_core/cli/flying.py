@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import signal
-from collections.abc import Generator, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from types import FrameType
 
 from mmrs_core.behaviour.program import Program
-from mmrs_core.behaviour.replay import Outcome
 from mmrs_core.cli.behaviours import Loaded
 from mmrs_core.cli.bus_faults import bus_faults
 from mmrs_core.cli.buses import begin_all, bus_for
@@ -32,14 +31,15 @@ from mmrs_core.cli.wishes import (
 )
 from mmrs_core.errors import LinkLostError
 from mmrs_core.pipeline import backend_for, conditions_for, inputs_of
-from mmrs_core.runtime.clock import RealClock
 from mmrs_core.runtime.live import Venture, run_live
-from mmrs_core.runtime.orders import STOP, Orders
-from mmrs_core.runtime.terms import Ending
+from mmrs_runtime.engine.clocks import RealClock
+from mmrs_runtime.engine.orders import STOP, Orders
+from mmrs_runtime.engine.terms import Ending
 from mmrs_runtime.faults import ORDERED, STOPPED
 from mmrs_runtime.records.log import LogWriter
 from mmrs_runtime.records.steps import StepRecord, log_name
 from mmrs_runtime.screen import unfailing
+from mmrs_runtime.semantics import Outcome
 
 FAILED = 1
 
@@ -127,7 +127,7 @@ def carry_out(workshop: Workshop, loaded: Loaded, wishes: Wishes) -> Result:
             resumed=resumed,
             patience=wishes.patience,
             meet=begin_all(bus, program, _unbegun(here, resumed), wishes.bus.sync),
-            observe=observer.observe,
+            observe=_telling(observer.observe, program),
             say=tell,
         )
 
@@ -138,23 +138,23 @@ def carry_out(workshop: Workshop, loaded: Loaded, wishes: Wishes) -> Result:
         stack.enter_context(_stopping(orders, here))
         stack.enter_context(unfailing())
         stack.callback(gallery.close)
-        ending = _collected(run_live(venture, backend), program)
+        ending = run_live(venture, backend)
     names = [wishes.folder / log_name(robot) for robot in here]
     return Result(ending, tuple(path for path in names if path.exists()))
 
 
-def _collected(steps: Generator[StepRecord, None, Ending], program: Program) -> Ending:
+def _telling(observe: Callable[[StepRecord], None], program: Program) -> Callable[[StepRecord], None]:
+    """Return what observes steps as before, and tells people of every move that begins."""
     kinds = {(robot.id, move.id): move for robot in program.robots for move in robot.moves}
-    while True:
-        try:
-            record = next(steps)
-        except StopIteration as stop:
-            ending: Ending = stop.value
-            return ending
+
+    def told(record: StepRecord) -> None:
+        observe(record)
         if record.label == "begin":
             move = kinds[record.robot, record.move]
             serves = f" for task '{move.task}'" if move.task else ""
             tell(f"{clock(record.time)} '{record.robot}': {move.kind} '{move.id}'{serves}")
+
+    return told
 
 
 def _unbegun(robots: tuple[str, ...], resumed: tuple[StepRecord, ...]) -> list[str]:

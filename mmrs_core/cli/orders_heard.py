@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import typer
 
 from mmrs_core.cli.output import tell
-from mmrs_core.runtime.orders import Orders
+from mmrs_runtime.engine.orders import Orders
 
 if TYPE_CHECKING:
     from mmrs_runtime.orders.orders import Inbox, Receipt

@@ -35,12 +35,12 @@ def replay(
     """
     from mmrs_core.behaviour.box_files import black_boxes, is_part
     from mmrs_core.behaviour.log import read_logs
-    from mmrs_core.behaviour.replay import Outcome
     from mmrs_core.behaviour.replay import replay as replayed
     from mmrs_core.behaviour.salvage import logs_in, salvage_log
     from mmrs_core.cli.behaviours import load_program
     from mmrs_core.cli.flights.gathering import read_flight
     from mmrs_core.cli.journey import Workshop
+    from mmrs_runtime.semantics import Outcome
 
     workshop = Workshop(settings_of(call))
     program = load_program(workshop, behaviour_file(behaviour))

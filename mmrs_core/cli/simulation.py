@@ -14,7 +14,6 @@ import typer
 
 from mmrs_core.behaviour.log import read_log
 from mmrs_core.behaviour.program import Program
-from mmrs_core.behaviour.replay import Outcome
 from mmrs_core.cli.figures import clock, length
 from mmrs_core.cli.journey import Workshop
 from mmrs_core.cli.output import progress
@@ -26,6 +25,7 @@ from mmrs_core.runtime.run import Run
 from mmrs_core.scene import Name, RobotType
 from mmrs_runtime.records.log import LogWriter
 from mmrs_runtime.records.steps import SUFFIX, StepRecord, log_name
+from mmrs_runtime.semantics import Outcome
 
 _HOLDS = {"yes": True, "true": True, "no": False, "false": False}
 

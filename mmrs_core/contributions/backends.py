@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from mmrs_core.contributions.rules import MoveKind, RobotKind
     from mmrs_core.contributions.wiring import Wirings
     from mmrs_core.scene import Area, Name, Policy, RobotType
+    from mmrs_runtime.vehicle import Vehicle
 
 
 class Backend(Protocol):
@@ -144,6 +145,6 @@ class BackendFactory:
 
     name: str
     description: str
-    connect: Callable[[BackendInput], Backend]
+    connect: Callable[[BackendInput], Backend | Vehicle]
     simulated: bool = False
     check: Check = lambda options, links: ()

@@ -1,27 +1,12 @@
-"""Conditions of Choices: those that need nobody to write them, and what each decides."""
+"""Conditions of Choices: which a program asks for."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterable
+from collections.abc import Collection, Container
 
 from mmrs_core.behaviour.program import Program
-from mmrs_core.contributions.execution import Condition, Fault, RobotState
-from mmrs_core.errors import LinkLostError, UsageError
+from mmrs_core.errors import UnsupportedError, UsageError
 from mmrs_core.languages.naming import nearest
-from mmrs_runtime.conditions import is_standard, standard, truth
-from mmrs_runtime.faults import CONDITION_FAILED, FAILURES
-
-
-def standard_conditions(identifiers: Iterable[str]) -> dict[str, Condition]:
-    """Return those of the conditions that are standard, by identifier.
-
-    They are those of generated controllers: `mmrs_runtime.conditions` says what each asks. Until
-    there is an answer, or a figure to go by, the robot waits.
-
-    >>> sorted(standard_conditions(["battery-below:0.3", "is it sunny", "wind-above:gale"]))
-    ['battery-below:0.3']
-    """
-    return {identifier: _standard(identifier) for identifier in identifiers if is_standard(identifier)}
 
 
 def asked_by(program: Program) -> tuple[str, ...]:
@@ -45,24 +30,18 @@ def refuse_unasked(program: Program, identifiers: Collection[str]) -> None:
             )
 
 
-def decided(condition: Condition, know: Callable[[], RobotState]) -> bool | Fault | None:
-    """Return whether a condition holds, or the fault that asking leaves; None: nobody can know yet.
+def refuse_undecided(program: Program, robots: Container[str], conditions: Container[str]) -> None:
+    """Do nothing if each choice of these robots can be decided.
 
     Raises:
-        LinkLostError: the robot cannot be reached.
+        UnsupportedError: a condition is unknown; lists all of them.
     """
-    identifier = condition.identifier
-    try:
-        state = know()
-        if not condition.known(state):
-            return None
-        return truth(condition.holds(state))
-    except LinkLostError:
-        raise
-    except FAILURES as error:  # a condition is foreign code: whatever it raises is the robot's fault
-        return Fault(CONDITION_FAILED, f"condition '{identifier}' fails: {type(error).__name__}: {error}")
-
-
-def _standard(identifier: str) -> Condition:
-    asks = standard(identifier)
-    return Condition(identifier, lambda state: asks(state) is True, lambda state: asks(state) is not None)
+    unknown = [
+        f"robot '{robot.id}', after move '{robot.moves[source].id}': condition '{transition.condition}'"
+        for robot in program.robots
+        if robot.id in robots
+        for source, transition in sorted(robot.transitions.items())
+        if transition.condition is not None and transition.condition not in conditions
+    ]
+    if unknown:
+        raise UnsupportedError(f"{len(unknown)} choices have conditions that nobody decides", unknown)

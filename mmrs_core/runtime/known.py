@@ -6,7 +6,6 @@ from dataclasses import replace
 
 from mmrs_core.behaviour.as_scene import scene_of
 from mmrs_core.behaviour.program import BEHAVIOUR, Action
-from mmrs_core.behaviour.semantics import NOTIFY
 from mmrs_core.contributions.backends import BackendInput
 from mmrs_core.contributions.rules import MoveKind, most_specific, robot_kind_of
 from mmrs_core.errors import UnsupportedError
@@ -56,4 +55,4 @@ def move_kinds_of(given: BackendInput) -> dict[str, MoveKind]:
 
 
 def _is_known(action: Action) -> bool:
-    return any(action.is_a(name) for name in (DEVICE_ACTION, FEEDBACK, NOTIFY))
+    return action.notifies or action.is_a(DEVICE_ACTION) or action.is_a(FEEDBACK)

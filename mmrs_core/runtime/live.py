@@ -4,29 +4,31 @@ from __future__ import annotations
 
 import threading
 import uuid
-from collections.abc import Callable, Collection, Generator, Mapping
+from collections.abc import Callable, Collection, Mapping
 from contextlib import ExitStack
 from dataclasses import dataclass, field, replace
 from math import inf
 from pathlib import Path
 
 from mmrs_core.behaviour.program import Program
-from mmrs_core.contributions.abilities import Closing, Noting, Preparing, Telling
-from mmrs_core.contributions.backends import Backend, BackendFactory, BackendInput, Live
-from mmrs_core.contributions.buses import Bus
+from mmrs_core.contributions.backends import BackendFactory, BackendInput, Live
 from mmrs_core.contributions.execution import Condition
 from mmrs_core.errors import LinkLostError
-from mmrs_core.runtime.attention import Attention
-from mmrs_core.runtime.clock import RealClock
-from mmrs_core.runtime.interpreter import PACE, interpret
-from mmrs_core.runtime.orders import ANSWER, ENDINGS, HOLD, RESUME, STOP, Order, Orders
-from mmrs_core.runtime.resuming import over_by
-from mmrs_core.runtime.standing import Standing
-from mmrs_core.runtime.terms import Ending, Terms
+from mmrs_core.runtime.conditions import refuse_undecided
+from mmrs_core.runtime.polled import vehicle_of
 from mmrs_core.runtime.unready import Unready, note_alone, record, unready
 from mmrs_runtime.clock import SIGNAL_SECONDS
+from mmrs_runtime.engine.clocks import RealClock
+from mmrs_runtime.engine.life import PACE
+from mmrs_runtime.engine.orders import ANSWER, ENDINGS, HOLD, RESUME, STOP, Order, Orders
+from mmrs_runtime.engine.resuming import over_by
+from mmrs_runtime.engine.run import run
+from mmrs_runtime.engine.standing import Standing
+from mmrs_runtime.engine.terms import Attention, Ending, Terms
 from mmrs_runtime.faults import ORDERED, STOPPED
 from mmrs_runtime.records.steps import StepRecord
+from mmrs_runtime.slots import Slots
+from mmrs_runtime.vehicle import Vehicle
 
 GATHERING_SECONDS = 0.5
 """Real seconds for which more is waited for, once something keeps a robot from getting ready."""
@@ -56,7 +58,7 @@ class Venture:
 
     program: Program
     inputs: Mapping[str, BackendInput]
-    bus: Bus
+    bus: Slots
     conditions: Mapping[str, Condition]
     clock: RealClock = field(default_factory=RealClock)
     orders: Orders = field(default_factory=Orders)
@@ -82,13 +84,13 @@ class Venture:
             self.say(f"'{robot}': the fault is not in the log: {error.strerror or error}")
 
 
-def run_live(venture: Venture, backend: BackendFactory) -> Generator[StepRecord, None, Ending]:
-    """Yield the steps of the robots; return how the run ended.
+def run_live(venture: Venture, backend: BackendFactory) -> Ending:
+    """Carry the programs out; return how that ended.
 
     No robot begins before all are ready; once some are under way, as in a run that is resumed, each goes
     on, or begins, as soon as it is ready itself, and one that does not get ready is left out. One whose
-    program had ended before is left alone. When the generator ends or is closed, every robot that has not
-    come to its end has been stopped, all links are closed, and all orders answered.
+    program had ended before is left alone. In the end, every robot that has not come to its end has been
+    stopped, all links are closed, and all orders answered.
 
     Raises:
         LinkLostError: if a robot does not answer at first.
@@ -98,12 +100,12 @@ def run_live(venture: Venture, backend: BackendFactory) -> Generator[StepRecord,
         KeyboardInterrupt: if robots are ordered to stop before they are ready.
     """
     attention = Attention(venture.clock)
-    over = over_by(venture.program, venture.resumed)
+    over = over_by(venture.program.executable, venture.resumed)
     venture = replace(venture, inputs={id: each for id, each in venture.inputs.items() if id not in over})
     with ExitStack() as stack:
         stack.callback(venture.orders.close, "the run has ended")
-        robots: dict[str, Backend] = {}
-        venture.orders.backends = robots
+        robots: dict[str, Vehicle] = {}
+        venture.orders.vehicles = robots
         stack.callback(_let_go, robots)
         under_way = any(record.robot in venture.inputs for record in venture.resumed)
         early = None if under_way else _EarlyOrders(venture, robots)
@@ -120,10 +122,11 @@ def run_live(venture: Venture, backend: BackendFactory) -> Generator[StepRecord,
                 record(robots, error.faults, venture.fail)
                 raise unready(error.faults) from None
             raise
-        steps = interpret(
-            venture.program,
+        refuse_undecided(venture.program, robots, venture.conditions)
+        ending = run(
+            venture.program.executable,
             robots,
-            bus=venture.bus,
+            slots=venture.bus,
             clock=venture.clock,
             conditions=venture.conditions,
             policies={id: each.policies for id, each in venture.inputs.items()},
@@ -141,15 +144,13 @@ def run_live(venture: Venture, backend: BackendFactory) -> Generator[StepRecord,
                 standing=venture.standing,
             ),
         )
-        stack.callback(steps.close)
-        ending = yield from steps
         if robots and set(ending.absent) == set(robots):
             raise unready({id: ending.faults[id] for id in ending.absent})
         return ending
 
 
 def _connect(
-    robots: dict[str, Backend],
+    robots: dict[str, Vehicle],
     venture: Venture,
     backend: BackendFactory,
     attention: Attention,
@@ -172,12 +173,12 @@ def _connect(
             shared=shared,
             announce=venture.say,
         )
-        robots[id] = backend.connect(replace(given, live=live))
+        robots[id] = vehicle_of(backend.connect(replace(given, live=live)))
         if early is not None:
             early.look(set(venture.inputs))
 
 
-def _let_go(robots: Mapping[str, Backend]) -> None:
+def _let_go(robots: Mapping[str, Vehicle]) -> None:
     """Close all robots at once: each may take seconds to know what to do when nobody talks to it.
 
     Raises:
@@ -185,7 +186,7 @@ def _let_go(robots: Mapping[str, Backend]) -> None:
     """
     errors: list[Exception] = []
 
-    def close(robot: Closing) -> None:
+    def close(robot: Vehicle) -> None:
         try:
             robot.close()
         except Exception as error:
@@ -194,7 +195,6 @@ def _let_go(robots: Mapping[str, Backend]) -> None:
     threads = [
         threading.Thread(target=close, args=(robot,), name=f"close {id}", daemon=True)
         for id, robot in robots.items()
-        if isinstance(robot, Closing)
     ]
     for thread in threads:
         thread.start()
@@ -211,20 +211,16 @@ def _named(say: Callable[[str], None], robot: str) -> Callable[[str], None]:
     return lambda words: say(f"'{robot}': {words}")
 
 
-def _get_ready(robots: Mapping[str, Backend], venture: Venture, early: _EarlyOrders) -> None:
+def _get_ready(robots: Mapping[str, Vehicle], venture: Venture, early: _EarlyOrders) -> None:
     clock = venture.clock
-    preparing: dict[str, Backend] = {}
-    for id, robot in robots.items():
-        if isinstance(robot, Preparing):
-            robot.prepare(clock.now())
-            preparing[id] = robot
+    preparing = {id: robot for id, robot in robots.items() if robot.prepare(clock.now())}
     venture.orders.called = clock.wake
     _await_ready(preparing, clock, early)
     _meet(robots, venture, early)
     early.pass_on()
 
 
-def _await_ready(robots: Mapping[str, Backend], clock: RealClock, early: _EarlyOrders) -> None:
+def _await_ready(robots: Mapping[str, Vehicle], clock: RealClock, early: _EarlyOrders) -> None:
     """Return when all robots are ready, and nothing has gone wrong with one that was so earlier.
 
     Once something has, the others are waited for a moment, so that all that is wrong is told at once.
@@ -232,23 +228,26 @@ def _await_ready(robots: Mapping[str, Backend], clock: RealClock, early: _EarlyO
     unready, told_at = set(robots), inf
     while unready:
         now = clock.now()
-        faults = {id: found for id, robot in robots.items() if (found := robot.fault(now)) is not None}
+        for robot in robots.values():
+            robot.look(now)
+        faults = {id: robot.trouble for id, robot in robots.items() if robot.trouble is not None}
         told_at = min(told_at, now + GATHERING_SECONDS * clock.speedup) if faults else inf
         if faults and (now >= told_at or faults.keys() >= unready):
             raise Unready(faults)
-        unready = {id for id in unready if id in faults or not robots[id].finished(now)}
+        unready = {id for id in unready if id in faults or not robots[id].done}
         early.look(unready)
         if unready:
             clock.sleep_until(clock.now() + PACE)
 
 
-def _meet(robots: Mapping[str, Backend], venture: Venture, early: _EarlyOrders) -> None:
+def _meet(robots: Mapping[str, Vehicle], venture: Venture, early: _EarlyOrders) -> None:
     def look() -> None:
         while True:
             early.look(())
             for id, robot in robots.items():
-                if (found := robot.fault(venture.clock.now())) is not None:
-                    raise Unready({id: found})
+                robot.look(venture.clock.now())
+                if robot.trouble is not None:
+                    raise Unready({id: robot.trouble})
             if not early.held:
                 return
             venture.clock.sleep_until(venture.clock.now() + PACE)
@@ -259,8 +258,7 @@ def _meet(robots: Mapping[str, Backend], venture: Venture, early: _EarlyOrders) 
         note_alone(robots.values(), str(error))
         raise
     for id, why in met.items():
-        if isinstance(robot := robots[id], Noting):
-            robot.note("decision", {"what": "TOGETHER", "why": why, "response": "begins"})
+        robots[id].note("decision", {"what": "TOGETHER", "why": why, "response": "begins"})
 
 
 class _EarlyOrders:
@@ -270,7 +268,7 @@ class _EarlyOrders:
         held: robots that are not to begin.
     """
 
-    def __init__(self, venture: Venture, robots: Mapping[str, Backend]) -> None:
+    def __init__(self, venture: Venture, robots: Mapping[str, Vehicle]) -> None:
         self.held: set[str] = set()
         self._venture, self._robots = venture, robots
         self._open: list[Order] = []
@@ -308,7 +306,7 @@ class _EarlyOrders:
                 self._venture.fail(id, STOPPED if order.kind == STOP else ORDERED)
 
     def pass_on(self) -> None:
-        """Have the interpreter obey what was ordered, and know the answers, before what was ordered since."""
+        """Have the engine obey what was ordered, and know the answers, before what was ordered since."""
         held = tuple(sorted(self.held))
         first = (Order(HOLD, held),) if held else ()
         self._venture.orders.put_back((*first, *self._later))
@@ -338,7 +336,7 @@ class _EarlyOrders:
     def _rests(self, id: str) -> bool:
         """Return whether a vehicle is seen to have its motors off, known to be the robot's or not."""
         robot = self._robots.get(id)
-        return isinstance(robot, Telling) and robot.told().get("armed") is False
+        return robot is not None and robot.told().get("armed") is False
 
     def _let_go(self, order: Order) -> None:
         for id in order.open:

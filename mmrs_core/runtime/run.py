@@ -2,24 +2,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Generator, Mapping
-from dataclasses import dataclass, field
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
 
 from mmrs_core.behaviour.program import Program
 from mmrs_core.contributions.abilities import Recorder
 from mmrs_core.contributions.backends import BackendFactory, BackendInput
-from mmrs_core.contributions.execution import Condition, RobotState, Sample
+from mmrs_core.contributions.execution import Condition, Sample
 from mmrs_core.contributions.rules import MoveKind, RobotKind, robot_kind_of
 from mmrs_core.contributions.wiring import Wirings
 from mmrs_core.errors import UnsupportedError, UsageError
-from mmrs_core.runtime.clock import SimulatedClock
-from mmrs_core.runtime.interpreter import interpret
+from mmrs_core.runtime.conditions import refuse_undecided
 from mmrs_core.runtime.mixed import options_for, refuse_strange
-from mmrs_core.runtime.slots import InProcessBus
-from mmrs_core.runtime.terms import TO_THE_END, Ending, Terms
+from mmrs_core.runtime.polled import vehicle_of
 from mmrs_core.scene import Area, Name, Policy, RobotType
+from mmrs_runtime.engine.clocks import SimulatedClock
+from mmrs_runtime.engine.run import run
+from mmrs_runtime.engine.terms import TO_THE_END, Ending, Terms
 from mmrs_runtime.policies import in_precedence
 from mmrs_runtime.records.steps import StepRecord
+from mmrs_runtime.slots import LocalSlots
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,22 +83,25 @@ def simulate(
         environment=environment or {},
         areas=areas,
     )
-    robots = {id: backend.connect(each) for id, each in given.items()}
-    policies = {id: each.policies for id, each in given.items()}
+    refuse_undecided(program, given, conditions or {})
     made: list[StepRecord] = []
-    ending = _collected(
-        interpret(
-            program,
-            robots,
-            bus=InProcessBus(program),
-            clock=SimulatedClock(),
-            conditions=conditions or {},
-            policies=policies,
-            terms=terms,
-        ),
-        made,
+
+    def observe(record: StepRecord) -> None:
+        made.append(record)
+        if terms.observe is not None:
+            terms.observe(record)
+
+    connected = {id: backend.connect(each) for id, each in given.items()}
+    ending = run(
+        program.executable,
+        {id: vehicle_of(each) for id, each in connected.items()},
+        slots=LocalSlots(program.executable),
+        clock=SimulatedClock(),
+        conditions=conditions or {},
+        policies={id: each.policies for id, each in given.items()},
+        terms=replace(terms, observe=observe),
     )
-    told = {id: robot for id, robot in robots.items() if isinstance(robot, Recorder)}
+    told = {id: robot for id, robot in connected.items() if isinstance(robot, Recorder)}
     tracks = {id: robot.track() for id, robot in told.items()}
     notes = tuple(f"robot '{id}', {note}" for id, robot in told.items() for note in robot.notes)
     return Run(tuple(made), ending, tracks, notes)
@@ -140,15 +145,6 @@ def inputs_of(
     return found
 
 
-def assumed(answers: Mapping[str, bool]) -> dict[str, Condition]:
-    """Return conditions that always hold, or never, by identifier."""
-    return {identifier: Condition(identifier, _always(holds)) for identifier, holds in answers.items()}
-
-
-def _always(holds: bool) -> Callable[[RobotState], bool]:
-    return lambda state: holds
-
-
 def _policies(robot_type: RobotType, kinds: Mapping[Name, RobotKind]) -> tuple[Policy, ...]:
     """Return the policies of a robot type, then those of its kind."""
     kind = robot_kind_of(robot_type, kinds)
@@ -161,12 +157,3 @@ def _type_of(types: Mapping[str, RobotType], robot: str, name: str) -> RobotType
             f"robot '{robot}': type '{name}' is not known", [f"robot '{robot}': type '{name}'"]
         )
     return types[name]
-
-
-def _collected(steps: Generator[StepRecord, None, Ending], made: list[StepRecord]) -> Ending:
-    while True:
-        try:
-            made.append(next(steps))
-        except StopIteration as stop:
-            ending: Ending = stop.value
-            return ending

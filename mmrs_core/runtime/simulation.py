@@ -20,7 +20,7 @@ from mmrs_core.behaviour.program import BEHAVIOUR, Action, Heading, Move
 from mmrs_core.contributions.backends import BackendFactory, BackendInput
 from mmrs_core.contributions.execution import Fault, RobotState, Sample
 from mmrs_core.contributions.rules import MoveKind
-from mmrs_core.errors import UnreadableError, UsageError
+from mmrs_core.errors import InternalError, UnreadableError, UsageError
 from mmrs_core.runtime.battery import SLACK, Battery
 from mmrs_core.runtime.escape import Escapes
 from mmrs_core.runtime.known import DEVICE_ACTION, kinematics_of, move_kinds_of
@@ -40,6 +40,7 @@ from mmrs_core.runtime.legs import (
 from mmrs_core.scene import Position
 from mmrs_core.sitl.sights import Sight, seen, sights_in
 from mmrs_runtime.policies import in_precedence
+from mmrs_runtime.vehicle import Vehicle
 
 RECHARGE = (BEHAVIOUR, "Recharge")
 STOP = (BEHAVIOUR, "Stop")
@@ -47,7 +48,7 @@ SURROUNDINGS = "surroundings"
 _BEGIN = attrgetter("begin")
 
 
-class SimulatedRobot:
+class SimulatedRobot(Vehicle):
     """A robot that exists only here.
 
     Attributes:
@@ -76,16 +77,26 @@ class SimulatedRobot:
         self._battery = Battery(self._kinematics, self._escapes, policies)
         self.notes: list[str] = []
         self._wind, self._current = wind(given.environment), current(given.environment)
-        self._grounded, self._done, self._halted, self._rolling = True, False, False, False
+        self._grounded, self._stopped, self._halted, self._rolling = True, False, False, False
+        self._bears = False
         self._move: Move | None = None
         self._fault: Fault | None = None
         home = self._robot.home
         self._legs = [Leg(0.0, 0.0, home, home, (0.0, 0.0), self._battery.capacity, 0.0)]
         self._first = 0
 
-    def begin(self, move: Move, now: float, *, through: bool = False) -> None:
-        """Begin a movement."""
+    def do(self, order: object, now: float, *, through: bool = False) -> None:
+        """Begin a grounded movement or action; a device that the type does not have stays silent."""
+        self.done, self.trouble = False, None
         self._catch_up(now)
+        if isinstance(order, Move):
+            self._begin(order, now, through)
+        elif isinstance(order, Action):
+            self._act(order, now)
+        else:
+            raise InternalError(f"{order!r}: neither a move nor an action")
+
+    def _begin(self, move: Move, now: float, through: bool) -> None:
         kind = self._kinds[move.id]
         if self._state not in kind.needs:
             needed = " or ".join(sorted(kind.needs))
@@ -101,9 +112,7 @@ class SimulatedRobot:
             path = (here,)
         self._travel(move, kind, path, now, through)
 
-    def act(self, action: Action, now: float) -> None:
-        """Begin a device or feedback action; a device that the type does not have stays silent."""
-        self._catch_up(now)
+    def _act(self, action: Action, now: float) -> None:
         seconds = 0.0
         if action.is_a(DEVICE_ACTION):
             device = self._given.type.devices.get(action.device)
@@ -120,8 +129,20 @@ class SimulatedRobot:
         self._catch_up(now)
         self._stay(now, inf)
 
-    def finished(self, now: float) -> bool:
-        """Return whether the movement or action has finished."""
+    def look(self, now: float) -> float:
+        """See what is wrong, and otherwise whether the movement or action has finished."""
+        self.trouble = self._fault or self._battery.fault(self._leg(now), now, self._flow())
+        if self.trouble is None or self._bears:
+            self.done = self._has_finished(now)
+        self._bears = False
+        return self._next_event(now)
+
+    def bear(self, now: float) -> bool:
+        """Go on in spite of what is wrong."""
+        self._bears = True
+        return True
+
+    def _has_finished(self, now: float) -> bool:
         if self._legs[-1].end > now + SLACK:
             return False
         if self._move is not None:
@@ -129,11 +150,7 @@ class SimulatedRobot:
             self._move = None
         return True
 
-    def fault(self, now: float) -> Fault | None:
-        """Return a battery that is empty or low, too much wind, a silent device, or a move out of place."""
-        return self._fault or self._battery.fault(self._leg(now), now, self._flow())
-
-    def next_event(self, now: float) -> float | None:
+    def _next_event(self, now: float) -> float:
         """Return when the movement ends or something goes wrong."""
         if self._fault is not None:
             return now
@@ -157,7 +174,7 @@ class SimulatedRobot:
             places=self._places,
         )
 
-    def stop(self, now: float, response: str = "HOLD") -> None:
+    def respond(self, response: str, now: float) -> None:
         """Do what a fault's response says, from wherever the robot is; only the first call counts."""
         if self._halted:
             return
@@ -253,7 +270,7 @@ class SimulatedRobot:
         if self._kinds[move.id].leaves == "grounded":
             self._grounded = True
         if move.is_a(STOP):
-            self._done = True
+            self._stopped = True
         if move.is_a(RECHARGE):
             last = self._legs[-1]
             full, faces = self._battery.capacity, (last.headings[1], last.headings[1])
@@ -303,7 +320,7 @@ class SimulatedRobot:
         return self._current if in_water else STILL
 
     def _costs_nothing(self) -> bool:
-        return self._done or (self._kinematics.launches and self._grounded)
+        return self._stopped or (self._kinematics.launches and self._grounded)
 
     def _hold_against_wind(self, seconds: float) -> None:
         limit = self._given.type.part.attributes.get("positionHold")

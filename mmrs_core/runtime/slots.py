@@ -1,4 +1,4 @@
-"""The bus as the interpreter uses it: within one process, or shared with others."""
+"""The bus of robots that several processes run, as their program has it."""
 
 from __future__ import annotations
 
@@ -6,10 +6,10 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 
 from mmrs_core.behaviour.program import Program, SlotId
-from mmrs_core.contributions.buses import CommandId, Find, SlotState
 from mmrs_core.errors import InternalError
 from mmrs_runtime.bus import Carrier, Delivery, FileJournal, Member, Node, Owned, Recorded
 from mmrs_runtime.bus.watching import SETTLING_SECONDS
+from mmrs_runtime.bus.words import CommandId, Find, SlotState
 from mmrs_runtime.records.steps import StepRecord, log_name
 
 
@@ -77,10 +77,6 @@ class ProgramBus:
         """Have a function called when something may have changed."""
         self.node.on_change(callback)
 
-    def apply(self, id: CommandId, slots: Iterable[SlotId], active: bool, lamport: int) -> None:
-        """Set slots of this process's robots as a log says they were, unless that was done already."""
-        self.node.repeat(id, [slot for slot in slots if slot[0] in self._here], active, lamport)
-
     def close(self) -> None:
         """Leave the bus; robots that have not ended are lost to the others."""
         self.node.close()
@@ -88,18 +84,6 @@ class ProgramBus:
     def _refuse_unknown(self, slot: SlotId) -> None:
         if slot not in self._known:
             raise InternalError(f"{slot[0]}.{slot[1]}: no such slot in the program")
-
-
-class InProcessBus(ProgramBus):
-    """The slots of all robots of a program, which live as long as the process that they share.
-
-    A run that is resumed replays its logs, in which every notify stands before it was delivered.
-    """
-
-    def __init__(self, program: Program) -> None:
-        """Begin with every slot inactive."""
-        members = members_of(program)
-        super().__init__(Node([members[robot.id] for robot in program.robots], ""), program)
 
 
 def shared_bus(

@@ -4,12 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
 
-from mmrs_core.contributions.abilities import Noting, Telling
-from mmrs_core.contributions.backends import Backend
 from mmrs_core.contributions.execution import Fault
 from mmrs_core.errors import LinkLostError, MmrsError
 from mmrs_runtime.faults import LINK_LOST, PEER_LOST
 from mmrs_runtime.policies import NOTHING
+from mmrs_runtime.vehicle import Vehicle
 
 
 class Unready(Exception):  # noqa: N818  # it is no error yet: whoever raises it has still to be let go of
@@ -33,7 +32,7 @@ def reason_of(found: Fault) -> str:
 
 
 def record(
-    robots: Mapping[str, Backend], faults: Mapping[str, Fault], fail: Callable[[str, str], None]
+    robots: Mapping[str, Vehicle], faults: Mapping[str, Fault], fail: Callable[[str, str], None]
 ) -> None:
     """Have logs say which programs have ended, and black boxes why none begins.
 
@@ -47,19 +46,18 @@ def record(
     for id, found in faults.items():
         robot = robots[id]
         note(robot, found.which, reason_of(found))
-        if found.which != LINK_LOST or not isinstance(robot, Telling) or robot.told():
+        if found.which != LINK_LOST or robot.told():
             fail(id, found.which)
     missing = ", ".join(f"'{id}'" for id in faults)
     note_alone((robot for id, robot in robots.items() if id not in faults), f"{missing} did not get ready")
 
 
-def note_alone(robots: Iterable[Backend], why: str) -> None:
+def note_alone(robots: Iterable[Vehicle], why: str) -> None:
     """Have black boxes say that robots have not begun, since others are not ready."""
     for robot in robots:
         note(robot, PEER_LOST, f"has not begun: {why}")
 
 
-def note(robot: Backend, what: str, why: str) -> None:
+def note(robot: Vehicle, what: str, why: str) -> None:
     """Have a robot's black box say why it is told nothing."""
-    if isinstance(robot, Noting):
-        robot.note("decision", {"what": what, "why": why, "response": NOTHING})
+    robot.note("decision", {"what": what, "why": why, "response": NOTHING})

@@ -19,11 +19,11 @@ from pathlib import Path
 
 from mmrs_core.behaviour.log import read_log
 from mmrs_core.behaviour.program import Program
-from mmrs_core.behaviour.semantics import Phase, entry, steps
 from mmrs_core.runtime.slots import recorded_of, shared_bus
 from mmrs_core.testing.small_programs import hold, notify, program, robot
 from mmrs_runtime.bus import CommandId
 from mmrs_runtime.records.steps import StepRecord, log_name, to_line
+from mmrs_runtime.semantics import awaited, entry, steps
 
 RUN = "run-0"
 
@@ -109,7 +109,7 @@ class Walker:
 
     def __init__(self, made: Program, id: str, folder: Path, bus, *, at=lambda what, number: None):
         """Go on where the log ends; `at` is called at every point where something may be made to happen."""
-        self.program, self.bus, self.at = made.robot(id), bus, at
+        self.program, self.bus, self.at = made.executable.by_id[id], bus, at
         self.point, self.lamport, self.number = entry(self.program, self.program.start), 0, 0
         self.log = folder / log_name(id)
         for record in logged(folder, id):
@@ -126,9 +126,7 @@ class Walker:
         return True
 
     def _step(self):
-        waits = ()
-        if self.point.phase is Phase.OUT:
-            waits = [(self.program.id, n) for n in self.program.transitions[self.point.move].waits]
+        waits = awaited(self.program, self.point)
         states = {slot: self.bus.state(slot) for slot in waits}
         possible = steps(self.program, self.point, {slot for slot, state in states.items() if state.active})
         if not possible:

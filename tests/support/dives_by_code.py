@@ -18,11 +18,12 @@ from mmrs_core.contributions.targets import TargetInput
 from mmrs_core.generation.render import render
 from mmrs_core.generation.writing import write
 from mmrs_core.pipeline import Place, inputs_of
-from mmrs_core.runtime.clock import RealClock
-from mmrs_core.runtime.conditions import asked_by, standard_conditions
+from mmrs_core.runtime.conditions import asked_by
 from mmrs_core.runtime.live import Venture
-from mmrs_core.runtime.slots import InProcessBus
 from mmrs_core.transformation.kinds import MOVE_KINDS
+from mmrs_runtime.engine.clocks import RealClock
+from mmrs_runtime.engine.judging import standard_conditions
+from mmrs_runtime.slots import LocalSlots
 
 SPEED = 0.5
 """Slower than real time, so that a computer with other work does not make the vehicle give up its dive."""
@@ -40,7 +41,7 @@ def interpreted(
             contributions,
             options={"clock": "bus", **options},
         ),
-        InProcessBus(behaviour),
+        LocalSlots(behaviour.executable),
         standard_conditions(asked_by(behaviour)),
         clock=RealClock(SPEED),
         folder=folder / "logs",

@@ -13,10 +13,10 @@ from ports import free_port
 
 from mmrs_core.behaviour.program import BEHAVIOUR, Heading, Target
 from mmrs_core.contributions.backends import BackendInput, Live
-from mmrs_core.runtime.clock import RealClock
 from mmrs_core.scene import Capability, Device, DeviceAction, Frame, Part, RobotType
 from mmrs_core.sitl import Settings, SimulatedVehicle
 from mmrs_core.testing.programs import move, program, robot_program
+from mmrs_runtime.engine.clocks import RealClock
 
 SPEEDUP = 10.0
 POOL = Frame("EPSG:4326", None, None, surface=0.0)

@@ -9,12 +9,12 @@ from math import inf
 from mmrs_core.contributions.backends import BackendFactory, BackendInput
 from mmrs_core.contributions.execution import Fault, RobotState
 from mmrs_core.errors import MmrsError
-from mmrs_core.runtime.clock import RealClock
 from mmrs_core.runtime.live import Venture, run_live
-from mmrs_core.runtime.orders import STOP, Orders
 from mmrs_core.runtime.run import inputs_of
-from mmrs_core.runtime.slots import InProcessBus
 from mmrs_core.testing.small_programs import ROBOT_TYPE, hold, program, robot, robot_type
+from mmrs_runtime.engine.clocks import RealClock
+from mmrs_runtime.engine.orders import STOP, Orders
+from mmrs_runtime.slots import LocalSlots
 
 FAST = 100.0
 
@@ -166,13 +166,21 @@ class Flight:
         )
         inputs = {id: given for id, given in inputs.items() if here is None or id in here}
         factory = script.factory if isinstance(script, Script) else script
-        given = {"bus": InProcessBus(behaviour), "conditions": {}, **more}
+        given = {"bus": LocalSlots(behaviour.executable), "conditions": {}, **more}
+        kept = given.pop("observe", None)
+
+        def observe(record):
+            if kept is not None:
+                kept(record)
+            self.records.append(record)
+
         self.venture = Venture(
             behaviour,
             inputs,
             clock=RealClock(speedup),
             orders=self.orders,
             say=self.said.append,
+            observe=observe,
             **given,
         )
         self.ending = self.error = None
@@ -180,12 +188,8 @@ class Flight:
         self._thread.start()
 
     def _go(self, factory):
-        steps = run_live(self.venture, factory)
         try:
-            while True:
-                self.records.append(next(steps))
-        except StopIteration as stop:
-            self.ending = stop.value
+            self.ending = run_live(self.venture, factory)
         except (MmrsError, KeyboardInterrupt) as error:
             self.error = error
 

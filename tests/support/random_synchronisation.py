@@ -4,8 +4,8 @@ from dataclasses import replace
 
 from hypothesis import strategies as st
 
-from mmrs_core.behaviour.semantics import apply, enabled, initial, is_deadlock
 from mmrs_core.testing.small_programs import hold, notify, program, robot
+from mmrs_runtime.semantics import apply, enabled, initial, is_deadlock
 
 SILENT = {"begin", "end", "act"}
 
@@ -67,6 +67,7 @@ def _actions(draw, slots, resets, most):
 
 def deadlocks(behaviour, limit=4_000):
     """Return whether some run of the behaviour ends with a robot waiting; None: too many states."""
+    behaviour = behaviour.executable
     first = _settled(behaviour, initial(behaviour))
     seen = {first}
     pending = [first]

@@ -10,7 +10,7 @@ from math import dist
 import numpy as np
 
 from mmrs_core.behaviour.program import Program, RobotProgram
-from mmrs_core.behaviour.replay import Outcome, ReplayResult, replay
+from mmrs_core.behaviour.replay import ReplayResult, replay
 from mmrs_core.cli.flights.away import AWAY
 from mmrs_core.cli.flights.fixes import Zero, zero_of
 from mmrs_core.cli.flights.photos import shots_in
@@ -31,6 +31,7 @@ from mmrs_core.cli.report.values import Approach, PhotoReport, Report, RobotRepo
 from mmrs_core.contributions.rules import MoveKind, RobotKind
 from mmrs_core.pipeline import Place as Surroundings
 from mmrs_core.scene import Name
+from mmrs_runtime.semantics import Outcome
 
 
 @dataclass(frozen=True, slots=True)

@@ -10,10 +10,12 @@ from typing import ClassVar
 import pytest
 
 from mmrs_core.behaviour.program import Program
-from mmrs_core.contributions.backends import Backend, BackendFactory, BackendInput
+from mmrs_core.contributions.backends import BackendFactory, BackendInput
 from mmrs_core.errors import UsageError
+from mmrs_core.runtime.polled import vehicle_of
 from mmrs_core.testing.conformance.declared import Conformance
 from mmrs_core.testing.small_programs import go, hold, program, robot, robot_type
+from mmrs_runtime.vehicle import Vehicle
 
 MOST_EVENTS = 1000
 """Questions after which a movement is taken for one that never ends."""
@@ -61,9 +63,9 @@ class BackendConformance(Conformance):
         """Movements that are begun one after another finish one after another."""
         driven, now = self._simulated(backend), 0.0
         for move in self.behaviour.robots[0].moves:
-            driven.begin(move, now)
+            driven.do(move, now)
             now = _end(driven, now)
-            assert driven.fault(now) is None
+            assert driven.trouble is None
             if move.target is not None and move.target.position is not None:
                 assert driven.state(now).position == pytest.approx(move.target.position, abs=0.5)
 
@@ -80,11 +82,11 @@ class BackendConformance(Conformance):
     ) -> None:
         """Stopping twice is stopping once."""
         driven = self._simulated(backend)
-        driven.begin(self.behaviour.robots[0].moves[1], 0.0)
-        when = share * min(driven.next_event(0.0) or 0.0, 1e6)
-        driven.stop(when, response)
+        driven.do(self.behaviour.robots[0].moves[1], 0.0)
+        when = share * min(driven.look(0.0), 1e6)
+        driven.respond(response, when)
         end = _end(driven, when)
-        driven.stop(end, response)
+        driven.respond(response, end)
         state, later = driven.state(end + 1.0), driven.state(end + 1000.0)
         assert state.speed == later.speed == 0.0
         assert later.position == state.position
@@ -101,19 +103,18 @@ class BackendConformance(Conformance):
             options=self.options.get(backend.name, {}),
         )
 
-    def _simulated(self, backend: BackendFactory) -> Backend:
+    def _simulated(self, backend: BackendFactory) -> Vehicle:
         if not backend.simulated:
             pytest.skip(f"{backend.name} drives real robots")
-        return backend.connect(self._input(backend))
+        return vehicle_of(backend.connect(self._input(backend)))
 
 
-def _end(driven: Backend, now: float) -> float:
+def _end(driven: Vehicle, now: float) -> float:
     """Return when what was begun last has finished."""
     for _ in range(MOST_EVENTS):
-        if driven.finished(now):
+        after = driven.look(now)
+        if driven.done:
             return now
-        after = driven.next_event(now)
-        assert after is not None
         assert now < after < inf
         assert isfinite(after)
         now = after

@@ -6,8 +6,7 @@ import time
 
 import pytest
 
-from mmrs_core.behaviour.replay import Outcome
-from mmrs_core.behaviour.semantics import entry, steps
+from mmrs_runtime.semantics import Outcome, entry, steps
 
 
 def check_success(fleet):
@@ -90,7 +89,7 @@ def test_a_frozen_robot_goes_on_exactly_when_it_wakes(fleet):
 
 def notifies(fleet, robot):
     """Return the numbers of the steps of a robot that are notifies, in its undisturbed run."""
-    made = fleet.program.robot(robot)
+    made = fleet.program.executable.by_id[robot]
     everything = {(robot, name) for name in made.slots}
     point, number, found = entry(made, made.start), 0, []
     while possible := steps(made, point, everything):

@@ -13,7 +13,8 @@ import bus_walking
 import machines
 import pytest
 
-from mmrs_core.behaviour.replay import Outcome, replay
+from mmrs_core.behaviour.replay import replay
+from mmrs_runtime.semantics import Outcome
 
 pytestmark = [pytest.mark.thorough, pytest.mark.skipif(bool(why := machines.why_not()), reason=why)]
 

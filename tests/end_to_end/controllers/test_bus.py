@@ -14,7 +14,7 @@ from ports import free_endpoint
 
 from mmrs_core.behaviour.log import read_logs
 from mmrs_core.behaviour.program import Transition
-from mmrs_core.behaviour.replay import Outcome, replay
+from mmrs_core.behaviour.replay import replay
 from mmrs_core.scene import Policy
 from mmrs_core.testing.programs import (
     LAND,
@@ -25,6 +25,7 @@ from mmrs_core.testing.programs import (
     take_off,
     two_drones,
 )
+from mmrs_runtime.semantics import Outcome
 
 
 @pytest.fixture

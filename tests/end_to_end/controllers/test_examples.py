@@ -9,8 +9,9 @@ from example_flight.mission import SLACK, margins
 
 from mmrs_core import pipeline
 from mmrs_core.behaviour.log import read_logs
-from mmrs_core.behaviour.replay import Outcome, replay
+from mmrs_core.behaviour.replay import replay
 from mmrs_core.resources import shipped
+from mmrs_runtime.semantics import Outcome
 
 EXAMPLES = ("carbon-dioxide", "drone-and-rover", "mixed-team", "outfall", "pool", "solar-park")
 OTHERS = ("carbon-dioxide", "drone-and-rover", "outfall", "solar-park")

@@ -6,7 +6,6 @@ import pytest
 from ports import free_endpoint
 
 from mmrs_core.behaviour.program import Target, Transition
-from mmrs_core.behaviour.replay import Outcome
 from mmrs_core.scene import Device, DeviceAction, Frame
 from mmrs_core.testing.programs import (
     LAND,
@@ -18,6 +17,7 @@ from mmrs_core.testing.programs import (
     take_off,
     two_drones,
 )
+from mmrs_runtime.semantics import Outcome
 
 PHOTO = 2000
 AT_HOME = 0.6

@@ -10,12 +10,13 @@ from pathlib import Path
 import pytest
 
 from mmrs_core.behaviour.log import read_logs
-from mmrs_core.behaviour.replay import Outcome, replay
+from mmrs_core.behaviour.replay import replay
 from mmrs_core.cli.demo import example_folder
 from mmrs_core.cli.simulation import write_logs
 from mmrs_core.contributions.checks import Status
 from mmrs_core.pipeline import simulate
 from mmrs_core.runtime.run import Run
+from mmrs_runtime.semantics import Outcome
 
 FOLDER = example_folder("lost-float")
 FLOAT = (23.5, 27.5)

@@ -11,7 +11,7 @@ import pytest
 from mmrs_auv.testing import random_start
 
 from mmrs_core.behaviour.log import read_logs
-from mmrs_core.behaviour.replay import Outcome, replay
+from mmrs_core.behaviour.replay import replay
 from mmrs_core.cli.demo import example_folder
 from mmrs_core.cli.demonstration import Manner, manner_of
 from mmrs_core.cli.simulation import write_logs
@@ -20,6 +20,7 @@ from mmrs_core.contributions.execution import Sample
 from mmrs_core.errors import UnreadableError
 from mmrs_core.pipeline import simulate
 from mmrs_core.scene import Position
+from mmrs_runtime.semantics import Outcome
 
 TARGET, UP = (23.0, 8.0, -3.0), (25.0, 8.0)
 """Where the course's vehicle holds over the target, and comes up: metres east, north and up."""

@@ -11,12 +11,12 @@ from patience import until
 from ports import free_port
 
 from mmrs_core.contributions.backends import BackendInput, Live
-from mmrs_core.runtime.clock import RealClock
 from mmrs_core.scene import Frame, Policy
 from mmrs_core.sitl import Settings, SimulatedVehicle
 from mmrs_core.testing.programs import move
 from mmrs_core.testing.small_programs import go, program, robot, robot_type
 from mmrs_mavlink.plugin.backend import MAVLINK
+from mmrs_runtime.engine.clocks import RealClock
 
 EARTH = Frame("EPSG:4326", 42.37, 13.35, 720.0, "MSL")
 ROVER = robot(

@@ -7,7 +7,7 @@ from fault_table.fleet import wait_for
 from fault_table.project import Pad
 from real_runs import PATIENCE, begun, judged, ordered
 
-from mmrs_core.behaviour.replay import Outcome
+from mmrs_runtime.semantics import Outcome
 
 
 @pytest.mark.thorough

@@ -8,7 +8,8 @@ from example_flight.mission import SLACK, Mission
 from example_flight.ways import by_behaviour
 
 from mmrs_core.behaviour.log import read_logs
-from mmrs_core.behaviour.replay import Outcome, replay
+from mmrs_core.behaviour.replay import replay
+from mmrs_runtime.semantics import Outcome
 
 pytestmark = pytest.mark.thorough
 

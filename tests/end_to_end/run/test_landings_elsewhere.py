@@ -13,7 +13,7 @@ import pytest
 from fault_table.fleet import EXECUTIONS, Fleet, wait_for
 from fault_table.project import LATITUDE, LONGITUDE, OUT, Pad
 
-from mmrs_core.behaviour.replay import Outcome
+from mmrs_runtime.semantics import Outcome
 
 PATIENCE = 60.0
 SPEEDUP = 30.0

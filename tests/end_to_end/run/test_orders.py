@@ -14,7 +14,7 @@ from fault_table.project import Pad
 from real_runs import AT_HOME, HOLDING, PATIENCE, UNHURRIED, begun, judged, landed, ordered
 from stalls import Stalls
 
-from mmrs_core.behaviour.replay import Outcome
+from mmrs_runtime.semantics import Outcome
 
 
 def control(fleet, order):

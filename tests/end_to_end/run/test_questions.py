@@ -10,7 +10,7 @@ import pytest
 from fault_table.fleet import wait_for
 from fault_table.project import Pad
 
-from mmrs_core.behaviour.replay import Outcome
+from mmrs_runtime.semantics import Outcome
 
 PATIENCE = 60.0
 QUESTION = "go on?"

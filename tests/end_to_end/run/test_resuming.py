@@ -23,8 +23,8 @@ from real_runs import (
     ordered,
 )
 
-from mmrs_core.behaviour.replay import Outcome
 from mmrs_core.sitl import Settings, SimulatedVehicle
+from mmrs_runtime.semantics import Outcome
 
 STAYS = ("LINK_LOST", "HOLD", 5.0)
 """Has a vehicle be in the air still when its run is resumed, however long that takes on a busy machine."""

@@ -14,8 +14,8 @@ from fault_table.project import OUT, TOUR, Pad
 from ports import free_endpoint
 from real_runs import PATIENCE, SYNCHRONISED, begun, fly_by_hand, judged, landed, least_distance
 
-from mmrs_core.behaviour.replay import Outcome
 from mmrs_core.cli import run
+from mmrs_runtime.semantics import Outcome
 
 FULL = Path("/dev/full")
 

@@ -10,7 +10,8 @@ from example_flight.mission import SLACK, Mission
 from example_flight.ways import WAYS
 
 from mmrs_core.behaviour.log import read_logs
-from mmrs_core.behaviour.replay import Outcome, replay
+from mmrs_core.behaviour.replay import replay
+from mmrs_runtime.semantics import Outcome
 
 
 def _needs(fleet: str) -> list[pytest.MarkDecorator]:

@@ -24,16 +24,18 @@ from waiting_pair import waiting_pair
 from mmrs_core.behaviour.log import read_logs
 from mmrs_core.behaviour.program import BEHAVIOUR, Action, Heading, Move, Program, Target, Transition
 from mmrs_core.behaviour.reading import program_of
-from mmrs_core.behaviour.replay import Outcome, replay
+from mmrs_core.behaviour.replay import replay
 from mmrs_core.contributions.targets import TargetInput
 from mmrs_core.generation.render import render
 from mmrs_core.generation.writing import write as write_files
 from mmrs_core.languages.reading import read_model
 from mmrs_core.languages.registry import registry_with
-from mmrs_core.runtime.conditions import asked_by, standard_conditions
+from mmrs_core.runtime.conditions import asked_by
 from mmrs_core.testing.programs import feedback, move
 from mmrs_core.testing.small_programs import notify
 from mmrs_core.transformation.kinds import MOVE_KINDS
+from mmrs_runtime.engine.judging import standard_conditions
+from mmrs_runtime.semantics import Outcome
 
 SLOTS = ("go", "GO")
 

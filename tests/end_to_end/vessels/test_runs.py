@@ -1,10 +1,9 @@
-"""A simulated vehicle in real time, each part a process, driven by the interpreter and by generated code."""
+"""A simulated vehicle in real time, each part a process, driven by the engine and by generated code."""
 
 from __future__ import annotations
 
 import json
 import time
-from collections.abc import Generator
 from dataclasses import replace
 from pathlib import Path
 
@@ -18,25 +17,16 @@ from mmrs_auv.vessel.body.surroundings import Surroundings
 
 from mmrs_core.behaviour.log import read_logs
 from mmrs_core.behaviour.program import Program
-from mmrs_core.behaviour.replay import Outcome, replay
+from mmrs_core.behaviour.replay import replay
 from mmrs_core.runtime.live import run_live
-from mmrs_core.runtime.terms import Ending
 from mmrs_core.testing.programs import use
 from mmrs_runtime.records.log import LogWriter
 from mmrs_runtime.records.steps import StepRecord
+from mmrs_runtime.semantics import Outcome
 
 
 def short_dive() -> Program:
     return dive(swim("out", 1.5, 0.0, 1.0, after=(use("ctd", "Sample"),)))
-
-
-def written(steps: Generator[StepRecord, None, Ending], writer: LogWriter) -> Ending:
-    """Write steps until there are no more; return how the run ended."""
-    while True:
-        try:
-            writer.write(next(steps))
-        except StopIteration as over:
-            return over.value
 
 
 @pytest.fixture
@@ -62,7 +52,7 @@ def devices_confirm(folder: Path) -> bool:
 def test_a_dive_is_carried_out_over_the_bus(berth, contributions, tmp_path):
     venture = interpreted(short_dive(), berth, contributions, tmp_path)
     with LogWriter(tmp_path / "logs") as writer:
-        ending = written(run_live(venture, contributions.backends["can"]), writer)
+        ending = run_live(replace(venture, observe=writer.write), contributions.backends["can"])
     assert ending.outcome is Outcome.SUCCESS, ending
     assert replay(venture.program, read_logs([tmp_path / "logs"])).accepted
     assert len(entries_in(tmp_path / "logs", "fix")) > 10
@@ -82,10 +72,13 @@ def test_a_run_ends_whose_bus_goes_while_its_vehicle_stops(berth, contributions,
 
     monkeypatch.setattr(ConnectedRobot, "stop", stop_without_a_bus)
     said: list[str] = []
-    venture = replace(interpreted(short_dive(), berth, contributions, tmp_path), say=said.append)
-    for step in run_live(venture, contributions.backends["can"]):
+    venture = interpreted(short_dive(), berth, contributions, tmp_path)
+
+    def observe(step: StepRecord) -> None:
         if (step.label, step.move) == ("begin", "out"):
             venture.orders.give("stop", ["naiad"])
+
+    run_live(replace(venture, say=said.append, observe=observe), contributions.backends["can"])
     assert [line for line in said if line.startswith("'naiad': not known to have stopped (HOLD): LINK_LOST")]
 
 

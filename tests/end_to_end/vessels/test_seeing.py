@@ -23,10 +23,11 @@ from ports import free_port
 
 from mmrs_core.behaviour.log import read_logs
 from mmrs_core.behaviour.program import Heading, Move, Program, Target, Transition
-from mmrs_core.behaviour.replay import Outcome, replay
+from mmrs_core.behaviour.replay import replay
 from mmrs_core.runtime.live import run_live
 from mmrs_core.testing.programs import feedback, move
 from mmrs_runtime.records.log import LogWriter
+from mmrs_runtime.semantics import Outcome
 
 pytestmark = pytest.mark.thorough
 
@@ -104,8 +105,7 @@ def test_the_interpreter_goes_and_chooses_by_what_three_processes_see(seen, cont
     berth, port = seen
     venture = interpreted(looking(), berth, contributions, tmp_path, detections=str(port))
     with LogWriter(tmp_path / "logs") as writer:
-        for step in run_live(venture, contributions.backends["can"]):
-            writer.write(step)
+        run_live(replace(venture, observe=writer.write), contributions.backends["can"])
     judge(tmp_path / "logs")
 
 

@@ -11,16 +11,17 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from mmrs_core.behaviour.log import read_logs
-from mmrs_core.behaviour.replay import Outcome, replay
-from mmrs_core.behaviour.semantics import apply, enabled, initial, is_deadlock, is_success
-from mmrs_core.runtime.run import assumed, simulate
+from mmrs_core.behaviour.replay import replay
+from mmrs_core.runtime.run import simulate
 from mmrs_core.runtime.simulation import SIMULATION
-from mmrs_core.runtime.terms import Terms
 from mmrs_core.testing.random_programs import CONDITIONS, answers, programs
 from mmrs_core.testing.small_programs import ROBOT_TYPE, robot_type
 from mmrs_core.transformation.kinds import MOVE_KINDS, PLAIN_ROBOT
+from mmrs_runtime.engine.judging import assumed
+from mmrs_runtime.engine.terms import Terms
 from mmrs_runtime.records.log import LogWriter
 from mmrs_runtime.records.steps import merge
+from mmrs_runtime.semantics import Outcome, apply, enabled, initial, is_deadlock, is_success
 
 TYPE = robot_type(lifetime=None)
 KINDS = {
@@ -39,6 +40,7 @@ def run_of(program, answers=None, **options):
 
 def terminal_states(program):
     """Return all states in which runs end, by exhaustive search; every Choice goes both ways."""
+    program = program.executable
     start = initial(program)
     seen, pending, ends = {start}, [start], []
     while pending:
@@ -79,7 +81,7 @@ def test_every_run_of_larger_behaviours_is_a_trace(program, decided):
 def check_deadlock(program):
     ends = terminal_states(program)
     outcome = run_of(program).ending.outcome
-    assert (outcome is Outcome.STUCK) == any(is_deadlock(program, end) for end in ends)
+    assert (outcome is Outcome.STUCK) == any(is_deadlock(program.executable, end) for end in ends)
     assert (outcome is Outcome.SUCCESS) == all(is_success(end) for end in ends)
 
 
@@ -100,11 +102,12 @@ def test_one_run_tells_whether_any_gets_stuck_in_larger_behaviours(program):
 @FAST
 def test_a_run_ends_in_a_state_that_exhaustive_search_knows(program, decided):
     run = run_of(program, decided)
-    state = initial(program)
+    made = program.executable
+    state = initial(made)
     for record in run.records:
         state = next(
-            apply(program, state, step)
-            for step in enabled(program, state)
+            apply(made, state, step)
+            for step in enabled(made, state)
             if (step.robot, step.label, step.move, step.detail)
             == (record.robot, record.label, record.move, record.detail)
         )

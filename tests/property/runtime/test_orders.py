@@ -6,18 +6,16 @@ from dataclasses import dataclass, field
 from math import inf
 
 import pytest
+from carried_out import carried_out
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from live_runs import Idle
 
 from mmrs_core.contributions.execution import Fault
-from mmrs_core.runtime.attention import Attention
-from mmrs_core.runtime.interpreter import interpret
-from mmrs_core.runtime.orders import HOLD, LAND, RESUME, RETURN, STOP, Order, Orders
-from mmrs_core.runtime.slots import InProcessBus
-from mmrs_core.runtime.terms import Terms
 from mmrs_core.scene import Policy
 from mmrs_core.testing.small_programs import hold, program, robot
+from mmrs_runtime.engine.orders import HOLD, LAND, RESUME, RETURN, STOP, Order, Orders
+from mmrs_runtime.engine.terms import Attention, Terms
 from mmrs_runtime.records.steps import StepRecord
 
 ROBOTS = ("a", "b")
@@ -248,12 +246,8 @@ def check(events, armed, stays, resumed):
         unready=resumed,
         resumed=BEGUN if resumed else (),
     )
-    bus = InProcessBus(BEHAVIOUR)
-    assert not [
-        record
-        for record in interpret(BEHAVIOUR, vehicles, bus=bus, clock=world, conditions={}, terms=terms)
-        if vehicles[record.robot].at == "absent"
-    ]
+    records, _ = carried_out(BEHAVIOUR, vehicles, clock=world, terms=terms)
+    assert not [record for record in records if vehicles[record.robot].at == "absent"]
     asked = [(number, id) for number, order in enumerate(world.given) for id in order.robots]
     assert sorted((number, id) for number, id, _ in world.answers) == sorted(asked)
     for number, id, why in world.answers:

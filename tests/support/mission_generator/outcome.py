@@ -12,11 +12,11 @@ from mission_generator.missions import sample
 from mmrs_core import pipeline
 from mmrs_core.analysis.constraints import check_behaviour
 from mmrs_core.behaviour.program import BEHAVIOUR
-from mmrs_core.behaviour.replay import Outcome as Outcomes
 from mmrs_core.behaviour.replay import replay
 from mmrs_core.errors import InfeasibleError, InvalidModelError
 from mmrs_core.languages.reading import read_model
 from mmrs_core.languages.writing import write_model
+from mmrs_runtime.semantics import Outcome as Outcomes
 
 GRID = 1e-6
 NEAR = 1e-3

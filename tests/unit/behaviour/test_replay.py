@@ -6,10 +6,10 @@ from dataclasses import fields, replace
 
 import pytest
 
-from mmrs_core.behaviour.replay import Outcome, replay
-from mmrs_core.behaviour.semantics import apply, enabled, initial
+from mmrs_core.behaviour.replay import replay
 from mmrs_core.testing.small_programs import go, hold, notify, program, robot, use
 from mmrs_runtime.records.steps import StepRecord
+from mmrs_runtime.semantics import Outcome, apply, enabled, initial
 
 BEHAVIOUR = program(
     robot(
@@ -29,8 +29,9 @@ BEHAVIOUR = program(
 
 def log_of(behaviour, seconds=10.0):
     """Return the log of a run in which the first enabled step is always made, at even times."""
-    state, records, counts, lamport = initial(behaviour), [], {}, 0
-    while (step := next(iter(enabled(behaviour, state)), None)) is not None:
+    made = behaviour.executable
+    state, records, counts, lamport = initial(made), [], {}, 0
+    while (step := next(iter(enabled(made, state)), None)) is not None:
         lamport += 1
         seq = counts.get(step.robot, 0)
         counts[step.robot] = seq + 1
@@ -38,7 +39,7 @@ def log_of(behaviour, seconds=10.0):
         records.append(
             StepRecord("run", step.robot, seq, lamport, time, step.label, step.move, step.detail, step.slot)
         )
-        state = apply(behaviour, state, step)
+        state = apply(made, state, step)
     return records
 
 

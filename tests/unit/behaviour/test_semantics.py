@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 
-from mmrs_core.behaviour.semantics import (
+from mmrs_core.testing.small_programs import go, hold, notify, program, robot, use
+from mmrs_runtime.semantics import (
     Phase,
     Point,
     State,
@@ -19,7 +22,11 @@ from mmrs_core.behaviour.semantics import (
     steps,
     waiting,
 )
-from mmrs_core.testing.small_programs import go, hold, notify, program, robot, use
+
+
+def alone(each):
+    """Return a robot as the engine executes it."""
+    return program(each).executable.robots[0]
 
 
 def labels(each):
@@ -38,7 +45,7 @@ def run_alone(each):
 
 def test_a_move_begins_and_ends_between_its_actions():
     move = hold("h", before=(use("arm", "open"),), after=(notify("r.s"), use("arm", "close")))
-    assert run_alone(robot("r", [move], slots=("s",))) == [
+    assert run_alone(alone(robot("r", [move], slots=("s",)))) == [
         "begin start",
         "end start",
         "take start h",
@@ -55,48 +62,37 @@ def test_a_move_begins_and_ends_between_its_actions():
 
 def test_actions_of_stop_come_before_the_end():
     each = robot("r", [])
-    stop = each.moves[each.stop]
-    with_action = type(stop)(stop.id, stop.metaclasses, after=(use("horn", "blow"),))
-    each = type(each)(
-        each.id,
-        each.type_name,
-        each.travel_mode,
-        0.0,
-        each.home,
-        (),
-        (each.moves[0], with_action),
-        each.transitions,
-        0,
-        1,
-    )
-    assert run_alone(each)[-1] == "act stop post:0"
+    each = replace(each, moves=(each.moves[0], replace(each.moves[1], after=(use("horn", "blow"),))))
+    assert run_alone(alone(each))[-1] == "act stop post:0"
 
 
 def test_a_wait_lets_no_step_through_until_every_slot_is_active():
-    each = robot("r", [hold("h")], waits={"h": ["a", "b"]})
-    out = Point(1, Phase.OUT)
+    each = alone(robot("r", [hold("h")], waits={"h": ["a", "b"]}))
+    out = Point("h", Phase.OUT)
     assert steps(each, out, {("r", "a")}) == ()
     assert missing(each, out, {("r", "a")}) == ("b",)
     assert labels(steps(each, out, {("r", "a"), ("r", "b")})) == ["take h stop"]
 
 
 def test_a_slot_of_that_name_in_another_robot_does_not_count():
-    each = robot("r", [hold("h")], waits={"h": ["a"]})
-    assert steps(each, Point(1, Phase.OUT), {("q", "a")}) == ()
+    each = alone(robot("r", [hold("h")], waits={"h": ["a"]}))
+    assert steps(each, Point("h", Phase.OUT), {("q", "a")}) == ()
 
 
 def test_a_choice_may_go_either_way_once_its_wait_is_over():
-    each = robot("r", [hold("h"), hold("x"), hold("y")], choices={"h": ("c", "x", "y")}, waits={"h": ["s"]})
-    out = Point(1, Phase.OUT)
+    each = alone(
+        robot("r", [hold("h"), hold("x"), hold("y")], choices={"h": ("c", "x", "y")}, waits={"h": ["s"]})
+    )
+    out = Point("h", Phase.OUT)
     assert steps(each, out, frozenset()) == ()
     ways = steps(each, out, {("r", "s")})
     assert labels(ways) == ["choose h true", "choose h false"]
-    assert [way.leads_to.move for way in ways] == [2, 3]
+    assert [way.leads_to.move for way in ways] == ["x", "y"]
 
 
 def test_passing_a_wait_leaves_the_slot_active():
-    behaviour = program(robot("r", [hold("h")], waits={"h": ["s"]}))
-    state = State((Point(1, Phase.OUT),), frozenset({("r", "s")}))
+    behaviour = program(robot("r", [hold("h")], waits={"h": ["s"]})).executable
+    state = State((Point("h", Phase.OUT),), frozenset({("r", "s")}))
     (step,) = enabled(behaviour, state)
     assert apply(behaviour, state, step).active == {("r", "s")}
 
@@ -106,32 +102,32 @@ def test_a_notify_sets_all_its_slots_at_once(active, left):
     behaviour = program(
         robot("a", [hold("h", after=(notify("a.s", "b.s", active=active),))], slots=("s",)),
         robot("b", [], slots=("s",)),
-    )
-    state = State((Point(1, Phase.AFTER), Point(0, Phase.READY)), frozenset({("b", "s")}))
+    ).executable
+    state = State((Point("h", Phase.AFTER), Point("start", Phase.READY)), frozenset({("b", "s")}))
     step = next(iter(enabled(behaviour, state)))
     assert step.slot == ("+" if active else "-") + "a.s b.s"
     assert apply(behaviour, state, step).active == left
 
 
 def test_a_fault_ends_a_robot_wherever_it_is():
-    behaviour = program(robot("r", [go("g", (1, 0, 0))]))
-    step = fault(behaviour.robots[0], Point(1, Phase.BUSY), "WIND")
+    behaviour = program(robot("r", [go("g", (1, 0, 0))])).executable
+    step = fault(behaviour.robots[0], Point("g", Phase.BUSY), "WIND")
     state = apply(behaviour, initial(behaviour), step)
     assert list(enabled(behaviour, state)) == []
     assert is_deadlock(behaviour, state)
 
 
 def test_a_robot_that_waits_for_nobody_is_a_deadlock():
-    behaviour = program(robot("r", [hold("h")], waits={"h": ["s"]}))
-    state = State((Point(1, Phase.OUT),))
+    behaviour = program(robot("r", [hold("h")], waits={"h": ["s"]})).executable
+    state = State((Point("h", Phase.OUT),))
     assert is_deadlock(behaviour, state)
     (only,) = waiting(behaviour, state)
     assert (only.robot, only.move, only.slots) == ("r", "h", ("s",))
 
 
 def test_all_robots_at_their_end_are_a_success():
-    behaviour = program(robot("a", []), robot("b", []))
+    behaviour = program(robot("a", []), robot("b", [])).executable
     assert not is_success(initial(behaviour))
-    done = State((Point(1, Phase.DONE), Point(1, Phase.DONE)))
+    done = State((Point("stop", Phase.DONE), Point("stop", Phase.DONE)))
     assert is_success(done)
     assert not is_deadlock(behaviour, done)

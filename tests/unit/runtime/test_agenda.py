@@ -2,7 +2,7 @@ from __future__ import annotations
 
 from math import inf
 
-from mmrs_core.runtime.agenda import Agenda
+from mmrs_runtime.engine.agenda import Agenda
 
 
 def taken(agenda):
@@ -19,14 +19,16 @@ def test_all_are_due_at_first_and_then_none():
 
 
 def test_what_is_due_twice_is_taken_once_and_in_order():
-    agenda = Agenda(0)
+    agenda = Agenda(3)
+    assert taken(agenda) == [0, 1, 2]
     for number in (2, 0, 2, 1, 0):
         agenda.put(number)
     assert taken(agenda) == [0, 1, 2]
 
 
 def test_a_later_time_takes_the_place_of_an_earlier_one():
-    agenda = Agenda(0)
+    agenda = Agenda(1)
+    assert taken(agenda) == [0]
     agenda.put_at(0, 5.0)
     agenda.put_at(0, 9.0)
     assert agenda.next_time == 9.0
@@ -37,7 +39,8 @@ def test_a_later_time_takes_the_place_of_an_earlier_one():
 
 
 def test_what_has_no_time_any_more_is_never_due():
-    agenda = Agenda(0)
+    agenda = Agenda(1)
+    assert taken(agenda) == [0]
     agenda.put_at(0, 5.0)
     agenda.put_at(0, inf)
     agenda.advance(10.0)

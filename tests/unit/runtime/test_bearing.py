@@ -7,11 +7,11 @@ from math import inf
 import pytest
 from live_runs import Flight, Script, Walker, do
 
-from mmrs_core.behaviour.replay import Outcome
 from mmrs_core.contributions.backends import BackendFactory
 from mmrs_core.contributions.execution import Fault
 from mmrs_core.scene import Policy
 from mmrs_core.testing.small_programs import program, robot
+from mmrs_runtime.semantics import Outcome
 
 
 class Breaking(Walker):

@@ -8,7 +8,7 @@ import pytest
 from signals_elsewhere import signalled
 from stalls import Stalls
 
-from mmrs_core.runtime.clock import RealClock, SimulatedClock
+from mmrs_runtime.engine.clocks import RealClock, SimulatedClock
 
 
 def test_simulated_time_jumps_and_never_goes_back():

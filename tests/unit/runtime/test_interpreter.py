@@ -5,20 +5,21 @@ from __future__ import annotations
 from math import inf
 
 import pytest
+from carried_out import carried_out
 
 from mmrs_core.behaviour.program import Action
-from mmrs_core.behaviour.replay import Outcome, replay
+from mmrs_core.behaviour.replay import replay
 from mmrs_core.contributions.backends import BackendInput
 from mmrs_core.contributions.execution import Condition, Fault, RobotState
 from mmrs_core.errors import LinkLostError, UnsupportedError
-from mmrs_core.runtime.clock import RealClock, SimulatedClock
-from mmrs_core.runtime.interpreter import interpret
-from mmrs_core.runtime.run import assumed
 from mmrs_core.runtime.simulation import SimulatedRobot
-from mmrs_core.runtime.slots import InProcessBus
-from mmrs_core.runtime.terms import Terms
 from mmrs_core.scene import Policy
 from mmrs_core.testing.small_programs import go, hold, notify, program, robot, robot_type, use
+from mmrs_runtime.engine.clocks import RealClock
+from mmrs_runtime.engine.judging import assumed
+from mmrs_runtime.engine.terms import Terms
+from mmrs_runtime.semantics import Outcome
+from mmrs_runtime.slots import LocalSlots
 
 
 def shown(records):
@@ -177,27 +178,17 @@ def test_a_run_is_cut_off_at_its_time(fly):
     assert run.records[-1].label == "begin"
 
 
-def test_every_step_is_observed_before_it_is_yielded_and_notifies_before_delivery(kinds):
+def test_notifies_are_observed_before_they_are_delivered():
     behaviour = program(robot("r", [hold("h", after=(notify("r.s"),))], waits={"h": ["s"]}))
-    bus, seen = InProcessBus(behaviour), []
+    bus, seen = LocalSlots(behaviour.executable), []
 
     def observe(record):
         seen.append(record)
         if record.label == "ntf":
             assert not bus.state(("r", "s")).active
 
-    steps = interpret(
-        behaviour,
-        {"r": Instant()},
-        bus=bus,
-        clock=SimulatedClock(),
-        conditions={},
-        terms=Terms(observe=observe),
-    )
-    for record in steps:
-        assert seen[-1] == record
-        if record.label == "ntf":
-            assert not bus.state(("r", "s")).active
+    carried_out(behaviour, {"r": Instant()}, slots=bus, terms=Terms(observe=observe))
+    assert [record.label for record in seen].count("ntf") == 1
     assert bus.state(("r", "s")).active
 
 
@@ -235,29 +226,16 @@ class Instant:
         self.calls.append(f"stop {response}")
 
 
-def run_with(behaviour, backends, **options):
-    """Return the records and the ending of a run."""
-    steps = interpret(
-        behaviour, backends, bus=InProcessBus(behaviour), clock=SimulatedClock(), conditions={}, **options
-    )
-    records = []
-    while True:
-        try:
-            records.append(next(steps))
-        except StopIteration as stop:
-            return records, stop.value
-
-
 def test_a_robot_that_came_to_its_end_is_not_stopped():
     backend = Instant()
-    run_with(program(robot("r", [hold("h")])), {"r": backend})
+    carried_out(program(robot("r", [hold("h")])), {"r": backend})
     assert backend.calls == ["begin start", "begin h", "begin stop"]
 
 
 def test_a_lost_link_is_a_fault_that_stops_the_robot_by_its_policy():
     backend = Instant(lost_at="h")
     behaviour = program(robot("r", [hold("h")], policies=(Policy("LINK_LOST", "RETURN"),)))
-    records, ending = run_with(behaviour, {"r": backend})
+    records, ending = carried_out(behaviour, {"r": backend})
     assert records[-1].detail == "LINK_LOST: no heartbeat"
     assert backend.calls[-1] == "stop RETURN"
     assert ending.outcome is Outcome.FAILED
@@ -266,16 +244,19 @@ def test_a_lost_link_is_a_fault_that_stops_the_robot_by_its_policy():
 def test_policies_of_the_type_answer_what_the_program_leaves_open():
     backend = Instant(lost_at="h")
     behaviour = program(robot("r", [hold("h")]))
-    run_with(behaviour, {"r": backend}, policies={"r": (Policy("LINK_LOST", "LAND"),)})
+    carried_out(behaviour, {"r": backend}, policies={"r": (Policy("LINK_LOST", "LAND"),)})
     assert backend.calls[-1] == "stop LAND"
 
 
 def test_a_run_that_is_given_up_stops_every_robot_that_is_under_way():
     backends = {"a": Instant(), "b": Instant()}
     behaviour = program(robot("a", [hold("h")]), robot("b", [hold("h")]))
-    steps = interpret(behaviour, backends, bus=InProcessBus(behaviour), clock=SimulatedClock(), conditions={})
-    next(steps)
-    steps.close()
+
+    def observe(record):
+        raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        carried_out(behaviour, backends, terms=Terms(observe=observe))
     assert [backend.calls[-1] for backend in backends.values()] == ["stop HOLD", "stop HOLD"]
 
 
@@ -285,7 +266,7 @@ def test_a_robot_that_does_not_confirm_its_stop_is_named():
             raise LinkLostError("no answer")
 
     behaviour = program(robot("r", [hold("h")], waits={"h": ["s"]}))
-    _, ending = run_with(behaviour, {"r": Deaf()})
+    _, ending = carried_out(behaviour, {"r": Deaf()})
     assert ending.unconfirmed == ("r",)
     assert ending.outcome is Outcome.STUCK
 
@@ -306,7 +287,7 @@ def test_a_fluid_transition_tells_the_backend_to_pass_through_only_where_nothing
         robot("q", [hold("h", after=(notify("r.s"),))]),
     )
     backend = Instant()
-    run_with(behaviour, {"r": backend, "q": Instant()})
+    carried_out(behaviour, {"r": backend, "q": Instant()})
     begun = [call for call in backend.calls if call.startswith("begin")]
     assert begun == [
         "begin start",
@@ -320,7 +301,7 @@ def test_a_fluid_transition_tells_the_backend_to_pass_through_only_where_nothing
 
 def test_a_backend_for_an_unknown_robot_is_the_callers_mistake():
     with pytest.raises(ValueError, match="robot 'z': not in the behaviour"):
-        run_with(program(robot("r", [])), {"z": Instant()})
+        carried_out(program(robot("r", [])), {"z": Instant()})
 
 
 def test_some_of_the_robots_can_run_here_and_the_others_elsewhere():
@@ -328,15 +309,18 @@ def test_some_of_the_robots_can_run_here_and_the_others_elsewhere():
         robot("here", [hold("h", 0.0)], waits={"h": ["s"]}),
         robot("elsewhere", [hold("h", 0.0, after=(notify("here.s"),))]),
     )
-    bus, clock = InProcessBus(behaviour), SimulatedClock()
-    here = interpret(
-        behaviour, {"here": Instant()}, bus=bus, clock=clock, conditions={}, terms=Terms(seconds=60.0)
-    )
-    begun = [next(here) for _ in range(5)]
-    there = list(interpret(behaviour, {"elsewhere": Instant()}, bus=bus, clock=clock, conditions={}))
-    rest = list(here)
-    assert rest[0].label == "take"
-    assert replay(behaviour, [*begun, *there, *rest]).outcome is Outcome.SUCCESS
+    bus, there = LocalSlots(behaviour.executable), []
+
+    class Late(Instant):
+        def next_event(self, now):
+            """Have the other robot run while this one waits."""
+            if self.calls[-1] == "wait" and not there:
+                there.extend(carried_out(behaviour, {"elsewhere": Instant()}, slots=bus)[0])
+            return inf
+
+    here, _ = carried_out(behaviour, {"here": Late()}, slots=bus, terms=Terms(seconds=60.0))
+    assert there
+    assert replay(behaviour, [*here, *there]).outcome is Outcome.SUCCESS
 
 
 def test_many_robots_run_much_faster_than_real_time(fly):
@@ -365,7 +349,7 @@ def test_a_run_can_follow_the_worlds_time(kinds):
         given = BackendInput(behaviour, each, robot_type(), **kinds, environment={}, options={})
         backends[each.id] = SimulatedRobot(given)
     clock = RealClock(100.0)
-    records = list(interpret(behaviour, backends, bus=InProcessBus(behaviour), clock=clock, conditions={}))
+    records, _ = carried_out(behaviour, backends, clock=clock)
     result = replay(behaviour, records)
     assert result.accepted
     assert result.outcome is Outcome.SUCCESS

@@ -14,14 +14,14 @@ from live_runs import TWO, WALK, Script, do
 from signals_elsewhere import broken_off
 from stalls import Stalls
 
-from mmrs_core.behaviour.replay import Outcome
 from mmrs_core.errors import MmrsError
 from mmrs_core.runtime.live import _let_go
-from mmrs_core.runtime.orders import HOLD, LAND, RESUME, RETURN, STOP
 from mmrs_core.runtime.slots import ProgramBus, members_of
 from mmrs_core.scene import Policy
 from mmrs_core.testing.small_programs import hold, notify, program, robot
 from mmrs_runtime.bus import CommandId, Node, NoJournal
+from mmrs_runtime.engine.orders import HOLD, LAND, RESUME, RETURN, STOP
+from mmrs_runtime.semantics import Outcome
 
 
 def test_a_fault_is_answered_by_its_policy_and_the_run_waits_for_it(live):

@@ -8,11 +8,12 @@ from math import inf
 import pytest
 from live_runs import WALK, Script, do, walking
 
-from mmrs_core.behaviour.replay import Outcome, replay
+from mmrs_core.behaviour.replay import replay
 from mmrs_core.contributions.execution import Fault
-from mmrs_core.runtime.orders import HOLD, LAND, RESUME, RETURN, STOP
 from mmrs_core.scene import Policy
 from mmrs_core.testing.small_programs import notify, program, robot
+from mmrs_runtime.engine.orders import HOLD, LAND, RESUME, RETURN, STOP
+from mmrs_runtime.semantics import Outcome
 
 
 @pytest.mark.parametrize(

@@ -7,12 +7,12 @@ from math import inf
 
 from live_runs import Script, do, walking
 
-from mmrs_core.behaviour.replay import Outcome
 from mmrs_core.contributions.execution import Fault
-from mmrs_core.runtime.conditions import standard_conditions
-from mmrs_core.runtime.orders import RETURN
 from mmrs_core.scene import Policy
 from mmrs_core.testing.small_programs import program, robot
+from mmrs_runtime.engine.judging import standard_conditions
+from mmrs_runtime.engine.orders import RETURN
+from mmrs_runtime.semantics import Outcome
 
 
 def test_an_answer_that_comes_before_the_question_counts(live):

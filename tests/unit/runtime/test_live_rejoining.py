@@ -8,14 +8,14 @@ from math import inf
 import pytest
 from live_runs import TWO, Script, do
 
-from mmrs_core.behaviour.replay import Outcome
 from mmrs_core.contributions.execution import Fault
 from mmrs_core.errors import LinkLostError
-from mmrs_core.runtime.orders import HOLD, LAND, RESUME, RETURN, STOP
-from mmrs_core.runtime.resuming import restore
-from mmrs_core.runtime.slots import InProcessBus
 from mmrs_core.scene import Policy
 from mmrs_core.testing.small_programs import notify, program, robot
+from mmrs_runtime.engine.orders import HOLD, LAND, RESUME, RETURN, STOP
+from mmrs_runtime.engine.resuming import restore
+from mmrs_runtime.semantics import Outcome
+from mmrs_runtime.slots import LocalSlots
 
 WAITING = program(
     robot("a", [do("h")], waits={"h": ["s"]}, policies=(Policy("PEER_LOST", "LAND", 0.2),)),
@@ -29,8 +29,8 @@ def broken_off(live):
 
     def begin(behaviour, move="walk", **more):
         made = under_way(live, behaviour, move)
-        bus = InProcessBus(behaviour)
-        restore(bus, behaviour, made)
+        bus = LocalSlots(behaviour.executable)
+        restore(bus, behaviour.executable, made)
         return gets_ready(live, behaviour, Script(ready=inf, **more), resumed=made, bus=bus)
 
     return begin

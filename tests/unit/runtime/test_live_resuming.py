@@ -9,15 +9,16 @@ from math import inf
 import pytest
 from live_runs import TWO, WALK, Script, do
 
-from mmrs_core.behaviour.replay import Outcome, replay
+from mmrs_core.behaviour.replay import replay
 from mmrs_core.contributions.execution import Fault
 from mmrs_core.runtime.live import Venture, run_live
-from mmrs_core.runtime.orders import HOLD, LAND, RESUME, RETURN, STOP
-from mmrs_core.runtime.resuming import restore
 from mmrs_core.runtime.run import inputs_of
-from mmrs_core.runtime.slots import InProcessBus
 from mmrs_core.scene import Policy
 from mmrs_core.testing.small_programs import ROBOT_TYPE, notify, program, robot, robot_type
+from mmrs_runtime.engine.orders import HOLD, LAND, RESUME, RETURN, STOP
+from mmrs_runtime.engine.resuming import restore
+from mmrs_runtime.semantics import Outcome
+from mmrs_runtime.slots import LocalSlots
 
 LOW = (Policy("BATTERY_LOW", "RETURN"),)
 
@@ -229,8 +230,8 @@ def test_robots_in_the_air_that_nobody_will_ever_free_are_not_left_alone(live):
 
 def test_a_run_is_resumed_from_its_log(live):
     records = killed(live)
-    bus = InProcessBus(SURVEY)
-    restore(bus, SURVEY, records)
+    bus = LocalSlots(SURVEY.executable)
+    restore(bus, SURVEY.executable, records)
     second = live(SURVEY, Script(), resumed=records, bus=bus)
     assert second.end().outcome is Outcome.SUCCESS
     assert second.script.robots["a"].recovered == (("start", "one"), "two")
@@ -241,8 +242,8 @@ def test_a_run_is_resumed_from_its_log(live):
 
 def test_a_robot_that_cannot_be_taken_up_again_can_be_tried_again_later(live):
     records = killed(live)
-    bus = InProcessBus(SURVEY)
-    restore(bus, SURVEY, records)
+    bus = LocalSlots(SURVEY.executable)
+    restore(bus, SURVEY.executable, records)
     second = live(SURVEY, Script(recovered=inf), resumed=records, bus=bus)
     second.wait_for(lambda: len(second.script.robots) == 2 and second.script.robots["b"].recovered)
     second.script.robots["a"].fail("REFUSED")
@@ -297,8 +298,8 @@ def test_a_run_is_resumed_after_any_of_its_steps(live, kept):
     whole = live(behaviour, Script())
     whole.end()
     records = tuple(whole.records[:kept])
-    bus = InProcessBus(behaviour)
-    restore(bus, behaviour, records)
+    bus = LocalSlots(behaviour.executable)
+    restore(bus, behaviour.executable, records)
     rest = live(behaviour, Script(), resumed=records, bus=bus)
     assert rest.end().outcome is Outcome.SUCCESS
     result = replay(behaviour, [*records, *(replace(r, time=r.time + 1e3) for r in rest.records)])
@@ -310,6 +311,6 @@ def test_a_log_of_another_behaviour_is_refused(live, kinds):
     run.end()
     other = program(robot("r", [do("swim")]))
     given = inputs_of(other, types={ROBOT_TYPE: robot_type()}, options={}, environment={}, areas=(), **kinds)
-    venture = Venture(other, given, InProcessBus(other), {}, resumed=tuple(run.records))
+    venture = Venture(other, given, LocalSlots(other.executable), {}, resumed=tuple(run.records))
     with pytest.raises(ValueError, match="none of its program's"):
-        list(run_live(venture, Script().factory))
+        run_live(venture, Script().factory)

@@ -7,7 +7,6 @@ from dataclasses import replace
 import pytest
 
 from mmrs_core.behaviour.program import Action, Heading, Move, Target
-from mmrs_core.behaviour.replay import Outcome
 from mmrs_core.contributions.backends import BackendInput
 from mmrs_core.contributions.execution import Fault
 from mmrs_core.errors import UnsupportedError, UsageError
@@ -25,6 +24,7 @@ from mmrs_core.testing.small_programs import (
     robot_type,
     use,
 )
+from mmrs_runtime.semantics import Outcome
 
 FLYER = ("urn:test", "Flyer")
 
@@ -140,13 +140,14 @@ def test_a_battery_that_is_low_is_next_worth_a_look_when_it_is_empty(kinds):
     away, policies = go("g", (30, 0, 0)), (Policy("BATTERY_LOW", "RETURN"),)
     behaviour = program(robot("r", [away], policies=policies))
     waiting = SimulatedRobot(given(behaviour, kinds, robot_type(lifetime=100.0)))
-    waiting.begin(away, 0.0)
-    assert waiting.finished(10.0)
+    waiting.do(away, 0.0)
+    waiting.look(10.0)
+    assert waiting.done
     waiting.wait(10.0)
-    low = waiting.next_event(10.0)
+    low = waiting.look(10.0)
     assert low == pytest.approx(90.0, abs=1e-3)
-    assert waiting.fault(low).which == "BATTERY_LOW"
-    assert waiting.next_event(low) == pytest.approx(100.0, abs=1e-3)
+    assert waiting.look(low) == pytest.approx(100.0, abs=1e-3)
+    assert waiting.trouble.which == "BATTERY_LOW"
 
 
 def test_a_battery_also_runs_out_in_a_wait(fly):
@@ -358,13 +359,14 @@ def test_a_robot_type_that_is_missing_is_named(kinds):
 def test_state_lies_between_the_ends_of_a_leg_and_faces_its_way(kinds):
     move = go("g", (30, 0, 0))
     moved = SimulatedRobot(given(program(robot("r", [move])), kinds))
-    moved.begin(move, 5.0)
+    moved.do(move, 5.0)
     state = moved.state(10.0)
     assert state.position == pytest.approx((15.0, 0.0, 0.0))
     assert (state.speed, state.heading) == (pytest.approx(3.0), 90.0)
-    assert not moved.finished(10.0)
-    assert moved.next_event(10.0) == 15.0
-    assert moved.finished(15.0)
+    assert moved.look(10.0) == 15.0
+    assert not moved.done
+    moved.look(15.0)
+    assert moved.done
     assert moved.state(15.0).speed == 0.0
 
 
@@ -372,14 +374,14 @@ def test_a_robot_faces_what_its_heading_points_at_turned_by_the_angle(kinds):
     look = Heading(Target((30.0, 50.0, 0.0)), angle_degrees=90.0)
     move = go("g", (30, 0, 0), heading=look)
     moved = SimulatedRobot(given(program(robot("r", [move])), kinds))
-    moved.begin(move, 0.0)
+    moved.do(move, 0.0)
     assert moved.state(10.0).heading == pytest.approx(270.0)
 
 
 def test_stopping_a_robot_on_its_way_keeps_it_where_it_is(kinds):
     move = go("g", (30, 0, 0))
     moved = SimulatedRobot(given(program(robot("r", [move])), kinds))
-    moved.begin(move, 0.0)
-    moved.stop(5.0)
-    moved.stop(6.0, "RETURN")
+    moved.do(move, 0.0)
+    moved.respond("HOLD", 5.0)
+    moved.respond("RETURN", 6.0)
     assert moved.state(99.0).position == pytest.approx((15.0, 0.0, 0.0))

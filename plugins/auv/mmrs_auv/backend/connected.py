@@ -20,8 +20,8 @@ from mmrs_auv.vessel.wire.ports import CHANNEL, open_port
 from mmrs_core.contributions.backends import BackendInput, Live
 from mmrs_core.contributions.execution import Fault
 from mmrs_core.errors import LinkLostError, UnsupportedError
-from mmrs_core.runtime.clock import RealClock
 from mmrs_mavlink.records.start import PROCESS
+from mmrs_runtime.engine.clocks import RealClock
 
 FAREWELL = 0.5
 """Real seconds in which the last goal is still repeated."""

@@ -10,7 +10,7 @@ from mmrs_auv.vessel.wire import ports
 from mmrs_auv.vessel.wire.frame import Frame
 from mmrs_core.contributions.backends import BackendInput, Live
 from mmrs_core.errors import UsageError
-from mmrs_core.runtime.clock import FollowingClock
+from mmrs_runtime.engine.clocks import FollowingClock
 from mmrs_runtime.injection import Rehearsal, injections
 from mmrs_runtime.injection.port import Line
 from mmrs_runtime.injection.spec import OF_STATIONS, OF_VEHICLE

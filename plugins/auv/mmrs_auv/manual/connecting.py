@@ -7,13 +7,13 @@ from mmrs_auv.manual.robot import ManualRobot
 from mmrs_core.contributions.backends import BackendInput, Live
 from mmrs_core.contributions.targets import TargetInput
 from mmrs_core.errors import LinkLostError, UnsupportedError
-from mmrs_core.runtime.clock import FollowingClock
 from mmrs_mavlink.links.link import Link
 from mmrs_mavlink.links.ports import split_system
 from mmrs_mavlink.links.radios import Radios
 from mmrs_mavlink.plugin.backend.connection import FIRST_PORT, PORT_STEP
 from mmrs_mavlink.plugin.context import context_of
 from mmrs_runtime import faults
+from mmrs_runtime.engine.clocks import FollowingClock
 
 FULL_SPEED, RADIOS = "full-speed", "radios of ardusub-manual"
 

@@ -8,7 +8,7 @@ import pytest
 from dives import dive, rehearse, swim
 from mmrs_auv.vessel.body.surroundings import Obstacle, Surroundings, to_json
 
-from mmrs_core.behaviour.replay import Outcome
+from mmrs_runtime.semantics import Outcome
 
 
 @pytest.mark.parametrize(("north", "outcome"), [(0.1, Outcome.FAILED), (1.0, Outcome.SUCCESS)])

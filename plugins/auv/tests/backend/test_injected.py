@@ -17,7 +17,7 @@ from mmrs_auv.vessel.wire.ports import Port, open_port
 
 from mmrs_core.contributions.backends import BackendInput, Live
 from mmrs_core.errors import UsageError
-from mmrs_core.runtime.clock import RealClock
+from mmrs_runtime.engine.clocks import RealClock
 
 FRAMES = st.builds(Frame, st.integers(0, 0x7FF), st.binary(max_size=8)) | st.builds(
     Frame, st.integers(0, (1 << 29) - 1), st.binary(max_size=8), st.just(True)

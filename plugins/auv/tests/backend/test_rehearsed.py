@@ -14,11 +14,11 @@ from mmrs_auv.vessel.body.surroundings import BUOY, Surroundings, Thing, to_json
 from mmrs_auv.vessel.movement import movement, progress
 
 from mmrs_core.behaviour.program import Action, Heading, Move, Target, Transition
-from mmrs_core.behaviour.replay import Outcome
 from mmrs_core.contributions.execution import Condition
 from mmrs_core.errors import UnsupportedError
 from mmrs_core.scene import Area, AreaUse, Device, Policy, RobotType
 from mmrs_core.testing.programs import feedback, move, notify, program, robot_program, take_off, use
+from mmrs_runtime.semantics import Outcome
 
 SAMPLE = use("ctd", "Sample")
 BUOY_NAME = "red buoy"

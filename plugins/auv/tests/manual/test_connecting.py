@@ -14,9 +14,9 @@ from ports import free_port
 from mmrs_core.behaviour.program import Target
 from mmrs_core.contributions.backends import Live
 from mmrs_core.errors import UnsupportedError
-from mmrs_core.runtime.clock import RealClock
 from mmrs_core.sitl import Settings, SimulatedVehicle
 from mmrs_core.testing.programs import move
+from mmrs_runtime.engine.clocks import RealClock
 
 
 def test_what_it_does_by_itself_is_told():

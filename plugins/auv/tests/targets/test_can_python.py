@@ -16,7 +16,7 @@ from ports import free_endpoint
 
 from mmrs_core.behaviour.log import read_logs
 from mmrs_core.behaviour.program import Program, Target, Transition
-from mmrs_core.behaviour.replay import Outcome, replay
+from mmrs_core.behaviour.replay import replay
 from mmrs_core.contributions.targets import TargetInput
 from mmrs_core.errors import UnsupportedError
 from mmrs_core.generation.render import render
@@ -26,6 +26,7 @@ from mmrs_core.testing.programs import feedback, move, notify, program, quad, ro
 from mmrs_core.transformation.kinds import MOVE_KINDS
 from mmrs_mavlink.plugin.controllers import MAVLINK_PYTHON
 from mmrs_mavlink.program import Local, Robot
+from mmrs_runtime.semantics import Outcome
 
 
 def given(behaviour: Program) -> TargetInput:

@@ -16,7 +16,6 @@ from mmrs_auv.vessel.eyes import owner_of
 from mmrs_auv.vessel.goals import SLOWEST
 from mmrs_auv.vessel.refusals import MOST_SPEED
 from mmrs_core.behaviour.program import Action, Move, Program, RobotProgram, SlotId, Target, Transition
-from mmrs_core.behaviour.semantics import slot_text
 from mmrs_core.contributions.targets import TracedStep
 from mmrs_core.mavlink.vehicles import TRAVEL_FACTORS, capability_of
 from mmrs_core.scene import Part, Policy, Position
@@ -24,7 +23,9 @@ from mmrs_mavlink.plugin.context import RobotContext
 from mmrs_runtime.conditions import BATTERY, DETECTED, FOUND, is_standard
 from mmrs_runtime.faults import DEVICE_SILENT
 from mmrs_runtime.policies import AFTER, patience
+from mmrs_runtime.program import Notify
 from mmrs_runtime.records.steps import log_name
+from mmrs_runtime.semantics import slot_text
 
 KINDS: Mapping[str, str] = {
     "start": "Starts", "go": "Goes", "hold": "Holds", "charge": "Charges", "turn": "Turns", "stop": "Stops",
@@ -191,7 +192,10 @@ class Mission:
             return {"kind": "Feedback", "features": [*told, ("Words", f"is left out: {missing}")]}
         if action.is_a(NOTIFY):
             own = tuple(self._slots[slot] for robot, slot in action.sets if robot == self._context.robot.id)
-            told += [("Slots", _json(slot_text(action))), ("Told", json.dumps(action.sets))]
+            told += [
+                ("Slots", _json(slot_text(Notify(action.sets, action.active)))),
+                ("Told", json.dumps(action.sets)),
+            ]
             return {"kind": "Notify", "features": [*told, ("Sets", own), ("Active", action.active)]}
         if action.is_a(DEVICE_ACTION) and self._context.type is not None:
             type = self._context.type

@@ -12,7 +12,6 @@ from mmrs_core.behaviour.program import Program
 from mmrs_core.contributions.backends import BackendInput, Live
 from mmrs_core.contributions.targets import TargetInput
 from mmrs_core.errors import LinkLostError, UnsupportedError, UsageError
-from mmrs_core.runtime.clock import FollowingClock
 from mmrs_mavlink.linked import at_end_of
 from mmrs_mavlink.links.link import Link
 from mmrs_mavlink.links.ports import address_of, split_system
@@ -33,6 +32,7 @@ from mmrs_mavlink.program import Action, Robot
 from mmrs_mavlink.services.satellites import attended
 from mmrs_mavlink.vehicles.recognition import system_of
 from mmrs_runtime.clock import Clock
+from mmrs_runtime.engine.clocks import FollowingClock
 from mmrs_runtime.faults import Fault
 from mmrs_runtime.injection import Rehearsal, injections
 from mmrs_runtime.ports import Port

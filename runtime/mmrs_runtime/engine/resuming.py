@@ -4,17 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from mmrs_core.behaviour.program import Program, RobotProgram
-from mmrs_core.behaviour.semantics import Point, Step, entry, told_by
-from mmrs_core.contributions.buses import CommandId
-from mmrs_core.runtime.slots import InProcessBus
-from mmrs_runtime.records.steps import StepRecord, merge
-
-RESTORED = "restored"
-"""Incarnation of senders whose notifies were sent before the run was broken off."""
+from ..program import Notify, Program, Robot
+from ..records.steps import StepRecord, merge
+from ..semantics import Point, Step, entry, told_by
+from ..slots import LocalSlots
 
 
-def step_of(robot: RobotProgram, point: Point, record: StepRecord) -> Step:
+def step_of(robot: Robot, point: Point, record: StepRecord) -> Step:
     """Return the step from a point that a record tells of, whatever slots are active.
 
     Raises:
@@ -26,7 +22,7 @@ def step_of(robot: RobotProgram, point: Point, record: StepRecord) -> Step:
     raise ValueError(f"robot '{robot.id}': step {record.seq} of its log is none of its program's")
 
 
-def point_after(robot: RobotProgram, records: Iterable[StepRecord]) -> Point:
+def point_after(robot: Robot, records: Iterable[StepRecord]) -> Point:
     """Return where the steps of a robot lead, which stand among those of others in their order.
 
     Raises:
@@ -54,19 +50,17 @@ def over_by(program: Program, records: Iterable[StepRecord]) -> dict[str, str]:
     }
 
 
-def restore(bus: InProcessBus, program: Program, records: Iterable[StepRecord]) -> None:
-    """Have a bus know every notify that was logged, and every wait that was passed.
+def restore(slots: LocalSlots, program: Program, records: Iterable[StepRecord]) -> None:
+    """Have slots know every notify that was logged, and every wait that was passed.
 
     A notify that was logged and not delivered is delivered by that: its log line decides.
     """
-    robots = {robot.id: robot for robot in program.robots}
     for record in merge(records):
-        robot = robots[record.robot]
+        robot = program.by_id[record.robot]
         if record.label == "ntf":
-            action = robot.move(record.move).action(record.detail)
-            id = CommandId(record.run, record.robot, RESTORED, record.seq)
-            bus.apply(id, action.sets, action.active, record.lamport)
+            notify = robot.by_id[record.move].action(record.detail)
+            assert isinstance(notify, Notify)
+            slots.apply(record.robot, notify.slots, notify.active, record.lamport)
         elif record.label in ("take", "choose"):
-            index = next(i for i, move in enumerate(robot.moves) if move.id == record.move)
-            waits = [(robot.id, name) for name in robot.transitions[index].waits]
-            bus.passed(waits, record.lamport)
+            then = robot.by_id[record.move].then
+            slots.passed([(robot.id, name) for name in then.waits] if then else (), record.lamport)

@@ -4,20 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from mmrs_core.contributions.abilities import Doubting, Pausable, Recovering, Watched
-from mmrs_core.contributions.execution import Clock, Fault
-from mmrs_core.errors import LinkLostError
-from mmrs_core.runtime.halting import Progress
-from mmrs_core.runtime.orders import ANSWER, ENDINGS, HOLD, RESUME, RETURN, STOP, Order, Orders
-from mmrs_core.runtime.robot import RunningRobot
-from mmrs_runtime.faults import ORDERED, STOPPED
-from mmrs_runtime.policies import NOTHING
+from ..faults import ORDERED, STOPPED
+from ..policies import NOTHING
+from ..vehicle import Fault, LinkLost
+from .clocks import RunClock
+from .halt import Progress
+from .life import Life
+from .orders import ANSWER, ENDINGS, HOLD, RESUME, RETURN, STOP, Order, Orders
+from .situation import Stage
 
 
 class Obedience:
     """Passes orders on to robots."""
 
-    def __init__(self, robots: Sequence[RunningRobot], orders: Orders, clock: Clock) -> None:
+    def __init__(self, robots: Sequence[Life], orders: Orders, clock: RunClock) -> None:
         """Obey these orders."""
         self._robots = {robot.id: robot for robot in robots}
         self._orders, self._clock = orders, clock
@@ -28,6 +28,11 @@ class Obedience:
     def busy(self) -> bool:
         """Return whether an order waits, or has still to be seen to be obeyed."""
         return bool(self._open)
+
+    @property
+    def at_work(self) -> bool:
+        """Return whether an order has still to be begun, or to be seen to be obeyed."""
+        return bool(self._open or self._waiting)
 
     def obey(self) -> tuple[str, ...]:
         """Have robots do what was ordered, and see who has; return the robots to be looked at."""
@@ -74,10 +79,10 @@ class Obedience:
         """Return whether it is not known yet what there is to be ended, or something ends right now."""
         robot = self._robots.get(id)
         return robot is not None and (
-            robot.ordered is not None or (order.kind in ENDINGS and robot.is_unknown(self._clock.now()))
+            robot.ordered is not None or (order.kind in ENDINGS and robot.is_unknown())
         )
 
-    def _overtake(self, robot: RunningRobot, by: Order, *kinds: str) -> None:
+    def _overtake(self, robot: Life, by: Order, *kinds: str) -> None:
         """Refuse what a robot was ordered before and was not seen to do, since it now does something else."""
         for order in self._open:
             began = (order, robot.id) not in self._waiting
@@ -86,14 +91,15 @@ class Obedience:
 
     def _in_doubt(self, id: str) -> bool:
         robot = self._robots.get(id)
-        backend = robot.backend if robot is not None and not robot.absent else None
-        return isinstance(backend, Doubting) and backend.in_doubt(self._clock.now())
+        if robot is None or robot.is_absent:
+            return False
+        return robot.vehicle.in_doubt(self._clock.now())
 
     def _begin(self, order: Order, id: str) -> None:
         robot = self._robots.get(id)
         if robot is None:
             order.refuse(id, "no such robot here")
-        elif robot.absent:
+        elif robot.is_absent:
             order.refuse(id, f"it did not get ready: {robot.halt.fault}")
         elif order.kind == ANSWER:
             self._answer(order, robot)
@@ -113,27 +119,27 @@ class Obedience:
             order.responses[id] = self._orders.response(order.kind)
             robot.end_by(Fault(which, f"order to {order.kind}"), order.responses[id])
 
-    def _answer(self, order: Order, robot: RunningRobot) -> None:
+    def _answer(self, order: Order, robot: Life) -> None:
         ended = "its program has ended" if robot.point.is_final else ""
         if why := ended or robot.questions.give(order.question, order.answer):
             order.refuse(robot.id, why)
         else:
             order.confirm(robot.id)
 
-    def _hold(self, order: Order, robot: RunningRobot) -> None:
+    def _hold(self, order: Order, robot: Life) -> None:
         if robot.point.is_final:
             self._stop_again(order, robot)
         elif self._stands(robot):
             self._obey_on_the_ground(order, robot)
         elif robot.suspended:
             self._stop(order, robot)
-        elif not isinstance(robot.backend, Pausable):
-            order.refuse(robot.id, "its backend cannot pause")
+        elif not robot.vehicle.pauses:
+            order.refuse(robot.id, "its vehicle cannot pause")
         else:
             self._overtake(robot, order, RESUME)
-            robot.hold(self._clock.now())
+            robot.hold()
 
-    def _resume(self, order: Order, robot: RunningRobot) -> None:
+    def _resume(self, order: Order, robot: Life) -> None:
         if robot.halt.before_hold:
             self._stop(order, robot)
         elif robot.point.is_final:
@@ -142,52 +148,52 @@ class Obedience:
             order.refuse(robot.id, f"has still to do {robot.halt.response}")
         elif robot.suspended:
             self._recover(order, robot)
-        elif robot.held and isinstance(robot.backend, Pausable):
+        elif robot.held and robot.vehicle.pauses:
             self._overtake(robot, order, HOLD)
-            robot.go_on(self._clock.now())
+            robot.go_on()
         else:
             order.refuse(robot.id, "it is not held")
 
-    def _stands(self, robot: RunningRobot) -> bool:
+    def _stands(self, robot: Life) -> bool:
         """Return whether it came down for its battery, and is there."""
-        if not robot.suspended or robot.halt.stopping or robot.is_watched(self._clock.now()):
+        if not robot.suspended or robot.halt.stopping or robot.is_watched():
             return False
         return robot.halt.is_down or robot.rests
 
-    def _obey_on_the_ground(self, order: Order, robot: RunningRobot) -> None:
+    def _obey_on_the_ground(self, order: Order, robot: Life) -> None:
         """Have a robot that waits for its battery do what it does anyway, or be waited for no longer."""
         why = _taken(robot) if order.kind != STOP else ""
         if order.kind == RETURN:
-            why = why or robot.away(self._clock.now())
+            why = why or robot.away()
         if why:
             order.refuse(robot.id, why)
             return
         robot.halt.released = robot.halt.released or order.kind == STOP
         order.confirm(robot.id)
 
-    def _recover(self, order: Order, robot: RunningRobot) -> None:
+    def _recover(self, order: Order, robot: Life) -> None:
         """Have a robot go on whose program was broken off, unless its battery was not changed."""
         try:
-            why = _taken(robot) or robot.hindrance(self._clock.now())
-        except LinkLostError as error:
+            why = _taken(robot) or robot.hindrance()
+        except LinkLost as error:
             why = str(error)
         if why:
             order.refuse(robot.id, why)
         else:
-            robot.recover(self._clock.now())
+            robot.recover()
 
-    def _stop_again(self, order: Order, robot: RunningRobot) -> None:
+    def _stop_again(self, order: Order, robot: Life) -> None:
         """Have a robot whose program has ended by a fault stop in another way, if it does anything still."""
-        busy = robot.halt.fault is not None and (robot.halt.stopping or robot.is_watched(self._clock.now()))
+        busy = robot.halt.fault is not None and (robot.halt.stopping or robot.is_watched())
         robot.halt.released = robot.halt.released or order.kind == STOP
         if not busy:
             order.refuse(robot.id, "its program has ended")
-        elif isinstance(robot.backend, Watched) and not robot.backend.reachable(self._clock.now()):
+        elif not robot.vehicle.reachable(self._clock.now()):
             order.refuse(robot.id, "its link is lost")
         else:
             self._stop(order, robot)
 
-    def _stop(self, order: Order, robot: RunningRobot) -> None:
+    def _stop(self, order: Order, robot: Life) -> None:
         """Have a robot do something else about what has ended its program; `resume` what it did before."""
         halt = robot.halt
         held_anyway = order.kind == HOLD and halt.response == "HOLD"
@@ -199,8 +205,8 @@ class Obedience:
             halt.respond(self._orders.response(order.kind))
         order.responses[robot.id] = halt.response
         try:
-            robot.backend.stop(self._clock.now(), halt.response)
-        except LinkLostError as error:
+            robot.vehicle.respond(halt.response, self._clock.now())
+        except LinkLost as error:
             order.refuse(robot.id, str(error))
             return
         halt.released = order.kind == STOP or (halt.released and held_anyway)
@@ -222,57 +228,57 @@ class Obedience:
             elif self._goes_on(robot, now):
                 order.confirm(id)
 
-    def _see_halt(self, order: Order, robot: RunningRobot, now: float) -> None:
+    def _see_halt(self, order: Order, robot: Life, now: float) -> None:
         if robot.held:
-            robot.hold(now)
-        if isinstance(robot.backend, Pausable) and robot.backend.paused(now):
+            robot.hold()
+        if robot.vehicle.paused(now):
             order.confirm(robot.id)
 
-    def _confirm_rest(self, order: Order, robot: RunningRobot) -> bool:
+    def _confirm_rest(self, order: Order, robot: Life) -> bool:
         """Confirm to a robot that still gets ready, and is to stay where it is, that its motors are off."""
-        rests = robot.preparing and order.kind in (HOLD, *ENDINGS) and robot.rests
+        rests = robot.is_preparing and order.kind in (HOLD, *ENDINGS) and robot.rests
         if rests:
             order.confirm(robot.id)
         return rests
 
-    def _look_at_response(self, order: Order, robot: RunningRobot, now: float) -> None:
+    def _look_at_response(self, order: Order, robot: Life, now: float) -> None:
         if robot.ordered is not None:
             return
         if robot.halt.response != order.responses[robot.id]:
             order.refuse(robot.id, _since(robot))
         elif not robot.halt.stopping:
             self._settle(order, robot)
-        elif isinstance(robot.backend, Watched) and robot.backend.obeys(now):
+        elif robot.vehicle.obeys(now):
             order.confirm(robot.id)
 
-    def _settle(self, order: Order, robot: RunningRobot) -> None:
+    def _settle(self, order: Order, robot: Life) -> None:
         """Answer an order to a robot that nobody waits for: it is taken at its word, or out of reach."""
         if self._clock.passes_by_itself:
             order.refuse(robot.id, "its link is lost")
         else:
             order.confirm(robot.id)
 
-    def _goes_on(self, robot: RunningRobot, now: float) -> bool:
+    def _goes_on(self, robot: Life, now: float) -> bool:
         """Return whether a robot that was told to go on was seen to."""
-        if isinstance(robot.backend, Pausable) and robot.backend.paused(now):
+        if robot.vehicle.paused(now):
             return False
-        return not robot.recovering or (isinstance(robot.backend, Recovering) and robot.backend.moves(now))
+        return robot.stage is not Stage.RECOVERING or robot.vehicle.moves(now)
 
     def _undone(self, order: Order, id: str) -> str:
         """Return why a robot that has stopped has not done what was ordered; empty where it has."""
         robot = self._robots[id]
         if robot.halt.response != order.responses[id]:
             return _since(robot)
-        return robot.backend.undone(self._clock.now()) if isinstance(robot.backend, Watched) else ""
+        return robot.vehicle.undone(self._clock.now())
 
 
-def _taken(robot: RunningRobot) -> str:
+def _taken(robot: Life) -> str:
     """Return that the motors of a robot run that came down and had them off; empty: nobody started them."""
     rested = robot.halt.progress is Progress.AT_REST
     return "its motors run: somebody else has it" if rested and not robot.rests else ""
 
 
-def _since(robot: RunningRobot) -> str:
+def _since(robot: Life) -> str:
     """Return in words what a robot does instead of what it was ordered."""
     if robot.halt.response == NOTHING:
         return "a pilot has taken over"

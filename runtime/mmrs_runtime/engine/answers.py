@@ -1,16 +1,14 @@
-"""What a robot does about faults, and for how long it bears them."""
+"""What a robot does about what goes wrong, and for how long it bears that."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from math import inf
 
-from mmrs_core.contributions.abilities import Bearing
-from mmrs_core.contributions.backends import Backend
-from mmrs_core.contributions.execution import Fault
-from mmrs_core.scene import Policy
-from mmrs_runtime.faults import TAKEN_OVER
-from mmrs_runtime.policies import LAST_RESORT, NOTHING, UNDECLARED, patience, policy_for, response_to
+from ..faults import TAKEN_OVER
+from ..policies import LAST_RESORT, NOTHING, UNDECLARED, Policy, patience, policy_for, response_to
+from ..vehicle import Fault
 
 
 @dataclass(frozen=True, slots=True)
@@ -22,11 +20,11 @@ class Answers:
             cannot be reached, or when its battery gets low.
     """
 
-    policies: tuple[Policy, ...]
+    policies: Sequence[Policy]
     live: bool = False
 
     def response(self, found: Fault) -> str:
-        """Return what the robot does, a literal of PolicyResponse or NOTHING."""
+        """Return what the robot does, a response of policies or NOTHING."""
         if found.which == TAKEN_OVER:
             return NOTHING
         if found.instead:
@@ -45,15 +43,3 @@ class Answers:
             return inf
         seconds = patience(found.which, self.policies)
         return inf if seconds is None else seconds
-
-    def unborne(self, backend: Backend, now: float) -> Fault | None:
-        """Return what a backend says went wrong, unless the robot goes on as if nothing were.
-
-        Raises:
-            LinkLostError: the robot cannot be reached.
-        """
-        found = backend.fault(now)
-        if found is None or not self.bears(found):
-            return found
-        goes_on = not isinstance(backend, Bearing) or backend.bear(now)
-        return None if goes_on else found

@@ -1,20 +1,47 @@
-"""What a run goes by, and how it ended."""
+"""What a run goes by, who tells it that there is news, and how it ended."""
 
 from __future__ import annotations
 
+from collections import deque
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from math import inf
 
-from mmrs_core.behaviour.replay import Outcome
-from mmrs_core.behaviour.semantics import Waiting
-from mmrs_core.contributions.execution import Fault
-from mmrs_core.runtime.attention import Attention
-from mmrs_core.runtime.orders import Orders
-from mmrs_core.runtime.standing import Standing
-from mmrs_runtime.records.steps import StepRecord
+from ..records.steps import StepRecord
+from ..semantics import Outcome, Waiting
+from ..vehicle import Event, Fault, Progress
+from .clocks import RunClock
+from .orders import Orders
+from .standing import Standing
 
 Observer = Callable[[StepRecord], None]
+
+BUS = ""
+"""Stands for the bus, where otherwise the identifier of a robot stands."""
+
+
+class Attention:
+    """Collects what robots, and the bus, have to tell, and ends the sleep of whoever waits for it."""
+
+    def __init__(self, clock: RunClock) -> None:
+        self._clock = clock
+        self._called: deque[tuple[str, Event]] = deque()
+
+    def call(self, who: str, event: Event | None = None) -> None:
+        """Say that a robot, or the bus, has news; from any thread or signal handler."""
+        self._called.append((who, event or Progress()))
+        self._clock.wake()
+
+    def for_robot(self, robot: str) -> Callable[[], None]:
+        """Return a function that says that this robot has news."""
+        return lambda: self.call(robot)
+
+    def taken(self) -> list[tuple[str, Event]]:
+        """Return what was told since this was asked last, in that order."""
+        found: list[tuple[str, Event]] = []
+        while self._called:
+            found.append(self._called.popleft())
+        return found
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,7 +59,7 @@ class Terms:
         suspends: whether a battery that is low, and whose policy brings the robot down, breaks its program
             off without a fault, so that the run can be resumed with a full one.
         patience: seconds for which the run then waits for the order to resume once nobody else works.
-        attention: through which backends wake the interpreter; None in simulated time.
+        attention: through which vehicles and the bus wake the engine; None: nobody does.
         orders: what people order meanwhile.
         say: tells people what goes on.
         standing: for people who ask how robots are.

@@ -4,16 +4,27 @@ from __future__ import annotations
 
 from heapq import heappop, heappush
 from math import inf
+from typing import NamedTuple
+
+
+class Until(NamedTuple):
+    """What a life yields: it is resumed at that time, or as soon as there is news for it."""
+
+    deadline: float = inf
 
 
 class Agenda:
-    """Numbers that are due now, each once and in their order, and the times at which others will be."""
+    """Numbers that are due now, each once and in their order, and the times at which others will be.
+
+    A time that no longer counts stays where it is until it comes, and is passed over then.
+    """
 
     def __init__(self, count: int) -> None:
         """Begin with so many, all due now."""
         self._due = list(range(count))
+        self._is_due = [True] * count
         self._later: list[tuple[float, int]] = []
-        self._times: dict[int, float] = {}
+        self._times = [inf] * count
 
     @property
     def is_due(self) -> bool:
@@ -22,7 +33,9 @@ class Agenda:
 
     def put(self, number: int) -> None:
         """Have one be due now; when it will be due otherwise stays as it is."""
-        heappush(self._due, number)
+        if not self._is_due[number]:
+            self._is_due[number] = True
+            heappush(self._due, number)
 
     def put_at(self, number: int, time: float) -> None:
         """Have one be due at that time, and no longer when it was to be before; inf: never."""
@@ -33,8 +46,7 @@ class Agenda:
     def take(self) -> int:
         """Return the first that is due; it is due no longer."""
         number = heappop(self._due)
-        while self._due and self._due[0] == number:
-            heappop(self._due)
+        self._is_due[number] = False
         return number
 
     @property

@@ -1,4 +1,4 @@
-"""What people order while robots run: taken from any thread, obeyed by the interpreter."""
+"""What people order while robots run: taken from any thread, obeyed by the engine."""
 
 from __future__ import annotations
 
@@ -8,8 +8,8 @@ from collections import deque
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 
-from mmrs_core.contributions.abilities import Noting
-from mmrs_runtime.orders.orders import ordered
+from ..orders.orders import ordered
+from ..vehicle import Vehicle
 
 HOLD, RESUME, RETURN, LAND, STOP, ANSWER = "hold", "resume", "return", "land", "stop", "answer"
 KINDS = (HOLD, RESUME, RETURN, LAND, STOP, ANSWER)
@@ -30,7 +30,7 @@ class Order:
         refused: by robot, why it does not obey.
         settled: set once every robot has done one or the other.
         told: called with a robot, and why it refuses, or None: it has obeyed.
-        backends: by robot; where they keep black boxes, these know what became of it before anybody is told.
+        vehicles: by robot; their black boxes know what became of it before anybody is told.
         responses: by robot, that which shows that it obeys, where its program has ended, or is to end.
     """
 
@@ -44,7 +44,7 @@ class Order:
     refused: dict[str, str] = field(default_factory=dict)
     settled: threading.Event = field(default_factory=threading.Event)
     given: float = field(default_factory=time.monotonic)
-    backends: Mapping[str, object] = field(default_factory=dict)
+    vehicles: Mapping[str, Vehicle] = field(default_factory=dict)
     responses: dict[str, str] = field(default_factory=dict)
 
     @property
@@ -65,11 +65,10 @@ class Order:
             self._settle(robot, why)
 
     def _settle(self, robot: str, why: str | None) -> None:
-        backend = self.backends.get(robot)
-        if isinstance(backend, Noting):
+        if (vehicle := self.vehicles.get(robot)) is not None:
             content = ordered(self.kind, self.question, self.answer)
             told = {"confirmed": why is None, "seconds": self.confirmed.get(robot), "why": why or ""}
-            backend.note("order", content | told)
+            vehicle.note("order", content | told)
         self.told(robot, why)
         if not self.open:
             self.settled.set()
@@ -81,13 +80,13 @@ class Orders:
     Attributes:
         on_stop: the response of robots that are ordered to stop, a literal of PolicyResponse.
         called: called, from any thread, when there is a new one.
-        backends: of the robots that are there, by robot.
+        vehicles: of the robots that are there, by robot.
     """
 
     def __init__(self, on_stop: str = "HOLD") -> None:
         self.on_stop = on_stop
         self.called: Callable[[], None] = lambda: None
-        self.backends: Mapping[str, object] = {}
+        self.vehicles: Mapping[str, Vehicle] = {}
         self._waiting: deque[Order] = deque()
         self._closed = ""
 
@@ -114,7 +113,7 @@ class Orders:
         if kind not in KINDS:
             raise ValueError(f"order '{kind}': there are {', '.join(KINDS)}")
         order = Order(
-            kind, tuple(dict.fromkeys(robots)), question, answer, told, interrupt, backends=self.backends
+            kind, tuple(dict.fromkeys(robots)), question, answer, told, interrupt, vehicles=self.vehicles
         )
         self._waiting.append(order)
         if self._closed:

@@ -3,25 +3,25 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from math import inf
 
-from mmrs_core.contributions.abilities import Noting, Recovering, Watched
-from mmrs_core.contributions.execution import Clock, Fault
-from mmrs_core.errors import LinkLostError
-from mmrs_core.runtime.obedience import Obedience
-from mmrs_core.runtime.robot import RunningRobot
-from mmrs_runtime.faults import BATTERY_LOW, LINK_LOST
-from mmrs_runtime.policies import CAME_DOWN_AWAY, COMES_DOWN, NOTHING
+from ..faults import BATTERY_LOW, LINK_LOST
+from ..policies import CAME_DOWN_AWAY, COMES_DOWN, NOTHING
+from ..vehicle import Fault, LinkLost
+from .agenda import Until
+from .clocks import RunClock
+from .life import PACE, Broken, Life, Waits
+from .obedience import Obedience
+
+WATCH_PACE = 0.5
+"""Seconds between two looks at a robot that has stopped in a way that somebody must watch."""
 
 
 class Stopping:
     """Has robots stop, and sees to it that they do; in simulated time they are taken at their word."""
 
     def __init__(
-        self,
-        robots: Sequence[RunningRobot],
-        clock: Clock,
-        obedience: Obedience,
-        say: Callable[[str], None],
+        self, robots: Sequence[Life], clock: RunClock, obedience: Obedience, say: Callable[[Life, str], None]
     ) -> None:
         """Look after these robots; orders that stop them are told what became of it."""
         self._robots, self._clock, self._obedience, self._say = robots, clock, obedience, say
@@ -56,46 +56,63 @@ class Stopping:
         """Return in words how robots came down that now wait for their batteries."""
         return {each.id: self._came_down[each.id] for each in self._robots if each.id in self._came_down}
 
-    def answer(self, robot: RunningRobot, found: Fault) -> None:
+    def answer(self, robot: Life, found: Fault) -> None:
         """Have a robot give the response that it decided on, and tell people why."""
-        self._say(f"'{robot.id}': {found}; response: {robot.halt.response}")
-        _note(robot, found.which, found.reason, robot.halt.response)
+        self._say(robot, f"{found}; response: {robot.halt.response}")
+        robot.decided(found.which, found.reason, robot.halt.response)
         self.stop(robot, robot.halt.response)
 
-    def stop(self, robot: RunningRobot, response: str) -> None:
+    def stop(self, robot: Life, response: str) -> None:
         """Have a robot stop in some way."""
         robot.halt.response = response
         self._came_down.pop(robot.id, None)
         try:
-            robot.backend.stop(self._clock.now(), response)
-        except LinkLostError:
+            robot.vehicle.respond(response, self._clock.now())
+        except LinkLost:
             self._unconfirmed[robot.id] = None
         else:
             if self._clock.passes_by_itself:
                 robot.halt.begin()
 
-    def look_after(self) -> None:
-        """Note which robots have confirmed that they stopped, or cannot, and what became of them since."""
-        for robot in self._robots:
-            if robot.halt.stopping:
-                self._look_after(robot, self._clock.now())
-            elif self._clock.passes_by_itself and robot.halt.fault and robot.halt.response != NOTHING:
-                self._look_again(robot, self._clock.now())
+    def stay_with(self, robot: Life) -> Waits:
+        """Look after a robot whose program has ended, or is broken off, until it goes on.
 
-    def _look_again(self, robot: RunningRobot, now: float) -> None:
+        Raises:
+            Broken: somebody has ordered its program to end.
+        """
+        while robot.suspended or robot.point.is_final:
+            if robot.ordered is not None:
+                raise Broken(*robot.ordered)
+            self.look_after(robot)
+            yield Until(self._clock.now() + self._pace(robot))
+
+    def _pace(self, robot: Life) -> float:
+        """Return for how many seconds a robot need not be looked at."""
+        if robot.halt.stopping:
+            return PACE
+        return WATCH_PACE if self._needs_company(robot) else inf
+
+    def look_after(self, robot: Life) -> None:
+        """Note whether a robot has confirmed that it stopped, or cannot, and what became of it since."""
+        if robot.halt.stopping:
+            self._see_stop(robot, self._clock.now())
+        elif self._clock.passes_by_itself and robot.halt.fault and robot.halt.response != NOTHING:
+            self._look_again(robot, self._clock.now())
+
+    def _look_again(self, robot: Life, now: float) -> None:
         """Answer what overtakes a robot that has stopped, such as a pilot who takes it over."""
         try:
-            trouble = robot.backend.fault(now)
-        except LinkLostError:
+            robot.vehicle.look(now)
+            trouble = robot.vehicle.trouble
+        except LinkLost:
             return  # it has stopped, and its link was not needed any more
         if trouble is not None and robot.overtaken_by(trouble):
             self.answer(robot, trouble)
             return
         self._stay_if_lost(robot, trouble)
-        if isinstance(robot.backend, Watched):
-            self._tell_link(robot, heard=robot.backend.reachable(now))
+        self._tell_link(robot, heard=robot.vehicle.reachable(now))
 
-    def _stay_if_lost(self, robot: RunningRobot, trouble: Fault | None) -> None:
+    def _stay_if_lost(self, robot: Life, trouble: Fault | None) -> None:
         """Listen for a robot whose link is lost, although it might have been left before that."""
         if trouble is None or trouble.which != LINK_LOST:
             self._listened_for.discard(robot.id)
@@ -105,18 +122,19 @@ class Stopping:
             self._lost[robot.id] = None
             robot.halt.released = False
 
-    def _tell_link(self, robot: RunningRobot, *, heard: bool) -> None:
+    def _tell_link(self, robot: Life, *, heard: bool) -> None:
         if not heard:
             self._unheard.add(robot.id)
         elif robot.id in self._unheard and self._needs_company(robot):
-            self._say(f"'{robot.id}': is heard again: orders are obeyed")
+            self._say(robot, "is heard again: orders are obeyed")
             self._unheard.discard(robot.id)
 
-    def _look_after(self, robot: RunningRobot, now: float) -> None:
+    def _see_stop(self, robot: Life, now: float) -> None:
         try:
-            trouble = robot.backend.fault(now)
-            stopping = trouble is None and not robot.backend.finished(now)
-        except LinkLostError as error:
+            robot.vehicle.look(now)
+            trouble = robot.vehicle.trouble
+            stopping = trouble is None and not robot.vehicle.done
+        except LinkLost as error:
             trouble, stopping = Fault(LINK_LOST, str(error)), False
         if not stopping:
             down = trouble is None and robot.halt.response in COMES_DOWN
@@ -125,45 +143,40 @@ class Stopping:
             self.answer(robot, trouble)
             return
         if trouble is not None:
-            self._say(f"'{robot.id}': not known to have stopped ({robot.halt.response}): {trouble}")
+            self._say(robot, f"not known to have stopped ({robot.halt.response}): {trouble}")
             self._unconfirmed[robot.id] = None
             why = f"{robot.halt.response} cannot be carried out: {trouble.reason or trouble.which}"
-            _note(robot, trouble.which, why, NOTHING)
+            robot.decided(trouble.which, why, NOTHING)
             self._stay_if_lost(robot, trouble)
         elif not stopping:
             self._unconfirmed.pop(robot.id, None)
-            self._say(f"'{robot.id}': {self._done(robot, now)}")
-            self._tell_battery(robot, now)
+            self._say(robot, self._done(robot, now))
+            self._tell_battery(robot)
         self._obedience.stopped(robot.id, stopping, trouble)
 
-    def _done(self, robot: RunningRobot, now: float) -> str:
+    def _done(self, robot: Life, now: float) -> str:
         """Return in words what a robot has done that has stopped."""
         if robot.halt.response == NOTHING:
             return "is left alone"
-        if isinstance(robot.backend, Watched) and (why := robot.backend.undone(now)):
+        if why := robot.vehicle.undone(now):
             return f"has not done {robot.halt.response}: {why}"
         return f"has done {robot.halt.response}"
 
-    def _tell_battery(self, robot: RunningRobot, now: float) -> None:
+    def _tell_battery(self, robot: Life) -> None:
         """Tell what is to be done for a robot that came down for its battery."""
         if robot.suspended and robot.halt.is_for(BATTERY_LOW) and robot.halt.response in COMES_DOWN:
-            words = self._came_down[robot.id] = _came_down(robot, now)
-            self._say(f"'{robot.id}': {words}; change it, then order resume, or start again with --resume")
+            words = self._came_down[robot.id] = _came_down(robot)
+            self._say(robot, f"{words}; change it, then order resume, or start again with --resume")
 
-    def _needs_company(self, robot: RunningRobot) -> bool:
+    def _needs_company(self, robot: Life) -> bool:
         """Return whether this process must not end yet, since nobody has said that it may leave the robot."""
         halt = robot.halt
-        return halt.fault is not None and not halt.released and robot.is_watched(self._clock.now())
+        return halt.fault is not None and not halt.released and robot.is_watched()
 
 
-def _note(robot: RunningRobot, what: str, why: str, response: str) -> None:
-    if isinstance(robot.backend, Noting):
-        robot.backend.note("decision", {"what": what, "why": why, "response": response})
-
-
-def _came_down(robot: RunningRobot, now: float) -> str:
-    if why := robot.astray(now):
+def _came_down(robot: Life) -> str:
+    if why := robot.astray():
         return f"came down for its battery, but {why}"
-    if robot.away(now):
+    if robot.away():
         return CAME_DOWN_AWAY
-    return f"came {'home' if isinstance(robot.backend, Recovering) else 'down'} for its battery"
+    return f"came {'home' if robot.vehicle.comes_home else 'down'} for its battery"

@@ -2,12 +2,12 @@
 
 Each robot is at a control point; a step of one robot leads it to its next point and may set slots.
 Steps of different robots interleave. Slots are latches: passing a wait leaves them as they are.
-All awaited slots are tested in one state, after the post-actions of the move. A Choice may go either
-way here; an interpreter asks its condition once, at the instant when it fires.
+All awaited slots are tested in one state, after the actions that follow the movement. A Choice may go
+either way here; the engine asks its condition once, at the instant when it fires.
 
-What robots run by are `steps`, `fault` and `missing`; `told_by` finds the step that a log tells of. States
-of all robots together (`initial`, `enabled`, `apply`, `is_success`, `is_deadlock`) are the oracle that the
-interpreter and the check of synchronisation are tested against, over every interleaving.
+Robots run by `steps`, `fault` and `missing`; `told_by` finds the step that a log tells of. States of all
+robots together (`initial`, `enabled`, `apply`, `is_success`, `is_deadlock`) are the oracle that the engine
+and the check of synchronisation are tested against, over every interleaving.
 """
 
 from __future__ import annotations
@@ -16,10 +16,8 @@ from collections.abc import Iterator, Set
 from dataclasses import dataclass
 from enum import Enum
 
-from mmrs_core.behaviour.program import BEHAVIOUR, Action, Program, RobotProgram, SlotId
-from mmrs_runtime.records.steps import StepRecord
-
-NOTIFY = (BEHAVIOUR, "Notify")
+from .program import Choose, Notify, Program, Robot, SlotId
+from .records.steps import StepRecord
 
 
 class Phase(Enum):
@@ -36,9 +34,9 @@ class Phase(Enum):
 
 @dataclass(frozen=True, slots=True)
 class Point:
-    """A control point: the index of a move, how far the robot is with it, and at which action."""
+    """A control point: a move, how far the robot is with it, and at which action."""
 
-    move: int
+    move: str
     phase: Phase
     index: int = 0
 
@@ -85,6 +83,15 @@ class Waiting:
         return f"{self.robot!r} waits after {self.move!r} for {', '.join(map(repr, self.slots))}"
 
 
+class Outcome(Enum):
+    """How a run ended."""
+
+    SUCCESS = "success"
+    FAILED = "failed"
+    STUCK = "stuck"
+    INCOMPLETE = "incomplete"
+
+
 @dataclass(frozen=True, slots=True)
 class State:
     """Where all robots are, in the program's order, and which slots are active."""
@@ -98,62 +105,68 @@ def initial(program: Program) -> State:
     return State(tuple(entry(robot, robot.start) for robot in program.robots))
 
 
-def entry(robot: RobotProgram, move: int) -> Point:
+def entry(robot: Robot, move: str) -> Point:
     """Return the first control point of a move."""
-    return Point(move, Phase.BEFORE if robot.moves[move].before else Phase.READY)
+    return Point(move, Phase.BEFORE if robot.by_id[move].before else Phase.READY)
 
 
-def steps(robot: RobotProgram, point: Point, active: Set[SlotId]) -> tuple[Step, ...]:
+def steps(robot: Robot, point: Point, active: Set[SlotId]) -> tuple[Step, ...]:
     """Return the steps that the robot may make; two only at a Choice, none if it waits or is final.
 
     A fault may happen at any point and is not among them.
     """
-    if point.phase is Phase.BEFORE or point.phase is Phase.AFTER:
+    phase = point.phase
+    if phase is Phase.BEFORE or phase is Phase.AFTER:
         return (_action_step(robot, point),)
-    if point.phase is Phase.READY:
-        return (_move_step(robot, "begin", point, Point(point.move, Phase.BUSY)),)
-    if point.phase is Phase.BUSY:
-        return (_move_step(robot, "end", point, _after_movement(robot, point.move)),)
-    if point.phase is Phase.OUT and not missing(robot, point, active):
+    if phase is Phase.READY:
+        return (Step(robot.id, "begin", point.move, "", "", Point(point.move, Phase.BUSY)),)
+    if phase is Phase.BUSY:
+        return (Step(robot.id, "end", point.move, "", "", _after_movement(robot, point.move)),)
+    if phase is Phase.OUT and not missing(robot, point, active):
         return _ways_on(robot, point)
     return ()
 
 
-def fault(robot: RobotProgram, point: Point, which: str) -> Step:
+def fault(robot: Robot, point: Point, which: str) -> Step:
     """Return the step by which a robot that is not at a final point stops for ever."""
-    return Step(robot.id, "fault", robot.moves[point.move].id, which, "", Point(point.move, Phase.FAILED))
+    return Step(robot.id, "fault", point.move, which, "", Point(point.move, Phase.FAILED))
 
 
-def told_by(record: StepRecord, robot: RobotProgram, point: Point, active: Set[SlotId]) -> Step | None:
+def told_by(record: StepRecord, robot: Robot, point: Point, active: Set[SlotId]) -> Step | None:
     """Return the step of a robot from a point that a record tells of; None: it can make no such step."""
     if record.label == "fault":
-        may = not point.is_final and not record.slot and record.move == robot.moves[point.move].id
+        may = not point.is_final and not record.slot and record.move == point.move
         return fault(robot, point, record.detail) if may else None
     wanted = (record.label, record.move, record.detail, record.slot)
     possible = steps(robot, point, active)
     return next((s for s in possible if (s.label, s.move, s.detail, s.slot) == wanted), None)
 
 
-def missing(robot: RobotProgram, point: Point, active: Set[SlotId]) -> tuple[str, ...]:
+def missing(robot: Robot, point: Point, active: Set[SlotId]) -> tuple[str, ...]:
     """Return the names of the slots that hold the robot up at the end of a move; empty elsewhere."""
+    return tuple(slot[1] for slot in awaited(robot, point) if slot not in active)
+
+
+def awaited(robot: Robot, point: Point) -> tuple[SlotId, ...]:
+    """Return the own slots that must be active before the robot goes on; none but at the end of a move."""
     if point.phase is not Phase.OUT:
         return ()
-    waits = robot.transitions[point.move].waits
-    return tuple(name for name in waits if (robot.id, name) not in active)
+    then = robot.by_id[point.move].then
+    return tuple((robot.id, name) for name in then.waits) if then is not None else ()
 
 
-def action_at(robot: RobotProgram, point: Point) -> Action | None:
+def action_at(robot: Robot, point: Point) -> object | None:
     """Return the action that the robot is about to do; None where it is about to do none."""
-    move = robot.moves[point.move]
+    move = robot.by_id[point.move]
     if point.phase is Phase.BEFORE:
         return move.before[point.index]
     return move.after[point.index] if point.phase is Phase.AFTER else None
 
 
-def slot_text(action: Action) -> str:
+def slot_text(notify: Notify) -> str:
     """Return the slots that a notify sets as logs write them."""
-    names = " ".join(f"{robot}.{slot}" for robot, slot in action.sets)
-    return ("+" if action.active else "-") + names
+    names = " ".join(f"{robot}.{slot}" for robot, slot in notify.slots)
+    return ("+" if notify.active else "-") + names
 
 
 def enabled(program: Program, state: State) -> Iterator[Step]:
@@ -181,7 +194,7 @@ def with_slots(active: Set[SlotId], step: Step) -> Set[SlotId]:
 def waiting(program: Program, state: State) -> tuple[Waiting, ...]:
     """Return the robots that wait in that state."""
     return tuple(
-        Waiting(robot.id, robot.moves[point.move].id, lacking)
+        Waiting(robot.id, point.move, lacking)
         for robot, point in zip(program.robots, state.points, strict=True)
         if (lacking := missing(robot, point, state.active))
     )
@@ -197,8 +210,8 @@ def is_deadlock(program: Program, state: State) -> bool:
     return not is_success(state) and next(enabled(program, state), None) is None
 
 
-def _action_step(robot: RobotProgram, point: Point) -> Step:
-    move = robot.moves[point.move]
+def _action_step(robot: Robot, point: Point) -> Step:
+    move = robot.by_id[point.move]
     before = point.phase is Phase.BEFORE
     actions = move.before if before else move.after
     action = actions[point.index]
@@ -207,30 +220,27 @@ def _action_step(robot: RobotProgram, point: Point) -> Step:
     else:
         leads_to = Point(point.move, Phase.READY) if before else _out(robot, point.move)
     detail = f"{point.phase.value}:{point.index}"
-    if action.is_a(NOTIFY):
-        return Step(robot.id, "ntf", move.id, detail, slot_text(action), leads_to, action.sets, action.active)
+    if isinstance(action, Notify):
+        text = slot_text(action)
+        return Step(robot.id, "ntf", move.id, detail, text, leads_to, action.slots, action.active)
     return Step(robot.id, "act", move.id, detail, "", leads_to)
 
 
-def _move_step(robot: RobotProgram, label: str, point: Point, leads_to: Point) -> Step:
-    return Step(robot.id, label, robot.moves[point.move].id, "", "", leads_to)
+def _after_movement(robot: Robot, move: str) -> Point:
+    return Point(move, Phase.AFTER) if robot.by_id[move].after else _out(robot, move)
 
 
-def _after_movement(robot: RobotProgram, move: int) -> Point:
-    return Point(move, Phase.AFTER) if robot.moves[move].after else _out(robot, move)
+def _out(robot: Robot, move: str) -> Point:
+    return Point(move, Phase.DONE if robot.by_id[move].then is None else Phase.OUT)
 
 
-def _out(robot: RobotProgram, move: int) -> Point:
-    return Point(move, Phase.DONE if move == robot.stop else Phase.OUT)
-
-
-def _ways_on(robot: RobotProgram, point: Point) -> tuple[Step, ...]:
-    transition = robot.transitions[point.move]
-    move = robot.moves[point.move].id
-    if transition.otherwise is None:
-        next_move = robot.moves[transition.to].id
-        return (Step(robot.id, "take", move, next_move, "", entry(robot, transition.to)),)
+def _ways_on(robot: Robot, point: Point) -> tuple[Step, ...]:
+    then = robot.by_id[point.move].then
+    if then is None:
+        return ()
+    if not isinstance(then, Choose):
+        return (Step(robot.id, "take", point.move, then.move, "", entry(robot, then.move)),)
     return tuple(
-        Step(robot.id, "choose", move, detail, "", entry(robot, way))
-        for detail, way in (("true", transition.to), ("false", transition.otherwise))
+        Step(robot.id, "choose", point.move, detail, "", entry(robot, way))
+        for detail, way in (("true", then.move), ("false", then.otherwise))
     )

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from enum import Enum
 
-from mmrs_core.contributions.execution import Fault
-from mmrs_runtime.faults import TAKEN_OVER
-from mmrs_runtime.policies import OVERTAKES
+from ..faults import TAKEN_OVER
+from ..policies import OVERTAKES
+from ..vehicle import Fault
 
 OVERTAKING = OVERTAKES | {TAKEN_OVER}
 

@@ -6,10 +6,31 @@ import time
 from contextlib import suppress
 from math import inf
 from queue import Empty, SimpleQueue
+from typing import Protocol
 
-from mmrs_core.contributions.execution import Clock
-from mmrs_runtime.clock import SIGNAL_SECONDS
-from mmrs_runtime.clock import Clock as RobotClock
+from ..clock import SIGNAL_SECONDS
+from ..clock import Clock as RobotClock
+
+
+class RunClock(Protocol):
+    """The time of a run."""
+
+    @property
+    def passes_by_itself(self) -> bool:
+        """Return whether it is worth waiting for what nobody can foresee: time goes on by itself."""
+        ...
+
+    def now(self) -> float:
+        """Return the seconds since the run began."""
+        ...
+
+    def sleep_until(self, time: float) -> None:
+        """Return when that time has come, or earlier if somebody calls `wake`."""
+        ...
+
+    def wake(self) -> None:
+        """End the present or next sleep at once; from any thread."""
+        ...
 
 
 class SimulatedClock:
@@ -80,9 +101,9 @@ class RealClock:
 
 
 class FollowingClock(RobotClock):
-    """The clock of what a robot runs on, showing the time of a run of the interpreter."""
+    """The clock of what a robot runs on, showing the time of a run."""
 
-    def __init__(self, clock: Clock) -> None:
+    def __init__(self, clock: RunClock) -> None:
         """Follow that clock."""
         super().__init__(float(getattr(clock, "speedup", 1.0)))
         self._followed = clock
