@@ -26,7 +26,8 @@ from pathlib import Path
 
 from mmrs_auv.commands.modelled import sheets_in
 from mmrs_auv.rehearsal import Berth
-from mmrs_auv.vessel.body.surroundings import BUOY, Surroundings, Thing, from_json, to_json
+
+from auv_vessel.body.surroundings import BUOY, Surroundings, Thing, from_json, to_json
 
 ROOT = Path(__file__).resolve().parents[1]
 MMRS = (sys.executable, "-m", "mmrs_core")

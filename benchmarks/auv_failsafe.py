@@ -24,11 +24,12 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "support"))
 
 from mmrs_auv.testing import heavy_sheet, pool_sheet
-from mmrs_auv.vessel.control import failsafe
-from mmrs_auv.vessel.sheet import Sheet
-from mmrs_auv.vessel.wire.codec import Codec
-from mmrs_auv.vessel.wire.frame import Frame
 from vessel_processes import Boat, until
+
+from auv_vessel.control import failsafe
+from auv_vessel.sheet import Sheet
+from auv_vessel.wire.codec import Codec
+from auv_vessel.wire.frame import Frame
 
 FLOATS = replace(pool_sheet(), weight_in_water=-1.7, home=(0.0, 0.0, 2.0))
 SINKS = replace(heavy_sheet(), drop_weight=7.0, home=(0.0, 0.0, 2.0))
@@ -55,7 +56,7 @@ class Diver(Boat):
         """Start a part; the vehicle's faults are typed."""
         if part != "vehicle":
             return super().start(part, *more)
-        words = [sys.executable, "-m", "mmrs_auv.vessel", part, "--sheet", str(self.file), "--faults"]
+        words = [sys.executable, "-m", "auv_vessel", part, "--sheet", str(self.file), "--faults"]
         return subprocess.Popen(
             [*words, "--channel", self.channel],
             stdin=subprocess.PIPE,

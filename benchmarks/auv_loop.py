@@ -23,11 +23,12 @@ from itertools import pairwise
 from pathlib import Path
 
 from mmrs_auv.testing import pool_sheet
-from mmrs_auv.vessel.api import Connection
-from mmrs_auv.vessel.body import surroundings
-from mmrs_auv.vessel.sheet import to_json
-from mmrs_auv.vessel.wire.catalogue import COMMAND_BASE, COMMAND_PERIOD
-from mmrs_auv.vessel.wire.ports import Port, open_port
+
+from auv_vessel.api import Connection
+from auv_vessel.body import surroundings
+from auv_vessel.sheet import to_json
+from auv_vessel.wire.catalogue import COMMAND_BASE, COMMAND_PERIOD
+from auv_vessel.wire.ports import Port, open_port
 
 PARTS = ("sensors", "actuators", "movement", "vehicle")
 PRESSURE = 0x200
@@ -81,7 +82,7 @@ def measure(folder: Path, seconds: float) -> None:
 
 def part_process(part: str, folder: Path, channel: str) -> subprocess.Popen[str]:
     """Start a part of the vehicle."""
-    words = [sys.executable, "-m", "mmrs_auv.vessel", part, "--sheet", str(folder / "sheet.json"),
+    words = [sys.executable, "-m", "auv_vessel", part, "--sheet", str(folder / "sheet.json"),
              "--channel", channel, "--figures", str(folder / part)]  # fmt: skip
     if part == "vehicle":
         words += ["--surroundings", str(folder / "around.json")]

@@ -22,7 +22,8 @@ from pathlib import Path
 from statistics import median
 
 import cv2
-from mmrs_auv.vessel.body.surroundings import BUOY, GATE, PATH
+
+from auv_vessel.body.surroundings import BUOY, GATE, PATH
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "support"))
 

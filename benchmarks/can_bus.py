@@ -24,19 +24,20 @@ from statistics import median
 
 import can
 from mmrs_auv.testing import heavy_sheet, pool_sheet
-from mmrs_auv.vessel.api import Craft
-from mmrs_auv.vessel.body.surroundings import Surroundings
-from mmrs_auv.vessel.body.vehicle import Vehicle
-from mmrs_auv.vessel.control.actuators import Actuators
-from mmrs_auv.vessel.control.sensors import Sensors
-from mmrs_auv.vessel.hosting import Rehearsal
-from mmrs_auv.vessel.movement.movement import Movement
-from mmrs_auv.vessel.sheet import Sheet
-from mmrs_auv.vessel.wire.codec import Codec
-from mmrs_auv.vessel.wire.database import database_of
-from mmrs_auv.vessel.wire.frame import Frame
-from mmrs_auv.vessel.wire.load import Heard, heard_load, load_of
-from mmrs_auv.vessel.wire.ports import open_port
+
+from auv_vessel.api import Craft
+from auv_vessel.body.surroundings import Surroundings
+from auv_vessel.body.vehicle import Vehicle
+from auv_vessel.control.actuators import Actuators
+from auv_vessel.control.sensors import Sensors
+from auv_vessel.hosting import Rehearsal
+from auv_vessel.movement.movement import Movement
+from auv_vessel.sheet import Sheet
+from auv_vessel.wire.codec import Codec
+from auv_vessel.wire.database import database_of
+from auv_vessel.wire.frame import Frame
+from auv_vessel.wire.load import Heard, heard_load, load_of
+from auv_vessel.wire.ports import open_port
 
 FRAME = Frame(0x100, bytes(range(8)))
 PLACES = ((6.0, 0.0, 2.0), (6.0, -5.0, 4.0), (0.0, 0.0, 3.0))

@@ -58,12 +58,11 @@ class Deployment:
 
 
 @cache
-def deployment_of(*carried: str, more: tuple[str, ...] = ()) -> Deployment:
+def deployment_of(*carried: str) -> Deployment:
     """Return what programs need that run on these distributions, by what is installed here.
 
     Args:
         carried: as in `Deployment`; an extra is left out where not all that it needs is installed.
-        more: distributions from elsewhere that they need beside.
 
     Raises:
         MmrsError: something that they need is not installed.
@@ -72,7 +71,7 @@ def deployment_of(*carried: str, more: tuple[str, ...] = ()) -> Deployment:
     kept = [_text(each, {extra for extra in each.extras if _has(each.name, extra)}) for each in asked]
     ours = {canonicalize_name(each.name) for each in asked}
     found: dict[str, str] = {}
-    seen, pending = set(), [Requirement(text) for text in (*kept, *more)]
+    seen, pending = set(), [Requirement(text) for text in kept]
     while pending:
         needed = pending.pop()
         name = canonicalize_name(needed.name)

@@ -69,7 +69,7 @@ def test_wheels_find_their_metamodels_templates_and_examples(site, tmp_path):
 
 def test_wheels_carry_the_licence_and_name_it(site):
     licence = (ROOT / "LICENSE").read_bytes()
-    described = sorted(site.glob("mmrs_*.dist-info"))
+    described = sorted([*site.glob("mmrs_*.dist-info"), *site.glob("auv_*.dist-info")])
     assert len(described) == len(PROJECTS)
     assert [(each / "licenses" / "LICENSE").read_bytes() == licence for each in described] == [True] * len(
         PROJECTS

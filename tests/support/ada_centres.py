@@ -22,18 +22,18 @@ from can_hub import RunningHub, running
 from dives import diver
 from mmrs_auv.sheets import sheet_of
 from mmrs_auv.targets.ada.target import ADA
-from mmrs_auv.vessel.body.surroundings import Surroundings
-from mmrs_auv.vessel.body.vehicle import Vehicle
-from mmrs_auv.vessel.control.actuators import Actuators
-from mmrs_auv.vessel.control.sensors import Sensors
-from mmrs_auv.vessel.eyes import Detection, to_datagram
-from mmrs_auv.vessel.hosting import Rehearsal
-from mmrs_auv.vessel.movement.movement import Movement
-from mmrs_auv.vessel.sheet import Sheet
-from mmrs_auv.vessel.wire.codec import Codec, Received
-from mmrs_auv.vessel.wire.frame import Frame
-from mmrs_auv.vessel.wire.ports import Port, open_port
 
+from auv_vessel.body.surroundings import Surroundings
+from auv_vessel.body.vehicle import Vehicle
+from auv_vessel.control.actuators import Actuators
+from auv_vessel.control.sensors import Sensors
+from auv_vessel.eyes import Detection, to_datagram
+from auv_vessel.hosting import Rehearsal
+from auv_vessel.movement.movement import Movement
+from auv_vessel.sheet import Sheet
+from auv_vessel.wire.codec import Codec, Received
+from auv_vessel.wire.frame import Frame
+from auv_vessel.wire.ports import Port, open_port
 from mmrs_core.behaviour.log import read_logs
 from mmrs_core.behaviour.program import Program
 from mmrs_core.behaviour.replay import ReplayResult, replay

@@ -15,10 +15,11 @@ from random import Random
 from ada_centres import FLAGS, write
 from dives import dive
 from mmrs_auv.targets.ada.bus import HEARD, LIMITS, SPOKEN
-from mmrs_auv.vessel.api import Craft, State
-from mmrs_auv.vessel.eyes import CAMERAS, Detection, to_datagram
-from mmrs_auv.vessel.sheet import Sheet
-from mmrs_auv.vessel.wire.catalogue import (
+
+from auv_vessel.api import Craft, State
+from auv_vessel.eyes import CAMERAS, Detection, to_datagram
+from auv_vessel.sheet import Sheet
+from auv_vessel.wire.catalogue import (
     BEATS,
     COMMON,
     EMERGENCIES,
@@ -28,10 +29,10 @@ from mmrs_auv.vessel.wire.catalogue import (
     Message,
     depth_step,
 )
-from mmrs_auv.vessel.wire.catalogue import Field as Part
-from mmrs_auv.vessel.wire.check import check_of
-from mmrs_auv.vessel.wire.codec import Codec, Value
-from mmrs_auv.vessel.wire.frame import Frame
+from auv_vessel.wire.catalogue import Field as Part
+from auv_vessel.wire.check import check_of
+from auv_vessel.wire.codec import Codec, Value
+from auv_vessel.wire.frame import Frame
 
 SCRIPT = Path(__file__).parents[2] / "plugins" / "auv" / "tests" / "targets" / "craft_script.adb"
 KNOWN = {message.name: message for message in (*COMMON, *BEATS)}

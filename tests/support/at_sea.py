@@ -5,12 +5,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from mmrs_auv.testing import pool_sheet
-from mmrs_auv.vessel.body.surroundings import Surroundings
-from mmrs_auv.vessel.body.vehicle import Vehicle
-from mmrs_auv.vessel.hosting import Rehearsal
-from mmrs_auv.vessel.sheet import Sheet
-from mmrs_auv.vessel.wire.codec import Codec, Received
-from mmrs_auv.vessel.wire.frame import Frame
+
+from auv_vessel.body.surroundings import Surroundings
+from auv_vessel.body.vehicle import Vehicle
+from auv_vessel.hosting import Rehearsal
+from auv_vessel.sheet import Sheet
+from auv_vessel.wire.codec import Codec, Received
+from auv_vessel.wire.frame import Frame
 
 QUIET = Surroundings(noise=False, bottom=10.0)
 

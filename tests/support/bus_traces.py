@@ -6,10 +6,9 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from mmrs_auv.vessel.sheet import Sheet
-from mmrs_auv.vessel.wire.codec import Codec, Received, Value
-from mmrs_auv.vessel.wire.frame import Frame
-
+from auv_vessel.sheet import Sheet
+from auv_vessel.wire.codec import Codec, Received, Value
+from auv_vessel.wire.frame import Frame
 from mmrs_core.behaviour.log import read_logs
 
 COUNTED = 2

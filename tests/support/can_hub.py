@@ -9,7 +9,7 @@ import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
-from mmrs_auv.vessel.wire.hub import Hub
+from auv_vessel.wire.hub import Hub
 
 
 class RunningHub:

@@ -8,8 +8,8 @@ from __future__ import annotations
 import subprocess
 import sys
 
-from mmrs_auv.vessel.wire.frame import Frame
-from mmrs_auv.vessel.wire.ports import open_port
+from auv_vessel.wire.frame import Frame
+from auv_vessel.wire.ports import open_port
 
 COUNT = 10
 SECONDS = 5.0

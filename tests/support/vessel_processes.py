@@ -12,10 +12,10 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from mmrs_auv.vessel.api import Connection
-from mmrs_auv.vessel.sheet import Sheet, to_json
-from mmrs_auv.vessel.wire.codec import Codec, Received
-from mmrs_auv.vessel.wire.ports import Port, PortError, open_port
+from auv_vessel.api import Connection
+from auv_vessel.sheet import Sheet, to_json
+from auv_vessel.wire.codec import Codec, Received
+from auv_vessel.wire.ports import Port, PortError, open_port
 
 PARTS = ("vehicle", "sensors", "actuators", "movement")
 
@@ -92,7 +92,7 @@ class Boat:
         words = [
             sys.executable,
             "-m",
-            "mmrs_auv.vessel",
+            "auv_vessel",
             part,
             "--sheet",
             str(self.file),

@@ -5,17 +5,17 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 
-from mmrs_auv.vessel.api import Craft, State
-from mmrs_auv.vessel.body.surroundings import Surroundings
-from mmrs_auv.vessel.body.vehicle import Vehicle
-from mmrs_auv.vessel.control.actuators import Actuators
-from mmrs_auv.vessel.control.sensors import Sensors
-from mmrs_auv.vessel.hosting import Rehearsal
-from mmrs_auv.vessel.movement.movement import Movement
-from mmrs_auv.vessel.sheet import Sheet
-from mmrs_auv.vessel.wire.catalogue import COMMAND_BASE, EMERGENCIES, STATUS_BASE
-from mmrs_auv.vessel.wire.codec import Codec
-from mmrs_auv.vessel.wire.frame import Frame
+from auv_vessel.api import Craft, State
+from auv_vessel.body.surroundings import Surroundings
+from auv_vessel.body.vehicle import Vehicle
+from auv_vessel.control.actuators import Actuators
+from auv_vessel.control.sensors import Sensors
+from auv_vessel.hosting import Rehearsal
+from auv_vessel.movement.movement import Movement
+from auv_vessel.sheet import Sheet
+from auv_vessel.wire.catalogue import COMMAND_BASE, EMERGENCIES, STATUS_BASE
+from auv_vessel.wire.codec import Codec
+from auv_vessel.wire.frame import Frame
 
 
 class Rig:

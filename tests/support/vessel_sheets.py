@@ -5,7 +5,8 @@ from __future__ import annotations
 from math import cos, pi, sin
 
 from hypothesis import strategies as st
-from mmrs_auv.vessel.sheet import Sheet, Thruster
+
+from auv_vessel.sheet import Sheet, Thruster
 
 
 class Asked(dict):

@@ -14,12 +14,13 @@ from secrets import token_hex
 
 from can_hub import running
 from mmrs_auv.testing import pool_sheet
-from mmrs_auv.vessel.body.surroundings import BUOY, GATE, PATH, Surroundings, Thing, to_json
-from mmrs_auv.vessel.eyes import Detections
-from mmrs_auv.vessel.sheet import to_json as sheet_json
-from mmrs_auv.vessel.wire.codec import Codec
-from mmrs_auv.vessel.wire.ports import open_port
 from mmrs_auv.vision.cameras import Pose
+
+from auv_vessel.body.surroundings import BUOY, GATE, PATH, Surroundings, Thing, to_json
+from auv_vessel.eyes import Detections
+from auv_vessel.sheet import to_json as sheet_json
+from auv_vessel.wire.codec import Codec
+from auv_vessel.wire.ports import open_port
 
 POOL = Surroundings(
     bottom=4.0,

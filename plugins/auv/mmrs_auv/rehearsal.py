@@ -11,11 +11,11 @@ from pathlib import Path
 from queue import SimpleQueue
 from types import TracebackType
 
-from mmrs_auv.vessel.body.befalling import NoSuchFaultError, befalling
-from mmrs_auv.vessel.body.surroundings import Surroundings
-from mmrs_auv.vessel.body.surroundings import to_json as surroundings_json
-from mmrs_auv.vessel.sheet import Sheet, to_json
-from mmrs_auv.vessel.wire.hub import Troubles
+from auv_vessel.body.befalling import NoSuchFaultError, befalling
+from auv_vessel.body.surroundings import Surroundings
+from auv_vessel.body.surroundings import to_json as surroundings_json
+from auv_vessel.sheet import Sheet, to_json
+from auv_vessel.wire.hub import Troubles
 from mmrs_core.errors import LinkLostError
 from mmrs_core.sitl.schedule import EVERYBODY, addressed
 
@@ -149,7 +149,7 @@ class Berth:
         return line.split()[2].rpartition(":")[2].rstrip(";")
 
     def _start(self, part: str, *more: str) -> None:
-        words = [sys.executable, "-m", "mmrs_auv.vessel", part, "--sheet", str(self._file)]
+        words = [sys.executable, "-m", "auv_vessel", part, "--sheet", str(self._file)]
         words += ["--channel", self.channel, "--clock", "bus", *more]
         self._processes[part] = _begun(words)
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 from math import isfinite
 
-from mmrs_auv.vessel.sheet import Sheet
-from mmrs_auv.vessel.wire.catalogue import messages_of
-from mmrs_auv.vessel.wire.layout import layout_of
+from auv_vessel.sheet import Sheet
+from auv_vessel.wire.catalogue import messages_of
+from auv_vessel.wire.layout import layout_of
 from mmrs_core.behaviour.program import BEHAVIOUR, Action, Move
 from mmrs_core.scene import Position, RobotType
 

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator
 from math import hypot
 
+from auv_vessel.refusals import MOST_DEPTH, MOST_SPEED, SheetError, refuse
+from auv_vessel.sheet import Sheet, Thruster, Vector, unknown
 from mmrs_auv.kinds import SEA_WATER, largest_depth, thrusters_of
 from mmrs_auv.names import AUV_MOVEMENT, IN_WATER_SIZE, MOUNTING
-from mmrs_auv.vessel.refusals import MOST_DEPTH, MOST_SPEED, SheetError, refuse
-from mmrs_auv.vessel.sheet import Sheet, Thruster, Vector, unknown
 from mmrs_core.errors import InfeasibleError, UnsupportedError
 from mmrs_core.planning.devices import figure
 from mmrs_core.scene import Device, Part, Position, RobotType

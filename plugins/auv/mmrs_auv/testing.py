@@ -5,7 +5,7 @@ from __future__ import annotations
 from math import cos, pi, radians, sin
 from random import Random
 
-from .vessel.sheet import Sheet, Thruster, Vector
+from auv_vessel.sheet import Sheet, Thruster, Vector
 
 
 def thruster(name: str, position: Vector, direction: Vector) -> Thruster:

@@ -6,12 +6,13 @@ from dataclasses import replace
 
 import pytest
 from mmrs_auv.testing import pool_sheet
-from mmrs_auv.vessel.api import Craft
-from mmrs_auv.vessel.decision.drives import Drives
-from mmrs_auv.vessel.decision.helm import Watch
-from mmrs_auv.vessel.goals import Goal, goal_frames, goal_of, within_rating
-from mmrs_auv.vessel.wire.codec import Codec, Received
 from vessel_rig import Rig
+
+from auv_vessel.api import Craft
+from auv_vessel.decision.drives import Drives
+from auv_vessel.decision.helm import Watch
+from auv_vessel.goals import Goal, goal_frames, goal_of, within_rating
+from auv_vessel.wire.codec import Codec, Received
 
 
 class Listener:

@@ -8,18 +8,19 @@ from itertools import pairwise
 
 import pytest
 from mmrs_auv.testing import heavy_sheet, pool_sheet
-from mmrs_auv.vessel.api import Craft
-from mmrs_auv.vessel.body.vehicle import Vehicle
-from mmrs_auv.vessel.control.actuators import Actuators
-from mmrs_auv.vessel.control.sensors import Sensors
-from mmrs_auv.vessel.hosting import WireFault
-from mmrs_auv.vessel.movement.movement import Movement
-from mmrs_auv.vessel.node import Node
-from mmrs_auv.vessel.sheet import Sheet
-from mmrs_auv.vessel.wire.catalogue import EMERGENCIES, REASONS
-from mmrs_auv.vessel.wire.codec import Codec, Value
-from mmrs_auv.vessel.wire.frame import Frame
 from vessel_rig import Rig
+
+from auv_vessel.api import Craft
+from auv_vessel.body.vehicle import Vehicle
+from auv_vessel.control.actuators import Actuators
+from auv_vessel.control.sensors import Sensors
+from auv_vessel.hosting import WireFault
+from auv_vessel.movement.movement import Movement
+from auv_vessel.node import Node
+from auv_vessel.sheet import Sheet
+from auv_vessel.wire.catalogue import EMERGENCIES, REASONS
+from auv_vessel.wire.codec import Codec, Value
+from auv_vessel.wire.frame import Frame
 
 DIVING = replace(pool_sheet(), home=(0.0, 0.0, 2.0))
 

@@ -8,9 +8,10 @@ from collections.abc import Sequence
 
 import pytest
 from mmrs_auv.testing import pool_sheet
-from mmrs_auv.vessel import hosting
-from mmrs_auv.vessel.control.actuators import Actuators
-from mmrs_auv.vessel.hosting import (
+
+from auv_vessel import hosting
+from auv_vessel.control.actuators import Actuators
+from auv_vessel.hosting import (
     LAG,
     SEEN_BASE,
     Awake,
@@ -20,10 +21,10 @@ from mmrs_auv.vessel.hosting import (
     clock_time,
     serve,
 )
-from mmrs_auv.vessel.instruments import instruments_of
-from mmrs_auv.vessel.wire.catalogue import EMERGENCIES
-from mmrs_auv.vessel.wire.codec import Codec
-from mmrs_auv.vessel.wire.frame import Frame
+from auv_vessel.instruments import instruments_of
+from auv_vessel.wire.catalogue import EMERGENCIES
+from auv_vessel.wire.codec import Codec
+from auv_vessel.wire.frame import Frame
 
 
 class Talker:

@@ -8,10 +8,10 @@ from pathlib import Path
 import pytest
 from mmrs_auv.commands.modelled import sheets_in
 from mmrs_auv.sheets import action_number, sheet_of
-from mmrs_auv.vessel.control.allocation import Allocation
-from mmrs_auv.vessel.sheet import from_json, to_json
-from mmrs_auv.vessel.wire.database import database_of
 
+from auv_vessel.control.allocation import Allocation
+from auv_vessel.sheet import from_json, to_json
+from auv_vessel.wire.database import database_of
 from mmrs_core.errors import UnsupportedError
 from mmrs_core.languages.grounding.scenes import robot_type_of
 from mmrs_core.languages.reading import read_text

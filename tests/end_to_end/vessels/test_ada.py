@@ -18,9 +18,9 @@ from dives import dive, diver, rehearse, swim
 from mmrs_auv.kinds import AUV_KIND
 from mmrs_auv.plugin import mmrs_metamodels
 from mmrs_auv.targets.can_python.target import CAN_PYTHON
-from mmrs_auv.vessel.eyes import Detection
 from waiting_pair import waiting_pair
 
+from auv_vessel.eyes import Detection
 from mmrs_core.behaviour.log import read_logs
 from mmrs_core.behaviour.program import BEHAVIOUR, Action, Heading, Move, Program, Target, Transition
 from mmrs_core.behaviour.reading import program_of

@@ -13,11 +13,11 @@ import pytest
 from ada_centres import STILL, Dive, Meddle, build, gateways, run, telling, unused_port, write
 from dives import dive, swim
 from mmrs_auv.plugin import mmrs_metamodels
-from mmrs_auv.vessel.body.surroundings import Obstacle
-from mmrs_auv.vessel.eyes import Detection
-from mmrs_auv.vessel.wire.catalogue import EMERGENCIES
 from waiting_pair import finding_pair, waiting_pair
 
+from auv_vessel.body.surroundings import Obstacle
+from auv_vessel.eyes import Detection
+from auv_vessel.wire.catalogue import EMERGENCIES
 from mmrs_core.behaviour.log import read_logs
 from mmrs_core.behaviour.program import BEHAVIOUR, Action, Move, Program, Transition
 from mmrs_core.behaviour.reading import program_of

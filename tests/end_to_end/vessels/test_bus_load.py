@@ -6,17 +6,18 @@ from collections import Counter
 
 import pytest
 from mmrs_auv.testing import pool_sheet
-from mmrs_auv.vessel.api import Craft
-from mmrs_auv.vessel.body.surroundings import Surroundings
-from mmrs_auv.vessel.body.vehicle import Vehicle
-from mmrs_auv.vessel.control.actuators import Actuators
-from mmrs_auv.vessel.control.sensors import Sensors
-from mmrs_auv.vessel.hosting import Rehearsal
-from mmrs_auv.vessel.movement.movement import Movement
-from mmrs_auv.vessel.wire.catalogue import messages_of
-from mmrs_auv.vessel.wire.codec import Codec
-from mmrs_auv.vessel.wire.frame import Frame
-from mmrs_auv.vessel.wire.load import heard_load, load_of
+
+from auv_vessel.api import Craft
+from auv_vessel.body.surroundings import Surroundings
+from auv_vessel.body.vehicle import Vehicle
+from auv_vessel.control.actuators import Actuators
+from auv_vessel.control.sensors import Sensors
+from auv_vessel.hosting import Rehearsal
+from auv_vessel.movement.movement import Movement
+from auv_vessel.wire.catalogue import messages_of
+from auv_vessel.wire.codec import Codec
+from auv_vessel.wire.frame import Frame
+from auv_vessel.wire.load import heard_load, load_of
 
 SHEET = pool_sheet()
 SECONDS = 20.0

@@ -10,8 +10,9 @@ from pathlib import Path
 import pytest
 from c_drives import need_compiler, written
 from mmrs_auv.testing import pool_sheet
-from mmrs_auv.vessel.control import failsafe
 from vessel_processes import Boat, boat, until
+
+from auv_vessel.control import failsafe
 
 BUSY = 0.6
 """Seconds that this machine may make everything late: other tests run beside."""

@@ -14,18 +14,19 @@ from can_hub import Raw, running
 from dronecan.transport import Frame as Part
 from dronecan.transport import Transfer, TransferManager
 from mmrs_auv.testing import pool_sheet
-from mmrs_auv.vessel.api import Craft
-from mmrs_auv.vessel.body.surroundings import Surroundings
-from mmrs_auv.vessel.body.vehicle import Vehicle
-from mmrs_auv.vessel.control.actuators import Actuators
-from mmrs_auv.vessel.control.foreign import drives_of
-from mmrs_auv.vessel.control.sensors import Sensors
-from mmrs_auv.vessel.hosting import Rehearsal
-from mmrs_auv.vessel.movement.movement import Movement
-from mmrs_auv.vessel.sheet import Sheet, to_json
-from mmrs_auv.vessel.wire.codec import Codec
-from mmrs_auv.vessel.wire.frame import Frame
 from mmrs_dronecan.transfers import Outgoing
+
+from auv_vessel.api import Craft
+from auv_vessel.body.surroundings import Surroundings
+from auv_vessel.body.vehicle import Vehicle
+from auv_vessel.control.actuators import Actuators
+from auv_vessel.control.foreign import drives_of
+from auv_vessel.control.sensors import Sensors
+from auv_vessel.hosting import Rehearsal
+from auv_vessel.movement.movement import Movement
+from auv_vessel.sheet import Sheet, to_json
+from auv_vessel.wire.codec import Codec
+from auv_vessel.wire.frame import Frame
 
 HIGHEST = 3000.0
 DRIVES = f"mmrs_dronecan.speed_controllers:opened,node=7,max-rpm={HIGHEST:g}"
@@ -216,7 +217,7 @@ def test_the_process_of_the_actuator_controller_takes_drives_by_name(tmp_path: P
             "--drives",
             DRIVES,
         ]
-        process = subprocess.Popen([sys.executable, "-m", "mmrs_auv.vessel", *words], stderr=subprocess.PIPE)
+        process = subprocess.Popen([sys.executable, "-m", "auv_vessel", *words], stderr=subprocess.PIPE)
         try:
             ids = {heard.word().split()[2] for _ in range(40)}
         finally:
@@ -231,7 +232,7 @@ def test_a_process_with_drives_that_are_none_says_so(tmp_path: Path) -> None:
     file = tmp_path / "sheet.json"
     file.write_text(to_json(pool_sheet()))
     words = ["actuators", "--sheet", str(file), "--interface", "virtual", "--drives", "no.such:thing"]
-    done = subprocess.run([sys.executable, "-m", "mmrs_auv.vessel", *words], capture_output=True, text=True)
+    done = subprocess.run([sys.executable, "-m", "auv_vessel", *words], capture_output=True, text=True)
     assert done.returncode == 2
     assert done.stderr == "actuators: drives no.such:thing: No module named 'no'\n"
 

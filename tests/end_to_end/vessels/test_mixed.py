@@ -14,9 +14,9 @@ from pathlib import Path
 import pytest
 from mmrs_auv.commands.modelled import sheets_in
 from mmrs_auv.rehearsal import Berth
-from mmrs_auv.vessel.body.surroundings import from_json
 from ports import free_endpoint, free_port
 
+from auv_vessel.body.surroundings import from_json
 from mmrs_core.cli.demo import example_folder
 
 pytestmark = pytest.mark.thorough

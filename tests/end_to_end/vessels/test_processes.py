@@ -7,8 +7,9 @@ from pathlib import Path
 
 import pytest
 from mmrs_auv.testing import pool_sheet
-from mmrs_auv.vessel.control import failsafe
 from vessel_processes import Boat, boat, until
+
+from auv_vessel.control import failsafe
 
 WATCHDOG = 0.5
 BUSY = 0.6

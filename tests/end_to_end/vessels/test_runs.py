@@ -13,8 +13,8 @@ from dives_by_code import SPEED, dive_by_code, interpreted
 from mmrs_auv.backend.connected import ConnectedRobot
 from mmrs_auv.rehearsal import Berth
 from mmrs_auv.sheets import sheet_of
-from mmrs_auv.vessel.body.surroundings import Surroundings
 
+from auv_vessel.body.surroundings import Surroundings
 from mmrs_core.behaviour.log import read_logs
 from mmrs_core.behaviour.program import Program
 from mmrs_core.behaviour.replay import replay

@@ -18,9 +18,9 @@ from dives import dive, diver, swim
 from dives_by_code import SPEED, dive_by_code, interpreted
 from mmrs_auv.rehearsal import Berth
 from mmrs_auv.sheets import sheet_of
-from mmrs_auv.vessel.body.surroundings import BUOY, Surroundings, Thing, to_json
 from ports import free_port
 
+from auv_vessel.body.surroundings import BUOY, Surroundings, Thing, to_json
 from mmrs_core.behaviour.log import read_logs
 from mmrs_core.behaviour.program import Heading, Move, Program, Target, Transition
 from mmrs_core.behaviour.replay import replay

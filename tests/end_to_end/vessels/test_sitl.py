@@ -13,10 +13,11 @@ from pathlib import Path
 
 import pytest
 from mmrs_auv.commands.modelled import sheets_in
-from mmrs_auv.vessel.wire.catalogue import EMERGENCIES
-from mmrs_auv.vessel.wire.ports import open_port
 from ports import free_port
 from vessel_processes import Ear, until
+
+from auv_vessel.wire.catalogue import EMERGENCIES
+from auv_vessel.wire.ports import open_port
 
 POOL = Path(__file__).parents[3] / "examples" / "pool"
 

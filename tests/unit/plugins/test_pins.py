@@ -9,6 +9,7 @@ from packaging.utils import canonicalize_name
 ROOT = Path(__file__).parents[3]
 PLUGINS = {
     "mavlink": "",
+    "auv-vessel": "",
     "multicopter": "",
     "auv": "[vision]",
     "survey": "",
@@ -16,12 +17,18 @@ PLUGINS = {
     "solar": "",
     "dronecan": "",
 }
-OURS = {"mmrs-core", "mmrs-runtime", *(f"mmrs-{name}" for name in PLUGINS)}
+OURS = {
+    "mmrs-core",
+    "mmrs-runtime",
+    "auv-vessel",
+    *(f"mmrs-{name}" for name in PLUGINS if name != "auv-vessel"),
+}
 
 
 def needed():
     """Return the distributions that a development set-up installs, by name, with their versions."""
-    plugins = (Requirement(f"mmrs-{name}{extras}") for name, extras in PLUGINS.items())
+    names = {f"mmrs-{name}": extras for name, extras in PLUGINS.items()}
+    plugins = (Requirement(f"{name}{extras}") for name, extras in names.items() if name in OURS)
     pending = [Requirement("mmrs-core[dev]"), *plugins]
     found, seen = {}, set()
     while pending:

@@ -7,16 +7,16 @@ import time
 from collections.abc import Mapping
 from math import hypot
 
+from auv_vessel.api import Connection
+from auv_vessel.eyes import Detections
+from auv_vessel.sheet import Sheet, Vector
+from auv_vessel.wire.ports import CHANNEL, open_port
 from mmrs_auv.backend.duties_of import Duties, Waters
 from mmrs_auv.backend.injected import ClosablePort, Faults, faults_of, injected
 from mmrs_auv.backend.keeping import Keeper, keeper_of
 from mmrs_auv.backend.options import Connecting, connecting
 from mmrs_auv.backend.robot import CanRobot
 from mmrs_auv.sheets import sheet_of
-from mmrs_auv.vessel.api import Connection
-from mmrs_auv.vessel.eyes import Detections
-from mmrs_auv.vessel.sheet import Sheet, Vector
-from mmrs_auv.vessel.wire.ports import CHANNEL, open_port
 from mmrs_core.contributions.backends import BackendInput, Live
 from mmrs_core.contributions.execution import Fault
 from mmrs_core.errors import LinkLostError, UnsupportedError

@@ -5,9 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 
-from mmrs_auv.sayable import Bus, mount_of, parameter_of, unturnable
-from mmrs_auv.sheets import action_number
-from mmrs_auv.vessel.decision.duties import (
+from auv_vessel.decision.duties import (
     NO_PROGRESS,
     Charge,
     Duty,
@@ -22,7 +20,9 @@ from mmrs_auv.vessel.decision.duties import (
     Travel,
     Use,
 )
-from mmrs_auv.vessel.sheet import Sheet, Vector
+from auv_vessel.sheet import Sheet, Vector
+from mmrs_auv.sayable import Bus, mount_of, parameter_of, unturnable
+from mmrs_auv.sheets import action_number
 from mmrs_core.behaviour.program import BEHAVIOUR, Action, Heading, Move
 from mmrs_core.contributions.backends import BackendInput
 from mmrs_core.errors import UnsupportedError

@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Protocol
 
-from mmrs_auv.vessel.hosting import Port, tells_time
-from mmrs_auv.vessel.wire import ports
-from mmrs_auv.vessel.wire.frame import Frame
+from auv_vessel.hosting import Port, tells_time
+from auv_vessel.wire import ports
+from auv_vessel.wire.frame import Frame
 from mmrs_core.contributions.backends import BackendInput, Live
 from mmrs_core.errors import UsageError
 from mmrs_runtime.engine.clocks import FollowingClock

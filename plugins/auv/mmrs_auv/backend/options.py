@@ -8,7 +8,7 @@ from math import isfinite
 from pathlib import Path
 from typing import TypeVar
 
-from mmrs_auv.vessel.body.surroundings import Surroundings, from_json
+from auv_vessel.body.surroundings import Surroundings, from_json
 from mmrs_core.errors import UnreadableError, UnsupportedError
 
 Options = TypeVar("Options")

@@ -8,21 +8,21 @@ from importlib.util import find_spec
 from math import cos, dist, hypot, radians, sin, tan
 from random import Random
 
+from auv_vessel.api import Craft
+from auv_vessel.body.surroundings import PATH, Surroundings, Thing
+from auv_vessel.body.vehicle import Vehicle
+from auv_vessel.control.actuators import Actuators
+from auv_vessel.control.sensors import Sensors
+from auv_vessel.eyes import Detections, to_datagram
+from auv_vessel.hosting import Rehearsal
+from auv_vessel.instruments import instruments_of
+from auv_vessel.movement.movement import Movement
+from auv_vessel.sheet import Sheet, Vector
+from auv_vessel.wire.codec import Codec
 from mmrs_auv.backend.duties_of import Duties, Waters
 from mmrs_auv.backend.options import Rehearsing, rehearsing
 from mmrs_auv.backend.robot import CanRobot
 from mmrs_auv.sheets import sheet_of
-from mmrs_auv.vessel.api import Craft
-from mmrs_auv.vessel.body.surroundings import PATH, Surroundings, Thing
-from mmrs_auv.vessel.body.vehicle import Vehicle
-from mmrs_auv.vessel.control.actuators import Actuators
-from mmrs_auv.vessel.control.sensors import Sensors
-from mmrs_auv.vessel.eyes import Detections, to_datagram
-from mmrs_auv.vessel.hosting import Rehearsal
-from mmrs_auv.vessel.instruments import instruments_of
-from mmrs_auv.vessel.movement.movement import Movement
-from mmrs_auv.vessel.sheet import Sheet, Vector
-from mmrs_auv.vessel.wire.codec import Codec
 from mmrs_core.behaviour.program import Action, Move
 from mmrs_core.contributions.backends import BackendInput
 from mmrs_core.contributions.execution import Fault, RobotState, Sample

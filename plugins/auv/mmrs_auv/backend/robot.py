@@ -6,13 +6,13 @@ from collections.abc import Mapping, Sequence
 from math import hypot
 from typing import Protocol
 
+from auv_vessel.api import Craft, State
+from auv_vessel.decision.drives import Drives
+from auv_vessel.decision.duties import NO_PROGRESS, Duty, FailureError, Ready, Stay, Surface
+from auv_vessel.decision.helm import COMES_UP, CRASHED, LINK_LOST, POSITION_LOST, SILENT, Helm, Watch
+from auv_vessel.movement.abilities import abilities_of
+from auv_vessel.sheet import Sheet, Vector
 from mmrs_auv.backend.duties_of import Duties, Waters
-from mmrs_auv.vessel.api import Craft, State
-from mmrs_auv.vessel.decision.drives import Drives
-from mmrs_auv.vessel.decision.duties import NO_PROGRESS, Duty, FailureError, Ready, Stay, Surface
-from mmrs_auv.vessel.decision.helm import COMES_UP, CRASHED, LINK_LOST, POSITION_LOST, SILENT, Helm, Watch
-from mmrs_auv.vessel.movement.abilities import abilities_of
-from mmrs_auv.vessel.sheet import Sheet, Vector
 from mmrs_core.behaviour.program import Action, Move
 from mmrs_core.contributions.backends import BackendInput
 from mmrs_core.contributions.execution import Fault, RobotState

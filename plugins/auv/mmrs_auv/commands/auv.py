@@ -68,10 +68,10 @@ def sitl(
 
     Example: mmrs auv sitl examples/pool-course --speedup 2
     """
+    from auv_vessel.body.surroundings import Surroundings, from_json
     from mmrs_auv.backend.options import pair
     from mmrs_auv.commands.modelled import sheets_in
     from mmrs_auv.rehearsal import Berth, keep
-    from mmrs_auv.vessel.body.surroundings import Surroundings, from_json
 
     try:
         around = Surroundings(current=pair(current), bottom=bottom)
@@ -135,8 +135,8 @@ def sheet(
 
     Example: mmrs auv sheet examples/pool-course -o sheets
     """
+    from auv_vessel.sheet import to_json
     from mmrs_auv.commands.modelled import sheets_in
-    from mmrs_auv.vessel.sheet import to_json
 
     files = {
         output / f"{log_name(robot).removesuffix(SUFFIX)}.json": to_json(found).encode()

@@ -18,8 +18,8 @@ from mmrs_core.errors import LinkLostError, UnreadableError
 from mmrs_core.languages.writing import replace_file
 
 if TYPE_CHECKING:
-    from mmrs_auv.vessel.wire.frame import Frame
-    from mmrs_auv.vessel.wire.ports import Port
+    from auv_vessel.wire.frame import Frame
+    from auv_vessel.wire.ports import Port
 
 _HELP = (
     "CAN buses of vehicles: their database (DBC), a hub for processes of one machine, what is said, how busy."
@@ -65,7 +65,7 @@ def dbc(
 
     Example: mmrs can dbc examples/pool --robot Naiad -o auv.dbc
     """
-    from mmrs_auv.vessel.wire.database import dbc_of
+    from auv_vessel.wire.database import dbc_of
 
     text = dbc_of(sheet_in(vehicle, robot))
     if output is None:
@@ -113,9 +113,9 @@ def hub(
 
     Example: mmrs can hub --loss 0.05 --log bus.log
     """
+    from auv_vessel.hosting import tells_time
+    from auv_vessel.wire.hub import Troubles, is_loopback
     from mmrs_auv.commands.hubbing import run_hub
-    from mmrs_auv.vessel.hosting import tells_time
-    from mmrs_auv.vessel.wire.hub import Troubles, is_loopback
 
     tell("no arbitration, no bit rate, no acknowledgement, no error frames, no bus-off (--help says more)")
     if not is_loopback(host):
@@ -192,8 +192,8 @@ def load(
 
     Example: mmrs can load examples/pool --robot Naiad --messages
     """
+    from auv_vessel.wire.load import heard_load, load_of
     from mmrs_auv.commands.load_words import summary, table
-    from mmrs_auv.vessel.wire.load import heard_load, load_of
 
     sheet = sheet_in(vehicle, robot)
     designed = load_of(sheet)
@@ -221,7 +221,7 @@ def _listened(interface: str, channel: str, bit_rate: int, seconds: float) -> li
 def _logged(file: Path) -> list[tuple[float, Frame]]:
     from can import LogReader
 
-    from mmrs_auv.vessel.wire.frame import Frame
+    from auv_vessel.wire.frame import Frame
 
     try:
         with LogReader(file) as log:
@@ -238,7 +238,7 @@ def _logged(file: Path) -> list[tuple[float, Frame]]:
 
 @contextmanager
 def _connected(interface: str, channel: str, bit_rate: int) -> Iterator[Port]:
-    from mmrs_auv.vessel.wire.ports import PortError, open_port
+    from auv_vessel.wire.ports import PortError, open_port
 
     rate = None if interface in ("socketcan", "socketcand", "virtual") else bit_rate
     try:

@@ -11,8 +11,8 @@ from contextlib import suppress
 from dataclasses import replace
 from typing import TextIO
 
-from mmrs_auv.vessel.wire.frame import Frame
-from mmrs_auv.vessel.wire.hub import Hub, Troubles, log_line
+from auv_vessel.wire.frame import Frame
+from auv_vessel.wire.hub import Hub, Troubles, log_line
 from mmrs_core.errors import LinkLostError
 
 ORDERS = "loss PART, delay SECONDS, corruption PART, cut, mend, quit"

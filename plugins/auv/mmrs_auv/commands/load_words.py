@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from mmrs_auv.vessel.wire.load import Heard, Load
+from auv_vessel.wire.load import Heard, Load
 
 
 def table(designed: Load) -> Iterator[str]:

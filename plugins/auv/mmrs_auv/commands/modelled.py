@@ -6,8 +6,8 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
+from auv_vessel.sheet import Sheet
 from mmrs_auv.sheets import is_vehicle, sheet_of
-from mmrs_auv.vessel.sheet import Sheet
 from mmrs_core.cli.behaviours import is_behaviour, load_behaviour
 from mmrs_core.cli.journey import Journey, Workshop
 from mmrs_core.cli.settings import Settings

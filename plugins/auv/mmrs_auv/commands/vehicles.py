@@ -7,8 +7,8 @@ from typing import Annotated
 
 import typer
 
-from mmrs_auv.vessel.refusals import SheetError, refuse
-from mmrs_auv.vessel.sheet import Sheet, from_json
+from auv_vessel.refusals import SheetError, refuse
+from auv_vessel.sheet import Sheet, from_json
 from mmrs_core.errors import UnreadableError, UnsupportedError
 
 Vehicle = Annotated[

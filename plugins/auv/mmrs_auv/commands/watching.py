@@ -6,11 +6,11 @@ import time
 from collections import Counter
 from collections.abc import Iterator, Mapping
 
-from mmrs_auv.vessel.sheet import Sheet
-from mmrs_auv.vessel.wire.catalogue import messages_of
-from mmrs_auv.vessel.wire.codec import Codec, Received, Value
-from mmrs_auv.vessel.wire.frame import Frame
-from mmrs_auv.vessel.wire.ports import Port
+from auv_vessel.sheet import Sheet
+from auv_vessel.wire.catalogue import messages_of
+from auv_vessel.wire.codec import Codec, Received, Value
+from auv_vessel.wire.frame import Frame
+from auv_vessel.wire.ports import Port
 
 
 class Monitor:

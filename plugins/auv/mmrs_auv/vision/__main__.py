@@ -17,13 +17,14 @@ from contextlib import ExitStack
 from pathlib import Path
 from urllib.parse import quote
 
-from ..vessel.body.surroundings import Surroundings
-from ..vessel.body.surroundings import from_json as surroundings_from
-from ..vessel.eyes import CAMERAS
-from ..vessel.refusals import refuse
-from ..vessel.sheet import Sheet
-from ..vessel.sheet import from_json as sheet_from
-from ..vessel.signals import stopped_by_signals
+from auv_vessel.body.surroundings import Surroundings
+from auv_vessel.body.surroundings import from_json as surroundings_from
+from auv_vessel.eyes import CAMERAS
+from auv_vessel.refusals import refuse
+from auv_vessel.sheet import Sheet
+from auv_vessel.sheet import from_json as sheet_from
+from auv_vessel.signals import stopped_by_signals
+
 from .cameras import Camera, Pose, cameras_of
 from .ring import Reader, Writer
 
@@ -176,8 +177,9 @@ def _whereabouts(
     if given.interface == "none":
         home = Pose(*sheet.home, heading=sheet.heading)
         return lambda: home, time.time, lost
-    from ..vessel.wire.codec import Codec
-    from ..vessel.wire.ports import open_port
+    from auv_vessel.wire.codec import Codec
+    from auv_vessel.wire.ports import open_port
+
     from .hearing import Whereabouts
 
     heard = Whereabouts(Codec(sheet))

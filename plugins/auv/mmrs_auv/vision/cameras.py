@@ -8,9 +8,9 @@ from typing import Any, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from ..vessel.body.rotation import of_angles, rows_of
-from ..vessel.eyes import BOTTOM, FRONT
-from ..vessel.sheet import Sheet, Vector
+from auv_vessel.body.rotation import of_angles, rows_of
+from auv_vessel.eyes import BOTTOM, FRONT
+from auv_vessel.sheet import Sheet, Vector
 
 Picture: TypeAlias = NDArray[np.uint8]
 """Rows, columns, and blue, green and red, as OpenCV has them."""

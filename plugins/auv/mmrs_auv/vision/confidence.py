@@ -7,7 +7,7 @@ from typing import Final
 
 import numpy as np
 
-from ..vessel.body.surroundings import BUOY, GATE, PATH
+from auv_vessel.body.surroundings import BUOY, GATE, PATH
 
 _SCORES: Final = (0.0, 0.15, 0.25, 0.35, 0.45, 0.55, 0.65, 0.75, 0.85, 0.95)
 _RIGHT: Final[Mapping[str, tuple[float, ...]]] = {

@@ -9,9 +9,10 @@ from math import dist, exp, log, pi, sqrt
 import cv2
 import numpy as np
 
-from ..vessel.body.surroundings import BUOY, GATE, PATH, Surroundings
-from ..vessel.eyes import BOTTOM, FRONT
-from ..vessel.sheet import Vector
+from auv_vessel.body.surroundings import BUOY, GATE, PATH, Surroundings
+from auv_vessel.eyes import BOTTOM, FRONT
+from auv_vessel.sheet import Vector
+
 from .cameras import Camera, Numbers, Picture
 from .colours import colour_of
 from .confidence import confidence_of

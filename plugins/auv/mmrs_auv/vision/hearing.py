@@ -5,9 +5,10 @@ from __future__ import annotations
 import threading
 import time
 
-from ..vessel.hosting import Port, clock_time
-from ..vessel.wire.codec import Codec
-from ..vessel.wire.frame import Frame
+from auv_vessel.hosting import Port, clock_time
+from auv_vessel.wire.codec import Codec
+from auv_vessel.wire.frame import Frame
+
 from .cameras import Pose
 
 STALE = 1.0

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from ..vessel.body.surroundings import Surroundings
-from ..vessel.eyes import Detection
-from ..vessel.sheet import Sheet
+from auv_vessel.body.surroundings import Surroundings
+from auv_vessel.eyes import Detection
+from auv_vessel.sheet import Sheet
+
 from .cameras import Pose, cameras_of
 from .detecting import Sought, detect, sought_in
 from .placing import detections_of

@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterable
 from math import dist
 
-from ..vessel.eyes import Detection, owner_of
-from ..vessel.sheet import Vector
+from auv_vessel.eyes import Detection, owner_of
+from auv_vessel.sheet import Vector
+
 from .cameras import Camera, Pose
 from .detecting import Sighting, Sought
 

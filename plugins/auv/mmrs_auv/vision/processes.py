@@ -8,7 +8,8 @@ import threading
 import time
 from collections.abc import Callable, Mapping, Sequence
 
-from ..vessel.eyes import to_datagram
+from auv_vessel.eyes import to_datagram
+
 from .cameras import Camera, Pose
 from .detecting import Sought, detect
 from .placing import detections_of

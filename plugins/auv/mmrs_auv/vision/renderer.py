@@ -9,7 +9,8 @@ from math import cos, pi, radians, sin
 import cv2
 import numpy as np
 
-from ..vessel.body.surroundings import BUOY, GATE, PATH, Surroundings, Thing
+from auv_vessel.body.surroundings import BUOY, GATE, PATH, Surroundings, Thing
+
 from .cameras import LEFT, RIGHT, Camera, Numbers, Picture, Pose
 from .water import POOL, Water, bgr, hazier
 

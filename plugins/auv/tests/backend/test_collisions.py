@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pytest
 from dives import dive, rehearse, swim
-from mmrs_auv.vessel.body.surroundings import Obstacle, Surroundings, to_json
 
+from auv_vessel.body.surroundings import Obstacle, Surroundings, to_json
 from mmrs_runtime.semantics import Outcome
 
 

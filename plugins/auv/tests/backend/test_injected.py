@@ -11,10 +11,10 @@ from dives import dive, diver
 from hypothesis import given
 from hypothesis import strategies as st
 from mmrs_auv.backend.injected import Faults, faults_of, frame_of, injected, piece_of
-from mmrs_auv.vessel.hosting import clock_frame
-from mmrs_auv.vessel.wire.frame import Frame
-from mmrs_auv.vessel.wire.ports import Port, open_port
 
+from auv_vessel.hosting import clock_frame
+from auv_vessel.wire.frame import Frame
+from auv_vessel.wire.ports import Port, open_port
 from mmrs_core.contributions.backends import BackendInput, Live
 from mmrs_core.errors import UsageError
 from mmrs_runtime.engine.clocks import RealClock

@@ -10,9 +10,9 @@ import dives
 import pytest
 from dives import POOL, Rehearsed, dive, rehearse, swim
 from mmrs_auv.backend.rehearsed import RehearsedRobot
-from mmrs_auv.vessel.body.surroundings import BUOY, Surroundings, Thing, to_json
-from mmrs_auv.vessel.movement import movement, progress
 
+from auv_vessel.body.surroundings import BUOY, Surroundings, Thing, to_json
+from auv_vessel.movement import movement, progress
 from mmrs_core.behaviour.program import Action, Heading, Move, Target, Transition
 from mmrs_core.contributions.execution import Condition
 from mmrs_core.errors import UnsupportedError

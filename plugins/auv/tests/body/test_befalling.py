@@ -5,10 +5,11 @@ from queue import SimpleQueue
 
 import pytest
 from mmrs_auv.testing import pool_sheet
-from mmrs_auv.vessel.body.befalling import Befallen, befalling, status_of
-from mmrs_auv.vessel.body.surroundings import Surroundings
-from mmrs_auv.vessel.body.vehicle import Vehicle
-from mmrs_auv.vessel.wire.codec import Codec
+
+from auv_vessel.body.befalling import Befallen, befalling, status_of
+from auv_vessel.body.surroundings import Surroundings
+from auv_vessel.body.vehicle import Vehicle
+from auv_vessel.wire.codec import Codec
 
 SHEET = pool_sheet()
 

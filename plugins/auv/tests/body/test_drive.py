@@ -6,7 +6,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from mmrs_auv.testing import thruster
-from mmrs_auv.vessel.body.drive import FAULT, OFF, RUNS, WATCHDOG, Drive
+
+from auv_vessel.body.drive import FAULT, OFF, RUNS, WATCHDOG, Drive
 
 WATCH = 0.5
 

@@ -8,7 +8,8 @@ from math import cos, exp, hypot, log2, pi, sqrt, tanh
 
 import pytest
 from mmrs_auv.testing import heavy_sheet, pool_sheet, torpedo_sheet
-from mmrs_auv.vessel.body.dynamics import (
+
+from auv_vessel.body.dynamics import (
     at_rest,
     body_of,
     drag,
@@ -21,8 +22,8 @@ from mmrs_auv.vessel.body.dynamics import (
     step,
     thrust,
 )
-from mmrs_auv.vessel.body.hydrodynamics import AXES, GRAVITY
-from mmrs_auv.vessel.body.rotation import angles_of, of_angles, rows_of, to_world
+from auv_vessel.body.hydrodynamics import AXES, GRAVITY
+from auv_vessel.body.rotation import angles_of, of_angles, rows_of, to_world
 
 DT = 0.01
 DEEP = (0.0, 0.0, 50.0)

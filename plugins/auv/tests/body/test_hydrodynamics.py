@@ -10,7 +10,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from mmrs_auv.testing import pool_sheet, torpedo_sheet
-from mmrs_auv.vessel.body.hydrodynamics import AXES, added_mass, ellipsoid_inertia, hull_of
+
+from auv_vessel.body.hydrodynamics import AXES, added_mass, ellipsoid_inertia, hull_of
 
 DENSITY = 1025.0
 HALVES = st.tuples(*[st.floats(0.02, 3.0)] * 3)

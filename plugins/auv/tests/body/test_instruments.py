@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import pytest
 from at_sea import at_sea
-from mmrs_auv.vessel.body.surroundings import BUOY, Obstacle, Surroundings, Thing
-from mmrs_auv.vessel.wire.codec import Received
+
+from auv_vessel.body.surroundings import BUOY, Obstacle, Surroundings, Thing
+from auv_vessel.wire.codec import Received
 
 
 def test_instruments_tell_the_truth_when_there_is_no_noise():

@@ -15,8 +15,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from mmrs_auv.testing import heavy_sheet, pool_sheet, torpedo_sheet
-from mmrs_auv.vessel.body.dynamics import body_of, runge_kutta, slopes, thrust
-from mmrs_auv.vessel.body.rotation import angles_of, of_angles, rows_of
+
+from auv_vessel.body.dynamics import body_of, runge_kutta, slopes, thrust
+from auv_vessel.body.rotation import angles_of, of_angles, rows_of
 
 ANGLES = st.tuples(st.floats(-170.0, 170.0), st.floats(-80.0, 80.0), st.floats(0.0, 359.0))
 SPEEDS = st.tuples(*[st.floats(-2.0, 2.0)] * 6)

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from mmrs_auv.testing import pool_sheet
-from mmrs_auv.vessel.body.outside import HELD
-from mmrs_auv.vessel.body.surroundings import Surroundings
-from mmrs_auv.vessel.body.vehicle import Vehicle
-from mmrs_auv.vessel.hosting import Rehearsal
-from mmrs_auv.vessel.wire.catalogue import STATUS_BASE
-from mmrs_auv.vessel.wire.codec import Codec
-from mmrs_auv.vessel.wire.frame import Frame
+
+from auv_vessel.body.outside import HELD
+from auv_vessel.body.surroundings import Surroundings
+from auv_vessel.body.vehicle import Vehicle
+from auv_vessel.hosting import Rehearsal
+from auv_vessel.wire.catalogue import STATUS_BASE
+from auv_vessel.wire.codec import Codec
+from auv_vessel.wire.frame import Frame
 
 AHEAD = (10.0, 10.0, 10.0, 10.0, 0.0, 0.0)
 

@@ -7,7 +7,8 @@ from math import exp
 
 import pytest
 from mmrs_auv.testing import pool_sheet
-from mmrs_auv.vessel.body.propulsion import Propulsion, watts_of
+
+from auv_vessel.body.propulsion import Propulsion, watts_of
 
 THRUSTER = pool_sheet().thrusters[0]
 

@@ -8,9 +8,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from mmrs_auv.testing import thruster
-from mmrs_auv.vessel.body.dynamics import body_of, energy, step
-from mmrs_auv.vessel.body.rotation import of_angles
-from mmrs_auv.vessel.sheet import Sheet
+
+from auv_vessel.body.dynamics import body_of, energy, step
+from auv_vessel.body.rotation import of_angles
+from auv_vessel.sheet import Sheet
 
 SIZES = st.floats(0.1, 6.0)
 SPEEDS = st.floats(-3.0, 3.0)

@@ -8,11 +8,12 @@ from pathlib import Path
 
 import pytest
 from mmrs_auv.testing import pool_sheet
-from mmrs_auv.vessel.body.surroundings import Surroundings
-from mmrs_auv.vessel.body.vehicle import Vehicle
-from mmrs_auv.vessel.sheet import Sheet
-from mmrs_auv.vessel.wire.codec import Codec
 from vessel_sheets import Asked
+
+from auv_vessel.body.surroundings import Surroundings
+from auv_vessel.body.vehicle import Vehicle
+from auv_vessel.sheet import Sheet
+from auv_vessel.wire.codec import Codec
 
 PAGE = (Path(__file__).parents[2] / "README.md").read_text(encoding="utf-8")
 TABLE = PAGE[PAGE.index("## The vehicle in simulation") :]

@@ -7,7 +7,8 @@ from dataclasses import replace
 import pytest
 from at_sea import at_sea
 from mmrs_auv.testing import heavy_sheet
-from mmrs_auv.vessel.hosting import WireFault
+
+from auv_vessel.hosting import WireFault
 
 
 def test_an_emergency_stops_all_thrust_for_good():

@@ -3,7 +3,8 @@ from __future__ import annotations
 import json
 
 import pytest
-from mmrs_auv.vessel.body.surroundings import (
+
+from auv_vessel.body.surroundings import (
     BUOY,
     GATE,
     Obstacle,

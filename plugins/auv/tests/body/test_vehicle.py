@@ -9,10 +9,11 @@ from at_sea import QUIET, at_sea
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from mmrs_auv.testing import pool_sheet
-from mmrs_auv.vessel.body.rotation import to_world
-from mmrs_auv.vessel.body.vehicle import DEVICE_COMMAND, Vehicle
-from mmrs_auv.vessel.wire.codec import Codec
-from mmrs_auv.vessel.wire.frame import Frame
+
+from auv_vessel.body.rotation import to_world
+from auv_vessel.body.vehicle import DEVICE_COMMAND, Vehicle
+from auv_vessel.wire.codec import Codec
+from auv_vessel.wire.frame import Frame
 
 POOL = Codec(pool_sheet())
 

@@ -6,14 +6,15 @@ from itertools import pairwise
 import numpy as np
 import pytest
 from mmrs_auv.testing import heavy_sheet, pool_sheet
-from mmrs_auv.vessel.control import failsafe
-from mmrs_auv.vessel.control.actuators import Actuators
-from mmrs_auv.vessel.control.allocation import Allocation
-from mmrs_auv.vessel.control.drives import Status
-from mmrs_auv.vessel.sheet import Sheet
-from mmrs_auv.vessel.wire.catalogue import EMERGENCIES
-from mmrs_auv.vessel.wire.codec import Codec
-from mmrs_auv.vessel.wire.frame import Frame
+
+from auv_vessel.control import failsafe
+from auv_vessel.control.actuators import Actuators
+from auv_vessel.control.allocation import Allocation
+from auv_vessel.control.drives import Status
+from auv_vessel.sheet import Sheet
+from auv_vessel.wire.catalogue import EMERGENCIES
+from auv_vessel.wire.codec import Codec
+from auv_vessel.wire.frame import Frame
 
 TICK = 0.05
 

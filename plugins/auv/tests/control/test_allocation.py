@@ -5,7 +5,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from mmrs_auv.testing import VECTORED, heavy_sheet, level, pool_sheet, sheet, torpedo_sheet
-from mmrs_auv.vessel.control.allocation import DEGREES, TINY, Allocation, bounded_least_squares
+
+from auv_vessel.control.allocation import DEGREES, TINY, Allocation, bounded_least_squares
 
 COUNTS = st.integers(1, 8)
 

@@ -4,9 +4,10 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from mmrs_auv.vessel.control.attitude import AttitudeFilter, changes_of
-from mmrs_auv.vessel.instruments import Instruments
-from mmrs_auv.vessel.movement.loops import rotation
+
+from auv_vessel.control.attitude import AttitudeFilter, changes_of
+from auv_vessel.instruments import Instruments
+from auv_vessel.movement.loops import rotation
 
 TILTS, RATES = st.floats(-70.0, 70.0), st.floats(-60.0, 60.0)
 

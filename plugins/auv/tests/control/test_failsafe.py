@@ -9,12 +9,13 @@ from pathlib import Path
 
 import pytest
 from mmrs_auv.testing import heavy_sheet, pool_sheet
-from mmrs_auv.vessel.body.surroundings import Surroundings
-from mmrs_auv.vessel.control import failsafe
-from mmrs_auv.vessel.hosting import WireFault
-from mmrs_auv.vessel.sheet import Sheet
-from mmrs_auv.vessel.wire.catalogue import EMERGENCIES
 from vessel_rig import Rig
+
+from auv_vessel.body.surroundings import Surroundings
+from auv_vessel.control import failsafe
+from auv_vessel.hosting import WireFault
+from auv_vessel.sheet import Sheet
+from auv_vessel.wire.catalogue import EMERGENCIES
 
 CURRENT = Surroundings(current=(0.2, -0.1), bottom=20.0)
 

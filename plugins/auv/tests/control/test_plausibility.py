@@ -3,8 +3,9 @@ from __future__ import annotations
 from random import Random
 
 import pytest
-from mmrs_auv.vessel.control.failsafe import STALE
-from mmrs_auv.vessel.control.plausibility import FEWEST, Channel, Drift, Freeze
+
+from auv_vessel.control.failsafe import STALE
+from auv_vessel.control.plausibility import FEWEST, Channel, Drift, Freeze
 
 
 def frozen_after(freeze: Freeze, value: float, most: int = 2000) -> int:

@@ -8,11 +8,12 @@ from random import Random
 
 import pytest
 from mmrs_auv.testing import heavy_sheet, pool_sheet, torpedo_sheet
-from mmrs_auv.vessel.body.surroundings import Surroundings
-from mmrs_auv.vessel.control import failsafe
-from mmrs_auv.vessel.hosting import WireFault
-from mmrs_auv.vessel.sheet import Sheet
 from vessel_rig import Rig
+
+from auv_vessel.body.surroundings import Surroundings
+from auv_vessel.control import failsafe
+from auv_vessel.hosting import WireFault
+from auv_vessel.sheet import Sheet
 
 NODES = ("Sensors", "Actuators", "Movement", "Decision")
 INSTRUMENTS = ("Pressure", "Attitude", "Rates", "GroundSpeed", "Fix", "Health")

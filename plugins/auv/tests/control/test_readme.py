@@ -7,16 +7,17 @@ from dataclasses import fields, replace
 from pathlib import Path
 
 from mmrs_auv.testing import pool_sheet
-from mmrs_auv.vessel.api import Craft
-from mmrs_auv.vessel.body.hydrodynamics import hull_of
-from mmrs_auv.vessel.control.actuators import Actuators
-from mmrs_auv.vessel.control.sensors import Sensors
-from mmrs_auv.vessel.goals import Goal
-from mmrs_auv.vessel.instruments import Instruments
-from mmrs_auv.vessel.movement import guidance, loops, movement, progress
-from mmrs_auv.vessel.movement.abilities import abilities_of
-from mmrs_auv.vessel.wire.codec import Codec
 from vessel_sheets import Asked
+
+from auv_vessel.api import Craft
+from auv_vessel.body.hydrodynamics import hull_of
+from auv_vessel.control.actuators import Actuators
+from auv_vessel.control.sensors import Sensors
+from auv_vessel.goals import Goal
+from auv_vessel.instruments import Instruments
+from auv_vessel.movement import guidance, loops, movement, progress
+from auv_vessel.movement.abilities import abilities_of
+from auv_vessel.wire.codec import Codec
 
 PAGE = (Path(__file__).parents[2] / "README.md").read_text(encoding="utf-8")
 PART = PAGE[PAGE.index("## The control layer") : PAGE.index("## The vehicle in simulation")]

@@ -6,10 +6,11 @@ from random import Random
 import numpy as np
 import pytest
 from mmrs_auv.testing import pool_sheet, torpedo_sheet
-from mmrs_auv.vessel.body.surroundings import Surroundings
-from mmrs_auv.vessel.control.reckoning import LOG_PERIOD, Reckoning
-from mmrs_auv.vessel.instruments import Instruments
 from vessel_rig import Rig
+
+from auv_vessel.body.surroundings import Surroundings
+from auv_vessel.control.reckoning import LOG_PERIOD, Reckoning
+from auv_vessel.instruments import Instruments
 
 PERIOD = 0.1
 KINDS = Instruments()

@@ -7,14 +7,15 @@ from dataclasses import replace
 
 import pytest
 from mmrs_auv.testing import pool_sheet, torpedo_sheet
-from mmrs_auv.vessel.api import Craft
-from mmrs_auv.vessel.control.actuators import Actuators
-from mmrs_auv.vessel.control.sensors import Sensors
-from mmrs_auv.vessel.movement.movement import Movement
-from mmrs_auv.vessel.node import Node
-from mmrs_auv.vessel.sheet import Sheet
-from mmrs_auv.vessel.wire.catalogue import MOST_UPTIME
-from mmrs_auv.vessel.wire.codec import Codec, Received
+
+from auv_vessel.api import Craft
+from auv_vessel.control.actuators import Actuators
+from auv_vessel.control.sensors import Sensors
+from auv_vessel.movement.movement import Movement
+from auv_vessel.node import Node
+from auv_vessel.sheet import Sheet
+from auv_vessel.wire.catalogue import MOST_UPTIME
+from auv_vessel.wire.codec import Codec, Received
 
 AIR, PER_METRE = 101_325.0, 1025.0 * 9.80665
 

@@ -5,7 +5,8 @@ from __future__ import annotations
 import signal
 
 import pytest
-from mmrs_auv.vessel.signals import stopped_by_signals
+
+from auv_vessel.signals import stopped_by_signals
 
 
 @pytest.mark.parametrize("sign", [signal.SIGTERM, signal.SIGINT])

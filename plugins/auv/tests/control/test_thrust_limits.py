@@ -5,7 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from mmrs_auv.testing import pool_sheet
-from mmrs_auv.vessel.control.thrust_limits import PEAK_TIME, RISE_TIME, ThrustLimits
+
+from auv_vessel.control.thrust_limits import PEAK_TIME, RISE_TIME, ThrustLimits
 
 ALL = np.ones(6)
 

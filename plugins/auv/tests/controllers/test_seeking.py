@@ -6,16 +6,16 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
-from mmrs_auv.controllers import vehicle as module
-from mmrs_auv.controllers.vehicle import CanVehicle
 from mmrs_auv.testing import pool_sheet
-from mmrs_auv.vessel.body.surroundings import Obstacle, Surroundings
-from mmrs_auv.vessel.decision.duties import FailureError, Stay
-from mmrs_auv.vessel.decision.helm import Helm
-from mmrs_auv.vessel.eyes import Detection, Detections, to_datagram
-from mmrs_auv.vessel.hosting import WireFault
 from vessel_rig import Rig
 
+from auv_vessel.body.surroundings import Obstacle, Surroundings
+from auv_vessel.controllers import vehicle as module
+from auv_vessel.controllers.vehicle import CanVehicle
+from auv_vessel.decision.duties import FailureError, Stay
+from auv_vessel.decision.helm import Helm
+from auv_vessel.eyes import Detection, Detections, to_datagram
+from auv_vessel.hosting import WireFault
 from mmrs_mavlink.program import GoTo, Local, Object, Robot
 from mmrs_mavlink.services.uploads import Uploads
 from mmrs_mavlink.steps.responses import response_to

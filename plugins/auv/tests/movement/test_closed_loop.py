@@ -9,12 +9,13 @@ from random import Random
 
 import pytest
 from mmrs_auv.testing import heavy_sheet, pool_sheet, torpedo_sheet
-from mmrs_auv.vessel.body.surroundings import Surroundings
-from mmrs_auv.vessel.hosting import WireFault
-from mmrs_auv.vessel.movement import progress
-from mmrs_auv.vessel.movement.progress import DEPTH, HEADING, PLACE, SETTLED, SPEED
-from mmrs_auv.vessel.sheet import Sheet
 from vessel_rig import Rig, changed
+
+from auv_vessel.body.surroundings import Surroundings
+from auv_vessel.hosting import WireFault
+from auv_vessel.movement import progress
+from auv_vessel.movement.progress import DEPTH, HEADING, PLACE, SETTLED, SPEED
+from auv_vessel.sheet import Sheet
 
 SHEETS = {"six thrusters": pool_sheet, "no sway": torpedo_sheet, "eight thrusters": heavy_sheet}
 

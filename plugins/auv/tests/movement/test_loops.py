@@ -5,8 +5,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from mmrs_auv.testing import heavy_sheet, pool_sheet, torpedo_sheet
-from mmrs_auv.vessel.movement.abilities import abilities_of
-from mmrs_auv.vessel.movement.loops import Aim, Loops, Motion, bearing, rotation, turn
+
+from auv_vessel.movement.abilities import abilities_of
+from auv_vessel.movement.loops import Aim, Loops, Motion, bearing, rotation, turn
 
 ANGLES, SPEEDS = st.floats(-180.0, 180.0), st.floats(-3.0, 3.0)
 SHEETS = st.sampled_from((pool_sheet(), torpedo_sheet(), heavy_sheet()))

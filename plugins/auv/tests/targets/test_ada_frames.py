@@ -31,12 +31,12 @@ from c_drives import Script
 from c_drives import compiled as drives
 from c_drives import told as done_by
 from mmrs_auv.testing import heavy_sheet, pool_sheet, torpedo_sheet
-from mmrs_auv.vessel.eyes import Detections
-from mmrs_auv.vessel.wire.catalogue import EMERGENCIES, REASONS
-from mmrs_auv.vessel.wire.codec import Codec
-from mmrs_auv.vessel.wire.frame import Frame
 from vessel_sheets import sheet
 
+from auv_vessel.eyes import Detections
+from auv_vessel.wire.catalogue import EMERGENCIES, REASONS
+from auv_vessel.wire.codec import Codec
+from auv_vessel.wire.frame import Frame
 from mmrs_mavlink.program import Local
 from mmrs_mavlink.steps.ways import way_back
 

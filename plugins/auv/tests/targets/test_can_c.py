@@ -14,13 +14,13 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from mmrs_auv.targets.can_c.target import CAN_C, files_of
 from mmrs_auv.targets.can_c.words import block, number
-from mmrs_auv.vessel.body.ballast import pressure_of_depth
-from mmrs_auv.vessel.wire.catalogue import EMERGENCIES
-from mmrs_auv.vessel.wire.check import check_of
-from mmrs_auv.vessel.wire.codec import Codec
-from mmrs_auv.vessel.wire.frame import Frame
 from vessel_sheets import sheet, sheets, thruster
 
+from auv_vessel.body.ballast import pressure_of_depth
+from auv_vessel.wire.catalogue import EMERGENCIES
+from auv_vessel.wire.check import check_of
+from auv_vessel.wire.codec import Codec
+from auv_vessel.wire.frame import Frame
 from mmrs_core.errors import UnsupportedError
 from mmrs_core.generation.capabilities.probes import plain
 from mmrs_core.generation.render import render

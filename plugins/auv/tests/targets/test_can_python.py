@@ -8,12 +8,12 @@ from pathlib import Path
 
 import pytest
 from dives import POOL, dive, diver, swim
-from mmrs_auv.controllers.main import main
 from mmrs_auv.kinds import AUV_KIND
 from mmrs_auv.targets.can_python.target import CAN_PYTHON
-from mmrs_auv.vessel.sheet import from_json
 from ports import free_endpoint
 
+from auv_vessel.controllers.main import main
+from auv_vessel.sheet import from_json
 from mmrs_core.behaviour.log import read_logs
 from mmrs_core.behaviour.program import Program, Target, Transition
 from mmrs_core.behaviour.replay import replay

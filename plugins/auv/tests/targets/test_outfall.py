@@ -9,9 +9,9 @@ import pytest
 from imc_reader import read_packet
 from lxml import etree
 from mmrs_auv.commands.modelled import sheets_in
-from mmrs_auv.vessel.sheet import from_json
 from moos_reader import Helm, read, run
 
+from auv_vessel.sheet import from_json
 from mmrs_core.testing.conformance.missions import run_command
 
 EXAMPLE = Path(__file__).parents[4] / "examples" / "outfall"

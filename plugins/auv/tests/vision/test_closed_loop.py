@@ -9,20 +9,21 @@ from math import dist, hypot
 
 import pytest
 from mmrs_auv.testing import pool_sheet
-from mmrs_auv.vessel.api import Craft
-from mmrs_auv.vessel.body.surroundings import BUOY, GATE, Surroundings, Thing
-from mmrs_auv.vessel.body.vehicle import Vehicle
-from mmrs_auv.vessel.control.actuators import Actuators
-from mmrs_auv.vessel.control.sensors import Sensors
-from mmrs_auv.vessel.decision.duties import OBJECT_NOT_FOUND, Duty, FailureError, Look, Seek, Travel
-from mmrs_auv.vessel.eyes import Detections, to_datagram
-from mmrs_auv.vessel.hosting import Rehearsal
-from mmrs_auv.vessel.movement.movement import Movement
-from mmrs_auv.vessel.sheet import Vector
-from mmrs_auv.vessel.wire.codec import Codec
 from mmrs_auv.vision.cameras import Pose
 from mmrs_auv.vision.detecting import Sought
 from mmrs_auv.vision.node import Eyes
+
+from auv_vessel.api import Craft
+from auv_vessel.body.surroundings import BUOY, GATE, Surroundings, Thing
+from auv_vessel.body.vehicle import Vehicle
+from auv_vessel.control.actuators import Actuators
+from auv_vessel.control.sensors import Sensors
+from auv_vessel.decision.duties import OBJECT_NOT_FOUND, Duty, FailureError, Look, Seek, Travel
+from auv_vessel.eyes import Detections, to_datagram
+from auv_vessel.hosting import Rehearsal
+from auv_vessel.movement.movement import Movement
+from auv_vessel.sheet import Vector
+from auv_vessel.wire.codec import Codec
 
 STAND_OFF, LOOKS = 1.5, 0.5
 """Metres before an object at which the vehicle halts, and seconds between two looks."""

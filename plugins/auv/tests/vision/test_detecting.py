@@ -11,7 +11,6 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from mmrs_auv.testing import pool_sheet
-from mmrs_auv.vessel.body.surroundings import BUOY, GATE, PATH, Surroundings, Thing
 from mmrs_auv.vision.cameras import LEFT, Camera, Pose, cameras_of
 from mmrs_auv.vision.colours import colour_of
 from mmrs_auv.vision.confidence import confidence_of
@@ -22,6 +21,8 @@ from mmrs_auv.vision.renderer import Conditions, Renderer
 from mmrs_auv.vision.stereo import disparities
 from mmrs_auv.vision.water import POOL, TOLD_APART, bgr, hazier
 from vision_trials import NOISES, Scene, Told, distance_of, is_visible, trials
+
+from auv_vessel.body.surroundings import BUOY, GATE, PATH, Surroundings, Thing
 
 FRONT_CAMERA, BOTTOM_CAMERA = cameras_of(pool_sheet())
 BUOYS = tuple(Sought(BUOY, f"{colour} buoy", colour, 0.3) for colour in TOLD_APART)

@@ -11,7 +11,8 @@ from dataclasses import replace
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from mmrs_auv.vessel.eyes import LONGEST, NAMES, Detection, Detections, from_datagram, owner_of, to_datagram
+
+from auv_vessel.eyes import LONGEST, NAMES, Detection, Detections, from_datagram, owner_of, to_datagram
 
 BUOY = Detection(12.0, "red buoy", 0.9, 3.0, -1.0, 2.0, "front")
 

@@ -6,11 +6,12 @@ from dataclasses import replace
 
 import pytest
 from mmrs_auv.testing import pool_sheet
-from mmrs_auv.vessel.body.surroundings import BUOY, GATE, PATH, Surroundings, Thing
 from mmrs_auv.vision.cameras import Pose, cameras_of
 from mmrs_auv.vision.detecting import detect, sought_in
 from mmrs_auv.vision.node import Eyes
 from mmrs_auv.vision.renderer import Renderer
+
+from auv_vessel.body.surroundings import BUOY, GATE, PATH, Surroundings, Thing
 
 POOL = Surroundings(
     bottom=4.0,

@@ -10,8 +10,6 @@ import cv2
 import numpy as np
 import pytest
 from mmrs_auv.testing import pool_sheet
-from mmrs_auv.vessel.body.surroundings import BUOY, PATH, Surroundings, Thing, to_json
-from mmrs_auv.vessel.sheet import to_json as sheet_json
 from mmrs_auv.vision import processes
 from mmrs_auv.vision.__main__ import main, memory_of
 from mmrs_auv.vision.cameras import Pose, cameras_of
@@ -20,6 +18,9 @@ from mmrs_auv.vision.processes import Notice
 from mmrs_auv.vision.sources import Adjusted, Captured, SourceError
 from signals_elsewhere import signalled
 from stalls import Stalls
+
+from auv_vessel.body.surroundings import BUOY, PATH, Surroundings, Thing, to_json
+from auv_vessel.sheet import to_json as sheet_json
 
 FRONT, BOTTOM = cameras_of(pool_sheet())
 HERE = Pose(0.0, 0.0, 1.0)

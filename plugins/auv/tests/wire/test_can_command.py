@@ -17,13 +17,13 @@ import pytest
 from can_hub import Raw, running
 from mmrs_auv.commands.can import main
 from mmrs_auv.commands.watching import Monitor
-from mmrs_auv.vessel.sheet import to_json
-from mmrs_auv.vessel.wire.codec import Codec
-from mmrs_auv.vessel.wire.database import dbc_of
-from mmrs_auv.vessel.wire.frame import Frame
-from mmrs_auv.vessel.wire.ports import open_port
 from vessel_sheets import sheet, thruster
 
+from auv_vessel.sheet import to_json
+from auv_vessel.wire.codec import Codec
+from auv_vessel.wire.database import dbc_of
+from auv_vessel.wire.frame import Frame
+from auv_vessel.wire.ports import open_port
 from mmrs_core.cli import run as mmrs
 from mmrs_core.errors import LinkLostError, UnreadableError, UnsupportedError
 

@@ -8,12 +8,13 @@ from typing import Any
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
-from mmrs_auv.vessel.sheet import Sheet
-from mmrs_auv.vessel.wire.catalogue import EMERGENCY_BASE, NODES, Field, Message, messages_of
-from mmrs_auv.vessel.wire.check import check_of
-from mmrs_auv.vessel.wire.codec import Codec
-from mmrs_auv.vessel.wire.frame import Frame
 from vessel_sheets import sheet, sheets
+
+from auv_vessel.sheet import Sheet
+from auv_vessel.wire.catalogue import EMERGENCY_BASE, NODES, Field, Message, messages_of
+from auv_vessel.wire.check import check_of
+from auv_vessel.wire.codec import Codec
+from auv_vessel.wire.frame import Frame
 
 SHEET = sheet()
 CODEC = Codec(SHEET)

@@ -10,11 +10,12 @@ import pytest
 from cantools.database import Database
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
-from mmrs_auv.vessel.sheet import Sheet
-from mmrs_auv.vessel.wire.catalogue import CHECK, NODES, SEQUENCE, messages_of
-from mmrs_auv.vessel.wire.codec import Codec
-from mmrs_auv.vessel.wire.database import WATCHDOG, database_of, dbc_of
 from vessel_sheets import sheet, sheets, thruster
+
+from auv_vessel.sheet import Sheet
+from auv_vessel.wire.catalogue import CHECK, NODES, SEQUENCE, messages_of
+from auv_vessel.wire.codec import Codec
+from auv_vessel.wire.database import WATCHDOG, database_of, dbc_of
 
 
 def loaded(vehicle: Sheet) -> Database:

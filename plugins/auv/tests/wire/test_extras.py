@@ -10,22 +10,22 @@ from pathlib import Path
 import pytest
 from mmrs_auv.sheets import sheet_of
 from mmrs_auv.testing import pool_sheet
-from mmrs_auv.vessel.__main__ import main
-from mmrs_auv.vessel.api import Craft
-from mmrs_auv.vessel.body.vehicle import Vehicle
-from mmrs_auv.vessel.control.actuators import Actuators
-from mmrs_auv.vessel.control.sensors import Sensors
-from mmrs_auv.vessel.extras import EXTRAS
-from mmrs_auv.vessel.goals import Goal
-from mmrs_auv.vessel.movement import guidance, loops
-from mmrs_auv.vessel.movement.abilities import abilities_of
-from mmrs_auv.vessel.movement.movement import Movement
-from mmrs_auv.vessel.refusals import SheetError
-from mmrs_auv.vessel.sheet import Sheet, from_json, to_json
-from mmrs_auv.vessel.wire.codec import Codec
 from mmrs_auv.vision.cameras import cameras_of
 from vessel_sheets import Asked
 
+from auv_vessel.__main__ import main
+from auv_vessel.api import Craft
+from auv_vessel.body.vehicle import Vehicle
+from auv_vessel.control.actuators import Actuators
+from auv_vessel.control.sensors import Sensors
+from auv_vessel.extras import EXTRAS
+from auv_vessel.goals import Goal
+from auv_vessel.movement import guidance, loops
+from auv_vessel.movement.abilities import abilities_of
+from auv_vessel.movement.movement import Movement
+from auv_vessel.refusals import SheetError
+from auv_vessel.sheet import Sheet, from_json, to_json
+from auv_vessel.wire.codec import Codec
 from mmrs_core.errors import UnsupportedError
 from mmrs_core.languages.grounding.scenes import robot_type_of
 

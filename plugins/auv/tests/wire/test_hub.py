@@ -16,10 +16,11 @@ import pytest
 from can_hub import Raw, eventually, running
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
-from mmrs_auv.vessel.wire import hub as hubs
-from mmrs_auv.vessel.wire.frame import Frame
-from mmrs_auv.vessel.wire.hub import Hub, is_loopback, log_line
-from mmrs_auv.vessel.wire.socketcand import LONGEST, frame_of, frame_word, words_of
+
+from auv_vessel.wire import hub as hubs
+from auv_vessel.wire.frame import Frame
+from auv_vessel.wire.hub import Hub, is_loopback, log_line
+from auv_vessel.wire.socketcand import LONGEST, frame_of, frame_word, words_of
 
 FRAMES = st.one_of(
     st.builds(Frame, st.integers(0, 0x7FF), st.binary(max_size=8)),
@@ -122,7 +123,7 @@ def test_the_answer_comes_alone_for_clients_that_take_what_they_read_for_one_wor
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     # Long enough for a client on a computer with other work to read the answer before what follows it.
-    monkeypatch.setattr("mmrs_auv.vessel.wire.hub._HOLD", 2.0)
+    monkeypatch.setattr("auv_vessel.wire.hub._HOLD", 2.0)
     with running() as hub, Raw(hub.port) as busy, Raw(hub.port, listens=None) as late:
         assert late.word() == "< hi >"
         late.say("< open can0 >")

@@ -9,7 +9,8 @@ from collections.abc import Iterator
 from contextlib import suppress
 
 from can_hub import Raw, running
-from mmrs_auv.vessel.wire.hub import MOST_RATE
+
+from auv_vessel.wire.hub import MOST_RATE
 
 
 def test_a_client_that_says_too_much_waits_and_the_others_hear_each_other() -> None:

@@ -7,12 +7,13 @@ from math import ceil
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
-from mmrs_auv.vessel.wire.catalogue import EMERGENCIES, messages_of
-from mmrs_auv.vessel.wire.frame import Frame
-from mmrs_auv.vessel.wire.layout import layout_of
-from mmrs_auv.vessel.wire.load import heard_load, load_of
-from mmrs_auv.vessel.wire.stuffing import length_of, longest
 from vessel_sheets import sheet
+
+from auv_vessel.wire.catalogue import EMERGENCIES, messages_of
+from auv_vessel.wire.frame import Frame
+from auv_vessel.wire.layout import layout_of
+from auv_vessel.wire.load import heard_load, load_of
+from auv_vessel.wire.stuffing import length_of, longest
 
 
 def test_load_is_the_sum_of_lengths_by_periods() -> None:

@@ -12,8 +12,9 @@ import can
 import pytest
 from can.interfaces.virtual import VirtualBus
 from can_hub import Raw, eventually, running
-from mmrs_auv.vessel.wire.frame import Frame
-from mmrs_auv.vessel.wire.ports import Port, PortError, open_port
+
+from auv_vessel.wire.frame import Frame
+from auv_vessel.wire.ports import Port, PortError, open_port
 
 FRAMES = [Frame(0x123, b"\1\2\3"), Frame(0x7FF, b""), Frame(0x1ABCDEF0, bytes(range(8)), True)]
 

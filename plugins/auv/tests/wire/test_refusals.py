@@ -6,13 +6,14 @@ import json
 from math import inf, nan
 
 import pytest
-from mmrs_auv.vessel import refusals
-from mmrs_auv.vessel.refusals import SheetError
-from mmrs_auv.vessel.sheet import from_json, to_json
-from mmrs_auv.vessel.wire.catalogue import messages_of
-from mmrs_auv.vessel.wire.codec import Codec
-from mmrs_auv.vessel.wire.database import database_of, dbc_of
 from vessel_sheets import sheet, thruster
+
+from auv_vessel import refusals
+from auv_vessel.refusals import SheetError
+from auv_vessel.sheet import from_json, to_json
+from auv_vessel.wire.catalogue import messages_of
+from auv_vessel.wire.codec import Codec
+from auv_vessel.wire.database import database_of, dbc_of
 
 
 def refused(**changes: object) -> tuple[str, ...]:

@@ -9,13 +9,14 @@ from random import Random
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from mmrs_auv.vessel.guard import emergency_frame
-from mmrs_auv.vessel.wire.catalogue import NODES, REASONS, messages_of
-from mmrs_auv.vessel.wire.codec import Codec
-from mmrs_auv.vessel.wire.frame import Frame
-from mmrs_auv.vessel.wire.hub import corrupted
-from mmrs_auv.vessel.wire.senders import AHEAD, LATE, Senders, name_of, own_of
 from vessel_sheets import sheet
+
+from auv_vessel.guard import emergency_frame
+from auv_vessel.wire.catalogue import NODES, REASONS, messages_of
+from auv_vessel.wire.codec import Codec
+from auv_vessel.wire.frame import Frame
+from auv_vessel.wire.hub import corrupted
+from auv_vessel.wire.senders import AHEAD, LATE, Senders, name_of, own_of
 
 SHEET = sheet(2)
 

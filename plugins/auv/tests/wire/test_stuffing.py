@@ -5,8 +5,9 @@ from __future__ import annotations
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from mmrs_auv.vessel.wire.frame import Frame
-from mmrs_auv.vessel.wire.stuffing import bits_of, crc_of, length_of, longest, shortest, stuff_bits
+
+from auv_vessel.wire.frame import Frame
+from auv_vessel.wire.stuffing import bits_of, crc_of, length_of, longest, shortest, stuff_bits
 
 FRAMES = st.one_of(
     st.builds(Frame, st.integers(0, 0x7FF), st.binary(max_size=8)),

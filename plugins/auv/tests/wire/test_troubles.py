@@ -9,9 +9,10 @@ import pytest
 from can_hub import Raw, eventually, running
 from hypothesis import given
 from hypothesis import strategies as st
-from mmrs_auv.vessel.hosting import tells_time
-from mmrs_auv.vessel.wire.frame import Frame
-from mmrs_auv.vessel.wire.hub import Hub, Troubles, corrupted
+
+from auv_vessel.hosting import tells_time
+from auv_vessel.wire.frame import Frame
+from auv_vessel.wire.hub import Hub, Troubles, corrupted
 
 
 def heard_with(troubles: Troubles, count: int, seed: int = 1) -> list[str]:

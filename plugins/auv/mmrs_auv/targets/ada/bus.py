@@ -4,12 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
-from mmrs_auv.kinds import SEA_WATER, largest_depth
-from mmrs_auv.vessel.api import FARTHEST_SEEN, OFTEN, POSITION_LOST, SELDOM
-from mmrs_auv.vessel.control.failsafe import HEALTH_SILENT
-from mmrs_auv.vessel.decision.helm import SILENT, STALE
-from mmrs_auv.vessel.refusals import MOST_DEPTH
-from mmrs_auv.vessel.wire.catalogue import (
+from auv_vessel.api import FARTHEST_SEEN, OFTEN, POSITION_LOST, SELDOM
+from auv_vessel.control.failsafe import HEALTH_SILENT
+from auv_vessel.decision.helm import SILENT, STALE
+from auv_vessel.refusals import MOST_DEPTH
+from auv_vessel.wire.catalogue import (
     BEAT_PERIOD,
     BEATS,
     COMMON,
@@ -20,7 +19,8 @@ from mmrs_auv.vessel.wire.catalogue import (
     Message,
     depth_step,
 )
-from mmrs_auv.vessel.wire.layout import layout_of
+from auv_vessel.wire.layout import layout_of
+from mmrs_auv.kinds import SEA_WATER, largest_depth
 from mmrs_core.behaviour.program import RobotProgram
 from mmrs_core.contributions.targets import TargetInput
 from mmrs_core.errors import InfeasibleError

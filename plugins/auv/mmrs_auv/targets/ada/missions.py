@@ -6,15 +6,15 @@ import json
 from collections.abc import Iterator, Mapping, Sequence
 from math import isfinite
 
+from auv_vessel.eyes import owner_of
+from auv_vessel.goals import SLOWEST
+from auv_vessel.refusals import MOST_SPEED
 from mmrs_auv.names import IN_WATER_SIZE
 from mmrs_auv.sayable import mount_of, parameter_of
 from mmrs_auv.sheets import action_number
 from mmrs_auv.targets.ada import policies as answers
 from mmrs_auv.targets.ada.refusals import DEVICE_ACTION, NOTIFY, SORTS, of_action, of_movement
 from mmrs_auv.targets.moves import seconds_of
-from mmrs_auv.vessel.eyes import owner_of
-from mmrs_auv.vessel.goals import SLOWEST
-from mmrs_auv.vessel.refusals import MOST_SPEED
 from mmrs_core.behaviour.program import Action, Move, Program, RobotProgram, SlotId, Target, Transition
 from mmrs_core.contributions.targets import TracedStep
 from mmrs_core.mavlink.vehicles import TRAVEL_FACTORS, capability_of

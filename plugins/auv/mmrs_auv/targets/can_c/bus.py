@@ -6,9 +6,9 @@ import re
 from dataclasses import replace
 from functools import lru_cache
 
-from mmrs_auv.vessel.sheet import Sheet
-from mmrs_auv.vessel.wire.catalogue import EMERGENCY_BASE, Message, messages_of
-from mmrs_auv.vessel.wire.database import entry_of
+from auv_vessel.sheet import Sheet
+from auv_vessel.wire.catalogue import EMERGENCY_BASE, Message, messages_of
+from auv_vessel.wire.database import entry_of
 
 HEARD_OR_SAID = ("Pressure", "Thruster")
 

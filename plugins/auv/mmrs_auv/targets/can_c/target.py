@@ -8,18 +8,18 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from auv_vessel.body.ballast import patience_of, pressure_of_depth
+from auv_vessel.body.drive import MOST_AHEAD
+from auv_vessel.body.propulsion import curve_of
+from auv_vessel.refusals import MOST_POWER
+from auv_vessel.sheet import Sheet
+from auv_vessel.wire.catalogue import EMERGENCIES, STATUS_PERIOD, messages_of
+from auv_vessel.wire.layout import layout_of
 from mmrs_auv.sheets import is_vehicle, sheet_of
 from mmrs_auv.targets.can_c.bus import codec_of
 from mmrs_auv.targets.can_c.words import block, number
 from mmrs_auv.targets.moves import MOVES
 from mmrs_auv.targets.places import templates_of
-from mmrs_auv.vessel.body.ballast import patience_of, pressure_of_depth
-from mmrs_auv.vessel.body.drive import MOST_AHEAD
-from mmrs_auv.vessel.body.propulsion import curve_of
-from mmrs_auv.vessel.refusals import MOST_POWER
-from mmrs_auv.vessel.sheet import Sheet
-from mmrs_auv.vessel.wire.catalogue import EMERGENCIES, STATUS_PERIOD, messages_of
-from mmrs_auv.vessel.wire.layout import layout_of
 from mmrs_core.behaviour.program import BEHAVIOUR, RobotProgram
 from mmrs_core.contributions.targets import FileSpec, Target, TargetInput, TracedStep
 from mmrs_core.errors import UnsupportedError

@@ -1,22 +1,19 @@
 """The target can-python: a controller for each vehicle, which needs nothing of this project.
 
 A controller is a program in the words of the runtime that all controllers share, on a vehicle whose goals
-go over its CAN bus. It carries that runtime, and what it needs to speak to the vehicle.
+go over its CAN bus. It carries wheels of that runtime, and of what it needs to speak to the vehicle.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
-from functools import cache
-from importlib.resources import files as files_of
-from pathlib import Path
 
+from auv_vessel.sheet import Sheet, to_json
 from mmrs_auv.sayable import Bus, parameter_of
 from mmrs_auv.sheets import is_vehicle, sheet_of
 from mmrs_auv.targets.can_python.capabilities import CAPABILITIES
 from mmrs_auv.targets.places import templates_of
-from mmrs_auv.vessel.sheet import Sheet, to_json
 from mmrs_core.behaviour.program import Action, RobotProgram
 from mmrs_core.contributions.targets import FileSpec, Target, TargetInput
 from mmrs_core.contributions.wiring import DeviceWiring, Unwired, Wired, Wiring
@@ -32,14 +29,6 @@ from mmrs_mavlink.plugin.naming import with_names
 from mmrs_mavlink.plugin.program import robot_view, trace_of
 from mmrs_mavlink.plugin.safety import policies_of
 
-VESSEL = "mmrs_vessel"
-SOURCES = Path(str(files_of("mmrs_auv")))
-CARRIED = ("vessel", "controllers")
-LIBRARIES = ("python-can", "cantools", "numpy")
-RENAMED = {
-    "mmrs_auv.vessel": f"{VESSEL}.vessel",
-    "mmrs_auv.controllers": f"{VESSEL}.controllers",
-}
 WIRED = "can.device"
 """A property that devices get here: their number on the bus, from 1 on."""
 
@@ -65,9 +54,8 @@ def files(input: TargetInput) -> Iterator[FileSpec]:
         view = {"robot": said, "sheet": f"{module}.json"}
         yield FileSpec(f"{module}.json", "", data=sheet.encode())
         yield FileSpec(f"{module}.py", "robot.py.jinja", view, trace=trace_of(robot))
-    needs = deployment_of(*carried(len(robots)), more=LIBRARIES)
+    needs = deployment_of(*carried(len(robots)), "auv-vessel")
     yield from fleet_files(replace(local.program, robots=robots), modules, needs)
-    yield from _carried()
 
 
 def refusals(input: TargetInput) -> Iterator[str]:
@@ -164,19 +152,6 @@ def _sheet(robot: RobotProgram, input: TargetInput) -> Sheet:
         payload=robot.payload,
         density=input.environment.get("waterDensity"),
     )
-
-
-@cache
-def _carried() -> tuple[FileSpec, ...]:
-    found = [FileSpec(f"{VESSEL}/__init__.py", "", data=b'"""Vehicles on CAN buses."""\n')]
-    for part in CARRIED:
-        for path in sorted((SOURCES / part).rglob("*.py")):
-            text = path.read_text(encoding="utf-8")
-            for before, after in RENAMED.items():
-                text = text.replace(before, after)
-            carried = f"{VESSEL}/{path.relative_to(SOURCES).as_posix()}"
-            found.append(FileSpec(carried, "", data=text.encode()))
-    return tuple(found)
 
 
 CAN_PYTHON = Target(

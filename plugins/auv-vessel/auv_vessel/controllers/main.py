@@ -11,11 +11,11 @@ from contextlib import ExitStack
 from math import inf
 from pathlib import Path
 
-from mmrs_auv.controllers.vehicle import CanVehicle
-from mmrs_auv.vessel.api import Connection
-from mmrs_auv.vessel.eyes import Detections
-from mmrs_auv.vessel.sheet import from_json
-from mmrs_auv.vessel.wire.ports import CHANNEL, open_port
+from auv_vessel.api import Connection
+from auv_vessel.controllers.vehicle import CanVehicle
+from auv_vessel.eyes import Detections
+from auv_vessel.sheet import from_json
+from auv_vessel.wire.ports import CHANNEL, open_port
 from mmrs_mavlink.judgement import Condition, objects_of
 from mmrs_mavlink.main import main as run
 from mmrs_mavlink.objects import Locator, not_looked_for, where_expected

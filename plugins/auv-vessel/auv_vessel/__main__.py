@@ -1,6 +1,6 @@
 """One part of a vehicle as a process of its own, on any bus that python-can has.
 
-python -m mmrs_auv.vessel vehicle --sheet auv.json --interface socketcand --channel can0@127.0.0.1:29536
+python -m auv_vessel vehicle --sheet auv.json --interface socketcand --channel can0@127.0.0.1:29536
 """
 
 from __future__ import annotations

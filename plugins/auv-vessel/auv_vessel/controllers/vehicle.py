@@ -6,9 +6,9 @@ import time
 from collections.abc import Callable, Mapping
 from math import hypot, inf
 
-from mmrs_auv.vessel.api import Craft
-from mmrs_auv.vessel.decision.drives import Drives
-from mmrs_auv.vessel.decision.duties import (
+from auv_vessel.api import Craft
+from auv_vessel.decision.drives import Drives
+from auv_vessel.decision.duties import (
     Duty,
     Face,
     FailureError,
@@ -20,11 +20,11 @@ from mmrs_auv.vessel.decision.duties import (
     Travel,
     Use,
 )
-from mmrs_auv.vessel.decision.duties import Look as Bearing
-from mmrs_auv.vessel.decision.helm import COMES_UP, CRASHED, LINK_LOST, Helm, Watch
-from mmrs_auv.vessel.eyes import Detections
-from mmrs_auv.vessel.movement.abilities import abilities_of
-from mmrs_auv.vessel.sheet import Sheet, Vector
+from auv_vessel.decision.duties import Look as Bearing
+from auv_vessel.decision.helm import COMES_UP, CRASHED, LINK_LOST, Helm, Watch
+from auv_vessel.eyes import Detections
+from auv_vessel.movement.abilities import abilities_of
+from auv_vessel.sheet import Sheet, Vector
 from mmrs_mavlink.places import ends_of
 from mmrs_mavlink.program import GoTo, Local, Look, Object, Place, Robot
 from mmrs_mavlink.records.fixes import FIX_SECONDS, fix
