@@ -144,7 +144,7 @@ def write_logs(
     with new_folders() as make:
         make(folder)
         with TemporaryDirectory(prefix=".mmrs-", dir=folder) as staged, _named_in(folder):
-            with LogWriter(Path(staged)) as writer:
+            with LogWriter(Path(staged), synced=False) as writer:
                 for record in run.records:
                     writer.write(record)
             write_boxes(run, program, types or {}, Path(staged), kinds or {})

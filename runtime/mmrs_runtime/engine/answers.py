@@ -7,7 +7,16 @@ from dataclasses import dataclass
 from math import inf
 
 from ..faults import TAKEN_OVER
-from ..policies import LAST_RESORT, NOTHING, UNDECLARED, Policy, patience, policy_for, response_to
+from ..policies import (
+    LAST_RESORT,
+    NOTHING,
+    UNDECLARED,
+    UNDECLARED_AFTER,
+    Policy,
+    patience,
+    policy_for,
+    response_to,
+)
 from ..vehicle import Fault
 
 
@@ -17,7 +26,7 @@ class Answers:
 
     Attributes:
         live: whether the robot is a real one, which does not hold for want of a better idea when it
-            cannot be reached, or when its battery gets low.
+            cannot be reached, or when its battery gets low, and does not wait for lost peers for ever.
     """
 
     policies: Sequence[Policy]
@@ -42,4 +51,6 @@ class Answers:
         if self.bears(found):
             return inf
         seconds = patience(found.which, self.policies)
-        return inf if seconds is None else seconds
+        if seconds is not None:
+            return seconds
+        return UNDECLARED_AFTER.get(found.which, inf) if self.live else inf

@@ -27,6 +27,9 @@ from .stopping import WATCH_PACE, Stopping
 from .terms import BUS, TO_THE_END, Ending, Terms
 from .waits import Peers
 
+UNKNOWN_SECONDS = 600.0
+"""Simulated seconds after which a condition that nobody knows, while nothing else happens, is never known."""
+
 
 def run(
     program: Program,
@@ -94,7 +97,7 @@ class Run:
         self.peers = Peers(program, {*self._numbers, *self._over}, slots)
         self._obedience = Obedience(self._lives, terms.orders, clock)
         self.stopping = Stopping(self._lives, clock, self._obedience, self.say)
-        self._made = 0
+        self._made, self._stepped = 0, 0.0
         self._agenda = Agenda(len(self._lives))
         self._resume = [life.go().__next__ for life in self._lives]
         self._restless = len(self._lives)
@@ -124,6 +127,9 @@ class Run:
                 until = self._next_wake()
                 if until > self.terms.seconds or (until == inf and not self.clock.passes_by_itself):
                     break
+                if self._is_undecidable():
+                    self._deadlock = self._waiting()
+                    break
                 self.clock.sleep_until(until)
                 self._wake()
         finally:
@@ -145,6 +151,7 @@ class Run:
             self._made += 1 if record.label == "fault" else 0
             raise
         self._made += 1
+        self._stepped = record.time
 
     def keep(self, record: StepRecord) -> None:
         """Have a step be recorded in place of one that could not be, if that is possible."""
@@ -275,6 +282,12 @@ class Run:
         if not self._deadlock and self._is_quiet() and not any(life.may_be_resumed for life in self._lives):
             self._deadlock = self._waiting()
 
+    def _is_undecidable(self) -> bool:
+        """Return whether simulated robots wait for conditions that nobody knows, and nothing else happens."""
+        if self.clock.passes_by_itself or self.clock.now() < self._stepped + UNKNOWN_SECONDS:
+            return False
+        return all(life.is_quiet or life.wait.question for life in self._lives)
+
     def _is_patient(self) -> bool:
         """Return whether a wait of some robot will end by itself."""
         return any(life.wait.deadline < inf for life in self._lives if life.is_waiting)
@@ -287,8 +300,8 @@ class Run:
         return robot in self._numbers and self._lives[self._numbers[robot]].point.phase is Phase.OUT
 
     def _waiting(self) -> tuple[Waiting, ...]:
-        waiting = (life for life in self._lives if life.is_waiting)
-        return tuple(Waiting(life.id, life.point.move, life.wait.lacking) for life in waiting)
+        named = ((life, life.wait.lacking or (life.wait.question,)) for life in self._lives)
+        return tuple(Waiting(life.id, life.point.move, names) for life, names in named if any(names))
 
     def _halt(self) -> None:
         """Stop every robot that is still at work, and wait until each has confirmed it."""

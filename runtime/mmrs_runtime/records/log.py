@@ -23,15 +23,18 @@ class LogFile:
     written, nothing is left in the log; a fault is tried once more when it is closed.
     """
 
-    def __init__(self, path: Path, mode: Literal["a", "w", "x"], *, spaced: bool = False) -> None:
+    def __init__(
+        self, path: Path, mode: Literal["a", "w", "x"], *, spaced: bool = False, synced: bool = True
+    ) -> None:
         """Open nothing yet.
 
         Args:
             path: of the log.
             mode: ``a``: go on after its last whole line; ``w``: replace it; ``x``: refuse one that is there.
             spaced: as `to_line` takes it.
+            synced: whether a notify or a fault is on the disk when it has been written.
         """
-        self._path, self._mode, self._spaced = path, mode, spaced
+        self._path, self._mode, self._spaced, self._synced = path, mode, spaced, synced
         self._file: IO[bytes] | None = None
         self._owed: StepRecord | None = None
 
@@ -76,7 +79,7 @@ class LogFile:
 
     def _append(self, record: StepRecord) -> None:
         line = to_line(record, spaced=self._spaced).encode("utf-8") + b"\n"
-        append_whole(self.open(), line, at_once=record.label in KEPT_AT_ONCE)
+        append_whole(self.open(), line, at_once=self._synced and record.label in KEPT_AT_ONCE)
 
 
 class LogWriter:
@@ -85,10 +88,17 @@ class LogWriter:
     A run that is resumed goes on with its logs instead, after their last whole lines.
     """
 
-    def __init__(self, folder: Path, *, resumed: bool = False) -> None:
-        """Open no file yet; make the folder where it is missing."""
+    def __init__(self, folder: Path, *, resumed: bool = False, synced: bool = True) -> None:
+        """Open no file yet; make the folder where it is missing.
+
+        Args:
+            folder: of the logs.
+            resumed: whether to go on with logs that are there.
+            synced: whether a notify or a fault is on the disk when it has been written; what is simulated can
+                be simulated again.
+        """
         folder.mkdir(parents=True, exist_ok=True)
-        self._folder, self._resumed = folder, resumed
+        self._folder, self._resumed, self._synced = folder, resumed, synced
         self._files: dict[str, LogFile] = {}
 
     def write(self, record: StepRecord) -> None:
@@ -99,7 +109,7 @@ class LogWriter:
         """
         if record.robot not in self._files:
             path = self._folder / log_name(record.robot)
-            self._files[record.robot] = LogFile(path, "a" if self._resumed else "w")
+            self._files[record.robot] = LogFile(path, "a" if self._resumed else "w", synced=self._synced)
         self._files[record.robot].write(record)
 
     def close(self) -> None:

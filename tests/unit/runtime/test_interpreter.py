@@ -109,6 +109,20 @@ def test_a_condition_that_nobody_decides_is_refused_before_anything_moves(fly):
     assert caught.value.elements == ("robot 'r', after move 'h': condition 'c'",)
 
 
+def test_a_condition_that_nobody_ever_knows_is_waited_for_no_longer_than_anything_else_happens(fly):
+    behaviour = program(
+        robot("r", [hold("h"), hold("x")], choices={"h": ("c", "x", "stop")}), robot("q", [hold("h", 700.0)])
+    )
+    ending = fly(
+        behaviour,
+        robot_type(lifetime=None),
+        conditions={"c": Condition("c", lambda state: True, lambda state: False)},
+    ).ending
+    assert ending.outcome is Outcome.INCOMPLETE
+    assert 1300.0 <= ending.time < 1301.0
+    assert [str(each) for each in ending.waiting] == ["'r' waits after 'h' for 'c'"]
+
+
 def test_a_deadlock_is_found_and_names_robots_moves_and_slots(fly):
     behaviour = program(
         robot("a", [hold("h", 1.0), hold("i", after=(notify("b.s"),))], waits={"h": ["s"]}),
