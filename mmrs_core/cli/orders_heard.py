@@ -4,13 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import typer
 
-from mmrs_core.cli.output import tell
 from mmrs_runtime.engine.orders import Orders
 
 if TYPE_CHECKING:
@@ -23,15 +21,11 @@ Status = Callable[[str], Mapping[str, object]]
 def hear_orders(
     folder: Path, run: str, robots: Sequence[str], orders: Orders, status: Status
 ) -> Iterator[None]:
-    """Listen for orders as long as the context lasts; say so where that cannot be.
+    """Listen for orders as long as the context lasts.
 
     Raises:
         typer.BadParameter: if another process runs one of these robots with its logs in that folder.
     """
-    if find_spec("pymavlink") is None:
-        tell("no orders are heard: that needs pymavlink; pip install 'mmrs-core[mavlink]'")
-        yield
-        return
     from mmrs_runtime.control import Control, Taken
 
     inboxes = {robot: _inbox(robot, orders) for robot in robots}
