@@ -4,9 +4,14 @@ import json
 import os
 import subprocess
 import sys
+from importlib.metadata import distributions
+from io import BytesIO
 from pathlib import Path
+from zipfile import ZipFile
 
 import pytest
+
+from mmrs_core.generation.wheels import wheel_of
 
 ROOT = Path(__file__).parents[2]
 PROJECTS = (
@@ -75,6 +80,17 @@ def test_wheels_carry_the_licence_and_name_it(site):
         PROJECTS
     )
     assert all("License-Expression: Apache-2.0\n" in (each / "METADATA").read_text() for each in described)
+
+
+def test_wheels_made_without_a_build_backend_carry_the_same(site):
+    found = list(distributions(path=[str(site)]))
+    assert len(found) == len(PROJECTS)
+    for each in found:
+        with ZipFile(BytesIO(wheel_of(each.name).content)) as archive:
+            held = {name: archive.read(name) for name in archive.namelist() if ".dist-info/" not in name}
+        built = [file for file in each.files if file.suffix != ".pyc" and ".." not in file.parts]
+        built = [file for file in built if "dist-info" not in file.parts[0] and file.parts[0] != "bin"]
+        assert held == {file.as_posix(): file.read_binary() for file in built}
 
 
 def test_an_installed_example_validates_from_another_directory(site, tmp_path):
