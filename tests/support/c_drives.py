@@ -37,13 +37,13 @@ def need_compiler() -> None:
 
 
 def written(sheet: Sheet, folder: Path) -> Path:
-    """Write the drives of a vehicle; return their folder."""
+    """Write the drives of a vehicle; return its folder."""
     press = Press(CAN_C, environment_of(CAN_C))
-    for spec in files_of(sheet, "drives"):
+    for spec in files_of({"vehicle": sheet}):
         path = folder / spec.path
         path.parent.mkdir(parents=True, exist_ok=True)
         path.write_bytes(press.content(spec)[0])
-    return folder / "drives"
+    return folder / "vehicle"
 
 
 def compiled(sheet: Sheet, folder: Path, *options: str) -> Path:
@@ -51,8 +51,10 @@ def compiled(sheet: Sheet, folder: Path, *options: str) -> Path:
     need_compiler()
     made = written(sheet, folder)
     program = made / "script"
-    sources = [SCRIPT, *(made / name for name in ("bus.c", "vehicle.c", "drives.c"))]
-    words = ["gcc", *STRICT, "-O1", *options, f"-I{made}", "-o", program, *sources, "-lm"]
+    bus, shared = folder / "bus", folder / "drives"
+    sources = [SCRIPT, made / "vehicle.c", bus / "bus.c", shared / "drives.c"]
+    words = ["gcc", *STRICT, "-O1", *options, *(f"-I{each}" for each in (made, bus, shared))]
+    words += ["-o", program, *sources, "-lm"]
     done = subprocess.run(list(map(str, words)), capture_output=True, text=True, timeout=120)
     assert (done.returncode, done.stderr) == (0, "")
     return program

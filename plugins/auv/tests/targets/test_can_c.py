@@ -177,6 +177,14 @@ def test_how_deep_is_deep_depends_on_the_water():
     assert deep == pytest.approx([101_325.0 + each * 9.80665 * 0.5 for each in (1028.0, 998.0)])
 
 
+def test_vehicles_share_all_but_their_thrusters_and_outputs():
+    paths = [spec.path for spec in files_of({"one": sheet(2), "two": sheet(2), "three": sheet(3)})]
+    assert len(paths) == len(set(paths))
+    own = ["vehicle.h", "vehicle.c", "Makefile", "outputs.c"]
+    assert [path for path in paths if path.startswith("two/")] == [f"two/{name}" for name in own]
+    assert {path for path in paths if path.endswith("bus.c")} == {"bus/bus.c", "bus_2/bus.c"}
+
+
 def test_what_is_the_users_is_said_to_be_so():
     files = {file.path: file for file in render(CAN_C, plain("sub"))}
     assert [path for path, file in files.items() if file.once] == ["drives_alpha/outputs.c"]
@@ -221,7 +229,7 @@ def test_the_drop_weight_is_held_for_ever_where_a_sheet_says_so(tmp_path):
 
 def test_a_dead_mans_time_that_drives_cannot_measure_is_refused():
     with pytest.raises(UnsupportedError, match=r"deadman.time: 5000 s is more than 2000 s"):
-        list(files_of(sheet(1, extra={"deadman.time": 5000.0}), "drives"))
+        list(files_of({"drives": sheet(1, extra={"deadman.time": 5000.0})}))
 
 
 @pytest.fixture(scope="module")

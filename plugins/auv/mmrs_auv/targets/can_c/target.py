@@ -6,7 +6,7 @@ mission makes no difference to it.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 
 from auv_vessel.body.ballast import patience_of, pressure_of_depth
 from auv_vessel.body.drive import MOST_AHEAD
@@ -26,7 +26,10 @@ from mmrs_core.errors import UnsupportedError
 from mmrs_core.generation.escaping import file_stems
 from mmrs_mavlink.plugin.context import vehicleless
 
-AS_THEY_ARE = ("drives.h", "drives.c", "outputs.h", "hub.c", "Makefile")
+SHARED = "drives"
+"""Folder of what the drives of all vehicles share."""
+
+AS_THEY_ARE = ("drives.h", "drives.c", "outputs.h", "hub.c", "drives.mk")
 ASKS = (
     "what sets the thrust of each motor, tells of its faults and of depth, and lets go of the drop weight",
 )
@@ -37,14 +40,14 @@ LONGEST = 2000.0
 """Seconds that drives measure, at most: their microseconds have 32 bits."""
 
 CAPABILITIES = {
-    "Behaviour.robots": "a folder each",
+    "Behaviour.robots": "a folder each, beside what they share",
     "Robot: a sub": "a drive for each of its thrusters",
     "Robot.id": "name of the folder",
 }
 
 
 def files(input: TargetInput) -> Iterator[FileSpec]:
-    """Yield a folder for each robot, and how to build them.
+    """Yield what all drives share, a folder for each robot, and how to build them.
 
     Raises:
         UnsupportedError: a robot is no underwater vehicle whose data are known.
@@ -52,8 +55,7 @@ def files(input: TargetInput) -> Iterator[FileSpec]:
     robots = input.program.robots
     stems = file_stems([robot.id for robot in robots], hyphens=False)
     folders = {robot.id: f"drives_{stems[robot.id]}" for robot in robots}
-    for robot in robots:
-        yield from files_of(_sheet(robot, input), folders[robot.id])
+    yield from files_of({folders[robot.id]: _sheet(robot, input) for robot in robots})
     shown = [
         {"folder": folder, "robot": id, "traced": TracedStep("drives", id, "")}
         for id, folder in folders.items()
@@ -61,21 +63,26 @@ def files(input: TargetInput) -> Iterator[FileSpec]:
     yield FileSpec("README.md", "README.md.jinja", {"robots": shown})
 
 
-def files_of(sheet: Sheet, folder: str) -> Iterator[FileSpec]:
-    """Yield the drives of a vehicle.
+def files_of(sheets: Mapping[str, Sheet]) -> Iterator[FileSpec]:
+    """Yield the drives of vehicles, by folder; those whose buses carry the same messages share a codec.
 
     Raises:
-        SheetError: a bus cannot be made of the vehicle's data; lists all that is wrong.
+        SheetError: a bus cannot be made of the data of a vehicle; lists all that is wrong.
     """
-    header, source = codec_of(sheet)
-    view = _view(sheet)
-    yield FileSpec(f"{folder}/bus.h", "", data=header.encode())
-    yield FileSpec(f"{folder}/bus.c", "", data=source.encode())
-    yield FileSpec(f"{folder}/vehicle.h", "vehicle.h.jinja", view)
-    yield FileSpec(f"{folder}/vehicle.c", "vehicle.c.jinja", view)
     for file in AS_THEY_ARE:
-        yield FileSpec(f"{folder}/{file}", file)
-    yield FileSpec(f"{folder}/outputs.c", "outputs.c", once=True, asks=ASKS)
+        yield FileSpec(f"{SHARED}/{file}", file)
+    buses: dict[tuple[str, str], str] = {}
+    for folder, sheet in sheets.items():
+        codec = codec_of(sheet)
+        if codec not in buses:
+            bus = buses[codec] = f"bus_{len(buses) + 1}" if buses else "bus"
+            yield FileSpec(f"{bus}/bus.h", "", data=codec[0].encode())
+            yield FileSpec(f"{bus}/bus.c", "", data=codec[1].encode())
+        view = {**_view(sheet), "bus": buses[codec], "shared": SHARED}
+        yield FileSpec(f"{folder}/vehicle.h", "vehicle.h.jinja", view)
+        yield FileSpec(f"{folder}/vehicle.c", "vehicle.c.jinja", view)
+        yield FileSpec(f"{folder}/Makefile", "Makefile.jinja", view)
+        yield FileSpec(f"{folder}/outputs.c", "outputs.c", once=True, asks=ASKS)
 
 
 def refusals(input: TargetInput) -> Iterator[str]:
