@@ -48,6 +48,8 @@ from mmrs_runtime.records.log import Log, LogWriter
 from mmrs_runtime.semantics import Outcome
 
 PROCESSES, ROUNDS, SPEEDUP = 4, 5, 10.0
+LATCHED = 50
+"""Slots of a robot that are each set once; all are shown to onlookers whenever one is set, so not more."""
 
 
 def main() -> None:
@@ -79,12 +81,15 @@ def latencies(count: int) -> None:
     with tempfile.TemporaryDirectory() as folder:
         between, bare = processes(Path(folder), count)
     with tempfile.TemporaryDirectory() as folder:
+        latched, _ = processes(Path(folder), LATCHED, latched=True)
+    with tempfile.TemporaryDirectory() as folder:
         disk = [_synced(Path(folder) / "line") for _ in range(count)]
     print(f"notify called until the waiting robot goes on, {count} of each; milliseconds")
     print(f"{'':<44}{'median':>9}{'99 %':>9}{'median / bare':>15}")
     rows = {
         "within a process, logs synced": within,
         "between two processes, logs and slots synced": between,
+        f"the same, {LATCHED} slots set once and never reset": latched,
         "bare Zenoh query and reply": bare,
         "one line written and synced to the disk": disk,
     }
@@ -123,22 +128,26 @@ def threads(folder: Path, count: int) -> list[float]:
     return found
 
 
-def processes(folder: Path, count: int) -> tuple[list[float], list[float]]:
-    """Return how long each notify took between two processes, and each bare query with its reply."""
+def processes(folder: Path, count: int, *, latched: bool = False) -> tuple[list[float], list[float]]:
+    """Return how long each notify took between two processes, and each bare query with its reply.
+
+    Where `latched`, each sets a slot of its own, which is never reset; else all set one that is.
+    """
     endpoint = f"tcp/127.0.0.1:{_port()}"
     there = {"do": "answer", "endpoint": endpoint, "folder": str(folder / "b"), "count": count}
+    there["names"] = names = [f"go{n}" for n in range(count)] if latched else []
     with _started(there) as process:
-        a, _ = _robots()
+        a, _ = _robots(*names)
         carrier = ZenohCarrier("bench", "run-0", ("a", "b"), Endpoints(connect=(endpoint,)))
         slots = shared_slots([a], "run-0", folder, carrier)
         log = Log(folder / a.log, "run-0", "a")
         while slots.node.missing(["b"]):
             time.sleep(0.01)
         found = []
-        for _ in range(count):
+        for name in names or ["go"] * count:
             time.sleep(0.002)
             begun = time.monotonic()
-            _notify(slots, log, "a", ("b", "go"))
+            _notify(slots, log, "a", ("b", name))
             found.append(float(process.stdout.readline()) - begun)
         bare = _bare(endpoint, count)
         slots.close()
@@ -146,9 +155,9 @@ def processes(folder: Path, count: int) -> tuple[list[float], list[float]]:
     return found, bare
 
 
-def answer(endpoint: str, folder: str, count: int) -> None:
+def answer(endpoint: str, folder: str, count: int, names: list[str]) -> None:
     """Be the robot that waits, in a process of its own; tell each time at which it goes on."""
-    _, b = _robots()
+    _, b = _robots(*names)
     Path(folder).mkdir()
     carrier = ZenohCarrier("bench", "run-0", ("a", "b"), Endpoints(listen=(endpoint,)))
     slots = shared_slots([b], "run-0", Path(folder), carrier)
@@ -156,9 +165,10 @@ def answer(endpoint: str, folder: str, count: int) -> None:
     bare = carrier._session.declare_queryable(
         "bench/bare", lambda query: query.reply("bench/bare", b"x" * 64)
     )
-    for _ in range(count):
-        at = _take(slots, log, "b")
-        _notify(slots, log, "b", ("b", "go"), active=False)
+    for name in names or ["go"] * count:
+        at = _take(slots, log, "b", name)
+        if not names:
+            _notify(slots, log, "b", ("b", "go"), active=False)
         print(at, flush=True)
     sys.stdin.read()
     bare.undeclare()
@@ -178,13 +188,16 @@ def _bare(endpoint: str, count: int) -> list[float]:
     return found
 
 
-def _robots() -> tuple[Robot, Robot]:
-    step = Step("start", Start(), after=(Notify((("b", "go"),)),))
-    home = Local(0.0, 0.0, 0.0)
-    senders = (("go", ("a",)),)
+def _robots(*latched: str) -> tuple[Robot, Robot]:
+    """Return a robot and another one that it notifies; `latched`: slots that are never reset."""
+    names, home = latched or ("go",), Local(0.0, 0.0, 0.0)
+    told = tuple(("b", name) for name in names)
+    step = Step("start", Start(), after=(Notify(told),))
+    senders = tuple((name, ("a",)) for name in names)
+    resets = () if latched else (("go", ("b",)),)
     return (
-        Robot("a", "a.jsonl", "copter", home, "start", (step,)),
-        Robot("b", "b.jsonl", "copter", home, "start", (), ("go",), senders, (("go", ("b",)),)),
+        Robot("a", "a.jsonl", "copter", home, "start", (step,), volatile=() if latched else told),
+        Robot("b", "b.jsonl", "copter", home, "start", (), names, senders, resets),
     )
 
 
@@ -195,11 +208,11 @@ def _notify(slots: BusSlots, log: Log, sender: str, slot: tuple[str, str], *, ac
     slots.notify(sender, (slot,), active, record, lambda silent: None)
 
 
-def _take(slots: BusSlots, log: Log, robot: str) -> float:
+def _take(slots: BusSlots, log: Log, robot: str, name: str = "go") -> float:
     def record(lamport: int) -> None:
         log.write("take", "start", lamport=lamport, time=0.0)
 
-    while not slots.take(robot, ("go",), record):
+    while not slots.take(robot, (name,), record):
         slots.await_change(0.1)
     return time.monotonic()
 
