@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import json
+from contextlib import closing
+from threading import Thread
 
 import pytest
+from gateway_client import Client
 from hub import Hub
 
 from mmrs_core.runtime.slots import members_of, recorded_of
@@ -13,6 +16,7 @@ from mmrs_core.testing.small_programs import hold, notify
 from mmrs_mavlink.plugin.built import robot_of
 from mmrs_mavlink.slots import member_of
 from mmrs_runtime.bus import CommandId, Node
+from mmrs_runtime.bus.gateway.server import Gateway
 from mmrs_runtime.bus.owner import Owner
 from mmrs_runtime.records.steps import StepRecord
 
@@ -163,3 +167,17 @@ def test_sending_looks_at_no_owner_but_those_that_keep_a_slot(monkeypatch):
     looked.clear()
     node.pump()
     assert looked == []
+
+
+def test_a_program_at_a_gateway_is_granted_a_latched_notify_before_its_owner_is_there(made, tmp_path):
+    hub, members = Hub(), members_of(made)
+    gateway = Gateway("a", RUN, lambda recorded: Node([members["a"]], RUN, carrier=hub.plug()), tmp_path)
+    Thread(target=gateway.serve, args=(lambda line: None,), daemon=True).start()
+    with closing(gateway), Client(gateway.port) as client:
+        client.ask({"do": "hello", "token": gateway.token}, "welcome")
+        client.ask({"do": "prepare", "number": 1, "slots": [["b", "go"]], "active": True}, "asked")
+        assert client.hear("granted")["lamport"] == 1
+        client.ask({"do": "send", "number": 1, "lamport": 4}, "sent")
+        with closing(Node([members["b"]], RUN, carrier=hub.plug())) as b:
+            client.hear("acknowledged")
+            assert b.state(("b", "go")).lamport == 4
