@@ -12,7 +12,8 @@ from dataclasses import dataclass, field
 from random import Random
 
 from mmrs_core.behaviour.program import Program
-from mmrs_runtime.bus import CommandId, Member, Node, Owned, Recorded
+from mmrs_core.runtime.slots import members_of
+from mmrs_runtime.bus import CommandId, Node, Recorded
 from mmrs_runtime.records.steps import StepRecord
 from mmrs_runtime.semantics import awaited, entry, steps
 
@@ -62,6 +63,7 @@ class Post:
     def ask(self, sender, owner, request, answered):
         flying = Flying(self.process, None, owner, sender, request, self._only_now(answered))
         self.world.flying.append(flying)
+        self.world.said.add(json.loads(request)["do"])
 
     def _only_now(self, answered):
         life = self.process.life
@@ -222,10 +224,11 @@ class World:
     cuts: set[frozenset[int]] = field(default_factory=set)
     time: float = 0.0
     spoiling: bool = True
+    said: set[str] = field(default_factory=set)
 
     def __post_init__(self):
         self.members = members_of(self.program)
-        robots = list(self.program.robots)
+        robots = list(self.program.executable.robots)
         while robots:
             taken = min(len(robots), self.chance.choice((1, 1, 2)))
             self.processes.append(Process(self, robots[:taken]))
@@ -281,30 +284,6 @@ class World:
 
     def records(self):
         return [record for process in self.processes for log in process.logs.values() for record in log]
-
-
-def members_of(program: Program) -> dict[str, Member]:
-    """Return what the bus must know of each robot."""
-    set_by: dict[tuple[str, str], dict[bool, set[str]]] = {}
-    targets: dict[str, set[str]] = {robot.id: set() for robot in program.robots}
-    for robot in program.robots:
-        for move in robot.moves:
-            for action in (*move.before, *move.after):
-                for slot in action.sets:
-                    set_by.setdefault(slot, {True: set(), False: set()})[action.active].add(robot.id)
-                    targets[robot.id].add(slot[0])
-    return {
-        robot.id: Member(
-            Owned(
-                robot.id,
-                robot.slots,
-                {slot: tuple(set_by.get((robot.id, slot), {}).get(True, ())) for slot in robot.slots},
-                {slot: tuple(set_by.get((robot.id, slot), {}).get(False, ())) for slot in robot.slots},
-            ),
-            frozenset(targets[robot.id]),
-        )
-        for robot in program.robots
-    }
 
 
 def spoil(world: World, faults: int) -> None:
