@@ -203,6 +203,13 @@ def test_generate_leaves_out_what_it_must_when_told_so(mmrs, project):
     assert list((project / "out").glob("*.plan"))
 
 
+def test_wheels_are_downloaded_for_targets_that_need_any(mmrs, project):
+    lossy = ("--target", "qgc-plan", "-o", project / "out", "--allow-lossy")
+    code, _, err = mmrs("generate", project, *lossy, "--wheels", "manylinux2014_aarch64")
+    assert code == 1
+    assert "has no requirements.txt" in err
+
+
 @pytest.mark.parametrize(("program", "command"), [("mmrs", ["generate"]), ("mmrs-gen", [])])
 def test_an_unknown_target_is_told_with_the_known_ones(mmrs, project, program, command):
     code, _, err = mmrs(*command, project, "--target", "toaster", "-o", project / "out", program=program)
