@@ -26,14 +26,13 @@ from heapq import heappop, heappush
 from pathlib import Path
 from resource import RUSAGE_SELF, getrusage
 
-from mmrs_core.runtime.terms import Terms
-
 from mmrs_core.behaviour.program import Move, RobotProgram
 from mmrs_core.runtime.run import simulate
 from mmrs_core.runtime.simulation import SIMULATION
 from mmrs_core.scene import Policy
 from mmrs_core.testing.small_programs import ROBOT_TYPE, go, hold, notify, program, robot, robot_type
 from mmrs_core.transformation.kinds import MOVE_KINDS, PLAIN_ROBOT
+from mmrs_runtime.engine.terms import Terms
 from mmrs_runtime.records.log import LogWriter
 from mmrs_runtime.records.steps import StepRecord
 
@@ -148,7 +147,7 @@ def engine(durations: Durations, folder: Path) -> Callable[[], str]:
     fleet = program(*map(robot_of, range(len(durations))))
 
     def run() -> str:
-        with LogWriter(folder) as log:
+        with LogWriter(folder, synced=False) as log:
             return simulate(
                 fleet,
                 backend=SIMULATION,
@@ -258,7 +257,7 @@ def lines(durations: Durations, folder: Path) -> Callable[[], str]:
                 made += 1
 
     def run() -> str:
-        with LogWriter(folder) as log:
+        with LogWriter(folder, synced=False) as log:
             for number in range(len(durations)):
                 for record in steps(number):
                     log.write(record)
