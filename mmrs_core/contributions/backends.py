@@ -1,67 +1,35 @@
-"""What moves robots: backends, what they are made from, and what makes them.
+"""What makes the vehicles of a run, and what they are made from; `mmrs_runtime.vehicle` says what they are.
 
-Times are seconds of the run's clock throughout. `abilities` says what a backend may have beside the rest.
+Times are seconds of the run's clock throughout.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING, Protocol, runtime_checkable
 
 if TYPE_CHECKING:
-    from mmrs_core.behaviour.program import Action, Move, Program, RobotProgram
-    from mmrs_core.contributions.execution import Clock, Fault, RobotState
+    from mmrs_core.behaviour.program import Program, RobotProgram
+    from mmrs_core.contributions.execution import Clock, Sample
     from mmrs_core.contributions.rules import MoveKind, RobotKind
     from mmrs_core.contributions.wiring import Wirings
     from mmrs_core.scene import Area, Name, Policy, RobotType
     from mmrs_runtime.vehicle import Vehicle
 
 
-class Backend(Protocol):
-    """Moves one robot. Calls return at once; any may raise LinkLostError.
+@runtime_checkable
+class Recorder(Protocol):
+    """A vehicle that remembers the way of its robot, for pictures and people."""
 
-    The interpreter begins one movement or action at a time and asks until it has finished.
-    """
-
-    def begin(self, move: Move, now: float, *, through: bool = False) -> None:
-        """Begin a movement, Start and Stop included; `through`: it need not stop at the end."""
+    @property
+    def notes(self) -> Sequence[str]:
+        """Return what was taken for granted, each line without the robot's name."""
         ...
 
-    def act(self, action: Action, now: float) -> None:
-        """Begin a device or feedback action."""
-        ...
-
-    def finished(self, now: float) -> bool:
-        """Return whether what was begun last has finished."""
-        ...
-
-    def fault(self, now: float) -> Fault | None:
-        """Return what went wrong up to now, if anything; asked before `finished`."""
-        ...
-
-    def next_event(self, now: float) -> float | None:
-        """Return when it will be worth asking again, inf: never; None: at the clock's own pace."""
-        ...
-
-    def wait(self, now: float) -> None:
-        """Hold the pose until the next begin."""
-        ...
-
-    def state(self, now: float) -> RobotState:
-        """Return what is known of the robot."""
-        ...
-
-    def stop(self, now: float, response: str = "HOLD") -> None:
-        """Bring the robot to a safe halt, from any state; idempotent.
-
-        Args:
-            now: time at which it begins.
-            response: a literal of PolicyResponse: how; ``NOTHING``: hands off, somebody else has the robot.
-
-        In real time `finished` then says when the robot has obeyed, and `fault` why it cannot.
-        """
+    def track(self) -> tuple[Sample, ...]:
+        """Return the way that the robot has come."""
         ...
 
 
@@ -145,6 +113,6 @@ class BackendFactory:
 
     name: str
     description: str
-    connect: Callable[[BackendInput], Backend | Vehicle]
+    connect: Callable[[BackendInput], Vehicle]
     simulated: bool = False
     check: Check = lambda options, links: ()

@@ -15,7 +15,6 @@ from mmrs_core.contributions.backends import BackendFactory, BackendInput, Live
 from mmrs_core.contributions.execution import Condition
 from mmrs_core.errors import LinkLostError
 from mmrs_core.runtime.conditions import refuse_undecided
-from mmrs_core.runtime.polled import vehicle_of
 from mmrs_core.runtime.unready import Unready, note_alone, record, unready
 from mmrs_runtime.clock import SIGNAL_SECONDS
 from mmrs_runtime.engine.clocks import RealClock
@@ -173,7 +172,7 @@ def _connect(
             shared=shared,
             announce=venture.say,
         )
-        robots[id] = vehicle_of(backend.connect(replace(given, live=live)))
+        robots[id] = backend.connect(replace(given, live=live))
         if early is not None:
             early.look(set(venture.inputs))
 

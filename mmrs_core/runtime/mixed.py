@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping
 from dataclasses import replace
 
-from mmrs_core.contributions.backends import Backend, BackendFactory, BackendInput
+from mmrs_core.contributions.backends import BackendFactory, BackendInput
 from mmrs_core.errors import UsageError
 from mmrs_runtime.vehicle import Vehicle
 
@@ -26,7 +26,7 @@ def mixed(
         words = (f"'{each.name}' {'simulated' if each.simulated else 'real'}" for each in used.values())
         raise UsageError(f"backends of one run go by one time: {', '.join(words)}")
 
-    def connect(given: BackendInput) -> Backend | Vehicle:
+    def connect(given: BackendInput) -> Vehicle:
         factory = own.get(given.robot.id, usual)
         live = given.live
         if live is not None:

@@ -6,15 +6,13 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
 from mmrs_core.behaviour.program import Program
-from mmrs_core.contributions.abilities import Recorder
-from mmrs_core.contributions.backends import BackendFactory, BackendInput
+from mmrs_core.contributions.backends import BackendFactory, BackendInput, Recorder
 from mmrs_core.contributions.execution import Condition, Sample
 from mmrs_core.contributions.rules import MoveKind, RobotKind, robot_kind_of
 from mmrs_core.contributions.wiring import Wirings
 from mmrs_core.errors import UnsupportedError, UsageError
 from mmrs_core.runtime.conditions import refuse_undecided
 from mmrs_core.runtime.mixed import options_for, refuse_strange
-from mmrs_core.runtime.polled import vehicle_of
 from mmrs_core.scene import Area, Name, Policy, RobotType
 from mmrs_runtime.engine.clocks import SimulatedClock
 from mmrs_runtime.engine.run import run
@@ -94,7 +92,7 @@ def simulate(
     connected = {id: backend.connect(each) for id, each in given.items()}
     ending = run(
         program.executable,
-        {id: vehicle_of(each) for id, each in connected.items()},
+        connected,
         slots=LocalSlots(program.executable),
         clock=SimulatedClock(),
         conditions=conditions or {},

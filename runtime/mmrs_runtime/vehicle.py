@@ -203,11 +203,6 @@ class Vehicle(ABC):
 
     # What is seen of it once it was told to stop.
 
-    @property
-    def watches(self) -> bool:
-        """Return whether it tells how far the robot is that was told to stop."""
-        return False
-
     def obeys(self, now: float) -> bool:
         """Return whether the robot has confirmed that it now carries out the response."""
         return False

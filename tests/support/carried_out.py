@@ -1,10 +1,9 @@
-"""Runs of the engine with backends that a test has made."""
+"""Runs of the engine with vehicles that a test has made."""
 
 from __future__ import annotations
 
 from dataclasses import replace
 
-from mmrs_core.runtime.polled import vehicle_of
 from mmrs_runtime.engine.clocks import SimulatedClock
 from mmrs_runtime.engine.run import run
 from mmrs_runtime.engine.terms import TO_THE_END
@@ -12,7 +11,7 @@ from mmrs_runtime.slots import LocalSlots
 
 
 def carried_out(
-    behaviour, backends, *, slots=None, clock=None, conditions=None, policies=None, terms=TO_THE_END
+    behaviour, vehicles, *, slots=None, clock=None, conditions=None, policies=None, terms=TO_THE_END
 ):
     """Return the records of a run, and how it ended."""
     records = []
@@ -24,7 +23,7 @@ def carried_out(
 
     ending = run(
         behaviour.executable,
-        {id: vehicle_of(backend) for id, backend in backends.items()},
+        vehicles,
         slots=slots or LocalSlots(behaviour.executable),
         clock=clock or SimulatedClock(),
         conditions=conditions or {},

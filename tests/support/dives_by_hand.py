@@ -71,7 +71,7 @@ class Driven:
         self.backend, self.clock, self.vehicle, self.said = backend, clock, vehicle, said
 
     def begin(self, id):
-        self.backend.begin(next(each for each in MOVES if each.id == id), self.clock.now())
+        self.backend.do(next(each for each in MOVES if each.id == id), self.clock.now())
 
     def set_out(self):
         """Begin to go out, and wait until it is a metre from home."""
@@ -84,12 +84,12 @@ class Driven:
         until(lambda: self.truth[2] < -1.0)
 
     def finish(self):
-        until(lambda: self.fault or self.backend.finished(self.clock.now()), 30.0)
+        until(lambda: self.fault or self.done, 30.0)
         assert self.fault is None, self.fault
 
     def stop(self, response):
-        self.backend.stop(self.clock.now(), response)
-        until(lambda: self.backend.finished(self.clock.now()), 30.0)
+        self.backend.respond(response, self.clock.now())
+        until(lambda: self.done, 30.0)
 
     def pass_by(self, seconds):
         end = self.clock.now() + seconds
@@ -100,8 +100,14 @@ class Driven:
         return self.backend.undone(self.clock.now())
 
     @property
+    def done(self):
+        self.backend.look(self.clock.now())
+        return self.backend.done
+
+    @property
     def fault(self):
-        return self.backend.fault(self.clock.now())
+        self.backend.look(self.clock.now())
+        return self.backend.trouble
 
     @property
     def truth(self):

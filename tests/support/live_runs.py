@@ -6,6 +6,7 @@ import threading
 import time
 from math import inf
 
+from mmrs_core.behaviour.program import Move
 from mmrs_core.contributions.backends import BackendFactory, BackendInput
 from mmrs_core.contributions.execution import Fault, RobotState
 from mmrs_core.errors import MmrsError
@@ -15,36 +16,27 @@ from mmrs_core.testing.small_programs import ROBOT_TYPE, hold, program, robot, r
 from mmrs_runtime.engine.clocks import RealClock
 from mmrs_runtime.engine.orders import STOP, Orders
 from mmrs_runtime.slots import LocalSlots
+from mmrs_runtime.vehicle import Vehicle
 
 FAST = 100.0
 
 
-class Idle:
+class Idle(Vehicle):
     """What any robot of a test says that has no events of its own.
 
     Attributes:
-        trouble: what is wrong with it; None: nothing.
         charge: part of its battery that is left; None: unknown.
     """
 
-    trouble: Fault | None
     charge: float | None = None
-
-    def fault(self, now):
-        return self.trouble
-
-    def next_event(self, now):
-        return inf
-
-    def wait(self, now):
-        pass
+    comes_home = pauses = True
 
     def state(self, now):
         return RobotState(now, (0.0, 0.0, 0.0), 0.0, 0.0, None, charge=self.charge)
 
 
 class Walker(Idle):
-    """A robot that does each thing until it is told that it is done; it wakes the interpreter itself."""
+    """A robot that does each thing until it is told that it is done; it wakes the engine itself."""
 
     def __init__(self, given: BackendInput, script):
         self.given, self.script = given, script
@@ -78,20 +70,15 @@ class Walker(Idle):
 
     def prepare(self, now):
         self._go("ready")
+        return True
 
     def known(self, now):
         return self.recognised
 
-    def begin(self, move, now, *, through=False):
-        self._go(move.id)
+    def do(self, order, now, *, through=False):
+        self._go(order.id if isinstance(order, Move) else order.name)
 
-    def act(self, action, now):
-        self._go(action.name)
-
-    def finished(self, now):
-        return self.done
-
-    def stop(self, now, response="HOLD"):
+    def respond(self, response, now):
         self.stops.append(response)
         self.trouble, self.halted = None, False
         self._go(f"stop {response}")
@@ -135,6 +122,7 @@ class Walker(Idle):
     def recover(self, passed, begun, now):
         self.recovered = (tuple(passed), begun)
         self._go("recovered")
+        return True
 
     def note(self, kind, content):
         self.noted.append((kind, dict(content)))

@@ -12,7 +12,6 @@ import pytest
 from mmrs_core.behaviour.program import Program
 from mmrs_core.contributions.backends import BackendFactory, BackendInput
 from mmrs_core.errors import UsageError
-from mmrs_core.runtime.polled import vehicle_of
 from mmrs_core.testing.conformance.declared import Conformance
 from mmrs_core.testing.small_programs import go, hold, program, robot, robot_type
 from mmrs_runtime.vehicle import Vehicle
@@ -106,7 +105,7 @@ class BackendConformance(Conformance):
     def _simulated(self, backend: BackendFactory) -> Vehicle:
         if not backend.simulated:
             pytest.skip(f"{backend.name} drives real robots")
-        return vehicle_of(backend.connect(self._input(backend)))
+        return backend.connect(self._input(backend))
 
 
 def _end(driven: Vehicle, now: float) -> float:

@@ -42,11 +42,11 @@ class Driven:
 
     @property
     def fault(self):
-        found = self.backend.fault(self.clock.now())
-        return found.which if found is not None else ""
+        self.backend.look(self.clock.now())
+        return self.backend.trouble.which if self.backend.trouble is not None else ""
 
     def begin(self, id):
-        self.backend.begin(next(each for each in ROVER.moves if each.id == id), self.clock.now())
+        self.backend.do(next(each for each in ROVER.moves if each.id == id), self.clock.now())
 
     def do(self, *ids):
         for id in ids:
@@ -54,7 +54,7 @@ class Driven:
             self.finish()
 
     def finish(self):
-        until(lambda: self.fault or self.backend.finished(self.clock.now()))
+        until(lambda: self.fault or self.backend.done)
         assert self.fault == ""
 
 
@@ -160,6 +160,6 @@ def test_a_vehicle_that_starts_anew_on_its_way_is_told_of_where_the_robot_was_to
         until(lambda: driven.state.position[0] > 20.0)
         start_anew(driven)
         until(lambda: driven.fault == "VEHICLE_RESTARTED")
-        found = driven.backend.fault(driven.clock.now())
+        found = driven.backend.trouble
         assert found.instead == "HOLD"
         assert "with its motors off: nothing can be carried on" in found.reason

@@ -70,16 +70,18 @@ class Vehicle(Idle):
         self._touch()
         self.at, self.steps, self.response = at, steps, ""
 
+    def look(self, now):
+        self.done = self.steps == 0
+        return inf
+
     def prepare(self, now):
         self._begin("ready", 2)
+        return True
 
-    def begin(self, move, now, *, through=False):
-        self._begin(move.id, inf if move.id == "walk" else 0)
+    def do(self, order, now, *, through=False):
+        self._begin(order.id, inf if order.id == "walk" else 0)
 
-    def finished(self, now):
-        return self.steps == 0
-
-    def stop(self, now, response="HOLD"):
+    def respond(self, response, now):
         if self.trouble is not None and self.trouble.which == "LINK_LOST" and response != "NOTHING":
             return
         self.hands_off = self.hands_off or response == "NOTHING"
@@ -116,6 +118,7 @@ class Vehicle(Idle):
     def recover(self, passed, begun, now):
         self.holds, self.stands, self.trouble = False, False, None
         self._begin("recover", 2)
+        return True
 
     def hindrance(self, passed, begun, now):
         return ""

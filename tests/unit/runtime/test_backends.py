@@ -14,13 +14,14 @@ from mmrs_core.hookspecs import hookimpl
 from mmrs_core.plugins import load_plugins
 from mmrs_core.testing.conformance import BackendConformance
 from mmrs_core.testing.small_programs import ROBOT_TYPE, go, program, robot, robot_type
+from mmrs_runtime.vehicle import Vehicle
 
 SECONDS = 7.0
 BEHAVIOUR = program(robot("r", [go("there", (30.0, 0.0, 0.0))]))
 PLACE = pipeline.Place({ROBOT_TYPE: robot_type()})
 
 
-class Jumper:
+class Jumper(Vehicle):
     """A robot that is where a move leads to after so many seconds, however far that is."""
 
     def __init__(self, given):
@@ -30,21 +31,13 @@ class Jumper:
         self._seconds = float(given.options.get("seconds", SECONDS))
         self._at, self._to, self._end = given.robot.home, given.robot.home, 0.0
 
-    def begin(self, move, now, *, through=False):
+    def do(self, order, now, *, through=False):
         self._at = self.state(now).position
-        self._to = move.target.position if move.target else self._at
-        self._end = now + (self._seconds if move.target or "duration" in move.attributes else 0.0)
+        self._to = order.target.position if order.target else self._at
+        self._end = now + (self._seconds if order.target or "duration" in order.attributes else 0.0)
 
-    def act(self, action, now):
-        self._end = now
-
-    def finished(self, now):
-        return now >= self._end
-
-    def fault(self, now):
-        return None
-
-    def next_event(self, now):
+    def look(self, now):
+        self.done = now >= self._end
         return self._end
 
     def wait(self, now):
@@ -53,7 +46,7 @@ class Jumper:
     def state(self, now):
         return RobotState(now, self._to if now >= self._end else self._at, 0.0, 0.0, None)
 
-    def stop(self, now, response="HOLD"):
+    def respond(self, response, now):
         if now < self._end:
             self._to, self._end = self._at, now
 

@@ -20,6 +20,7 @@ from mmrs_runtime.engine.judging import assumed
 from mmrs_runtime.engine.terms import Terms
 from mmrs_runtime.semantics import Outcome
 from mmrs_runtime.slots import LocalSlots
+from mmrs_runtime.vehicle import Vehicle
 
 
 def shown(records):
@@ -206,29 +207,20 @@ def test_notifies_are_observed_before_they_are_delivered():
     assert bus.state(("r", "s")).active
 
 
-class Instant:
-    """A backend whose moves take no time; it notes what it is told."""
+class Instant(Vehicle):
+    """A vehicle whose moves take no time; it notes what it is told."""
 
     def __init__(self, lost_at: str = "", fault: Fault | None = None) -> None:
         self.calls: list[str] = []
-        self.lost_at, self.wrong = lost_at, fault
+        self.lost_at, self.trouble = lost_at, fault
 
-    def begin(self, move, now, *, through=False):
-        self.calls.append(f"begin {move.id}{' through' if through else ''}")
-        if move.id == self.lost_at:
+    def do(self, order, now, *, through=False):
+        if isinstance(order, Action):
+            self.calls.append(f"act {order.name}")
+            return
+        self.calls.append(f"begin {order.id}{' through' if through else ''}")
+        if order.id == self.lost_at:
             raise LinkLostError("no heartbeat")
-
-    def act(self, action: Action, now):
-        self.calls.append(f"act {action.name}")
-
-    def finished(self, now):
-        return True
-
-    def fault(self, now):
-        return self.wrong
-
-    def next_event(self, now):
-        return inf
 
     def wait(self, now):
         self.calls.append("wait")
@@ -236,7 +228,7 @@ class Instant:
     def state(self, now):
         return RobotState(now, (0.0, 0.0, 0.0), 0.0, 0.0, None)
 
-    def stop(self, now, response="HOLD"):
+    def respond(self, response, now):
         self.calls.append(f"stop {response}")
 
 
@@ -276,7 +268,7 @@ def test_a_run_that_is_given_up_stops_every_robot_that_is_under_way():
 
 def test_a_robot_that_does_not_confirm_its_stop_is_named():
     class Deaf(Instant):
-        def stop(self, now, response="HOLD"):
+        def respond(self, response, now):
             raise LinkLostError("no answer")
 
     behaviour = program(robot("r", [hold("h")], waits={"h": ["s"]}))
@@ -326,7 +318,7 @@ def test_some_of_the_robots_can_run_here_and_the_others_elsewhere():
     bus, there = LocalSlots(behaviour.executable), []
 
     class Late(Instant):
-        def next_event(self, now):
+        def look(self, now):
             """Have the other robot run while this one waits."""
             if self.calls[-1] == "wait" and not there:
                 there.extend(carried_out(behaviour, {"elsewhere": Instant()}, slots=bus)[0])

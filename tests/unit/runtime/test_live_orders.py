@@ -204,13 +204,13 @@ def test_an_order_that_another_has_replaced_is_not_confirmed_by_that(live):
 
 def test_a_robot_whose_link_comes_back_is_waited_for_and_obeys(live):
     run, walker = walking(live, stop_RETURN=inf)
-    walker.stop = lambda now, response: None
+    walker.respond = lambda response, now: None
     walker.heard, walker.watched = False, lambda now: True
     walker.fail("LINK_LOST")
     run.wait_for(lambda: run.records[-1].label == "fault")
     run.wait_for(lambda: any("not known to have stopped" in line for line in run.said))
     assert run.order(LAND).refused == {"r": "its link is lost"}
-    del walker.stop, walker.watched
+    del walker.respond, walker.watched
     walker.watched_for, walker.heard, walker.trouble = True, True, None
     run.wait_for(lambda: "'r': is heard again: orders are obeyed" in run.said)
     assert list(run.order(LAND).confirmed) == ["r"]

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from importlib.util import find_spec
 
-from mmrs_core.contributions.backends import Backend, BackendFactory, BackendInput
+from mmrs_core.contributions.backends import BackendFactory, BackendInput
 from mmrs_core.errors import UnsupportedError
+from mmrs_runtime.vehicle import Vehicle
 
 
-def _rehearse(given: BackendInput) -> Backend:
+def _rehearse(given: BackendInput) -> Vehicle:
     """Return a simulated vehicle with its whole control layer, in simulated time."""
     _refuse_without_can("can-sim")
     from mmrs_auv.backend.rehearsed import rehearsed
@@ -16,7 +17,7 @@ def _rehearse(given: BackendInput) -> Backend:
     return rehearsed(given)
 
 
-def _connect(given: BackendInput) -> Backend:
+def _connect(given: BackendInput) -> Vehicle:
     """Return the decision centre of a vehicle on its bus, in real time."""
     if given.live is None:
         raise UnsupportedError("backend 'can': drives robots in real time; 'mmrs run' does that")

@@ -8,6 +8,7 @@ from collections.abc import Mapping
 from math import hypot
 
 from auv_vessel.api import Connection
+from auv_vessel.decision.duties import Ready
 from auv_vessel.eyes import Detections
 from auv_vessel.sheet import Sheet, Vector
 from auv_vessel.wire.ports import CHANNEL, open_port
@@ -50,33 +51,29 @@ class ConnectedRobot(CanRobot):
         self._until = float("inf")
         self._met = False
 
-    def prepare(self, now: float) -> None:
+    def prepare(self, now: float) -> bool:
         """Begin to wait until the vehicle is heard and knows where it is."""
+        self.done, self.trouble = False, None
         self._until = now + self._options.patience * self._clock.speedup
         plan = self._given.program.fingerprint
         about = {"link": "can", "vehicle": "sub", "confirms": True}
         self._kept.note("start", {"plan": plan, "process": PROCESS, **about})
-        self._prepared(now)
+        self._helm.begin(Ready(), now)
+        return True
 
-    def fault(self, now: float) -> Fault | None:
-        """Return what went wrong; a bus that is gone is a lost link.
+    def look(self, now: float) -> float:
+        """See how it is, all the time; a bus that is gone is a lost link.
 
         Raises:
             LinkLostError: it is.
         """
         if self._connection.failure is not None:
             raise LinkLostError(str(self._connection.failure))
-        if not self._met:
-            return self._unmet(now)
-        return super().fault(now)
+        return super().look(now)
 
     def watched(self, now: float) -> bool:
         """Return whether somebody must stay with the vehicle; nobody can where the bus itself is gone."""
         return self._connection.failure is None and super().watched(now)
-
-    def next_event(self, now: float) -> float | None:
-        """Return nothing: vehicles are looked at all the time."""
-        return None
 
     def close(self) -> None:
         """Let the last goal be heard, and fall silent; the vehicle then holds, and comes up."""
@@ -91,6 +88,9 @@ class ConnectedRobot(CanRobot):
 
     def _injected(self, text: str, content: Mapping[str, object]) -> None:
         self._keeper.note("injected", {"fault": text, **content})
+
+    def _wrong(self, now: float) -> Fault | None:
+        return super()._wrong(now) if self._met else self._unmet(now)
 
     def _unmet(self, now: float) -> Fault | None:
         """Return why the vehicle does not get ready, if it does not."""

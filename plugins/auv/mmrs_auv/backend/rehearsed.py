@@ -23,7 +23,6 @@ from mmrs_auv.backend.duties_of import Duties, Waters
 from mmrs_auv.backend.options import Rehearsing, rehearsing
 from mmrs_auv.backend.robot import CanRobot
 from mmrs_auv.sheets import sheet_of
-from mmrs_core.behaviour.program import Action, Move
 from mmrs_core.contributions.backends import BackendInput
 from mmrs_core.contributions.execution import Fault, RobotState, Sample
 from mmrs_core.errors import UnsupportedError
@@ -192,30 +191,21 @@ class RehearsedRobot(CanRobot):
         if sight is None:
             self.notes += [f"move '{id}': object taken to be where it is expected" for id in _objects(given)]
 
-    def begin(self, move: Move, now: float, *, through: bool = False) -> None:
-        """Begin a movement."""
+    def do(self, order: object, now: float, *, through: bool = False) -> None:
+        """Begin a grounded movement or action."""
         self._look(now)
-        super().begin(move, now, through=through)
+        super().do(order, now, through=through)
 
-    def act(self, action: Action, now: float) -> None:
-        """Begin a device or feedback action."""
-        self._look(now)
-        super().act(action, now)
-
-    def fault(self, now: float) -> Fault | None:
-        """Return what went wrong up to now; a vehicle that has hit something has crashed."""
-        found = super().fault(now)
-        return found if found is not None or self._response else self._struck
-
-    def next_event(self, now: float) -> float | None:
-        """Return when to look again."""
+    def look(self, now: float) -> float:
+        """See how it is; return when to look again."""
+        super().look(now)
         return now + PACE
 
-    def stop(self, now: float, response: str = "HOLD") -> None:
+    def respond(self, response: str, now: float) -> None:
         """Do what a response says, to its end: nobody asks again in simulated time."""
         if self._response == response:
             return
-        super().stop(now, response)
+        super().respond(response, now)
         until = self.stage.rehearsal.now + LONGEST_RESPONSE
         while not self._helm.done(self._now) and self.stage.rehearsal.now < until:
             if self.stage.craft.state().silent > LONGEST_SILENCE:
@@ -225,6 +215,11 @@ class RehearsedRobot(CanRobot):
     def track(self) -> tuple[Sample, ...]:
         """Return the way that the vehicle has come, as it truly was."""
         return tuple(self._samples)
+
+    def _wrong(self, now: float) -> Fault | None:
+        """Return what went wrong; a vehicle that has hit something has crashed."""
+        found = super()._wrong(now)
+        return found if found is not None or self._response else self._struck
 
     def _look(self, now: float) -> None:
         while now - self.stage.rehearsal.now > TICK:

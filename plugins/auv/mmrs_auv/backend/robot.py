@@ -1,4 +1,4 @@
-"""One underwater vehicle as the interpreter drives it."""
+"""One underwater vehicle as the engine drives it."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Protocol
 
 from auv_vessel.api import Craft, State
 from auv_vessel.decision.drives import Drives
-from auv_vessel.decision.duties import NO_PROGRESS, Duty, FailureError, Ready, Stay, Surface
+from auv_vessel.decision.duties import NO_PROGRESS, Duty, FailureError, Stay, Surface
 from auv_vessel.decision.helm import COMES_UP, CRASHED, LINK_LOST, POSITION_LOST, SILENT, Helm, Watch
 from auv_vessel.movement.abilities import abilities_of
 from auv_vessel.sheet import Sheet, Vector
@@ -21,6 +21,7 @@ from mmrs_core.runtime.escape import Escapes
 from mmrs_core.runtime.known import DEVICE_ACTION, kinematics_of
 from mmrs_core.scene import Position
 from mmrs_runtime.policies import AFTER, NOTHING, patience, response_to
+from mmrs_runtime.vehicle import Vehicle
 
 STAYS, RESTS, FINDS = ("HOLD", "CONTINUE"), ("STOP_THRUST", NOTHING), ("RETURN", "EMERGENCY_AREA")
 HINDRANCES = (LINK_LOST, POSITION_LOST, NO_PROGRESS)
@@ -47,7 +48,7 @@ class Keeper(Protocol):
         ...
 
 
-class CanRobot:
+class CanRobot(Vehicle):
     """Has a craft do what moves and actions say, and looks after it; nothing waits."""
 
     def __init__(
@@ -70,22 +71,24 @@ class CanRobot:
         self._escapes = Escapes(given, kinematics_of(given), given.robot.home or (0.0, 0.0, 0.0))
         self._afloat = float(abilities_of(sheet).afloat)
         self._response, self._instead = "", ""
-        self._given_up = self._unheard = False
+        self._given_up = self._unheard = self._bears = False
         self._silent_device: Fault | None = None
         self._now = 0.0
         self._told: dict[str, Position] = {}
         self._places: dict[str, Position] = {}
         self._place: Position = given.robot.home or (0.0, 0.0, given.program.frame.surface)
 
-    def begin(self, move: Move, now: float, *, through: bool = False) -> None:
-        """Begin a movement."""
-        self._silent_device = None
-        self._helm.watch = self._watch
-        self._helm.begin(self._duties.movement(move, self._here(), through=through), now)
+    def do(self, order: object, now: float, *, through: bool = False) -> None:
+        """Begin a grounded movement or action."""
+        self.done, self.trouble, self._silent_device = False, None, None
+        if isinstance(order, Move):
+            self._helm.watch = self._watch
+            self._helm.begin(self._duties.movement(order, self._here(), through=through), now)
+        else:
+            assert isinstance(order, Action)
+            self._act(order, now)
 
-    def act(self, action: Action, now: float) -> None:
-        """Begin a device or feedback action."""
-        self._silent_device = None
+    def _act(self, action: Action, now: float) -> None:
         duty = self._duties.action(action)
         if duty is None:
             self._silent_device = Fault("DEVICE_SILENT", f"'{action.device}' does not do '{action.name}'")
@@ -94,14 +97,15 @@ class CanRobot:
             self.note("reported", {"name": action.name, **dict(action.parameters)})
         self._helm.begin(duty, now)
 
-    def finished(self, now: float) -> bool:
-        """Return whether what was begun last has finished."""
+    def look(self, now: float) -> float:
+        """See what went wrong up to now, and whether what was begun last has finished."""
         self._look(now)
-        return self._silent_device is None and self._helm.done(now)
+        self.trouble = self._wrong(now)
+        goes_on = (self.trouble is None or self._bears) and self._silent_device is None
+        self.done, self._bears = goes_on and self._helm.done(now), False
+        return now
 
-    def fault(self, now: float) -> Fault | None:
-        """Return what went wrong up to now."""
-        self._look(now)
+    def _wrong(self, now: float) -> Fault | None:
         found = self._helm.failure(now)
         if found is not None and self._response and self._craft.state().silent > UNHEARD:
             instead, self._unheard = "" if self._unheard else "SURFACE", True
@@ -112,6 +116,7 @@ class CanRobot:
 
     def bear(self, now: float) -> bool:
         """Go on although something went wrong that policies say to bear."""
+        self._bears = True
         if self._silent_device is not None:
             self._silent_device = None
             self._helm.begin(Stay(0.0), now)
@@ -142,8 +147,9 @@ class CanRobot:
         self._look(now)
         return self._state(now, self._craft.state())
 
-    def stop(self, now: float, response: str = "HOLD") -> None:
+    def respond(self, response: str, now: float) -> None:
         """Do what a response says, or come up where that cannot be done."""
+        self.done, self.trouble = False, None
         self._look(now)
         state = self._craft.state()
         self._response, self._instead = response, ""
@@ -155,6 +161,11 @@ class CanRobot:
             response = "SURFACE"
         self._helm.resume(now)
         self._helm.begin(self._answer(response), now)
+
+    @property
+    def pauses(self) -> bool:
+        """Return that it can halt in the middle of anything."""
+        return True
 
     def pause(self, now: float) -> None:
         """Begin to halt."""
@@ -170,7 +181,7 @@ class CanRobot:
         return self._helm.halted
 
     def obeys(self, now: float) -> bool:
-        """Return whether the vehicle does what it was told by `stop`: its goal is in force."""
+        """Return whether the vehicle does what it was told by `respond`: its goal is in force."""
         state = self._craft.state()
         return self.reachable(now) and (
             state.progress != "NONE" or self._response in RESTS or self._at_rest()
@@ -192,8 +203,14 @@ class CanRobot:
         """Return whether the vehicle on the bus is the robot's, as far as its bus says."""
         return self._craft.state().age < 1.0
 
-    def recover(self, passed: Sequence[str], begun: str, now: float) -> None:
+    @property
+    def comes_home(self) -> bool:
+        """Return that it knows the way back."""
+        return True
+
+    def recover(self, passed: Sequence[str], begun: str, now: float) -> bool:
         """Go back to where the last of the moves ended, round forbidden areas and obstacles."""
+        self.done, self.trouble = False, None
         self._response = ""
         self._helm.watch = self._watch
         try:
@@ -201,6 +218,7 @@ class CanRobot:
         except UnreachableError as error:
             duty = _Refuse(f"{NO_WAY}: {error}")
         self._helm.begin(duty, now)
+        return True
 
     def hindrance(self, passed: Sequence[str], begun: str, now: float) -> str:
         """Return why it cannot go on."""
@@ -241,10 +259,6 @@ class CanRobot:
     def note(self, kind: str, content: Mapping[str, object]) -> None:
         """Keep something in the black box."""
         self._keeper.note(kind, content)
-
-    def _prepared(self, now: float) -> None:
-        """Wait until the vehicle knows where it is; nothing moves."""
-        self._helm.begin(Ready(), now)
 
     def _answer(self, response: str) -> Duty:
         if response in STAYS:

@@ -7,12 +7,13 @@ a current, and the longer the way, the less is known. What has a position flies 
 
 from __future__ import annotations
 
-from mmrs_core.contributions.backends import Backend, BackendFactory, BackendInput
+from mmrs_core.contributions.backends import BackendFactory, BackendInput
+from mmrs_runtime.vehicle import Vehicle
 
 NAME = "ardusub-manual"
 
 
-def _connect(given: BackendInput) -> Backend:
+def _connect(given: BackendInput) -> Vehicle:
     from mmrs_auv.manual.connecting import connect
 
     return connect(given)

@@ -1,4 +1,4 @@
-"""A robot that is driven by hand: a thread moves the sticks, the interpreter asks how far it is."""
+"""A robot that is driven by hand: a thread moves the sticks, the engine asks how far it is."""
 
 from __future__ import annotations
 
@@ -24,6 +24,7 @@ from mmrs_mavlink.plugin.context import RobotContext
 from mmrs_mavlink.records.start import PROCESS
 from mmrs_runtime import faults
 from mmrs_runtime.policies import NOTHING
+from mmrs_runtime.vehicle import Vehicle
 
 PERIOD = 0.1
 """Seconds from one message of the sticks to the next; ArduSub gives up after three."""
@@ -42,7 +43,7 @@ OURS_NO_MORE = (faults.LINK_LOST, faults.TAKEN_OVER, *OFF)
 UNKNOWN = "nobody knows where it is since it came up: bring it home"
 
 
-class ManualRobot:
+class ManualRobot(Vehicle):
     """A vehicle in depth hold, and the thread that moves its sticks."""
 
     def __init__(
@@ -61,27 +62,34 @@ class ManualRobot:
         self._keeper, self._plan = keeper_of(given, live), given.program.fingerprint
         self._thread: threading.Thread | None = None
         self._own: Fault | None = None
-        self._ready = self._released = self._lost = False
+        self._ready = self._released = self._lost = self._bears = False
         self._response = self._instead = ""
         self._busy_until: float | None = None
         self._action: Action | None = None
 
-    def prepare(self, now: float) -> None:
+    def prepare(self, now: float) -> bool:
         """Begin to listen, go into depth hold and arm."""
+        self.done, self.trouble = False, None
         about = {"link": "mavlink", "vehicle": "sub", "confirms": False}
         self.note("start", {"plan": self._plan, "process": PROCESS, **about})
         self._thread = threading.Thread(target=self._drive, name="sticks", daemon=True)
         self._thread.start()
+        return True
 
-    def begin(self, move: Move, now: float, *, through: bool = False) -> None:
-        """Begin a movement."""
+    def do(self, order: object, now: float, *, through: bool = False) -> None:
+        """Begin a grounded movement or action."""
+        self.done, self.trouble = False, None
+        if not isinstance(order, Move):
+            assert isinstance(order, Action)
+            self._act(order)
+            return
         with self._lock:
-            goal = goal_of(move, self._helm, self._context, self._route.depth)
+            goal = goal_of(order, self._helm, self._context, self._route.depth)
             self._busy_until, self._own = now, None
             if goal is not None:
                 self._route.go((goal,), now)
 
-    def act(self, action: Action, now: float) -> None:
+    def _act(self, action: Action) -> None:
         """Begin a device action, as its device is wired; feedback goes to people."""
         if not action.is_a(DEVICE_ACTION):
             said = (action.name, *(f"{key}={value}" for key, value in action.parameters))
@@ -92,32 +100,30 @@ class ManualRobot:
             self._action, self._own = action, None
         threading.Thread(target=self._do, args=(action,), name="device", daemon=True).start()
 
-    def finished(self, now: float) -> bool:
-        """Return whether what was begun last has finished."""
-        with self._lock:
-            if self._response:
-                return self._has_stopped(now)
-            done = self._ready and self._route.reached and self._action is None
-            return done and self._own is None and (self._busy_until is None or now >= self._busy_until)
-
-    def fault(self, now: float) -> Fault | None:
-        """Return what went wrong."""
+    def look(self, now: float) -> float:
+        """See what went wrong, and whether what was begun last has finished; the world goes on by itself."""
         with self._lock:
             found = self._troubles.told() or self._own
-            return self._hinders(found) if self._response and found is not None else found
+            self.trouble = self._hinders(found) if self._response and found is not None else found
+            self.done = (self.trouble is None or self._bears) and self._has_finished(now)
+            self._bears = False
+            return now
+
+    def _has_finished(self, now: float) -> bool:
+        if self._response:
+            return self._has_stopped(now)
+        done = self._ready and self._route.reached and self._action is None
+        return done and self._own is None and (self._busy_until is None or now >= self._busy_until)
 
     def bear(self, now: float) -> bool:
         """Go on although something went wrong that policies say to bear."""
+        self._bears = True
         with self._lock:
             if self._troubles.told() is not None:
                 self._troubles.bear()
             else:
                 self._own = None
             return True
-
-    def next_event(self, now: float) -> float | None:
-        """Nobody knows: the world goes on by itself."""
-        return None
 
     def wait(self, now: float) -> None:
         """Hold the pose."""
@@ -131,8 +137,9 @@ class ManualRobot:
             charge = self._autopilot.charge()
             return RobotState(now, self._here(), helm.speed, helm.heading, None, charge)
 
-    def stop(self, now: float, response: str = "HOLD") -> None:
+    def respond(self, response: str, now: float) -> None:
         """Do what a response says, or come up where that cannot be done."""
+        self.done, self.trouble = False, None
         with self._lock:
             self._action = self._route.paused = None
             self._response, self._instead = response, ""
@@ -150,6 +157,11 @@ class ManualRobot:
             else:
                 self._come_up(now)
 
+    @property
+    def pauses(self) -> bool:
+        """Return that it can halt in the middle of anything."""
+        return True
+
     def pause(self, now: float) -> None:
         """Begin to halt."""
         with self._lock:
@@ -165,7 +177,7 @@ class ManualRobot:
         return self._route.paused is not None and self._helm.reached and self._autopilot.armed
 
     def obeys(self, now: float) -> bool:
-        """Return whether the vehicle does what it was told by `stop`."""
+        """Return whether the vehicle does what it was told by `respond`."""
         if self._response in RESTS:
             return self._has_stopped(now)
         ours = self._troubles.event not in OURS_NO_MORE
@@ -187,14 +199,21 @@ class ManualRobot:
         """Return whether the vehicle was heard of lately."""
         return not self._autopilot.is_silent(LINK_PATIENCE)
 
-    def recover(self, passed: Sequence[str], begun: str, now: float) -> None:
+    @property
+    def comes_home(self) -> bool:
+        """Return that it knows the way back."""
+        return True
+
+    def recover(self, passed: Sequence[str], begun: str, now: float) -> bool:
         """Go back to where the last of the moves ended, round forbidden areas and obstacles."""
+        self.done, self.trouble = False, None
         with self._lock:
             self._response, self._own = "", None
             if why := self.hindrance(passed, begun, now):
                 self._own = Fault(faults.REFUSED, why)
             else:
                 self._route.go(self._ways.back(passed, self._here()), now)
+        return True
 
     def hindrance(self, passed: Sequence[str], begun: str, now: float) -> str:
         """Return why it cannot go on."""

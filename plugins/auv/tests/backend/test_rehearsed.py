@@ -153,8 +153,9 @@ def test_that_the_dive_was_given_up_is_told_once(tmp_path: Path) -> None:
     found = rehearse(dive(swim("out", 12.0, 0.0, 2.0)), tmp_path, leak)
     robot, now = found.robots["naiad"], found.run.ending.time
     assert found.fault == "CRASHED"
-    assert robot.fault(now) is None
-    assert robot.finished(now)
+    robot.look(now)
+    assert robot.trouble is None
+    assert robot.done
 
 
 def test_a_vehicle_that_does_not_get_back_comes_up(tmp_path: Path, monkeypatch) -> None:
@@ -162,11 +163,12 @@ def test_a_vehicle_that_does_not_get_back_comes_up(tmp_path: Path, monkeypatch) 
     found = rehearse(dive(swim("out", 0.0, 2.0, 1.0)), tmp_path / "out", noise="no")
     robot, now = found.robots["naiad"], found.run.ending.time
     robot.stage.vehicle.faults.dead |= {0, 1, 2, 3}
-    super(type(robot), robot).stop(now, "RETURN")
-    while (fault := robot.fault(now)) is None:
+    super(type(robot), robot).respond("RETURN", now)
+    while robot.trouble is None:
         now += 1.0
         assert now < 120.0
-    assert (fault.which, fault.instead) == ("NO_PROGRESS", "SURFACE")
+        robot.look(now)
+    assert (robot.trouble.which, robot.trouble.instead) == ("NO_PROGRESS", "SURFACE")
 
 
 @pytest.mark.thorough
@@ -180,7 +182,10 @@ def test_a_bus_that_falls_silent_is_a_lost_link(tmp_path: Path) -> None:
     assert found.fault == "LINK_LOST"
     assert list(found.run.ending.responses.values()) == ["SURFACE"]
     assert at(robot)[2] < AFLOAT
-    faults = [robot.fault(robot._now) for _ in range(3)]
+    faults = []
+    for _ in range(3):
+        robot.look(robot._now)
+        faults.append(robot.trouble)
     assert [(each.which, each.instead) for each in faults if each] == [
         ("LINK_LOST", "SURFACE"),
         *[("LINK_LOST", "")] * 2,

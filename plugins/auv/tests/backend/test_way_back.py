@@ -9,7 +9,6 @@ from dives import dive, rehearse, swim
 from mmrs_auv.backend.rehearsed import RehearsedRobot
 from mmrs_auv.backend.robot import CanRobot
 
-from mmrs_core.contributions.abilities import Recovering
 from mmrs_core.contributions.execution import Fault
 from mmrs_core.scene import Area, AreaUse
 
@@ -31,9 +30,10 @@ def test_it_goes_round_what_is_in_its_way(tmp_path: Path) -> None:
     assert robot.hindrance(("start", "first"), "second", now) == ""
     robot.recover(("start", "first"), "second", now)
     track = []
-    while not robot.finished(now):
+    while not robot.done:
         now += 0.5
-        assert robot.fault(now) is None
+        robot.look(now)
+        assert robot.trouble is None
         assert now < 300.0
         truth = robot.stage.vehicle.truth
         track.append((truth.east, truth.north))
@@ -43,12 +43,13 @@ def test_it_goes_round_what_is_in_its_way(tmp_path: Path) -> None:
 
 def test_whoever_runs_behaviours_knows_that_it_can_go_back(tmp_path: Path) -> None:
     robot, now = dived(tmp_path)
-    assert isinstance(robot, Recovering)
+    assert robot.comes_home
     assert isinstance(robot, CanRobot)
     assert robot.away(now) == "it is 6 m from home"
     robot.recover(("start",), "first", now)
-    while not robot.finished(now):
+    while not robot.done:
         now += 0.5
+        robot.look(now)
         assert now < 300.0
     assert robot.away(now) == ""
 
@@ -60,5 +61,5 @@ def test_it_is_refused_where_there_is_no_way(tmp_path: Path) -> None:
     assert said.startswith("no way is known back to where its program was broken off: goal")
     assert "'wreck'" in said
     robot.recover(("start", "first"), "second", now)
-    robot.finished(now + 0.5)
-    assert robot.fault(now + 0.5) == Fault("REFUSED", said)
+    robot.look(now + 0.5)
+    assert robot.trouble == Fault("REFUSED", said)

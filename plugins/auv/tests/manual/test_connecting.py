@@ -28,6 +28,11 @@ def test_what_it_does_by_itself_is_told():
         )
 
 
+def trouble(backend, clock):
+    backend.look(clock.now())
+    return backend.trouble
+
+
 def refused(url, *vehicles):
     """Return why a robot does not get ready; each vehicle is a port, and its settings."""
     clock = RealClock(SPEEDUP)
@@ -35,10 +40,10 @@ def refused(url, *vehicles):
     with ExitStack() as stack:
         there = [stack.enter_context(SimulatedVehicle(*each, speedup=SPEEDUP)) for each in vehicles]
         backend.prepare(clock.now())
-        until(lambda: backend.fault(clock.now()))
+        until(lambda: trouble(backend, clock))
         assert not any(each.autopilot.armed for each in there)
         backend.close()
-    return str(backend.fault(clock.now()))
+    return str(trouble(backend, clock))
 
 
 def test_what_is_no_submarine_is_told_nothing():
@@ -58,8 +63,8 @@ def test_a_vehicle_whose_motors_run_already_is_somebody_elses():
     with SimulatedVehicle(port, Settings(kind="sub"), speedup=SPEEDUP) as vehicle:
         vehicle.autopilot.arm()
         backend.prepare(clock.now())
-        until(lambda: backend.fault(clock.now()))
-        assert "motors run already" in backend.fault(clock.now()).reason
+        until(lambda: trouble(backend, clock))
+        assert "motors run already" in trouble(backend, clock).reason
         backend.close()
         assert vehicle.autopilot.armed
 

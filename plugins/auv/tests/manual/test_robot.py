@@ -95,7 +95,7 @@ def test_a_vehicle_that_comes_up_can_be_told_to_stay():
     with sub() as driven:
         driven.begin("out")
         until(lambda: driven.truth[2] < -1.9)
-        driven.backend.stop(driven.clock.now(), "SURFACE")
+        driven.backend.respond("SURFACE", driven.clock.now())
         until(lambda: driven.vehicle.autopilot.mode_name == "surface")
         driven.stop("HOLD")
         assert driven.vehicle.autopilot.mode_name == "alt_hold"
@@ -110,7 +110,7 @@ def test_it_pauses_and_goes_on():
         here = driven.truth
         driven.pass_by(5.0)
         assert driven.truth == pytest.approx(here, abs=0.3)
-        assert not driven.backend.finished(driven.clock.now())
+        assert not driven.done
         driven.backend.resume(driven.clock.now())
         driven.finish()
         assert driven.truth[0] == pytest.approx(6.0, abs=1.5)

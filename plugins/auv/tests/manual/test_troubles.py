@@ -32,7 +32,7 @@ def test_a_vehicle_that_was_disarmed_has_not_reached_anything():
     with sub() as driven:
         driven.set_out()
         command(driven.backend._link, mavlink.MAV_CMD_COMPONENT_ARM_DISARM, 0.0)
-        until(lambda: driven.fault or driven.backend.finished(driven.clock.now()))
+        until(lambda: driven.fault or driven.done)
         assert driven.fault.which == "MOTORS_OFF"
 
 
@@ -138,7 +138,7 @@ def test_a_device_that_does_not_answer_is_told_while_the_vehicle_is_steered_on()
         driven.begin("out")
         driven.finish()
         driven.vehicle.faults.silence(mavlink.MAV_CMD_DO_SET_RELAY)
-        driven.backend.act(Action(DEVICE_ACTION, "on", "lamp"), driven.clock.now())
+        driven.backend.do(Action(DEVICE_ACTION, "on", "lamp"), driven.clock.now())
         until(lambda: driven.fault)
         assert driven.fault.which == "DEVICE_SILENT"
         assert driven.vehicle.autopilot.armed

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 
-from mmrs_core.contributions.backends import Backend, BackendFactory, BackendInput
+from mmrs_core.contributions.backends import BackendFactory, BackendInput
 from mmrs_core.errors import UsageError
 from mmrs_mavlink.plugin.backend.options import link_options
+from mmrs_runtime.vehicle import Vehicle
 
 
-def _connect(given: BackendInput) -> Backend:
+def _connect(given: BackendInput) -> Vehicle:
     """Return a robot at the end of its link, which is first listened to when the robot gets ready."""
     link_options(given.options)
     if given.live is None:

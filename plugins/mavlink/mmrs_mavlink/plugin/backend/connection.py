@@ -22,7 +22,7 @@ from mmrs_mavlink.objects import Locator, where_expected
 from mmrs_mavlink.plugin.actions import action_of
 from mmrs_mavlink.plugin.backend.equipment import Equipment
 from mmrs_mavlink.plugin.backend.options import LinkOptions, link_options
-from mmrs_mavlink.plugin.backend.robot import MavlinkBackend
+from mmrs_mavlink.plugin.backend.robot import MavlinkRobot
 from mmrs_mavlink.plugin.backend.whereabouts import Ground
 from mmrs_mavlink.plugin.built import built, robot_of
 from mmrs_mavlink.plugin.context import context_of
@@ -60,7 +60,7 @@ class Fleet:
             self.rehearsal.close()
 
 
-def connect(given: BackendInput, live: Live) -> MavlinkBackend:
+def connect(given: BackendInput, live: Live) -> MavlinkRobot:
     """Return a robot at the end of its link.
 
     Raises:
@@ -80,7 +80,7 @@ def connect(given: BackendInput, live: Live) -> MavlinkBackend:
         link = fleet.radios.open(url, system)
     except Fault as fault:
         raise LinkLostError(f"robot '{given.robot.id}': {fault}") from fault
-    return MavlinkBackend(program, _equipment(given, live, input, program, fleet, link), options)
+    return MavlinkRobot(program, _equipment(given, live, input, program, fleet, link), options)
 
 
 def _refuse(given: BackendInput, input: TargetInput, options: LinkOptions) -> None:

@@ -1,4 +1,4 @@
-"""One robot of a behaviour, driven over its link: what the interpreter asks of it, and the answers."""
+"""One robot of a behaviour, driven over its link: what the engine has it do, and what it tells."""
 
 from __future__ import annotations
 
@@ -35,12 +35,13 @@ from mmrs_runtime.faults import (
 )
 from mmrs_runtime.faults import Fault as VehicleFault
 from mmrs_runtime.policies import CONTINUE, NOTHING
+from mmrs_runtime.vehicle import Vehicle
 
 FAREWELL_SECONDS = 5.0
 """Real seconds that a vehicle has to be told to stay where it is."""
 
 
-class MavlinkBackend:
+class MavlinkRobot(Vehicle):
     """Drives one robot; a thread of its own waits for the vehicle, so that every call returns at once."""
 
     def __init__(self, robot: Robot, equipment: Equipment, options: LinkOptions) -> None:
@@ -76,16 +77,28 @@ class MavlinkBackend:
         self._worker.failed = self._response.failed = self._note_failure
         equipment.link.guard = self._worker.guard
 
-    def prepare(self, now: float) -> None:
+    def prepare(self, now: float) -> bool:
         """Begin to wait for the vehicle, and to set it up."""
+        self.done, self.trouble = False, None
         self._with.start()
         self._begin(Job(self._setup.meet, self._setup.set_up))
+        return True
 
     def known(self, now: float) -> bool:
         """Return whether the vehicle is known to be the robot's."""
         return self._setup.is_known
 
-    def begin(self, move: Move, now: float, *, through: bool = False) -> None:
+    def do(self, order: object, now: float, *, through: bool = False) -> None:
+        """Begin a grounded movement, or the action that comes next in the robot's program."""
+        self.done, self.trouble = False, None
+        if isinstance(order, Move):
+            self._go(order, through=through)
+        else:
+            assert isinstance(order, Action)
+            self._under_way = ()
+            self._begin(self._moves.action(self._with.action(order)))
+
+    def _go(self, move: Move, *, through: bool) -> None:
         """Begin a movement; those in the midst of an uploaded run have begun with its first."""
         self._lost_link.follow(())
         self._move = move.id
@@ -106,21 +119,13 @@ class MavlinkBackend:
             job.append(self._landed)
         self._begin(job)
 
-    def act(self, action: Action, now: float) -> None:
-        """Begin the action that comes next in the robot's program."""
-        self._under_way = ()
-        self._begin(self._moves.action(self._with.action(action)))
-
-    def finished(self, now: float) -> bool:
-        """Return whether what was begun last has finished."""
-        if self._under_way and self._move != self._under_way[-1] and self._move in self._passed:
-            return True
-        return self._worker.done
-
-    def fault(self, now: float) -> Fault | None:
-        """Return what went wrong."""
+    def look(self, now: float) -> float:
+        """See what went wrong, and what has finished; the worker tells when to look again."""
         found = self._seen = self._worker.fault
-        return None if found is None else Fault(found.event, str(found), found.instead)
+        self.trouble = None if found is None else Fault(found.event, str(found), found.instead)
+        passed = self._under_way and self._move != self._under_way[-1] and self._move in self._passed
+        self.done = found is None and (bool(passed) or self._worker.done)
+        return inf
 
     def bear(self, now: float) -> bool:
         """Go on after a device that is silent, or with a battery that does not get full."""
@@ -134,10 +139,6 @@ class MavlinkBackend:
         self._with.say(f"carries on although {found}")
         self._worker.forgive(found)
         return True
-
-    def next_event(self, now: float) -> float | None:
-        """Return never: the worker wakes the interpreter."""
-        return inf
 
     def wait(self, now: float) -> None:
         """Hold the pose, with the policies of the wait."""
@@ -171,8 +172,9 @@ class MavlinkBackend:
         heard = self._with.link.latest("HEARTBEAT") is not None
         return told_of(self._with.vehicle.state()) if heard else {}
 
-    def stop(self, now: float, response: str = "HOLD") -> None:
+    def respond(self, response: str, now: float) -> None:
         """Carry out a response, from any state, or what comes nearest to it that can be done then."""
+        self.done, self.trouble = False, None
         found = self._worker.fault
         if found is None and response == self._response.name:
             return
@@ -235,8 +237,14 @@ class MavlinkBackend:
         """Return whether the motors run."""
         return self._worker.fault is None and self._with.vehicle.state().armed
 
-    def recover(self, passed: Sequence[str], begun: str, now: float) -> None:
+    @property
+    def comes_home(self) -> bool:
+        """Return that it knows the way back."""
+        return True
+
+    def recover(self, passed: Sequence[str], begun: str, now: float) -> bool:
         """Begin to go back to where the program was broken off."""
+        self.done, self.trouble = False, None
         self._response.forget()
         self._move = begun or (passed[-1] if passed else "")
         if self._move:
@@ -245,6 +253,12 @@ class MavlinkBackend:
         job = self._way.job(passed, begun)
         job.first(self._setup.take_up)
         self._begin(job, afresh=True)
+        return True
+
+    @property
+    def pauses(self) -> bool:
+        """Return that it can halt in the middle of anything."""
+        return True
 
     def pause(self, now: float) -> None:
         """Begin to halt."""
