@@ -51,7 +51,7 @@ Work = Sequence[tuple[Errand | Notice, Message]]
 
 @dataclass(frozen=True, slots=True)
 class Delivery:
-    """A notify on its way, as whoever sends it sees it; see `mmrs_core.contributions.buses.Delivery`."""
+    """A notify on its way, as whoever sends it sees it; see `mmrs_runtime.slots.Delivery`."""
 
     _errand: Errand
     _outgoing: Outgoing
