@@ -31,7 +31,7 @@ import zenoh
 from mmrs_core.behaviour.log import read_logs
 from mmrs_core.behaviour.program import Program
 from mmrs_core.behaviour.replay import replay
-from mmrs_core.contributions.backends import BackendInput
+from mmrs_core.contributions.vehicles import VehicleInput
 from mmrs_core.runtime.simulation import SIMULATION
 from mmrs_core.runtime.slots import shared_bus
 from mmrs_core.testing.small_programs import go, notify, program, robot, robot_type
@@ -337,7 +337,7 @@ def run_part(robots: int, seed: int, number: int, ports: list[int], folder: str)
     }
     backends = {
         each.id: SIMULATION.connect(
-            BackendInput(made, each, robot_type(), environment={}, options={}, **kind)
+            VehicleInput(made, each, robot_type(), environment={}, options={}, **kind)
         )
         for each in made.robots
         if each.id in mine

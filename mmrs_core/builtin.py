@@ -9,11 +9,11 @@ from mmrs_core.contributions.symbols import CORE_SYMBOLS, MapSymbol
 from mmrs_core.hookspecs import hookimpl
 
 if TYPE_CHECKING:
-    from mmrs_core.contributions.backends import BackendFactory
     from mmrs_core.contributions.checks import Check
     from mmrs_core.contributions.constraints import Constraint
     from mmrs_core.contributions.fixes import Fix
     from mmrs_core.contributions.rules import MoveKind, RobotKind
+    from mmrs_core.contributions.vehicles import VehicleFactory
     from mmrs_core.contributions.wiring import DeviceWiring
     from mmrs_core.migration.dialect import ForeignDialect
 
@@ -78,7 +78,7 @@ def mmrs_device_actions() -> Iterable[DeviceWiring]:
 
 
 @hookimpl
-def mmrs_backends() -> Iterable[BackendFactory]:
+def mmrs_vehicles() -> Iterable[VehicleFactory]:
     """Contribute the simulation."""
     from mmrs_core.runtime.simulation import SIMULATION
 

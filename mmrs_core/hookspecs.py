@@ -14,7 +14,6 @@ from typing import TYPE_CHECKING
 import pluggy
 
 if TYPE_CHECKING:
-    from mmrs_core.contributions.backends import BackendFactory
     from mmrs_core.contributions.checks import Check
     from mmrs_core.contributions.codecs import Codec
     from mmrs_core.contributions.commands import Command
@@ -24,6 +23,7 @@ if TYPE_CHECKING:
     from mmrs_core.contributions.rules import MoveKind, RobotKind, Rule
     from mmrs_core.contributions.symbols import MapSymbol
     from mmrs_core.contributions.targets import Target
+    from mmrs_core.contributions.vehicles import VehicleFactory
     from mmrs_core.contributions.wiring import DeviceWiring
     from mmrs_core.languages.evolution.migration import Migration
     from mmrs_core.languages.sources import MetamodelSource
@@ -99,8 +99,8 @@ def mmrs_targets() -> Iterable[Target]:  # type: ignore[empty-body]
 
 
 @hookspec
-def mmrs_backends() -> Iterable[BackendFactory]:  # type: ignore[empty-body]
-    """Contribute what the interpreter can drive; names are unique over all plug-ins."""
+def mmrs_vehicles() -> Iterable[VehicleFactory]:  # type: ignore[empty-body]
+    """Contribute what drives robots; names are unique over all plug-ins."""
 
 
 @hookspec

@@ -15,11 +15,11 @@ from mmrs_core.errors import InternalError, InvalidModelError, PluginError, Unre
 
 if TYPE_CHECKING:
     from mmrs_core.behaviour.program import Program
-    from mmrs_core.contributions.backends import BackendFactory, BackendInput
     from mmrs_core.contributions.checks import Verdict
     from mmrs_core.contributions.execution import Condition
     from mmrs_core.contributions.registry import Contributions
     from mmrs_core.contributions.targets import GeneratedFile
+    from mmrs_core.contributions.vehicles import VehicleFactory, VehicleInput
     from mmrs_core.generation.capabilities.judging import Capability
     from mmrs_core.languages import behaviour as bl
     from mmrs_core.languages.modelset import ModelSet
@@ -316,7 +316,7 @@ def inputs_of(
     *,
     options: Mapping[str, str] | None = None,
     robots: Collection[str] | None = None,
-) -> dict[str, BackendInput]:
+) -> dict[str, VehicleInput]:
     """Return what the backends of a run may use, by robot.
 
     Args:
@@ -363,18 +363,18 @@ def conditions_for(
     return {**standard, **contributions.conditions, **assumed(assume)}
 
 
-def backend_named(name: str, contributions: Contributions) -> BackendFactory:
+def backend_named(name: str, contributions: Contributions) -> VehicleFactory:
     """Return the backend of that name.
 
     Raises:
         UsageError: if there is none.
     """
-    return _named("backend", name, contributions.backends)
+    return _named("backend", name, contributions.vehicles)
 
 
 def backend_for(
     program: Program, contributions: Contributions, usual: str, own: Mapping[str, str]
-) -> BackendFactory:
+) -> VehicleFactory:
     """Return what moves the robots of a program: the usual backend, or their own, by names.
 
     Raises:

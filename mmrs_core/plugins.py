@@ -35,13 +35,15 @@ _KINDS: Mapping[str, str] = {
     "checks": "contributions.checks.Check",
     "device_actions": "contributions.wiring.DeviceWiring",
     "targets": "contributions.targets.Target",
-    "backends": "contributions.backends.BackendFactory",
+    "vehicles": "contributions.vehicles.VehicleFactory",
     "codecs": "contributions.codecs.Codec",
     "conditions": "contributions.execution.Condition",
     "map_symbols": "contributions.symbols.MapSymbol",
     "commands": "contributions.commands.Command",
 }
 """What each sort of contribution is, within this package."""
+_GONE: Mapping[str, str] = {"mmrs_backends": "mmrs_vehicles"}
+"""Hooks of earlier versions, and what takes their place."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -92,8 +94,8 @@ def load_plugins(
         quiet_migration: do not list what is not just as it was in models of dialects.
 
     Raises:
-        PluginError: if a plug-in does not import, misspells a hook, or two have one name; names the
-            distribution. Conflicting contributions are raised when they are first asked for.
+        PluginError: if a plug-in does not import, misspells a hook or has one that is gone, or two have one
+            name; names the distribution. Conflicting contributions are raised when they are first asked for.
     """
     manager = pluggy.PluginManager("mmrs")
     manager.add_hookspecs(hookspecs)
@@ -153,6 +155,10 @@ def _imported(entry: EntryPoint) -> object:
 
 
 def _register(manager: pluggy.PluginManager, name: str, distribution: str, plugin: object) -> None:
+    for gone, instead in _GONE.items():
+        if hasattr(plugin, gone) and manager.parse_hookimpl_opts(plugin, gone) is not None:
+            whose = f"plug-in '{name}' of distribution '{distribution}'"
+            raise PluginError(f"{whose}: hook '{gone}' is gone: implement '{instead}'")
     try:
         manager.register(plugin, name)
         manager.check_pending()

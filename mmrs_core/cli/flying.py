@@ -100,7 +100,7 @@ def carry_out(workshop: Workshop, loaded: Loaded, wishes: Wishes) -> Result:
     backend = backend_for(program, workshop.contributions, wishes.backend, wishes.own_backends)
     here = robots_of(program, wishes.robots)
     links = links_of(wishes.links, here)
-    check_backends(wishes, links, here, workshop.contributions.backends)
+    check_backends(wishes, links, here, workshop.contributions.vehicles)
     resumed = resumed_steps(program, wishes, here)
     run = resumed[0].run if resumed else wishes.run
     orders, options = Orders(stop_response(wishes.on_stop)), options_of_robots(wishes, here)

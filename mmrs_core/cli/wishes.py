@@ -10,7 +10,7 @@ import typer
 
 from mmrs_core.behaviour.program import Program
 from mmrs_core.cli.buses import BusWishes
-from mmrs_core.contributions.backends import BackendFactory
+from mmrs_core.contributions.vehicles import VehicleFactory
 from mmrs_core.runtime.mixed import options_for
 
 MAVLINK = "mavlink"
@@ -72,7 +72,7 @@ def stop_response(word: str) -> str:
 
 
 def check_backends(
-    wishes: Wishes, links: Mapping[str, str], robots: tuple[str, ...], backends: Mapping[str, BackendFactory]
+    wishes: Wishes, links: Mapping[str, str], robots: tuple[str, ...], backends: Mapping[str, VehicleFactory]
 ) -> None:
     """Refuse options and links that the backends of these robots make nothing of.
 

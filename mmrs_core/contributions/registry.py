@@ -12,7 +12,6 @@ from mmrs_core.contributions.commands import CORE_COMMANDS, Command
 from mmrs_core.errors import PluginError
 
 if TYPE_CHECKING:
-    from mmrs_core.contributions.backends import BackendFactory
     from mmrs_core.contributions.checks import Check
     from mmrs_core.contributions.codecs import Codec
     from mmrs_core.contributions.constraints import Constraint
@@ -21,6 +20,7 @@ if TYPE_CHECKING:
     from mmrs_core.contributions.rules import MoveKind, RobotKind, Rule
     from mmrs_core.contributions.symbols import MapSymbol
     from mmrs_core.contributions.targets import Target
+    from mmrs_core.contributions.vehicles import VehicleFactory
     from mmrs_core.contributions.wiring import DeviceWiring
     from mmrs_core.languages.dialects import Dialect
     from mmrs_core.languages.evolution.migration import Migration
@@ -49,7 +49,7 @@ _SHOWN: Mapping[str, Callable[[Any], object]] = {
     "checks": lambda check: check.name,
     "device_actions": lambda wiring: wiring.property,
     "targets": lambda target: target.name,
-    "backends": lambda backend: backend.name,
+    "vehicles": lambda vehicle: vehicle.name,
     "codecs": lambda codec: codec.name,
     "conditions": lambda condition: condition.identifier,
     "map_symbols": lambda symbol: "#//".join(symbol.metaclass),
@@ -173,9 +173,9 @@ class Contributions:
         return self._by("targets", lambda target: target.name)
 
     @cached_property
-    def backends(self) -> Mapping[str, BackendFactory]:
-        """Return what can execute behaviours, by name."""
-        return self._by("backends", lambda backend: backend.name)
+    def vehicles(self) -> Mapping[str, VehicleFactory]:
+        """Return what drives robots, by name."""
+        return self._by("vehicles", lambda vehicle: vehicle.name)
 
     @cached_property
     def codecs(self) -> Mapping[str, Codec]:

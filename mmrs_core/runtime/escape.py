@@ -6,7 +6,7 @@ from functools import cached_property
 from math import dist
 
 from mmrs_core.behaviour.refuges import refuges_of
-from mmrs_core.contributions.backends import BackendInput
+from mmrs_core.contributions.vehicles import VehicleInput
 from mmrs_core.errors import UnreachableError
 from mmrs_core.planning.paths import Space
 from mmrs_core.scene import Area, AreaUse, Kinematics, Position
@@ -18,7 +18,7 @@ class Escapes:
     Ways home and to emergency areas keep the robot's height, then lead down to the height of home.
     """
 
-    def __init__(self, given: BackendInput, kinematics: Kinematics, home: Position) -> None:
+    def __init__(self, given: VehicleInput, kinematics: Kinematics, home: Position) -> None:
         self._given, self._kinematics, self._home = given, kinematics, home
         own = given.type.half_diagonal + given.program.position_error
         self._clearance = own + kinematics.turning_radius

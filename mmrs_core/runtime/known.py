@@ -6,8 +6,8 @@ from dataclasses import replace
 
 from mmrs_core.behaviour.as_scene import scene_of
 from mmrs_core.behaviour.program import BEHAVIOUR, Action
-from mmrs_core.contributions.backends import BackendInput
 from mmrs_core.contributions.rules import MoveKind, most_specific, robot_kind_of
+from mmrs_core.contributions.vehicles import VehicleInput
 from mmrs_core.errors import UnsupportedError
 from mmrs_core.scene import Kinematics
 
@@ -15,7 +15,7 @@ DEVICE_ACTION = (BEHAVIOUR, "DeviceAction")
 FEEDBACK = (BEHAVIOUR, "Feedback")
 
 
-def kinematics_of(given: BackendInput) -> Kinematics:
+def kinematics_of(given: VehicleInput) -> Kinematics:
     """Return what the robot can do with full batteries and nothing kept in reserve.
 
     Raises:
@@ -32,7 +32,7 @@ def kinematics_of(given: BackendInput) -> Kinematics:
     return kind.kinematics(scene.robots[0], scene)
 
 
-def move_kinds_of(given: BackendInput) -> dict[str, MoveKind]:
+def move_kinds_of(given: VehicleInput) -> dict[str, MoveKind]:
     """Return the kind of every move, by its identifier.
 
     Raises:

@@ -11,8 +11,8 @@ from math import inf
 from pathlib import Path
 
 from mmrs_core.behaviour.program import Program
-from mmrs_core.contributions.backends import BackendFactory, BackendInput, Live
 from mmrs_core.contributions.execution import Condition
+from mmrs_core.contributions.vehicles import Live, VehicleFactory, VehicleInput
 from mmrs_core.errors import LinkLostError
 from mmrs_core.runtime.conditions import refuse_undecided
 from mmrs_core.runtime.unready import Unready, note_alone, record, unready
@@ -56,7 +56,7 @@ class Venture:
     """
 
     program: Program
-    inputs: Mapping[str, BackendInput]
+    inputs: Mapping[str, VehicleInput]
     bus: Slots
     conditions: Mapping[str, Condition]
     clock: RealClock = field(default_factory=RealClock)
@@ -83,7 +83,7 @@ class Venture:
             self.say(f"'{robot}': the fault is not in the log: {error.strerror or error}")
 
 
-def run_live(venture: Venture, backend: BackendFactory) -> Ending:
+def run_live(venture: Venture, backend: VehicleFactory) -> Ending:
     """Carry the programs out; return how that ended.
 
     No robot begins before all are ready; once some are under way, as in a run that is resumed, each goes
@@ -151,7 +151,7 @@ def run_live(venture: Venture, backend: BackendFactory) -> Ending:
 def _connect(
     robots: dict[str, Vehicle],
     venture: Venture,
-    backend: BackendFactory,
+    backend: VehicleFactory,
     attention: Attention,
     early: _EarlyOrders | None,
 ) -> None:

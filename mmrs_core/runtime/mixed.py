@@ -5,14 +5,14 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping
 from dataclasses import replace
 
-from mmrs_core.contributions.backends import BackendFactory, BackendInput
+from mmrs_core.contributions.vehicles import VehicleFactory, VehicleInput
 from mmrs_core.errors import UsageError
 from mmrs_runtime.vehicle import Vehicle
 
 
 def mixed(
-    usual: BackendFactory, own: Mapping[str, BackendFactory], robots: Collection[str]
-) -> BackendFactory:
+    usual: VehicleFactory, own: Mapping[str, VehicleFactory], robots: Collection[str]
+) -> VehicleFactory:
     """Return what makes the usual backend for all robots but those that have their own.
 
     Raises:
@@ -26,7 +26,7 @@ def mixed(
         words = (f"'{each.name}' {'simulated' if each.simulated else 'real'}" for each in used.values())
         raise UsageError(f"backends of one run go by one time: {', '.join(words)}")
 
-    def connect(given: BackendInput) -> Vehicle:
+    def connect(given: VehicleInput) -> Vehicle:
         factory = own.get(given.robot.id, usual)
         live = given.live
         if live is not None:
@@ -35,7 +35,7 @@ def mixed(
         return factory.connect(replace(given, live=live))
 
     simulated = all(each.simulated for each in used.values())
-    return BackendFactory(" and ".join(used), "as each robot has it", connect, simulated)
+    return VehicleFactory(" and ".join(used), "as each robot has it", connect, simulated)
 
 
 def options_for(robot: str, options: Mapping[str, str]) -> dict[str, str]:

@@ -6,9 +6,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
 from mmrs_core.behaviour.program import Program
-from mmrs_core.contributions.backends import BackendFactory, BackendInput, Recorder
 from mmrs_core.contributions.execution import Condition, Sample
 from mmrs_core.contributions.rules import MoveKind, RobotKind, robot_kind_of
+from mmrs_core.contributions.vehicles import Recorder, VehicleFactory, VehicleInput
 from mmrs_core.contributions.wiring import Wirings
 from mmrs_core.errors import UnsupportedError, UsageError
 from mmrs_core.runtime.conditions import refuse_undecided
@@ -42,7 +42,7 @@ class Run:
 def simulate(
     program: Program,
     *,
-    backend: BackendFactory,
+    backend: VehicleFactory,
     types: Mapping[str, RobotType],
     robot_kinds: Mapping[Name, RobotKind],
     move_kinds: Mapping[Name, MoveKind],
@@ -115,7 +115,7 @@ def inputs_of(
     environment: Mapping[str, float],
     areas: tuple[Area, ...],
     device_actions: Wirings | None = None,
-) -> dict[str, BackendInput]:
+) -> dict[str, VehicleInput]:
     """Return what the backend of each robot may use; see `simulate` for the arguments.
 
     Raises:
@@ -123,11 +123,11 @@ def inputs_of(
         UsageError: if an option is for a robot that there is not.
     """
     refuse_strange(options, [robot.id for robot in program.robots])
-    found: dict[str, BackendInput] = {}
+    found: dict[str, VehicleInput] = {}
     for robot in program.robots:
         robot_type = _type_of(types, robot.id, robot.type_name)
         policies = _policies(robot_type, robot_kinds)
-        found[robot.id] = BackendInput(
+        found[robot.id] = VehicleInput(
             program,
             robot,
             robot_type,

@@ -17,9 +17,9 @@ from pathlib import Path
 
 from mmrs_core.behaviour.as_scene import robot_of
 from mmrs_core.behaviour.program import BEHAVIOUR, Action, Heading, Move
-from mmrs_core.contributions.backends import BackendFactory, BackendInput
 from mmrs_core.contributions.execution import Fault, RobotState, Sample
 from mmrs_core.contributions.rules import MoveKind
+from mmrs_core.contributions.vehicles import VehicleFactory, VehicleInput
 from mmrs_core.errors import InternalError, UnreadableError, UsageError
 from mmrs_core.runtime.battery import SLACK, Battery
 from mmrs_core.runtime.escape import Escapes
@@ -55,7 +55,7 @@ class SimulatedRobot(Vehicle):
         notes: what the simulation took for granted, for people.
     """
 
-    def __init__(self, given: BackendInput) -> None:
+    def __init__(self, given: VehicleInput) -> None:
         """Put a robot at its home, with full batteries.
 
         Raises:
@@ -344,7 +344,7 @@ def _sights(path: str | None) -> tuple[Sight, ...]:
         raise UnreadableError(str(error)) from error
 
 
-SIMULATION = BackendFactory(
+SIMULATION = VehicleFactory(
     name="simulation",
     description="moves robots in simulated time, without dynamics",
     connect=SimulatedRobot,

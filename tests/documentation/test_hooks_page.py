@@ -56,7 +56,6 @@ def test_every_field_of_what_is_declared_is_told():
     from dataclasses import fields
 
     from mmrs_core.contributions import (
-        backends,
         checks,
         codecs,
         commands,
@@ -66,6 +65,7 @@ def test_every_field_of_what_is_declared_is_told():
         rules,
         symbols,
         targets,
+        vehicles,
         wiring,
     )
     from mmrs_core.languages.evolution.migration import Migration
@@ -84,7 +84,7 @@ def test_every_field_of_what_is_declared_is_told():
         "mmrs_checks": checks.Check,
         "mmrs_device_actions": wiring.DeviceWiring,
         "mmrs_targets": targets.Target,
-        "mmrs_backends": backends.BackendFactory,
+        "mmrs_vehicles": vehicles.VehicleFactory,
         "mmrs_codecs": codecs.Codec,
         "mmrs_conditions": execution.Condition,
         "mmrs_map_symbols": symbols.MapSymbol,

@@ -14,8 +14,8 @@ from mmrs_auv.plugin import mmrs_metamodels
 from mmrs_core.behaviour.log import read_logs
 from mmrs_core.behaviour.program import Move, Program, Target
 from mmrs_core.behaviour.replay import replay
-from mmrs_core.contributions.backends import BackendInput
 from mmrs_core.contributions.execution import Condition
+from mmrs_core.contributions.vehicles import VehicleInput
 from mmrs_core.languages.grounding.scenes import robot_type_of
 from mmrs_core.languages.reading import read_model
 from mmrs_core.languages.registry import registry_with
@@ -72,7 +72,7 @@ def rehearse(
     robots: dict[str, RehearsedRobot] = {}
     kind = diver()
 
-    def connect(given: BackendInput) -> RehearsedRobot:
+    def connect(given: VehicleInput) -> RehearsedRobot:
         robot = robots[given.robot.id] = rehearsed(given)
         before(robot)
         return robot

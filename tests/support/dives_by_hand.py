@@ -12,7 +12,7 @@ from patience import until
 from ports import free_port
 
 from mmrs_core.behaviour.program import BEHAVIOUR, Heading, Target
-from mmrs_core.contributions.backends import BackendInput, Live
+from mmrs_core.contributions.vehicles import Live, VehicleInput
 from mmrs_core.scene import Capability, Device, DeviceAction, Frame, Part, RobotType
 from mmrs_core.sitl import Settings, SimulatedVehicle
 from mmrs_core.testing.programs import move, program, robot_program
@@ -53,7 +53,7 @@ def given(*moves, live=None, areas=(), policies=(), **options):
     robot = robot_program("naiad", moves or MOVES, home=(0.0, 0.0, 0.0), type_name="Diver")
     kinds = {AUV_MOVEMENT: AUV_KIND}
     behaviour = program(robot, frame=POOL, reserve=0.2)
-    return BackendInput(behaviour, robot, DIVER, kinds, {}, {}, options, policies, areas, live)
+    return VehicleInput(behaviour, robot, DIVER, kinds, {}, {}, options, policies, areas, live)
 
 
 def connected(url, clock, say=print, shared=None, **more):

@@ -7,8 +7,8 @@ import time
 from math import inf
 
 from mmrs_core.behaviour.program import Move
-from mmrs_core.contributions.backends import BackendFactory, BackendInput
 from mmrs_core.contributions.execution import Fault, RobotState
+from mmrs_core.contributions.vehicles import VehicleFactory, VehicleInput
 from mmrs_core.errors import MmrsError
 from mmrs_core.runtime.live import Venture, run_live
 from mmrs_core.runtime.run import inputs_of
@@ -38,7 +38,7 @@ class Idle(Vehicle):
 class Walker(Idle):
     """A robot that does each thing until it is told that it is done; it wakes the engine itself."""
 
-    def __init__(self, given: BackendInput, script):
+    def __init__(self, given: VehicleInput, script):
         self.given, self.script = given, script
         self.done, self.trouble, self.stops, self.begun = True, None, [], []
         self.halted = self.closed = self.watched_for = self.doubted = False
@@ -140,7 +140,7 @@ class Script:
 
     @property
     def factory(self):
-        return BackendFactory("walker", "a robot of the test", lambda given: Walker(given, self))
+        return VehicleFactory("walker", "a robot of the test", lambda given: Walker(given, self))
 
 
 class Flight:

@@ -74,7 +74,7 @@ def planned_for(
         with progress("simulating the plan"):
             run = simulate(
                 choosing.program,
-                backend=contributed.backends[BACKEND],
+                backend=contributed.vehicles[BACKEND],
                 types=place.types,
                 robot_kinds=contributed.robot_kinds,
                 move_kinds=contributed.move_kinds,

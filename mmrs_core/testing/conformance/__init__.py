@@ -7,7 +7,6 @@ asks for as attributes, and pytest runs all its laws. Needs pytest and hypothesi
 import pytest
 
 _MODULES = (
-    "backends",
     "constraints",
     "declared",
     "device_wirings",
@@ -18,10 +17,10 @@ _MODULES = (
     "robot_kinds",
     "rules",
     "targets",
+    "vehicles",
 )
 pytest.register_assert_rewrite(*(f"{__name__}.{module}" for module in _MODULES))
 
-from mmrs_core.testing.conformance.backends import BackendConformance  # noqa: E402
 from mmrs_core.testing.conformance.constraints import Case, ConstraintConformance  # noqa: E402
 from mmrs_core.testing.conformance.device_wirings import DeviceWiringConformance  # noqa: E402
 from mmrs_core.testing.conformance.metamodels import MetamodelConformance  # noqa: E402
@@ -31,9 +30,9 @@ from mmrs_core.testing.conformance.plugins import PluginConformance  # noqa: E40
 from mmrs_core.testing.conformance.robot_kinds import RobotKindConformance  # noqa: E402
 from mmrs_core.testing.conformance.rules import RuleConformance  # noqa: E402
 from mmrs_core.testing.conformance.targets import TargetConformance  # noqa: E402
+from mmrs_core.testing.conformance.vehicles import VehicleConformance  # noqa: E402
 
 __all__ = [
-    "BackendConformance",
     "Case",
     "ConstraintConformance",
     "DeviceWiringConformance",
@@ -44,4 +43,5 @@ __all__ = [
     "RobotKindConformance",
     "RuleConformance",
     "TargetConformance",
+    "VehicleConformance",
 ]

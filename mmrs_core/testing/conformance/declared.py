@@ -26,7 +26,7 @@ SORTS = (
     "move_kind",
     "device_action",
     "target",
-    "backend",
+    "vehicle",
     "map_symbol",
 )
 """What tests may have as arguments: once for each that a plug-in declares."""

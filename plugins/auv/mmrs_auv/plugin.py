@@ -13,11 +13,11 @@ from mmrs_core.hookspecs import hookimpl
 from mmrs_core.languages.sources import MetamodelSource
 
 if TYPE_CHECKING:
-    from mmrs_core.contributions.backends import BackendFactory
     from mmrs_core.contributions.constraints import Constraint
     from mmrs_core.contributions.fixes import Fix
     from mmrs_core.contributions.rules import RobotKind, Rule
     from mmrs_core.contributions.targets import Target
+    from mmrs_core.contributions.vehicles import VehicleFactory
     from mmrs_core.languages.evolution.migration import Migration
 
 
@@ -105,7 +105,7 @@ def mmrs_map_symbols() -> tuple[MapSymbol, ...]:
 
 
 @hookimpl
-def mmrs_backends() -> tuple[BackendFactory, ...]:
+def mmrs_vehicles() -> tuple[VehicleFactory, ...]:
     """Contribute what drives underwater vehicles: over their buses, or by a pilot's sticks."""
     from mmrs_auv.backend import CAN, CAN_SIM
     from mmrs_auv.manual import ARDUSUB_MANUAL

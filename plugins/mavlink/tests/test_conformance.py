@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from mmrs_core.testing.conformance import BackendConformance, TargetConformance
+from mmrs_core.testing.conformance import TargetConformance, VehicleConformance
 from mmrs_core.testing.programs import LAND, go_to, program, robot_program, take_off, target_input
 from mmrs_mavlink import plugin
 
@@ -15,5 +15,5 @@ class TestTargets(TargetConformance):
     inputs = {"qgc-plan": ONE_DRONE, "wpl": ONE_DRONE}
 
 
-class TestBackends(BackendConformance):
+class TestVehicles(VehicleConformance):
     plugin = plugin

@@ -8,10 +8,10 @@ from mmrs_core import builtin
 from mmrs_core.behaviour.program import Heading, Target
 from mmrs_core.scene import Device, DeviceAction
 from mmrs_core.testing.conformance import (
-    BackendConformance,
     DeviceWiringConformance,
     MoveKindConformance,
     RobotKindConformance,
+    VehicleConformance,
 )
 from mmrs_core.testing.programs import (
     move,
@@ -63,5 +63,5 @@ class TestDeviceWirings(DeviceWiringConformance):
     }
 
 
-class TestBackends(BackendConformance):
+class TestVehicles(VehicleConformance):
     plugin = builtin

@@ -59,7 +59,7 @@ def test_the_leader_goes_closer_only_with_energy_left(program, place, contributi
     answer = {"energy_above_100_kJ": Condition("energy_above_100_kJ", lambda state: energetic)}
     run = simulate(
         program,
-        backend=contributions.backends["simulation"],
+        backend=contributions.vehicles["simulation"],
         types=place.types,
         robot_kinds=contributions.robot_kinds,
         move_kinds=contributions.move_kinds,

@@ -163,7 +163,7 @@ def test_the_choice_of_the_mixed_team_leads_to_the_task_of_its_arm(taken, contri
     example = taken("mixed-team")
     run = simulate(
         example.program,
-        backend=contributions.backends["simulation"],
+        backend=contributions.vehicles["simulation"],
         types=example.place.types,
         robot_kinds=contributions.robot_kinds,
         move_kinds=contributions.move_kinds,

@@ -10,7 +10,7 @@ from flight_crew import SPEEDUP
 from patience import until
 from ports import free_port
 
-from mmrs_core.contributions.backends import BackendInput, Live
+from mmrs_core.contributions.vehicles import Live, VehicleInput
 from mmrs_core.scene import Frame, Policy
 from mmrs_core.sitl import Settings, SimulatedVehicle
 from mmrs_core.testing.programs import move
@@ -63,7 +63,7 @@ def rover(*policies, folder=None, **settings):
     """Give a rover that is ready."""
     port = free_port()
     clock, links = RealClock(SPEEDUP), {"r": f"udpin:127.0.0.1:{port}"}
-    given = BackendInput(
+    given = VehicleInput(
         replace(program(ROVER), frame=EARTH),
         replace(ROVER, policies=policies),
         robot_type(),

@@ -52,7 +52,7 @@ def devices_confirm(folder: Path) -> bool:
 def test_a_dive_is_carried_out_over_the_bus(berth, contributions, tmp_path):
     venture = interpreted(short_dive(), berth, contributions, tmp_path)
     with LogWriter(tmp_path / "logs") as writer:
-        ending = run_live(replace(venture, observe=writer.write), contributions.backends["can"])
+        ending = run_live(replace(venture, observe=writer.write), contributions.vehicles["can"])
     assert ending.outcome is Outcome.SUCCESS, ending
     assert replay(venture.program, read_logs([tmp_path / "logs"])).accepted
     assert len(entries_in(tmp_path / "logs", "fix")) > 10
@@ -78,7 +78,7 @@ def test_a_run_ends_whose_bus_goes_while_its_vehicle_stops(berth, contributions,
         if (step.label, step.move) == ("begin", "out"):
             venture.orders.give("stop", ["naiad"])
 
-    run_live(replace(venture, say=said.append, observe=observe), contributions.backends["can"])
+    run_live(replace(venture, say=said.append, observe=observe), contributions.vehicles["can"])
     assert [line for line in said if line.startswith("'naiad': not known to have stopped (HOLD): LINK_LOST")]
 
 

@@ -9,7 +9,6 @@ from pathlib import Path
 import pytest
 
 from mmrs_core import hookspecs, plugins
-from mmrs_core.contributions.backends import BackendFactory
 from mmrs_core.contributions.checks import Check
 from mmrs_core.contributions.codecs import Codec
 from mmrs_core.contributions.commands import Command
@@ -19,6 +18,7 @@ from mmrs_core.contributions.fixes import Fix
 from mmrs_core.contributions.rules import MoveKind, RobotKind, Rule
 from mmrs_core.contributions.symbols import MapSymbol
 from mmrs_core.contributions.targets import Target
+from mmrs_core.contributions.vehicles import VehicleFactory
 from mmrs_core.contributions.wiring import DeviceWiring
 from mmrs_core.errors import PluginError
 from mmrs_core.hookspecs import hookimpl
@@ -158,9 +158,9 @@ def test_hook_mmrs_targets(tmp_path):
     assert contributions_with("mmrs_targets", target).targets["kite"] == target
 
 
-def test_hook_mmrs_backends():
-    backend = BackendFactory("kite", "drives kites", unused)
-    assert contributions_with("mmrs_backends", backend).backends["kite"] == backend
+def test_hook_mmrs_vehicles():
+    vehicle = VehicleFactory("kite", "drives kites", unused)
+    assert contributions_with("mmrs_vehicles", vehicle).vehicles["kite"] == vehicle
 
 
 def test_hook_mmrs_codecs():
@@ -302,3 +302,11 @@ def test_catalogue_says_who_contributed_what():
     loaded = load_plugins(only_core=True, extra={"kites": plugin})
     declared = loaded.contributions._declared
     assert ("kites", rule) in declared("rules")
+
+
+def test_a_hook_that_is_gone_is_told_with_what_takes_its_place():
+    plugin = plugin_with("mmrs_backends", lambda: ())
+    with pytest.raises(
+        PluginError, match=r"plug-in 'kites' of .*: hook 'mmrs_backends' is gone: .*'mmrs_vehicles'"
+    ):
+        load_plugins(only_core=True, extra={"kites": plugin})

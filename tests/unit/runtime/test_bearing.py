@@ -7,8 +7,8 @@ from math import inf
 import pytest
 from live_runs import Flight, Script, Walker, do
 
-from mmrs_core.contributions.backends import BackendFactory
 from mmrs_core.contributions.execution import Fault
+from mmrs_core.contributions.vehicles import VehicleFactory
 from mmrs_core.scene import Policy
 from mmrs_core.testing.small_programs import program, robot
 from mmrs_runtime.semantics import Outcome
@@ -28,7 +28,7 @@ class Breaking(Walker):
 class Breakable(Script):
     @property
     def factory(self):
-        return BackendFactory("breaking", "a robot of the test", lambda given: Breaking(given, self))
+        return VehicleFactory("breaking", "a robot of the test", lambda given: Breaking(given, self))
 
 
 @pytest.fixture

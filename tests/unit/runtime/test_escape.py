@@ -6,7 +6,7 @@ import pytest
 import shapely
 
 from mmrs_core.behaviour.program import Program, RobotProgram
-from mmrs_core.contributions.backends import BackendInput
+from mmrs_core.contributions.vehicles import VehicleInput
 from mmrs_core.runtime.escape import Escapes
 from mmrs_core.scene import Area, AreaUse, Capability, Frame, Kinematics, Part, RobotType
 
@@ -23,7 +23,7 @@ def escapes_among(*areas, floor=-inf):
     robot = RobotProgram("r", "t", "NORMAL", 0.0, HOME, (), (), {}, 0, 0)
     program = Program("p", Frame("EPSG:4326", None, None), (robot,))
     kinematics = Kinematics(cruise=5, slowest=0, fastest=10, climb=3, descent=3, floor=floor, launches=True)
-    return Escapes(BackendInput(program, robot, kind, {}, {}, {}, {}, (), areas), kinematics, HOME)
+    return Escapes(VehicleInput(program, robot, kind, {}, {}, {}, {}, (), areas), kinematics, HOME)
 
 
 def test_the_way_home_leads_around_a_forbidden_area_and_down():

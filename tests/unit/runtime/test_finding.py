@@ -8,7 +8,7 @@ from dataclasses import replace
 import pytest
 
 from mmrs_core.behaviour.program import BEHAVIOUR, Move
-from mmrs_core.contributions.backends import BackendFactory, BackendInput, Live
+from mmrs_core.contributions.vehicles import Live, VehicleFactory, VehicleInput
 from mmrs_core.errors import UnreadableError, UsageError
 from mmrs_core.runtime.mixed import mixed, options_for
 from mmrs_core.runtime.run import simulate
@@ -157,7 +157,7 @@ def test_a_backend_hears_only_of_the_links_of_its_own_robots():
             heard[given.robot.id] = dict(given.live.links)
             return Backend()
 
-        return BackendFactory(name, "", connect)
+        return VehicleFactory(name, "", connect)
 
     radio, wire = factory("radio"), factory("wire")
     links = {"a": "udpin:127.0.0.1:14550", "b": "udpin:127.0.0.1:14560", "c": "can0@127.0.0.1:29600"}
@@ -165,7 +165,7 @@ def test_a_backend_hears_only_of_the_links_of_its_own_robots():
     behaviour = program(*(robot(name, []) for name in "abc"))
     both = mixed(radio, {"c": wire}, "abc")
     for each in behaviour.robots:
-        both.connect(BackendInput(behaviour, each, robot_type(), {}, {}, {}, {}, live=live))
+        both.connect(VehicleInput(behaviour, each, robot_type(), {}, {}, {}, {}, live=live))
     assert {name: sorted(known) for name, known in heard.items()} == {
         "a": ["a", "b"],
         "b": ["a", "b"],

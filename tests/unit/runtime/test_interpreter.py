@@ -9,8 +9,8 @@ from carried_out import carried_out
 
 from mmrs_core.behaviour.program import Action
 from mmrs_core.behaviour.replay import replay
-from mmrs_core.contributions.backends import BackendInput
 from mmrs_core.contributions.execution import Condition, Fault, RobotState
+from mmrs_core.contributions.vehicles import VehicleInput
 from mmrs_core.errors import LinkLostError, UnsupportedError
 from mmrs_core.runtime.simulation import SimulatedRobot
 from mmrs_core.scene import Policy
@@ -352,7 +352,7 @@ def test_a_run_can_follow_the_worlds_time(kinds):
     )
     backends = {}
     for each in behaviour.robots:
-        given = BackendInput(behaviour, each, robot_type(), **kinds, environment={}, options={})
+        given = VehicleInput(behaviour, each, robot_type(), **kinds, environment={}, options={})
         backends[each.id] = SimulatedRobot(given)
     clock = RealClock(100.0)
     records, _ = carried_out(behaviour, backends, clock=clock)

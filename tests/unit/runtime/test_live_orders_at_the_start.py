@@ -10,8 +10,8 @@ import pytest
 from live_runs import TWO, WALK, Script, Walker, do
 
 from mmrs_core.behaviour.replay import replay
-from mmrs_core.contributions.backends import BackendFactory
 from mmrs_core.contributions.execution import Fault
+from mmrs_core.contributions.vehicles import VehicleFactory
 from mmrs_core.errors import LinkLostError
 from mmrs_core.testing.small_programs import program, robot
 from mmrs_runtime.engine.orders import HOLD, LAND, RESUME, RETURN, STOP
@@ -89,7 +89,7 @@ def test_a_robot_that_is_there_is_answered_while_others_are_connected(live):
         assert begun.wait(10.0)
         return connect(robot_input)
 
-    run_of["it"] = run = live(three, BackendFactory("walker", "a robot of the test", connect_later))
+    run_of["it"] = run = live(three, VehicleFactory("walker", "a robot of the test", connect_later))
     begun.set()
     assert run.end().faults == {"a": Fault("ORDERED", "order to return")}
     assert answered == [True]

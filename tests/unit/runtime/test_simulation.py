@@ -7,8 +7,8 @@ from dataclasses import replace
 import pytest
 
 from mmrs_core.behaviour.program import Action, Heading, Move, Target
-from mmrs_core.contributions.backends import BackendInput
 from mmrs_core.contributions.execution import Fault
+from mmrs_core.contributions.vehicles import VehicleInput
 from mmrs_core.errors import UnsupportedError, UsageError
 from mmrs_core.runtime.legs import CLIMBING
 from mmrs_core.runtime.simulation import SIMULATION, SimulatedRobot
@@ -312,7 +312,7 @@ def test_an_object_whose_place_nobody_knows_is_found_where_the_robot_is_and_a_no
 
 
 def given(behaviour, kinds, type=None, **more):
-    return BackendInput(
+    return VehicleInput(
         behaviour,
         behaviour.robots[0],
         type or robot_type(),

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from importlib.util import find_spec
 
-from mmrs_core.contributions.backends import BackendFactory, BackendInput
+from mmrs_core.contributions.vehicles import VehicleFactory, VehicleInput
 from mmrs_core.errors import UnsupportedError
 from mmrs_runtime.vehicle import Vehicle
 
 
-def _rehearse(given: BackendInput) -> Vehicle:
+def _rehearse(given: VehicleInput) -> Vehicle:
     """Return a simulated vehicle with its whole control layer, in simulated time."""
     _refuse_without_can("can-sim")
     from mmrs_auv.backend.rehearsed import rehearsed
@@ -17,7 +17,7 @@ def _rehearse(given: BackendInput) -> Vehicle:
     return rehearsed(given)
 
 
-def _connect(given: BackendInput) -> Vehicle:
+def _connect(given: VehicleInput) -> Vehicle:
     """Return the decision centre of a vehicle on its bus, in real time."""
     if given.live is None:
         raise UnsupportedError("backend 'can': drives robots in real time; 'mmrs run' does that")
@@ -34,8 +34,8 @@ def _refuse_without_can(name: str) -> None:
         )
 
 
-CAN = BackendFactory("can", "underwater vehicles over their CAN bus, in real time", _connect)
-CAN_SIM = BackendFactory(
+CAN = VehicleFactory("can", "underwater vehicles over their CAN bus, in real time", _connect)
+CAN_SIM = VehicleFactory(
     "can-sim",
     "underwater vehicles with dynamics, drives and control layer, in simulated time",
     _rehearse,

@@ -18,8 +18,8 @@ from mmrs_auv.backend.keeping import Keeper, keeper_of
 from mmrs_auv.backend.options import Connecting, connecting
 from mmrs_auv.backend.robot import CanRobot
 from mmrs_auv.sheets import sheet_of
-from mmrs_core.contributions.backends import BackendInput, Live
 from mmrs_core.contributions.execution import Fault
+from mmrs_core.contributions.vehicles import Live, VehicleInput
 from mmrs_core.errors import LinkLostError, UnsupportedError
 from mmrs_mavlink.records.start import PROCESS
 from mmrs_runtime.engine.clocks import RealClock
@@ -33,7 +33,7 @@ class ConnectedRobot(CanRobot):
 
     def __init__(
         self,
-        given: BackendInput,
+        given: VehicleInput,
         sheet: Sheet,
         reached: tuple[ClosablePort, Connection, Faults | None],
         duties: Duties,
@@ -117,7 +117,7 @@ class ConnectedRobot(CanRobot):
         return {} if self._eyes is None else self._eyes.places()
 
 
-def connected(given: BackendInput, live: Live) -> ConnectedRobot:
+def connected(given: VehicleInput, live: Live) -> ConnectedRobot:
     """Return a robot on its bus.
 
     Raises:
@@ -158,7 +158,7 @@ def connected(given: BackendInput, live: Live) -> ConnectedRobot:
     )
 
 
-def _eyes(given: BackendInput, options: Connecting) -> Detections | None:
+def _eyes(given: VehicleInput, options: Connecting) -> Detections | None:
     sought = [
         f"move '{move.id}': object {move.target.description!r}"
         for move in given.robot.moves

@@ -24,7 +24,7 @@ from auv_vessel.sheet import Sheet, Vector
 from mmrs_auv.sayable import Bus, mount_of, parameter_of, unturnable
 from mmrs_auv.sheets import action_number
 from mmrs_core.behaviour.program import BEHAVIOUR, Action, Heading, Move
-from mmrs_core.contributions.backends import BackendInput
+from mmrs_core.contributions.vehicles import VehicleInput
 from mmrs_core.errors import UnsupportedError
 from mmrs_core.runtime.known import DEVICE_ACTION, kinematics_of, move_kinds_of
 from mmrs_core.scene import Position
@@ -62,7 +62,7 @@ class Duties:
         told: by name, where other robots have detected objects: metres north, east and below the surface.
     """
 
-    def __init__(self, given: BackendInput, sheet: Sheet, waters: Waters, sight: Sight | None) -> None:
+    def __init__(self, given: VehicleInput, sheet: Sheet, waters: Waters, sight: Sight | None) -> None:
         """Know them; without a `sight`, objects are where they are expected.
 
         Raises:

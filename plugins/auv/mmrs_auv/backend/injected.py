@@ -8,7 +8,7 @@ from typing import Protocol
 from auv_vessel.hosting import Port, tells_time
 from auv_vessel.wire import ports
 from auv_vessel.wire.frame import Frame
-from mmrs_core.contributions.backends import BackendInput, Live
+from mmrs_core.contributions.vehicles import Live, VehicleInput
 from mmrs_core.errors import UsageError
 from mmrs_runtime.engine.clocks import FollowingClock
 from mmrs_runtime.injection import Rehearsal, injections
@@ -88,7 +88,7 @@ class ClosablePort(Port, Protocol):
         ...
 
 
-def faults_of(given: BackendInput, live: Live, text: str) -> Faults | None:
+def faults_of(given: VehicleInput, live: Live, text: str) -> Faults | None:
     """Return the faults of a run, begun; None if none are asked for.
 
     Raises:

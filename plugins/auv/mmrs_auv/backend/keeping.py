@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 
-from mmrs_core.contributions.backends import BackendInput, Live
 from mmrs_core.contributions.execution import RobotState
+from mmrs_core.contributions.vehicles import Live, VehicleInput
 from mmrs_runtime.records.blackbox import BlackBox, black_box_path
 from mmrs_runtime.records.steps import log_name
 
@@ -48,7 +48,7 @@ class Keeper:
             self._box.close()
 
 
-def keeper_of(given: BackendInput, live: Live) -> Keeper:
+def keeper_of(given: VehicleInput, live: Live) -> Keeper:
     """Return what keeps the black box of a robot in real time."""
     home = given.robot.home or (0.0, 0.0, 0.0)
     surface = given.program.frame.surface

@@ -23,8 +23,8 @@ from mmrs_auv.backend.duties_of import Duties, Waters
 from mmrs_auv.backend.options import Rehearsing, rehearsing
 from mmrs_auv.backend.robot import CanRobot
 from mmrs_auv.sheets import sheet_of
-from mmrs_core.contributions.backends import BackendInput
 from mmrs_core.contributions.execution import Fault, RobotState, Sample
+from mmrs_core.contributions.vehicles import VehicleInput
 from mmrs_core.errors import UnsupportedError
 from mmrs_core.scene import Position
 
@@ -178,7 +178,7 @@ class RehearsedRobot(CanRobot):
         stage: the vehicle and its control layer.
     """
 
-    def __init__(self, given: BackendInput, sheet: Sheet, stage: Stage, options: Rehearsing) -> None:
+    def __init__(self, given: VehicleInput, sheet: Sheet, stage: Stage, options: Rehearsing) -> None:
         """Begin at home."""
         self.stage = stage
         self.notes: list[str] = []
@@ -252,7 +252,7 @@ class _Nobody:
         pass
 
 
-def rehearsed(given: BackendInput) -> RehearsedRobot:
+def rehearsed(given: VehicleInput) -> RehearsedRobot:
     """Return a simulated vehicle at its home.
 
     Raises:
@@ -273,7 +273,7 @@ def rehearsed(given: BackendInput) -> RehearsedRobot:
     return RehearsedRobot(given, sheet, Stage(sheet, _surroundings(given, options), options), options)
 
 
-def _surroundings(given: BackendInput, options: Rehearsing) -> Surroundings:
+def _surroundings(given: VehicleInput, options: Rehearsing) -> Surroundings:
     if (around := options.surroundings) is not None:
         return around if options.current is None else replace(around, current=options.current)
     current = options.current if options.current is not None else _current(given.environment)
@@ -282,7 +282,7 @@ def _surroundings(given: BackendInput, options: Rehearsing) -> Surroundings:
     )
 
 
-def _deepest(given: BackendInput) -> float:
+def _deepest(given: VehicleInput) -> float:
     surface = given.program.frame.surface
     targets = [move.target.position for move in given.robot.moves if move.target is not None]
     return max((surface - place[2] for place in targets if place is not None), default=0.0)
@@ -295,7 +295,7 @@ def _current(environment: Mapping[str, float]) -> tuple[float, float]:
     return (speed * cos(towards), speed * sin(towards))
 
 
-def _objects(given: BackendInput) -> Sequence[str]:
+def _objects(given: VehicleInput) -> Sequence[str]:
     return [
         move.id
         for move in given.robot.moves

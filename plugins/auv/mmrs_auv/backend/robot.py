@@ -14,8 +14,8 @@ from auv_vessel.movement.abilities import abilities_of
 from auv_vessel.sheet import Sheet, Vector
 from mmrs_auv.backend.duties_of import Duties, Waters
 from mmrs_core.behaviour.program import Action, Move
-from mmrs_core.contributions.backends import BackendInput
 from mmrs_core.contributions.execution import Fault, RobotState
+from mmrs_core.contributions.vehicles import VehicleInput
 from mmrs_core.errors import UnreachableError
 from mmrs_core.runtime.escape import Escapes
 from mmrs_core.runtime.known import DEVICE_ACTION, kinematics_of
@@ -53,7 +53,7 @@ class CanRobot(Vehicle):
 
     def __init__(
         self,
-        given: BackendInput,
+        given: VehicleInput,
         sheet: Sheet,
         craft: Craft,
         duties: Duties,

@@ -7,19 +7,19 @@ a current, and the longer the way, the less is known. What has a position flies 
 
 from __future__ import annotations
 
-from mmrs_core.contributions.backends import BackendFactory, BackendInput
+from mmrs_core.contributions.vehicles import VehicleFactory, VehicleInput
 from mmrs_runtime.vehicle import Vehicle
 
 NAME = "ardusub-manual"
 
 
-def _connect(given: BackendInput) -> Vehicle:
+def _connect(given: VehicleInput) -> Vehicle:
     from mmrs_auv.manual.connecting import connect
 
     return connect(given)
 
 
-ARDUSUB_MANUAL = BackendFactory(
+ARDUSUB_MANUAL = VehicleFactory(
     NAME,
     "ArduSub vehicles by MANUAL_CONTROL in depth hold: no position needed, the way by dead reckoning",
     _connect,

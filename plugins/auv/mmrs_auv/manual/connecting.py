@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from mmrs_auv.manual.goals import refusals
 from mmrs_auv.manual.robot import ManualRobot
-from mmrs_core.contributions.backends import BackendInput, Live
 from mmrs_core.contributions.targets import TargetInput
+from mmrs_core.contributions.vehicles import Live, VehicleInput
 from mmrs_core.errors import LinkLostError, UnsupportedError
 from mmrs_mavlink.links.link import Link
 from mmrs_mavlink.links.ports import split_system
@@ -18,7 +18,7 @@ from mmrs_runtime.engine.clocks import FollowingClock
 FULL_SPEED, RADIOS = "full-speed", "radios of ardusub-manual"
 
 
-def connect(given: BackendInput) -> ManualRobot:
+def connect(given: VehicleInput) -> ManualRobot:
     """Return a robot at the end of its link.
 
     Raises:
@@ -42,7 +42,7 @@ def connect(given: BackendInput) -> ManualRobot:
     return ManualRobot(given, context, _link(given, given.live), given.live, speed)
 
 
-def _full_speed(given: BackendInput) -> float:
+def _full_speed(given: VehicleInput) -> float:
     said = given.options.get(FULL_SPEED)
     try:
         speed = given.type.capabilities[0].speed[1] if said is None else float(said)
@@ -60,7 +60,7 @@ def _radios(live: Live) -> Radios:
     return found
 
 
-def _link(given: BackendInput, live: Live) -> Link:
+def _link(given: VehicleInput, live: Live) -> Link:
     number = [robot.id for robot in given.program.robots].index(given.robot.id)
     usual = f"udpin:127.0.0.1:{FIRST_PORT + PORT_STEP * number}"
     try:

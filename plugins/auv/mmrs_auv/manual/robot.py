@@ -14,8 +14,8 @@ from mmrs_auv.manual.route import Route
 from mmrs_auv.manual.troubles import LINK_PATIENCE, Troubles
 from mmrs_auv.manual.ways import Ways
 from mmrs_core.behaviour.program import Action, Move
-from mmrs_core.contributions.backends import BackendInput, Live
 from mmrs_core.contributions.execution import Fault, RobotState
+from mmrs_core.contributions.vehicles import Live, VehicleInput
 from mmrs_core.errors import UnreachableError
 from mmrs_core.scene import Position
 from mmrs_mavlink.links.link import Link
@@ -47,7 +47,7 @@ class ManualRobot(Vehicle):
     """A vehicle in depth hold, and the thread that moves its sticks."""
 
     def __init__(
-        self, given: BackendInput, context: RobotContext, link: Link, live: Live, full_speed: float
+        self, given: VehicleInput, context: RobotContext, link: Link, live: Live, full_speed: float
     ) -> None:
         """Know the robot; nothing is sent before it is to get ready."""
         self._ways = Ways(given, context)

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from math import hypot
 
 from mmrs_auv.manual.helm import Goal
-from mmrs_core.contributions.backends import BackendInput
+from mmrs_core.contributions.vehicles import VehicleInput
 from mmrs_core.runtime.escape import Escapes
 from mmrs_core.runtime.known import kinematics_of
 from mmrs_core.scene import Position
@@ -24,7 +24,7 @@ class Ways:
         home: of the robot.
     """
 
-    def __init__(self, given: BackendInput, context: RobotContext) -> None:
+    def __init__(self, given: VehicleInput, context: RobotContext) -> None:
         """Know the robot.
 
         Raises:

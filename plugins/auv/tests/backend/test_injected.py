@@ -15,7 +15,7 @@ from mmrs_auv.backend.injected import Faults, faults_of, frame_of, injected, pie
 from auv_vessel.hosting import clock_frame
 from auv_vessel.wire.frame import Frame
 from auv_vessel.wire.ports import Port, open_port
-from mmrs_core.contributions.backends import BackendInput, Live
+from mmrs_core.contributions.vehicles import Live, VehicleInput
 from mmrs_core.errors import UsageError
 from mmrs_runtime.engine.clocks import RealClock
 
@@ -29,9 +29,9 @@ def live() -> Live:
     return Live(RealClock(), lambda: None, lambda line: None, "run", announce=lambda line: None)
 
 
-def asked() -> BackendInput:
+def asked() -> VehicleInput:
     behaviour = dive()
-    return BackendInput(behaviour, behaviour.robots[0], diver(), {}, {}, {}, {})
+    return VehicleInput(behaviour, behaviour.robots[0], diver(), {}, {}, {}, {})
 
 
 def faults(text: str) -> Faults:

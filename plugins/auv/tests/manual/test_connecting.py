@@ -12,7 +12,7 @@ from patience import until
 from ports import free_port
 
 from mmrs_core.behaviour.program import Target
-from mmrs_core.contributions.backends import Live
+from mmrs_core.contributions.vehicles import Live
 from mmrs_core.errors import UnsupportedError
 from mmrs_core.sitl import Settings, SimulatedVehicle
 from mmrs_core.testing.programs import move

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 from mmrs_core.hookspecs import hookimpl
 
 if TYPE_CHECKING:
-    from mmrs_core.contributions.backends import BackendFactory
     from mmrs_core.contributions.targets import Target
+    from mmrs_core.contributions.vehicles import VehicleFactory
 
 
 @hookimpl
@@ -21,7 +21,7 @@ def mmrs_targets() -> Iterable[Target]:
 
 
 @hookimpl
-def mmrs_backends() -> Iterable[BackendFactory]:
+def mmrs_vehicles() -> Iterable[VehicleFactory]:
     """Contribute vehicles at the ends of MAVLink links."""
     from mmrs_mavlink.plugin.backend import MAVLINK
 

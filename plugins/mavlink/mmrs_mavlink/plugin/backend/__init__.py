@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 
-from mmrs_core.contributions.backends import BackendFactory, BackendInput
+from mmrs_core.contributions.vehicles import VehicleFactory, VehicleInput
 from mmrs_core.errors import UsageError
 from mmrs_mavlink.plugin.backend.options import link_options
 from mmrs_runtime.vehicle import Vehicle
 
 
-def _connect(given: BackendInput) -> Vehicle:
+def _connect(given: VehicleInput) -> Vehicle:
     """Return a robot at the end of its link, which is first listened to when the robot gets ready."""
     link_options(given.options)
     if given.live is None:
@@ -26,7 +26,7 @@ def _check(options: Mapping[str, Mapping[str, str]], links: Mapping[str, str]) -
     return faults_of(options, links)
 
 
-MAVLINK = BackendFactory(
+MAVLINK = VehicleFactory(
     "mavlink",
     "ArduPilot and PX4 vehicles over MAVLink 2: serial, UDP or TCP, in real time",
     _connect,

@@ -9,8 +9,8 @@ from pathlib import Path
 from typing import cast
 
 from mmrs_core.behaviour.program import Program
-from mmrs_core.contributions.backends import BackendInput, Live
 from mmrs_core.contributions.targets import TargetInput
+from mmrs_core.contributions.vehicles import Live, VehicleInput
 from mmrs_core.errors import LinkLostError, UnsupportedError, UsageError
 from mmrs_mavlink.linked import at_end_of
 from mmrs_mavlink.links.link import Link
@@ -60,7 +60,7 @@ class Fleet:
             self.rehearsal.close()
 
 
-def connect(given: BackendInput, live: Live) -> MavlinkRobot:
+def connect(given: VehicleInput, live: Live) -> MavlinkRobot:
     """Return a robot at the end of its link.
 
     Raises:
@@ -83,7 +83,7 @@ def connect(given: BackendInput, live: Live) -> MavlinkRobot:
     return MavlinkRobot(program, _equipment(given, live, input, program, fleet, link), options)
 
 
-def _refuse(given: BackendInput, input: TargetInput, options: LinkOptions) -> None:
+def _refuse(given: VehicleInput, input: TargetInput, options: LinkOptions) -> None:
     alone = replace(input, program=replace(given.program, robots=(given.robot,)))
     found = list(refusals(alone))
     if not options.objects:
@@ -137,7 +137,7 @@ def _urls(live: Live, program: Program) -> Mapping[str, str]:
     return {robot: live.links.get(robot, url) for robot, url in usual.items()}
 
 
-def _url(given: BackendInput, live: Live) -> tuple[str, int]:
+def _url(given: VehicleInput, live: Live) -> tuple[str, int]:
     return _split(_urls(live, given.program)[given.robot.id])
 
 
@@ -151,7 +151,7 @@ def _split(text: str) -> tuple[str, int]:
 
 
 def _equipment(
-    given: BackendInput, live: Live, input: TargetInput, program: Robot, fleet: Fleet, link: Link
+    given: VehicleInput, live: Live, input: TargetInput, program: Robot, fleet: Fleet, link: Link
 ) -> Equipment:
     options = link_options(given.options)
     home_tolerance = inf if live.resumed else options.home_tolerance
@@ -199,13 +199,13 @@ def _once(begin: Callable[[], None], shared: dict[str, object]) -> Callable[[], 
     return start
 
 
-def _system_before(given: BackendInput, live: Live) -> int:
+def _system_before(given: VehicleInput, live: Live) -> int:
     if not live.resumed or live.folder is None:
         return 0
     return system_of(black_box_path(live.folder / log_name(given.robot.id)))
 
 
-def _box(given: BackendInput, live: Live, clock: Clock) -> BlackBox | None:
+def _box(given: VehicleInput, live: Live, clock: Clock) -> BlackBox | None:
     if live.folder is None:
         return None
     path = black_box_path(live.folder / log_name(given.robot.id))

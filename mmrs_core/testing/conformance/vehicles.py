@@ -1,4 +1,4 @@
-"""Laws for backends: what drives robots, whatever the robots are."""
+"""Laws for vehicles: what drives robots, whatever the robots are."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from typing import ClassVar
 import pytest
 
 from mmrs_core.behaviour.program import Program
-from mmrs_core.contributions.backends import BackendFactory, BackendInput
+from mmrs_core.contributions.vehicles import VehicleFactory, VehicleInput
 from mmrs_core.errors import UsageError
 from mmrs_core.testing.conformance.declared import Conformance
 from mmrs_core.testing.small_programs import go, hold, program, robot, robot_type
@@ -18,49 +18,49 @@ from mmrs_runtime.vehicle import Vehicle
 
 MOST_EVENTS = 1000
 """Questions after which a movement is taken for one that never ends."""
-NO_OPTION = "an option that no backend has"
+NO_OPTION = "an option that no vehicle has"
 TO_AND_FRO = program(
     robot("r", [go("there", (30.0, 0.0, 0.0)), hold("pause", 2.0), go("back", (0.0, 0.0, 0.0))])
 )
 
 
-class BackendConformance(Conformance):
-    """Every simulated backend moves one robot, one movement at a time, and stops it from any state.
+class VehicleConformance(Conformance):
+    """Every simulated vehicle moves one robot, one movement at a time, and stops it from any state.
 
-    A backend that drives real robots runs at the world's pace, and is tested with them; here, only what it
+    A vehicle that is a real robot's runs at the world's pace, and is tested with them; here, only what it
     refuses before it reaches out for one.
 
     Attributes:
         behaviour: whose first robot is driven, all its moves one after another.
-        options: that the backend needs, by the backend's name.
+        options: that the vehicle needs, by its factory's name.
     """
 
     behaviour: ClassVar[Program] = TO_AND_FRO
     options: ClassVar[Mapping[str, Mapping[str, str]]] = {}
 
-    def test_it_is_called_and_described_for_the_command_line(self, backend: BackendFactory) -> None:
+    def test_it_is_called_and_described_for_the_command_line(self, vehicle: VehicleFactory) -> None:
         """The name is typed, the description is one line."""
-        assert backend.name == backend.name.lower()
-        assert " " not in backend.name
-        assert backend.description
-        assert "\n" not in backend.description
+        assert vehicle.name == vehicle.name.lower()
+        assert " " not in vehicle.name
+        assert vehicle.description
+        assert "\n" not in vehicle.description
 
-    def test_an_option_that_it_does_not_know_is_refused(self, backend: BackendFactory) -> None:
+    def test_an_option_that_it_does_not_know_is_refused(self, vehicle: VehicleFactory) -> None:
         """A misspelt option is never swallowed."""
-        given = self._input(backend)
+        given = self._input(vehicle)
         with pytest.raises(UsageError, match=NO_OPTION):
-            backend.connect(replace(given, options={**given.options, NO_OPTION: "1"}))
+            vehicle.connect(replace(given, options={**given.options, NO_OPTION: "1"}))
 
-    def test_it_begins_at_home_without_moving(self, backend: BackendFactory) -> None:
+    def test_it_begins_at_home_without_moving(self, vehicle: VehicleFactory) -> None:
         """Its state is known before anything was begun."""
-        driven = self._simulated(backend)
+        driven = self._simulated(vehicle)
         state = driven.state(0.0)
         assert (state.time, state.position) == (0.0, self.behaviour.robots[0].home)
         assert state.speed == 0.0
 
-    def test_every_movement_ends_where_it_leads_to(self, backend: BackendFactory) -> None:
+    def test_every_movement_ends_where_it_leads_to(self, vehicle: VehicleFactory) -> None:
         """Movements that are begun one after another finish one after another."""
-        driven, now = self._simulated(backend), 0.0
+        driven, now = self._simulated(vehicle), 0.0
         for move in self.behaviour.robots[0].moves:
             driven.do(move, now)
             now = _end(driven, now)
@@ -68,19 +68,19 @@ class BackendConformance(Conformance):
             if move.target is not None and move.target.position is not None:
                 assert driven.state(now).position == pytest.approx(move.target.position, abs=0.5)
 
-    def test_waiting_ends_never_and_moves_nothing(self, backend: BackendFactory) -> None:
+    def test_waiting_ends_never_and_moves_nothing(self, vehicle: VehicleFactory) -> None:
         """The robot holds its pose until the next movement."""
-        driven = self._simulated(backend)
+        driven = self._simulated(vehicle)
         driven.wait(0.0)
         assert driven.state(100.0).position == driven.state(0.0).position
 
     @pytest.mark.parametrize("response", ["HOLD", "RETURN", "LAND", "SURFACE", "STOP_THRUST"])
     @pytest.mark.parametrize("share", [0.0, 0.3, 1.0])
     def test_it_stops_from_any_state_and_stays_there(
-        self, backend: BackendFactory, response: str, share: float
+        self, vehicle: VehicleFactory, response: str, share: float
     ) -> None:
         """Stopping twice is stopping once."""
-        driven = self._simulated(backend)
+        driven = self._simulated(vehicle)
         driven.do(self.behaviour.robots[0].moves[1], 0.0)
         when = share * min(driven.look(0.0), 1e6)
         driven.respond(response, when)
@@ -90,22 +90,22 @@ class BackendConformance(Conformance):
         assert state.speed == later.speed == 0.0
         assert later.position == state.position
 
-    def _input(self, backend: BackendFactory) -> BackendInput:
+    def _input(self, vehicle: VehicleFactory) -> VehicleInput:
         known = self.with_core()
-        return BackendInput(
+        return VehicleInput(
             program=self.behaviour,
             robot=self.behaviour.robots[0],
             type=robot_type(),
             robot_kinds=known.robot_kinds,
             move_kinds=known.move_kinds,
             environment={},
-            options=self.options.get(backend.name, {}),
+            options=self.options.get(vehicle.name, {}),
         )
 
-    def _simulated(self, backend: BackendFactory) -> Vehicle:
-        if not backend.simulated:
-            pytest.skip(f"{backend.name} drives real robots")
-        return backend.connect(self._input(backend))
+    def _simulated(self, vehicle: VehicleFactory) -> Vehicle:
+        if not vehicle.simulated:
+            pytest.skip(f"{vehicle.name} drives real robots")
+        return vehicle.connect(self._input(vehicle))
 
 
 def _end(driven: Vehicle, now: float) -> float:

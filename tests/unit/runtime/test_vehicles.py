@@ -1,4 +1,4 @@
-"""Which backend moves the robots of a run is chosen by name, the core's own like any other."""
+"""Which vehicle moves the robots of a run is chosen by name, the core's own like any other."""
 
 from __future__ import annotations
 
@@ -7,12 +7,12 @@ from dataclasses import dataclass, replace
 import pytest
 
 from mmrs_core import pipeline
-from mmrs_core.contributions.backends import BackendFactory
 from mmrs_core.contributions.execution import RobotState
+from mmrs_core.contributions.vehicles import VehicleFactory
 from mmrs_core.errors import UsageError
 from mmrs_core.hookspecs import hookimpl
 from mmrs_core.plugins import load_plugins
-from mmrs_core.testing.conformance import BackendConformance
+from mmrs_core.testing.conformance import VehicleConformance
 from mmrs_core.testing.small_programs import ROBOT_TYPE, go, program, robot, robot_type
 from mmrs_runtime.vehicle import Vehicle
 
@@ -51,18 +51,18 @@ class Jumper(Vehicle):
             self._to, self._end = self._at, now
 
 
-JUMPER = BackendFactory("jumper", "Robots that jump", Jumper, simulated=True)
+JUMPER = VehicleFactory("jumper", "Robots that jump", Jumper, simulated=True)
 
 
 @dataclass(frozen=True)
 class Jumping:
-    """A plug-in that contributes backends."""
+    """A plug-in that contributes vehicles."""
 
-    backend: BackendFactory = JUMPER
+    vehicle: VehicleFactory = JUMPER
 
     @hookimpl
-    def mmrs_backends(self):
-        return (self.backend,)
+    def mmrs_vehicles(self):
+        return (self.vehicle,)
 
 
 def simulated(plugin, **options):
@@ -70,11 +70,11 @@ def simulated(plugin, **options):
     return pipeline.simulate(BEHAVIOUR, PLACE, contributions, **options)
 
 
-class TestJumper(BackendConformance):
+class TestJumper(VehicleConformance):
     plugin = Jumping()
 
 
-def test_a_plugins_backend_is_taken_by_its_name():
+def test_a_plugins_vehicle_is_taken_by_its_name():
     assert simulated(Jumping(), backend="jumper").ending.time == SECONDS
 
 
@@ -87,7 +87,7 @@ def test_an_option_that_it_does_not_know_is_refused_by_name():
         simulated(Jumping(), backend="jumper", options={"metres": "3"})
 
 
-def test_a_backend_that_tells_no_way_leaves_none():
+def test_a_vehicle_that_tells_no_way_leaves_none():
     assert simulated(Jumping(), backend="jumper").tracks == {}
 
 

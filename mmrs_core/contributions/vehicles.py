@@ -35,7 +35,7 @@ class Recorder(Protocol):
 
 @dataclass(frozen=True, slots=True)
 class Live:
-    """What backends of a run in real time may use beside the rest.
+    """What vehicles of a run in real time may use beside the rest.
 
     Attributes:
         clock: of the run.
@@ -48,7 +48,7 @@ class Live:
         passed: moves that this robot ended before, in order.
         begun: the move that it had begun then; empty where it had ended its last one.
         links: how robots are reached, as in ``--connect``, by robot of this process.
-        shared: what backends of the same run share, by names of their own; empty at first.
+        shared: what vehicles of the same run share, by names of their own; empty at first.
         announce: tells people what concerns no robot alone, from any thread.
     """
 
@@ -66,8 +66,8 @@ class Live:
 
 
 @dataclass(frozen=True, slots=True)
-class BackendInput:
-    """All that a backend may use.
+class VehicleInput:
+    """All that a vehicle may use.
 
     Attributes:
         options: as in ``--backend-option``, those of this robot.
@@ -96,13 +96,13 @@ Check = Callable[[Mapping[str, Mapping[str, str]], Mapping[str, str]], Iterable[
 
 
 @dataclass(frozen=True, slots=True)
-class BackendFactory:
-    """What makes backends of one sort.
+class VehicleFactory:
+    """What makes vehicles of one sort.
 
     Attributes:
         name: as in ``--backend``.
         description: one line for people.
-        connect: a backend for one robot. Raises LinkLostError where the robot does not answer,
+        connect: a vehicle for one robot. Raises LinkLostError where the robot does not answer,
             UnsupportedError for an option that it does not know and for what it cannot do.
         simulated: whether its time is simulated, so that a run jumps from event to event;
             ``mmrs simulate`` takes no other.
@@ -113,6 +113,6 @@ class BackendFactory:
 
     name: str
     description: str
-    connect: Callable[[BackendInput], Vehicle]
+    connect: Callable[[VehicleInput], Vehicle]
     simulated: bool = False
     check: Check = lambda options, links: ()
