@@ -11,6 +11,7 @@ from mmrs_core.contributions.rules import MoveKind, RobotKind, robot_kind_of
 from mmrs_core.contributions.vehicles import Recorder, VehicleFactory, VehicleInput
 from mmrs_core.contributions.wiring import Wirings
 from mmrs_core.errors import UnsupportedError, UsageError
+from mmrs_core.languages.collector import collector_at_rest
 from mmrs_core.runtime.conditions import refuse_undecided
 from mmrs_core.runtime.mixed import options_for, refuse_strange
 from mmrs_core.scene import Area, Name, Policy, RobotType
@@ -90,15 +91,16 @@ def simulate(
             terms.observe(record)
 
     connected = {id: backend.connect(each) for id, each in given.items()}
-    ending = run(
-        program.executable,
-        connected,
-        slots=LocalSlots(program.executable),
-        clock=SimulatedClock(),
-        conditions=conditions or {},
-        policies={id: each.policies for id, each in given.items()},
-        terms=replace(terms, observe=observe),
-    )
+    with collector_at_rest():  # what a run makes is kept to its end
+        ending = run(
+            program.executable,
+            connected,
+            slots=LocalSlots(program.executable),
+            clock=SimulatedClock(),
+            conditions=conditions or {},
+            policies={id: each.policies for id, each in given.items()},
+            terms=replace(terms, observe=observe),
+        )
     told = {id: robot for id, robot in connected.items() if isinstance(robot, Recorder)}
     tracks = {id: robot.track() for id, robot in told.items()}
     notes = tuple(f"robot '{id}', {note}" for id, robot in told.items() for note in robot.notes)

@@ -77,7 +77,8 @@ class Life(Situation):
 
     def _step(self) -> Waits:
         """Do what the point in the program asks for, then make the step."""
-        yield from self._gate()
+        if self.held or self.ordered is not None or self._slots.trouble(self.id):
+            yield from self._gate()
         phase = self.point.phase
         if phase is Phase.OUT:
             yield from self._go_on()
@@ -91,7 +92,8 @@ class Life(Situation):
                 yield from self._carry_out(action)
             else:
                 yield from self._carry_out(self.move.order, through=self._may_pass())
-        yield from self._room()
+        if self._run.is_full:
+            yield from self._room()
         self._make(self._next())
 
     def _next(self) -> Step:
@@ -155,7 +157,8 @@ class Life(Situation):
                 possible = () if chosen is None else (possible[0 if chosen else 1],)
             lamport = self._after(names)
             if possible and self._passes(names, lamport):
-                yield from self._room()
+                if self._run.is_full:
+                    yield from self._room()
                 self._make(possible[0], lamport)
                 return
             if not possible:

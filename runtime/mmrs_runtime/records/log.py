@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from contextlib import contextmanager, suppress
+from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
 from types import TracebackType
 from typing import IO, Literal
@@ -32,7 +32,8 @@ class LogFile:
             path: of the log.
             mode: ``a``: go on after its last whole line; ``w``: replace it; ``x``: refuse one that is there.
             spaced: as `to_line` takes it.
-            synced: whether a notify or a fault is on the disk when it has been written.
+            synced: whether a step is out of the process, and a notify or a fault on the disk, once it is
+                written; else nothing is known to be there before the log is closed.
         """
         self._path, self._mode, self._spaced, self._synced = path, mode, spaced, synced
         self._file: IO[bytes] | None = None
@@ -48,7 +49,8 @@ class LogFile:
             self._path.parent.mkdir(parents=True, exist_ok=True)
             if self._mode == "a" and self._path.exists():
                 keep_whole_lines(self._path)
-            self._file = self._path.open(f"{self._mode}b", buffering=0)
+            buffering = 0 if self._synced else -1
+            self._file = self._path.open(f"{self._mode}b", buffering=buffering)
         return self._file
 
     def write(self, record: StepRecord) -> None:
@@ -66,7 +68,14 @@ class LogFile:
         """Close the file, after a fault that could not be written before, as on a full disk.
 
         One without steps is taken away, so that it is not taken for a run's.
+
+        Raises:
+            OSError: not all is written, in a log that is not synced.
         """
+        if self._file is not None and not self._synced:
+            with self._named():
+                self._file.close()
+            return
         with suppress(OSError):
             if self._owed is not None:
                 self._append(self._owed)
@@ -79,7 +88,20 @@ class LogFile:
 
     def _append(self, record: StepRecord) -> None:
         line = to_line(record, spaced=self._spaced).encode("utf-8") + b"\n"
-        append_whole(self.open(), line, at_once=self._synced and record.label in KEPT_AT_ONCE)
+        if self._synced:
+            append_whole(self.open(), line, at_once=record.label in KEPT_AT_ONCE)
+        else:
+            with self._named():
+                self.open().write(line)
+
+    @contextmanager
+    def _named(self) -> Iterator[None]:
+        """Have errors about the file name it."""
+        try:
+            yield
+        except OSError as error:
+            error.filename = error.filename or str(self._path)
+            raise
 
 
 class LogWriter:
@@ -94,8 +116,7 @@ class LogWriter:
         Args:
             folder: of the logs.
             resumed: whether to go on with logs that are there.
-            synced: whether a notify or a fault is on the disk when it has been written; what is simulated can
-                be simulated again.
+            synced: whether steps survive whatever happens next; what is simulated can be simulated again.
         """
         folder.mkdir(parents=True, exist_ok=True)
         self._folder, self._resumed, self._synced = folder, resumed, synced
@@ -113,9 +134,14 @@ class LogWriter:
         self._files[record.robot].write(record)
 
     def close(self) -> None:
-        """Close all files, after faults that could not be written before."""
-        while self._files:
-            self._files.popitem()[1].close()
+        """Close all files, after faults that could not be written before.
+
+        Raises:
+            OSError: not all is written, in logs that are not synced.
+        """
+        with ExitStack() as stack:
+            while self._files:
+                stack.callback(self._files.popitem()[1].close)
 
     def __enter__(self) -> LogWriter:
         """Return the writer."""

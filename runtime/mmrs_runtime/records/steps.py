@@ -6,7 +6,7 @@ import json
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, fields
 from hashlib import sha256
-from math import inf
+from math import inf, isfinite
 from operator import attrgetter
 from pathlib import Path
 from urllib.parse import quote
@@ -50,8 +50,9 @@ class StepRecord:
 
 _FIELDS = tuple(field.name for field in fields(StepRecord))
 _VALUES = attrgetter(*_FIELDS)
-_DENSE = json.JSONEncoder(ensure_ascii=False, separators=(",", ":"), allow_nan=False)
-_SPACED = json.JSONEncoder(allow_nan=False)
+_DENSE = "{" + ",".join(f'"{name}":%s' for name in _FIELDS) + "}"
+_SPACED = "{" + ", ".join(f'"{name}": %s' for name in _FIELDS) + "}"
+_AS_IT_IS, _IN_ASCII = json.encoder.encode_basestring, json.encoder.encode_basestring_ascii
 _COUNTS = ("seq", "lamport")
 _NEVER_EMPTY = ("run", "robot", "move")
 
@@ -76,7 +77,22 @@ def to_line(record: StepRecord, *, spaced: bool = False) -> str:
         record: the step.
         spaced: as controllers write it: with blanks between the fields, and in ASCII.
     """
-    return (_SPACED if spaced else _DENSE).encode(dict(zip(_FIELDS, _VALUES(record), strict=True)))
+    if not isfinite(record.time):
+        raise ValueError(f"time {record.time}: no number that JSON has")
+    text, line = (_IN_ASCII, _SPACED) if spaced else (_AS_IT_IS, _DENSE)
+    run, robot, seq, lamport, time, label, move, detail, slot = _VALUES(record)
+    texts = (
+        text(run),
+        text(robot),
+        seq,
+        lamport,
+        repr(time),
+        text(label),
+        text(move),
+        text(detail),
+        text(slot),
+    )
+    return line % texts
 
 
 def step_in(line: str) -> StepRecord:
