@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import errno
 import os
+import sys
 from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
@@ -47,8 +48,12 @@ def test_a_file_that_is_replaced_is_named(full, tmp_path):
 
 
 @pytest.fixture
-def limit():
-    """Return a function that lets files grow up to so many bytes; None: as before."""
+def limit(monkeypatch):
+    """Return a function that lets files grow up to so many bytes; None: as before.
+
+    Compiled modules are not kept meanwhile: half of one would be taken for whole by whoever imports it next.
+    """
+    monkeypatch.setattr(sys, "dont_write_bytecode", True)
     resource = pytest.importorskip("resource")
     usual = resource.getrlimit(resource.RLIMIT_FSIZE)
 
