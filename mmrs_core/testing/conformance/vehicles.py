@@ -11,7 +11,8 @@ import pytest
 
 from mmrs_core.behaviour.program import Program
 from mmrs_core.contributions.vehicles import VehicleFactory, VehicleInput
-from mmrs_core.errors import UsageError
+from mmrs_core.errors import UnsupportedError, UsageError
+from mmrs_core.scene import RobotType
 from mmrs_core.testing.conformance.declared import Conformance
 from mmrs_core.testing.small_programs import go, hold, program, robot, robot_type
 from mmrs_runtime.vehicle import Vehicle
@@ -32,10 +33,12 @@ class VehicleConformance(Conformance):
 
     Attributes:
         behaviour: whose first robot is driven, all its moves one after another.
+        type: of that robot.
         options: that the vehicle needs, by its factory's name.
     """
 
     behaviour: ClassVar[Program] = TO_AND_FRO
+    type: ClassVar[RobotType] = robot_type()
     options: ClassVar[Mapping[str, Mapping[str, str]]] = {}
 
     def test_it_is_called_and_described_for_the_command_line(self, vehicle: VehicleFactory) -> None:
@@ -48,7 +51,7 @@ class VehicleConformance(Conformance):
     def test_an_option_that_it_does_not_know_is_refused(self, vehicle: VehicleFactory) -> None:
         """A misspelt option is never swallowed."""
         given = self._input(vehicle)
-        with pytest.raises(UsageError, match=NO_OPTION):
+        with pytest.raises((UsageError, UnsupportedError), match=NO_OPTION):
             vehicle.connect(replace(given, options={**given.options, NO_OPTION: "1"}))
 
     def test_it_begins_at_home_without_moving(self, vehicle: VehicleFactory) -> None:
@@ -95,7 +98,7 @@ class VehicleConformance(Conformance):
         return VehicleInput(
             program=self.behaviour,
             robot=self.behaviour.robots[0],
-            type=robot_type(),
+            type=self.type,
             robot_kinds=known.robot_kinds,
             move_kinds=known.move_kinds,
             environment={},

@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+from dives import dive, diver, swim
 from mmrs_auv import plugin
 from mmrs_auv.names import AUV_MOVEMENT, PIPELINE
 
@@ -11,6 +12,7 @@ from mmrs_core.testing.conformance import (
     RobotKindConformance,
     RuleConformance,
     TargetConformance,
+    VehicleConformance,
 )
 from mmrs_core.testing.scenes import sample_device, sample_robot, sample_scene, sample_type
 
@@ -86,3 +88,11 @@ class TestTargets(TargetConformance):
         "imc": plain("sub"),
         "moos": plain("sub"),
     }
+
+
+class TestVehicles(VehicleConformance):
+    plugin = plugin
+    behaviour = dive(swim("out", 3.0, 0.0, 1.0), swim("back", 0.0, 0.0, 1.0))
+    type = diver()
+    options = {"can-sim": {"noise": "no"}}
+    test_it_stops_from_any_state_and_stays_there = None  # a body in water drifts: test_rehearsed.py stops it

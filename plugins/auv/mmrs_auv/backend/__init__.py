@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from importlib.util import find_spec
 
+from mmrs_auv.backend.options import connecting
 from mmrs_core.contributions.vehicles import VehicleFactory, VehicleInput
 from mmrs_core.errors import UnsupportedError
 from mmrs_runtime.vehicle import Vehicle
@@ -19,6 +20,7 @@ def _rehearse(given: VehicleInput) -> Vehicle:
 
 def _connect(given: VehicleInput) -> Vehicle:
     """Return the decision centre of a vehicle on its bus, in real time."""
+    connecting(given.options)
     if given.live is None:
         raise UnsupportedError("backend 'can': drives robots in real time; 'mmrs run' does that")
     _refuse_without_can("can")
