@@ -62,15 +62,15 @@ def test_a_dive_is_carried_out_over_the_bus(berth, contributions, tmp_path):
 
 @pytest.mark.timeout(120)
 def test_a_run_ends_whose_bus_goes_while_its_vehicle_stops(berth, contributions, tmp_path, monkeypatch):
-    stop = ConnectedRobot.stop
+    respond = ConnectedRobot.respond
 
-    def stop_without_a_bus(robot: ConnectedRobot, now: float, response: str) -> None:
-        stop(robot, now, response)
+    def respond_without_a_bus(robot: ConnectedRobot, response: str, now: float) -> None:
+        respond(robot, response, now)
         berth.close()
         while robot._connection.failure is None:
             time.sleep(0.01)
 
-    monkeypatch.setattr(ConnectedRobot, "stop", stop_without_a_bus)
+    monkeypatch.setattr(ConnectedRobot, "respond", respond_without_a_bus)
     said: list[str] = []
     venture = interpreted(short_dive(), berth, contributions, tmp_path)
 
