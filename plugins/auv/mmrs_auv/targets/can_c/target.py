@@ -78,10 +78,10 @@ def files_of(sheets: Mapping[str, Sheet]) -> Iterator[FileSpec]:
             bus = buses[codec] = f"bus_{len(buses) + 1}" if buses else "bus"
             yield FileSpec(f"{bus}/bus.h", "", data=codec[0].encode())
             yield FileSpec(f"{bus}/bus.c", "", data=codec[1].encode())
-        view = {**_view(sheet), "bus": buses[codec], "shared": SHARED}
+        view, folders = _view(sheet), {"bus": buses[codec], "shared": SHARED}
         yield FileSpec(f"{folder}/vehicle.h", "vehicle.h.jinja", view)
         yield FileSpec(f"{folder}/vehicle.c", "vehicle.c.jinja", view)
-        yield FileSpec(f"{folder}/Makefile", "Makefile.jinja", view)
+        yield FileSpec(f"{folder}/Makefile", "Makefile.jinja", folders)
         yield FileSpec(f"{folder}/outputs.c", "outputs.c", once=True, asks=ASKS)
 
 
