@@ -130,4 +130,4 @@ def mmrs_stage_finished(stage: str, result: object) -> None:
 
 @hookspec
 def mmrs_step_executed(record: StepRecord) -> None:
-    """Observe a step that the interpreter executes; what this raises is told, and ends nothing."""
+    """Observe a step that the engine executes; what this raises is told, and ends nothing."""

@@ -39,7 +39,7 @@ class Live:
 
     Attributes:
         clock: of the run.
-        wake: has the interpreter look at this robot at once; to be called, from any thread, whenever
+        wake: has the engine look at this robot at once; to be called, from any thread, whenever
             the robot's answers may have changed.
         say: tells people something about this robot, from any thread.
         run: identifier of the run.

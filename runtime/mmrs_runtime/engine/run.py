@@ -286,7 +286,8 @@ class Run:
         """Return whether simulated robots wait for conditions that nobody knows, and nothing else happens."""
         if self.clock.passes_by_itself or self.clock.now() < self._stepped + UNKNOWN_SECONDS:
             return False
-        return all(life.is_quiet or life.wait.question for life in self._lives)
+        asked = any(life.wait.question for life in self._lives)
+        return asked and all(life.point.is_final or life.waits_for_ever for life in self._lives)
 
     def _is_patient(self) -> bool:
         """Return whether a wait of some robot will end by itself."""

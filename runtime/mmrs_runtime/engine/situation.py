@@ -193,6 +193,11 @@ class Situation:
         return self.stage in (Stage.SUSPENDED, Stage.ABSENT)
 
     @property
+    def waits_for_ever(self) -> bool:
+        """Return whether it waits, and neither a policy nor its vehicle ends that at any time to come."""
+        return self.wait.since is not None and self.wait.deadline == inf and self._look_at == inf
+
+    @property
     def is_quiet(self) -> bool:
         """Return whether it makes no step unless others do, or somebody orders it."""
         return self.point.is_final or bool(self.wait.lacking) or self.suspended

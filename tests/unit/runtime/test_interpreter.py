@@ -124,6 +124,20 @@ def test_a_condition_that_nobody_ever_knows_is_waited_for_no_longer_than_anythin
     assert [str(each) for each in ending.waiting] == ["'r' waits after 'h' for 'c'"]
 
 
+def test_a_condition_that_nobody_knows_is_waited_for_as_long_as_a_policy_says(fly):
+    policy = Policy("WAIT_TOO_LONG", "HOLD", 900.0)
+    behaviour = program(
+        robot("r", [hold("h"), hold("x")], choices={"h": ("c", "x", "stop")}, policies=(policy,))
+    )
+    run = fly(
+        behaviour,
+        robot_type(lifetime=None),
+        conditions={"c": Condition("c", lambda state: True, lambda state: False)},
+    )
+    assert run.ending.faults["r"].which == "WAIT_TOO_LONG"
+    assert run.records[-1].time == pytest.approx(901.0, abs=0.06)
+
+
 def test_a_deadlock_is_found_and_names_robots_moves_and_slots(fly):
     behaviour = program(
         robot("a", [hold("h", 1.0), hold("i", after=(notify("b.s"),))], waits={"h": ["s"]}),
