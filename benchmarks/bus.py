@@ -33,7 +33,6 @@ from mmrs_core.behaviour.program import Program
 from mmrs_core.behaviour.replay import replay
 from mmrs_core.contributions.vehicles import VehicleInput
 from mmrs_core.runtime.simulation import SIMULATION
-from mmrs_core.runtime.slots import shared_bus
 from mmrs_core.testing.small_programs import go, notify, program, robot, robot_type
 from mmrs_core.transformation.kinds import MOVE_KINDS, PLAIN_ROBOT
 from mmrs_mavlink.program import Local, Notify, Robot, Start, Step
@@ -41,6 +40,7 @@ from mmrs_mavlink.slots import BusSlots, LocalSlots, shared_slots
 from mmrs_runtime.bus import begin_together
 from mmrs_runtime.bus.carriers.over_zenoh import ZenohCarrier
 from mmrs_runtime.bus.carriers.sessions import Endpoints, configuration
+from mmrs_runtime.bus.program_bus import shared_bus
 from mmrs_runtime.engine.clocks import RealClock
 from mmrs_runtime.engine.run import run as carry_out
 from mmrs_runtime.engine.terms import Attention, Terms
@@ -327,7 +327,7 @@ def run_part(robots: int, seed: int, number: int, ports: list[int], folder: str)
     others = tuple(f"tcp/127.0.0.1:{port}" for port in ports if port != ports[number])
     endpoints = Endpoints((f"tcp/127.0.0.1:{ports[number]}",), others)
     everybody = [each.id for each in made.robots]
-    bus = shared_bus(made, mine, "run-0", own, ZenohCarrier("bench", "run-0", everybody, endpoints))
+    bus = shared_bus(made.shared, mine, "run-0", own, ZenohCarrier("bench", "run-0", everybody, endpoints))
     beginning = begin_together(bus.node, mine[0], everybody, lambda why: None, beside=mine[1:])
     begun, before = time.monotonic(), _used(resource.RUSAGE_SELF)
     clock = RealClock(SPEEDUP)

@@ -26,12 +26,12 @@ from typing import Any
 from pymavlink import mavutil
 
 from mmrs_core.behaviour.program import Program
-from mmrs_core.cli.orders_heard import hear_orders
-from mmrs_core.runtime.live import Venture, run_live
+from mmrs_core.runtime.live import run_live, venture_for
 from mmrs_core.runtime.run import inputs_of
 from mmrs_core.sitl import Settings, SimulatedVehicle
 from mmrs_core.testing.programs import move, program, quad, robot_program, take_off
 from mmrs_mavlink.plugin.backend import MAVLINK
+from mmrs_runtime.engine.hearing import hear_orders
 from mmrs_runtime.engine.orders import LAND, Orders
 from mmrs_runtime.orders.ordering import give
 from mmrs_runtime.slots import LocalSlots
@@ -83,17 +83,14 @@ def hovering() -> Iterator[Path]:
     )
     with tempfile.TemporaryDirectory() as name, SimulatedVehicle(port, Settings(energy=1e6)) as vehicle:
         folder = Path(name)
-        venture = Venture(
-            made,
-            inputs,
-            LocalSlots(made.executable),
-            {},
+        venture = replace(
+            venture_for(made, inputs, MAVLINK, LocalSlots(made.executable), {}),
             orders=control,
             folder=folder,
             links={ROBOT: f"udpin:127.0.0.1:{port}"},
             say=lambda words: None,
         )
-        flight = threading.Thread(target=lambda: run_live(venture, MAVLINK))
+        flight = threading.Thread(target=lambda: run_live(venture))
         with hear_orders(folder, venture.run, (ROBOT,), control, lambda robot: {}):
             flight.start()
             while vehicle.autopilot.body.position[2] < HEIGHT - 0.4:

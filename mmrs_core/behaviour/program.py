@@ -8,7 +8,7 @@ the (robot, slot) pairs that they set, positions are (east, north, up) in metres
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field, fields, replace
 from functools import cached_property
 
 from mmrs_core.behaviour.fingerprint import fingerprint
@@ -223,6 +223,11 @@ class Program:
         from mmrs_core.behaviour.lowering import lowered
 
         return lowered(self)
+
+    @cached_property
+    def shared(self) -> ExecutableProgram:
+        """Return it as the processes that share its robots know it, which must have the same plan."""
+        return replace(self.executable, fingerprint=self.fingerprint)
 
     def robot(self, id: str) -> RobotProgram:
         """Return the robot of that identifier."""

@@ -312,16 +312,16 @@ def _refuse_endpoints(listen: list[str] | None, connect: list[str] | None) -> No
 def _gateway(
     program: Program, robot: str, endpoints: Endpoints, run: str, folder: Path, port: int
 ) -> Gateway:
-    from mmrs_core.runtime.slots import node_of
     from mmrs_runtime.bus.carriers.over_zenoh import ZenohCarrier
     from mmrs_runtime.bus.gateway.server import Gateway
+    from mmrs_runtime.bus.program_bus import node_of
 
     names = [each.id for each in program.robots]
 
     def enter(recorded: Recorded | None) -> Node:
         carrier = ZenohCarrier(program.name, run, names, endpoints, plan=program.fingerprint)
         given = None if recorded is None else {robot: recorded}
-        return node_of(program, [robot], run, folder, carrier, given)
+        return node_of(program.shared, [robot], run, folder, carrier, given)
 
     folder.mkdir(parents=True, exist_ok=True)
     return Gateway(robot, run, enter, folder, port)

@@ -2,19 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 import typer
 
 from mmrs_core.behaviour.program import Program
-from mmrs_core.cli.output import tell
 from mmrs_core.errors import LinkLostError, UnreadableError, UnsupportedError
-from mmrs_core.runtime.slots import ProgramBus, members_of, shared_bus
-from mmrs_runtime.bus import Incomplete, Unwelcome, begin_together
+from mmrs_runtime.bus import Unwelcome
 from mmrs_runtime.bus.carriers.carrier import Carrier
 from mmrs_runtime.bus.carriers.endpoints import first_fault
+from mmrs_runtime.bus.program_bus import ProgramBus, shared_bus, strangers_of
 from mmrs_runtime.engine.resuming import restore
 from mmrs_runtime.records.steps import StepRecord
 from mmrs_runtime.slots import LocalSlots
@@ -83,7 +82,7 @@ def bus_for(
     names = sorted(robot.id for robot in program.robots)
     carrier = ZenohCarrier(program.name, run, names, endpoints, plan=program.fingerprint)
     try:
-        return shared_bus(program, here, run, folder, wrap(carrier), resumed)
+        return shared_bus(program.shared, here, run, folder, wrap(carrier), resumed)
     except Unwelcome as error:
         raise LinkLostError(str(error)) from error
     except ValueError as error:
@@ -100,44 +99,8 @@ def refuse_endpoints(option: str, endpoints: Sequence[str]) -> None:
         raise typer.BadParameter(f"{option} {why}")
 
 
-def begin_all(
-    bus: ProgramBus | LocalSlots, program: Program, robots: Iterable[str], patience: float | None
-) -> Callable[[Callable[[], None]], Mapping[str, str]]:
-    """Return what has robots of this process begin at one instant with those of all others.
-
-    It is given a look at what else happens, which may raise, and returns in words how well each began.
-
-    Args:
-        robots: of this process, that begin anew.
-        patience: real seconds to wait; None: nobody waits.
-    """
-    here = tuple(robots)
-
-    def begin(look: Callable[[], None]) -> Mapping[str, str]:
-        if patience is None or not here or isinstance(bus, LocalSlots):
-            return {}
-        told: set[str] = set()
-
-        def guard(why: str) -> None:
-            look()
-            if why and why not in told:
-                told.add(why)
-                tell(f"waits for the others, {patience:g} s at most: {why}")
-
-        everybody = [robot.id for robot in program.robots]
-        try:
-            found = begin_together(bus.node, here[0], everybody, guard, beside=here[1:], patience=patience)
-        except Incomplete as error:
-            raise LinkLostError(f"{error}; nothing has begun, --resume tries again") from error
-        tell(f"begins together with the others, {found}")
-        return dict.fromkeys(here, str(found))
-
-    return begin
-
-
 def _refuse_strangers(program: Program, here: Sequence[str]) -> None:
-    members = members_of(program)
-    strangers = sorted({each for robot in here for each in members[robot].contacts} - set(here))
+    strangers = strangers_of(program.executable, here)
     if strangers:
         raise typer.BadParameter(
             f"--robot: {', '.join(strangers)} of another process must be reached, too: say --bus"

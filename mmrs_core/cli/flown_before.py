@@ -15,7 +15,7 @@ from mmrs_core.cli.figures import clock
 from mmrs_core.cli.output import counted, tell
 from mmrs_core.cli.wishes import Wishes
 from mmrs_core.errors import InvalidModelError
-from mmrs_core.runtime.slots import slots_path
+from mmrs_runtime.bus.program_bus import slots_path
 from mmrs_runtime.engine.resuming import over_by
 from mmrs_runtime.records.blackbox import black_box_path, last_time, plan_of
 from mmrs_runtime.records.steps import SUFFIX, StepRecord, log_name

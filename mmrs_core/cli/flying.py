@@ -2,24 +2,22 @@
 
 from __future__ import annotations
 
-import signal
-from collections.abc import Callable, Iterator, Mapping
-from contextlib import ExitStack, contextmanager
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
+from contextlib import ExitStack
+from dataclasses import dataclass, replace
 from pathlib import Path
-from types import FrameType
+
+import typer
 
 from mmrs_core.behaviour.program import Program
 from mmrs_core.cli.behaviours import Loaded
 from mmrs_core.cli.bus_faults import bus_faults
-from mmrs_core.cli.buses import begin_all, bus_for
+from mmrs_core.cli.buses import bus_for
 from mmrs_core.cli.figures import clock
 from mmrs_core.cli.flown_before import end_of, resumed_steps
-from mmrs_core.cli.interruption import INTERRUPTED
 from mmrs_core.cli.journey import Workshop
 from mmrs_core.cli.observing import Observer
 from mmrs_core.cli.onlookers import Gallery
-from mmrs_core.cli.orders_heard import hear_orders
 from mmrs_core.cli.output import say, tell
 from mmrs_core.cli.wishes import (
     Wishes,
@@ -29,19 +27,19 @@ from mmrs_core.cli.wishes import (
     robots_of,
     stop_response,
 )
-from mmrs_core.errors import LinkLostError
 from mmrs_core.pipeline import backend_for, conditions_for, inputs_of
-from mmrs_core.runtime.live import Venture, run_live
+from mmrs_core.runtime.live import run_live, venture_for
+from mmrs_runtime.bus.program_bus import begin_all
+from mmrs_runtime.control import Taken
 from mmrs_runtime.engine.clocks import RealClock
-from mmrs_runtime.engine.orders import STOP, Orders
+from mmrs_runtime.engine.hearing import Status, hear_orders
+from mmrs_runtime.engine.interrupts import stopping
+from mmrs_runtime.engine.live import exit_code
+from mmrs_runtime.engine.orders import Orders
 from mmrs_runtime.engine.terms import Ending
-from mmrs_runtime.faults import ORDERED, STOPPED
 from mmrs_runtime.records.log import LogWriter
 from mmrs_runtime.records.steps import StepRecord, log_name
 from mmrs_runtime.screen import unfailing
-from mmrs_runtime.semantics import Outcome
-
-FAILED = 1
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,12 +52,7 @@ class Result:
     @property
     def exit_code(self) -> int:
         """Return what the shell gets."""
-        faults = {self.ending.faults[robot].which for robot in self.ending.responses}
-        if "LINK_LOST" in faults or self.ending.unconfirmed or self.ending.lost:
-            return LinkLostError.exit_code
-        if {STOPPED, ORDERED} & faults:
-            return INTERRUPTED
-        return 0 if self.ending.outcome is Outcome.SUCCESS else FAILED
+        return exit_code(self.ending)
 
     def as_json(self) -> Mapping[str, object]:
         """Return all of it as JSON has it."""
@@ -114,11 +107,9 @@ def carry_out(workshop: Workshop, loaded: Loaded, wishes: Wishes) -> Result:
         writer = stack.enter_context(LogWriter(wishes.folder, resumed=wishes.resume))
         gallery = Gallery(workshop.onlookers)
         observer = Observer(gallery, writer, program)
-        venture = Venture(
-            program,
-            inputs_of(program, loaded.place, workshop.contributions, options=options, robots=here),
-            bus,
-            conditions,
+        inputs = inputs_of(program, loaded.place, workshop.contributions, options=options, robots=here)
+        venture = replace(
+            venture_for(program, inputs, backend, bus, conditions),
             clock=clock,
             orders=orders,
             run=run,
@@ -126,7 +117,7 @@ def carry_out(workshop: Workshop, loaded: Loaded, wishes: Wishes) -> Result:
             links=links,
             resumed=resumed,
             patience=wishes.patience,
-            meet=begin_all(bus, program, _unbegun(here, resumed), wishes.bus.sync),
+            meet=begin_all(bus, program.executable, _unbegun(here, resumed), wishes.bus.sync, tell),
             observe=_telling(observer.observe, program),
             say=tell,
         )
@@ -134,13 +125,22 @@ def carry_out(workshop: Workshop, loaded: Loaded, wishes: Wishes) -> Result:
         def status(robot: str) -> Mapping[str, object]:
             return {**venture.standing.status(robot), **observer.status(robot)}
 
-        stack.enter_context(hear_orders(wishes.folder, run, here, orders, status))
-        stack.enter_context(_stopping(orders, here))
+        _hear(stack, wishes.folder, run, here, orders, status)
+        stack.enter_context(stopping(orders, here, tell))
         stack.enter_context(unfailing())
         stack.callback(gallery.close)
-        ending = run_live(venture, backend)
+        ending = run_live(venture)
     names = [wishes.folder / log_name(robot) for robot in here]
     return Result(ending, tuple(path for path in names if path.exists()))
+
+
+def _hear(
+    stack: ExitStack, folder: Path, run: str, robots: tuple[str, ...], orders: Orders, status: Status
+) -> None:
+    try:
+        stack.enter_context(hear_orders(folder, run, robots, orders, status))
+    except Taken as error:
+        raise typer.BadParameter(f"--log {folder}: {error}") from error
 
 
 def _telling(observe: Callable[[StepRecord], None], program: Program) -> Callable[[StepRecord], None]:
@@ -160,28 +160,3 @@ def _telling(observe: Callable[[StepRecord], None], program: Program) -> Callabl
 def _unbegun(robots: tuple[str, ...], resumed: tuple[StepRecord, ...]) -> list[str]:
     begun = {record.robot for record in resumed}
     return [robot for robot in robots if robot not in begun]
-
-
-@contextmanager
-def _stopping(orders: Orders, robots: tuple[str, ...]) -> Iterator[None]:
-    """Have interrupts stop the robots; the second one ends the waiting for them.
-
-    A terminal that closes gives no order: robots fly on.
-    """
-    seen: list[int] = []
-
-    def stop(number: int, frame: FrameType | None) -> None:
-        seen.append(number)
-        if len(seen) > 1:
-            raise KeyboardInterrupt
-        orders.give(STOP, robots, interrupt=True)
-        tell("stopping; interrupt again to end without waiting for robots, and those that pilots have")
-
-    before = {number: signal.signal(number, stop) for number in (signal.SIGINT, signal.SIGTERM)}
-    if hasattr(signal, "SIGHUP"):
-        before[signal.SIGHUP] = signal.signal(signal.SIGHUP, signal.SIG_IGN)
-    try:
-        yield
-    finally:
-        for number, handler in before.items():
-            signal.signal(number, handler)

@@ -7,12 +7,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
-from pathlib import Path
 from typing import TYPE_CHECKING, Protocol, runtime_checkable
+
+from mmrs_runtime.engine.connecting import Live as Live
 
 if TYPE_CHECKING:
     from mmrs_core.behaviour.program import Program, RobotProgram
-    from mmrs_core.contributions.execution import Clock, Sample
+    from mmrs_core.contributions.execution import Sample
     from mmrs_core.contributions.rules import MoveKind, RobotKind
     from mmrs_core.contributions.wiring import Wirings
     from mmrs_core.scene import Area, Name, Policy, RobotType
@@ -31,38 +32,6 @@ class Recorder(Protocol):
     def track(self) -> tuple[Sample, ...]:
         """Return the way that the robot has come."""
         ...
-
-
-@dataclass(frozen=True, slots=True)
-class Live:
-    """What vehicles of a run in real time may use beside the rest.
-
-    Attributes:
-        clock: of the run.
-        wake: has the engine look at this robot at once; to be called, from any thread, whenever
-            the robot's answers may have changed.
-        say: tells people something about this robot, from any thread.
-        run: identifier of the run.
-        folder: of the logs; None where none are kept.
-        resumed: whether the run was broken off before, so that robots may be anywhere on their ways.
-        passed: moves that this robot ended before, in order.
-        begun: the move that it had begun then; empty where it had ended its last one.
-        links: how robots are reached, as in ``--connect``, by robot of this process.
-        shared: what vehicles of the same run share, by names of their own; empty at first.
-        announce: tells people what concerns no robot alone, from any thread.
-    """
-
-    clock: Clock
-    wake: Callable[[], None]
-    say: Callable[[str], None]
-    run: str
-    folder: Path | None = None
-    resumed: bool = False
-    passed: tuple[str, ...] = ()
-    begun: str = ""
-    links: Mapping[str, str] = field(default_factory=dict)
-    shared: dict[str, object] = field(default_factory=dict)
-    announce: Callable[[str], None] = print
 
 
 @dataclass(frozen=True, slots=True)

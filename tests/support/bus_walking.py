@@ -19,9 +19,9 @@ from pathlib import Path
 
 from mmrs_core.behaviour.log import read_log
 from mmrs_core.behaviour.program import Program
-from mmrs_core.runtime.slots import recorded_of, shared_bus
 from mmrs_core.testing.small_programs import hold, notify, program, robot
 from mmrs_runtime.bus import CommandId
+from mmrs_runtime.bus.program_bus import recorded_of, shared_bus
 from mmrs_runtime.records.steps import StepRecord, log_name, to_line
 from mmrs_runtime.semantics import awaited, entry, steps
 
@@ -206,7 +206,7 @@ class GatewayBus:
         self._lines = self._socket.makefile("rb")
         hello = {"do": "hello", "token": told["token"], "alive": 1}
         if records is not None:
-            known = recorded_of(made, [id], records)[id]
+            known = recorded_of(made.executable, [id], records)[id]
             notifies = [[*slot, *value] for slot, value in known.notifies.items()]
             hello["resumed"] = {"lamport": known.lamport, "notifies": notifies}
         self._socket.sendall(json.dumps(hello).encode() + b"\n")
@@ -357,7 +357,7 @@ def _zenoh_bus(made, given, folder, records):
     carrier = ZenohCarrier(
         "m", RUN, names, Endpoints(tuple(given.listen), tuple(given.connect), given.config)
     )
-    bus = shared_bus(made, [given.robot], RUN, folder, carrier, records)
+    bus = shared_bus(made.shared, [given.robot], RUN, folder, carrier, records)
     bus.await_change = bus.node.await_change
     return bus
 

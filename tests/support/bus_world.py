@@ -12,8 +12,8 @@ from dataclasses import dataclass, field
 from random import Random
 
 from mmrs_core.behaviour.program import Program
-from mmrs_core.runtime.slots import members_of
 from mmrs_runtime.bus import CommandId, Node, Recorded
+from mmrs_runtime.bus.program_bus import members_of
 from mmrs_runtime.records.steps import StepRecord
 from mmrs_runtime.semantics import awaited, entry, steps
 
@@ -227,7 +227,7 @@ class World:
     said: set[str] = field(default_factory=set)
 
     def __post_init__(self):
-        self.members = members_of(self.program)
+        self.members = members_of(self.program.executable)
         robots = list(self.program.executable.robots)
         while robots:
             taken = min(len(robots), self.chance.choice((1, 1, 2)))

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 from dives import diver
@@ -19,10 +20,11 @@ from mmrs_core.generation.render import render
 from mmrs_core.generation.writing import write
 from mmrs_core.pipeline import Place, inputs_of
 from mmrs_core.runtime.conditions import asked_by
-from mmrs_core.runtime.live import Venture
+from mmrs_core.runtime.live import venture_for
 from mmrs_core.transformation.kinds import MOVE_KINDS
 from mmrs_runtime.engine.clocks import RealClock
 from mmrs_runtime.engine.judging import standard_conditions
+from mmrs_runtime.engine.live import Venture
 from mmrs_runtime.slots import LocalSlots
 
 SPEED = 0.5
@@ -33,7 +35,7 @@ def interpreted(
     behaviour: Program, berth: Berth, contributions: Contributions, folder: Path, **options: str
 ) -> Venture:
     """Return a dive by the interpreter that keeps its logs in `logs`."""
-    return Venture(
+    venture = venture_for(
         behaviour,
         inputs_of(
             behaviour,
@@ -41,12 +43,11 @@ def interpreted(
             contributions,
             options={"clock": "bus", **options},
         ),
+        contributions.vehicles["can"],
         LocalSlots(behaviour.executable),
         standard_conditions(asked_by(behaviour)),
-        clock=RealClock(SPEED),
-        folder=folder / "logs",
-        links={"naiad": berth.channel},
     )
+    return replace(venture, clock=RealClock(SPEED), folder=folder / "logs", links={"naiad": berth.channel})
 
 
 def dive_by_code(behaviour: Program, berth: Berth, folder: Path, *words: str) -> None:

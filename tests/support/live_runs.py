@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import threading
 import time
+from dataclasses import replace
 from math import inf
 
 from mmrs_core.behaviour.program import Move
 from mmrs_core.contributions.execution import Fault, RobotState
 from mmrs_core.contributions.vehicles import VehicleFactory, VehicleInput
 from mmrs_core.errors import MmrsError
-from mmrs_core.runtime.live import Venture, run_live
+from mmrs_core.runtime.live import run_live, venture_for
 from mmrs_core.runtime.run import inputs_of
 from mmrs_core.testing.small_programs import ROBOT_TYPE, hold, program, robot, robot_type
 from mmrs_runtime.engine.clocks import RealClock
@@ -162,9 +163,8 @@ class Flight:
                 kept(record)
             self.records.append(record)
 
-        self.venture = Venture(
-            behaviour,
-            inputs,
+        self.venture = replace(
+            venture_for(behaviour, inputs, factory, given.pop("bus"), given.pop("conditions")),
             clock=RealClock(speedup),
             orders=self.orders,
             say=self.said.append,
@@ -172,12 +172,12 @@ class Flight:
             **given,
         )
         self.ending = self.error = None
-        self._thread = threading.Thread(target=self._go, args=(factory,), daemon=True)
+        self._thread = threading.Thread(target=self._go, daemon=True)
         self._thread.start()
 
-    def _go(self, factory):
+    def _go(self):
         try:
-            self.ending = run_live(self.venture, factory)
+            self.ending = run_live(self.venture)
         except (MmrsError, KeyboardInterrupt) as error:
             self.error = error
 

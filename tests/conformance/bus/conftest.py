@@ -17,8 +17,8 @@ from hub import Hub
 from ports import free_port
 
 from mmrs_core.behaviour.replay import replay
-from mmrs_core.runtime.slots import ProgramBus, members_of, recorded_of
 from mmrs_runtime.bus import FileJournal, Node
+from mmrs_runtime.bus.program_bus import ProgramBus, members_of, recorded_of
 
 PATIENCE = 60.0
 SCRIPT = Path(bus_walking.__file__)
@@ -99,17 +99,17 @@ class _Thread:
         self.well = False
         folder = fleet.folder_of(robot)
         folder.mkdir(exist_ok=True)
-        recorded = recorded_of(fleet.program, [robot], logged(folder, robot)) if again else None
+        recorded = recorded_of(fleet.program.executable, [robot], logged(folder, robot)) if again else None
         self.carrier = _Reachable(fleet.hub, self)
         self.node = Node(
-            [members_of(fleet.program)[robot]],
+            [members_of(fleet.program.executable)[robot]],
             RUN,
             carrier=self.carrier,
             journals=lambda id: FileJournal(folder / f"{id}.slots.ndjson"),
             recorded=recorded,
         )
         self._die_after_applying()
-        bus = ProgramBus(self.node, fleet.program)
+        bus = ProgramBus(self.node, fleet.program.executable)
         bus.await_change = self._await_change
         self.walker = Walker(fleet.program, robot, folder, bus, at=self._at)
         self.thread = threading.Thread(target=self._run)

@@ -13,10 +13,10 @@ import pytest
 from bus_walking import RUN, exchange
 from stalls import Stalls
 
-from mmrs_core.runtime.slots import shared_bus
 from mmrs_runtime.bus import Unwelcome
 from mmrs_runtime.bus.carriers.over_zenoh import ZenohCarrier
 from mmrs_runtime.bus.carriers.sessions import Endpoints
+from mmrs_runtime.bus.program_bus import shared_bus
 
 SCRIPT = Path(bus_walking.__file__)
 LEASE = 1.5
@@ -31,7 +31,7 @@ def watcher(ends, tmp_path):
     made = exchange()
     endpoint = f"tcp/127.0.0.1:{ends.ports['b']}"
     carrier = ZenohCarrier("m", RUN, ("a", "b"), Endpoints((endpoint,)))
-    bus = shared_bus(made, ["b"], RUN, tmp_path / "b", carrier)
+    bus = shared_bus(made.shared, ["b"], RUN, tmp_path / "b", carrier)
     yield bus, endpoint
     bus.close()
 

@@ -52,9 +52,9 @@ def devices_confirm(folder: Path) -> bool:
 def test_a_dive_is_carried_out_over_the_bus(berth, contributions, tmp_path):
     venture = interpreted(short_dive(), berth, contributions, tmp_path)
     with LogWriter(tmp_path / "logs") as writer:
-        ending = run_live(replace(venture, observe=writer.write), contributions.vehicles["can"])
+        ending = run_live(replace(venture, observe=writer.write))
     assert ending.outcome is Outcome.SUCCESS, ending
-    assert replay(venture.program, read_logs([tmp_path / "logs"])).accepted
+    assert replay(short_dive(), read_logs([tmp_path / "logs"])).accepted
     assert len(entries_in(tmp_path / "logs", "fix")) > 10
     assert devices_confirm(tmp_path / "logs")
     assert not berth.ended()
@@ -78,7 +78,7 @@ def test_a_run_ends_whose_bus_goes_while_its_vehicle_stops(berth, contributions,
         if (step.label, step.move) == ("begin", "out"):
             venture.orders.give("stop", ["naiad"])
 
-    run_live(replace(venture, say=said.append, observe=observe), contributions.vehicles["can"])
+    run_live(replace(venture, say=said.append, observe=observe))
     assert [line for line in said if line.startswith("'naiad': not known to have stopped (HOLD): LINK_LOST")]
 
 

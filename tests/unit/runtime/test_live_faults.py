@@ -15,11 +15,11 @@ from signals_elsewhere import broken_off
 from stalls import Stalls
 
 from mmrs_core.errors import MmrsError
-from mmrs_core.runtime.live import _let_go
-from mmrs_core.runtime.slots import ProgramBus, members_of
 from mmrs_core.scene import Policy
 from mmrs_core.testing.small_programs import hold, notify, program, robot
 from mmrs_runtime.bus import CommandId, Node, NoJournal
+from mmrs_runtime.bus.program_bus import ProgramBus, members_of
+from mmrs_runtime.engine.connecting import let_go
 from mmrs_runtime.engine.orders import HOLD, LAND, RESUME, RETURN, STOP
 from mmrs_runtime.semantics import Outcome
 
@@ -132,12 +132,12 @@ def test_a_robot_that_cannot_keep_what_others_tell_it_does_as_its_policy_says(li
         robot("other", [hold("h", 0.0, after=(notify("r.s"),))]),
     )
     behaviour, hub = program(*robots), Hub()
-    members = members_of(behaviour)
+    members = members_of(behaviour.executable)
     here, there = (
         Node([members[id]], "run-0", carrier=hub.plug(), journals=journals, tell=lambda line: None)
         for id, journals in (("r", lambda id: Full()), ("other", lambda id: NoJournal()))
     )
-    run = live(behaviour, Script(walk=1.0), bus=ProgramBus(here, behaviour), here=["r"])
+    run = live(behaviour, Script(walk=1.0), bus=ProgramBus(here, behaviour.executable), here=["r"])
     run.wait_for_step("r begin walk")
     delivery = there.prepare(CommandId("run-0", "other", "", 1), (("r", "s"),), True)
     delivery.send(delivery.lamport)
@@ -174,6 +174,6 @@ def test_a_robot_that_cannot_be_let_go_of_does_not_keep_the_others_and_is_told(l
 def test_an_interrupt_ends_the_waiting_for_a_robot_that_is_slow_to_be_let_go_of():
     free, stalls, begun = threading.Event(), Stalls(), time.monotonic()
     with broken_off(rescue=free.set):
-        _let_go({"a": SimpleNamespace(close=free.wait)})
+        let_go({"a": SimpleNamespace(close=free.wait)})
     free.set()
     assert time.monotonic() - begun < 3.0 + stalls.seconds

@@ -11,7 +11,7 @@ from live_runs import TWO, WALK, Script, do
 
 from mmrs_core.behaviour.replay import replay
 from mmrs_core.contributions.execution import Fault
-from mmrs_core.runtime.live import Venture, run_live
+from mmrs_core.runtime.live import run_live, venture_for
 from mmrs_core.runtime.run import inputs_of
 from mmrs_core.scene import Policy
 from mmrs_core.testing.small_programs import ROBOT_TYPE, notify, program, robot, robot_type
@@ -311,6 +311,6 @@ def test_a_log_of_another_behaviour_is_refused(live, kinds):
     run.end()
     other = program(robot("r", [do("swim")]))
     given = inputs_of(other, types={ROBOT_TYPE: robot_type()}, options={}, environment={}, areas=(), **kinds)
-    venture = Venture(other, given, LocalSlots(other.executable), {}, resumed=tuple(run.records))
+    venture = venture_for(other, given, Script().factory, LocalSlots(other.executable), {})
     with pytest.raises(ValueError, match="none of its program's"):
-        run_live(venture, Script().factory)
+        run_live(replace(venture, resumed=tuple(run.records)))

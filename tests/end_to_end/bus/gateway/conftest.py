@@ -15,10 +15,10 @@ from waiting_pair import waiting_pair
 
 from mmrs_core import pipeline
 from mmrs_core.languages.reading import read_model
-from mmrs_core.runtime.slots import node_of
 from mmrs_runtime.bus import CommandId
 from mmrs_runtime.bus.carriers.over_zenoh import ZenohCarrier
 from mmrs_runtime.bus.carriers.sessions import Endpoints
+from mmrs_runtime.bus.program_bus import node_of
 
 RUN = "run-0"
 
@@ -62,7 +62,7 @@ def peer(behaviour, contributions, ends, tmp_path):
     program = pipeline.program_of(read_model(behaviour, contributions.languages).roots[0], contributions)
     reached = Endpoints(connect=(f"tcp/127.0.0.1:{ends.ports['a']}",))
     carrier = ZenohCarrier("pair", RUN, ("a", "b"), reached, plan=program.fingerprint)
-    node = node_of(program, ["b"], RUN, tmp_path / "b", carrier, None)
+    node = node_of(program.shared, ["b"], RUN, tmp_path / "b", carrier, None)
     yield node
     node.close()
 

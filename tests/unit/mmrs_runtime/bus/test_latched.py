@@ -10,7 +10,6 @@ import pytest
 from gateway_client import Client
 from hub import Hub
 
-from mmrs_core.runtime.slots import members_of, recorded_of
 from mmrs_core.testing.programs import program, quad, robot_program, target_input
 from mmrs_core.testing.small_programs import hold, notify
 from mmrs_mavlink.plugin.built import robot_of
@@ -18,6 +17,7 @@ from mmrs_mavlink.slots import member_of
 from mmrs_runtime.bus import CommandId, Node
 from mmrs_runtime.bus.gateway.server import Gateway
 from mmrs_runtime.bus.owner import Owner
+from mmrs_runtime.bus.program_bus import members_of, recorded_of
 from mmrs_runtime.records.steps import StepRecord
 
 RUN = "run-0"
@@ -63,7 +63,7 @@ def start(made, hub):
     """Return a function by which a robot begins."""
 
     def begin(robot, recorded=None):
-        member = members_of(made)[robot]
+        member = members_of(made.executable)[robot]
         return Node([member], RUN, carrier=hub.plug(), recorded=recorded, threaded=False)
 
     return begin
@@ -126,7 +126,7 @@ def test_a_latched_notify_that_was_recorded_and_not_sent_is_sent_when_its_robot_
     a.close()
     hub.cut = False
     log = [StepRecord(RUN, "a", 0, 9, 0.0, "ntf", "tell", "post:0", "+b.go")]
-    start("a", recorded_of(made, ["a"], log))
+    start("a", recorded_of(made.executable, ["a"], log))
     assert b.state(("b", "go")).active
     assert not b.passed([("b", "go")], 9)
     assert b.passed([("b", "go")], 10)
@@ -146,7 +146,7 @@ def test_a_latched_notify_is_granted_no_time_beyond_reach(start):
 
 
 def test_controllers_and_interpreter_agree_which_slots_are_latched(made):
-    members, input = members_of(made), target_input(made, [quad()])
+    members, input = members_of(made.executable), target_input(made, [quad()])
     assert members["a"].latched == {("b", "go")}
     for robot in made.robots:
         assert member_of(robot_of(robot, input)).latched == members[robot.id].latched
@@ -156,7 +156,7 @@ def test_sending_looks_at_no_owner_but_those_that_keep_a_slot(monkeypatch):
     names = [f"r{number}" for number in range(20)]
     robots = [robot_program(name, [], slots=("go",)) for name in names[1:]]
     resets = hold("tell", 0.0, after=(notify("r1.go", "r7.go", active=False),))
-    everybody = members_of(program(robot_program("r0", [resets]), *robots))
+    everybody = members_of(program(robot_program("r0", [resets]), *robots).executable)
     node, looked = Node(list(everybody.values()), RUN, threaded=False), []
     kept = Owner.kept
     monkeypatch.setattr(Owner, "kept", lambda owner: looked.append(owner.robot) or kept(owner))
@@ -170,7 +170,7 @@ def test_sending_looks_at_no_owner_but_those_that_keep_a_slot(monkeypatch):
 
 
 def test_a_program_at_a_gateway_is_granted_a_latched_notify_before_its_owner_is_there(made, tmp_path):
-    hub, members = Hub(), members_of(made)
+    hub, members = Hub(), members_of(made.executable)
     gateway = Gateway("a", RUN, lambda recorded: Node([members["a"]], RUN, carrier=hub.plug()), tmp_path)
     Thread(target=gateway.serve, args=(lambda line: None,), daemon=True).start()
     with closing(gateway), Client(gateway.port) as client:

@@ -1,18 +1,14 @@
-"""Has a run hear the orders of ``mmrs control``."""
+"""Has a run hear the orders of people who call from elsewhere; see `mmrs_runtime.control`."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING
 
-import typer
-
-from mmrs_runtime.engine.orders import Orders
-
-if TYPE_CHECKING:
-    from mmrs_runtime.orders.orders import Inbox, Receipt
+from ..control import Control
+from ..orders.orders import Inbox, Receipt
+from .orders import Orders
 
 Status = Callable[[str], Mapping[str, object]]
 
@@ -24,15 +20,11 @@ def hear_orders(
     """Listen for orders as long as the context lasts.
 
     Raises:
-        typer.BadParameter: if another process runs one of these robots with its logs in that folder.
+        Taken: if another process runs one of these robots with its logs in that folder.
+        OSError: if nobody can be listened to there.
     """
-    from mmrs_runtime.control import Control, Taken
-
     inboxes = {robot: _inbox(robot, orders) for robot in robots}
-    try:
-        control = Control(folder, run, inboxes, status)
-    except Taken as error:
-        raise typer.BadParameter(f"--log {folder}: {error}") from error
+    control = Control(folder, run, inboxes, status)
     try:
         yield
     finally:
@@ -42,8 +34,6 @@ def hear_orders(
 
 
 def _inbox(robot: str, orders: Orders) -> Inbox:
-    from mmrs_runtime.orders.orders import Inbox
-
     def arrived() -> None:
         while (receipt := inbox.take()) is not None:
             _pass_on(receipt)

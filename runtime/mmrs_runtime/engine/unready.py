@@ -4,26 +4,23 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
 
-from mmrs_core.contributions.execution import Fault
-from mmrs_core.errors import LinkLostError, MmrsError
-from mmrs_runtime.faults import LINK_LOST, PEER_LOST
-from mmrs_runtime.policies import NOTHING
-from mmrs_runtime.vehicle import Vehicle
+from ..faults import LINK_LOST, PEER_LOST
+from ..policies import NOTHING
+from ..vehicle import Fault, Vehicle
 
 
-class Unready(Exception):  # noqa: N818  # it is no error yet: whoever raises it has still to be let go of
-    """Robots do not get ready. Attributes: `faults` by robot."""
+class Unready(Exception):  # noqa: N818  # the word that people read
+    """Robots do not get ready; says why of each. Attributes: `faults` by robot."""
 
     def __init__(self, faults: Mapping[str, Fault]) -> None:
-        super().__init__(faults)
+        lines = (f"robot '{id}': does not get ready: {reason_of(found)}" for id, found in faults.items())
+        super().__init__("; ".join(lines))
         self.faults = faults
 
-
-def unready(faults: Mapping[str, Fault]) -> MmrsError:
-    """Return what keeps robots from beginning: all of it, whatever is lost first."""
-    lines = (f"robot '{id}': does not get ready: {reason_of(found)}" for id, found in faults.items())
-    lost = any(found.which == LINK_LOST for found in faults.values())
-    return (LinkLostError if lost else MmrsError)("; ".join(lines))
+    @property
+    def link_lost(self) -> bool:
+        """Return whether the link to one of them was lost."""
+        return any(found.which == LINK_LOST for found in self.faults.values())
 
 
 def reason_of(found: Fault) -> str:

@@ -4,13 +4,22 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING
 
-from mmrs_core.behaviour.program import Program, SlotId
-from mmrs_core.errors import InternalError
-from mmrs_runtime.bus import Carrier, Delivery, FileJournal, Member, Node, Owned, Recorded
-from mmrs_runtime.bus.watching import SETTLING_SECONDS
-from mmrs_runtime.bus.words import CommandId, Find, SlotState
-from mmrs_runtime.records.steps import StepRecord, log_name
+from ..program import Notify, Program, SlotId
+from ..records.steps import StepRecord, log_name
+from .carriers.carrier import Carrier
+from .journal import FileJournal
+from .meeting import Incomplete, begin_together
+from .node import Node
+from .outgoing import Delivery
+from .owner import Owned
+from .owners import Member, Recorded
+from .watching import SETTLING_SECONDS
+from .words import CommandId, Find, SlotState
+
+if TYPE_CHECKING:
+    from ..slots import Slots
 
 
 class ProgramBus:
@@ -32,7 +41,7 @@ class ProgramBus:
         """Ask the owners of slots for setting them; owners of this process have answered at return.
 
         Raises:
-            InternalError: if a slot is one that no robot has.
+            ValueError: if a slot is one that no robot has.
         """
         for slot in slots:
             self._refuse_unknown(slot)
@@ -46,11 +55,11 @@ class ProgramBus:
         """Return the state of a slot of this process's robots.
 
         Raises:
-            InternalError: if none of them has it.
+            ValueError: if none of them has it.
         """
         self._refuse_unknown(slot)
         if slot[0] not in self._here:
-            raise InternalError(f"{slot[0]}.{slot[1]}: belongs to a robot of another process")
+            raise ValueError(f"{slot[0]}.{slot[1]}: belongs to a robot of another process")
         return self.node.state(slot)
 
     def passed(self, slots: Iterable[SlotId], lamport: int) -> bool:
@@ -83,7 +92,7 @@ class ProgramBus:
 
     def _refuse_unknown(self, slot: SlotId) -> None:
         if slot not in self._known:
-            raise InternalError(f"{slot[0]}.{slot[1]}: no such slot in the program")
+            raise ValueError(f"{slot[0]}.{slot[1]}: no such slot in the program")
 
 
 def shared_bus(
@@ -97,7 +106,7 @@ def shared_bus(
     """Return the bus of a process that runs some robots of a program.
 
     Args:
-        program: of all robots.
+        program: of all robots; its fingerprint tells its plan from others.
         robots: of this process.
         run: identifier of the run.
         folder: for what must survive this process; slots lie beside the logs there.
@@ -145,8 +154,14 @@ def members_of(program: Program) -> dict[str, Member]:
     """Return by robot what the bus must know of it."""
     senders: dict[tuple[SlotId, bool], dict[str, None]] = {}
     for robot in program.robots:
-        for slot, active in robot.settings:
-            senders.setdefault((slot, active), {})[robot.id] = None
+        for notify in robot.notifies:
+            for slot in notify.slots:
+                senders.setdefault((slot, notify.active), {})[robot.id] = None
+    volatile = {slot for slot, active in senders if not active}
+    sets = {
+        robot.id: frozenset(slot for notify in robot.notifies for slot in notify.slots)
+        for robot in program.robots
+    }
     return {
         robot.id: Member(
             Owned(
@@ -155,11 +170,58 @@ def members_of(program: Program) -> dict[str, Member]:
                 {name: tuple(senders.get(((robot.id, name), True), ())) for name in robot.slots},
                 {name: tuple(senders.get(((robot.id, name), False), ())) for name in robot.slots},
             ),
-            frozenset(owner for (owner, _), _ in robot.settings),
-            frozenset(slot for slot, _ in robot.settings) - program.volatile,
+            frozenset(owner for owner, _ in sets[robot.id]),
+            sets[robot.id] - volatile,
         )
         for robot in program.robots
     }
+
+
+def begin_all(
+    bus: Slots,
+    program: Program,
+    robots: Iterable[str],
+    patience: float | None,
+    say: Callable[[str], None],
+) -> Callable[[Callable[[], None]], Mapping[str, str]]:
+    """Return what has robots of this process begin at one instant with those of all others.
+
+    It is given a look at what else happens, which may raise, and returns in words how well each began. It
+    raises `Incomplete` where not all have come in time.
+
+    Args:
+        robots: of this process, that begin anew.
+        patience: real seconds to wait; None: nobody waits.
+        say: tells people who is waited for, and how well all began.
+    """
+    here = tuple(robots)
+
+    def begin(look: Callable[[], None]) -> Mapping[str, str]:
+        if patience is None or not here or not isinstance(bus, ProgramBus):
+            return {}
+        told: set[str] = set()
+
+        def guard(why: str) -> None:
+            look()
+            if why and why not in told:
+                told.add(why)
+                say(f"waits for the others, {patience:g} s at most: {why}")
+
+        everybody = [robot.id for robot in program.robots]
+        try:
+            found = begin_together(bus.node, here[0], everybody, guard, beside=here[1:], patience=patience)
+        except Incomplete as error:
+            raise Incomplete(f"{error}; nothing has begun, --resume tries again") from error
+        say(f"begins together with the others, {found}")
+        return dict.fromkeys(here, str(found))
+
+    return begin
+
+
+def strangers_of(program: Program, here: Iterable[str]) -> tuple[str, ...]:
+    """Return the robots of other processes that robots of this one set slots of or wait for, by name."""
+    own, members = set(here), members_of(program)
+    return tuple(sorted({each for robot in own for each in members[robot].contacts} - own))
 
 
 def slots_path(log: Path) -> Path:
@@ -177,7 +239,8 @@ def recorded_of(
         for record in (each for each in records if each.robot == robot):
             lamport = record.lamport
             if record.label == "ntf":
-                action = program.robot(robot).move(record.move).action(record.detail)
-                notifies.update({slot: (action.active, lamport) for slot in action.sets})
+                notify = program.by_id[robot].by_id[record.move].action(record.detail)
+                assert isinstance(notify, Notify)
+                notifies.update({slot: (notify.active, lamport) for slot in notify.slots})
         found[robot] = Recorded(lamport, notifies)
     return found

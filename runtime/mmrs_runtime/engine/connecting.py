@@ -1,0 +1,88 @@
+"""What a vehicle is given when it is connected for a run in real time, and how vehicles are let go of."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from ..clock import SIGNAL_SECONDS
+
+if TYPE_CHECKING:
+    from ..records.steps import StepRecord
+    from ..vehicle import Vehicle
+    from .clocks import RunClock
+
+
+@dataclass(frozen=True, slots=True)
+class Live:
+    """What vehicles of a run in real time may use beside the rest.
+
+    Attributes:
+        clock: of the run.
+        wake: has the engine look at this robot at once; to be called, from any thread, whenever
+            the robot's answers may have changed.
+        say: tells people something about this robot, from any thread.
+        run: identifier of the run.
+        folder: of the logs; None where none are kept.
+        links: how robots are reached, as in ``--connect``, by robot of this process.
+        shared: what vehicles of the same run share, by names of their own; empty at first.
+        announce: tells people what concerns no robot alone, from any thread.
+        records: the steps that this robot made before the run was broken off, in order.
+    """
+
+    clock: RunClock
+    wake: Callable[[], None]
+    say: Callable[[str], None]
+    run: str
+    folder: Path | None = None
+    links: Mapping[str, str] = field(default_factory=dict)
+    shared: dict[str, object] = field(default_factory=dict)
+    announce: Callable[[str], None] = print
+    records: tuple[StepRecord, ...] = ()
+
+    @property
+    def resumed(self) -> bool:
+        """Return whether the run was broken off before, so that robots may be anywhere on their ways."""
+        return bool(self.records)
+
+    @property
+    def passed(self) -> tuple[str, ...]:
+        """Return the moves that this robot ended before, in order."""
+        return tuple(record.move for record in self.records if record.label == "end")
+
+    @property
+    def begun(self) -> str:
+        """Return the move that it had begun then; empty where it had ended its last one."""
+        return self.records[-1].move if self.records and self.records[-1].label == "begin" else ""
+
+
+def let_go(robots: Mapping[str, Vehicle]) -> None:
+    """Close all robots at once: each may take seconds to know what to do when nobody talks to it.
+
+    Raises:
+        Exception: one cannot be closed; its notes tell why others cannot.
+    """
+    errors: list[Exception] = []
+
+    def close(robot: Vehicle) -> None:
+        try:
+            robot.close()
+        except Exception as error:
+            errors.append(error)
+
+    threads = [
+        threading.Thread(target=close, args=(robot,), name=f"close {id}", daemon=True)
+        for id, robot in robots.items()
+    ]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        while thread.is_alive():
+            thread.join(SIGNAL_SECONDS)
+    if errors:
+        for other in errors[1:]:
+            errors[0].add_note(f"also: {other!r}")
+        raise errors[0]

@@ -1,0 +1,244 @@
+"""Runs in real time: robots that are connected, got ready, driven, and let go of again."""
+
+from __future__ import annotations
+
+import uuid
+from collections.abc import Callable, Mapping
+from contextlib import ExitStack
+from dataclasses import dataclass, field, replace
+from math import inf
+from pathlib import Path
+
+from ..bus import Incomplete
+from ..faults import LINK_LOST, ORDERED, STOPPED
+from ..policies import Policy
+from ..program import Program
+from ..records.steps import StepRecord
+from ..semantics import Outcome
+from ..slots import Slots
+from ..vehicle import Condition, Vehicle
+from .clocks import RealClock
+from .connecting import Live, let_go
+from .early import EarlyOrders
+from .life import PACE
+from .orders import Orders
+from .resuming import over_by
+from .run import run
+from .standing import Standing
+from .terms import Attention, Ending, Terms
+from .unready import Unready, note_alone, record
+
+OK, FAILED, LINK, INTERRUPTED = 0, 1, 5, 130
+"""Exit codes: all robots are at their ends, or some are not, or a link was lost, or people stopped them."""
+
+GATHERING_SECONDS = 0.5
+"""Real seconds for which more is waited for, once something keeps a robot from getting ready."""
+
+
+@dataclass(frozen=True, slots=True)
+class Venture:
+    """A run in real time, before it begins.
+
+    Attributes:
+        connect: what makes the vehicle of each robot of this process, in the order in which they are
+            connected. It may raise anything, and nothing begins then.
+        bus: between all robots of the program.
+        conditions: by identifier; all that choices of these robots ask for.
+        policies: by robot: those of its type and kind, which go after the program's own.
+        clock: of the run.
+        orders: from people, who may give them as soon as this exists.
+        run: identifier of the run.
+        folder: of the logs; None where none are kept.
+        links: how robots are reached, by robot; backends know what is usual.
+        resumed: the steps made before the run was broken off.
+        suspends: whether a low battery only breaks a program off.
+        patience: seconds to wait for the order to resume once nobody else works.
+        meet: waits for robots of other processes once those of this one are ready, calling again and
+            again what it is given; returns, by robot, how well they begin together. It raises `Incomplete`
+            where they have not come.
+        ready: called with the vehicles before anything moves; raises what must keep them from it.
+        observe: called with each step before it has an effect.
+        say: tells people what goes on.
+        standing: for people who ask how robots are.
+    """
+
+    program: Program
+    connect: Mapping[str, Callable[[Live], Vehicle]]
+    bus: Slots
+    conditions: Mapping[str, Condition]
+    policies: Mapping[str, tuple[Policy, ...]] = field(default_factory=dict)
+    clock: RealClock = field(default_factory=RealClock)
+    orders: Orders = field(default_factory=Orders)
+    run: str = "run-0"
+    folder: Path | None = None
+    links: Mapping[str, str] = field(default_factory=dict)
+    resumed: tuple[StepRecord, ...] = ()
+    suspends: bool = True
+    patience: float = 0.0
+    meet: Callable[[Callable[[], None]], Mapping[str, str]] = lambda look: {}
+    ready: Callable[[Mapping[str, Vehicle]], None] = lambda vehicles: None
+    observe: Callable[[StepRecord], None] | None = None
+    say: Callable[[str], None] = print
+    standing: Standing = field(default_factory=Standing)
+
+    def fail(self, robot: str, which: str) -> None:
+        """Have a robot's log say that its program has ended before its first step; tell if it cannot."""
+        start, time = self.program.by_id[robot].start, round(self.clock.now(), 6)
+        try:
+            if self.observe is not None:
+                self.observe(StepRecord(self.run, robot, 0, 1, time, "fault", start, which))
+        except OSError as error:
+            self.say(f"'{robot}': the fault is not in the log: {error.strerror or error}")
+
+
+def run_live(venture: Venture) -> Ending:
+    """Carry the programs out; return how that ended.
+
+    No robot begins before all are ready; once some are under way, as in a run that is resumed, each goes
+    on, or begins, as soon as it is ready itself, and one that does not get ready is left out. One whose
+    program had ended before is left alone. In the end, every robot that has not come to its end has been
+    stopped, all links are closed, and all orders answered.
+
+    Raises:
+        Unready: if a robot does not get ready, and none is under way without it.
+        Incomplete: if robots of other processes have not come; see `Venture.meet`.
+        Exception: what `Venture.connect`, or `Venture.ready`, raises.
+        ValueError: if the steps to resume from are not the program's.
+        KeyboardInterrupt: if robots are ordered to stop before they are ready.
+    """
+    attention = Attention(venture.clock)
+    over = over_by(venture.program, venture.resumed)
+    venture = replace(venture, connect={id: each for id, each in venture.connect.items() if id not in over})
+    with ExitStack() as stack:
+        stack.callback(venture.orders.close, "the run has ended")
+        robots: dict[str, Vehicle] = {}
+        venture.orders.vehicles = robots
+        stack.callback(let_go, robots)
+        under_way = any(record.robot in venture.connect for record in venture.resumed)
+        early = None if under_way else EarlyOrders(venture, robots)
+        venture.standing.held = early.held if early is not None else ()
+        try:
+            _connect(robots, venture, attention, early)
+            venture.standing.connect(robots)
+            if early is not None:
+                _get_ready(robots, venture, early)
+        except BaseException as error:
+            if early is not None:
+                early.give_up("the run has ended")
+            if isinstance(error, Unready):
+                record(robots, error.faults, venture.fail)
+            raise
+        venture.ready(robots)
+        ending = run(
+            venture.program,
+            robots,
+            slots=venture.bus,
+            clock=venture.clock,
+            conditions=venture.conditions,
+            policies=venture.policies,
+            terms=Terms(
+                run=venture.run,
+                incarnation=uuid.uuid4().hex,
+                observe=venture.observe,
+                resumed=venture.resumed,
+                unready=under_way,
+                suspends=venture.suspends,
+                patience=venture.patience,
+                attention=attention,
+                orders=venture.orders,
+                say=venture.say,
+                standing=venture.standing,
+            ),
+        )
+        if robots and set(ending.absent) == set(robots):
+            raise Unready({id: ending.faults[id] for id in ending.absent})
+        return ending
+
+
+def exit_code(ending: Ending) -> int:
+    """Return what the shell gets."""
+    faults = {ending.faults[robot].which for robot in ending.responses}
+    if LINK_LOST in faults or ending.unconfirmed or ending.lost:
+        return LINK
+    if {STOPPED, ORDERED} & faults:
+        return INTERRUPTED
+    return OK if ending.outcome is Outcome.SUCCESS else FAILED
+
+
+def _connect(
+    robots: dict[str, Vehicle],
+    venture: Venture,
+    attention: Attention,
+    early: EarlyOrders | None,
+) -> None:
+    """Connect robots one after the other, and look out for orders to those that are there."""
+    shared: dict[str, object] = {}
+    for id, connect in venture.connect.items():
+        live = Live(
+            clock=venture.clock,
+            wake=attention.for_robot(id),
+            say=_named(venture.say, id),
+            run=venture.run,
+            folder=venture.folder,
+            links=venture.links,
+            shared=shared,
+            announce=venture.say,
+            records=tuple(record for record in venture.resumed if record.robot == id),
+        )
+        robots[id] = connect(live)
+        if early is not None:
+            early.look(set(venture.connect))
+
+
+def _named(say: Callable[[str], None], robot: str) -> Callable[[str], None]:
+    return lambda words: say(f"'{robot}': {words}")
+
+
+def _get_ready(robots: Mapping[str, Vehicle], venture: Venture, early: EarlyOrders) -> None:
+    clock = venture.clock
+    preparing = {id: robot for id, robot in robots.items() if robot.prepare(clock.now())}
+    venture.orders.called = clock.wake
+    _await_ready(preparing, clock, early)
+    _meet(robots, venture, early)
+    early.pass_on()
+
+
+def _await_ready(robots: Mapping[str, Vehicle], clock: RealClock, early: EarlyOrders) -> None:
+    """Return when all robots are ready, and nothing has gone wrong with one that was so earlier.
+
+    Once something has, the others are waited for a moment, so that all that is wrong is told at once.
+    """
+    unready, told_at = set(robots), inf
+    while unready:
+        now = clock.now()
+        for robot in robots.values():
+            robot.look(now)
+        faults = {id: robot.trouble for id, robot in robots.items() if robot.trouble is not None}
+        told_at = min(told_at, now + GATHERING_SECONDS * clock.speedup) if faults else inf
+        if faults and (now >= told_at or faults.keys() >= unready):
+            raise Unready(faults)
+        unready = {id for id in unready if id in faults or not robots[id].done}
+        early.look(unready)
+        if unready:
+            clock.sleep_until(clock.now() + PACE)
+
+
+def _meet(robots: Mapping[str, Vehicle], venture: Venture, early: EarlyOrders) -> None:
+    def look() -> None:
+        while True:
+            early.look(())
+            for id, robot in robots.items():
+                robot.look(venture.clock.now())
+                if robot.trouble is not None:
+                    raise Unready({id: robot.trouble})
+            if not early.held:
+                return
+            venture.clock.sleep_until(venture.clock.now() + PACE)
+
+    try:
+        met = venture.meet(look)
+    except Incomplete as error:
+        note_alone(robots.values(), str(error))
+        raise
+    for id, why in met.items():
+        robots[id].note("decision", {"what": "TOGETHER", "why": why, "response": "begins"})
