@@ -1,0 +1,40 @@
+"""Interrupts of a process that stop its robots."""
+
+from __future__ import annotations
+
+import signal
+import threading
+
+import pytest
+
+from mmrs_runtime.engine.interrupts import stopping
+from mmrs_runtime.engine.orders import Orders
+
+
+def test_the_first_interrupt_stops_all_robots_and_the_second_ends_the_waiting():
+    orders, said = Orders(), []
+    before = signal.getsignal(signal.SIGTERM)
+    with stopping(orders, ("a", "b"), said.append):
+        signal.raise_signal(signal.SIGTERM)
+        (order,) = orders.taken()
+        with pytest.raises(KeyboardInterrupt):
+            signal.raise_signal(signal.SIGINT)
+    assert (order.kind, order.robots, order.interrupt) == ("stop", ("a", "b"), True)
+    assert len(said) == 1
+    assert signal.getsignal(signal.SIGTERM) is before
+
+
+def test_outside_the_main_thread_signals_are_left_alone():
+    errors = []
+
+    def work():
+        try:
+            with stopping(Orders(), ("a",), print):
+                pass
+        except ValueError as error:
+            errors.append(error)
+
+    thread = threading.Thread(target=work)
+    thread.start()
+    thread.join()
+    assert errors == []
