@@ -14,8 +14,8 @@ reset, else two, so that the logs, merged by logical time, tell what happened. T
 ``journal.py``    what is on the disk before it is answered
 
 Beside these, ``watching.py`` knows who is there, ``threads.py`` repeats what is due, ``meeting.py`` has
-robots begin together, ``program_bus.py`` makes all of that for a program, and ``gateway`` lets programs without
-Zenoh take part.
+robots begin together, ``program_bus.py`` makes all of that for a program, and ``gateway`` lets programs
+without Zenoh take part.
 """
 
 from .carriers.carrier import Carrier
