@@ -301,13 +301,13 @@ def names_in(content: Mapping[str, Any], name: str) -> tuple[str, ...]:
     return tuple(dict.fromkeys(text_in({name: each}, name) for each in found))
 
 
-def finds_in(content: Mapping[str, Any]) -> tuple[Find, ...]:
+def finds_in(content: Mapping[str, Any], most: int = MOST_FINDS) -> tuple[Find, ...]:
     """Return what was detected, and where; nothing where an object does not say.
 
     Raises:
-        Unreadable: it is no list of that.
+        Unreadable: it is no list of at most so many.
     """
-    return tuple(map(_find, _list_in({"finds": [], **content}, "finds", MOST_FINDS)))
+    return tuple(map(_find, _list_in({"finds": [], **content}, "finds", most)))
 
 
 def _list_in(content: Mapping[str, Any], name: str, most: int = MOST_SLOTS) -> list[Any]:

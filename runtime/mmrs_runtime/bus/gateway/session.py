@@ -148,7 +148,7 @@ class Session:
                 raise Unreadable(f"slots: {self._robot!r} never sets any of {robot!r}")
         self._latest = number
         id = CommandId(self._run, self._robot, "", number)
-        self._deliveries[number] = self._node.prepare(id, slots, active, finds_in(content))
+        self._deliveries[number] = self._node.prepare(id, slots, active, finds_in(content, MOST_SLOTS))
         return {"is": "asked", "number": number}
 
     def _send(self, content: Mapping[str, Any]) -> Mapping[str, object]:

@@ -5,6 +5,8 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
+from mmrs_runtime.bus.words import MOST_FINDS
+
 PAGE = Path(__file__).parents[4] / "docs" / "how-to" / "bus.md"
 SESSION = [line for line in PAGE.read_text(encoding="utf-8").splitlines() if line.startswith(("> {", "< {"))]
 
@@ -60,6 +62,15 @@ def test_what_was_detected_goes_with_notifies_over_the_bus_and_through_the_gatew
 
     set_ready(("wreck", None))
     assert client.ask({"do": "state"}, "state")["finds"] == [["wreck", None]]
+
+
+def test_of_more_that_was_detected_than_a_notify_carries_the_last_go_with_it(client, peer, until):
+    until(lambda: not peer.missing(["a"]))
+    many = [[f"buoy {number}", None] for number in range(MOST_FINDS + 20)]
+    client.ask(setting_go(1, finds=many), "asked")
+    client.ask({"do": "send", "number": 1, "lamport": client.hear("granted")["lamport"]}, "sent")
+    client.hear("acknowledged")
+    assert [name for name, _ in peer.finds("b")] == [name for name, _ in many[20:]]
 
 
 def test_a_program_is_told_for_whom_its_notify_waits_and_gives_it_up(client):
