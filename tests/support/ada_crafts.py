@@ -14,7 +14,8 @@ from random import Random
 
 from ada_centres import FLAGS, write
 from dives import dive
-from mmrs_auv.targets.ada.bus import HEARD, LIMITS, SPOKEN
+from mmrs_auv.targets.ada import tables
+from mmrs_auv.targets.ada.bus import HEARD, SPOKEN
 
 from auv_vessel.api import Craft, State
 from auv_vessel.eyes import CAMERAS, Detection, to_datagram
@@ -35,6 +36,7 @@ from auv_vessel.wire.codec import Codec, Value
 from auv_vessel.wire.frame import Frame
 
 SCRIPT = Path(__file__).parents[2] / "plugins" / "auv" / "tests" / "targets" / "craft_script.adb"
+FIGURES = {**tables.SECONDS, **tables.METRES, **tables.PARTS, **tables.COUNTS}
 KNOWN = {message.name: message for message in (*COMMON, *BEATS)}
 MESSAGES: Sequence[Message] = [KNOWN[name] for name in (*SPOKEN, *HEARD)]
 OWNER = 'Né "1"'
@@ -52,8 +54,12 @@ def compiled(folder: Path) -> Path:
     """Return a program that does what scripts say with the modules of a decision centre."""
     common = write(dive(), folder).parent / "common"
     listed = ",\n      ".join(f"{number} => Catalogue.{each.name}" for number, each in enumerate(MESSAGES))
+    figures = ",\n      ".join(
+        f"{number} => Long_Float (Tables.LIMIT_{each})" for number, each in enumerate(FIGURES)
+    )
     table = f"   Messages : constant array (Natural range <>) of Wire.Message :=\n     ({listed});\n"
-    text = f"with Catalogue;\nwith Wire;\n\npackage Listed is\n{table}end Listed;\n"
+    table += f"   Figures : constant array (Natural range <>) of Long_Float :=\n     ({figures});\n"
+    text = f"with Catalogue;\nwith Tables;\nwith Wire;\n\npackage Listed is\n{table}end Listed;\n"
     (common / "listed.ads").write_text(text)
     shutil.copy(SCRIPT, common)
     words = ["gnatmake", "-q", *FLAGS, "-gnata", SCRIPT.name]
@@ -171,7 +177,7 @@ class Compared:
     def __post_init__(self) -> None:
         self.craft = Craft(self.sheet, Codec(self.sheet))
         self._tell(f"v {bits(depth_step(self.sheet.max_depth))}")
-        self._tell(f"l {bits(self.sheet.extra.get('position.lost', LIMITS['POSITION_LOST']))}")
+        self._tell(f"l {bits(self.sheet.extra.get('position.lost', tables.METRES['POSITION_LOST']))}")
 
     def go(self, mode: str, place: Sequence[float], heading: float | None, speed: float) -> None:
         north, east, depth = place

@@ -14,6 +14,9 @@ from .wire.catalogue import BEAT_PERIOD, DECISION, EMERGENCIES, MOST_UPTIME, STA
 from .wire.codec import Codec, Received
 from .wire.frame import Frame
 
+FIRST_SIGN = 30.0
+"""Real seconds to wait for a vehicle's first sign, and until it knows where it is."""
+
 POSITION_LOST = 10.0
 """Metres of uncertainty above which the place counts as lost (`Sheet.extra`: ``position.lost``)."""
 
@@ -25,6 +28,9 @@ SELDOM = 5
 
 OFTEN = 25
 """Emergency messages that are sent for one order, one at each tick."""
+
+REQUESTS = 256
+"""Numbers that requests of devices have, from 1 on, again and again."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -187,7 +193,7 @@ class Craft:
         if device not in self._sheet.devices:
             raise ValueError(f"{self._sheet.robot} has no device {device!r}")
         with self._lock:
-            request = (self._request + 1) % 256
+            request = (self._request + 1) % REQUESTS
             values = {
                 "Device": float(self._sheet.devices.index(device)),
                 "Action": float(action),

@@ -22,6 +22,12 @@ CAMERAS = (FRONT, BOTTOM)
 LONGEST, LONGEST_NAME, FARTHEST, DEEPEST = 4096, 80, 8388.0, 11000.0
 """Bytes of a datagram, characters of a name, metres from the origin and of depth that are taken at most."""
 
+LATEST = 1e12
+"""Seconds of the latest time that is taken."""
+
+CONFIDENCE, LASTING, LEAST, SPREAD = 0.5, 10.0, 2, 1.0
+"""What a detection has at least, seconds for which it counts; how many must agree, within how many metres."""
+
 KEPT, NAMES = 9, 256
 """Detections that are kept of each object, and objects of which any are kept."""
 
@@ -83,7 +89,7 @@ def from_datagram(data: bytes) -> Detection:
     if not isinstance(robot, str) or len(robot) > LONGEST_NAME:
         raise ValueError("no robot")
     return Detection(
-        _number(found, "time", 0.0, 1e12),
+        _number(found, "time", 0.0, LATEST),
         name,
         _number(found, "confidence", 0.0, 1.0),
         _number(found, "north", -FARTHEST, FARTHEST),
@@ -125,10 +131,10 @@ class Detections:
         port: int = 0,
         host: str = "127.0.0.1",
         *,
-        confidence: float = 0.5,
-        lasting: float = 10.0,
-        least: int = 2,
-        spread: float = 1.0,
+        confidence: float = CONFIDENCE,
+        lasting: float = LASTING,
+        least: int = LEAST,
+        spread: float = SPREAD,
         clock: Callable[[], float] = time.monotonic,
         robot: str = "",
     ) -> None:

@@ -11,6 +11,9 @@ from .wire.frame import Frame
 GOAL_PERIOD = 0.2
 """Seconds from one repetition of a goal to the next."""
 
+FAREWELL = 0.5
+"""Real seconds in which the last goal is still repeated, at the end of a program."""
+
 SLOWEST = 0.02
 """Metres per second, the least speed that a goal can say: less would mean as the vehicle likes."""
 

@@ -76,6 +76,11 @@ class Sheet:
     extra: dict[str, float] = field(default_factory=dict)
 
 
+def afloat_of(height: float) -> float:
+    """Return the depth of its centre of gravity, metres, above which a vehicle is at the surface."""
+    return height / 2.0 + 0.1
+
+
 def to_json(sheet: Sheet) -> str:
     """Return a sheet as a file holds it."""
     return json.dumps(asdict(sheet), indent=2) + "\n"

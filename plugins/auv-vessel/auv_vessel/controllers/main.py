@@ -14,6 +14,7 @@ from pathlib import Path
 from auv_vessel.api import Connection
 from auv_vessel.controllers.vehicle import CanVehicle
 from auv_vessel.eyes import Detections
+from auv_vessel.goals import FAREWELL
 from auv_vessel.sheet import from_json
 from auv_vessel.wire.ports import CHANNEL, open_port
 from mmrs_mavlink.judgement import Condition, objects_of
@@ -24,9 +25,6 @@ from mmrs_mavlink.program import Robot
 from mmrs_runtime.faults import LINK_LOST, Fault
 from mmrs_runtime.records.blackbox import BlackBox
 from mmrs_runtime.screen import say
-
-FAREWELL = 0.5
-"""Real seconds in which the last goal is still repeated."""
 
 
 def main(

@@ -6,7 +6,7 @@ import time
 from collections.abc import Callable, Mapping
 from math import hypot, inf
 
-from auv_vessel.api import Craft
+from auv_vessel.api import FIRST_SIGN, Craft
 from auv_vessel.decision.drives import Drives
 from auv_vessel.decision.duties import (
     Duty,
@@ -21,7 +21,7 @@ from auv_vessel.decision.duties import (
     Use,
 )
 from auv_vessel.decision.duties import Look as Bearing
-from auv_vessel.decision.helm import COMES_UP, CRASHED, LINK_LOST, Helm, Watch
+from auv_vessel.decision.helm import COMES_UP, CRASHED, LINK_LOST, UNHEARD, Helm, Watch
 from auv_vessel.eyes import Detections
 from auv_vessel.movement.abilities import abilities_of
 from auv_vessel.sheet import Sheet, Vector
@@ -34,7 +34,7 @@ from mmrs_mavlink.vehicles.modes import GUIDED, HOLD, SURFACE
 from mmrs_mavlink.vehicles.vehicle import State
 from mmrs_runtime.clock import Clock
 from mmrs_runtime.faults import DEVICE_SILENT, OBJECT_NOT_FOUND, Fault, Refused, Unanswered
-from mmrs_runtime.policies import CONTINUE
+from mmrs_runtime.policies import AFTER, CONTINUE
 from mmrs_runtime.records.blackbox import BlackBox
 from mmrs_runtime.screen import say
 
@@ -43,12 +43,6 @@ LOOK_SECONDS = 0.05
 
 BATTERY_SECONDS = 1.0
 """Seconds within which a vehicle that tells its battery has done so."""
-
-BUS_SECONDS = 10.0
-"""Seconds of silence of the bus that end a program although a policy says that links may be lost."""
-
-SILENT = 60.0
-"""Seconds of silence after which nobody waits for a vehicle to come up any more."""
 
 OFF = "off"
 
@@ -70,7 +64,7 @@ class CanVehicle:
         guard: Callable[[], None],
         box: BlackBox,
         *,
-        patience: float = 30.0,
+        patience: float = FIRST_SIGN,
         eyes: Detections | None = None,
         clearance: float = 0.0,
     ) -> None:
@@ -238,7 +232,7 @@ class CanVehicle:
         """Come up; nobody waits for a vehicle that is not heard."""
         self._mode, self._armed = SURFACE, True
         duty = Surface(self._afloat, floats=self._sheet.weight_in_water < 0.0)
-        self._do(duty, leave=lambda: self._craft.state().silent > SILENT)
+        self._do(duty, leave=lambda: self._craft.state().silent > UNHEARD)
         self._armed = False
 
     def disarm(self) -> None:
@@ -324,7 +318,7 @@ class CanVehicle:
     def _after(self, event: str) -> float:
         policy = policy_for(event, self._robot)
         if event == LINK_LOST and policy.response == CONTINUE:
-            return BUS_SECONDS
+            return AFTER[LINK_LOST]
         return policy.after or 0.0
 
     def _below(self, place: Place) -> Vector:

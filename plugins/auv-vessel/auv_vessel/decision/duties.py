@@ -14,14 +14,17 @@ from ..sheet import Vector
 NO_PROGRESS, DEVICE_SILENT, OBJECT_NOT_FOUND = "NO_PROGRESS", "DEVICE_SILENT", "OBJECT_NOT_FOUND"
 BATTERY_LOW = "BATTERY_LOW"
 
+STALE = 1.0
+"""Seconds of silence of the sensor controller after which the vehicle is not known to be where it was."""
+
 PASSED = 0.5
 """Metres from a place within which it counts as passed where the vehicle need not stop."""
 
 AFLOAT = 0.1
 """Metres deeper than it floats at rest that count as at the surface still."""
 
-FULL, CHARGING = 0.95, 3.0
-"""Part of the battery that counts as full; times as long as it should take until charging has failed."""
+FULL, CHARGING, CHARGING_SPARE = 0.95, 3.0, 5.0
+"""Part of the battery that is full; times as long as it should take, and seconds more, till it fails."""
 
 
 class FailureError(Exception):
@@ -72,7 +75,7 @@ class Ready:
     def done(self, craft: Craft, now: float) -> bool:
         """Return whether depth, heading and place are known."""
         state = craft.state()
-        return state.trusted and state.age < 1.0 and not state.position_lost
+        return state.trusted and state.age < STALE and not state.position_lost
 
 
 class Travel:
@@ -195,7 +198,7 @@ class Surface:
     def done(self, craft: Craft, now: float) -> bool:
         """Return whether the vehicle is at the surface."""
         state = craft.state()
-        up = state.progress == "REACHED" or (state.age < 1.0 and state.depth < self._afloat + AFLOAT)
+        up = state.progress == "REACHED" or (state.age < STALE and state.depth < self._afloat + AFLOAT)
         if up:
             self._rest.begin(craft, now)
         return up
@@ -221,7 +224,7 @@ class Charge:
             return False
         self._charged()
         charge = craft.state().charge
-        if charge is not None and charge < FULL and taken >= CHARGING * self._seconds + 5.0:
+        if charge is not None and charge < FULL and taken >= CHARGING * self._seconds + CHARGING_SPARE:
             raise FailureError(BATTERY_LOW, f"after {taken:.0f} s of charging the battery is at {charge:.0%}")
         return charge is None or charge >= FULL
 

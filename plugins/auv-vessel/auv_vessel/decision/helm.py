@@ -6,15 +6,21 @@ from collections.abc import Callable
 from math import inf
 
 from ..api import Craft, State
-from .duties import BATTERY_LOW, NO_PROGRESS, OBJECT_NOT_FOUND, Duty, FailureError
+from .duties import BATTERY_LOW, NO_PROGRESS, OBJECT_NOT_FOUND, STALE, Duty, FailureError
 
 LINK_LOST, POSITION_LOST, OBSTACLE, CRASHED = "LINK_LOST", "POSITION_LOST", "OBSTACLE", "CRASHED"
 
 COMES_UP = frozenset({CRASHED, NO_PROGRESS, OBJECT_NOT_FOUND})
 """What no policy is about: the vehicle comes up, since nobody would find it under water."""
 
-SILENT, STALE = 2.0, 1.0
-"""Seconds of silence of the whole bus, and of the sensor controller, that count as loss."""
+NEVER_BORNE = frozenset({LINK_LOST})
+"""Events at which it comes up although a policy says to go on: that is about radio, not its own bus."""
+
+SILENT = 2.0
+"""Seconds of silence of the whole bus that count as loss."""
+
+UNHEARD = 60.0
+"""Seconds of silence after which nobody waits any more for a vehicle to do what it was told."""
 
 AT_REST = 0.1
 """Metres per second under which a vehicle counts as halted."""

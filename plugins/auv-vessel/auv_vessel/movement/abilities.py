@@ -9,7 +9,7 @@ import numpy as np
 
 from ..body.hydrodynamics import GRAVITY, hull_of
 from ..control.allocation import Allocation, Array
-from ..sheet import Sheet
+from ..sheet import Sheet, afloat_of
 
 USED = 0.7
 """Part of what thrusters can give continually that movement plans with; the rest is to correct."""
@@ -73,7 +73,7 @@ def abilities_of(sheet: Sheet) -> Abilities:
         steepest=sheet.extra.get("climb.speed", 0.8 * steepest),
         turning=min(np.radians(sheet.extra.get("turn.rate", QUICKEST)), 0.8 * terminal[5]),
         cruise=0.7 * ahead,
-        afloat=sheet.height / 2.0 + 0.1,
+        afloat=afloat_of(sheet.height),
     )
 
 

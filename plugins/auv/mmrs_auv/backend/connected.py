@@ -10,6 +10,7 @@ from math import hypot
 from auv_vessel.api import Connection
 from auv_vessel.decision.duties import Ready
 from auv_vessel.eyes import Detections
+from auv_vessel.goals import FAREWELL
 from auv_vessel.sheet import Sheet, Vector
 from auv_vessel.wire.ports import CHANNEL, open_port
 from mmrs_auv.backend.duties_of import Duties, Waters
@@ -23,9 +24,6 @@ from mmrs_core.contributions.vehicles import Live, VehicleInput
 from mmrs_core.errors import LinkLostError, UnsupportedError
 from mmrs_mavlink.records.start import PROCESS
 from mmrs_runtime.engine.clocks import RealClock
-
-FAREWELL = 0.5
-"""Real seconds in which the last goal is still repeated."""
 
 
 class ConnectedRobot(CanRobot):

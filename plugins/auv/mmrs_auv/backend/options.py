@@ -8,6 +8,7 @@ from math import isfinite
 from pathlib import Path
 from typing import TypeVar
 
+from auv_vessel.api import FIRST_SIGN
 from auv_vessel.body.surroundings import Surroundings, from_json
 from mmrs_core.errors import UnreadableError, UnsupportedError
 
@@ -63,7 +64,7 @@ class Connecting:
     interface: str = "socketcand"
     channel: str = ""
     bit_rate: int = 0
-    patience: float = 30.0
+    patience: float = FIRST_SIGN
     clock: str = ""
     objects: str = ""
     detections: int = 0

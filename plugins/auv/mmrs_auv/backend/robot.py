@@ -8,8 +8,18 @@ from typing import Protocol
 
 from auv_vessel.api import Craft, State
 from auv_vessel.decision.drives import Drives
-from auv_vessel.decision.duties import NO_PROGRESS, Duty, FailureError, Stay, Surface
-from auv_vessel.decision.helm import COMES_UP, CRASHED, LINK_LOST, POSITION_LOST, SILENT, Helm, Watch
+from auv_vessel.decision.duties import NO_PROGRESS, STALE, Duty, FailureError, Stay, Surface
+from auv_vessel.decision.helm import (
+    COMES_UP,
+    CRASHED,
+    LINK_LOST,
+    NEVER_BORNE,
+    POSITION_LOST,
+    SILENT,
+    UNHEARD,
+    Helm,
+    Watch,
+)
 from auv_vessel.movement.abilities import abilities_of
 from auv_vessel.sheet import Sheet, Vector
 from mmrs_auv.backend.duties_of import Duties, Waters
@@ -28,9 +38,6 @@ HINDRANCES = (LINK_LOST, POSITION_LOST, NO_PROGRESS)
 NO_WAY = "no way is known back to where its program was broken off"
 AT_HOME = 5.0
 """Metres from home that count as at home, where the place is not known better than that."""
-
-UNHEARD = 60.0
-"""Seconds of silence after which nobody waits any more for a vehicle to do what it was told; it comes up."""
 
 EMPTY = 0.001
 """Part of the battery with which nothing works any more."""
@@ -201,7 +208,7 @@ class CanRobot(Vehicle):
 
     def known(self, now: float) -> bool:
         """Return whether the vehicle on the bus is the robot's, as far as its bus says."""
-        return self._craft.state().age < 1.0
+        return self._craft.state().age < STALE
 
     @property
     def comes_home(self) -> bool:
@@ -309,14 +316,13 @@ class CanRobot(Vehicle):
         if found.event in COMES_UP:
             return Fault(found.event, found.reason, "SURFACE")
         borne = response_to(found.event, self._policies) == "CONTINUE"
-        if found.event == LINK_LOST and borne:
-            # That policy is about radio; nobody controls a vehicle whose own bus is silent.
-            return Fault(LINK_LOST, found.reason, "SURFACE")
+        if found.event in NEVER_BORNE and borne:
+            return Fault(found.event, found.reason, "SURFACE")
         return Fault(found.event, found.reason)
 
     def _after(self, event: str) -> float:
-        if event == LINK_LOST and response_to(event, self._policies) == "CONTINUE":
-            return AFTER[LINK_LOST]
+        if event in NEVER_BORNE and response_to(event, self._policies) == "CONTINUE":
+            return AFTER[event]
         return patience(event, self._policies) or 0.0
 
     def _overtakes(self, found: FailureError) -> bool:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import threading
 from collections.abc import Mapping, Sequence
 
+from auv_vessel.decision.helm import UNHEARD
 from mmrs_auv.backend.keeping import keeper_of
 from mmrs_auv.manual.autopilot import DEPTH_HOLD, SURFACE, Autopilot
 from mmrs_auv.manual.equipment import carry_out
@@ -28,9 +29,6 @@ from mmrs_runtime.vehicle import Vehicle
 
 PERIOD = 0.1
 """Seconds from one message of the sticks to the next; ArduSub gives up after three."""
-
-UNHEARD = 60.0
-"""Seconds of silence after which nobody waits any more for a vehicle to do what it was told."""
 
 NEAR_THE_SURFACE = 0.4
 """Metres of depth at which a vehicle has come up."""

@@ -5,6 +5,7 @@ with Interfaces;  use Interfaces;
 with Listed;
 with Plans;
 with Sight;
+with Tables;      use Tables;
 with Tracks;
 with Wire;
 
@@ -26,6 +27,9 @@ with Wire;
 --    a NUMBER PLACE                come to a place by the move of that number
 --    k PLACE                       the way back from there
 --    f                             forget plan and places
+--    p                             the figures of the list
+--    r EVENT                       what is done where no policy is about it, and where one cannot be kept
+--    u EVENT                       whether it is answered although another one is
 --    w TIME NAME                   where an object is seen then, its name in JSON; "none" where it is not
 procedure Craft_Script is
 
@@ -54,6 +58,8 @@ procedure Craft_Script is
    procedure Add_Move;
    procedure Pass;
    procedure Go_Back;
+   procedure Tell_Figures;
+   procedure Tell_Responses (What : Event);
    procedure Obey;
 
    function Word return String is
@@ -230,6 +236,18 @@ procedure Craft_Script is
       end loop;
    end Go_Back;
 
+   procedure Tell_Figures is
+   begin
+      for Each of Listed.Figures loop
+         Tell (Each);
+      end loop;
+   end Tell_Figures;
+
+   procedure Tell_Responses (What : Event) is
+   begin
+      Put (Undeclared (What)'Image & " " & Unbearable (What)'Image);
+   end Tell_Responses;
+
    procedure Obey is
       Order : constant String := Word;
    begin
@@ -254,6 +272,9 @@ procedure Craft_Script is
          when 'm' => Add_Move;
          when 'a' => Pass;
          when 'k' => Go_Back;
+         when 'p' => Tell_Figures;
+         when 'r' => Tell_Responses (Event'Value (Word));
+         when 'u' => Put (Overtakes (Lasting'Value (Word))'Image);
          when 'f' =>
             Tracks.Forget;
             Plan.Moves.Clear;

@@ -12,8 +12,8 @@ from ada_centres import judge, write
 from dives import dive, diver, swim
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from mmrs_auv.targets.ada import literals
-from mmrs_auv.targets.ada.bus import LIMITS, catalogue
+from mmrs_auv.targets.ada import literals, tables
+from mmrs_auv.targets.ada.bus import catalogue
 from mmrs_auv.targets.ada.refusals import refusals
 from mmrs_auv.targets.ada.target import ADA
 
@@ -222,6 +222,24 @@ def test_speeds_are_those_that_the_vehicle_can_and_its_bus_can_say(speed, said):
     assert f"Made.Speed := {said}" in mission_of(dive(swim("a", 1.0, 2.0, 1.0, speed=speed)))
 
 
+def test_how_deep_a_vehicle_lies_at_the_surface_is_what_its_height_says():
+    kind = diver()
+    size = kind.part.attributes["size"]
+    high = replace(size, attributes={**size.attributes, "height": 1.2})
+    tall = replace(kind, part=replace(kind.part, attributes={**kind.part.attributes, "size": high}))
+    assert "Into.Afloat := 0.7;" in mission_of(dive(), tall)
+    bare = {name: value for name, value in kind.part.attributes.items() if name != "size"}
+    assert "Into.Afloat := 0.0;" in mission_of(
+        dive(), replace(kind, part=replace(kind.part, attributes=bare))
+    )
+
+
+def test_what_a_readme_says_of_responses_is_what_decision_centres_do():
+    files = {each.path: each.content.decode() for each in render(ADA, input_of(dive()))}
+    assert "| CONDITION\\_FAILED | Holds\\_Place |" in files["README.md"]
+    assert "CONDITION_FAILED => Holds_Place" in files["common/tables.ads"]
+
+
 def test_batteries_are_charged_at_the_surface():
     behaviour = dive(move("r", "Recharge", duration=9.0))
     assert list(refusals(input_of(behaviour))) == []
@@ -261,7 +279,7 @@ def test_the_catalogue_holds_what_a_decision_centre_says_and_hears():
 
 
 def test_a_decision_centre_goes_by_the_figures_of_the_interpreter(monkeypatch):
-    monkeypatch.setitem(LIMITS, "POSITION_LOST", 7.25)
+    monkeypatch.setitem(tables.METRES, "POSITION_LOST", 7.25)
     files = {each.path: each.content.decode() for each in render(ADA, input_of(dive()))}
-    assert "LIMIT_POSITION_LOST : constant := 7.25;" in files["common/catalogue.ads"]
+    assert "LIMIT_POSITION_LOST : constant := 7.25;" in files["common/tables.ads"]
     assert "less well than to 7.25 m" in files["README.md"]

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import shutil
 from math import dist
 from random import Random
 
 import pytest
 from ada_crafts import (
+    FIGURES,
     MESSAGES,
     OBJECTS,
     OWNER,
@@ -30,15 +32,23 @@ from ada_ways import lines_of, places_of, some_place, some_robot, some_track
 from c_drives import Script
 from c_drives import compiled as drives
 from c_drives import told as done_by
+from mmrs_auv.kinds import AUV_KIND
+from mmrs_auv.targets.ada.policies import EVENTS, LASTING, RESPONSES
+from mmrs_auv.targets.places import templates_of
 from mmrs_auv.testing import heavy_sheet, pool_sheet, torpedo_sheet
 from vessel_sheets import sheet
 
+from auv_vessel.decision.helm import COMES_UP
 from auv_vessel.eyes import Detections
 from auv_vessel.wire.catalogue import EMERGENCIES, REASONS
 from auv_vessel.wire.codec import Codec
 from auv_vessel.wire.frame import Frame
 from mmrs_mavlink.program import Local
 from mmrs_mavlink.steps.ways import way_back
+from mmrs_runtime.engine.answers import Answers
+from mmrs_runtime.faults import LINK_LOST, PEER_LOST
+from mmrs_runtime.policies import OVERTAKES, SURFACE, in_precedence
+from mmrs_runtime.vehicle import Fault
 
 COUNTS = [100, pytest.param(5000, marks=pytest.mark.thorough)]
 SEEDS = [0, *(pytest.param(seed, marks=pytest.mark.thorough) for seed in range(1, 12))]
@@ -170,6 +180,39 @@ def test_drives_in_c_stop_by_what_a_decision_centre_in_ada_says(program, release
             script.hear(0, sound if place is None else _turned(sound, place))
             ((*happened, _),) = done_by(stop, script)
             assert happened == (["r"] if release and place is None else [])
+
+
+def test_the_tables_of_a_decision_centre_are_those_of_the_runtime(program):
+    """Responses to what no model says anything of are those of the engine, for a vehicle of the kind."""
+    answers = Answers(in_precedence(kind=AUV_KIND.policies), live=True)
+    found = dict(zip(EVENTS, told(program, [f"r {event}" for event in EVENTS]), strict=True))
+    assert {event: words.split()[0] for event, words in found.items()} == {
+        event: RESPONSES[SURFACE if event in COMES_UP else answers.response(Fault(event))].upper()
+        for event in EVENTS
+    }
+    assert {event for event, words in found.items() if words.split()[1] == "COMES_UP"} == {
+        LINK_LOST,
+        PEER_LOST,
+    }
+    assert told(program, [f"u {event}" for event in LASTING]) == [
+        str(event in OVERTAKES or event == LINK_LOST).upper() for event in LASTING
+    ]
+
+
+def test_the_figures_of_a_decision_centre_are_those_of_the_vehicle_in_python(program):
+    (answer,) = told(program, ["p"])
+    assert list(map(real, answer.split())) == list(FIGURES.values())
+
+
+def test_no_figure_is_written_by_hand_that_an_interpreter_goes_by_too():
+    """What stands in sources in Ada is about Ada, a polynomial, or how a gateway is spoken to."""
+    figure = re.compile(r"^ *(\w+) *: constant(?: Long_Float| Duration| Unsigned_8)? := [\d._E#A-F]+;", re.M)
+    sources = templates_of("ada").glob("*.ad[bs]")
+    found = {f"{source.stem}.{name}" for source in sources for name in figure.findall(source.read_text())}
+    assert found == {
+        "clocks.Most", "craft.Most_Frames", "decision_centre.Most", "gateway.Later", "gateway.Sign",
+        "options.Most_Port", "wire.Polynomial",
+    }  # fmt: skip
 
 
 def _turned(frame: Frame, place: int) -> Frame:

@@ -4,12 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
-from auv_vessel.api import FARTHEST_SEEN, OFTEN, POSITION_LOST, SELDOM
-from auv_vessel.control.failsafe import HEALTH_SILENT
-from auv_vessel.decision.helm import SILENT, STALE
 from auv_vessel.refusals import MOST_DEPTH
 from auv_vessel.wire.catalogue import (
-    BEAT_PERIOD,
     BEATS,
     COMMON,
     EMERGENCIES,
@@ -31,25 +27,13 @@ HEARD = (
     *("Position", "Depth", "Pose", "Health", "Progress", "DeviceStatus"),
 )
 
-LIMITS: Mapping[str, float] = {
-    "BUS_SILENT": SILENT,
-    "STATE_SILENT": STALE,
-    "HEALTH_SILENT": HEALTH_SILENT + BEAT_PERIOD,  # after the actuator controller, which does so by itself
-    "POSITION_LOST": POSITION_LOST,
-    "FARTHEST_SEEN": FARTHEST_SEEN,
-    "BEAT_PERIOD": BEAT_PERIOD,
-    "SELDOM": SELDOM,
-    "OFTEN": OFTEN,
-}
-"""What a decision centre in Python goes by, and one in Ada as well: seconds, metres and numbers of ticks."""
-
 _KNOWN = {message.name: message for message in (*COMMON, *BEATS)}
 
 
 def catalogue() -> Mapping[str, object]:
     """Return what the template of the catalogue sees."""
     messages = [_message(_KNOWN[name]) for name in (*SPOKEN, *HEARD)]
-    return {"messages": messages, "emergencies": list(EMERGENCIES), "words": list(_words()), "limits": LIMITS}
+    return {"messages": messages, "emergencies": list(EMERGENCIES), "words": list(_words())}
 
 
 def can_be_said(message: str, field: str, value: float) -> bool:

@@ -9,6 +9,7 @@ from math import isfinite
 from auv_vessel.eyes import owner_of
 from auv_vessel.goals import SLOWEST
 from auv_vessel.refusals import MOST_SPEED
+from auv_vessel.sheet import afloat_of
 from mmrs_auv.names import IN_WATER_SIZE
 from mmrs_auv.sayable import mount_of, parameter_of
 from mmrs_auv.sheets import action_number
@@ -69,6 +70,7 @@ class Mission:
             "cruise": self._cruise(),
             "surface": float(self._program.frame.surface),
             "policies": answers.view(self._policies),
+            "afloat": self._afloat(),
             "floats": self._floats(),
             "alone": are_apart(self._program),
             "robots": json.dumps([each.id for each in self._program.robots]),
@@ -211,12 +213,19 @@ class Mission:
     def _trace(self, move: Move) -> TracedStep:
         return TracedStep(f"move {move.id}", self._context.robot.id, move.id, move.task, move.rule)
 
+    def _afloat(self) -> float:
+        """Return the depth above which it is at the surface, metres; 0: its type does not say."""
+        height = self._of_size("height")
+        return 0.0 if height is None else afloat_of(height)
+
     def _floats(self) -> bool:
+        weight = self._of_size("weightInWater")
+        return weight is not None and weight < 0.0
+
+    def _of_size(self, feature: str) -> float | None:
         size = self._context.type.part.attributes.get("size") if self._context.type is not None else None
-        if not isinstance(size, Part) or not size.is_a(IN_WATER_SIZE):
-            return False
-        weight = size.attributes.get("weightInWater")
-        return isinstance(weight, (int, float)) and weight < 0.0
+        found = size.attributes.get(feature) if isinstance(size, Part) and size.is_a(IN_WATER_SIZE) else None
+        return float(found) if isinstance(found, int | float) else None
 
 
 def are_apart(program: Program) -> bool:

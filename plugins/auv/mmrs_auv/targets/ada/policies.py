@@ -1,17 +1,34 @@
-"""How the decision centre answers what goes wrong, as policies say."""
+"""How the decision centre answers what goes wrong, as policies and the runtime's tables say."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from math import isfinite
+from math import inf, isfinite
 
+from auv_vessel.decision.helm import COMES_UP, NEVER_BORNE
 from mmrs_auv.kinds import AUV_KIND
 from mmrs_core.behaviour.program import RobotProgram
 from mmrs_core.contributions.targets import TargetInput
 from mmrs_core.scene import Policy, PolicyResponse
 from mmrs_mavlink.plugin.safety import policies_of
-from mmrs_runtime.policies import AFTER, LAST_RESORT, patience, response_to
+from mmrs_runtime.engine.answers import Answers
+from mmrs_runtime.faults import (
+    BATTERY_LOW,
+    CONDITION_FAILED,
+    CRASHED,
+    DEVICE_SILENT,
+    LINK_LOST,
+    LOG_FAILED,
+    NO_PROGRESS,
+    OBJECT_NOT_FOUND,
+    OBSTACLE,
+    PEER_LOST,
+    POSITION_LOST,
+    WAIT_TOO_LONG,
+)
+from mmrs_runtime.policies import AFTER, LAST_RESORT, OVERTAKES, SURFACE, in_precedence
+from mmrs_runtime.vehicle import Fault
 
 RESPONSES: Mapping[str, str] = {
     "HOLD": "Holds_Place", "RETURN": "Backs_Out", "LAND": "Comes_Up", "SURFACE": "Comes_Up",
@@ -19,11 +36,17 @@ RESPONSES: Mapping[str, str] = {
 }  # fmt: skip
 """Responses that it can give; one that finds its way to an emergency area it cannot."""
 
-LASTING = ("LINK_LOST", "POSITION_LOST", "BATTERY_LOW", "OBSTACLE", "WAIT_TOO_LONG", "PEER_LOST")
+LASTING = (LINK_LOST, POSITION_LOST, BATTERY_LOW, OBSTACLE, WAIT_TOO_LONG, PEER_LOST)
 """Events that have to last before they count."""
 
-EVENTS = (*LASTING, "DEVICE_SILENT", "LOG_FAILED")
-"""Events that may happen to an underwater vehicle."""
+DECLARED = (*LASTING, DEVICE_SILENT, LOG_FAILED)
+"""Events that may happen to an underwater vehicle, and that policies are about."""
+
+EVENTS = (*DECLARED, OBJECT_NOT_FOUND, NO_PROGRESS, CONDITION_FAILED, CRASHED)
+"""All that may happen to one."""
+
+OVERTAKING = OVERTAKES | NEVER_BORNE
+"""Events that are answered although another one is."""
 
 OTHERWISE: PolicyResponse = "SURFACE"
 """What is done in place of a response that cannot be given."""
@@ -37,28 +60,36 @@ def declared(robot: RobotProgram, input: TargetInput) -> tuple[Policy, ...]:
 
 def obstacles_to(policy: Policy) -> str:
     """Return why a policy cannot be kept; empty where it can."""
-    if policy.event not in EVENTS:
+    if policy.event not in DECLARED:
         return ""
     if policy.response not in RESPONSES:
         return "no decision centre knows a way to an emergency area: it comes up"
-    if policy.event == "POSITION_LOST" and policy.response == "RETURN":
+    if policy.event == POSITION_LOST and policy.response == "RETURN":
         return "nobody finds back without its position: it comes up"
-    if policy.event == "LOG_FAILED" and policy.response == "CONTINUE":
+    if policy.event == LOG_FAILED and policy.response == "CONTINUE":
         return "nobody could replay what it does without its log: it holds"
     return ""
 
 
 def view(policies: Sequence[Policy]) -> Mapping[str, object]:
     """Return what templates see of policies, the first for an event counts: how long, and what then."""
-    kept = [_possible(each) for each in policies]
-    waits = ((event, _seconds(event, kept)) for event in LASTING)
+    answers = Answers([_possible(each) for each in policies], live=True)
+    waits = ((event, _seconds(event, answers)) for event in LASTING)
     return {
         "bears": [(event, seconds) for event, seconds in waits if isfinite(seconds)],
-        "answer": [
-            *((event, RESPONSES[response_to(event, kept)]) for event in EVENTS),
-            ("CONDITION_FAILED", RESPONSES[LAST_RESORT]),
-        ],
+        "answer": [(event, RESPONSES[answers.response(Fault(event))]) for event in DECLARED],
     }
+
+
+def undeclared(event: str) -> str:
+    """Return what a decision centre does about an event of which no model says anything."""
+    usual = Answers(in_precedence(kind=AUV_KIND.policies), live=True)
+    return RESPONSES[SURFACE if event in COMES_UP else usual.response(Fault(event))]
+
+
+def unbearable(event: str) -> str:
+    """Return what it does about one that it was to bear, and cannot: without its gateway it comes up, too."""
+    return RESPONSES[SURFACE if event in NEVER_BORNE | {PEER_LOST} else LAST_RESORT]
 
 
 def _possible(policy: Policy) -> Policy:
@@ -67,12 +98,10 @@ def _possible(policy: Policy) -> Policy:
     return policy if bears or not obstacles_to(policy) else replace(policy, response=OTHERWISE)
 
 
-def _seconds(event: str, policies: Sequence[Policy]) -> float:
+def _seconds(event: str, answers: Answers) -> float:
     """Return for how many seconds an event is borne; inf: for ever.
 
     That a link may be lost is about radio: on a vehicle's own bus, silence counts at last.
     """
-    if response_to(event, policies) == "CONTINUE":
-        return AFTER[event] if event == "LINK_LOST" else float("inf")
-    found = patience(event, policies)
-    return float("inf") if found is None else found
+    found = answers.patience(Fault(event))
+    return AFTER[event] if found == inf and event in NEVER_BORNE else found

@@ -7,8 +7,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from mmrs_auv.targets.ada import literals
-from mmrs_auv.targets.ada.bus import LIMITS, catalogue, depth_step_of
+from mmrs_auv.targets.ada import literals, tables
+from mmrs_auv.targets.ada.bus import catalogue, depth_step_of
 from mmrs_auv.targets.ada.capabilities import CAPABILITIES
 from mmrs_auv.targets.ada.missions import Mission
 from mmrs_auv.targets.ada.policies import declared
@@ -37,8 +37,9 @@ def files(input: TargetInput) -> Iterator[FileSpec]:
         if source.name not in OWN:
             yield FileSpec(f"common/{source.name}", source.name, source=source)
     yield FileSpec("common/catalogue.ads", "catalogue.ads.jinja", catalogue())
+    yield FileSpec("common/tables.ads", "tables.ads.jinja", tables.view())
     stems = file_stems([robot.id for robot in robots])
-    yield FileSpec("README.md", "README.md.jinja", {"robots": list(stems.items()), "limits": LIMITS})
+    yield FileSpec("README.md", "README.md.jinja", {"robots": list(stems.items()), "tables": tables.view()})
     for robot in robots:
         context = context_of(robot, input, geographic=False)
         mission = Mission(context, input.program, declared(robot, input), depth_step_of(robot, input))

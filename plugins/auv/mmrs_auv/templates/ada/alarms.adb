@@ -6,11 +6,12 @@ with Craft;       use Craft;
 with Gateway;
 with Guards;
 with Plans;       use Plans;
+with Tables;      use Tables;
 
 package body Alarms is
 
    --  Seconds for which the vehicle may not know where it is, at first.
-   Getting_Ready : constant Long_Float := 60.0;
+   First_Sign : Long_Float := LIMIT_FIRST_SIGN;
 
    --  Since when events have lasted; Endless: they do not happen.
    Since : Seconds_Of := (others => Endless);
@@ -57,7 +58,9 @@ package body Alarms is
          return;
       end if;
       Since (What) := Long_Float'Min (Since (What), Now);
-      if not Answers (What) and then Now - Since (What) >= Borne (What) then
+      if not Answers (What)
+        and then (Overtakes (What) or else not Is_Answering)
+        and then Now - Since (What) >= Borne (What) then
          Fail (What, Why);
       end if;
    end Watch;
@@ -92,13 +95,16 @@ package body Alarms is
       end if;
       Watch (POSITION_LOST, Is_Astray (Known) and not Is_Mute, "depth, heading or place are not known");
       Watch (BATTERY_LOW, Is_Low and not Is_Mute, "the battery has no more than the reserve");
-      if not Is_Answering then
-         Watch (OBSTACLE, Known.Sonar < Clearance and not Is_Mute, "sonar sees something ahead");
-      end if;
+      Watch (OBSTACLE, Known.Sonar < Clearance and not Is_Mute, "sonar sees something ahead");
    end Look;
 
+   procedure Be_Patient (Seconds : Long_Float) is
+   begin
+      First_Sign := Seconds;
+   end Be_Patient;
+
    procedure Get_Ready is
-      Until_Then : constant Long_Float := Now + Getting_Ready;
+      Until_Then : constant Long_Float := Now + First_Sign;
    begin
       while Place_Is_Lost loop
          Guards.Kick;
@@ -108,7 +114,7 @@ package body Alarms is
             end if;
             Fail (POSITION_LOST, "the vehicle does not know where it is");
          end if;
-         delay 0.05;
+         delay LIMIT_PACE;
       end loop;
    end Get_Ready;
 
@@ -116,7 +122,7 @@ package body Alarms is
    begin
       Look (Plan);
       Gateway.Live;
-      delay 0.05;
+      delay LIMIT_PACE;
    end Pause;
 
 end Alarms;

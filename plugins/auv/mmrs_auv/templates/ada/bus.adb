@@ -3,10 +3,9 @@ with Clocks;
 with Craft;
 with GNAT.Sockets; use GNAT.Sockets;
 with Interfaces;   use Interfaces;
+with Tables;       use Tables;
 
 package body Bus is
-
-   Longest : constant := 200;
 
    Link : Socket_Type;
 
@@ -67,7 +66,7 @@ package body Bus is
 
    --  What stands between "< " and " >"; of one that is too long, nothing.
    function Next_Word return String is
-      Found : String (1 .. Longest);
+      Found : String (1 .. LIMIT_WORD);
       Last  : Natural := 0;
       Fits  : Boolean := True;
       Each  : Character;
@@ -78,7 +77,7 @@ package body Bus is
       loop
          Each := Next_Character;
          exit when Each = '>';
-         if Last < Longest then
+         if Last < LIMIT_WORD then
             Last := Last + 1;
             Found (Last) := Each;
          else

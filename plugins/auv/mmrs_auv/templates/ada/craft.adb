@@ -1,4 +1,5 @@
 with Catalogue; use Catalogue;
+with Tables;    use Tables;
 
 package body Craft is
 
@@ -54,7 +55,7 @@ package body Craft is
          Numbered           : Goal := Wanted;
          First, Second      : Wire.Frame;
       begin
-         Numbered.Number := (In_Force.Number + 1) mod 16;
+         Numbered.Number := (In_Force.Number + 1) mod LIMIT_GOALS;
          Goal_Frames (Numbered, First, Second);
          In_Force := Numbered;
          Known.Progress := PROGRESS_NONE;
@@ -67,8 +68,8 @@ package body Craft is
          Wire.Put (Command, DeviceCommand_Device, Long_Float (Device));
          Wire.Put (Command, DeviceCommand_Action, Long_Float (Does));
          Wire.Put (Command, DeviceCommand_Parameter, Parameter);
-         Wire.Put (Command, DeviceCommand_Request, Long_Float ((Known.Asked + 1) mod 256));
-         Known.Asked := (Known.Asked + 1) mod 256;
+         Wire.Put (Command, DeviceCommand_Request, Long_Float ((Known.Asked + 1) mod LIMIT_REQUESTS));
+         Known.Asked := (Known.Asked + 1) mod LIMIT_REQUESTS;
          Known.Answer := PROGRESS_NONE;
          Asked := (Command, True);
       end Operate;

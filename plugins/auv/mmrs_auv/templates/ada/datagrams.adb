@@ -2,10 +2,9 @@ with Ada.Strings.Fixed;                    use Ada.Strings.Fixed;
 with Ada.Strings.Unbounded;                use Ada.Strings.Unbounded;
 with Ada.Strings.UTF_Encoding;             use Ada.Strings.UTF_Encoding;
 with Ada.Strings.UTF_Encoding.Conversions; use Ada.Strings.UTF_Encoding.Conversions;
+with Tables;                               use Tables;
 
 package body Datagrams is
-
-   Longest : constant := 80;
 
    subtype High_Half is Natural range 16#D800# .. 16#DBFF#;
    subtype Low_Half is Natural range 16#DC00# .. 16#DFFF#;
@@ -129,7 +128,7 @@ package body Datagrams is
          Count := Count + (if Is_Half then 0 else 1);
          Append (Found, Written (Code));
       end loop;
-      if Is_Half or else Count not in 1 .. Longest then
+      if Is_Half or else Count not in 1 .. LIMIT_NAME then
          raise Constraint_Error;
       end if;
       return """" & To_String (Found) & """";

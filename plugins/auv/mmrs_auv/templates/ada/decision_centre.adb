@@ -4,7 +4,6 @@ with Ada.Strings.Unbounded; use Ada.Strings.Unbounded;
 with Ada.Text_IO;           use Ada.Text_IO;
 with Alarms;
 with Bus;
-with Catalogue;
 with Clocks;
 with Conditions;
 with Craft;
@@ -18,6 +17,7 @@ with Plans;                 use Plans;
 with Sight;
 with Slots;
 with Step_Log;
+with Tables;
 with Undecided;
 
 --  The decision centre of one vehicle. Exit status: 0 at its end, 1 after a fault, 2 where it cannot begin.
@@ -49,6 +49,9 @@ procedure Decision_Centre is
 
    Plan : Plans.Plan;
    Step : Long_Float;
+
+   --  Seconds to wait for the bus, and for the vehicle.
+   Patience : Long_Float;
    Late : Long_Float := 0.0;
    Done : Boolean;
 begin
@@ -60,7 +63,9 @@ begin
         with "nobody has said how the bus writes depths: --depth-step METRES, as its database says";
    end if;
    Craft.Set_Step (Step);
-   Craft.Count_As_Lost (Options.Number ("--position-lost", Catalogue.LIMIT_POSITION_LOST, Most));
+   Craft.Count_As_Lost (Options.Number ("--position-lost", Tables.LIMIT_POSITION_LOST, Most));
+   Patience := Options.Number ("--patience", Tables.LIMIT_FIRST_SIGN, Most);
+   Alarms.Be_Patient (Patience);
    Alarms.Keep_Clear (Options.Number ("--clearance", 0.0, Most));
    Slots.Prepare (Plan);
    if Options.Text ("--detections", "") /= "" then
@@ -68,7 +73,7 @@ begin
       Sight.Open (Natural (Options.Number ("--detections", 0.0, 65_535.0)));
    end if;
    Bus.Open
-     (Options.Host, Options.Port, Options.Text ("--channel", "can0"), Options.Number ("--patience", 5.0, Most));
+     (Options.Host, Options.Port, Options.Text ("--channel", "can0"), Patience);
    if not Plan.Alone then
       Gateway.Open (Options.Text ("--gateway", ""), To_String (Plan.Robots), Late);
    end if;

@@ -5,14 +5,14 @@ with Ada.Strings.Unbounded; use Ada.Strings.Unbounded;
 with Clocks;
 with GNAT.Sockets;          use GNAT.Sockets;
 with Guards;
+with Tables;                use Tables;
 
 package body Gateway is
 
-   --  Seconds for which other robots are waited for, and an answer, at first and later; between two signs of life.
-   Gathering : constant := 60;
-   Patience  : Long_Float := 75.0;
-   Later     : constant Long_Float := 5.0;
-   Sign      : constant Long_Float := 0.5;
+   --  Seconds for which an answer is waited for, at first with other robots, and later; between two signs of life.
+   Patience : Long_Float := LIMIT_GATHERING + 15.0;
+   Later    : constant Long_Float := 5.0;
+   Sign     : constant Long_Float := 0.5;
 
    Link    : Socket_Type;
    Opened  : Boolean := False;
@@ -205,7 +205,7 @@ package body Gateway is
       Expect ("{""do"": ""hello"", ""token"": """ & Text_After (Where, "token") & """}", "welcome");
       declare
          Begun : constant String :=
-           Asked ("{""do"": ""begin"", ""robots"": " & Robots & ", ""seconds"": " & Whole (Gathering) & "}");
+           Asked ("{""do"": ""begin"", ""robots"": " & Robots & ", ""seconds"": " & Whole (Natural (LIMIT_GATHERING)) & "}");
       begin
          if Text_After (Begun, "is") /= "begun" then
             raise Refused with "the gateway says " & Begun;

@@ -4,11 +4,11 @@ with Bus;
 with Catalogue;
 with Clocks;
 with Craft;
+with Tables;        use Tables;
 
 package body Guards is
 
-   Period   : constant Time_Span := Milliseconds (200);
-   Patience : constant Long_Float := 2.0;
+   Period : constant Time_Span := To_Time_Span (LIMIT_GOAL_PERIOD);
 
    type Worker is (Machine, Speaker);
    type Instants is array (Worker) of Long_Float;
@@ -40,7 +40,7 @@ package body Guards is
 
       procedure Look (Now : Long_Float; Bites : out Boolean) is
       begin
-         Bites := (for some Each of Last => Now - Each > Patience);
+         Bites := (for some Each of Last => Now - Each > LIMIT_WATCHDOG);
          Fired := Fired or Bites;
       end Look;
 

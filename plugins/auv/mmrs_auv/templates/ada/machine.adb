@@ -11,6 +11,7 @@ with Plans;                 use Plans;
 with Responses;
 with Slots;
 with Step_Log;
+with Tables;                use Tables;
 with Tracks;
 with Undecided;
 with Ways;
@@ -18,16 +19,9 @@ with Wire;
 
 package body Machine is
 
-   --  Seconds in which the last goal is still said.
-   Farewell : constant Duration := 0.5;
-
-   --  Part of the battery that counts as full; times as long as it should take until charging has failed.
-   Full     : constant Long_Float := 0.95;
-   Charging : constant Long_Float := 3.0;
-
    --  Number of the move that the robot is at, and how faults are answered there.
    Current : Positive := 1;
-   Answer  : Response_To := (others => Comes_Up);
+   Answer  : Response_To := Undeclared;
 
    Nothing : constant String := """""";
 
@@ -91,8 +85,8 @@ package body Machine is
       loop
          Pause (Plan);
          Left := Vehicle.Told.Charge;
-         exit when Now - Since >= Seconds and then (Left < 0.0 or else Left >= Full);
-         if Now - Since >= Charging * Seconds + 5.0 then
+         exit when Now - Since >= Seconds and then (Left < 0.0 or else Left >= LIMIT_FULL);
+         if Now - Since >= LIMIT_CHARGING * Seconds + LIMIT_CHARGING_SPARE then
             Fail_Unless_Borne (BATTERY_LOW, "charging has not filled the battery");
             exit;
          end if;
@@ -313,7 +307,7 @@ package body Machine is
       Alarms.Heed (Plan.Bears);
       Carry_Out (Plan);
       Gateway.Leave;
-      delay Farewell;
+      delay LIMIT_FAREWELL;
       return True;
    exception
       when Error : Failed =>

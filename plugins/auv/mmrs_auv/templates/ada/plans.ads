@@ -1,6 +1,7 @@
 --  A robot's behaviour as data: moves, what is done before and after them, what follows.
 with Ada.Containers.Vectors;
 with Ada.Strings.Unbounded; use Ada.Strings.Unbounded;
+with Tables;                use Tables;
 
 package Plans is
 
@@ -50,21 +51,9 @@ package Plans is
 
    type Way_Kind is (Ends, Takes, Chooses);
 
-   --  What may go wrong. The first of them have to last before they count.
-   type Event is
-     (LINK_LOST, POSITION_LOST, BATTERY_LOW, OBSTACLE, WAIT_TOO_LONG, PEER_LOST, DEVICE_SILENT, LOG_FAILED,
-      OBJECT_NOT_FOUND, NO_PROGRESS, CONDITION_FAILED, CRASHED);
-
-   subtype Lasting is Event range LINK_LOST .. PEER_LOST;
-
    type Seconds_Of is array (Lasting) of Long_Float;
 
    Endless : constant Long_Float := Long_Float'Last;
-
-   --  What the vehicle does then; Backs_Out: it goes back by the way that it came, and comes up.
-   type Response is (Holds_Place, Backs_Out, Comes_Up, Stops_Thrust, Goes_On);
-
-   type Response_To is array (Event) of Response;
 
    --  Id in JSON, Name for people. Task_Number: the composed state that the move belongs to; 0: none.
    --  Awaited, Senders: own slots, and other robots that set them, lists in JSON.
@@ -94,7 +83,7 @@ package Plans is
       Senders       : Text;
       Is_Special    : Boolean := False;
       Bears         : Seconds_Of := (others => Endless);
-      Answer        : Response_To := (others => Comes_Up);
+      Answer        : Response_To := Undeclared;
    end record;
 
    package Move_Lists is new Ada.Containers.Vectors (Positive, Move);
@@ -103,7 +92,7 @@ package Plans is
    --  Robot, Robots (all of the mission) and Slots in JSON; Eyes: how its cameras name it, in JSON; Log: the name
    --  of its file. Step: metres of depth in a step of goals on the bus; 0: not known. Reserve: part of the battery
    --  that must remain. Cruise: metres per second on the way back. Surface: height of the water above the mission's
-   --  origin. Alone: no other robot is waited for. Bears: seconds that an event lasts before it is answered; Answer:
+   --  origin. Afloat: depth above which the vehicle is at the surface, metres; 0: not known. Alone: no other robot is waited for. Bears: seconds that an event lasts before it is answered; Answer:
    --  how.
    type Plan is record
       Robot, Robots : Text;
@@ -112,9 +101,10 @@ package Plans is
       Step, Reserve : Long_Float := 0.0;
       Cruise        : Long_Float := 0.0;
       Surface       : Long_Float := 0.0;
+      Afloat        : Long_Float := 0.0;
       Floats, Alone : Boolean := True;
       Bears         : Seconds_Of := (others => Endless);
-      Answer        : Response_To := (others => Comes_Up);
+      Answer        : Response_To := Undeclared;
       Start         : Positive := 1;
       Slots, Tasks  : Text_Lists.Vector;
       Moves         : Move_Lists.Vector;

@@ -6,20 +6,10 @@ with Catalogue;      use Catalogue;
 with Clocks;         use Clocks;
 with Craft;          use Craft;
 with Guards;
-with Plans;          use Plans;
+with Tables;         use Tables;
 with Ways;
 
 package body Responses is
-
-   --  Seconds for which the vehicle comes up, in which a silent one may be heard again, and in which the last
-   --  goal is still said.
-   Coming_Up : constant Long_Float := 600.0;
-   Silent    : constant Long_Float := 60.0;
-   Farewell  : constant Duration := 0.5;
-
-   --  Metres of depth from which on the vehicle is up: pushed by thrust, and without any.
-   Up           : constant Long_Float := 0.2;
-   Up_By_Itself : constant Long_Float := 0.5;
 
    procedure Come_Up (Plan : Plans.Plan);
    procedure Hold (Plan : Plans.Plan);
@@ -29,18 +19,17 @@ package body Responses is
    --  Come up, by thrust unless the dive was given up, as long as the bus is there. What floats rests there without
    --  thrust, for whoever swims to it.
    procedure Come_Up (Plan : Plans.Plan) is
-      Until_Then : constant Long_Float := Now + Coming_Up;
-      Afloat     : constant Long_Float := (if Vehicle.Told.Emergency = 0 then Up else Up_By_Itself);
    begin
       Vehicle.Begin_Goal ((Mode => MODE_SURFACE, others => <>));
       loop
          Guards.Kick;
-         if Bus.Is_Gone or else Now > Until_Then or else Now - Vehicle.Told.Heard_At > Silent then
+         if Bus.Is_Gone or else Now - Vehicle.Told.Heard_At > LIMIT_UNHEARD then
             return;
          end if;
          exit when Vehicle.Told.Progress = PROGRESS_REACHED;
-         exit when Now - Vehicle.Told.Known_At < LIMIT_STATE_SILENT and then Vehicle.Told.Here.Depth < Afloat;
-         delay 0.05;
+         exit when Now - Vehicle.Told.Known_At < LIMIT_STATE_SILENT
+           and then Vehicle.Told.Here.Depth < Plan.Afloat + LIMIT_AFLOAT;
+         delay LIMIT_PACE;
       end loop;
       if Plan.Floats then
          Vehicle.Begin_Goal ((Mode => MODE_IDLE, others => <>));
@@ -81,12 +70,9 @@ package body Responses is
       end case;
    end Do_It;
 
-   --  What is done first. That links and robots may be lost is about radio: nobody controls a vehicle without
-   --  its bus, or goes on without the gateway.
+   --  What is done first.
    function First (What : Event; Answer : Response_To) return Response is
-     (if Answer (What) /= Goes_On then Answer (What)
-      elsif What in LINK_LOST | PEER_LOST then Comes_Up
-      else Holds_Place);
+     (if Answer (What) /= Goes_On then Answer (What) else Unbearable (What));
 
    procedure Carry_Out (Plan : Plans.Plan; What : Event; Answer : Response_To) is
       By    : Response := First (What, Answer);
@@ -105,7 +91,7 @@ package body Responses is
                By := First (Other, Answer);
          end;
       end loop;
-      delay Farewell;
+      delay LIMIT_FAREWELL;
    end Carry_Out;
 
 end Responses;

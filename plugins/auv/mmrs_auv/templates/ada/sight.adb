@@ -6,28 +6,12 @@ with Ada.Strings.Unbounded; use Ada.Strings.Unbounded;
 with Clocks;
 with Datagrams;
 with GNAT.Sockets;          use GNAT.Sockets;
+with Tables;                use Tables;
 with Undecided;
 
 package body Sight is
 
-   --  Detections count for so many seconds; of each object so many are kept, and so many of all.
-   Confidence : constant Long_Float := 0.5;
-   Lasting    : constant Long_Float := 10.0;
-   Spread     : constant Long_Float := 1.0;
-   Least      : constant := 2;
-   Kept       : constant := 9;
-   Most       : constant := 1024;
-   Longest    : constant := 4096;
-
-   Most_Things : constant := 256;
-
-   --  Who tells of times that lie farther back may have another clock, and is heard again.
-   Repeated : constant Long_Float := 60.0;
-
    Blank : constant Ada.Strings.Maps.Character_Set := Ada.Strings.Maps.To_Set (" " & ASCII.LF & ASCII.CR);
-
-   Farthest : constant Long_Float := 8388.0;
-   Deepest  : constant Long_Float := 11000.0;
 
    type Detection is record
       Name, Camera : Unbounded_String;
@@ -95,7 +79,7 @@ package body Sight is
       Near : Detections.Vector;
    begin
       for Each of Found loop
-         if Plans.Away (Each.Where, Where) <= Spread then
+         if Plans.Away (Each.Where, Where) <= LIMIT_DETECTION_SPREAD then
             Near.Append (Each);
          end if;
       end loop;
@@ -105,7 +89,7 @@ package body Sight is
    --  Whether what was kept earlier is of a later time, by the same clock.
    function Is_Newer (Earlier, Item : Detection) return Boolean is
      (Earlier.Time > Item.Time
-      and then (Earlier.Time - Item.Time < Repeated or else Item.Since - Earlier.Since <= Lasting));
+      and then (Earlier.Time - Item.Time < LIMIT_DETECTION_REPEATED or else Item.Since - Earlier.Since <= LIMIT_DETECTION_LASTS));
 
    protected body Memory is
       procedure Keep (Item : Detection) is
@@ -132,9 +116,9 @@ package body Sight is
          if Newer > Natural'Max (1, Of_Camera / 2) then
             return;
          end if;
-         if Of_Name = Kept then
+         if Of_Name = LIMIT_DETECTIONS_KEPT then
             Latest.Delete (Oldest);
-         elsif Natural (Latest.Length) = Most then
+         elsif Natural (Latest.Length) = LIMIT_OBJECTS * LIMIT_DETECTIONS_KEPT then
             Latest.Delete_First;
          end if;
          Latest.Append (Item);
@@ -148,7 +132,7 @@ package body Sight is
                return;
             end if;
          end loop;
-         if Natural (Things.Length) < Most_Things then
+         if Natural (Things.Length) < LIMIT_OBJECTS then
             Things.Append ((Item.Name, Where));
          end if;
       end Keep;
@@ -158,12 +142,12 @@ package body Sight is
       begin
          Where := (others => <>);
          for Each of Latest loop
-            if Each.Name = Name and then Now - Each.Since <= Lasting then
+            if Each.Name = Name and then Now - Each.Since <= LIMIT_DETECTION_LASTS then
                Found.Append (Each);
             end if;
          end loop;
          loop
-            Seen := Natural (Found.Length) >= Least;
+            Seen := Natural (Found.Length) >= LIMIT_DETECTIONS_AGREE;
             exit when not Seen;
             Where := Middle (Found);
             Near := Agreeing (Found, Where);
@@ -182,15 +166,15 @@ package body Sight is
          return;
       elsif Length (Owner) > 0 and then not Datagrams.Agrees (Line, "robot", To_String (Owner)) then
          return;
-      elsif Datagrams.Number_Of (Line, "confidence", 0.0, 1.0) >= Confidence then
+      elsif Datagrams.Number_Of (Line, "confidence", 0.0, 1.0) >= LIMIT_CONFIDENCE then
          Memory.Keep
            ((Name   => Name_In (Line, "name"),
              Camera => Camera_In (Line),
-             Time   => Datagrams.Number_Of (Line, "time", 0.0, 1.0E12),
+             Time   => Datagrams.Number_Of (Line, "time", 0.0, LIMIT_DETECTION_LATEST),
              Where  =>
-               (North => Datagrams.Number_Of (Line, "north", -Farthest, Farthest),
-                East  => Datagrams.Number_Of (Line, "east", -Farthest, Farthest),
-                Depth => Datagrams.Number_Of (Line, "depth", -Farthest, Deepest)),
+               (North => Datagrams.Number_Of (Line, "north", -LIMIT_DETECTION_FARTHEST, LIMIT_DETECTION_FARTHEST),
+                East  => Datagrams.Number_Of (Line, "east", -LIMIT_DETECTION_FARTHEST, LIMIT_DETECTION_FARTHEST),
+                Depth => Datagrams.Number_Of (Line, "depth", -LIMIT_DETECTION_FARTHEST, LIMIT_DETECTION_DEEPEST)),
              Since  => Now));
       end if;
    exception
@@ -237,9 +221,9 @@ package body Sight is
    end Has_Seen;
 
    task body Listener is
-      Data : Stream_Element_Array (1 .. Longest);
+      Data : Stream_Element_Array (1 .. LIMIT_DATAGRAM);
       Last : Stream_Element_Offset;
-      Line : String (1 .. Longest);
+      Line : String (1 .. LIMIT_DATAGRAM);
    begin
       select
          accept Go;

@@ -4,12 +4,10 @@ with Gateway;
 with Plans;                 use Plans;
 with Sight;
 with Step_Log;
+with Tables;                use Tables;
 with Undecided;
 
 package body Sightings is
-
-   --  Objects of ours that a notify carries.
-   Most : constant := 50;
 
    function After_Name (Finds, Name : String) return Natural;
    function Number_At (Line : String; From : Positive) return Long_Float;
@@ -69,7 +67,7 @@ package body Sightings is
             & Step_Log.Image (Where.North) & ", " & Step_Log.Image (Plan.Surface - Where.Depth) & "]]");
       end Add;
    begin
-      for Each of Sight.Known_Things (Most) loop
+      for Each of Sight.Known_Things (LIMIT_FINDS) loop
          Add (To_String (Each.Name), Each.Where);
       end loop;
       return "[" & To_String (Found) & "]";

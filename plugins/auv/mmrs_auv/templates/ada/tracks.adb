@@ -1,11 +1,8 @@
 with Ada.Strings.Unbounded; use Ada.Strings.Unbounded;
 with Plans;                 use Plans;
+with Tables;                use Tables;
 
 package body Tracks is
-
-   --  Metres within which places are one, and within which they lie on a straight leg.
-   Near    : constant Long_Float := 1.0;
-   Aligned : constant Long_Float := 0.1;
 
    package Number_Lists is new Ada.Containers.Vectors (Positive, Positive);
 
@@ -52,7 +49,7 @@ package body Tracks is
    end Beside;
 
    function Is_Above (Left, Right : Place) return Boolean is
-     (Away ((Left.North, Left.East, 0.0), (Right.North, Right.East, 0.0)) <= Near);
+     (Away ((Left.North, Left.East, 0.0), (Right.North, Right.East, 0.0)) <= LIMIT_NEAR);
 
    function Length (Here : Place; Along : Place_Lists.Vector) return Long_Float is
       From  : Place := Here;
@@ -69,7 +66,7 @@ package body Tracks is
    function Joined (Here : Place) return Positive is
    begin
       for Index in 1 .. Places.Last_Index - 1 loop
-         if Beside (Here, Places (Index), Places (Index + 1)) <= Near then
+         if Beside (Here, Places (Index), Places (Index + 1)) <= LIMIT_NEAR then
             return Index;
          end if;
       end loop;
@@ -83,7 +80,7 @@ package body Tracks is
       while Index > 0 loop
          Found.Append (Places (Index));
          for Earlier in 1 .. Index loop
-            if Away (Places (Earlier), Places (Index)) <= Near then
+            if Away (Places (Earlier), Places (Index)) <= LIMIT_NEAR then
                Index := Earlier - 1;
                exit;
             end if;
@@ -107,7 +104,7 @@ package body Tracks is
    begin
       if Plan.Moves (Number).Kind = Goes
         and then Plan.Moves (Number).Object = ""
-        and then Away (Plan.Moves (Number).Target, Places.Last_Element) > Near + Plan.Moves (Number).Away
+        and then Away (Plan.Moves (Number).Target, Places.Last_Element) > LIMIT_NEAR + Plan.Moves (Number).Away
       then
          Follow (Plan.Moves (Number));
       end if;
@@ -142,7 +139,7 @@ package body Tracks is
    begin
       for Index in 1 .. Along.Last_Index - 1 loop
          Passed.Append (Along (Index));
-         if (for some Each of Passed => Beside (Each, Corner, Along (Index + 1)) > Aligned) then
+         if (for some Each of Passed => Beside (Each, Corner, Along (Index + 1)) > LIMIT_ALIGNED) then
             Corner := Along (Index);
             Passed.Clear;
             Found.Append (Corner);

@@ -8,6 +8,7 @@ with Craft;                                  use Craft;
 with Plans;                                  use Plans;
 with Sight;
 with Sightings;
+with Tables;                                 use Tables;
 with Tracks;
 
 package body Ways is
