@@ -15,7 +15,6 @@ import pluggy
 
 if TYPE_CHECKING:
     from mmrs_core.contributions.checks import Check
-    from mmrs_core.contributions.codecs import Codec
     from mmrs_core.contributions.commands import Command
     from mmrs_core.contributions.constraints import Constraint
     from mmrs_core.contributions.execution import Condition
@@ -101,11 +100,6 @@ def mmrs_targets() -> Iterable[Target]:  # type: ignore[empty-body]
 @hookspec
 def mmrs_vehicles() -> Iterable[VehicleFactory]:  # type: ignore[empty-body]
     """Contribute what drives robots; names are unique over all plug-ins."""
-
-
-@hookspec
-def mmrs_codecs() -> Iterable[Codec]:  # type: ignore[empty-body]
-    """Contribute how thrusters on a CAN bus are told what to do; names are unique over all plug-ins."""
 
 
 @hookspec

@@ -36,13 +36,15 @@ _KINDS: Mapping[str, str] = {
     "device_actions": "contributions.wiring.DeviceWiring",
     "targets": "contributions.targets.Target",
     "vehicles": "contributions.vehicles.VehicleFactory",
-    "codecs": "contributions.codecs.Codec",
     "conditions": "contributions.execution.Condition",
     "map_symbols": "contributions.symbols.MapSymbol",
     "commands": "contributions.commands.Command",
 }
 """What each sort of contribution is, within this package."""
-_GONE: Mapping[str, str] = {"mmrs_backends": "mmrs_vehicles"}
+_GONE: Mapping[str, str] = {
+    "mmrs_backends": "implement 'mmrs_vehicles'",
+    "mmrs_codecs": "name what opens drives by '--drives MODULE:FUNCTION' of 'python -m auv_vessel'",
+}
 """Hooks of earlier versions, and what takes their place."""
 
 
@@ -158,7 +160,7 @@ def _register(manager: pluggy.PluginManager, name: str, distribution: str, plugi
     for gone, instead in _GONE.items():
         if hasattr(plugin, gone) and manager.parse_hookimpl_opts(plugin, gone) is not None:
             whose = f"plug-in '{name}' of distribution '{distribution}'"
-            raise PluginError(f"{whose}: hook '{gone}' is gone: implement '{instead}'")
+            raise PluginError(f"{whose}: hook '{gone}' is gone: {instead}")
     try:
         manager.register(plugin, name)
         manager.check_pending()

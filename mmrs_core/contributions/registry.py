@@ -13,7 +13,6 @@ from mmrs_core.errors import PluginError
 
 if TYPE_CHECKING:
     from mmrs_core.contributions.checks import Check
-    from mmrs_core.contributions.codecs import Codec
     from mmrs_core.contributions.constraints import Constraint
     from mmrs_core.contributions.execution import Condition
     from mmrs_core.contributions.fixes import Fix
@@ -50,7 +49,6 @@ _SHOWN: Mapping[str, Callable[[Any], object]] = {
     "device_actions": lambda wiring: wiring.property,
     "targets": lambda target: target.name,
     "vehicles": lambda vehicle: vehicle.name,
-    "codecs": lambda codec: codec.name,
     "conditions": lambda condition: condition.identifier,
     "map_symbols": lambda symbol: "#//".join(symbol.metaclass),
     "commands": lambda command: command.name,
@@ -176,11 +174,6 @@ class Contributions:
     def vehicles(self) -> Mapping[str, VehicleFactory]:
         """Return what drives robots, by name."""
         return self._by("vehicles", lambda vehicle: vehicle.name)
-
-    @cached_property
-    def codecs(self) -> Mapping[str, Codec]:
-        """Return how thrusters on a CAN bus are told what to do, by name."""
-        return self._by("codecs", lambda codec: codec.name)
 
     @cached_property
     def conditions(self) -> Mapping[str, Condition]:

@@ -57,7 +57,6 @@ def test_every_field_of_what_is_declared_is_told():
 
     from mmrs_core.contributions import (
         checks,
-        codecs,
         commands,
         constraints,
         execution,
@@ -85,7 +84,6 @@ def test_every_field_of_what_is_declared_is_told():
         "mmrs_device_actions": wiring.DeviceWiring,
         "mmrs_targets": targets.Target,
         "mmrs_vehicles": vehicles.VehicleFactory,
-        "mmrs_codecs": codecs.Codec,
         "mmrs_conditions": execution.Condition,
         "mmrs_map_symbols": symbols.MapSymbol,
         "mmrs_commands": commands.Command,

@@ -7,7 +7,7 @@ from collections import Counter, deque
 
 import dronecan
 
-from mmrs_core.contributions.codecs import CanFrame
+from auv_vessel.wire.frame import Frame
 from mmrs_dronecan.transfers import Incoming
 
 COMMANDS = (1030, 1031)
@@ -40,7 +40,7 @@ class Company:
         self._by_drive: dict[int, deque[int]] = {}
         self._shared: set[int] = set()
 
-    def notice(self, frame: CanFrame) -> None:
+    def notice(self, frame: Frame) -> None:
         """Look at a frame of another node."""
         if not frame.extended or not frame.id & 0x7F:
             return

@@ -1,12 +1,10 @@
-"""The options of this codec."""
+"""The options of these drives."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
 from math import isfinite
-
-from mmrs_core.errors import UnsupportedError
 
 _NAMES = ("node", "curve", "max-rpm", "arming")
 
@@ -32,10 +30,10 @@ def options_of(given: Mapping[str, str]) -> Options:
     """Return the options that were given by name.
 
     Raises:
-        UnsupportedError: there is no such option, or its value is none.
+        ValueError: there is no such option, or its value is none.
     """
     if odd := sorted(given.keys() - set(_NAMES)):
-        raise UnsupportedError(f"dronecan: no option {', '.join(odd)}; there are {', '.join(_NAMES)}")
+        raise ValueError(f"dronecan: no option {', '.join(odd)}; there are {', '.join(_NAMES)}")
     return Options(
         _node(given.get("node", "10")),
         _one_of("curve", given.get("curve", "square"), "square", "linear"),
@@ -46,7 +44,7 @@ def options_of(given: Mapping[str, str]) -> Options:
 
 def _node(text: str) -> int:
     if not (text.isascii() and text.isdecimal() and len(text) < 4) or not 1 <= int(text) <= 127:
-        raise UnsupportedError(f"dronecan: node {text!r} is not 1 to 127")
+        raise ValueError(f"dronecan: node {text!r} is not 1 to 127")
     return int(text)
 
 
@@ -56,11 +54,11 @@ def _rpm(text: str) -> float:
     except ValueError:
         value = 0.0
     if not isfinite(value) or not 0.0 < value <= 131_071.0:
-        raise UnsupportedError(f"dronecan: max-rpm {text!r} is not above 0, up to 131071")
+        raise ValueError(f"dronecan: max-rpm {text!r} is not above 0, up to 131071")
     return value
 
 
 def _one_of(what: str, text: str, yes: str, no: str) -> bool:
     if text not in (yes, no):
-        raise UnsupportedError(f"dronecan: {what} {text!r} is neither {yes} nor {no}")
+        raise ValueError(f"dronecan: {what} {text!r} is neither {yes} nor {no}")
     return text == yes

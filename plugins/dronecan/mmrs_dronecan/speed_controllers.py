@@ -3,17 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from math import copysign, sqrt
 from typing import TYPE_CHECKING, Any
 
 import dronecan
 
-from mmrs_core.contributions.codecs import CanFrame, ThrusterData
-from mmrs_core.errors import UnsupportedError
+from auv_vessel.control.drives import Status
+from auv_vessel.sheet import Thruster
+from auv_vessel.wire.frame import Frame
 from mmrs_dronecan.company import Company
 from mmrs_dronecan.options import Options, options_of
-from mmrs_dronecan.transfers import Frame, Incoming, Outgoing
+from mmrs_dronecan.transfers import Incoming, Outgoing
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -24,35 +24,17 @@ STATUS_ID = 1034
 _ARMED, _DISARMED = 255, 0
 
 
-@dataclass(frozen=True, slots=True)
-class Status:
-    """What a drive tells of its thruster.
-
-    Attributes:
-        number: of the thruster, from 0.
-        thrust: newtons, by its speed of rotation; None: that cannot be told.
-        fault: whether its node says that it cannot work, another one says the same thruster's status, or
-            somebody else commands the drives.
-        runs: it has no word for one that does not obey, either.
-    """
-
-    number: int
-    thrust: float | None
-    fault: bool = False
-    runs: bool = True
-
-
 class SpeedControllers:
     """Speaks for the thrusters of one vehicle."""
 
-    def __init__(self, thrusters: Sequence[ThrusterData], options: Options) -> None:
+    def __init__(self, thrusters: Sequence[Thruster], options: Options) -> None:
         """Prepare.
 
         Raises:
-            UnsupportedError: there are more thrusters than a message carries.
+            ValueError: there are more thrusters than a message carries.
         """
         if len(thrusters) > MOST:
-            raise UnsupportedError(f"dronecan: {len(thrusters)} thrusters: a RawCommand carries {MOST}")
+            raise ValueError(f"dronecan: {len(thrusters)} thrusters: a RawCommand carries {MOST}")
         self._most = [each.max_thrust for each in thrusters]
         self._options = options
         self._outgoing = Outgoing(options.node)
@@ -79,7 +61,7 @@ class SpeedControllers:
         self._ticks += 1
         return [frame for frames in said for frame in frames]
 
-    def hear(self, frame: CanFrame) -> Status | None:
+    def hear(self, frame: Frame) -> Status | None:
         """Return what a frame tells of a thruster, or None."""
         self._company.notice(frame)
         if self._company.rival and self._most:
@@ -113,10 +95,10 @@ class SpeedControllers:
         return self._most[number] * part * abs(part)
 
 
-def opened(thrusters: Sequence[ThrusterData], options: Mapping[str, str]) -> SpeedControllers:
+def opened(thrusters: Sequence[Thruster], options: Mapping[str, str]) -> SpeedControllers:
     """Return what speaks for thrusters, with options by name.
 
     Raises:
-        UnsupportedError: there are too many, or an option is none.
+        ValueError: there are too many, or an option is none.
     """
     return SpeedControllers(thrusters, options_of(options))

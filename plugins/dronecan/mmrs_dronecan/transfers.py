@@ -3,24 +3,16 @@
 from __future__ import annotations
 
 from collections import Counter
-from dataclasses import dataclass
 from typing import Any
 
 import dronecan
 from dronecan.transport import Frame as Part
 from dronecan.transport import Transfer
 
+from auv_vessel.wire.frame import Frame
+
 _LONGEST = 64
 """Frames of a message at most; ours have up to six."""
-
-
-@dataclass(frozen=True, slots=True)
-class Frame:
-    """A data frame with an identifier of 29 bits."""
-
-    id: int
-    data: bytes
-    extended: bool = True
 
 
 class Outgoing:
@@ -41,7 +33,7 @@ class Outgoing:
             transfer_priority=self._priority,
         )
         self._next[name] += 1
-        return [Frame(part.message_id, bytes(part.bytes)) for part in transfer.to_frames()]
+        return [Frame(part.message_id, bytes(part.bytes), extended=True) for part in transfer.to_frames()]
 
 
 class Incoming:
@@ -56,7 +48,7 @@ class Incoming:
         self._type_id = type_id
         self._parts: dict[int, list[Part]] = {}
 
-    def message(self, frame: Any) -> Any | None:
+    def message(self, frame: Frame) -> Any | None:
         """Return the message that a frame completes, or None."""
         if (
             not frame.extended

@@ -10,7 +10,6 @@ import pytest
 
 from mmrs_core import hookspecs, plugins
 from mmrs_core.contributions.checks import Check
-from mmrs_core.contributions.codecs import Codec
 from mmrs_core.contributions.commands import Command
 from mmrs_core.contributions.constraints import Constraint
 from mmrs_core.contributions.execution import Condition
@@ -163,11 +162,6 @@ def test_hook_mmrs_vehicles():
     assert contributions_with("mmrs_vehicles", vehicle).vehicles["kite"] == vehicle
 
 
-def test_hook_mmrs_codecs():
-    codec = Codec("whistle", "whistles at thrusters", unused)
-    assert contributions_with("mmrs_codecs", codec).codecs["whistle"] == codec
-
-
 def test_hook_mmrs_conditions():
     condition = Condition("wind is strong", unused)
     assert contributions_with("mmrs_conditions", condition).conditions["wind is strong"] == condition
@@ -304,9 +298,10 @@ def test_catalogue_says_who_contributed_what():
     assert ("kites", rule) in declared("rules")
 
 
-def test_a_hook_that_is_gone_is_told_with_what_takes_its_place():
-    plugin = plugin_with("mmrs_backends", lambda: ())
-    with pytest.raises(
-        PluginError, match=r"plug-in 'kites' of .*: hook 'mmrs_backends' is gone: .*'mmrs_vehicles'"
-    ):
+@pytest.mark.parametrize(
+    ("gone", "instead"), [("mmrs_backends", "'mmrs_vehicles'"), ("mmrs_codecs", "'--drives MODULE:FUNCTION'")]
+)
+def test_a_hook_that_is_gone_is_told_with_what_takes_its_place(gone, instead):
+    plugin = plugin_with(gone, lambda: ())
+    with pytest.raises(PluginError, match=rf"plug-in 'kites' of .*: hook '{gone}' is gone: .*{instead}"):
         load_plugins(only_core=True, extra={"kites": plugin})

@@ -34,14 +34,17 @@ LIMITED = 0.05
 
 
 class Drives(Protocol):
-    """How thrusters are told what to do, on whatever they hear: see the codecs that plug-ins add."""
+    """How thrusters are told what to do, on whatever they hear; counters and parts of messages are kept."""
 
     def commands(self, thrusts: Sequence[float], enable: bool) -> Sequence[Frame]:
-        """Return the frames that ask for those newtons, in the order of thrusters."""
+        """Return the frames that ask for those newtons, in the order of thrusters; not enabled: for none.
+
+        Called every `COMMAND_PERIOD`, whatever it said last.
+        """
         ...
 
     def hear(self, frame: Frame) -> Status | None:
-        """Return what a frame tells of a thruster, or None if it tells nothing."""
+        """Return what a frame tells of a thruster, or None if it tells nothing, or not yet all."""
         ...
 
 

@@ -4,47 +4,39 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from importlib import import_module
-from typing import Any
+from typing import TypeAlias
 
-from ..sheet import Sheet
+from ..sheet import Sheet, Thruster
 from ..wire.frame import Frame
+from .actuators import Drives
 from .drives import Status
+
+Opener: TypeAlias = Callable[[Sequence[Thruster], Mapping[str, str]], Drives]
+"""Given the thrusters in the order of their numbers, and options by name, what speaks for them."""
 
 
 class ForeignDrives:
-    """Drives behind an object of somebody else's that has `commands` and `hear` as `actuators.Drives` has.
+    """Drives of somebody else's, which may hear of more thrusters than the vehicle has."""
 
-    Its frames and statuses may be of any class with the same attributes.
-    """
-
-    def __init__(self, sheet: Sheet, theirs: Any) -> None:
+    def __init__(self, sheet: Sheet, theirs: Drives) -> None:
         self._count = len(sheet.thrusters)
         self._theirs = theirs
 
-    def commands(self, thrusts: Sequence[float], enable: bool) -> list[Frame]:
+    def commands(self, thrusts: Sequence[float], enable: bool) -> Sequence[Frame]:
         """Return the frames that ask for those newtons."""
-        return [
-            Frame(frame.id, bytes(frame.data), frame.extended)
-            for frame in self._theirs.commands(thrusts, enable)
-        ]
+        return self._theirs.commands(thrusts, enable)
 
     def hear(self, frame: Frame) -> Status | None:
         """Return what a frame tells of a thruster of this vehicle, or None."""
         found = self._theirs.hear(frame)
-        if found is None or not 0 <= found.number < self._count:
-            return None
-        return Status(found.number, found.thrust, found.fault, found.runs)
-
-
-Opener = Callable[[Sequence[Any], Mapping[str, str]], Any]
+        return found if found is not None and 0 <= found.number < self._count else None
 
 
 def drives_of(text: str, sheet: Sheet) -> ForeignDrives:
     """Return the drives that a text names.
 
     Args:
-        text: ``package.module:function``, with ``,option=value`` as often as need be. The function is
-            called with the thrusters and the options.
+        text: ``package.module:function``, with ``,option=value`` as often as need be, of an `Opener`.
 
     Raises:
         ValueError: the text is misspelt, names nothing, or what it names refuses.
