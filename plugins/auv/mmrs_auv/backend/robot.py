@@ -30,7 +30,7 @@ from mmrs_core.errors import UnreachableError
 from mmrs_core.runtime.escape import Escapes
 from mmrs_core.runtime.known import DEVICE_ACTION, kinematics_of
 from mmrs_core.scene import Position
-from mmrs_runtime.policies import AFTER, NOTHING, patience, response_to
+from mmrs_runtime.policies import AFTER, NOTHING, OVERTAKES, patience, response_to
 from mmrs_runtime.vehicle import Vehicle
 
 STAYS, RESTS, FINDS = ("HOLD", "CONTINUE"), ("STOP_THRUST", NOTHING), ("RETURN", "EMERGENCY_AREA")
@@ -80,6 +80,7 @@ class CanRobot(Vehicle):
         self._response, self._instead = "", ""
         self._given_up = self._unheard = self._bears = False
         self._silent_device: Fault | None = None
+        self._answered: set[str] = set()
         self._now = 0.0
         self._told: dict[str, Position] = {}
         self._places: dict[str, Position] = {}
@@ -88,6 +89,7 @@ class CanRobot(Vehicle):
     def do(self, order: object, now: float, *, through: bool = False) -> None:
         """Begin a grounded movement or action."""
         self.done, self.trouble, self._silent_device = False, None, None
+        self._forget_answers()
         if isinstance(order, Move):
             self._helm.watch = self._watch
             self._helm.begin(self._duties.movement(order, self._here(), through=through), now)
@@ -155,8 +157,11 @@ class CanRobot(Vehicle):
         return self._state(now, self._craft.state())
 
     def respond(self, response: str, now: float) -> None:
-        """Do what a response says, or come up where that cannot be done."""
-        self.done, self.trouble = False, None
+        """Do what a response says, or come up where that cannot be done; what it answers is told no more."""
+        if self.trouble is not None and self.trouble.which in OVERTAKES:
+            self._answered.add(self.trouble.which)
+            self._watch.borne.add(self.trouble.which)
+        self.done, self.trouble, self._silent_device = False, None, None
         self._look(now)
         state = self._craft.state()
         self._response, self._instead = response, ""
@@ -217,8 +222,9 @@ class CanRobot(Vehicle):
 
     def recover(self, passed: Sequence[str], begun: str, now: float) -> bool:
         """Go back to where the last of the moves ended, round forbidden areas and obstacles."""
-        self.done, self.trouble = False, None
+        self.done, self.trouble, self._silent_device = False, None, None
         self._response = ""
+        self._forget_answers()
         self._helm.watch = self._watch
         try:
             duty: Duty = self._duties.way(self._way_back(passed))
@@ -313,23 +319,29 @@ class CanRobot(Vehicle):
         return self._state(self._now, self._craft.state()).position
 
     def _fault(self, found: FailureError) -> Fault:
-        if found.event in COMES_UP:
-            return Fault(found.event, found.reason, "SURFACE")
-        borne = response_to(found.event, self._policies) == "CONTINUE"
-        if found.event in NEVER_BORNE and borne:
-            return Fault(found.event, found.reason, "SURFACE")
-        return Fault(found.event, found.reason)
+        comes_up = found.event in COMES_UP or (found.event in NEVER_BORNE and self._is_borne(found.event))
+        return Fault(found.event, found.reason, "SURFACE" if comes_up else "")
 
     def _after(self, event: str) -> float:
-        if event in NEVER_BORNE and response_to(event, self._policies) == "CONTINUE":
+        if event in NEVER_BORNE and self._is_borne(event):
             return AFTER[event]
         return patience(event, self._policies) or 0.0
+
+    def _is_borne(self, event: str) -> bool:
+        return response_to(event, self._policies) == "CONTINUE"
 
     def _overtakes(self, found: FailureError) -> bool:
         """Return whether something keeps the vehicle from the response that it was told; told once."""
         if found.event == CRASHED:
             return not self._given_up
-        return found.event in HINDRANCES and self._response in FINDS
+        if found.event in HINDRANCES and self._response in FINDS:
+            return True
+        answered = self._response not in RESTS and not self._is_borne(found.event)
+        return found.event in OVERTAKES and answered
+
+    def _forget_answers(self) -> None:
+        self._watch.borne -= self._answered
+        self._answered.clear()
 
     def _at_rest(self) -> bool:
         return self._helm.done(self._now)

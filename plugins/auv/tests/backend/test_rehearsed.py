@@ -171,6 +171,32 @@ def test_a_vehicle_that_does_not_get_back_comes_up(tmp_path: Path, monkeypatch) 
     assert (robot.trouble.which, robot.trouble.instead) == ("NO_PROGRESS", "SURFACE")
 
 
+def emptied_while_it_holds(folder: Path, *policies: Policy) -> RehearsedRobot:
+    """Return a vehicle that holds since a device is silent, and whose battery has become low since."""
+    behaviour = dive(swim("out", 1.0, 0.0, 1.0, after=(use("ctd", "Bake"),)))
+    holds = replace(behaviour.robots[0], policies=(Policy("DEVICE_SILENT", "HOLD"), *policies))
+    found = rehearse(replace(behaviour, robots=(holds,)), folder, noise="no")
+    assert list(found.run.ending.responses.values()) == ["HOLD"]
+    robot = found.robots["naiad"]
+    empty(robot)
+    robot.look(found.run.ending.time + 5.0)
+    return robot
+
+
+def test_a_low_battery_that_is_borne_does_not_overtake_a_vehicle_that_holds(tmp_path: Path) -> None:
+    assert emptied_while_it_holds(tmp_path, Policy("BATTERY_LOW", "CONTINUE")).trouble is None
+
+
+def test_a_low_battery_overtakes_a_vehicle_that_holds_until_it_is_answered(tmp_path: Path) -> None:
+    robot = emptied_while_it_holds(tmp_path)
+    assert robot.trouble is not None
+    assert robot.trouble.which == "BATTERY_LOW"
+    robot.respond("SURFACE", robot._now)
+    robot.look(robot._now)
+    assert robot.trouble is None
+    assert robot.done
+
+
 @pytest.mark.thorough
 def test_a_bus_that_falls_silent_is_a_lost_link(tmp_path: Path) -> None:
     def deafen(robot: RehearsedRobot) -> None:
