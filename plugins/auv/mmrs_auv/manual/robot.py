@@ -24,7 +24,7 @@ from mmrs_mavlink.plugin.actions import DEVICE_ACTION
 from mmrs_mavlink.plugin.context import RobotContext
 from mmrs_mavlink.records.start import PROCESS
 from mmrs_runtime import faults
-from mmrs_runtime.policies import NOTHING
+from mmrs_runtime.policies import NOTHING, OVERTAKES, response_to
 from mmrs_runtime.vehicle import Vehicle
 
 PERIOD = 0.1
@@ -56,12 +56,14 @@ class ManualRobot(Vehicle):
         self._ended = threading.Event()
         reserve, resumed = given.program.reserve, live.resumed
         self._autopilot = Autopilot(link, self._ended.is_set, reserve, under_way=resumed)
-        self._troubles = Troubles(self._autopilot, (*context.robot.policies, *given.policies))
+        self._policies = (*context.robot.policies, *given.policies)
+        self._troubles = Troubles(self._autopilot, self._policies)
         self._keeper, self._plan = keeper_of(given, live), given.program.fingerprint
         self._thread: threading.Thread | None = None
         self._own: Fault | None = None
         self._ready = self._released = self._lost = self._bears = False
         self._response = self._instead = ""
+        self._answered: set[str] = set()
         self._busy_until: float | None = None
         self._action: Action | None = None
 
@@ -136,7 +138,9 @@ class ManualRobot(Vehicle):
             return RobotState(now, self._here(), helm.speed, helm.heading, None, charge)
 
     def respond(self, response: str, now: float) -> None:
-        """Do what a response says, or come up where that cannot be done."""
+        """Do what a response says, or come up where that cannot be done; what it answers is told no more."""
+        if self.trouble is not None:
+            self._answered.add(self.trouble.which)
         self.done, self.trouble = False, None
         with self._lock:
             self._action = self._route.paused = None
@@ -207,6 +211,7 @@ class ManualRobot(Vehicle):
         self.done, self.trouble = False, None
         with self._lock:
             self._response, self._own = "", None
+            self._answered.clear()
             if why := self.hindrance(passed, begun, now):
                 self._own = Fault(faults.REFUSED, why)
             else:
@@ -336,6 +341,8 @@ class ManualRobot(Vehicle):
             return found
         if found.which in (faults.POSITION_LOST, faults.NO_PROGRESS) and self._response in FINDS:
             return Fault(found.which, found.reason, "SURFACE") if not self._autopilot.rising else None
+        if found.which in OVERTAKES - self._answered and self._response not in RESTS:
+            return found if response_to(found.which, self._policies) != "CONTINUE" else None
         return None
 
     def _has_stopped(self, now: float) -> bool:

@@ -122,6 +122,18 @@ def test_what_a_policy_bears_for_a_while_is_told_after_that():
         assert driven.clock.now() - begun >= 19.0
 
 
+def test_a_low_battery_overtakes_a_vehicle_that_holds_until_it_is_answered():
+    with sub() as driven:
+        driven.go_down()
+        driven.stop("HOLD")
+        driven.vehicle.faults.set_battery(0.15)
+        until(lambda: driven.fault)
+        assert driven.fault.which == "BATTERY_LOW"
+        driven.stop("SURFACE")
+        assert driven.truth[2] >= -0.4
+        assert driven.fault is None
+
+
 def test_an_autopilot_that_begins_anew_is_told_and_not_taken_for_a_pilot():
     with sub() as driven:
         driven.begin("out")
