@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, TypeAlias
 
 from mmrs_runtime.conditions import is_standard, standard, undecided
+from mmrs_runtime.vehicle import Condition as Decided
+from mmrs_runtime.vehicle import State as Asked
 
+from .driving.threaded import Known
 from .objects import Locator, not_looked_for
 from .program import Choose, GoTo, Movement, Object, Robot, Turn
 
@@ -34,9 +37,12 @@ class Judgement:
             *(fault for name in sorted(objects) if (fault := self._not_found(name))),
         ]
 
-    def decides(self, robots: Sequence[Robot]) -> dict[str, Condition]:
+    def decides(self, robots: Sequence[Robot]) -> dict[str, Decided]:
         """Return what decides each choice of these robots: the user's function, or a standard condition."""
-        return {name: self.conditions.get(name) or standard(name) for name in conditions_of(robots)}
+        return {
+            name: _as_asked(name, self.conditions.get(name) or standard(name))
+            for name in conditions_of(robots)
+        }
 
     def _unasked(self, robots: Sequence[Robot]) -> list[str]:
         """Return what is decided for nobody; while other robots run elsewhere, it may be for them."""
@@ -58,6 +64,24 @@ class Judgement:
         if self.locators.get(name) is not_looked_for:
             return f"objects.py: nobody has said yet how {name!r} is found"
         return "" if name in self.locators else f"objects.py finds nothing for {name!r}"
+
+
+def _as_asked(name: str, condition: Condition) -> Decided:
+    """Return a condition that is asked with the state that the vehicle tells, once each time."""
+    said: bool | None = None
+
+    def known(state: Asked) -> bool:
+        nonlocal said
+        assert isinstance(state, Known)
+        assert state.told is not None
+        said = condition(replace(state.told, found=state.found, answers=state.answers))
+        return said is not None
+
+    def holds(state: Asked) -> bool:
+        assert said is not None
+        return said
+
+    return Decided(name, holds, known)
 
 
 def conditions_of(robots: Sequence[Robot]) -> set[str]:

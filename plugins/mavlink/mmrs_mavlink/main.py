@@ -3,28 +3,37 @@
 from __future__ import annotations
 
 import argparse
-import signal
-import threading
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import ExitStack
-from queue import SimpleQueue
+from functools import partial
+from itertools import chain
 from typing import TYPE_CHECKING
 
-from mmrs_runtime.bus import Recorded
-from mmrs_runtime.control import Control, Taken
+from mmrs_runtime.bus import Incomplete
+from mmrs_runtime.bus.program_bus import ProgramBus, begin_all, shared_bus, strangers_of
+from mmrs_runtime.control import Taken
+from mmrs_runtime.engine.clocks import RealClock
+from mmrs_runtime.engine.hearing import hear_orders
+from mmrs_runtime.engine.interrupts import stopping
+from mmrs_runtime.engine.live import FAILED, INTERRUPTED, LINK, Venture, exit_code, run_live
+from mmrs_runtime.engine.orders import Orders
+from mmrs_runtime.engine.resuming import over_by, restore
+from mmrs_runtime.engine.terms import Ending
+from mmrs_runtime.engine.unready import Unready
+from mmrs_runtime.faults import LINK_LOST, Fault
 from mmrs_runtime.injection import Rehearsal
-from mmrs_runtime.records.log import read
+from mmrs_runtime.program import Program
+from mmrs_runtime.records.log import LogWriter, read
+from mmrs_runtime.records.steps import StepRecord
 from mmrs_runtime.screen import bear_all_characters, say, unfailing
+from mmrs_runtime.slots import LocalSlots
 
-from .crews import Crews
-from .judgement import Condition, Judgement, conditions_of
+from .connecting import Garage, Vehicles
+from .judgement import Condition, Judgement
 from .objects import Locator
 from .options import Options, options_of, parser_for
 from .program import Robot
-from .session import Shared, Vehicles, run_robot
-from .slots import BusSlots, LocalSlots, recorded_of, shared_slots, strangers_of, team_of
-from .steps.ending import FAILED, INTERRUPTED, LINK, OK
-from .steps.resuming import slots_of
+from .team import program_of
 
 if TYPE_CHECKING:
     from mmrs_runtime.ports import Port
@@ -40,7 +49,7 @@ def main(
     *,
     vehicles: Vehicles | None = None,
 ) -> int:
-    """Run the programs of robots, each in a thread of its own, and return the exit code.
+    """Run the programs of robots on the engine, and return the exit code.
 
     Args:
         robots: at least one.
@@ -57,84 +66,146 @@ def main(
         parser.error(fault)
     with ExitStack() as stack:
         stack.enter_context(unfailing())
-        stop, abandon = threading.Event(), threading.Event()
         rehearsal = Rehearsal(options.inject, options.clock, say)
-        shared = Shared(
-            options=options,
-            slots=_slots(parser, robots, options, rehearsal, stack),
-            judgement=judgement,
-            decides=judgement.decides(robots),
-            rehearsal=rehearsal,
-            radios=None if vehicles is not None or options.dry else _radios(options, rehearsal),
-            crews=(
-                crews := Crews(
-                    [robot.id for robot in robots], {robot.id: conditions_of([robot]) for robot in robots}
-                )
-            ),
-            stop=stop,
-            abandon=abandon,
-            vehicles=vehicles,
+        program, resumed = program_of(robots), _resumed(robots, options)
+        radios = None if vehicles is not None or options.dry else _radios(options, rehearsal)
+        garage = Garage(options, radios, rehearsal, judgement.locators, vehicles)
+        bus = _slots(parser, program, robots, options, rehearsal, resumed, stack)
+        writer = stack.enter_context(_log(parser, options))
+        orders = Orders(options.on_stop.upper())
+        ids = tuple(robot.id for robot in robots)
+        assert isinstance(options.clock.followed, RealClock)
+        venture = Venture(
+            program,
+            {robot.id: partial(garage.connect, robot) for robot in robots},
+            bus,
+            judgement.decides(robots),
+            clock=options.clock.followed,
+            orders=orders,
+            run=options.run,
+            folder=options.log,
+            resumed=resumed,
+            patience=options.battery_patience * options.clock.speedup,
+            meet=begin_all(bus, program, _unbegun(ids, resumed), options.sync, say),
+            observe=_telling(writer, robots),
+            say=say,
         )
         stack.callback(rehearsal.close)
         rehearsal.start()
-        _open_control(parser, options, crews, stack)
-        _stop_on_signals(stop, abandon)
-        codes = _run_all(robots, shared)
-    return next((code for code in (LINK, INTERRUPTED, FAILED) if code in codes), OK)
+        _hear(parser, options, ids, venture, garage, stack)
+        stack.enter_context(stopping(orders, ids, say))
+        return _run(venture)
 
 
-def _run_all(robots: Sequence[Robot], shared: Shared) -> list[int]:
-    codes = [FAILED] * len(robots)
+def _run(venture: Venture) -> int:
+    """Carry the programs out, and tell people how that ended; return the exit code."""
+    try:
+        for robot, why in over_by(venture.program, venture.resumed).items():
+            say(
+                f"{robot!r}: cannot go on: it has ended by {why}"
+                if why
+                else f"{robot!r}: it has come to its end"
+            )
+        ending = run_live(venture)
+    except Unready as error:
+        for robot, found in error.faults.items():
+            say(f"{robot!r}: does not get ready: {found.reason or found.which}")
+        return LINK if any(found.which == LINK_LOST for found in error.faults.values()) else FAILED
+    except Incomplete as error:
+        say(str(error))
+        return LINK
+    except Fault as fault:
+        return LINK if fault.event == LINK_LOST else FAILED
+    except ValueError as error:
+        say(f"--resume: {error}")
+        return FAILED
+    except KeyboardInterrupt:
+        return INTERRUPTED
+    _tell(ending, tuple(venture.connect))
+    return exit_code(ending)
 
-    def run(index: int) -> None:
-        codes[index] = run_robot(robots[index], shared)
 
-    threads = [
-        threading.Thread(target=run, args=(index,), name=f"robot {index}") for index in range(len(robots))
-    ]
-    for thread in threads:
-        thread.start()
-    for thread in threads:
-        while thread.is_alive():
-            thread.join(0.2)
-    return codes
+def _tell(ending: Ending, robots: Sequence[str]) -> None:
+    """Tell people what became of each robot."""
+    for robot in robots:
+        fault, why = ending.faults.get(robot), ""
+        if robot in ending.suspended:
+            why = f"; {ending.came_down.get(robot, 'has not gone on')}; --resume goes on where it stopped"
+        elif robot in ending.unconfirmed:
+            why = "; it has not confirmed that it stopped"
+        if fault is not None or why:
+            say(f"{robot!r}: ended early{f': {fault}' if fault is not None else ''}{why}")
+        elif not any(waiting.robot == robot for waiting in ending.waiting):
+            say(f"{robot!r}: done")
+    for waiting in ending.waiting:
+        say(str(waiting))
+
+
+def _telling(writer: LogWriter, robots: Sequence[Robot]) -> Callable[[StepRecord], None]:
+    """Return what keeps steps, and tells people of every move that begins."""
+    steps = {(robot.id, step.move): step for robot in robots for step in robot.steps}
+
+    def observe(record: StepRecord) -> None:
+        writer.write(record)
+        if record.label == "begin":
+            step = steps[record.robot, record.move]
+            serves = f" for task {step.task!r}" if step.task else ""
+            say(f"{record.robot!r}: {step.move!r} ({type(step.movement).__name__}){serves}")
+
+    return observe
+
+
+def _log(parser: argparse.ArgumentParser, options: Options) -> LogWriter:
+    try:
+        return LogWriter(options.log, resumed=options.resume)
+    except OSError as error:
+        parser.error(f"--log {options.log}: {error.strerror or error}")
+
+
+def _resumed(robots: Sequence[Robot], options: Options) -> tuple[StepRecord, ...]:
+    if not options.resume:
+        return ()
+    return tuple(chain.from_iterable(read(options.log / robot.log) for robot in robots))
+
+
+def _unbegun(robots: Sequence[str], resumed: Sequence[StepRecord]) -> list[str]:
+    begun = {record.robot for record in resumed}
+    return [robot for robot in robots if robot not in begun]
 
 
 def _slots(
     parser: argparse.ArgumentParser,
+    program: Program,
     robots: Sequence[Robot],
     options: Options,
     rehearsal: Rehearsal,
+    resumed: tuple[StepRecord, ...],
     stack: ExitStack,
-) -> BusSlots:
-    if options.bus.used:
-        from mmrs_runtime.bus.carriers.over_zenoh import ZenohCarrier
-        from mmrs_runtime.bus.carriers.sessions import Endpoints
+) -> ProgramBus | LocalSlots:
+    if not options.bus.used:
+        if strangers := strangers_of(program, [robot.id for robot in robots]):
+            parser.error(
+                f"needs {', '.join(map(ascii, strangers))}: run fleet.py, or every program with --bus"
+            )
+        slots = LocalSlots(program)
+        restore(slots, program, resumed)
+        return slots
+    from mmrs_runtime.bus.carriers.over_zenoh import ZenohCarrier
+    from mmrs_runtime.bus.carriers.sessions import Endpoints
 
-        reached = Endpoints(options.bus.listen, options.bus.connect, options.bus.file)
-        zenoh = ZenohCarrier(robots[0].mission, options.run, team_of(robots), reached, plan=robots[0].plan)
-        carrier = rehearsal.wrap_carrier(zenoh, [robot.id for robot in robots])
-        try:
-            bus = shared_slots(robots, options.run, options.log, carrier, _recorded(robots, options))
-        except OSError as error:
-            parser.error(f"{error.filename}: {error.strerror}" if error.filename else str(error))
-        except ValueError as error:
-            parser.error(f"--log {options.log}: {error}")
-        stack.callback(bus.close)
-        return bus
-    if strangers := strangers_of(robots):
-        parser.error(f"needs {', '.join(map(ascii, strangers))}: run fleet.py, or every program with --bus")
-    slots = LocalSlots(robots, options.run)
-    if options.resume:
-        slots.restore(*slots_of(robots, [step for robot in robots for step in read(options.log / robot.log)]))
-    return slots
-
-
-def _recorded(robots: Sequence[Robot], options: Options) -> dict[str, Recorded]:
-    """Return what the logs say of robots that are started again."""
-    if not options.resume:
-        return {}
-    return {robot.id: recorded_of(robot, read(options.log / robot.log)) for robot in robots}
+    ids = [robot.id for robot in robots]
+    reached = Endpoints(options.bus.listen, options.bus.connect, options.bus.file)
+    team = sorted(program.by_id)
+    zenoh = ZenohCarrier(program.name, options.run, team, reached, plan=program.fingerprint)
+    carrier = rehearsal.wrap_carrier(zenoh, ids)
+    try:
+        bus = shared_bus(program, ids, options.run, options.log, carrier, resumed if options.resume else None)
+    except OSError as error:
+        parser.error(f"{error.filename}: {error.strerror}" if error.filename else str(error))
+    except ValueError as error:
+        parser.error(f"--log {options.log}: {error}")
+    stack.callback(bus.close)
+    return bus
 
 
 def _radios(options: Options, rehearsal: Rehearsal) -> Radios:
@@ -148,33 +219,22 @@ def _radios(options: Options, rehearsal: Rehearsal) -> Radios:
     return Radios(options.clock, reach.signer, reach.retries, wrap)
 
 
-def _open_control(parser: argparse.ArgumentParser, options: Options, crews: Crews, stack: ExitStack) -> None:
+def _hear(
+    parser: argparse.ArgumentParser,
+    options: Options,
+    robots: Sequence[str],
+    venture: Venture,
+    garage: Garage,
+    stack: ExitStack,
+) -> None:
+    """Have the run hear the orders of people who call from elsewhere."""
+
+    def status(robot: str) -> Mapping[str, object]:
+        return {**venture.standing.status(robot), **garage.reported(robot)}
+
     try:
-        control = Control(options.log, options.run, crews.inboxes, crews.status)
+        stack.enter_context(hear_orders(options.log, options.run, robots, venture.orders, status))
     except Taken as error:
         parser.error(f"--log {options.log}: {error}")
     except OSError as error:
         say(f"{options.log}: no orders can be given while this runs: {error.strerror or error}")
-        return
-    stack.callback(control.close)
-
-
-def _stop_on_signals(stop: threading.Event, abandon: threading.Event) -> None:
-    """Have the first signal set one event, the second the other.
-
-    A thread sets them: a signal that comes while the first is heeded would wait for an event's lock for ever.
-    """
-    told: SimpleQueue[int] = SimpleQueue()
-
-    def heed() -> None:
-        for event in (stop, abandon):
-            told.get()
-            event.set()
-
-    if threading.current_thread() is threading.main_thread():
-        threading.Thread(target=heed, name="signals", daemon=True).start()
-        for number in (signal.SIGINT, signal.SIGTERM):
-            signal.signal(number, lambda number, _frame: told.put(number))
-        if hasattr(signal, "SIGHUP"):
-            # A terminal that closes gives no order: robots fly on.
-            signal.signal(signal.SIGHUP, signal.SIG_IGN)

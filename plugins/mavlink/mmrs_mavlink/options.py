@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from mmrs_runtime.bus import PATIENCE
-from mmrs_runtime.clock import Clock
+from mmrs_runtime.engine.clocks import FollowingClock, RealClock
 from mmrs_runtime.faults import Fault
 from mmrs_runtime.injection import HELP, Injections, injections
 from mmrs_runtime.records.blackbox import black_box_path, last_time, plan_of
@@ -95,7 +95,7 @@ class Options:
     log: Path
     run: str
     resume: bool
-    clock: Clock
+    clock: FollowingClock
     dry: bool
     on_stop: str
     battery_patience: float
@@ -163,7 +163,7 @@ def options_of(
         log=given.log,
         run=run,
         resume=given.resume,
-        clock=Clock(speedup, start),
+        clock=FollowingClock(RealClock(speedup, start)),
         dry=given.dry_run,
         on_stop=given.on_stop,
         battery_patience=given.battery_patience,

@@ -8,9 +8,15 @@ heights are metres above the robot's home (under water: above the surface, so ne
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import TypeAlias
 
+from mmrs_runtime import program as runtime
 from mmrs_runtime.policies import Policy as Policy
+from mmrs_runtime.program import Choose as Choose
+from mmrs_runtime.program import Move
+from mmrs_runtime.program import Notify as Notify
+from mmrs_runtime.program import Then as Then
 
 
 @dataclass(frozen=True, slots=True)
@@ -138,14 +144,6 @@ Movement: TypeAlias = Start | Stop | TakeOff | Land | GoTo | Hold | Recharge | T
 
 
 @dataclass(frozen=True, slots=True)
-class Notify:
-    """Set slots of robots: (robot, slot) pairs."""
-
-    slots: tuple[tuple[str, str], ...]
-    active: bool = True
-
-
-@dataclass(frozen=True, slots=True)
 class Report:
     """Tell the control station something: (key, value) pairs."""
 
@@ -194,27 +192,6 @@ Action: TypeAlias = Notify | Report | Operate | Measure | NoEffect
 
 
 @dataclass(frozen=True, slots=True)
-class Then:
-    """What comes next, once all of these own slots are active."""
-
-    move: str
-    waits: tuple[str, ...] = ()
-    fluid: bool = False
-    policies: tuple[Policy, ...] = ()
-
-
-@dataclass(frozen=True, slots=True)
-class Choose:
-    """What comes next depends on a condition, which is asked for once, after the wait."""
-
-    condition: str
-    move: str
-    otherwise: str
-    waits: tuple[str, ...] = ()
-    policies: tuple[Policy, ...] = ()
-
-
-@dataclass(frozen=True, slots=True)
 class Step:
     """One move of the behaviour; `task` and `rule` say what it serves."""
 
@@ -225,11 +202,6 @@ class Step:
     then: Then | Choose | None = None
     task: str = ""
     rule: str = ""
-
-    def action(self, detail: str) -> Action:
-        """Return the action that a log names: ``pre:0`` is the first before the movement, or ``post:0``."""
-        side, _, index = detail.partition(":")
-        return (self.before if side == "pre" else self.after)[int(index)]
 
 
 @dataclass(frozen=True, slots=True)
@@ -262,7 +234,7 @@ class Travel:
     margin: float = 0.0
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Robot:
     """One robot and all that it does.
 
@@ -318,3 +290,9 @@ class Robot:
     def step(self, move: str) -> Step:
         """Return the step of that move."""
         return next(step for step in self.steps if step.move == move)
+
+    @cached_property
+    def executable(self) -> runtime.Robot:
+        """Return the robot as the engine has it; a movement's order is its step, an action its own."""
+        moves = tuple(Move(each.move, each, each.before, each.after, each.then) for each in self.steps)
+        return runtime.Robot(self.id, moves, self.start, self.slots, self.policies, self.reserve)

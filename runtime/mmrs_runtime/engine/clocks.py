@@ -106,8 +106,8 @@ class FollowingClock(RobotClock):
     def __init__(self, clock: RunClock) -> None:
         """Follow that clock."""
         super().__init__(float(getattr(clock, "speedup", 1.0)))
-        self._followed = clock
+        self.followed = clock
 
     def now(self) -> float:
         """Return the seconds since the run began."""
-        return self._followed.now()
+        return self.followed.now()

@@ -186,6 +186,8 @@ class Life(Situation):
         self.wait.lacking = lacking
         if self.wait.begin(now):
             self.vehicle.wait(now)
+            if lacking:
+                self._run.say(self, f"waits for {', '.join(map(ascii, lacking))}")
         self._look()
         if (found := self.wait.overdue(now, self.answers(), self._run.peers)) is not None:
             raise Broken(found)
@@ -280,7 +282,7 @@ class Life(Situation):
         try:
             self._run.made(record)
         except OSError as error:
-            why = error.strerror or str(error)
+            why = f"{error.filename}: {error.strerror}" if error.filename else str(error)
             if not self._live:
                 raise
             if step.label != "fault":

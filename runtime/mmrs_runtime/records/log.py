@@ -88,10 +88,10 @@ class LogFile:
 
     def _append(self, record: StepRecord) -> None:
         line = to_line(record, spaced=self._spaced).encode("utf-8") + b"\n"
-        if self._synced:
-            append_whole(self.open(), line, at_once=record.label in KEPT_AT_ONCE)
-        else:
-            with self._named():
+        with self._named():
+            if self._synced:
+                append_whole(self.open(), line, at_once=record.label in KEPT_AT_ONCE)
+            else:
                 self.open().write(line)
 
     @contextmanager

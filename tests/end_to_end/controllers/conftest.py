@@ -64,7 +64,7 @@ class Controllers:
 
     def await_step(self, move: str, label: str = "begin", robot: str = "alpha") -> None:
         """Wait until a robot's log tells of a step of a move."""
-        path, step = self.logs / f"{robot}.jsonl", f'"label": "{label}", "move": "{move}"'
+        path, step = self.logs / f"{robot}.jsonl", f'"label":"{label}","move":"{move}"'
         until(lambda: path.exists() and step in path.read_text("ascii"), PATIENCE)
 
     def replayed(self, *, partial: bool = False) -> ReplayResult:

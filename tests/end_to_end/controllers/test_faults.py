@@ -50,7 +50,7 @@ def one_drone(*policies: Policy, hold: float = 60.0, **robot):
 def interrupt_twice(process) -> None:
     """Have a process leave even a vehicle that somebody else has."""
     process.send_signal(signal.SIGINT)
-    assert any("heartbeats go on until its motors are off" in line for line in process.stderr)
+    assert any("interrupt again to end without waiting" in line for line in process.stderr)
     process.send_signal(signal.SIGINT)
 
 
@@ -66,7 +66,7 @@ def test_an_interrupted_robot_holds_and_says_so_when_it_does(controllers, hangar
         process.send_signal(signal.SIGINT)
         _, said = process.communicate(timeout=60)
     assert process.returncode == 130
-    assert "'alpha': stopped" in said
+    assert "'alpha': has done HOLD" in said
     assert vehicles["alpha"].autopilot.mode == BRAKE
     assert vehicles["alpha"].autopilot.body.pace < 0.3
     assert made.replayed(partial=True).faults == {"alpha": "STOPPED"}
@@ -176,12 +176,12 @@ def test_a_robot_that_holds_is_left_to_whoever_takes_over(controllers, hangar):
     made = controllers(one_drone(Policy("DEVICE_SILENT", "HOLD"), hold=1.0))
     vehicles, links = hangar(made.program, silent=frozenset({2000}))
     with made.start("fleet.py", *links, *SOON) as process:
-        assert any("holds; interrupt to end" in line for line in process.stderr)
+        assert any("has done HOLD" in line for line in process.stderr)
         vehicles["alpha"].faults.take_stick("loiter")
         assert any("hands off" in line for line in process.stderr)
         interrupt_twice(process)
         _, said = process.communicate(timeout=60)
-    assert process.returncode == 1, said
+    assert process.returncode == 130, said
     assert "cannot carry out" not in said
     assert vehicles["alpha"].autopilot.mode == LOITER
 
@@ -235,10 +235,10 @@ def test_a_robot_whose_peer_fails_responds_to_it(controllers, hangar):
     with made.start("fleet.py", *links) as process:
         until(lambda: vehicles["alpha"].autopilot.body.position[0] > 5.0)
         vehicles["alpha"].faults.take_stick("loiter")
-        assert any("'beta': ended early" in line for line in process.stderr)
+        assert any("'beta': has done LAND" in line for line in process.stderr)
         interrupt_twice(process)
         process.communicate(timeout=60)
-    assert process.returncode == 1
+    assert process.returncode == 130
     assert not vehicles["beta"].autopilot.armed
     assert made.replayed(partial=True).faults["beta"] == "PEER_LOST"
 
@@ -331,7 +331,7 @@ def test_a_vehicle_that_somebody_else_has_is_told_nothing(controllers, hangar, a
     parameters = dict(foreign.parameters)
     code, said = made.run("fleet.py", *links)
     assert code == 1
-    assert "the vehicle's motors run already: somebody else has it; response: NOTHING" in said
+    assert "does not get ready: the vehicle's motors run already: somebody else has it" in said
     assert (foreign.armed, foreign.stores[0]) == (True, [])
     assert foreign.parameters == parameters
 

@@ -34,7 +34,9 @@ def test_a_vehicle_that_does_not_take_the_response_over_never_leaves_the_ground(
     del vehicles["alpha"].autopilot.parameters["FS_GCS_ENABLE"]
     code, said = made.run("fleet.py", *links)
     assert code == 1
-    assert "REFUSED: response to a lost link: the vehicle does not confirm FS_GCS_ENABLE = 5" in said
+    assert (
+        "does not get ready: response to a lost link: the vehicle does not confirm FS_GCS_ENABLE = 5" in said
+    )
     assert ARM not in [command for _, command, _ in vehicles["alpha"].autopilot.history]
 
 

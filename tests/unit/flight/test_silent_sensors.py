@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 from flight_crew import manned, robot_of
 
-from mmrs_mavlink.plugin.backend.moves import Moves
+from mmrs_mavlink.driving.moves import Moves
 from mmrs_mavlink.program import Measure, Policy
 from mmrs_runtime.faults import DEVICE_SILENT, Fault
 

@@ -9,8 +9,8 @@ from hypothesis import strategies as st
 from mavlink_peer import HERE, linked
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
+from mmrs_mavlink.driving.moves import Moves
 from mmrs_mavlink.links.radio import GROUND_COMPONENT
-from mmrs_mavlink.plugin.backend.moves import Moves
 from mmrs_mavlink.program import Report
 from mmrs_mavlink.services.telling import CHUNK, MOST_CHUNKS, pieces_of
 from mmrs_mavlink.vehicles.mavlink_vehicle import MavlinkVehicle

@@ -6,6 +6,8 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Protocol, runtime_checkable
 
+from mmrs_runtime.records.blackbox import plain
+
 from ..program import GoTo, Look, Place
 
 if TYPE_CHECKING:
@@ -46,6 +48,18 @@ class State:
     def charge(self) -> float | None:
         """Return the part of the battery that is left, as the standard conditions call it."""
         return self.energy
+
+
+def told_of(state: State) -> dict[str, object]:
+    """Return what there is to say of a vehicle's state, as JSON has it."""
+    found = {
+        "mode": state.mode,
+        "armed": state.armed,
+        "energy": state.energy,
+        "place": state.place,
+        "speed": round(state.speed, 2),
+    }
+    return {name: plain(value) for name, value in found.items()}
 
 
 class Evidence(Protocol):

@@ -8,8 +8,8 @@ import pytest
 from flight_crew import manned, robot_of
 from patience import until
 
-from mmrs_mavlink.plugin.backend.moves import Moves
-from mmrs_mavlink.plugin.backend.response import Response
+from mmrs_mavlink.driving.moves import Moves
+from mmrs_mavlink.driving.response import Response
 from mmrs_mavlink.program import Geographic, Place, Policy
 from mmrs_runtime.faults import Fault
 

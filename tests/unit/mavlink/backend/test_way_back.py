@@ -17,9 +17,9 @@ from mmrs_core.testing.programs import (
     take_off,
     target_input,
 )
+from mmrs_mavlink.driving.moves import Moves
+from mmrs_mavlink.driving.way_back import WayBack, sortie_of
 from mmrs_mavlink.places import distance, offset
-from mmrs_mavlink.plugin.backend.moves import Moves
-from mmrs_mavlink.plugin.backend.way_back import WayBack, sortie_of
 from mmrs_mavlink.plugin.built import robot_of
 from mmrs_mavlink.program import Policy
 from mmrs_mavlink.vehicles.dry import DryVehicle

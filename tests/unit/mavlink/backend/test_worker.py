@@ -7,7 +7,7 @@ import time
 
 import pytest
 
-from mmrs_mavlink.plugin.backend.worker import Job, Worker
+from mmrs_mavlink.driving.worker import Job, Worker
 from mmrs_runtime.faults import CRASHED, LINK_LOST, Fault
 
 

@@ -8,10 +8,13 @@ from math import inf
 from pathlib import Path
 from typing import cast
 
-from mmrs_core.behaviour.program import Program
+from mmrs_core.behaviour.program import Action as Doing
+from mmrs_core.behaviour.program import Move, Program
 from mmrs_core.contributions.targets import TargetInput
 from mmrs_core.contributions.vehicles import Live, VehicleInput
 from mmrs_core.errors import LinkLostError, UnsupportedError, UsageError
+from mmrs_mavlink.driving.equipment import Equipment, Guard, Radio
+from mmrs_mavlink.driving.threaded import ThreadedVehicle
 from mmrs_mavlink.linked import at_end_of
 from mmrs_mavlink.links.link import Link
 from mmrs_mavlink.links.ports import address_of, split_system
@@ -20,12 +23,10 @@ from mmrs_mavlink.links.retries import Retries
 from mmrs_mavlink.links.signing import Signer, signer_for
 from mmrs_mavlink.objects import Locator, where_expected
 from mmrs_mavlink.plugin.actions import action_of
-from mmrs_mavlink.plugin.backend.equipment import Equipment
 from mmrs_mavlink.plugin.backend.options import LinkOptions, link_options
-from mmrs_mavlink.plugin.backend.robot import MavlinkRobot
 from mmrs_mavlink.plugin.backend.whereabouts import Ground
 from mmrs_mavlink.plugin.built import built, robot_of
-from mmrs_mavlink.plugin.context import context_of
+from mmrs_mavlink.plugin.context import RobotContext, context_of
 from mmrs_mavlink.plugin.controllers import refusals
 from mmrs_mavlink.plugin.program import objects_in
 from mmrs_mavlink.program import Action, Robot
@@ -60,7 +61,7 @@ class Fleet:
             self.rehearsal.close()
 
 
-def connect(given: VehicleInput, live: Live) -> MavlinkRobot:
+def connect(given: VehicleInput, live: Live) -> ThreadedVehicle:
     """Return a robot at the end of its link.
 
     Raises:
@@ -80,7 +81,23 @@ def connect(given: VehicleInput, live: Live) -> MavlinkRobot:
         link = fleet.radios.open(url, system)
     except Fault as fault:
         raise LinkLostError(f"robot '{given.robot.id}': {fault}") from fault
-    return MavlinkRobot(program, _equipment(given, live, input, program, fleet, link), options)
+    context = context_of(given.robot, input, geographic=False)
+    equipment = _equipment(given, live, context, program, fleet, link)
+    return BehaviourVehicle(program, equipment, lambda each: cast(Action, built(action_of(each, context))))
+
+
+class BehaviourVehicle(ThreadedVehicle):
+    """Carries out a behaviour's own moves and actions, by the steps that they are in the robot's program."""
+
+    def __init__(self, robot: Robot, equipment: Equipment, action: Callable[[Doing], Action]) -> None:
+        """Drive a robot; `action`: returns an action as the robot's program has it."""
+        super().__init__(robot, equipment)
+        self._action = action
+
+    def do(self, order: object, now: float, *, through: bool = False) -> None:
+        """Begin a grounded movement, or an action."""
+        known = self._steps[order.id] if isinstance(order, Move) else self._action(cast(Doing, order))
+        super().do(known, now, through=through)
 
 
 def _refuse(given: VehicleInput, input: TargetInput, options: LinkOptions) -> None:
@@ -151,12 +168,11 @@ def _split(text: str) -> tuple[str, int]:
 
 
 def _equipment(
-    given: VehicleInput, live: Live, input: TargetInput, program: Robot, fleet: Fleet, link: Link
+    given: VehicleInput, live: Live, context: RobotContext, program: Robot, fleet: Fleet, link: Link
 ) -> Equipment:
     options = link_options(given.options)
     home_tolerance = inf if live.resumed else options.home_tolerance
     linked = at_end_of(link, program, options.acceptance, home_tolerance, live.say)
-    context = context_of(given.robot, input, geographic=False)
     home = given.robot.home or (0.0, 0.0, 0.0)
     box = _box(given, live, fleet.clock)
     if box is not None:
@@ -168,23 +184,24 @@ def _equipment(
     fleet.rehearsal.attend(given.robot.id, attended(link))
     locators: dict[str, Locator] = {each: where_expected for each in objects_in(given.robot)}
     joules = sum(battery.energy for battery in given.type.batteries) or None
+    guard = Guard()
+    link.guard = guard
+    patience = options.patience * fleet.clock.speedup
+    url, system = _url(given, live)[0], _system_before(given, live)
     return Equipment(
-        url=_url(given, live)[0],
-        link=link,
-        vehicle=linked.vehicle,
-        radios=fleet.radios,
-        clock=fleet.clock,
-        ground=Ground(given.program.frame, home, context.zero),
+        linked.vehicle,
+        guard,
+        fleet.clock,
+        Ground(given.program.frame, home, context.zero).position,
+        live.say,
+        live.wake,
+        radio=Radio(url, link, linked.vehicle, fleet.radios, patience, system),
         joules=joules,
         locators=locators,
         box=box,
-        resumed=live.resumed,
-        passed=live.passed,
-        begun=live.begun,
-        system=_system_before(given, live),
-        say=live.say,
-        wake=live.wake,
-        action=lambda action: cast(Action, built(action_of(action, context))),
+        home_tolerance=options.home_tolerance,
+        fence=options.fence,
+        records=live.records,
         start=_once(fleet.rehearsal.start, live.shared),
         let_go=lambda: fleet.let_go(given.robot.id),
     )

@@ -2,28 +2,40 @@
 
 from __future__ import annotations
 
-from mmrs_mavlink.links.link import Link
-from mmrs_mavlink.steps.hearing import is_heard, listening
+from typing import TYPE_CHECKING
+
 from mmrs_runtime.clock import Clock
 from mmrs_runtime.faults import Fault
+
+from ..steps.hearing import is_heard, listening
+
+if TYPE_CHECKING:
+    from ..links.link import Link
 
 
 class Reach:
     """Knows how long ago a vehicle was heard."""
 
-    def __init__(self, link: Link, clock: Clock) -> None:
-        """Listen to the vehicle at the end of a link."""
+    def __init__(self, link: Link | None, clock: Clock) -> None:
+        """Listen to the vehicle at the end of a link; None: it is reached otherwise."""
         self._link, self._clock = link, clock
         self._lost: Fault | None = None
         self._until = 0.0
 
     @property
     def is_heard(self) -> bool:
-        """Return whether it was heard lately."""
-        return is_heard(self._link)
+        """Return whether it was heard lately; one without a link always is."""
+        return self._link is None or is_heard(self._link)
+
+    @property
+    def is_heard_again(self) -> bool:
+        """Return whether it was heard lately over a link that can be lost."""
+        return self._link is not None and is_heard(self._link)
 
     def may_come_back(self, lost: Fault) -> bool:
         """Return whether it may still be heard again, for some time after a link was lost or last heard."""
+        if self._link is None:
+            return False
         now = self._clock.now()
         if self._lost is not lost or self.is_heard:
             self._lost = lost

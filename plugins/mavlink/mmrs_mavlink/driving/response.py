@@ -4,16 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from mmrs_mavlink.plugin.backend.moves import Moves
-from mmrs_mavlink.plugin.backend.worker import Interrupted, Job
-from mmrs_mavlink.program import Robot
-from mmrs_mavlink.steps.obeying import obeying, undone
-from mmrs_mavlink.steps.responding import HINDRANCES, comes_down_alone, respond_or_less
-from mmrs_mavlink.steps.responses import NEEDS_POSITION
-from mmrs_mavlink.steps.watch import Decide, Watch
-from mmrs_mavlink.vehicles.mavlink_vehicle import MavlinkVehicle
 from mmrs_runtime.faults import BATTERY_LOW, FAILURES, LINK_LOST, POSITION_LOST, TAKEN_OVER, Fault
 from mmrs_runtime.policies import HOLD, LAND, NOTHING
+
+from ..program import Robot
+from ..steps.obeying import obeying, undone
+from ..steps.responding import HINDRANCES, comes_down_alone, respond_or_less
+from ..steps.responses import NEEDS_POSITION
+from ..steps.watch import Decide, Watch
+from ..vehicles.vehicle import Vehicle
+from .moves import Moves
+from .worker import Interrupted, Job
 
 KEPT_UP = "hands off until its motors are off; it still hears heartbeats, so end this later"
 
@@ -31,7 +32,7 @@ class Response:
     def __init__(
         self,
         robot: Robot,
-        vehicle: MavlinkVehicle,
+        vehicle: Vehicle,
         watch: Watch,
         moves: Moves,
         say: Callable[[str], None],

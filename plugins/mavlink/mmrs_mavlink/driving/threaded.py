@@ -5,26 +5,11 @@ from __future__ import annotations
 import threading
 import time
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import partial
 from math import inf
 from traceback import format_exception
 
-from mmrs_core.behaviour.program import Action, Move
-from mmrs_core.contributions.execution import Fault, RobotState
-from mmrs_mavlink.crews import told_of
-from mmrs_mavlink.plugin.backend.equipment import Equipment
-from mmrs_mavlink.plugin.backend.lost_link import LostLink
-from mmrs_mavlink.plugin.backend.moves import Moves
-from mmrs_mavlink.plugin.backend.options import LinkOptions
-from mmrs_mavlink.plugin.backend.reach import Reach
-from mmrs_mavlink.plugin.backend.response import Response
-from mmrs_mavlink.plugin.backend.setup import Setup
-from mmrs_mavlink.plugin.backend.way_back import WayBack
-from mmrs_mavlink.plugin.backend.worker import Interrupted, Job, Worker
-from mmrs_mavlink.program import GoTo, Land, Recharge, Robot, TakeOff
-from mmrs_mavlink.services.uploads import uploads_of
-from mmrs_mavlink.steps.obeying import astray, away, obeying
-from mmrs_mavlink.steps.watch import Watch
-from mmrs_mavlink.vehicles.footing import footing
 from mmrs_runtime.faults import (
     BATTERY_LOW,
     CRASHED,
@@ -35,36 +20,68 @@ from mmrs_runtime.faults import (
 )
 from mmrs_runtime.faults import Fault as VehicleFault
 from mmrs_runtime.policies import CONTINUE, NOTHING
-from mmrs_runtime.vehicle import Vehicle
+from mmrs_runtime.vehicle import Fault, State, Vehicle
+
+from ..program import Action, GoTo, Land, Operate, Place, Recharge, Robot, Step, TakeOff
+from ..records.fixes import fix
+from ..services.uploads import uploads_of
+from ..steps.obeying import astray, away, obeying
+from ..steps.watch import Watch
+from ..vehicles.footing import footing
+from ..vehicles.vehicle import State as VehicleState
+from ..vehicles.vehicle import told_of
+from .cameras import Cameras
+from .equipment import Equipment
+from .lost_link import LostLink
+from .moves import Moves
+from .reach import Reach
+from .response import Response
+from .setup import Setup
+from .way_back import WayBack
+from .worker import Interrupted, Job, Worker
 
 FAREWELL_SECONDS = 5.0
 """Real seconds that a vehicle has to be told to stay where it is."""
 
 
-class MavlinkRobot(Vehicle):
-    """Drives one robot; a thread of its own waits for the vehicle, so that every call returns at once."""
+@dataclass(frozen=True, slots=True)
+class Known(State):
+    """What is known of a robot; `told`: as its vehicle tells it."""
 
-    def __init__(self, robot: Robot, equipment: Equipment, options: LinkOptions) -> None:
+    told: VehicleState | None = None
+
+
+class ThreadedVehicle(Vehicle):
+    """Drives one robot; a thread of its own waits for the vehicle, so that every call returns at once.
+
+    Attributes:
+        reported: what it has reported last: `name` and `content`; empty before it has.
+    """
+
+    def __init__(self, robot: Robot, equipment: Equipment) -> None:
         """Listen to the vehicle; it is told nothing before it is to get ready."""
+        self.reported: Mapping[str, object] = {}
         self._robot, self._with = robot, equipment
         self._lost_link = LostLink(robot, equipment.vehicle, equipment.say)
         self._watch = self._new_watch()
-        self._moves = Moves(robot, equipment.vehicle, equipment.clock, equipment.locators, self._keep)
-        self._way = WayBack(robot, self._moves, equipment.vehicle, options.home_tolerance)
-        uploads = uploads_of(robot, fenced=options.fence)
-        self._flights = uploads.flights
-        self._setup = Setup(
-            robot, equipment, options, uploads, self._watch, self._lost_link, self._way, self.note
+        self._link = None if equipment.radio is None else equipment.radio.link
+        self._moves = Moves(
+            robot, equipment.vehicle, equipment.clock, equipment.locators, self._keep, self._come_to
         )
+        self._way = WayBack(robot, self._moves, equipment.vehicle, equipment.home_tolerance)
+        uploads = uploads_of(robot, fenced=equipment.fence)
+        self._flights = uploads.flights
+        self._setup = Setup(robot, equipment, uploads, self._watch, self._lost_link, self._way, self.note)
         self._steps = {step.move: step for step in robot.steps}
+        self._cameras = Cameras(robot, equipment.records)
         self._move = ""
         self._passed: set[str] = set()
         self._under_way: tuple[str, ...] = ()
-        self._tolerance = options.home_tolerance
+        self._tolerance = equipment.home_tolerance
         self._response = Response(
             robot, equipment.vehicle, self._watch, self._moves, equipment.say, self._tolerance
         )
-        self._reach = Reach(equipment.link, equipment.clock)
+        self._reach = Reach(self._link, equipment.clock)
         self._brakes: Callable[[], bool] = lambda: False
         self._seen: VehicleFault | None = None
         self._left: VehicleFault | None = None
@@ -75,7 +92,7 @@ class MavlinkRobot(Vehicle):
         self._worker.changed = equipment.wake
         self._worker.faulty = self._come_back
         self._worker.failed = self._response.failed = self._note_failure
-        equipment.link.guard = self._worker.guard
+        equipment.guard.check = self._worker.guard
 
     def prepare(self, now: float) -> bool:
         """Begin to wait for the vehicle, and to set it up."""
@@ -89,33 +106,36 @@ class MavlinkRobot(Vehicle):
         return self._setup.is_known
 
     def do(self, order: object, now: float, *, through: bool = False) -> None:
-        """Begin a grounded movement, or the action that comes next in the robot's program."""
+        """Begin a step's movement, or an action of the robot's program."""
         self.done, self.trouble = False, None
-        if isinstance(order, Move):
-            self._go(order, through=through)
+        if isinstance(order, Step):
+            self._go(order.move, through=through)
         else:
             assert isinstance(order, Action)
             self._under_way = ()
-            self._begin(self._moves.action(self._with.action(order)))
+            job = self._moves.action(order)
+            if isinstance(order, Operate):
+                job.append(partial(self._cameras.note, order))
+            self._begin(job)
 
-    def _go(self, move: Move, *, through: bool) -> None:
+    def _go(self, move: str, *, through: bool) -> None:
         """Begin a movement; those in the midst of an uploaded run have begun with its first."""
         self._lost_link.follow(())
-        self._move = move.id
-        if move.id in self._under_way[1:]:
+        self._move = move
+        if move in self._under_way[1:]:
             return
         self._passed.clear()
-        flight = self._flights.get(move.id)
+        flight = self._flights.get(move)
         self._under_way = () if flight is None else flight.run.moves
         if flight is None:
-            job = self._moves.movement(move.id, through=through)
+            job = self._moves.movement(move, through=through)
         else:
             job = self._moves.run(flight, self._pass)
-        if self._begins_sortie(move.id):
+        if self._begins_sortie(move):
             job.first(self._setup.begin_sortie)
-        if self._moves.kind(move.id) is Recharge:
+        if self._moves.kind(move) is Recharge:
             self._watch.moving = False
-        if self._moves.kind(move.id) is Land:
+        if self._moves.kind(move) is Land:
             job.append(self._landed)
         self._begin(job)
 
@@ -147,15 +167,15 @@ class MavlinkRobot(Vehicle):
         if self._lost_link.is_due:
             self._begin(Job())
 
-    def state(self, now: float) -> RobotState:
+    def state(self, now: float) -> Known:
         """Return what the vehicle has told last."""
         known = self._with.vehicle.state()
         energy = (
             None if known.energy is None or self._with.joules is None else known.energy * self._with.joules
         )
-        place = self._with.ground.position(known.place)
-        places = {name: self._with.ground.position(each) for name, each in known.places.items()}
-        return RobotState(
+        place = self._with.position(known.place)
+        places = {name: self._with.position(each) for name, each in known.places.items()}
+        return Known(
             now,
             place,
             known.speed,
@@ -165,11 +185,12 @@ class MavlinkRobot(Vehicle):
             known.wind,
             known.detected,
             places=places,
+            told=known,
         )
 
     def told(self) -> Mapping[str, object]:
         """Return what the vehicle has told last, as controllers say it; empty before it was heard."""
-        heard = self._with.link.latest("HEARTBEAT") is not None
+        heard = self._link is None or self._link.latest("HEARTBEAT") is not None
         return told_of(self._with.vehicle.state()) if heard else {}
 
     def respond(self, response: str, now: float) -> None:
@@ -179,10 +200,10 @@ class MavlinkRobot(Vehicle):
         if found is None and response == self._response.name:
             return
         self._under_way, self._brakes = (), lambda: False
-        job = self._response.begin(response, found, self._note_decision, heard=self._reach.is_heard)
+        job = self._response.begin(response, found, self._note_decision, heard=self._reach.is_heard_again)
         if job is not None:
             self._worker.begin(job, afresh=True)
-            self._with.link.wake()
+            self._wake_vehicle()
 
     def obeys(self, now: float) -> bool:
         """Return whether the vehicle has carried out the response, or was seen to begin it since."""
@@ -212,7 +233,8 @@ class MavlinkRobot(Vehicle):
             return armed
         if found is not None:
             return found.event == LINK_LOST and self._reach.may_come_back(found) and armed
-        return self._response.holds or (armed and (self._response.hands_off or not self._worker.done))
+        hands_off = self._response.hands_off and self._link is not None
+        return self._response.holds or (armed and (hands_off or not self._worker.done))
 
     def hindrance(self, passed: Sequence[str], begun: str, now: float) -> str:
         """Return why there is no way back now; empty where there is one."""
@@ -252,6 +274,7 @@ class MavlinkRobot(Vehicle):
             self._note_decision("resume", f"its log ends at {self._move}", "goes the way it came")
         job = self._way.job(passed, begun)
         job.first(self._setup.take_up)
+        job.append(lambda: self._cameras.restore(self._with.vehicle))
         self._begin(job, afresh=True)
         return True
 
@@ -264,7 +287,7 @@ class MavlinkRobot(Vehicle):
         """Begin to halt."""
         self._brakes = obeying("HOLD", self._robot, self._with.vehicle, self._moves.track)
         self._worker.pause()
-        self._with.link.wake()
+        self._wake_vehicle()
 
     def resume(self, now: float) -> None:
         """Go on."""
@@ -287,10 +310,13 @@ class MavlinkRobot(Vehicle):
             self._leave_it_holding()
         self._worker.close()
         self._with.let_go()
-        self.note("counted", {"frames": dict(self._with.link.dropped)})
-        if self._with.link.garbled:
-            self._with.say(f"{self._with.link.garbled} frames from the link could not be read")
-        self._with.link.close()
+        if (link := self._link) is not None:
+            if link.dropped:
+                self.note("counted", {"frames": dict(link.dropped)})
+            if link.garbled:
+                reasons = (f"{reason} ({frames})" for reason, frames in sorted(link.dropped.items()))
+                self._with.say(f"frames on the link that were not used: {', '.join(reasons)}")
+            link.close()
         if self._with.box is not None:
             self._with.box.close()
 
@@ -302,7 +328,8 @@ class MavlinkRobot(Vehicle):
 
     def _new_watch(self) -> Watch:
         watch = Watch(self._robot, self._with.clock, threading.Event())
-        watch.begin(self._with.link, self._with.vehicle)
+        if (radio := self._with.radio) is not None:
+            watch.begin(radio.link, radio.vehicle)
         watch.current = lambda: self._lost_link.policies
         watch.track = lambda: self._moves.track
         watch.decide, watch.say = self._note_decision, self._with.say
@@ -316,7 +343,7 @@ class MavlinkRobot(Vehicle):
         name, state = self._response.name, self._with.vehicle.state()
         if lost.event != LINK_LOST or lost is self._left or name in ("", NOTHING):
             return
-        if not (self._reach.is_heard and state.armed):
+        if not (self._reach.is_heard_again and state.armed):
             return
         if self._watch.answers_alone():
             self._left = lost
@@ -385,7 +412,18 @@ class MavlinkRobot(Vehicle):
         self._passed.add(move)
         self._with.wake()
 
+    def _come_to(self, place: Place) -> None:
+        if self._with.dry and self._with.box is not None:
+            fix(self._with.box, self._with.vehicle.state(), place)
+
+    def _wake_vehicle(self) -> None:
+        if self._link is not None:
+            self._link.wake()
+
     def _keep(self, kind: str, name: str, content: Mapping[str, object]) -> None:
-        self.note(kind, {"name": name, "content": dict(content)})
+        place = self._with.vehicle.state().place
+        if kind == "reported":
+            self.reported = {"name": name, "content": dict(content)}
+        self.note(kind, {"name": name, "content": dict(content), "place": place})
         named = f" '{name}'" if name else ""
         self._with.say(f"{kind}{named}: {', '.join(f'{key} {value}' for key, value in content.items())}")

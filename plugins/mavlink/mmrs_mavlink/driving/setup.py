@@ -5,16 +5,14 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from math import inf
 
-from mmrs_mavlink.plugin.backend.equipment import Equipment
-from mmrs_mavlink.plugin.backend.lost_link import LostLink
-from mmrs_mavlink.plugin.backend.options import LinkOptions
-from mmrs_mavlink.plugin.backend.way_back import WayBack
-from mmrs_mavlink.program import Robot
-from mmrs_mavlink.records.start import start_of
-from mmrs_mavlink.services.uploads import Uploads
-from mmrs_mavlink.steps.equipping import equip
-from mmrs_mavlink.steps.watch import Watch
-from mmrs_mavlink.vehicles.recognition import recognise
+from ..program import Robot
+from ..records.start import start_of
+from ..services.uploads import Uploads
+from ..steps.equipping import equip
+from ..steps.watch import Watch
+from .equipment import Equipment
+from .lost_link import LostLink
+from .way_back import WayBack
 
 
 class Setup:
@@ -29,7 +27,6 @@ class Setup:
         self,
         robot: Robot,
         equipment: Equipment,
-        options: LinkOptions,
         uploads: Uploads,
         watch: Watch,
         lost_link: LostLink,
@@ -38,7 +35,7 @@ class Setup:
     ) -> None:
         """Do nothing yet; `note` writes into the black box."""
         self.is_known = self.is_done = self._restarted = False
-        self._robot, self._with, self._options = robot, equipment, options
+        self._robot, self._with = robot, equipment
         self._uploads, self._watch, self._lost_link = uploads, watch, lost_link
         self._way, self._note = way, note
 
@@ -48,12 +45,15 @@ class Setup:
         Raises:
             Fault: it does not come in time.
         """
-        patience = self._options.patience * self._with.clock.speedup
-        self._with.say(f"waits for a vehicle at {self._with.url}")
+        radio, about = self._with.radio, dict(self._with.vehicle.about)
+        if radio is None:
+            self._note("start", start_of(self._robot, "", None) | about)
+            return
+        self._with.say(f"waits for a vehicle at {radio.url}")
         try:
-            self._with.radios.meet(self._with.link, self._with.url, patience)
+            radio.radios.meet(radio.link, radio.url, radio.patience)
         finally:
-            self._note("start", start_of(self._robot, self._with.url, self._with.link))
+            self._note("start", start_of(self._robot, radio.url, radio.link) | about)
 
     def set_up(self) -> None:
         """Have the vehicle know what it must, once it is known to be the robot's.
@@ -69,7 +69,7 @@ class Setup:
         self._lost_link.tell()
         equip(self._robot, vehicle, self._uploads, self._with.say)
         self.is_done = True
-        if vehicle.state().energy is None:
+        if vehicle.state().energy is None and not self._with.dry:
             self._with.say("does not tell its battery: nobody will notice when it is low")
         self._watch.forewarn()
 
@@ -95,15 +95,18 @@ class Setup:
         """Refuse a vehicle that is not the robot's, or that somebody else flies, before it is touched."""
         resumed, vehicle = self._with.resumed, self._with.vehicle
         first = resumed and not self.is_done
-        recognise(
-            self._with.link,
-            vehicle,
-            self._robot,
-            inf if resumed and vehicle.state().armed else self._options.home_tolerance,
-            self._way.starts(self._with.passed, self._with.begun) if first else (vehicle.start,),
-            under_way=resumed,
-            system=self._with.system,
-        )
+        if (radio := self._with.radio) is not None:
+            from ..vehicles.recognition import recognise  # needs MAVLink's library
+
+            recognise(
+                radio.link,
+                radio.vehicle,
+                self._robot,
+                inf if resumed and vehicle.state().armed else self._with.home_tolerance,
+                self._way.starts(self._with.passed, self._with.begun) if first else (vehicle.start,),
+                under_way=resumed,
+                system=radio.system,
+            )
         if first:
             self._way.know(self._with.passed, self._with.begun)
         self.is_known = True

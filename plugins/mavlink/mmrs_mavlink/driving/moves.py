@@ -3,12 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from functools import partial
 
-from mmrs_mavlink.objects import Locator, look_at, place_of
-from mmrs_mavlink.places import at_height, ends_of
-from mmrs_mavlink.plugin.backend.worker import Job
-from mmrs_mavlink.program import (
+from mmrs_runtime.clock import Clock
+from mmrs_runtime.faults import BATTERY_LOW, DEVICE_SILENT, Fault, Unanswered
+from mmrs_runtime.policies import VALUE_SECONDS, seconds_of
+from mmrs_runtime.screen import words_of
+
+from ..objects import Locator, look_at, place_of
+from ..places import at_height, ends_of
+from ..program import (
     Action,
     GoTo,
     Hold,
@@ -17,6 +22,7 @@ from mmrs_mavlink.program import (
     Measure,
     Movement,
     NoEffect,
+    Object,
     Operate,
     Place,
     Recharge,
@@ -28,15 +34,12 @@ from mmrs_mavlink.program import (
     Then,
     Turn,
 )
-from mmrs_mavlink.services.uploads import Flight
-from mmrs_mavlink.steps.energy import FULL, RECHARGE_FACTOR
-from mmrs_mavlink.steps.responses import policy_for
-from mmrs_mavlink.vehicles.corners import goes_through
-from mmrs_mavlink.vehicles.vehicle import Vehicle
-from mmrs_runtime.clock import Clock
-from mmrs_runtime.faults import BATTERY_LOW, DEVICE_SILENT, Fault, Unanswered
-from mmrs_runtime.policies import VALUE_SECONDS, seconds_of
-from mmrs_runtime.screen import words_of
+from ..services.uploads import Flight
+from ..steps.energy import FULL, RECHARGE_FACTOR
+from ..steps.responses import policy_for
+from ..vehicles.corners import goes_through
+from ..vehicles.vehicle import Seeking, Vehicle
+from .worker import Job
 
 IN_THE_AIR = 1.0
 """Metres above home from which on a vehicle climbs by going up, not by taking off."""
@@ -52,9 +55,24 @@ class Moves:
     """
 
     def __init__(
-        self, robot: Robot, vehicle: Vehicle, clock: Clock, locators: Mapping[str, Locator], told: Told
+        self,
+        robot: Robot,
+        vehicle: Vehicle,
+        clock: Clock,
+        locators: Mapping[str, Locator],
+        told: Told,
+        passed: Callable[[Place], None] = lambda place: None,
     ) -> None:
-        """Move that vehicle; `told` is called with what was reported or measured: kind, name, content."""
+        """Move that vehicle.
+
+        Args:
+            robot: its program.
+            vehicle: of the robot.
+            clock: of the run.
+            locators: what finds objects, by description.
+            told: called with what was reported or measured: kind, name, content.
+            passed: called with each place that it has come to.
+        """
         self.track: list[tuple[str, Place]] = []
         self._steps = {step.move: step for step in robot.steps}
         self._robot, self._home = robot.id, robot.home
@@ -62,6 +80,7 @@ class Moves:
         self._silence = seconds_of(policy)
         self._silence_of_values = seconds_of(policy, {DEVICE_SILENT: VALUE_SECONDS})
         self._vehicle, self._clock, self._locators, self._told = vehicle, clock, locators, told
+        self._passed = passed
 
     def movement(self, move: str, *, through: bool = False) -> Job:
         """Return what is to be done for a move; `through`: without a stop at its end."""
@@ -104,6 +123,10 @@ class Moves:
         """Return the place at that height above home."""
         return at_height(self._home, height)
 
+    def _pass(self, move: str, place: Place) -> None:
+        self.track.append((move, place))
+        self._passed(place)
+
     def target_of(self, movement: GoTo) -> Place:
         """Return where a movement leads to, without the distance that it keeps.
 
@@ -125,7 +148,7 @@ class Moves:
         else:
             self.track = []
             self._vehicle.take_off(height)
-        self.track.append((move, at_height(self._vehicle.state().place, height)))
+        self._pass(move, at_height(self._vehicle.state().place, height))
 
     def step(self, move: str) -> None:
         """Go where a move of a run leads to, and stop there."""
@@ -149,24 +172,31 @@ class Moves:
         """Remember that the place was passed where a move of a run ends."""
         movement = self._steps[move].movement
         assert isinstance(movement, GoTo)
-        self.track.append((move, place_of(movement.at, {}, self._vehicle.state())))
+        self._pass(move, place_of(movement.at, {}, self._vehicle.state()))
 
     def _go(self, move: str, movement: GoTo, through: bool) -> Job:
         job = Job()
 
         def look_up() -> None:
-            state = self._vehicle.state()
             if not self.track:
-                self.track.append((move, state.place))
+                self._pass(move, self._vehicle.state().place)
+            seen = self._sought(movement)
+            state = self._vehicle.state()
             here = at_height(state.place, self.track[-1][1].height)
-            target = self.target_of(movement)
-            look = look_at(movement.look, self._locators, state)
+            target = seen or self.target_of(movement)
+            look = look_at(_seen_at(movement, seen), self._locators, state)
             ends = ends_of(here, target, movement.legs, movement.distance)
             on = through and goes_through(self._steps[move], self._following(move), here)
             job.then(*(self._leg(move, end, movement, look, on and end == ends[-1]) for end in ends))
 
         job.append(look_up)
         return job
+
+    def _sought(self, movement: GoTo) -> Place | None:
+        """Return where the object that a movement leads to is, if the vehicle itself has looked for it."""
+        if not isinstance(movement.at, Object) or not isinstance(self._vehicle, Seeking):
+            return None
+        return self._vehicle.seek(movement)
 
     def _following(self, move: str) -> Step | None:
         then = self._steps[move].then
@@ -177,7 +207,7 @@ class Moves:
     ) -> Callable[[], None]:
         def go() -> None:
             self._vehicle.go_to(end, movement.speed, look, through)
-            self.track.append((move, end))
+            self._pass(move, end)
 
         return go
 
@@ -243,6 +273,14 @@ class Moves:
                 self._told("text", "charging", {"text": f"charged for {seconds:.0f} s; nobody knows how far"})
 
         return Job(finish, self._rest(seconds), top_up)
+
+
+def _seen_at(movement: GoTo, place: Place | None) -> Look | None:
+    """Return what a movement looks at, where it has found its own object."""
+    look = movement.look
+    return (
+        replace(look, at=place) if look is not None and place is not None and look.at == movement.at else look
+    )
 
 
 class _Flight:

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 
-from mmrs_mavlink.program import Policy, Robot
-from mmrs_mavlink.steps.responses import BLOCKED, alone, policy_for
-from mmrs_mavlink.vehicles.vehicle import Vehicle
 from mmrs_runtime.faults import LINK_LOST
+
+from ..program import Policy, Robot
+from ..steps.responses import BLOCKED, alone, policy_for
+from ..vehicles.vehicle import Vehicle
 
 
 class LostLink:

@@ -5,16 +5,17 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from itertools import pairwise
 
-from mmrs_mavlink.places import at_height, distance_to_leg, ends_of
-from mmrs_mavlink.plugin.backend.moves import IN_THE_AIR, Moves
-from mmrs_mavlink.plugin.backend.worker import Job
-from mmrs_mavlink.program import GoTo, Land, Place, Recharge, Robot, Start, TakeOff
-from mmrs_mavlink.steps.rejoining import ALIKE, OFF_ITS_WAY, way_ahead
-from mmrs_mavlink.steps.responses import policy_for
-from mmrs_mavlink.vehicles.footing import aside, footing, misplaced, there
-from mmrs_mavlink.vehicles.vehicle import Vehicle
 from mmrs_runtime.faults import BATTERY_LOW, Fault, Refused
 from mmrs_runtime.policies import CONTINUE, still_low
+
+from ..places import at_height, distance_to_leg, ends_of
+from ..program import GoTo, Land, Place, Recharge, Robot, Start, TakeOff
+from ..steps.rejoining import ALIKE, OFF_ITS_WAY, way_ahead
+from ..steps.responses import policy_for
+from ..vehicles.footing import aside, footing, misplaced, there
+from ..vehicles.vehicle import Vehicle
+from .moves import IN_THE_AIR, Moves
+from .worker import Job
 
 Point = tuple[str, Place]
 

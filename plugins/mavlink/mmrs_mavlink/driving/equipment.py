@@ -1,0 +1,103 @@
+"""What a robot is driven with: its vehicle, the link to it, its black box, and whom to tell."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+from mmrs_runtime.clock import Clock
+from mmrs_runtime.records.blackbox import BlackBox
+from mmrs_runtime.records.steps import StepRecord
+from mmrs_runtime.vehicle import Position
+
+from ..objects import Locator
+from ..program import Place
+from ..vehicles.vehicle import Vehicle
+
+if TYPE_CHECKING:
+    from ..links.link import Link
+    from ..links.radios import Radios
+    from ..vehicles.mavlink_vehicle import MavlinkVehicle
+
+
+class Guard:
+    """What every wait of a vehicle calls; it raises what is to end the wait."""
+
+    def __init__(self) -> None:
+        """Raise nothing until somebody sets `check`."""
+        self.check: Callable[[], None] = lambda: None
+
+    def __call__(self) -> None:
+        """Raise what is to end the wait."""
+        self.check()
+
+
+@dataclass(frozen=True, slots=True)
+class Radio:
+    """How a vehicle that speaks MAVLink is reached.
+
+    Attributes:
+        patience: seconds of the run to wait for its first sign.
+        system: of the vehicle when the run began; 0: nobody knows.
+    """
+
+    url: str
+    link: Link
+    vehicle: MavlinkVehicle
+    radios: Radios
+    patience: float
+    system: int = 0
+
+
+@dataclass(frozen=True, slots=True)
+class Equipment:
+    """What a robot is driven with.
+
+    Attributes:
+        guard: that the vehicle calls in its waits.
+        radio: None where the vehicle is reached otherwise, or there is none.
+        position: of a place: east, north, up.
+        joules: that its batteries hold when full; None where nobody says.
+        locators: what finds objects, by description.
+        box: None where no logs are kept.
+        home_tolerance: metres that a vehicle may be from where it is to stand.
+        fence: whether forbidden areas are uploaded.
+        dry: whether there is no vehicle.
+        records: the steps that it made before; the vehicle may be in the air then.
+        start: to be called once the robot gets ready, for faults that are made on purpose.
+        let_go: to be called before the link is closed.
+    """
+
+    vehicle: Vehicle
+    guard: Guard
+    clock: Clock
+    position: Callable[[Place], Position]
+    say: Callable[[str], None]
+    wake: Callable[[], None]
+    radio: Radio | None = None
+    joules: float | None = None
+    locators: Mapping[str, Locator] = field(default_factory=dict)
+    box: BlackBox | None = None
+    home_tolerance: float = 20.0
+    fence: bool = True
+    dry: bool = False
+    records: tuple[StepRecord, ...] = ()
+    start: Callable[[], None] = lambda: None
+    let_go: Callable[[], None] = lambda: None
+
+    @property
+    def resumed(self) -> bool:
+        """Return whether the run was broken off before."""
+        return bool(self.records)
+
+    @property
+    def passed(self) -> tuple[str, ...]:
+        """Return the moves that the robot had ended by then, in order."""
+        return tuple(each.move for each in self.records if each.label == "end")
+
+    @property
+    def begun(self) -> str:
+        """Return the move that it had begun and not ended; empty: none."""
+        last = self.records[-1] if self.records else None
+        return last.move if last is not None and last.label == "begin" else ""

@@ -1,1 +1,0 @@
-"""How a vehicle obeys the orders of people."""
