@@ -296,7 +296,8 @@ class ThreadedVehicle(Vehicle):
 
     def paused(self, now: float) -> bool:
         """Return whether the vehicle stands or was seen to brake since, and has not gone on."""
-        return self._worker.halted or (self._worker.started and self._brakes())
+        worker = self._worker
+        return worker.halted or worker.goes_on or (worker.started and self._brakes())
 
     def note(self, kind: str, content: Mapping[str, object]) -> None:
         """Write a line into the black box."""

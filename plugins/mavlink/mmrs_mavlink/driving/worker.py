@@ -114,6 +114,11 @@ class Worker:
         """Return whether the vehicle stands, and has not gone on yet."""
         return self._halted
 
+    @property
+    def goes_on(self) -> bool:
+        """Return whether the vehicle was told to halt, and has still to be told that it goes on."""
+        return self._halting and not self._holds
+
     def instead(self, fault: Fault, job: Job) -> None:
         """Do a job about a fault that is still there, unless something else was begun since."""
         with self._news:

@@ -160,3 +160,17 @@ def test_parts_can_be_put_in_while_one_is_done(yard):
     yard.worker.begin(job)
     yard.until(lambda: yard.worker.done)
     assert yard.did == ["a", "b", "c", "d"]
+
+
+def test_a_vehicle_that_was_told_to_halt_goes_on_once_it_was_told_so(yard):
+    standing, going = threading.Event(), threading.Event()
+    yard.halt, yard.go_on = yard.wait("brakes"), lambda: going.wait(20.0)
+    yard.worker.begin(Job(standing.set))
+    assert standing.wait(20.0)
+    yard.worker.pause()
+    yard.until(lambda: "brakes" in yard.did)
+    assert not yard.worker.goes_on
+    yard.worker.resume()
+    assert yard.worker.goes_on
+    going.set()
+    yard.until(lambda: not yard.worker.goes_on)
