@@ -1,4 +1,4 @@
-"""A robot of the flight runtime in this process: all that works for it, and a simulated vehicle by UDP."""
+"""A robot in this process: its vehicle as the driver has it, and what simulates that, by UDP."""
 
 from __future__ import annotations
 
@@ -8,24 +8,22 @@ from collections.abc import Callable, Iterator
 from concurrent.futures import Future
 from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass, field
-from pathlib import Path
 
 from patience import until
 from ports import free_port
 
 from mmrs_core.sitl import Settings, SimulatedVehicle
 from mmrs_core.sitl.hosting import LONGEST_STEP
-from mmrs_mavlink.desk import Desk
 from mmrs_mavlink.links.link import Link
 from mmrs_mavlink.links.ports import open_port
 from mmrs_mavlink.links.radio import Radio
-from mmrs_mavlink.orders.obedience import Obedience
 from mmrs_mavlink.places import distance
 from mmrs_mavlink.program import (
     Geographic,
     GoTo,
     Hold,
     Land,
+    Place,
     Policy,
     Robot,
     Start,
@@ -35,18 +33,11 @@ from mmrs_mavlink.program import (
     Then,
 )
 from mmrs_mavlink.services.uploads import Uploads
-from mmrs_mavlink.slots import LocalSlots
-from mmrs_mavlink.steps.ending import Crew, Ending
-from mmrs_mavlink.steps.guarding import guarding
-from mmrs_mavlink.steps.pilot import Pilot
 from mmrs_mavlink.steps.watch import Watch
 from mmrs_mavlink.vehicles.mavlink_vehicle import MavlinkVehicle
 from mmrs_runtime.clock import Clock
 from mmrs_runtime.faults import Fault
-from mmrs_runtime.orders.orders import Inbox
 from mmrs_runtime.ports import NOTHING, Port, Received
-from mmrs_runtime.records.blackbox import BlackBox
-from mmrs_runtime.records.log import Log, read
 
 HOME = Geographic(42.37, 13.35, 0.0)
 SPEEDUP = 30.0
@@ -123,44 +114,46 @@ class Ears:
 
 @dataclass
 class Manned:
-    """A robot with its crew.
+    """A robot and its vehicle, watched in every wait.
 
     Attributes:
-        crew: of the flight runtime. inbox: for orders to it. stop: asks it to stop.
-        simulated: its vehicle. said: what it told people. left: how often it told others that it has ended.
+        simulated: its vehicle. track: the places passed in its sortie. decided: what its watch has decided.
     """
 
-    crew: Crew
-    inbox: Inbox
-    stop: threading.Event
+    robot: Robot
+    vehicle: MavlinkVehicle
+    link: Link
+    watch: Watch
     simulated: SimulatedVehicle
-    said: list[str]
-    log: Path
-    box: BlackBox
     ears: Ears
-    left: int = 0
+    track: list[tuple[str, Place]] = field(default_factory=list)
+    said: list[str] = field(default_factory=list)
     decided: list[tuple[str, str]] = field(default_factory=list)
+
+    @property
+    def clock(self) -> Clock:
+        """Return the clock of its run."""
+        return self.link.clock
 
     def fly_up(self) -> None:
         """Have the vehicle climb to ten metres, as the robot's program begins."""
-        crew = self.crew
-        crew.vehicle.prepare(Uploads())
-        crew.watch.renew()
-        crew.vehicle.take_off(10.0)
-        crew.pilot.track.append(("up", crew.vehicle.state().place))
+        self.vehicle.prepare(Uploads())
+        self.watch.renew()
+        self.vehicle.take_off(10.0)
+        self.track.append(("up", self.vehicle.state().place))
 
     def fly_out(self) -> None:
         """Have it climb, and go north."""
         self.fly_up()
-        self.crew.vehicle.go_to(NORTH, 5.0, None, False)
-        self.crew.pilot.track.append(("out", NORTH))
+        self.vehicle.go_to(NORTH, 5.0, None, False)
+        self.track.append(("out", NORTH))
 
     def caught(self, seconds: float = 20.0) -> Fault:
         """Return what the watch raises as soon as it does; fail if it raises nothing for so long."""
         end = time.monotonic() + seconds
         while time.monotonic() < end:
             try:
-                self.crew.watch.check()
+                self.watch.check()
             except Fault as fault:
                 return fault
             time.sleep(0.005)
@@ -168,34 +161,22 @@ class Manned:
 
     def quiet(self, seconds: float) -> None:
         """Look for so many seconds of the run, in which the watch must raise nothing."""
-        clock = self.crew.desk.clock
+        clock = self.clock
         end = clock.now() + seconds
         while clock.now() < end:
-            self.crew.watch.check()
+            self.watch.check()
             time.sleep(0.005)
-
-    def ending(self) -> Ending:
-        """Return what ends its program."""
-
-        def leave() -> None:
-            self.left += 1
-
-        return Ending(self.crew, leave)
-
-    def events(self) -> list[str]:
-        """Return the faults in its log."""
-        return [line.detail for line in read(self.log) if line.label == "fault"]
 
     def away(self, place: Geographic) -> float:
         """Return how far the vehicle is from a place, metres."""
-        return distance(self.crew.vehicle.state().place, place)
+        return distance(self.vehicle.state().place, place)
 
     def land_for_the_battery(self) -> None:
         """Have the vehicle land by itself since it finds its battery low."""
         found = {"BATT_FS_LOW_ACT": 1.0, "BATT_LOW_TIMER": 0.0, "BATT_LOW_VOLT": 99.0}
         with self.simulated.lock:
             self.simulated.autopilot.parameters |= found
-        until(lambda: self.crew.vehicle.state().mode == "land")
+        until(lambda: self.vehicle.state().mode == "land")
 
     @property
     def mode(self) -> str:
@@ -204,43 +185,10 @@ class Manned:
 
 
 @contextmanager
-def crewed(
-    folder: Path, robot: Robot, link: Link, stop: threading.Event, say: Callable[[str], None], on_stop: str
-) -> Iterator[tuple[Crew, Inbox]]:
-    """Give all that works for a robot whose vehicle has been met, and the inbox for orders to it."""
-    clock = link.clock
-    with ExitStack() as stack:
-        log = folder / robot.log
-        desk = Desk(
-            clock=clock,
-            slots=LocalSlots([robot]),
-            log=Log(log, "run-0", robot.id),
-            box=BlackBox(log.with_suffix(".blackbox.ndjson"), "run-0", robot.id, clock.now),
-            conditions={},
-            locators={},
-            stop=stop,
-            say=say,
-        )
-        stack.callback(desk.log.close)
-        stack.callback(desk.box.close)
-        inbox = Inbox(robot.id, arrived=link.wake)
-        watch, obedience = Watch(robot, clock, stop), Obedience(inbox, clock, stop, say)
-        vehicle = MavlinkVehicle(link, robot.vehicle, robot.home)
-        watch.begin(link, vehicle)
-        obedience.begin(vehicle)
-        pilot = Pilot(robot, vehicle, desk, watch, obedience)
-        watch.track = lambda: pilot.track
-        link.guard = guarding(watch, obedience)
-        yield Crew(robot, vehicle, link, watch, obedience, desk, pilot, on_stop), inbox
-
-
-@contextmanager
-def manned(
-    folder: Path, robot: Robot | None = None, *, on_stop: str = "hold", **settings: object
-) -> Iterator[Manned]:
+def manned(robot: Robot | None = None, **settings: object) -> Iterator[Manned]:
     """Give a robot whose vehicle stands at home, ready, and whose program has not begun."""
     robot = robot or robot_of()
-    clock, stop, said = NearClock(SPEEDUP), threading.Event(), []
+    clock = NearClock(SPEEDUP)
     with ExitStack() as stack:
         port = free_port()
         simulated = stack.enter_context(SimulatedVehicle(port, Settings(**settings), speedup=SPEEDUP))
@@ -249,9 +197,12 @@ def manned(
         link = Link(Radio(ears, clock), clock, simulated.autopilot.settings.system)
         stack.callback(link.close)
         assert link.wait(lambda: link.component, 10.0 * SPEEDUP)
-        crew, inbox = stack.enter_context(crewed(folder, robot, link, stop, said.append, on_stop))
-        made = Manned(crew, inbox, stop, simulated, said, folder / robot.log, crew.desk.box, ears)
-        crew.watch.decide = lambda event, why, response: made.decided.append((event, response))
+        vehicle, watch = MavlinkVehicle(link, robot.vehicle, robot.home), Watch(robot, clock)
+        watch.begin(link, vehicle)
+        link.guard = watch.check
+        made = Manned(robot, vehicle, link, watch, simulated, ears)
+        watch.track, watch.say = lambda: made.track, made.said.append
+        watch.decide = lambda event, why, response: made.decided.append((event, response))
         until(lambda: simulated.autopilot.ready)
         yield made
 

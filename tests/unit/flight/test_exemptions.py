@@ -47,17 +47,17 @@ def test_a_copter_that_insists_on_going_on_is_refused():
         end_exemption(link, "copter")
 
 
-def test_a_px4_that_would_go_on_is_told_otherwise_for_the_modes_of_its_program(tmp_path):
-    with manned(tmp_path, firmware="px4", parameters={"COM_DLL_EXCEPT": 13}) as made:
-        made.crew.vehicle.answer_lost_link("CONTINUE")
+def test_a_px4_that_would_go_on_is_told_otherwise_for_the_modes_of_its_program():
+    with manned(firmware="px4", parameters={"COM_DLL_EXCEPT": 13}) as made:
+        made.vehicle.answer_lost_link("CONTINUE")
         assert made.simulated.autopilot.parameters["COM_DLL_EXCEPT"] == 13
-        made.crew.vehicle.answer_lost_link("RETURN")
+        made.vehicle.answer_lost_link("RETURN")
         assert made.simulated.autopilot.parameters["COM_DLL_EXCEPT"] == 8
 
 
-def test_a_robot_with_an_answer_to_a_lost_link_ends_what_its_owner_had_exempted(tmp_path):
-    with manned(tmp_path, parameters={"FS_OPTIONS": 2.0}) as made:
-        made.crew.vehicle.answer_lost_link("CONTINUE")
+def test_a_robot_with_an_answer_to_a_lost_link_ends_what_its_owner_had_exempted():
+    with manned(parameters={"FS_OPTIONS": 2.0}) as made:
+        made.vehicle.answer_lost_link("CONTINUE")
         assert made.simulated.autopilot.parameters["FS_OPTIONS"] == 2.0
-        made.crew.vehicle.answer_lost_link("RETURN")
+        made.vehicle.answer_lost_link("RETURN")
         assert made.simulated.autopilot.parameters["FS_OPTIONS"] == 0.0

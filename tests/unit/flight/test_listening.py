@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 from mavlink_peer import PX4, linked, value
 
+from mmrs_mavlink.driving.lost_link import LostLink
 from mmrs_mavlink.program import Policy
 from mmrs_mavlink.vehicles.listening import check_listening
 from mmrs_runtime.faults import Refused
@@ -63,11 +64,11 @@ def test_a_px4_takes_any_ground_station():
 def test_a_robot_whose_policy_wants_an_answer_to_a_lost_link_does_not_begin_with_such_a_vehicle(in_the_air):
     made = in_the_air(Policy("LINK_LOST", "RETURN"), parameters={"SYSID_MYGCS": 254.0})
     with pytest.raises(Refused, match="would not notice when this program falls silent"):
-        made.crew.pilot.waits.tell_vehicle()
+        LostLink(made.robot, made.vehicle, made.said.append).tell()
     assert made.simulated.autopilot.parameters["FS_GCS_ENABLE"] != 3.0
 
 
 def test_a_robot_that_carries_on_without_a_link_may_begin_with_it(in_the_air):
     made = in_the_air(Policy("LINK_LOST", "CONTINUE"), parameters={"SYSID_MYGCS": 254.0})
-    made.crew.pilot.waits.tell_vehicle()
+    LostLink(made.robot, made.vehicle, made.said.append).tell()
     assert made.simulated.autopilot.parameters["FS_GCS_ENABLE"] == 0.0

@@ -21,14 +21,14 @@ PERCH = Geographic(42.37 + 72.0 / 111_080.0, 13.35, HILL)
 
 
 @pytest.fixture
-def perched(tmp_path):
+def perched():
     """Return a function that gives a vehicle where its program landed it, switched on there or not."""
     opened = []
 
     def stand(*, restarted: bool, **settings):
-        opened.append(manned(tmp_path, **settings))
+        opened.append(manned(**settings))
         made = opened[-1].__enter__()
-        vehicle, simulated = made.crew.vehicle, made.simulated
+        vehicle, simulated = made.vehicle, made.simulated
         with simulated.lock:
             simulated.autopilot.body.position = (72.0, 0.0, 0.0)
         if restarted:
@@ -37,7 +37,7 @@ def perched(tmp_path):
         until(lambda: aside(vehicle.state().place, PERCH) < 1.0)
         vehicle.start = footing(HOME, PERCH)
         vehicle.prepare(Uploads())
-        made.crew.watch.renew()
+        made.watch.renew()
         return made
 
     yield stand
@@ -52,9 +52,9 @@ def test_one_that_was_switched_on_there_is_told_the_home_of_its_program_and_coun
     made = perched(restarted=True, firmware=firmware)
     autopilot = made.simulated.autopilot
     assert autopilot.home[0] == pytest.approx(PERCH.latitude, abs=1e-6)
-    made.crew.vehicle.take_off(16.0)
+    made.vehicle.take_off(16.0)
     assert autopilot.home == pytest.approx((HOME.latitude, HOME.longitude, 720.0 - HILL), abs=0.1)
-    assert made.crew.vehicle.state().place.height == pytest.approx(16.0, abs=1.0)
+    assert made.vehicle.state().place.height == pytest.approx(16.0, abs=1.0)
     assert autopilot.body.position[2] == pytest.approx(16.0 - HILL, abs=1.0)
 
 
@@ -62,8 +62,8 @@ def test_one_that_has_its_home_there_still_keeps_that(perched):
     made = perched(restarted=False)
     home = made.simulated.autopilot.home
     told = []
-    made.crew.vehicle._tell = told.append
-    made.crew.vehicle.take_off(16.0)
+    made.vehicle._tell = told.append
+    made.vehicle.take_off(16.0)
     assert made.simulated.autopilot.home == pytest.approx(home, abs=1e-6)
     assert told == ["takes off 72 m from its home, which the vehicle keeps for its own: 42.370000, 13.350000"]
 
@@ -72,8 +72,8 @@ def test_a_place_near_home_is_home_and_the_vehicle_is_told_nothing(perched):
     made = perched(restarted=False)
     with made.simulated.lock:
         made.simulated.autopilot.body.position = (4.0, 0.0, 0.0)
-    made.crew.vehicle.start = footing(HOME, Geographic(42.37 + 4.0 / 111_080.0, 13.35, 0.2))
-    made.crew.vehicle.take_off(10.0)
+    made.vehicle.start = footing(HOME, Geographic(42.37 + 4.0 / 111_080.0, 13.35, 0.2))
+    made.vehicle.take_off(10.0)
     assert not any(number == SET_HOME for _, number, _ in made.simulated.autopilot.history)
 
 
@@ -86,9 +86,9 @@ def test_a_place_near_home_is_home_and_the_vehicle_is_told_nothing(perched):
 )
 def test_one_that_does_not_take_it_does_not_take_off(perched, settings, why):
     made = perched(restarted=True, **settings)
-    made.crew.link.retries = Retries(tries=2)
+    made.link.retries = Retries(tries=2)
     with pytest.raises(Refused, match="bring it home, and begin anew") as refused:
-        made.crew.vehicle.take_off(16.0)
+        made.vehicle.take_off(16.0)
     assert f"it takes off 72 m from its home, and the vehicle does not keep that for its own ({why}" in str(
         refused.value
     )
@@ -98,7 +98,7 @@ def test_one_that_does_not_take_it_does_not_take_off(perched, settings, why):
 def test_one_that_agrees_and_keeps_another_does_not_take_off(perched, monkeypatch):
     monkeypatch.setitem(commands._HANDLERS, SET_HOME, lambda pilot, params: commands.ACCEPTED)
     made = perched(restarted=True)
-    made.crew.link.retries = Retries(tries=2)
+    made.link.retries = Retries(tries=2)
     with pytest.raises(Refused, match="the vehicle does not confirm it"):
-        made.crew.vehicle.take_off(16.0)
+        made.vehicle.take_off(16.0)
     assert not made.simulated.autopilot.armed

@@ -15,11 +15,11 @@ LEVEL = Geographic(42.3704, 13.35, 0.0)
 
 
 @pytest.fixture
-def rover(tmp_path):
+def rover():
     """Give a rover that stands ready at home, in GUIDED."""
-    with manned(tmp_path, robot_of(vehicle="rover"), kind="rover") as made:
-        made.crew.vehicle.prepare(Uploads())
-        made.crew.watch.renew()
+    with manned(robot_of(vehicle="rover"), kind="rover") as made:
+        made.vehicle.prepare(Uploads())
+        made.watch.renew()
         yield made
 
 
@@ -32,7 +32,7 @@ def fastest(track) -> float:
 
 def test_a_copter_goes_as_fast_as_it_is_told_right_after_its_take_off(in_the_air):
     made = in_the_air()
-    made.crew.vehicle.go_to(Geographic(42.3703, 13.35, 10.0), 2.0, None, False)
+    made.vehicle.go_to(Geographic(42.3703, 13.35, 10.0), 2.0, None, False)
     assert 1.8 < fastest(made.simulated.autopilot.track) < 2.2
 
 
@@ -48,17 +48,17 @@ def test_a_copter_whose_first_target_is_lost_goes_as_fast_as_it_is_told_all_the_
             hear(message)
 
     simulated._take = lose_the_first
-    made.crew.vehicle.go_to(Geographic(42.3704, 13.35, 10.0), 2.0, None, False)
+    made.vehicle.go_to(Geographic(42.3704, 13.35, 10.0), 2.0, None, False)
     assert lost
     assert fastest(simulated.autopilot.track) < 2.2
 
 
 def test_a_rover_goes_as_fast_as_it_is_told_although_it_heeds_no_speed_before_a_target(rover):
-    rover.crew.vehicle.go_to(LEVEL, 1.0, None, False)
+    rover.vehicle.go_to(LEVEL, 1.0, None, False)
     assert 0.8 < fastest(rover.simulated.autopilot.track) < 1.2
 
 
 def test_a_rover_comes_as_near_as_its_places_are_accepted(rover):
     assert rover.simulated.autopilot.parameters["WP_RADIUS"] <= 0.5
-    rover.crew.vehicle.go_to(LEVEL, 2.0, None, False)
+    rover.vehicle.go_to(LEVEL, 2.0, None, False)
     assert rover.away(LEVEL) <= 0.5

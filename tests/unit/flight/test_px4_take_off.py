@@ -22,13 +22,13 @@ def raise_home(made, metres: float) -> None:
 
 def prepared(made):
     """Return the vehicle of a robot that is ready to take off."""
-    made.crew.vehicle.prepare(uploads_of(ROBOT))
-    made.crew.watch.renew()
-    return made.crew.vehicle
+    made.vehicle.prepare(uploads_of(ROBOT))
+    made.watch.renew()
+    return made.vehicle
 
 
-def test_a_px4_that_takes_another_height_for_home_as_it_climbs_goes_to_the_right_one(tmp_path):
-    with manned(tmp_path, ROBOT, firmware="px4") as made:
+def test_a_px4_that_takes_another_height_for_home_as_it_climbs_goes_to_the_right_one():
+    with manned(ROBOT, firmware="px4") as made:
         vehicle, body = prepared(made), made.simulated.autopilot.body
 
         def shift() -> None:
@@ -43,9 +43,9 @@ def test_a_px4_that_takes_another_height_for_home_as_it_climbs_goes_to_the_right
         assert body.position[2] == pytest.approx(12.0, abs=0.6)
 
 
-def test_the_height_of_home_when_the_motors_start_counts(tmp_path):
-    with manned(tmp_path, ROBOT, firmware="px4") as made:
-        vehicle, autopilot, link = prepared(made), made.simulated.autopilot, made.crew.link
+def test_the_height_of_home_when_the_motors_start_counts():
+    with manned(ROBOT, firmware="px4") as made:
+        vehicle, autopilot, link = prepared(made), made.simulated.autopilot, made.link
         raise_home(made, -5.0)
         until(lambda: vehicle.telemetry.here().height > 4.0)
         hears = link.hears

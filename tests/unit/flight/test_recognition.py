@@ -61,16 +61,15 @@ def found(in_the_air):
         with made.simulated.lock:
             made.simulated.autopilot.parameters |= parameters
         made.simulated.faults.take_stick(mode)
-        until(lambda: made.crew.vehicle.telemetry.mode() == made.simulated.autopilot.numbers[mode])
-        made.crew.vehicle.take_back()
+        until(lambda: made.vehicle.telemetry.mode() == made.simulated.autopilot.numbers[mode])
+        made.vehicle.take_back()
         return made
 
     return fly
 
 
 def recognised(made) -> None:
-    crew = made.crew
-    recognise(crew.link, crew.vehicle, crew.robot, inf, (HOME,), under_way=True, system=0)
+    recognise(made.link, made.vehicle, made.robot, inf, (HOME,), under_way=True, system=0)
 
 
 @pytest.mark.parametrize(("mode", "answer"), [("return", 1.0), ("smart_return", 3.0), ("guided", 0.0)])
@@ -109,16 +108,15 @@ PERCH = north(72.0)
     ],
 )
 def test_a_vehicle_whose_run_is_resumed_stands_where_its_log_leaves_it_or_is_to_be_carried_there(
-    tmp_path, starts, away, words
+    starts, away, words
 ):
-    with manned(tmp_path) as made:
-        crew = made.crew
+    with manned() as made:
         with made.simulated.lock:
             made.simulated.autopilot.body.position = (away, 0.0, 0.0)
-        until(lambda: aside(crew.vehicle.state().place, north(away)) < 0.5)
+        until(lambda: aside(made.vehicle.state().place, north(away)) < 0.5)
         with pytest.raises(Refused) if words else nullcontext() as refused:
-            recognise(crew.link, crew.vehicle, crew.robot, 20.0, starts, under_way=True, system=0)
+            recognise(made.link, made.vehicle, made.robot, 20.0, starts, under_way=True, system=0)
         if words:
             assert str(refused.value) == f"the vehicle is {words}"
         else:
-            assert crew.vehicle.start == (PERCH if away > 50.0 else HOME)
+            assert made.vehicle.start == (PERCH if away > 50.0 else HOME)

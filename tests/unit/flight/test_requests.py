@@ -9,10 +9,11 @@ import pytest
 from mavlink_peer import acknowledged, eventually, heartbeat, linked
 
 from mmrs_mavlink import Geographic
+from mmrs_mavlink.driving.worker import Interrupted
 from mmrs_mavlink.vehicles import modes
 from mmrs_mavlink.vehicles.helm import Helm
 from mmrs_mavlink.vehicles.telemetry import Telemetry
-from mmrs_runtime.faults import Fault, Stopped
+from mmrs_runtime.faults import Fault
 
 HOME = Geographic(42.37, 13.35, 0.0)
 STABILIZE, GUIDED, LOITER, LAND, BRAKE = 0, 4, 5, 9, 17
@@ -54,10 +55,10 @@ def broken_off(helm: Helm, link, wire, mode: str) -> None:
 
     def order() -> None:
         if wire.answer.asked:
-            raise Stopped
+            raise Interrupted
 
     link.guard = order
-    with pytest.raises(Stopped):
+    with pytest.raises(Interrupted):
         helm.enter(mode)
     link.guard = lambda: None
 

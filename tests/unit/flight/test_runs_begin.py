@@ -49,23 +49,23 @@ SECOND = FLIGHTS["b1"]
 def prepare(made, robot=ROBOT):
     """Have the mission uploaded; return what people are told meanwhile."""
     told = []
-    made.crew.vehicle._tell = told.append
-    made.crew.vehicle.prepare(uploads_of(robot))
+    made.vehicle._tell = told.append
+    made.vehicle.prepare(uploads_of(robot))
     return told
 
 
 def take_off(made):
-    made.crew.watch.renew()
-    made.crew.vehicle.take_off(10.0)
+    made.watch.renew()
+    made.vehicle.take_off(10.0)
 
 
 @pytest.fixture
-def airborne(tmp_path):
-    """Return a function that gives the crew of a robot that has taken off, with its mission uploaded."""
+def airborne():
+    """Return a function that gives a robot that has taken off, with its mission uploaded."""
     opened = []
 
     def fly(robot=ROBOT, **settings):
-        opened.append(manned(tmp_path, robot, **settings))
+        opened.append(manned(robot, **settings))
         made = opened[-1].__enter__()
         prepare(made, robot)
         take_off(made)
@@ -80,14 +80,14 @@ def airborne(tmp_path):
 def test_a_run_begins_with_its_own_first_place(airborne, firmware):
     made = airborne(firmware=firmware)
     reached = []
-    made.crew.vehicle.fly(SECOND.first, SECOND.last, reached.append)
+    made.vehicle.fly(SECOND.first, SECOND.last, reached.append)
     assert reached == list(range(SECOND.first, SECOND.last + 1))
-    assert distance(made.crew.vehicle.state().place, WAYS["b3"]) < 4.0
+    assert distance(made.vehicle.state().place, WAYS["b3"]) < 4.0
 
 
 def test_a_run_is_followed_from_its_beginning_also_where_the_mode_is_heard_of_later(airborne):
     made = airborne()
-    link, run, reached = made.crew.link, FLIGHTS["a1"], []
+    link, run, reached = made.link, FLIGHTS["a1"], []
     hears, body = link.hears, made.simulated.autopilot.body
 
     def hears_late(message, sender):
@@ -96,7 +96,7 @@ def test_a_run_is_followed_from_its_beginning_also_where_the_mode_is_heard_of_la
             hears(message, sender)
 
     link.hears = hears_late
-    made.crew.vehicle.fly(run.first, run.last, reached.append)
+    made.vehicle.fly(run.first, run.last, reached.append)
     assert reached == list(range(run.first, run.last + 1))
 
 
@@ -105,35 +105,35 @@ def test_what_is_left_of_a_run_is_flown_as_fast_as_the_run(airborne):
     autopilot, speeds = made.simulated.autopilot, []
     rest = SECOND.first + 2
     assert MISSION[rest].x == round(WAYS["b2"].latitude * 1e7)
-    made.crew.link.observe(
+    made.link.observe(
         lambda message, out: speeds.append(autopilot.body.speed) if made.mode == "auto" else None
     )
-    made.crew.vehicle.fly(rest, SECOND.last, lambda seq: None)
+    made.vehicle.fly(rest, SECOND.last, lambda seq: None)
     assert set(speeds[len(speeds) // 4 :]) == {3.0, 4.0}
 
 
 def test_a_run_without_a_speed_is_not_flown_at_that_of_the_run_before(airborne):
     made = airborne(firmware="px4", robot=UNHURRIED)
     autopilot, speeds, second = made.simulated.autopilot, [], mission_of(UNHURRIED)[1]["b1"]
-    made.crew.link.observe(
+    made.link.observe(
         lambda message, out: speeds.append(autopilot.body.speed) if made.mode == "auto" else None
     )
-    made.crew.vehicle.fly(second.first, second.last, lambda seq: None)
+    made.vehicle.fly(second.first, second.last, lambda seq: None)
     assert speeds[-1] == autopilot.parameters["MPC_XY_CRUISE"]
 
 
-def test_a_vehicle_that_begins_its_missions_anew_is_set_to_go_on_and_people_are_told(tmp_path):
-    with manned(tmp_path, ROBOT, parameters={"MIS_RESTART": 1.0}) as made:
+def test_a_vehicle_that_begins_its_missions_anew_is_set_to_go_on_and_people_are_told():
+    with manned(ROBOT, parameters={"MIS_RESTART": 1.0}) as made:
         told = prepare(made)
         assert made.simulated.autopilot.parameters["MIS_RESTART"] == 0.0
         assert "MIS_RESTART = 0, which was 1: each run begins with its own first place" in told
         take_off(made)
-        made.crew.vehicle.fly(SECOND.first, SECOND.last, lambda seq: None)
-        assert distance(made.crew.vehicle.state().place, WAYS["b3"]) < 4.0
+        made.vehicle.fly(SECOND.first, SECOND.last, lambda seq: None)
+        assert distance(made.vehicle.state().place, WAYS["b3"]) < 4.0
 
 
-def test_a_px4_is_set_not_to_begin_its_mission_by_itself_after_take_off(tmp_path):
-    with manned(tmp_path, ROBOT, firmware="px4", parameters={"COM_TAKEOFF_ACT": 1}) as made:
+def test_a_px4_is_set_not_to_begin_its_mission_by_itself_after_take_off():
+    with manned(ROBOT, firmware="px4", parameters={"COM_TAKEOFF_ACT": 1}) as made:
         told = prepare(made)
         assert made.simulated.autopilot.parameters["COM_TAKEOFF_ACT"] == 0.0
         assert "COM_TAKEOFF_ACT = 0, which was 1: each run begins with its own first place" in told
@@ -142,17 +142,17 @@ def test_a_px4_is_set_not_to_begin_its_mission_by_itself_after_take_off(tmp_path
         assert made.mode == "loiter"
 
 
-def test_a_mission_that_a_px4_has_accepted_and_would_not_fly_is_refused_on_the_ground(tmp_path):
+def test_a_mission_that_a_px4_has_accepted_and_would_not_fly_is_refused_on_the_ground():
     with (
-        manned(tmp_path, ROBOT, firmware="px4", parameters={"MIS_DIST_1WP": 5.0}) as made,
+        manned(ROBOT, firmware="px4", parameters={"MIS_DIST_1WP": 5.0}) as made,
         pytest.raises(Refused, match="mission: the vehicle has accepted it, and would not fly it"),
     ):
         prepare(made)
 
 
-def test_what_a_px4_says_against_a_mission_is_told(tmp_path):
-    with manned(tmp_path, ROBOT, firmware="px4", parameters={"MIS_DIST_1WP": 5.0}) as made:
-        link, telemetry = made.crew.link, made.crew.vehicle.telemetry
+def test_what_a_px4_says_against_a_mission_is_told():
+    with manned(ROBOT, firmware="px4", parameters={"MIS_DIST_1WP": 5.0}) as made:
+        link, telemetry = made.link, made.vehicle.telemetry
         upload(link, px4.Px4(link, telemetry).mission(MISSION))
         with made.simulated.lock:
             made.simulated.autopilot.say(2, "First waypoint too far away: 10m, 5 max")
@@ -160,13 +160,13 @@ def test_what_a_px4_says_against_a_mission_is_told(tmp_path):
             check_feasible(link, telemetry, 0.0)
 
 
-def test_a_vehicle_that_keeps_beginning_its_missions_anew_is_not_flown(tmp_path, monkeypatch):
+def test_a_vehicle_that_keeps_beginning_its_missions_anew_is_not_flown(monkeypatch):
     monkeypatch.setattr(parameters, "write", lambda *given: False)
     with (
-        manned(tmp_path, ROBOT, parameters={"MIS_RESTART": 1.0}) as made,
+        manned(ROBOT, parameters={"MIS_RESTART": 1.0}) as made,
         pytest.raises(Refused, match="MIS_RESTART = 1: the vehicle would begin every run"),
     ):
-        keep_place(made.crew.link)
+        keep_place(made.link)
 
 
 def test_a_run_says_its_speed_before_its_first_place():

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import threading
-
 import pytest
 from flight_crew import robot_of
 from mavlink_peer import HERE, PX4, THERE, eventually, heartbeat, linked, two_linked
@@ -185,7 +183,7 @@ def test_people_are_told_at_the_start_what_their_policy_waits_for(ears, policy, 
 
 def watching(ears, *policies):
     robot = robot_of(*policies)
-    watch, decided = Watch(robot, ears.clock, threading.Event()), []
+    watch, decided = Watch(robot, ears.clock), []
     watch.begin(ears.first, MavlinkVehicle(ears.first, "copter", robot.home))
     watch.decide = lambda *decision: decided.append(decision)
     return watch, decided

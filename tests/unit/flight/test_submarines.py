@@ -14,38 +14,36 @@ BELOW = Geographic(42.37, 13.35, -4.0)
 
 
 @pytest.fixture
-def below(tmp_path):
+def below():
     """Give a submarine four metres below its home."""
-    with manned(tmp_path, robot_of(vehicle="sub"), kind="sub") as made:
-        crew = made.crew
-        crew.vehicle.prepare(Uploads())
-        crew.watch.renew()
-        crew.vehicle.go_to(BELOW, None, None, False)
+    with manned(robot_of(vehicle="sub"), kind="sub") as made:
+        made.vehicle.prepare(Uploads())
+        made.watch.renew()
+        made.vehicle.go_to(BELOW, None, None, False)
         yield made
 
 
 def test_a_submarine_that_holds_keeps_its_motors_running(below):
-    assert below.crew.vehicle.hold()
+    assert below.vehicle.hold()
     assert below.simulated.autopilot.armed
 
 
 def test_a_submarine_whose_motors_are_off_below_has_not_surfaced(below):
     with below.simulated.lock:
         below.simulated.autopilot.disarm()
-    below.crew.watch.moving = False
-    assert below.crew.link.wait(lambda: not below.crew.vehicle.state().armed, 60.0)
+    below.watch.moving = False
+    assert below.link.wait(lambda: not below.vehicle.state().armed, 60.0)
     with pytest.raises(Refused, match="its motors are off: it comes up only if it is buoyant"):
-        below.crew.vehicle.surface()
+        below.vehicle.surface()
 
 
 def test_a_submarine_whose_motors_are_off_below_does_not_hold(below):
-    crew = below.crew
-    assert undone("HOLD", crew.robot, crew.vehicle, crew.near_home) == ""
+    assert undone("HOLD", below.robot, below.vehicle, 20.0) == ""
     with below.simulated.lock:
         below.simulated.autopilot.disarm()
-    crew.watch.moving = False
-    assert crew.link.wait(lambda: not crew.vehicle.state().armed, 60.0)
-    assert undone("HOLD", crew.robot, crew.vehicle, crew.near_home) == "its motors are off, below the surface"
+    below.watch.moving = False
+    assert below.link.wait(lambda: not below.vehicle.state().armed, 60.0)
+    assert undone("HOLD", below.robot, below.vehicle, 20.0) == "its motors are off, below the surface"
 
 
 def test_motors_that_stop_below_are_noticed(below):
@@ -57,7 +55,7 @@ def test_motors_that_stop_below_are_noticed(below):
 
 def test_motors_that_stop_at_the_surface_are_not(below):
     below.quiet(2.0)
-    below.crew.vehicle.surface()
+    below.vehicle.surface()
     with below.simulated.lock:
         below.simulated.autopilot.disarm()
     below.quiet(5.0)

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import threading
-
 import pytest
 from flight_crew import OVERHEAD, SPEEDUP, in_background, robot_of
 from patience import until
@@ -11,24 +9,7 @@ from patience import until
 from mmrs_mavlink.program import Policy
 from mmrs_mavlink.steps.watch import Watch
 from mmrs_runtime.clock import Clock
-from mmrs_runtime.faults import Fault, Stopped
-
-
-def test_only_a_stop_ends_what_has_no_vehicle_yet():
-    stop = threading.Event()
-    watch = Watch(robot_of(), Clock(), stop)
-    watch.check()
-    stop.set()
-    with pytest.raises(Stopped):
-        watch.check()
-
-
-def test_a_log_that_cannot_be_kept_ends_what_has_no_vehicle_too():
-    watch = Watch(robot_of(), Clock(), threading.Event())
-    watch.unkept = lambda: "its slots cannot be kept"
-    with pytest.raises(Fault, match="its slots cannot be kept") as fault:
-        watch.check()
-    assert fault.value.event == "LOG_FAILED"
+from mmrs_runtime.faults import Fault
 
 
 @pytest.mark.parametrize(
@@ -41,7 +22,7 @@ def test_a_log_that_cannot_be_kept_ends_what_has_no_vehicle_too():
 )
 def test_a_robot_that_has_no_way_to_an_emergency_area_says_so_before_it_moves(policy, escapes, told):
     said = []
-    watch = Watch(robot_of(Policy("OBSTACLE", policy), escapes=escapes), Clock(), threading.Event())
+    watch = Watch(robot_of(Policy("OBSTACLE", policy), escapes=escapes), Clock())
     watch.say = said.append
     watch.forewarn()
     assert any("no clear way to an emergency area" in line for line in said) is told
@@ -51,34 +32,22 @@ def test_a_robot_that_is_well_is_let_alone(in_the_air):
     in_the_air().quiet(10.0)
 
 
-def test_a_stop_is_noticed_until_the_robot_answers_something(in_the_air):
-    made = in_the_air()
-    made.stop.set()
-    with pytest.raises(Stopped):
-        made.crew.watch.check()
-    made.crew.watch.relax({"STOPPED"}, "HOLD")
-    made.crew.watch.check()
-
-
 def test_a_silent_link_is_lost_after_the_seconds_of_the_policy(in_the_air):
     made = in_the_air(Policy("LINK_LOST", "RETURN", 50.0))
     made.simulated.mute()
-    cut = made.crew.desk.clock.now()
+    cut = made.clock.now()
     fault = made.caught()
     assert fault.event == "LINK_LOST"
-    assert made.crew.desk.clock.now() - cut > 45.0
+    assert made.clock.now() - cut > 45.0
 
 
-def test_a_silent_link_is_borne_by_who_carries_on_and_while_the_battery_is_changed(in_the_air):
+def test_a_silent_link_is_borne_by_who_carries_on_only(in_the_air):
     made = in_the_air(Policy("LINK_LOST", "CONTINUE"))
     made.simulated.mute()
-    until(lambda: made.crew.link.silent_for() > 60.0)
-    made.crew.watch.check()
+    until(lambda: made.link.silent_for() > 60.0)
+    made.watch.check()
     bound = Policy("LINK_LOST", "LAND", 1.0)
-    made.crew.watch.current = lambda: (bound,)
-    made.crew.watch.silence = True
-    made.crew.watch.check()
-    made.crew.watch.silence = False
+    made.watch.current = lambda: (bound,)
     assert made.caught().event == "LINK_LOST"
 
 
@@ -86,8 +55,8 @@ def test_a_pilot_who_takes_the_stick_has_the_vehicle(in_the_air):
     made = in_the_air(Policy("POSITION_LOST", "CONTINUE"))
     made.simulated.faults.take_stick("loiter")
     assert made.caught().event == "TAKEN_OVER"
-    assert made.crew.watch.taken
-    made.crew.watch.let_go()
+    assert made.watch.taken
+    made.watch.let_go()
     made.quiet(5.0)
 
 
@@ -103,15 +72,15 @@ def test_a_landing_that_the_vehicle_began_by_itself_is_told_with_its_cause(in_th
     made.simulated.faults.lose_position()
     until(lambda: made.mode == "land")
     assert made.caught().event == "POSITION_LOST"
-    assert not made.crew.watch.taken
+    assert not made.watch.taken
 
 
 def test_a_cause_that_is_told_after_the_change_of_mode_is_waited_for(in_the_air):
     made = in_the_air(Policy("POSITION_LOST", "LAND", 1000.0))
     made.simulated.faults.take_stick("land")
-    until(lambda: made.crew.vehicle.state().mode == "land")
+    until(lambda: made.vehicle.state().mode == "land")
     caught = in_background(made.caught)
-    until(lambda: made.crew.watch.looking)
+    until(lambda: made.watch.looking)
     made.simulated.faults.lose_position()
     assert caught.result(20.0).event == "POSITION_LOST"
 
@@ -124,10 +93,10 @@ def test_a_landing_for_which_no_cause_is_told_is_a_pilots(in_the_air):
 
 def test_seconds_without_a_position_count_only_as_long_as_they_last(in_the_air):
     made = in_the_air(Policy("POSITION_LOST", "LAND", 20.0))
-    made.crew.vehicle.hold()
+    made.vehicle.hold()
     with made.simulated.lock:
         made.simulated.autopilot.parameters["FS_EKF_ACTION"] = 0.0
-    trouble = made.crew.vehicle.telemetry.position_trouble
+    trouble = made.vehicle.telemetry.position_trouble
     for _ in range(2):
         made.simulated.faults.lose_position()
         until(trouble)
@@ -145,14 +114,14 @@ def test_a_position_that_leaps_counts_at_once_whatever_seconds_are_borne(in_the_
     fault = made.caught()
     assert fault.event == "POSITION_LOST"
     assert "its position has leapt by 40 m" in str(fault)
-    made.crew.watch.tighten()
+    made.watch.tighten()
     made.quiet(5.0)
 
 
 def test_a_position_that_leaps_is_borne_by_who_carries_on(in_the_air):
     made = in_the_air(Policy("POSITION_LOST", "CONTINUE"))
     made.simulated.faults.shift_position(40.0)
-    until(lambda: made.crew.vehicle.telemetry.leaps.count)
+    until(lambda: made.vehicle.telemetry.leaps.count)
     made.quiet(5.0)
     assert made.decided == [("POSITION_LOST", "CONTINUE")]
 
@@ -160,14 +129,14 @@ def test_a_position_that_leaps_is_borne_by_who_carries_on(in_the_air):
 def test_what_a_policy_bears_is_told_once(in_the_air):
     made = in_the_air(Policy("OBSTACLE", "CONTINUE"))
     made.simulated.faults.meet_obstacle(3.0)
-    until(lambda: made.crew.vehicle.telemetry.obstacle())
+    until(lambda: made.vehicle.telemetry.obstacle())
     made.quiet(5.0)
     assert made.decided == [("OBSTACLE", "CONTINUE")]
 
 
 def test_the_policies_of_a_wait_go_before_those_of_the_robot(in_the_air):
     made = in_the_air(Policy("OBSTACLE", "CONTINUE"))
-    made.crew.watch.current = lambda: (Policy("OBSTACLE", "HOLD"),)
+    made.watch.current = lambda: (Policy("OBSTACLE", "HOLD"),)
     made.simulated.faults.meet_obstacle(3.0)
     assert made.caught().event == "OBSTACLE"
 
@@ -192,9 +161,9 @@ def test_a_low_battery_overtakes_only_responses_that_do_not_bring_the_robot_down
     in_the_air, handled, response, heeded
 ):
     made = in_the_air()
-    made.crew.watch.relax(handled, response)
+    made.watch.relax(handled, response)
     made.simulated.faults.set_battery(0.05)
-    until(lambda: (made.crew.vehicle.state().energy or 1.0) < 0.06)
+    until(lambda: (made.vehicle.state().energy or 1.0) < 0.06)
     if heeded:
         assert made.caught().event == "BATTERY_LOW"
     else:
@@ -203,11 +172,11 @@ def test_a_low_battery_overtakes_only_responses_that_do_not_bring_the_robot_down
 
 def test_a_robot_that_goes_on_heeds_everything_again(in_the_air):
     made = in_the_air(Policy("OBSTACLE", "HOLD"))
-    made.crew.watch.relax()
+    made.watch.relax({"OBSTACLE"}, "HOLD")
     made.simulated.faults.meet_obstacle(3.0)
-    until(lambda: made.crew.vehicle.telemetry.obstacle())
+    until(lambda: made.vehicle.telemetry.obstacle())
     made.quiet(2.0)
-    made.crew.watch.tighten()
+    made.watch.tighten()
     assert made.caught().event == "OBSTACLE"
 
 
@@ -222,7 +191,7 @@ def test_motors_that_stop_in_the_air_are_a_crash(in_the_air):
 def test_motors_that_stop_after_a_landing_are_not(in_the_air):
     made = in_the_air()
     made.quiet(2.0)
-    made.crew.vehicle.land()
+    made.vehicle.land()
     assert not made.simulated.autopilot.armed
     made.quiet(5.0)
 
@@ -241,15 +210,14 @@ def test_a_restart_in_the_air_is_a_fault(in_the_air):
 
 def test_a_restart_on_the_ground_is_kept_for_later(in_the_air):
     made = in_the_air()
-    made.crew.vehicle.land()
-    made.crew.watch.moving = False
-    made.crew.watch.silence = True
+    made.vehicle.land()
+    made.watch.moving = False
     grow_old(made)
     made.simulated.faults.restart()
-    until(lambda: made.crew.watch.restarted)
+    until(lambda: made.watch.restarted)
     made.quiet(5.0)
-    made.crew.watch.renew()
-    assert not made.crew.watch.restarted
+    made.watch.renew()
+    assert not made.watch.restarted
 
 
 @pytest.fixture
@@ -258,15 +226,15 @@ def back(in_the_air):
 
     def fly(mode: str):
         made = in_the_air(Policy("LINK_LOST", "HOLD", 5.0))
-        made.crew.pilot.waits.tell_vehicle()
+        made.vehicle.answer_lost_link("HOLD", 5.0)
         made.simulated.mute()
         assert made.caught().event == "LINK_LOST"
-        made.crew.watch.relax({"LINK_LOST"}, "LAND")
+        made.watch.relax({"LINK_LOST"}, "LAND")
         until(lambda: made.mode == "brake")
         made.simulated.faults.take_stick(mode)
         made.simulated.unmute()
-        until(lambda: made.crew.link.since("HEARTBEAT") < SPEEDUP)
-        until(lambda: not made.crew.vehicle.telemetry.announcements.recent())
+        until(lambda: made.link.since("HEARTBEAT") < SPEEDUP)
+        until(lambda: not made.vehicle.telemetry.announcements.recent())
         return made
 
     return fly
@@ -274,12 +242,12 @@ def back(in_the_air):
 
 def test_a_vehicle_that_is_heard_again_in_the_mode_that_it_was_told_for_then_may_be_told_something(back):
     made = back("brake")
-    made.crew.watch.check_hands("LINK_LOST")
-    made.crew.vehicle.land()
+    made.watch.check_hands("LINK_LOST")
+    made.vehicle.land()
     assert not made.simulated.autopilot.armed
 
 
 def test_a_vehicle_that_is_heard_again_in_another_mode_is_a_pilots(back):
     made = back("return")
     with pytest.raises(Fault, match="somebody else has taken over"):
-        made.crew.watch.check_hands("LINK_LOST")
+        made.watch.check_hands("LINK_LOST")

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import threading
 import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
@@ -328,7 +327,7 @@ class ThreadedVehicle(Vehicle):
         self._worker.begin(job, afresh=fresh)
 
     def _new_watch(self) -> Watch:
-        watch = Watch(self._robot, self._with.clock, threading.Event())
+        watch = Watch(self._robot, self._with.clock)
         if (radio := self._with.radio) is not None:
             watch.begin(radio.link, radio.vehicle)
         watch.current = lambda: self._lost_link.policies

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import threading
 from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
@@ -12,14 +11,11 @@ from mmrs_runtime.faults import (
     BATTERY_LOW,
     GROUND_LOST,
     LINK_LOST,
-    LOG_FAILED,
     POSITION_LOST,
-    STOPPED,
     TAKEN_OVER,
     VEHICLE_RESTARTED,
     Displaced,
     Fault,
-    Stopped,
 )
 from mmrs_runtime.policies import COMES_DOWN, CONTINUE, LAND, UNDECLARED_AFTER, seconds_of
 
@@ -63,42 +59,36 @@ class _Watched:
 
 
 class Watch:
-    """Raises what ends a robot's program: a stop, a lost link, a pilot, whatever policies name.
+    """Raises what ends a robot's program: a lost link, a pilot, whatever policies name.
 
     Attributes:
         current: the policies of the wait that the robot is in.
         track: the places that the robot has passed in this sortie.
-        unkept: returns why what others tell the robot cannot be kept; empty where it can.
         decide: is told what was decided without ending the program: event, reason, response.
         say: tells people what the robot hears.
         moving: whether the robot is under way; one that stands on the ground may start anew.
-        silence: whether the vehicle may be silent, as while its battery is changed.
-        strange: whether nobody knows yet that the vehicle is the robot's: then only its link is watched.
     """
 
-    def __init__(self, robot: Robot, clock: Clock, stop: threading.Event) -> None:
-        """Watch for a stop only, until there is a vehicle."""
+    def __init__(self, robot: Robot, clock: Clock) -> None:
+        """Watch for nothing until there is a vehicle."""
         self.current: Callable[[], Sequence[Policy]] = lambda: ()
         self.track: Callable[[], Track] = lambda: ()
-        self.unkept: Callable[[], str] = lambda: ""
         self.decide: Decide = lambda event, why, response: None
         self.say: Callable[[str], None] = lambda line: None
         self.moving = True
-        self.silence = self.strange = False
         self._robot = robot
         self._clock = clock
-        self._stop = stop
         self._reserve = Reserve(robot)
         self._watched: _Watched | None = None
         self._heeded: frozenset[str] | None = None
-        self._hands_off = self._alone = False
+        self._hands_off = self._out_of_reach = False
         self._response = self._untold = ""
         self._anew = False
         self._since: dict[str, float] = {}
         self._borne: set[str] = set()
 
     def begin(self, link: Link, vehicle: MavlinkVehicle) -> None:
-        """Watch link and vehicle, too."""
+        """Watch link and vehicle."""
         signs = Signs(vehicle.telemetry, leaps=self._robot.vehicle != "sub")
         departures = Departures(self._robot, link, vehicle, signs, self._answers)
         motors = Motors(vehicle, self._robot.vehicle)
@@ -114,69 +104,55 @@ class Watch:
         if self._watched is not None and (missing := self._watched.ground.missing(self._robot)):
             self.say(missing)
 
-    def relax(self, handled: Collection[str] | None = None, response: str = "") -> None:
+    def relax(self, handled: Collection[str], response: str) -> None:
         """Heed less from now on: the robot already responds to something.
 
         Args:
-            handled: the events that it has responded to; None: heed none any more.
+            handled: the events that it has responded to.
             response: what it does; what this cannot be carried out with, or would end by, is heeded,
-                and always the link, who has the vehicle, and whether all are to stop.
+                and always the link, and who has the vehicle.
         """
-        heeded = {POSITION_LOST, VEHICLE_RESTARTED, STOPPED} if handled is not None else set()
-        if handled is not None and response not in COMES_DOWN:
+        heeded = {POSITION_LOST, VEHICLE_RESTARTED}
+        if response not in COMES_DOWN:
             heeded |= {BATTERY_LOW, GROUND_LOST}
-        self._heeded = frozenset(heeded - set(handled or ()))
+        self._heeded = frozenset(heeded - set(handled))
         self._response = response
 
     def let_go(self) -> None:
         """Heed nothing but the link from now on: somebody else has the vehicle."""
         self._heeded, self._hands_off = frozenset(), True
 
-    def lose(self) -> None:
-        """Heed nothing at all: the vehicle is out of reach, and what it did last is known."""
-        self.silence = self._hands_off = True
-
-    def accept(self) -> bool:
-        """Let a vehicle that was out of reach go on with what it does about that by itself.
-
-        Returns:
-            Whether it does something: one that heard us all the time does not, and goes on as it was told.
-
-        Raises:
-            Fault: a pilot has it, as far as anybody can tell, or it does not tell its mode.
-        """
-        answers, self._hands_off = True, True
-        if self._watched is not None:
-            link, vehicle = self._watched.link, self._watched.vehicle
-            limit = self._clock.patience(BEAT_SECONDS, 1.0)
-            if not link.wait(lambda: link.since("HEARTBEAT") < limit, limit):
-                raise Fault(LINK_LOST, "its heartbeat is not heard")
-            if vehicle.telemetry.mode() not in vehicle.modes_alone and vehicle.telemetry.armed():
-                answers = self._watched.departures.find(moving=self.moving) is not None
-            vehicle.accept_own_modes()
-        self._hands_off, self._alone = False, True
-        return answers
-
     def answers_alone(self) -> bool:
         """Return whether a vehicle that is heard again answers its lost link by itself.
 
+        One that heard us all the time does not, and goes on as it was told.
+
         Raises:
             Fault: a pilot has it, as far as anybody can tell, or it does not tell its mode.
         """
-        self.lose()
+        if self._watched is None:
+            return True
+        self._out_of_reach = self._hands_off = True
         try:
-            return self.accept()
+            return self._accept(self._watched)
         finally:
-            self.find()
+            self._out_of_reach = self._hands_off = False
 
-    def find(self) -> None:
-        """Heed the link, and who has the vehicle, again."""
-        self.silence = self._hands_off = self._alone = False
+    def _accept(self, watched: _Watched) -> bool:
+        """Return whether the vehicle does something by itself, and let it go on with that."""
+        link, vehicle, answers = watched.link, watched.vehicle, True
+        limit = self._clock.patience(BEAT_SECONDS, 1.0)
+        if not link.wait(lambda: link.since("HEARTBEAT") < limit, limit):
+            raise Fault(LINK_LOST, "its heartbeat is not heard")
+        if vehicle.telemetry.mode() not in vehicle.modes_alone and vehicle.telemetry.armed():
+            answers = watched.departures.find(moving=self.moving) is not None
+        vehicle.accept_own_modes()
+        return answers
 
     def tighten(self) -> None:
         """Heed everything again: the robot goes on with its program."""
         self._heeded, self._response = None, ""
-        self.find()
+        self._hands_off = False
         self.renew()
 
     def renew(self) -> None:
@@ -211,31 +187,20 @@ class Watch:
         Raises:
             Fault: something should.
         """
-        if self.looking:
-            return
-        stops = self._stop.is_set() and self._heeds(STOPPED)
         watched = self._watched
-        if watched is not None and not stops:
-            self._check_link(watched.link)
-        if self.strange or watched is None:
-            if stops:
-                raise Stopped()
-            self._weigh(LOG_FAILED, self.unkept())
+        if watched is None or self.looking:
             return
+        self._check_link(watched.link)
         if self._hands_off:
             return
-        # Whoever has the vehicle goes before all policies and stops, also where both are seen at once.
-        departure = watched.departures.find(moving=self.moving)
-        if stops:
-            raise Stopped()
-        if departure is not None:
+        # Whoever has the vehicle goes before all policies, also where both are seen at once.
+        if (departure := watched.departures.find(moving=self.moving)) is not None:
             self._answer(*departure, watched)
         watched.motors.check(moving=self.moving)
         for event, why in watched.signs.seen(moving=self.moving):
             # A place that has leapt is wrong at once, and may stay so.
             self._weigh(event, why, at_once=event == POSITION_LOST and watched.signs.leapt)
         self._weigh(BATTERY_LOW, self._low(watched.vehicle))
-        self._weigh(LOG_FAILED, self.unkept())
         self._check_ground(watched.ground)
 
     def _check_ground(self, ground: Ground) -> None:
@@ -289,7 +254,7 @@ class Watch:
 
     def _check_link(self, link: Link) -> None:
         policy = policy_for(LINK_LOST, self._robot, self.current())
-        if self.silence or policy.response == CONTINUE:
+        if self._out_of_reach or policy.response == CONTINUE:
             return
         limit = seconds_of(policy)
         silent = link.silent_for()
@@ -310,9 +275,6 @@ class Watch:
             Fault: what is to be answered, or Displaced.
         """
         vehicle = watched.vehicle
-        if self._alone:
-            vehicle.accept_own_modes()
-            return
         why = f"{said}; by itself it has gone into mode {vehicle.state().mode}"
         if event == VEHICLE_RESTARTED:
             self._note_restart()

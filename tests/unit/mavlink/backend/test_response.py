@@ -10,26 +10,24 @@ from patience import until
 
 from mmrs_mavlink.driving.moves import Moves
 from mmrs_mavlink.driving.response import Response
-from mmrs_mavlink.program import Geographic, Place, Policy
+from mmrs_mavlink.program import Geographic, Policy
 from mmrs_runtime.faults import Fault
 
 NOWHERE = tuple((move, (Geographic(nan, nan, nan),)) for move in ("up", "out"))
 
 
 @pytest.fixture
-def made(tmp_path):
+def made():
     """Return a robot 22 metres north of its home whose emergency area the program cannot make out."""
-    with manned(tmp_path, robot_of(escapes=NOWHERE)) as made:
+    with manned(robot_of(escapes=NOWHERE)) as made:
         made.fly_out()
         yield made
 
 
 def response_of(made) -> tuple[Response, list[BaseException]]:
-    crew, failed = made.crew, []
-    moves = Moves(crew.robot, crew.vehicle, crew.desk.clock, {}, lambda kind, name, content: None)
-    track: list[tuple[str, Place]] = crew.pilot.track
-    moves.track = track
-    response = Response(crew.robot, crew.vehicle, crew.watch, moves, made.said.append, 20.0)
+    moves, failed = Moves(made.robot, made.vehicle, made.clock, {}, lambda kind, name, content: None), []
+    moves.track = made.track
+    response = Response(made.robot, made.vehicle, made.watch, moves, made.said.append, 20.0)
     response.failed = failed.append
     return response, failed
 
@@ -57,7 +55,7 @@ def test_what_is_told_next_is_done_as_ever(made):
 def test_a_vehicle_that_a_pilot_has_just_taken_is_left_to_him_whatever_is_ordered(made, mode):
     response, _ = response_of(made)
     made.simulated.faults.take_stick(mode)
-    until(lambda: made.crew.vehicle.telemetry.mode() == made.simulated.autopilot.mode)
+    until(lambda: made.vehicle.telemetry.mode() == made.simulated.autopilot.mode)
     with pytest.raises(Fault, match="somebody else has taken over"):
         response.begin("LAND", None, lambda what, why, does: None, heard=True).run()
     assert made.mode == mode
@@ -66,12 +64,10 @@ def test_a_vehicle_that_a_pilot_has_just_taken_is_left_to_him_whatever_is_ordere
 @pytest.mark.parametrize(
     ("answer", "stays"), [("CONTINUE", True), pytest.param("LAND", False, marks=pytest.mark.thorough)]
 )
-def test_a_vehicle_that_obeys_nothing_is_watched_where_it_would_not_come_down_by_itself(
-    tmp_path, answer, stays
-):
-    with manned(tmp_path, robot_of(Policy("LINK_LOST", answer))) as made:
+def test_a_vehicle_that_obeys_nothing_is_watched_where_it_would_not_come_down_by_itself(answer, stays):
+    with manned(robot_of(Policy("LINK_LOST", answer))) as made:
         made.fly_out()
-        made.crew.vehicle.hold()
+        made.vehicle.hold()
         made.simulated.faults.silence(176)
         response, _ = response_of(made)
         job = response.begin("RETURN", None, lambda what, why, does: None, heard=True)
@@ -84,10 +80,10 @@ def test_a_vehicle_that_obeys_nothing_is_watched_where_it_would_not_come_down_by
         assert response.undone.startswith("HOLD cannot be carried out")
 
 
-def test_a_return_that_cannot_be_steered_is_a_landing_and_told_as_that(tmp_path):
-    with manned(tmp_path, robot_of(Policy("POSITION_LOST", "CONTINUE"))) as made:
+def test_a_return_that_cannot_be_steered_is_a_landing_and_told_as_that():
+    with manned(robot_of(Policy("POSITION_LOST", "CONTINUE"))) as made:
         made.fly_out()
-        made.crew.vehicle.hold()
+        made.vehicle.hold()
         made.simulated.autopilot.parameters["FS_EKF_ACTION"] = 0.0
         made.simulated.faults.lose_position()
         response, _ = response_of(made)

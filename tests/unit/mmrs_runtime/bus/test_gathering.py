@@ -2,21 +2,16 @@
 
 from __future__ import annotations
 
-import threading
 import time
 from collections.abc import Container
 
 import pytest
 from stalls import Stalls
 
-from mmrs_mavlink.orders.obedience import Obedience, Ordered
-from mmrs_mavlink.vehicles.dry import DryVehicle
 from mmrs_runtime.bus import Incomplete, Member, Node, Owned, begin_together
 from mmrs_runtime.bus.carriers.carrier import NoCarrier
 from mmrs_runtime.bus.watching import Roster
 from mmrs_runtime.bus.words import Meet, request_in, written
-from mmrs_runtime.clock import Clock
-from mmrs_runtime.orders.orders import Inbox, Order
 
 AT_ONCE = 1.5
 """Seconds, on a busy machine; for an answer that does not come a robot waits for longer."""
@@ -87,17 +82,6 @@ def test_taking_leave_of_a_robot_that_answers_no_more_can_be_ended_at_once(begin
     stalls, begun = Stalls(), time.monotonic()
     with pytest.raises(Tired):
         begin(Losing(ALL[1:]), tired_after(0.2), patience=0.01)
-    assert time.monotonic() - begun < AT_ONCE + stalls.seconds
-
-
-def test_an_order_is_obeyed_while_an_answer_does_not_come(begin):
-    inbox, clock = Inbox("b"), Clock()
-    obedience = Obedience(inbox, clock, threading.Event(), print)
-    obedience.begin(DryVehicle(clock, None, obedience.check))
-    threading.Timer(0.2, inbox.give, [Order("return")]).start()
-    stalls, begun = Stalls(), time.monotonic()
-    with pytest.raises(Ordered, match="return was ordered"):
-        begin(Losing(ALL), lambda why: obedience.check())
     assert time.monotonic() - begun < AT_ONCE + stalls.seconds
 
 

@@ -13,7 +13,7 @@ from hub import Hub
 from mmrs_core.testing.programs import program, quad, robot_program, target_input
 from mmrs_core.testing.small_programs import hold, notify
 from mmrs_mavlink.plugin.built import robot_of
-from mmrs_mavlink.slots import member_of
+from mmrs_mavlink.team import program_of
 from mmrs_runtime.bus import CommandId, Node
 from mmrs_runtime.bus.gateway.server import Gateway
 from mmrs_runtime.bus.owner import Owner
@@ -145,11 +145,13 @@ def test_a_latched_notify_is_granted_no_time_beyond_reach(start):
         notifying(a, "go").send(1 << 40)
 
 
-def test_controllers_and_interpreter_agree_which_slots_are_latched(made):
+@pytest.mark.parametrize("together", [["a", "b"], ["a"], ["b"]])
+def test_controllers_and_interpreter_agree_who_is_on_the_bus_whichever_robots_a_process_runs(made, together):
     members, input = members_of(made.executable), target_input(made, [quad()])
+    own = [robot_of(robot, input) for robot in made.robots if robot.id in together]
     assert members["a"].latched == {("b", "go")}
-    for robot in made.robots:
-        assert member_of(robot_of(robot, input)).latched == members[robot.id].latched
+    found = members_of(program_of(own))
+    assert {name: found[name] for name in together} == {name: members[name] for name in together}
 
 
 def test_sending_looks_at_no_owner_but_those_that_keep_a_slot(monkeypatch):
