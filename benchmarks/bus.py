@@ -1,10 +1,10 @@
 """Measures how soon a robot that waits goes on after another one notifies it, and what a fleet costs.
 
-From the call of notify, its line synced to the disk and the owner's answer synced to its disk, until
-the waiting robot has taken its transition and written that down. Within a process the robots are
-threads; between processes they are joined by Zenoh over loopback, beside a bare Zenoh query and its
-reply between the same two processes. The fleet is interpreted with simulated robots in real time,
-several in each process; all processes begin together, and their logs are replayed together.
+From the notify that is about to be written, its line synced to the disk and the owner's answer synced to
+its disk, until the waiting robot has taken its transition and written that down. All robots are simulated
+and run by the engine in real time; between processes they are joined by Zenoh over loopback, beside a bare
+Zenoh query and its reply between the same two processes. Of the fleet several robots are in each process;
+all processes begin together, and their logs are replayed together.
 
     python benchmarks/bus.py --seed 1 > benchmarks/results/bus.txt
 """
@@ -22,6 +22,7 @@ import sys
 import tempfile
 import threading
 import time
+from collections.abc import Callable, Sequence
 from datetime import date
 from pathlib import Path
 from statistics import median
@@ -33,19 +34,19 @@ from mmrs_core.behaviour.program import Program
 from mmrs_core.behaviour.replay import replay
 from mmrs_core.contributions.vehicles import VehicleInput
 from mmrs_core.runtime.simulation import SIMULATION
-from mmrs_core.testing.small_programs import go, notify, program, robot, robot_type
+from mmrs_core.testing.small_programs import go, hold, notify, program, robot, robot_type
 from mmrs_core.transformation.kinds import MOVE_KINDS, PLAIN_ROBOT
-from mmrs_mavlink.program import Local, Notify, Robot, Start, Step
-from mmrs_mavlink.slots import BusSlots, LocalSlots, shared_slots
 from mmrs_runtime.bus import begin_together
 from mmrs_runtime.bus.carriers.over_zenoh import ZenohCarrier
 from mmrs_runtime.bus.carriers.sessions import Endpoints, configuration
-from mmrs_runtime.bus.program_bus import shared_bus
+from mmrs_runtime.bus.program_bus import ProgramBus, shared_bus
 from mmrs_runtime.engine.clocks import RealClock
 from mmrs_runtime.engine.run import run as carry_out
 from mmrs_runtime.engine.terms import Attention, Terms
-from mmrs_runtime.records.log import Log, LogWriter
+from mmrs_runtime.records.log import LogWriter
+from mmrs_runtime.records.steps import StepRecord
 from mmrs_runtime.semantics import Outcome
+from mmrs_runtime.slots import LocalSlots, Slots
 
 PROCESSES, ROUNDS, SPEEDUP = 4, 5, 10.0
 LATCHED = 50
@@ -77,14 +78,14 @@ def main() -> None:
 def latencies(count: int) -> None:
     """Print how long notifies take."""
     with tempfile.TemporaryDirectory() as folder:
-        within = threads(Path(folder), count)
+        within = together(Path(folder), count)
     with tempfile.TemporaryDirectory() as folder:
         between, bare = processes(Path(folder), count)
     with tempfile.TemporaryDirectory() as folder:
         latched, _ = processes(Path(folder), LATCHED, latched=True)
     with tempfile.TemporaryDirectory() as folder:
         disk = [_synced(Path(folder) / "line") for _ in range(count)]
-    print(f"notify called until the waiting robot goes on, {count} of each; milliseconds")
+    print(f"a notify until the waiting robot goes on, {count} of each; milliseconds")
     print(f"{'':<44}{'median':>9}{'99 %':>9}{'median / bare':>15}")
     rows = {
         "within a process, logs synced": within,
@@ -101,31 +102,11 @@ def latencies(count: int) -> None:
         )
 
 
-def threads(folder: Path, count: int) -> list[float]:
-    """Return how long each notify of one thread's robot took until another's went on."""
-    a, b = _robots()
-    slots, taken = LocalSlots([a, b]), threading.Event()
-    logs = {each.id: Log(folder / each.log, "run-0", each.id) for each in (a, b)}
-    at = [0.0]
-
-    def wait() -> None:
-        for _ in range(count):
-            at[0] = _take(slots, logs["b"], "b")
-            _notify(slots, logs["b"], "b", ("b", "go"), active=False)
-            taken.set()
-
-    waiter = threading.Thread(target=wait)
-    waiter.start()
-    found = []
-    for _ in range(count):
-        time.sleep(0.002)
-        begun = time.monotonic()
-        _notify(slots, logs["a"], "a", ("b", "go"))
-        taken.wait()
-        taken.clear()
-        found.append(at[0] - begun)
-    waiter.join()
-    return found
+def together(folder: Path, count: int) -> list[float]:
+    """Return how long each notify of a robot took until another one of its process went on."""
+    made, times = exchange(count), Times()
+    carry_on(made, ["a", "b"], LocalSlots(made.executable), RealClock(), folder, times)
+    return times.taken_after(times.told)
 
 
 def processes(folder: Path, count: int, *, latched: bool = False) -> tuple[list[float], list[float]]:
@@ -135,44 +116,99 @@ def processes(folder: Path, count: int, *, latched: bool = False) -> tuple[list[
     """
     endpoint = f"tcp/127.0.0.1:{_port()}"
     there = {"do": "answer", "endpoint": endpoint, "folder": str(folder / "b"), "count": count}
-    there["names"] = names = [f"go{n}" for n in range(count)] if latched else []
-    with _started(there) as process:
-        a, _ = _robots(*names)
-        carrier = ZenohCarrier("bench", "run-0", ("a", "b"), Endpoints(connect=(endpoint,)))
-        slots = shared_slots([a], "run-0", folder, carrier)
-        log = Log(folder / a.log, "run-0", "a")
-        while slots.node.missing(["b"]):
+    with _started(there | {"latched": latched}) as process:
+        made, times = exchange(count, latched=latched), Times()
+        bus = _bus(made, "a", folder / "a", Endpoints(connect=(endpoint,)))
+        while bus.node.missing(["b"]):
             time.sleep(0.01)
-        found = []
-        for name in names or ["go"] * count:
-            time.sleep(0.002)
-            begun = time.monotonic()
-            _notify(slots, log, "a", ("b", name))
-            found.append(float(process.stdout.readline()) - begun)
+        carry_on(made, ["a"], bus, RealClock(), folder / "a", times)
+        other = Times(times.told, json.loads(process.stdout.readline()))
         bare = _bare(endpoint, count)
-        slots.close()
+        bus.close()
         process.stdin.close()
-    return found, bare
+    return other.taken_after(times.told), bare
 
 
-def answer(endpoint: str, folder: str, count: int, names: list[str]) -> None:
-    """Be the robot that waits, in a process of its own; tell each time at which it goes on."""
-    _, b = _robots(*names)
-    Path(folder).mkdir()
-    carrier = ZenohCarrier("bench", "run-0", ("a", "b"), Endpoints(listen=(endpoint,)))
-    slots = shared_slots([b], "run-0", Path(folder), carrier)
-    log = Log(Path(folder) / b.log, "run-0", "b")
-    bare = carrier._session.declare_queryable(
+def answer(endpoint: str, folder: str, count: int, latched: bool) -> None:
+    """Be the robot that waits, in a process of its own; tell each time at which it went on."""
+    made, times = exchange(count, latched=latched), Times()
+    bus = _bus(made, "b", Path(folder), Endpoints(listen=(endpoint,)))
+    bare = bus.node._carrier._session.declare_queryable(
         "bench/bare", lambda query: query.reply("bench/bare", b"x" * 64)
     )
-    for name in names or ["go"] * count:
-        at = _take(slots, log, "b", name)
-        if not names:
-            _notify(slots, log, "b", ("b", "go"), active=False)
-        print(at, flush=True)
+    carry_on(made, ["b"], bus, RealClock(), Path(folder), times)
+    print(json.dumps(times.taken), flush=True)
     sys.stdin.read()
     bare.undeclare()
-    slots.close()
+    bus.close()
+
+
+class Times:
+    """When one robot told the other, about to write that down, and when that one went on, and had written it.
+
+    Attributes:
+        told, taken: seconds of the monotonic clock, one after the other.
+    """
+
+    def __init__(self, told: Sequence[float] = (), taken: Sequence[float] = ()) -> None:
+        self.told, self.taken = list(told), list(taken)
+
+    def __call__(self, record: StepRecord, write: Callable[[StepRecord], None]) -> None:
+        """Write a step, and keep when."""
+        if record.robot == "a" and record.slot.startswith("+"):
+            self.told.append(time.monotonic())
+        write(record)
+        if record.robot == "b" and record.label == "take" and record.move.startswith("m"):
+            self.taken.append(time.monotonic())
+
+    def taken_after(self, told: Sequence[float]) -> list[float]:
+        """Return how long each took, seconds."""
+        return [taken - told for told, taken in zip(told, self.taken, strict=True)]
+
+
+def exchange(count: int, *, latched: bool = False) -> Program:
+    """Return a robot that notifies another so often, each time once that one has told it that it went on."""
+
+    def tell(owner: str, number: int) -> object:
+        return notify(f"{owner}.{slot(number)}")
+
+    def slot(number: int) -> str:
+        return f"go{number}" if latched else "go"
+
+    def reset(owner: str, number: int) -> tuple[object, ...]:
+        return () if latched or number == 0 else (notify(f"{owner}.go", active=False),)
+
+    numbers = range(count)
+    waits = {f"m{number}": [slot(number)] for number in numbers}
+    a = [hold(f"m{n}", 0.002, before=reset("a", n), after=(tell("b", n),)) for n in numbers]
+    b = [hold(f"m{n}", 0.0, before=(*reset("b", n), *((tell("a", n - 1),) if n else ()))) for n in numbers]
+    last = hold("last", 0.0, before=(*reset("b", count), tell("a", count - 1)))
+    return program(robot("a", a, waits=waits), robot("b", [*b, last], waits=waits))
+
+
+def carry_on(
+    made: Program,
+    mine: Sequence[str],
+    slots: Slots,
+    clock: RealClock,
+    folder: Path,
+    observe: Callable[[StepRecord, Callable[[StepRecord], None]], None] = lambda record, write: write(record),
+) -> None:
+    """Run simulated robots of a behaviour to their ends, and write their logs."""
+    kinds = {
+        "robot_kinds": {PLAIN_ROBOT.metaclass: PLAIN_ROBOT},
+        "move_kinds": {kind.metaclass: kind for kind in MOVE_KINDS},
+    }
+    vehicles = {
+        each.id: SIMULATION.connect(
+            VehicleInput(made, each, robot_type(), environment={}, options={}, **kinds)
+        )
+        for each in made.robots
+        if each.id in mine
+    }
+    with LogWriter(folder) as log:
+        terms = Terms("run-0", observe=lambda record: observe(record, log.write), attention=Attention(clock))
+        carry_out(made.executable, vehicles, slots=slots, clock=clock, conditions={}, terms=terms)
 
 
 def _bare(endpoint: str, count: int) -> list[float]:
@@ -188,33 +224,9 @@ def _bare(endpoint: str, count: int) -> list[float]:
     return found
 
 
-def _robots(*latched: str) -> tuple[Robot, Robot]:
-    """Return a robot and another one that it notifies; `latched`: slots that are never reset."""
-    names, home = latched or ("go",), Local(0.0, 0.0, 0.0)
-    told = tuple(("b", name) for name in names)
-    step = Step("start", Start(), after=(Notify(told),))
-    senders = tuple((name, ("a",)) for name in names)
-    resets = () if latched else (("go", ("b",)),)
-    return (
-        Robot("a", "a.jsonl", "copter", home, "start", (step,), volatile=() if latched else told),
-        Robot("b", "b.jsonl", "copter", home, "start", (), names, senders, resets),
-    )
-
-
-def _notify(slots: BusSlots, log: Log, sender: str, slot: tuple[str, str], *, active: bool = True) -> None:
-    def record(lamport: int) -> None:
-        log.write("ntf", "start", lamport=lamport, time=0.0, detail="post:0", slot=".".join(slot))
-
-    slots.notify(sender, (slot,), active, record, lambda silent: None)
-
-
-def _take(slots: BusSlots, log: Log, robot: str, name: str = "go") -> float:
-    def record(lamport: int) -> None:
-        log.write("take", "start", lamport=lamport, time=0.0)
-
-    while not slots.take(robot, (name,), record):
-        slots.await_change(0.1)
-    return time.monotonic()
+def _bus(made: Program, own: str, folder: Path, endpoints: Endpoints) -> ProgramBus:
+    carrier = ZenohCarrier("bench", "run-0", ("a", "b"), endpoints)
+    return shared_bus(made.executable, [own], "run-0", folder, carrier)
 
 
 def _synced(path: Path) -> float:
@@ -236,30 +248,27 @@ def losses(count: int) -> None:
 
 def _lost_after(number: signal.Signals) -> float:
     endpoint = f"tcp/127.0.0.1:{_port()}"
-    _, b = _robots()
     with tempfile.TemporaryDirectory() as folder:
-        slots = shared_slots(
-            [b], "run-0", Path(folder), ZenohCarrier("bench", "run-0", "ab", Endpoints((endpoint,)))
-        )
+        bus, changed = _bus(exchange(1), "b", Path(folder), Endpoints((endpoint,))), threading.Event()
+        bus.on_change(changed.set)
         with _started({"do": "sit", "endpoint": endpoint, "folder": str(Path(folder) / "a")}) as process:
-            while slots.node.missing(["a"]):
+            while bus.node.missing(["a"]):
                 time.sleep(0.01)
             time.sleep(0.3)
             begun = time.monotonic()
             process.send_signal(number)
-            while not slots.lost(["a"]):
-                slots.await_change(1.0)
+            while not bus.lost(["a"]):
+                changed.wait(1.0)
+                changed.clear()
             taken = time.monotonic() - begun
             process.kill()
-        slots.close()
+        bus.close()
     return taken
 
 
 def sit(endpoint: str, folder: str) -> None:
     """Be a robot that is there, until the process is killed."""
-    a, _ = _robots()
-    carrier = ZenohCarrier("bench", "run-0", "ab", Endpoints(connect=(endpoint,)))
-    shared_slots([a], "run-0", Path(folder), carrier)
+    _bus(exchange(1), "a", Path(folder), Endpoints(connect=(endpoint,)))
     time.sleep(600.0)
 
 
@@ -330,21 +339,7 @@ def run_part(robots: int, seed: int, number: int, ports: list[int], folder: str)
     bus = shared_bus(made.shared, mine, "run-0", own, ZenohCarrier("bench", "run-0", everybody, endpoints))
     beginning = begin_together(bus.node, mine[0], everybody, lambda why: None, beside=mine[1:])
     begun, before = time.monotonic(), _used(resource.RUSAGE_SELF)
-    clock = RealClock(SPEEDUP)
-    kind = {
-        "robot_kinds": {PLAIN_ROBOT.metaclass: PLAIN_ROBOT},
-        "move_kinds": {k.metaclass: k for k in MOVE_KINDS},
-    }
-    backends = {
-        each.id: SIMULATION.connect(
-            VehicleInput(made, each, robot_type(), environment={}, options={}, **kind)
-        )
-        for each in made.robots
-        if each.id in mine
-    }
-    with LogWriter(own) as log:
-        terms = Terms("run-0", observe=log.write, attention=Attention(clock))
-        carry_out(made.executable, backends, slots=bus, clock=clock, conditions={}, terms=terms)
+    carry_on(made, mine, bus, RealClock(SPEEDUP), own)
     seconds, run = time.monotonic() - begun, _used(resource.RUSAGE_SELF) - before
     print(json.dumps({"seconds": seconds, "run": run, "skew": beginning.skew}), flush=True)
     bus.close()
