@@ -6,6 +6,7 @@ import signal
 import time
 from dataclasses import replace
 from math import hypot
+from random import Random
 
 import pytest
 from patience import until
@@ -313,3 +314,36 @@ def test_nothing_can_be_gone_on_with_where_nothing_was_begun(controllers, argume
     code, said = controllers(coverage()).run("fleet.py", "--dry-run", *arguments)
     assert code == 2
     assert complaint in said
+
+
+def relay(laps: int):
+    """Have two robots wait for each other, lap by lap."""
+    slots = tuple(f"lap{lap}" for lap in range(laps))
+
+    def robot(name: str, other: str, east: float):
+        moves, transitions = [take_off("up", 10.0)], {}
+        for lap in range(laps):
+            there = go_to(f"lap{lap}", (east, 10.0 * (lap % 2), 10.0))
+            moves.append(replace(there, after=(notify((other, f"lap{lap}")),)))
+            transitions[lap + 2] = Transition(lap + 2, lap + 3, waits=(f"lap{lap}",))
+        return robot_program(
+            name, [*moves, LAND], home=(east, 0.0, 0.0), slots=slots, transitions=transitions
+        )
+
+    return program(robot("alpha", "beta", 0.0), robot("beta", "alpha", 30.0))
+
+
+@pytest.mark.parametrize("kills", [10, pytest.param(100, marks=pytest.mark.thorough)])
+def test_nothing_is_lost_however_often_a_process_is_killed(controllers, kills):
+    made, chance = controllers(relay(8 * kills)), Random(11)
+    for kill in range(kills):
+        again = ("--resume",) if (made.logs / "alpha.jsonl").exists() else ()
+        with made.start("fleet.py", "--dry-run", "--speedup", "100", *again) as process:
+            time.sleep(chance.uniform(0.3, 1.3))
+            assert process.poll() is None, f"it has ended before it is killed for the {kill + 1}th time"
+            process.kill()
+            process.communicate()
+        assert made.replayed(partial=True).complaints == ()
+    code, said = made.run("fleet.py", "--dry-run", "--speedup", "20000", "--resume")
+    assert code == 0, said
+    assert made.replayed().complaints == ()
