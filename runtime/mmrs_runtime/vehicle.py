@@ -13,6 +13,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from math import inf
+from types import MappingProxyType
 from typing import TypeAlias
 
 Position: TypeAlias = tuple[float, float, float]
@@ -94,11 +95,13 @@ class Vehicle(ABC):
         post: tells the engine what happened, from any thread; the engine sets it before anything else.
         done: whether what was ordered last is done, as far as the engine has heard.
         trouble: what is wrong, as far as the engine has heard; None: nothing.
+        reported: `name` and `content` of what the robot has reported last; empty before it has.
     """
 
     post: Callable[[Event], None]
     done: bool = True
     trouble: Fault | None = None
+    reported: Mapping[str, object] = MappingProxyType({})
 
     def hear(self, event: Event) -> None:
         """Take note of what was posted; called by the engine, in its thread."""

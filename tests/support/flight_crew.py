@@ -17,7 +17,6 @@ from mmrs_core.sitl.hosting import LONGEST_STEP
 from mmrs_mavlink.links.link import Link
 from mmrs_mavlink.links.ports import open_port
 from mmrs_mavlink.links.radio import Radio
-from mmrs_mavlink.places import distance
 from mmrs_mavlink.program import (
     Geographic,
     GoTo,
@@ -36,6 +35,7 @@ from mmrs_mavlink.services.uploads import Uploads
 from mmrs_mavlink.steps.watch import Watch
 from mmrs_mavlink.vehicles.mavlink_vehicle import MavlinkVehicle
 from mmrs_runtime.clock import Clock
+from mmrs_runtime.controllers.places import distance
 from mmrs_runtime.faults import Fault
 from mmrs_runtime.ports import NOTHING, Port, Received
 

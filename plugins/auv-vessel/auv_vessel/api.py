@@ -114,6 +114,11 @@ class Craft:
         self._began: float | None = None
         self._beat_due = 0.0
 
+    @property
+    def goal(self) -> Goal:
+        """Return the goal in force."""
+        return self._goal
+
     def go_to(
         self, north: float, east: float, depth: float, *, speed: float = 0.0, heading: float | None = None
     ) -> int:

@@ -1,10 +1,9 @@
-"""The runtime of generated controllers: readable, standalone, on top of pymavlink.
+"""The driver of vehicles that speak MAVLink, on top of pymavlink: a companion computer needs no more of MMRS.
 
-Read ``program.py`` first: the words that programs are written in. ``steps/`` carries programs out,
-``vehicles/`` says it to vehicles, by ``services/`` and ``links/`` of MAVLink; ``injection/`` are faults
-made on purpose. ``main.py`` runs all robots, ``session.py`` one of them from the opening of its link to
-its end, and ``options.py`` is the command line. What needs no MAVLink is in the package mmrs_runtime: the
-orders of people, what is written down, the slots of robots in many processes.
+Read ``program.py`` first: the words that programs are written in. ``driver.py`` makes a robot's vehicle for
+the engine of mmrs_runtime; ``driving/`` carries its orders out in a thread of its own, by the rules of
+``steps/``; ``vehicles/`` says them to autopilots, by ``services/`` and ``links/`` of MAVLink. What plugs into
+the core is in ``plugin/``.
 """
 
 from importlib import import_module
@@ -42,10 +41,11 @@ from .program import (
 )
 
 if TYPE_CHECKING:
-    from .judgement import Condition
-    from .main import main
-    from .objects import Locator, not_looked_for, where_expected
-    from .vehicles.vehicle import State
+    from mmrs_runtime.controllers.judgement import Condition
+    from mmrs_runtime.controllers.objects import Locator, not_looked_for, where_expected
+    from mmrs_runtime.controllers.state import State
+
+    from .driver import main
 
 __all__ = [
     "Choose",
@@ -84,20 +84,20 @@ __all__ = [
     "where_expected",
 ]
 
-_NEED_A_LINK = {
-    "Condition": "judgement",
-    "Locator": "objects",
-    "State": "vehicles.vehicle",
-    "main": "main",
-    "not_looked_for": "objects",
-    "where_expected": "objects",
+_IN = {
+    "Condition": "mmrs_runtime.controllers.judgement",
+    "Locator": "mmrs_runtime.controllers.objects",
+    "State": "mmrs_runtime.controllers.state",
+    "main": "mmrs_mavlink.driver",
+    "not_looked_for": "mmrs_runtime.controllers.objects",
+    "where_expected": "mmrs_runtime.controllers.objects",
 }
 
 
 def __getattr__(name: str) -> object:
-    """Return what needs pymavlink when it is asked for: programs and the bus do without."""
-    if name not in _NEED_A_LINK:
+    """Return what runs programs when it is asked for: to read one, its words are enough."""
+    if name not in _IN:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    found = getattr(import_module(f".{_NEED_A_LINK[name]}", __name__), name)
+    found = getattr(import_module(_IN[name]), name)
     globals()[name] = found
     return found

@@ -49,6 +49,8 @@ class Standing:
             found |= answering(life.halt.response)
         if life is not None and life.questions.asked:
             found["asks"] = life.questions.asked
+        if vehicle is not None and vehicle.reported:
+            found["reported"] = vehicle.reported
         return found
 
     def _phase(self, robot: str, life: Life | None) -> str:

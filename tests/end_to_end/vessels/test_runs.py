@@ -10,11 +10,11 @@ from pathlib import Path
 import pytest
 from dives import dive, diver, swim
 from dives_by_code import SPEED, dive_by_code, interpreted
-from mmrs_auv.backend.connected import ConnectedRobot
 from mmrs_auv.rehearsal import Berth
 from mmrs_auv.sheets import sheet_of
 
 from auv_vessel.body.surroundings import Surroundings
+from auv_vessel.driving.connected import ConnectedVehicle
 from mmrs_core.behaviour.log import read_logs
 from mmrs_core.behaviour.program import Program
 from mmrs_core.behaviour.replay import replay
@@ -62,15 +62,15 @@ def test_a_dive_is_carried_out_over_the_bus(berth, contributions, tmp_path):
 
 @pytest.mark.timeout(120)
 def test_a_run_ends_whose_bus_goes_while_its_vehicle_stops(berth, contributions, tmp_path, monkeypatch):
-    respond = ConnectedRobot.respond
+    respond = ConnectedVehicle.respond
 
-    def respond_without_a_bus(robot: ConnectedRobot, response: str, now: float) -> None:
+    def respond_without_a_bus(robot: ConnectedVehicle, response: str, now: float) -> None:
         respond(robot, response, now)
         berth.close()
         while robot._connection.failure is None:
             time.sleep(0.01)
 
-    monkeypatch.setattr(ConnectedRobot, "respond", respond_without_a_bus)
+    monkeypatch.setattr(ConnectedVehicle, "respond", respond_without_a_bus)
     said: list[str] = []
     venture = interpreted(short_dive(), berth, contributions, tmp_path)
 

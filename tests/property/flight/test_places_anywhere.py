@@ -12,7 +12,7 @@ from pyproj import Geod
 from mmrs_core.sitl.autopilot import Autopilot
 from mmrs_core.sitl.settings import Settings
 from mmrs_mavlink import Geographic
-from mmrs_mavlink.places import between, distance
+from mmrs_runtime.controllers.places import between, distance
 
 GEOD = Geod(ellps="WGS84")
 

@@ -7,8 +7,8 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from mmrs_mavlink.program import Geographic, Local
 from mmrs_mavlink.vehicles.detections import Detections
-from mmrs_mavlink.vehicles.vehicle import State
 from mmrs_runtime.conditions import is_standard, question_of, standard
+from mmrs_runtime.controllers.state import State
 
 GEOGRAPHIC = Geographic(42.0, 13.0, 20.0)
 HERE = State(0.0, Local(0.0, 0.0, 5.0), 0.0, 0.0, None)

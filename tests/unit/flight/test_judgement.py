@@ -6,8 +6,8 @@ from dataclasses import replace
 
 from flight_crew import robot_of
 
-from mmrs_mavlink.judgement import Judgement
 from mmrs_mavlink.program import Choose
+from mmrs_runtime.controllers.judgement import Judgement
 
 ASKS = "battery-below:0.3"
 

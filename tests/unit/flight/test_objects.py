@@ -8,9 +8,9 @@ from math import nan
 import pytest
 from flight_crew import HOME, NORTH
 
-from mmrs_mavlink.objects import place_of
 from mmrs_mavlink.program import Geographic, Local, Object
-from mmrs_mavlink.vehicles.vehicle import State
+from mmrs_runtime.controllers.objects import place_of
+from mmrs_runtime.controllers.state import State
 from mmrs_runtime.faults import Fault
 
 HERE = State(0.0, HOME, 0.0, 0.0, 1.0)

@@ -5,7 +5,8 @@ from __future__ import annotations
 import pytest
 from flight_crew import robot_of
 
-from mmrs_mavlink.options import options_of, parser_for
+from mmrs_mavlink.driver import MavlinkDriver
+from mmrs_runtime.controllers.options import options_of, parser_for
 
 
 @pytest.fixture
@@ -14,7 +15,8 @@ def asked(tmp_path):
 
     def ask(*arguments: str):
         robots = [robot_of(id=id) for id in ("alpha", "beta")]
-        return options_of(parser_for(robots), robots, ["--log", str(tmp_path), *arguments])
+        driver = MavlinkDriver()
+        return options_of(parser_for(robots, driver), robots, driver, ["--log", str(tmp_path), *arguments])
 
     return ask
 

@@ -11,8 +11,8 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from mmrs_mavlink.program import Geographic
 from mmrs_mavlink.records.recording import Recording
-from mmrs_mavlink.vehicles.vehicle import State
 from mmrs_runtime.clock import Clock
+from mmrs_runtime.controllers.state import State
 from mmrs_runtime.records.blackbox import BlackBox, black_box_path
 
 BEFORE = State(0.0, Geographic(42.0, 13.0, 5.0), 9.0, 90.0, 0.5, "guided", True)

@@ -8,7 +8,6 @@ import pytest
 from flight_crew import manned, robot_of
 from patience import until
 
-from mmrs_mavlink.places import distance
 from mmrs_mavlink.program import Geographic, GoTo, Land, Run, Start, Step, Stop, TakeOff, Then
 from mmrs_mavlink.services import parameters
 from mmrs_mavlink.services.missions import upload
@@ -16,6 +15,7 @@ from mmrs_mavlink.services.uploads import mission_of, uploads_of
 from mmrs_mavlink.vehicles import px4
 from mmrs_mavlink.vehicles.feasibility import check_feasible
 from mmrs_mavlink.vehicles.runs import first_flown, keep_place, speed_before
+from mmrs_runtime.controllers.places import distance
 from mmrs_runtime.faults import Refused
 
 WAYS = {

@@ -1,1 +1,101 @@
-"""What generated controllers of underwater vehicles carry beside the runtime: vehicles on CAN buses."""
+"""Controllers of vehicles on CAN buses: the words of their programs, and what runs these."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from mmrs_runtime.conditions import standard, undecided
+from mmrs_runtime.controllers.objects import Locator, not_looked_for, where_expected
+from mmrs_runtime.controllers.state import State
+from mmrs_runtime.controllers.words import (
+    Choose,
+    Geographic,
+    GoTo,
+    Hold,
+    Land,
+    Local,
+    Look,
+    NoEffect,
+    Notify,
+    Object,
+    Place,
+    Policy,
+    Recharge,
+    Report,
+    Robot,
+    Skip,
+    Start,
+    Step,
+    Stop,
+    Then,
+    Turn,
+)
+
+if TYPE_CHECKING:
+    from mmrs_runtime.controllers.judgement import Condition
+
+    from .driver import main
+
+__all__ = [
+    "Choose",
+    "Condition",
+    "Geographic",
+    "GoTo",
+    "Hold",
+    "Land",
+    "Local",
+    "Locator",
+    "Look",
+    "NoEffect",
+    "Notify",
+    "Object",
+    "Operate",
+    "Place",
+    "Policy",
+    "Recharge",
+    "Report",
+    "Robot",
+    "Skip",
+    "Start",
+    "State",
+    "Step",
+    "Stop",
+    "Then",
+    "Turn",
+    "main",
+    "not_looked_for",
+    "standard",
+    "undecided",
+    "where_expected",
+]
+
+
+@dataclass(frozen=True, slots=True)
+class Operate:
+    """Have a device do something, and wait until it says that it has.
+
+    Attributes:
+        device: as in the vehicle's sheet. action: for people.
+        number: of the action at the device. parameter: means what the device says.
+        seconds: that it takes.
+    """
+
+    device: str
+    action: str
+    number: int
+    parameter: float = 0.0
+    seconds: float = 0.0
+
+
+def __getattr__(name: str) -> object:
+    """Return what runs programs when it is asked for: to read one, its words are enough."""
+    if name == "main":
+        from .driver import main
+
+        return main
+    if name == "Condition":
+        from mmrs_runtime.controllers.judgement import Condition
+
+        return Condition
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

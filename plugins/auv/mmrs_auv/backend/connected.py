@@ -1,159 +1,131 @@
-"""The decision centre of a vehicle on its bus, in real time."""
+"""Robots of a behaviour on their buses, in real time."""
 
 from __future__ import annotations
 
-import logging
-import time
-from collections.abc import Mapping
-from math import hypot
+from dataclasses import dataclass, field
 
-from auv_vessel.api import Connection
-from auv_vessel.decision.duties import Ready
+from auv_vessel.driving.connected import ConnectedVehicle, Reach
+from auv_vessel.driving.connected import connected as on_its_bus
+from auv_vessel.driving.orders import Waters
 from auv_vessel.eyes import Detections
-from auv_vessel.goals import FAREWELL
-from auv_vessel.sheet import Sheet, Vector
-from auv_vessel.wire.ports import CHANNEL, open_port
-from mmrs_auv.backend.duties_of import Duties, Waters
-from mmrs_auv.backend.injected import ClosablePort, Faults, faults_of, injected
-from mmrs_auv.backend.keeping import Keeper, keeper_of
+from auv_vessel.wire.ports import CHANNEL
 from mmrs_auv.backend.options import Connecting, connecting
-from mmrs_auv.backend.robot import CanRobot
+from mmrs_auv.backend.orders import BehaviourOrders
 from mmrs_auv.sheets import sheet_of
-from mmrs_core.contributions.execution import Fault
 from mmrs_core.contributions.vehicles import Live, VehicleInput
-from mmrs_core.errors import LinkLostError, UnsupportedError
-from mmrs_mavlink.records.start import PROCESS
-from mmrs_runtime.engine.clocks import RealClock
+from mmrs_core.errors import LinkLostError, UnsupportedError, UsageError
+from mmrs_runtime.controllers.start import PROCESS
+from mmrs_runtime.engine.clocks import FollowingClock, RealClock
+from mmrs_runtime.injection import Rehearsal, injections
+from mmrs_runtime.injection.spec import OF_STATIONS, OF_VEHICLE
+from mmrs_runtime.records.blackbox import BlackBox, black_box_path
+from mmrs_runtime.records.steps import log_name
+
+SHARED = "faults made on purpose on CAN buses"
 
 
-class ConnectedRobot(CanRobot):
-    """A vehicle on a bus of its own; a thread repeats its goals and hears it."""
+@dataclass(slots=True)
+class Faults:
+    """The faults of all robots of a run; `users` are those that still have any."""
 
-    def __init__(
-        self,
-        given: VehicleInput,
-        sheet: Sheet,
-        reached: tuple[ClosablePort, Connection, Faults | None],
-        duties: Duties,
-        keeper: Keeper,
-        options: Connecting,
-        clock: RealClock,
-        eyes: Detections | None,
-    ) -> None:
-        """Say nothing but that nothing is to move, until the robot is to get ready."""
-        self._port, self._connection, self._faults = reached
-        super().__init__(given, sheet, self._connection.craft, duties, keeper, clearance=options.clearance)
-        if self._faults is not None:
-            self._faults.rehearsal.record(given.robot.id, self._injected)
-        self._kept, self._options, self._clock, self._eyes = keeper, options, clock, eyes
-        self._until = float("inf")
-        self._met = False
+    rehearsal: Rehearsal
+    users: set[str] = field(default_factory=set)
 
-    def prepare(self, now: float) -> bool:
-        """Begin to wait until the vehicle is heard and knows where it is."""
-        self.done, self.trouble = False, None
-        self._until = now + self._options.patience * self._clock.speedup
-        plan = self._given.program.fingerprint
-        about = {"link": "can", "vehicle": "sub", "confirms": True}
-        self._kept.note("start", {"plan": plan, "process": PROCESS, **about})
-        self._helm.begin(Ready(), now)
-        return True
-
-    def look(self, now: float) -> float:
-        """See how it is, all the time; a bus that is gone is a lost link.
-
-        Raises:
-            LinkLostError: it is.
-        """
-        if self._connection.failure is not None:
-            raise LinkLostError(str(self._connection.failure))
-        return super().look(now)
-
-    def watched(self, now: float) -> bool:
-        """Return whether somebody must stay with the vehicle; nobody can where the bus itself is gone."""
-        return self._connection.failure is None and super().watched(now)
-
-    def close(self) -> None:
-        """Let the last goal be heard, and fall silent; the vehicle then holds, and comes up."""
-        time.sleep(FAREWELL)
-        self._connection.close()
-        self._port.close()
-        if self._eyes is not None:
-            self._eyes.close()
-        if self._faults is not None:
-            self._faults.let_go(self._given.robot.id)
-        self._kept.close()
-
-    def _injected(self, text: str, content: Mapping[str, object]) -> None:
-        self._keeper.note("injected", {"fault": text, **content})
-
-    def _wrong(self, now: float) -> Fault | None:
-        return super()._wrong(now) if self._met else self._unmet(now)
-
-    def _unmet(self, now: float) -> Fault | None:
-        """Return why the vehicle does not get ready, if it does not."""
-        state = self._connection.craft.state()
-        self._met = self._helm.done(now)
-        if self._met:
-            return self._astray(state.north, state.east)
-        if now < self._until:
-            return None
-        if state.age > self._options.patience:
-            return Fault("LINK_LOST", "no vehicle is heard on its bus")
-        return Fault("POSITION_LOST", "the vehicle does not know where it is")
-
-    def _astray(self, north: float, east: float) -> Fault | None:
-        """Return that the vehicle is not where its program begins; one that goes on may be anywhere."""
-        live = self._given.live
-        home = self._sheet.home
-        away = hypot(north - home[0], east - home[1])
-        if (live is not None and live.resumed) or away <= self._options.home_tolerance:
-            return None
-        return Fault("REFUSED", f"the vehicle is {away:.0f} m from its home: bring it home before it begins")
-
-    def _detected(self) -> Mapping[str, Vector]:
-        return {} if self._eyes is None else self._eyes.places()
+    def let_go(self, robot: str) -> None:
+        """End what concerns a robot, and everything with the last one."""
+        self.rehearsal.forget(robot)
+        self.users.discard(robot)
+        if not self.users:
+            self.rehearsal.close()
 
 
-def connected(given: VehicleInput, live: Live) -> ConnectedRobot:
+def connected(given: VehicleInput, live: Live) -> ConnectedVehicle:
     """Return a robot on its bus.
 
     Raises:
         LinkLostError: there is no bus, or the port for detections is taken.
         UnsupportedError: its type lacks data, an option is unknown, or it cannot do what its program holds.
     """
-    options = connecting(given.options)
-    clock = live.clock
+    options, robot, clock = connecting(given.options), given.robot.id, live.clock
     assert isinstance(clock, RealClock)
     surface = given.program.frame.surface
     sheet = sheet_of(
         given.type,
-        given.robot.id,
+        robot,
         home=given.robot.home or (0.0, 0.0, surface),
         surface=surface,
         payload=given.robot.payload,
         density=given.environment.get("waterDensity"),
     )
+    channel = live.links.get(robot, "") or options.channel or CHANNEL
+    reach = Reach(
+        options.interface,
+        channel,
+        options.bit_rate,
+        options.clock,
+        options.patience,
+        options.home_tolerance,
+        options.clearance,
+    )
     eyes = _eyes(given, options)
     sight = None if eyes is None or options.objects == "expected" else eyes.place
-    duties = Duties(given, sheet, Waters(surface), sight)
-    faults = faults_of(given, live, options.inject)
-    logging.getLogger("can").setLevel(logging.ERROR)
-    channel = live.links.get(given.robot.id, "") or options.channel or CHANNEL
-
-    def tell(text: str) -> None:
-        live.say(f"'{given.robot.id}': {text}")
-
+    orders = BehaviourOrders(given, sheet, Waters(surface), sight)
+    faults, box = faults_of(given, live, options.inject), _box(given, live)
+    if faults is not None:
+        faults.users.add(robot)
+        if box is not None:
+            faults.rehearsal.record(robot, lambda text, content: box.write("injected", fault=text, **content))
     try:
-        port = open_port(options.interface, channel, bit_rate=options.bit_rate or None, say=tell)
+        return on_its_bus(
+            robot,
+            sheet,
+            orders,
+            reach,
+            FollowingClock(clock),
+            live,
+            {
+                "plan": given.program.fingerprint,
+                "process": PROCESS,
+                "link": "can",
+                "vehicle": "sub",
+                "confirms": True,
+            },
+            box=box,
+            eyes=eyes,
+            rehearsal=None if faults is None else faults.rehearsal,
+            let_go=(lambda: None) if faults is None else lambda: faults.let_go(robot),
+        )
     except OSError as error:
-        raise LinkLostError(f"robot '{given.robot.id}': {channel}: {error}") from error
-    reached: ClosablePort = port if faults is None else injected(port, faults, given.robot.id)
-    paced = options.clock or ("bus" if clock.speedup != 1.0 else "real")
-    connection = Connection(sheet, reached, "bus" if paced == "bus" else "real")
-    return ConnectedRobot(
-        given, sheet, (reached, connection, faults), duties, keeper_of(given, live), options, clock, eyes
-    )
+        raise LinkLostError(f"robot '{robot}': {channel}: {error}") from error
+
+
+def faults_of(given: VehicleInput, live: Live, text: str) -> Faults | None:
+    """Return the faults of a run, begun; None if none are asked for.
+
+    Raises:
+        UsageError: one is none, or concerns what no vehicle on a bus has.
+    """
+    found = live.shared.get(SHARED)
+    if isinstance(found, Faults) or not text:
+        return found if isinstance(found, Faults) else None
+    buses = {robot.id: live.links.get(robot.id, robot.id) for robot in given.program.robots}
+    try:
+        asked = injections([text], buses)
+    except ValueError as error:
+        raise UsageError(f"option 'inject': {error}") from error
+    for fault in asked.faults:
+        if fault.name in (*OF_VEHICLE, *OF_STATIONS):
+            raise UsageError(f"option 'inject': {fault.text}: is for vehicles that speak MAVLink")
+    made = live.shared[SHARED] = Faults(Rehearsal(asked, FollowingClock(live.clock), live.announce))
+    made.rehearsal.start()
+    return made
+
+
+def _box(given: VehicleInput, live: Live) -> BlackBox | None:
+    if live.folder is None:
+        return None
+    path = black_box_path(live.folder / log_name(given.robot.id))
+    return BlackBox(path, live.run, given.robot.id, live.clock.now, say=live.say)
 
 
 def _eyes(given: VehicleInput, options: Connecting) -> Detections | None:

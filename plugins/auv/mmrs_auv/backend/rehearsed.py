@@ -13,17 +13,18 @@ from auv_vessel.body.surroundings import PATH, Surroundings, Thing
 from auv_vessel.body.vehicle import Vehicle
 from auv_vessel.control.actuators import Actuators
 from auv_vessel.control.sensors import Sensors
+from auv_vessel.driving.orders import Waters
+from auv_vessel.driving.vehicle import CanVehicle
 from auv_vessel.eyes import Detections, to_datagram
 from auv_vessel.hosting import Rehearsal
 from auv_vessel.instruments import instruments_of
 from auv_vessel.movement.movement import Movement
 from auv_vessel.sheet import Sheet, Vector
 from auv_vessel.wire.codec import Codec
-from mmrs_auv.backend.duties_of import Duties, Waters
 from mmrs_auv.backend.options import Rehearsing, rehearsing
-from mmrs_auv.backend.robot import CanRobot
+from mmrs_auv.backend.orders import BehaviourOrders
 from mmrs_auv.sheets import sheet_of
-from mmrs_core.contributions.execution import Fault, RobotState, Sample
+from mmrs_core.contributions.execution import Fault, Sample
 from mmrs_core.contributions.vehicles import VehicleInput
 from mmrs_core.errors import UnsupportedError
 from mmrs_core.scene import Position
@@ -170,7 +171,7 @@ def _put_in(sheet: Sheet, options: Rehearsing) -> Vector:
     return (north + random.gauss(0.0, sigma), east + random.gauss(0.0, sigma), depth)
 
 
-class RehearsedRobot(CanRobot):
+class RehearsedRobot(CanVehicle):
     """A simulated vehicle; it goes on as the run's time does.
 
     Attributes:
@@ -185,9 +186,11 @@ class RehearsedRobot(CanRobot):
         self._samples: list[Sample] = []
         self._struck: Fault | None = None
         sight = stage.sees if options.objects in ("seen", "cameras") else None
-        duties = Duties(given, sheet, Waters(given.program.frame.surface), sight)
-        duties.charged = self._charge
-        super().__init__(given, sheet, stage.craft, duties, _Nobody(), clearance=options.clearance)
+        orders = BehaviourOrders(given, sheet, Waters(given.program.frame.surface), sight)
+        orders.charged = self._charge
+        super().__init__(
+            given.robot.id, sheet, stage.craft, orders, seen=stage.in_sight, clearance=options.clearance
+        )
         if sight is None:
             self.notes += [f"move '{id}': object taken to be where it is expected" for id in _objects(given)]
 
@@ -230,26 +233,13 @@ class RehearsedRobot(CanRobot):
 
     def _sample(self) -> None:
         truth = self.stage.vehicle.truth
-        east, north, up = self._waters.above((truth.north, truth.east, truth.depth))
+        east, north, up = self._orders.waters.above((truth.north, truth.east, truth.depth))
         time = self.stage.rehearsal.now
         if not self._samples or time >= self._samples[-1].time + SAMPLE:
             self._samples.append(Sample(time, east, north, up, self.stage.vehicle.charge))
 
-    def _detected(self) -> Mapping[str, Vector]:
-        return self.stage.in_sight()
-
     def _charge(self) -> None:
         self.stage.vehicle.charge = self._sheet.battery
-
-
-class _Nobody:
-    """Keeps nothing: simulated runs have black boxes of their own."""
-
-    def note(self, kind: str, content: Mapping[str, object]) -> None:
-        pass
-
-    def seen(self, state: RobotState) -> None:
-        pass
 
 
 def rehearsed(given: VehicleInput) -> RehearsedRobot:

@@ -10,7 +10,7 @@ from mmrs_core.errors import LinkLostError, UnsupportedError
 from mmrs_mavlink.links.link import Link
 from mmrs_mavlink.links.ports import split_system
 from mmrs_mavlink.links.radios import Radios
-from mmrs_mavlink.plugin.backend.connection import FIRST_PORT, PORT_STEP
+from mmrs_mavlink.options import FIRST_PORT, PORT_STEP
 from mmrs_mavlink.plugin.context import context_of
 from mmrs_runtime import faults
 from mmrs_runtime.engine.clocks import FollowingClock

@@ -6,11 +6,11 @@ import threading
 from collections.abc import Mapping, Sequence
 
 from auv_vessel.decision.helm import UNHEARD
-from mmrs_auv.backend.keeping import keeper_of
 from mmrs_auv.manual.autopilot import DEPTH_HOLD, SURFACE, Autopilot
 from mmrs_auv.manual.equipment import carry_out
 from mmrs_auv.manual.goals import goal_of
 from mmrs_auv.manual.helm import Helm
+from mmrs_auv.manual.keeping import keeper_of
 from mmrs_auv.manual.route import Route
 from mmrs_auv.manual.troubles import LINK_PATIENCE, Troubles
 from mmrs_auv.manual.ways import Ways
@@ -22,8 +22,8 @@ from mmrs_core.scene import Position
 from mmrs_mavlink.links.link import Link
 from mmrs_mavlink.plugin.actions import DEVICE_ACTION
 from mmrs_mavlink.plugin.context import RobotContext
-from mmrs_mavlink.records.start import PROCESS
 from mmrs_runtime import faults
+from mmrs_runtime.controllers.start import PROCESS
 from mmrs_runtime.policies import NOTHING, OVERTAKES, response_to
 from mmrs_runtime.vehicle import Vehicle
 

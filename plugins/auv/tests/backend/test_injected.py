@@ -10,8 +10,9 @@ from can_hub import running
 from dives import dive, diver
 from hypothesis import given
 from hypothesis import strategies as st
-from mmrs_auv.backend.injected import Faults, faults_of, frame_of, injected, piece_of
+from mmrs_auv.backend.connected import Faults, faults_of
 
+from auv_vessel.driving.injected import frame_of, injected, piece_of
 from auv_vessel.hosting import clock_frame
 from auv_vessel.wire.frame import Frame
 from auv_vessel.wire.ports import Port, open_port
@@ -47,7 +48,7 @@ def between(text: str) -> Iterator[tuple[Port, Port]]:
         channel = f"can0@127.0.0.1:{hub.port}"
         with open_port("socketcand", channel) as ours, open_port("socketcand", channel) as theirs:
             made = faults(text)
-            yield injected(ours, made, "naiad"), theirs
+            yield injected(ours, made.rehearsal, "naiad"), theirs
             made.let_go("naiad")
 
 

@@ -7,8 +7,8 @@ from pathlib import Path
 import pytest
 from dives import dive, rehearse, swim
 from mmrs_auv.backend.rehearsed import RehearsedRobot
-from mmrs_auv.backend.robot import CanRobot
 
+from auv_vessel.driving.vehicle import CanVehicle
 from mmrs_core.contributions.execution import Fault
 from mmrs_core.scene import Area, AreaUse
 
@@ -44,7 +44,7 @@ def test_it_goes_round_what_is_in_its_way(tmp_path: Path) -> None:
 def test_whoever_runs_behaviours_knows_that_it_can_go_back(tmp_path: Path) -> None:
     robot, now = dived(tmp_path)
     assert robot.comes_home
-    assert isinstance(robot, CanRobot)
+    assert isinstance(robot, CanVehicle)
     assert robot.away(now) == "it is 6 m from home"
     robot.recover(("start",), "first", now)
     while not robot.done:

@@ -44,7 +44,7 @@ from auv_vessel.wire.catalogue import EMERGENCIES, REASONS
 from auv_vessel.wire.codec import Codec
 from auv_vessel.wire.frame import Frame
 from mmrs_mavlink.program import Local
-from mmrs_mavlink.steps.ways import way_back
+from mmrs_runtime.controllers.ways import way_back
 from mmrs_runtime.engine.answers import Answers
 from mmrs_runtime.faults import LINK_LOST, PEER_LOST
 from mmrs_runtime.policies import OVERTAKES, SURFACE, in_precedence

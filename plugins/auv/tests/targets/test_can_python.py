@@ -12,7 +12,7 @@ from mmrs_auv.kinds import AUV_KIND
 from mmrs_auv.targets.can_python.target import CAN_PYTHON
 from ports import free_endpoint
 
-from auv_vessel.controllers.main import main
+from auv_vessel.controllers.driver import main
 from auv_vessel.sheet import from_json
 from mmrs_core.behaviour.log import read_logs
 from mmrs_core.behaviour.program import Program, Target, Transition

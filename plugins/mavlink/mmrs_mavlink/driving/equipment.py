@@ -7,11 +7,11 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from mmrs_runtime.clock import Clock
+from mmrs_runtime.controllers.objects import Locator
 from mmrs_runtime.records.blackbox import BlackBox
 from mmrs_runtime.records.steps import StepRecord
 from mmrs_runtime.vehicle import Position
 
-from ..objects import Locator
 from ..program import Place
 from ..vehicles.vehicle import Vehicle
 

@@ -3,16 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import replace
 from functools import partial
 
 from mmrs_runtime.clock import Clock
+from mmrs_runtime.controllers.objects import Locator, look_at, place_of
+from mmrs_runtime.controllers.places import at_height, ends_of
 from mmrs_runtime.faults import BATTERY_LOW, DEVICE_SILENT, Fault, Unanswered
 from mmrs_runtime.policies import VALUE_SECONDS, seconds_of
 from mmrs_runtime.screen import words_of
 
-from ..objects import Locator, look_at, place_of
-from ..places import at_height, ends_of
 from ..program import (
     Action,
     GoTo,
@@ -20,9 +19,7 @@ from ..program import (
     Land,
     Look,
     Measure,
-    Movement,
     NoEffect,
-    Object,
     Operate,
     Place,
     Recharge,
@@ -38,7 +35,7 @@ from ..services.uploads import Flight
 from ..steps.energy import FULL, RECHARGE_FACTOR
 from ..steps.responses import policy_for
 from ..vehicles.corners import goes_through
-from ..vehicles.vehicle import Seeking, Vehicle
+from ..vehicles.vehicle import Vehicle
 from .worker import Job
 
 IN_THE_AIR = 1.0
@@ -115,7 +112,7 @@ class Moves:
             return Job(lambda: self._told("text", action.name, {"text": f"no way to do it: {action.why}"}))
         return Job()
 
-    def kind(self, move: str) -> type[Movement]:
+    def kind(self, move: str) -> type[object]:
         """Return what sort of movement a move is."""
         return type(self._steps[move].movement)
 
@@ -180,23 +177,16 @@ class Moves:
         def look_up() -> None:
             if not self.track:
                 self._pass(move, self._vehicle.state().place)
-            seen = self._sought(movement)
             state = self._vehicle.state()
             here = at_height(state.place, self.track[-1][1].height)
-            target = seen or self.target_of(movement)
-            look = look_at(_seen_at(movement, seen), self._locators, state)
+            target = self.target_of(movement)
+            look = look_at(movement.look, self._locators, state)
             ends = ends_of(here, target, movement.legs, movement.distance)
             on = through and goes_through(self._steps[move], self._following(move), here)
             job.then(*(self._leg(move, end, movement, look, on and end == ends[-1]) for end in ends))
 
         job.append(look_up)
         return job
-
-    def _sought(self, movement: GoTo) -> Place | None:
-        """Return where the object that a movement leads to is, if the vehicle itself has looked for it."""
-        if not isinstance(movement.at, Object) or not isinstance(self._vehicle, Seeking):
-            return None
-        return self._vehicle.seek(movement)
 
     def _following(self, move: str) -> Step | None:
         then = self._steps[move].then
@@ -273,14 +263,6 @@ class Moves:
                 self._told("text", "charging", {"text": f"charged for {seconds:.0f} s; nobody knows how far"})
 
         return Job(finish, self._rest(seconds), top_up)
-
-
-def _seen_at(movement: GoTo, place: Place | None) -> Look | None:
-    """Return what a movement looks at, where it has found its own object."""
-    look = movement.look
-    return (
-        replace(look, at=place) if look is not None and place is not None and look.at == movement.at else look
-    )
 
 
 class _Flight:

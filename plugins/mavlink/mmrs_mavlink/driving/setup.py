@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from math import inf
 
+from mmrs_runtime.controllers.start import start_of
+
 from ..program import Robot
-from ..records.start import start_of
 from ..services.uploads import Uploads
 from ..steps.equipping import equip
 from ..steps.watch import Watch
@@ -45,15 +46,18 @@ class Setup:
         Raises:
             Fault: it does not come in time.
         """
-        radio, about = self._with.radio, dict(self._with.vehicle.about)
+        radio = self._with.radio
         if radio is None:
-            self._note("start", start_of(self._robot, "", None) | about)
+            self._note("start", start_of(self._robot, None, "pymavlink"))
             return
         self._with.say(f"waits for a vehicle at {radio.url}")
+        from ..vehicles.recognition import firmware_of  # needs MAVLink's library
+
         try:
             radio.radios.meet(radio.link, radio.url, radio.patience)
         finally:
-            self._note("start", start_of(self._robot, radio.url, radio.link) | about)
+            about = {"firmware": firmware_of(radio.link), "system": radio.link.system}
+            self._note("start", start_of(self._robot, radio.url, "pymavlink", **about))
 
     def set_up(self) -> None:
         """Have the vehicle know what it must, once it is known to be the robot's.

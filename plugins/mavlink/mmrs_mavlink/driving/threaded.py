@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
 from functools import partial
 from math import inf
 from traceback import format_exception
 
+from mmrs_runtime.controllers.fixes import fix
+from mmrs_runtime.controllers.state import Known, told_of
 from mmrs_runtime.faults import (
     BATTERY_LOW,
     CRASHED,
@@ -19,16 +20,13 @@ from mmrs_runtime.faults import (
 )
 from mmrs_runtime.faults import Fault as VehicleFault
 from mmrs_runtime.policies import CONTINUE, NOTHING
-from mmrs_runtime.vehicle import Fault, State, Vehicle
+from mmrs_runtime.vehicle import Fault, Vehicle
 
 from ..program import Action, GoTo, Land, Operate, Place, Recharge, Robot, Step, TakeOff
-from ..records.fixes import fix
 from ..services.uploads import uploads_of
 from ..steps.obeying import astray, away, obeying
 from ..steps.watch import Watch
 from ..vehicles.footing import footing
-from ..vehicles.vehicle import State as VehicleState
-from ..vehicles.vehicle import told_of
 from .cameras import Cameras
 from .equipment import Equipment
 from .lost_link import LostLink
@@ -43,23 +41,11 @@ FAREWELL_SECONDS = 5.0
 """Real seconds that a vehicle has to be told to stay where it is."""
 
 
-@dataclass(frozen=True, slots=True)
-class Known(State):
-    """What is known of a robot; `told`: as its vehicle tells it."""
-
-    told: VehicleState | None = None
-
-
 class ThreadedVehicle(Vehicle):
-    """Drives one robot; a thread of its own waits for the vehicle, so that every call returns at once.
-
-    Attributes:
-        reported: what it has reported last: `name` and `content`; empty before it has.
-    """
+    """Drives one robot; a thread of its own waits for the vehicle, so that every call returns at once."""
 
     def __init__(self, robot: Robot, equipment: Equipment) -> None:
         """Listen to the vehicle; it is told nothing before it is to get ready."""
-        self.reported: Mapping[str, object] = {}
         self._robot, self._with = robot, equipment
         self._lost_link = LostLink(robot, equipment.vehicle, equipment.say)
         self._watch = self._new_watch()

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from itertools import pairwise
 
+from mmrs_runtime.controllers.places import at_height, distance_to_leg, ends_of
 from mmrs_runtime.faults import BATTERY_LOW, Fault, Refused
 from mmrs_runtime.policies import CONTINUE, still_low
 
-from ..places import at_height, distance_to_leg, ends_of
 from ..program import GoTo, Land, Place, Recharge, Robot, Start, TakeOff
 from ..steps.rejoining import ALIKE, OFF_ITS_WAY, way_ahead
 from ..steps.responses import policy_for

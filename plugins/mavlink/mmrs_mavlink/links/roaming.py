@@ -9,9 +9,9 @@ from __future__ import annotations
 from math import hypot
 from typing import Any, NamedTuple
 
+from mmrs_runtime.controllers.places import distance
 from mmrs_runtime.ports import Address
 
-from ..places import distance
 from ..program import Geographic, Local, Place
 from .messages import tells_place
 

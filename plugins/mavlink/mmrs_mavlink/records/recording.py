@@ -11,6 +11,8 @@ from typing import Any
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from mmrs_runtime.clock import Clock
+from mmrs_runtime.controllers.fixes import FIX_SECONDS, fix
+from mmrs_runtime.controllers.state import State
 from mmrs_runtime.records.blackbox import BlackBox
 
 from ..links.link import Message
@@ -19,8 +21,6 @@ from ..program import Geographic
 from ..services.items import NAMES
 from ..vehicles.telemetry import NO_HEADING
 from ..vehicles.trail import place_in
-from ..vehicles.vehicle import State
-from .fixes import FIX_SECONDS, fix
 
 OTHER_SECONDS = 1.0
 """Least time between two messages of one type that nothing here knows."""

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from math import cos, hypot, inf, radians, sqrt
 
+from mmrs_runtime.controllers.places import bearing, distance, offset
+from mmrs_runtime.controllers.state import State
+from mmrs_runtime.controllers.ways import Track, way_back
 from mmrs_runtime.policies import COMES_DOWN
 
-from ..places import bearing, distance, offset
 from ..program import Place, Robot
-from ..vehicles.vehicle import State
-from .ways import Track, way_back
 from .winds import MeanWind
 
 MARGIN = 0.05

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
+from mmrs_runtime.controllers.ways import Track
 from mmrs_runtime.policies import CAME_DOWN_AWAY, HOLD, RETURN
 
 from ..program import Robot
@@ -11,7 +12,6 @@ from ..vehicles.footing import aside, misplaced
 from ..vehicles.vehicle import Vehicle
 from .motors import TOUCHING
 from .responding import OFF, course_of
-from .ways import Track
 
 
 def obeying(response: str, robot: Robot, vehicle: Vehicle, track: Track) -> Callable[[], bool]:

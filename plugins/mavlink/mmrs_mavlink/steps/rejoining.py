@@ -7,7 +7,8 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from ..places import at_height, ends_of
+from mmrs_runtime.controllers.places import at_height, ends_of
+
 from ..program import GoTo, Land, Place, Robot, TakeOff
 
 OFF_ITS_WAY = 5.0

@@ -6,6 +6,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 
+from mmrs_runtime.controllers.ways import Track, steps_back
 from mmrs_runtime.faults import LINK_LOST, NO_PROGRESS, REFUSED, Fault
 from mmrs_runtime.policies import COMES_DOWN, ESCAPE, HOLD, LAND, NOTHING, RETURN
 
@@ -13,7 +14,6 @@ from ..program import Place, Policy, Robot
 from ..vehicles import modes
 from ..vehicles.vehicle import Vehicle
 from .responses import DOWN, alone, policy_for
-from .ways import Track, steps_back
 
 SURFACE = "SURFACE"
 STOP_THRUST = "STOP_THRUST"

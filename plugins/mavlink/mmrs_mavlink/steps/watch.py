@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from mmrs_runtime.clock import Clock
+from mmrs_runtime.controllers.ways import Track
 from mmrs_runtime.faults import (
     BATTERY_LOW,
     GROUND_LOST,
@@ -26,7 +27,6 @@ from .energy import Reserve
 from .ground import WATCHED, Ground
 from .motors import Motors
 from .responses import DOWN, NO_ESCAPE, lacks_escape, policy_for
-from .ways import Track
 
 if TYPE_CHECKING:
     from ..links.link import Link

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from math import atan2, cos, degrees, exp, hypot, radians, sin
 
-from ..vehicles.vehicle import State
+from mmrs_runtime.controllers.state import State
 
 MEAN_SECONDS = 60.0
 """Over how long winds are averaged, at most."""

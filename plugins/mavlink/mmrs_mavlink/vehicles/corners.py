@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from math import acos, degrees, hypot
 
-from ..places import distance, ends_of, offset
+from mmrs_runtime.controllers.places import distance, ends_of, offset
+
 from ..program import GoTo, Notify, Object, Place, Step, Then
 
 STRAIGHT_DEGREES = 10.0

@@ -9,11 +9,11 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from itertools import pairwise
 
+from mmrs_runtime.controllers.places import distance_to_leg
 from mmrs_runtime.faults import NO_PROGRESS, Fault
 
 from ..links.autopilots import is_px4
 from ..links.link import Link
-from ..places import distance_to_leg
 from ..program import Place
 from ..services import parameters
 

@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING
 
 from mmrs_runtime.clock import Clock
+from mmrs_runtime.controllers.places import at_height, bearing, distance
+from mmrs_runtime.controllers.state import State
 
-from ..places import at_height, bearing, distance
 from ..program import Geographic, Look, Place
 from .modes import GUIDED, HOLD, LAND, SURFACE
-from .vehicle import State
 
 if TYPE_CHECKING:
     from ..services.items import Item
@@ -26,13 +26,11 @@ class DryVehicle:
 
     Attributes:
         start: where it is to stand before it takes off.
-        about: nothing: it is not reached.
     """
 
     def __init__(self, clock: Clock, home: Place, guard: Callable[[], None]) -> None:
         """Stand at home."""
         self.start = home
-        self.about: Mapping[str, object] = {}
         self._clock = clock
         self._here = home
         self._home = home

@@ -11,11 +11,11 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from math import hypot
 
+from mmrs_runtime.controllers.places import distance, offset
 from mmrs_runtime.faults import Refused
 
 from ..links.autopilots import is_px4
 from ..links.link import Link
-from ..places import distance, offset
 from ..program import Geographic, Place
 from ..services import parameters
 from ..services.items import Item

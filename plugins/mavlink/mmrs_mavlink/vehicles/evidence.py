@@ -13,9 +13,10 @@ from math import cos, hypot, radians
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
+from mmrs_runtime.controllers.places import distance, offset
+
 from ..links.autopilots import is_px4
 from ..links.link import Link
-from ..places import distance, offset
 from ..program import Place
 from ..services.commands import ask
 from . import modes

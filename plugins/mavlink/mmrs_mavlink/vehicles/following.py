@@ -8,9 +8,9 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 
+from mmrs_runtime.controllers.places import distance, distance_to_leg
 from mmrs_runtime.faults import NO_PROGRESS, Fault
 
-from ..places import distance, distance_to_leg
 from ..program import Place
 from .corridor import Corridor
 from .trail import Trail

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from math import hypot
 
-from ..places import offset
+from mmrs_runtime.controllers.places import offset
+
 from ..program import Geographic, Place
 
 ELSEWHERE = 5.0

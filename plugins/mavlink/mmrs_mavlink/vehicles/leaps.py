@@ -9,9 +9,10 @@ from __future__ import annotations
 from collections.abc import Callable
 from math import hypot
 
+from mmrs_runtime.controllers.places import offset
+
 from ..links.link import Message
 from ..links.roaming import Sign, sign_in
-from ..places import offset
 
 LEAP_METRES = 10.0
 """What an estimator may correct at once, sideways."""

@@ -6,18 +6,19 @@ between them is in ``habits.py`` and ``px4.py``.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable
 from dataclasses import replace
 from functools import partial
 from math import inf
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
+from mmrs_runtime.controllers.places import at_height
+from mmrs_runtime.controllers.state import State
 from mmrs_runtime.faults import LINK_LOST, Fault, Refused, Unanswered
 
 from ..links.link import Link, Message
 from ..links.messages import ANYBODY
-from ..places import at_height
 from ..program import Geographic, Look, Place, Travel
 from ..services.commands import command, name_of
 from ..services.telling import tell
@@ -33,7 +34,6 @@ from .own_home import keep_home
 from .steering import PATIENCE_FACTOR, PATIENCE_SECONDS, STILL, Steering
 from .telemetry import Telemetry
 from .travel import set_up
-from .vehicle import State
 
 FORCE_DISARM = 21_196
 IMAGE_SECONDS = 10.0
@@ -45,7 +45,6 @@ class MavlinkVehicle:
 
     Attributes:
         start: where it is to stand before it takes off: home, or where its program has landed it.
-        about: nothing: the black box tells of its link.
     """
 
     def __init__(
@@ -71,7 +70,6 @@ class MavlinkVehicle:
             tell: is given what people should know, as what the vehicle does by itself.
         """
         self.start = home
-        self.about: Mapping[str, object] = {}
         self._tell = tell
         self._link = link
         self._telemetry = Telemetry(link, home)

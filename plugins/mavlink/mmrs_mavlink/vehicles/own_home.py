@@ -7,10 +7,10 @@ from __future__ import annotations
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
+from mmrs_runtime.controllers.places import distance
 from mmrs_runtime.faults import Refused
 
 from ..links.link import Link, Message
-from ..places import distance
 from ..program import Geographic, Place
 from ..services.commands import ask, command_at
 from .footing import ELSEWHERE, aside

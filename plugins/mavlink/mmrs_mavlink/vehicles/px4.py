@@ -19,10 +19,10 @@ from math import nan, radians
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
+from mmrs_runtime.controllers.places import between, distance
 from mmrs_runtime.faults import Refused
 
 from ..links.link import Link
-from ..places import between, distance
 from ..program import Place
 from ..services.items import Item
 from . import modes

@@ -108,3 +108,12 @@ def system_of(box: Path) -> int:
             if isinstance(system, int) and system:
                 return system
     return 0
+
+
+def firmware_of(link: Link) -> str | None:
+    """Return the firmware that a vehicle says it is, such as ``ARDUPILOTMEGA``; None before it is heard."""
+    from pymavlink.dialects.v20 import ardupilotmega as mavlink
+
+    beat = link.latest("HEARTBEAT")
+    firmware = mavlink.enums["MAV_AUTOPILOT"].get(beat.autopilot) if beat is not None else None
+    return firmware.name.removeprefix("MAV_AUTOPILOT_") if firmware is not None else None

@@ -6,10 +6,10 @@ from math import atan2, degrees, hypot, nan, radians
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
+from mmrs_runtime.controllers.places import bearing, distance, offset
 from mmrs_runtime.faults import NO_PROGRESS, Fault
 
 from ..links.link import Link
-from ..places import bearing, distance, offset
 from ..program import Geographic, Local, Look, Object, Place
 from ..services.commands import command, command_at
 from .footing import aside

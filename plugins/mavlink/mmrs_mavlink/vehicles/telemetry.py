@@ -8,6 +8,7 @@ from math import atan2, degrees, hypot
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
+from mmrs_runtime.controllers.state import State
 from mmrs_runtime.faults import FENCE_BREACHED, POSITION_LOST
 
 from ..links.link import Link, Message
@@ -20,7 +21,6 @@ from .leaps import Leaps
 from .readiness import lacks, unlocated
 from .texts import Texts
 from .trail import Trail, place_in
-from .vehicle import State
 
 NO_HEADING = 65_535
 NO_DISTANCE = 65_535

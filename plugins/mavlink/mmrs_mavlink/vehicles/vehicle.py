@@ -2,64 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Protocol, runtime_checkable
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Protocol
 
-from mmrs_runtime.records.blackbox import plain
+from mmrs_runtime.controllers.state import State
 
-from ..program import GoTo, Look, Place
+from ..program import Look, Place
 
 if TYPE_CHECKING:
     from ..services.uploads import Uploads
-
-
-@dataclass(frozen=True, slots=True)
-class State:
-    """What a robot knows of itself; conditions are asked with it.
-
-    Attributes:
-        time: seconds of the run. place: where it is. speed: metres per second.
-        heading: degrees clockwise from north. energy: part of the battery that is left, 0 to 1, or
-            None where the vehicle does not say.
-        wind: metres per second; wind_from: degrees clockwise from north; None where nobody knows.
-        detected: names of what the vehicle has detected so far. places: where, as far as it knows.
-        found: names of what it, or a robot that has notified it since, has detected.
-        answers: what the operator has answered, by question, and no choice has used up.
-        mode: in the runtime's words (``guided``, ``auto``, ``hold``, ``land`` …) or, where it has none
-            for it, the vehicle's number. armed: whether the motors may run.
-    """
-
-    time: float
-    place: Place
-    speed: float
-    heading: float
-    energy: float | None
-    mode: str = ""
-    armed: bool = False
-    wind: float | None = None
-    wind_from: float | None = None
-    detected: frozenset[str] = frozenset()
-    places: Mapping[str, Place] = field(default_factory=dict)
-    found: frozenset[str] = frozenset()
-    answers: Mapping[str, bool] = field(default_factory=dict)
-
-    @property
-    def charge(self) -> float | None:
-        """Return the part of the battery that is left, as the standard conditions call it."""
-        return self.energy
-
-
-def told_of(state: State) -> dict[str, object]:
-    """Return what there is to say of a vehicle's state, as JSON has it."""
-    found = {
-        "mode": state.mode,
-        "armed": state.armed,
-        "energy": state.energy,
-        "place": state.place,
-        "speed": round(state.speed, 2),
-    }
-    return {name: plain(value) for name, value in found.items()}
 
 
 class Evidence(Protocol):
@@ -83,11 +34,9 @@ class Vehicle(Protocol):
 
     Attributes:
         start: where it is to stand before it takes off: home, or where its program has landed it.
-        about: what its black box says first of how it is reached, where that is not by MAVLink.
     """
 
     start: Place
-    about: Mapping[str, object]
 
     def answer_lost_link(self, response: str, after: float | None = None) -> None:
         """Have the vehicle respond so by itself when it has not heard the ground for some seconds."""
@@ -183,16 +132,4 @@ class Vehicle(Protocol):
 
     def state(self) -> State:
         """Return what is known now."""
-        ...
-
-
-@runtime_checkable
-class Seeking(Protocol):
-    """What a program also needs of a vehicle that finds objects itself."""
-
-    def seek(self, movement: GoTo) -> Place | None:
-        """Go and look until the object that a movement leads to is found; return where it is.
-
-        None: nothing looks for it, so that the user's function says where it is.
-        """
         ...

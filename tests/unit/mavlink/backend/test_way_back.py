@@ -19,11 +19,11 @@ from mmrs_core.testing.programs import (
 )
 from mmrs_mavlink.driving.moves import Moves
 from mmrs_mavlink.driving.way_back import WayBack, sortie_of
-from mmrs_mavlink.places import distance, offset
 from mmrs_mavlink.plugin.built import robot_of
 from mmrs_mavlink.program import Policy
 from mmrs_mavlink.vehicles.dry import DryVehicle
 from mmrs_runtime.clock import Clock
+from mmrs_runtime.controllers.places import distance, offset
 from mmrs_runtime.faults import BATTERY_LOW, Fault, Refused
 
 FLUID = {index: Transition(index, index + 1, fluid=True) for index in (3, 4, 5)}

@@ -26,9 +26,9 @@ from auv_vessel.goals import FAREWELL, GOAL_PERIOD, GOALS
 from auv_vessel.wire.catalogue import BEAT_PERIOD
 from auv_vessel.wire.socketcand import LONGEST as LONGEST_WORD
 from mmrs_auv.targets.ada import policies
-from mmrs_mavlink.steps.ways import ALIGNED, NEAR
 from mmrs_runtime.bus.meeting import PATIENCE
 from mmrs_runtime.bus.words import MOST_FINDS
+from mmrs_runtime.controllers.ways import ALIGNED, NEAR
 from mmrs_runtime.engine.life import PACE
 
 WATCHDOG = 2.0

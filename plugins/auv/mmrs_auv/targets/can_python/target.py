@@ -7,7 +7,8 @@ go over its CAN bus. It carries wheels of that runtime, and of what it needs to 
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import replace
+from dataclasses import fields, replace
+from typing import Any
 
 from auv_vessel.sheet import Sheet, to_json
 from mmrs_auv.sayable import Bus, parameter_of
@@ -19,15 +20,16 @@ from mmrs_core.contributions.targets import FileSpec, Target, TargetInput
 from mmrs_core.contributions.wiring import DeviceWiring, Unwired, Wired, Wiring
 from mmrs_core.errors import UnsupportedError
 from mmrs_core.generation.deployment import deployment_of
-from mmrs_core.generation.escaping import file_stems
+from mmrs_core.generation.escaping import Call, file_stems
 from mmrs_core.scene import Device, Policy, RobotType
 from mmrs_mavlink.plugin.actions import action_losses
 from mmrs_mavlink.plugin.context import RobotContext, context_of, homeless, require_home, vehicleless
 from mmrs_mavlink.plugin.controllers import carried, fleet_files
 from mmrs_mavlink.plugin.movements import losses_of
 from mmrs_mavlink.plugin.naming import with_names
-from mmrs_mavlink.plugin.program import robot_view, trace_of
+from mmrs_mavlink.plugin.program import RobotView, robot_view, trace_of
 from mmrs_mavlink.plugin.safety import policies_of
+from mmrs_runtime.controllers.words import Robot
 
 WIRED = "can.device"
 """A property that devices get here: their number on the bus, from 1 on."""
@@ -50,12 +52,36 @@ def files(input: TargetInput) -> Iterator[FileSpec]:
     modules = [f"robot_{stems[robot.id]}" for robot in robots]
     for robot, module in zip(robots, modules, strict=True):
         sheet = to_json(_sheet(robot, input))
-        said = with_names(robot_view(robot, local, input.program.fingerprint))
+        said = _said(with_names(robot_view(robot, local, input.program.fingerprint)))
         view = {"robot": said, "sheet": f"{module}.json"}
         yield FileSpec(f"{module}.json", "", data=sheet.encode())
         yield FileSpec(f"{module}.py", "robot.py.jinja", view, trace=trace_of(robot))
-    needs = deployment_of(*carried(len(robots)), "auv-vessel")
+    needs = deployment_of(*carried(len(robots))[:1], "auv-vessel")
     yield from fleet_files(replace(local.program, robots=robots), modules, needs)
+
+
+def _said(view: RobotView) -> RobotView:
+    """Return a robot in the words of vehicles on CAN buses."""
+    known = {each.name for each in fields(Robot)}
+    steps = tuple(replace(step, call=_in_words(step.call)) for step in view.steps)
+    return replace(
+        view,
+        head=tuple(each for each in view.head if each[0] in known),
+        steps=steps,
+        words=tuple(word for word in view.words if word != "Travel"),
+    )
+
+
+def _in_words(value: Any) -> Any:
+    if isinstance(value, tuple):
+        return tuple(_in_words(each) for each in value)
+    if not isinstance(value, Call):
+        return value
+    positional = _in_words(value.positional)
+    if value.function == "Operate":
+        device, action, _, (number, parameter), seconds = positional
+        positional = (device, action, int(number), parameter, seconds)
+    return Call(value.function, positional, _in_words(value.named))
 
 
 def refusals(input: TargetInput) -> Iterator[str]:

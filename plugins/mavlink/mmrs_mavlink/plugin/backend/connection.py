@@ -21,7 +21,7 @@ from mmrs_mavlink.links.ports import address_of, split_system
 from mmrs_mavlink.links.radios import Radios
 from mmrs_mavlink.links.retries import Retries
 from mmrs_mavlink.links.signing import Signer, signer_for
-from mmrs_mavlink.objects import Locator, where_expected
+from mmrs_mavlink.options import FIRST_PORT, PORT_STEP
 from mmrs_mavlink.plugin.actions import action_of
 from mmrs_mavlink.plugin.backend.options import LinkOptions, link_options
 from mmrs_mavlink.plugin.backend.whereabouts import Ground
@@ -33,6 +33,7 @@ from mmrs_mavlink.program import Action, Robot
 from mmrs_mavlink.services.satellites import attended
 from mmrs_mavlink.vehicles.recognition import system_of
 from mmrs_runtime.clock import Clock
+from mmrs_runtime.controllers.objects import Locator, where_expected
 from mmrs_runtime.engine.clocks import FollowingClock
 from mmrs_runtime.faults import Fault
 from mmrs_runtime.injection import Rehearsal, injections
@@ -40,7 +41,6 @@ from mmrs_runtime.ports import Port
 from mmrs_runtime.records.blackbox import BlackBox, black_box_path
 from mmrs_runtime.records.steps import log_name
 
-FIRST_PORT, PORT_STEP = 14_550, 10
 SHARED = "mavlink"
 
 
@@ -172,11 +172,10 @@ def _equipment(
 ) -> Equipment:
     options = link_options(given.options)
     home_tolerance = inf if live.resumed else options.home_tolerance
-    linked = at_end_of(link, program, options.acceptance, home_tolerance, live.say)
-    home = given.robot.home or (0.0, 0.0, 0.0)
     box = _box(given, live, fleet.clock)
+    vehicle = at_end_of(link, program, options.acceptance, home_tolerance, live.say, box, fleet.clock)
+    home = given.robot.home or (0.0, 0.0, 0.0)
     if box is not None:
-        linked.record(box, program, fleet.clock)
         fleet.rehearsal.record(
             given.robot.id, lambda text, content: box.write("injected", fault=text, **content)
         )
@@ -189,13 +188,13 @@ def _equipment(
     patience = options.patience * fleet.clock.speedup
     url, system = _url(given, live)[0], _system_before(given, live)
     return Equipment(
-        linked.vehicle,
+        vehicle,
         guard,
         fleet.clock,
         Ground(given.program.frame, home, context.zero).position,
         live.say,
         live.wake,
-        radio=Radio(url, link, linked.vehicle, fleet.radios, patience, system),
+        radio=Radio(url, link, vehicle, fleet.radios, patience, system),
         joules=joules,
         locators=locators,
         box=box,

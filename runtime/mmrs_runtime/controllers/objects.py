@@ -6,11 +6,10 @@ from collections.abc import Callable, Mapping
 from dataclasses import replace
 from math import isfinite
 
-from mmrs_runtime.faults import FAILURES, OBJECT_NOT_FOUND, Fault
-
+from ..faults import FAILURES, OBJECT_NOT_FOUND, Fault
 from .places import distance
-from .program import Look, Object, Place
-from .vehicles.vehicle import State
+from .state import State
+from .words import Look, Object, Place
 
 Locator = Callable[[State, Place | None], Place]
 

@@ -2,13 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from math import hypot
-from typing import Protocol
+from collections.abc import Callable, Mapping, Sequence
+from math import hypot, inf
 
 from auv_vessel.api import Craft, State
 from auv_vessel.decision.drives import Drives
-from auv_vessel.decision.duties import NO_PROGRESS, STALE, Duty, FailureError, Stay, Surface
+from auv_vessel.decision.duties import (
+    NO_PROGRESS,
+    STALE,
+    Duty,
+    FailureError,
+    Stay,
+    Surface,
+)
 from auv_vessel.decision.helm import (
     COMES_UP,
     CRASHED,
@@ -20,62 +26,61 @@ from auv_vessel.decision.helm import (
     Helm,
     Watch,
 )
+from auv_vessel.driving.orders import NO_WAY, NoWayError, Orders, notes_in
 from auv_vessel.movement.abilities import abilities_of
 from auv_vessel.sheet import Sheet, Vector
-from mmrs_auv.backend.duties_of import Duties, Waters
-from mmrs_core.behaviour.program import Action, Move
-from mmrs_core.contributions.execution import Fault, RobotState
-from mmrs_core.contributions.vehicles import VehicleInput
-from mmrs_core.errors import UnreachableError
-from mmrs_core.runtime.escape import Escapes
-from mmrs_core.runtime.known import DEVICE_ACTION, kinematics_of
-from mmrs_core.scene import Position
+from mmrs_runtime.controllers.fixes import FIX_SECONDS, fix
+from mmrs_runtime.controllers.state import Known, told_of
+from mmrs_runtime.controllers.state import State as Told
+from mmrs_runtime.controllers.words import Local
 from mmrs_runtime.policies import AFTER, NOTHING, OVERTAKES, patience, response_to
-from mmrs_runtime.vehicle import Vehicle
+from mmrs_runtime.records.blackbox import BlackBox
+from mmrs_runtime.vehicle import Fault, Position, Vehicle
 
 STAYS, RESTS, FINDS = ("HOLD", "CONTINUE"), ("STOP_THRUST", NOTHING), ("RETURN", "EMERGENCY_AREA")
 HINDRANCES = (LINK_LOST, POSITION_LOST, NO_PROGRESS)
-NO_WAY = "no way is known back to where its program was broken off"
 AT_HOME = 5.0
 """Metres from home that count as at home, where the place is not known better than that."""
 
-EMPTY = 0.001
-"""Part of the battery with which nothing works any more."""
+LATELY = 60.0
+"""Seconds for which what a vehicle has told last counts as where it is."""
+
+MODES = {"IDLE": "off", "HOLD": "hold", "SURFACE": "surface"}
+"""What a goal in force is, as people are told; any other leads somewhere."""
 
 
-class Keeper(Protocol):
-    """What a robot's black box keeps, and who else sees where it is."""
-
-    def note(self, kind: str, content: Mapping[str, object]) -> None:
-        """Keep something; raises nothing."""
-        ...
-
-    def seen(self, state: RobotState) -> None:
-        """See where the robot is."""
-        ...
-
-
-class CanRobot(Vehicle):
-    """Has a craft do what moves and actions say, and looks after it; nothing waits."""
+class CanVehicle(Vehicle):
+    """Has a craft do what a program orders, and looks after it; nothing waits."""
 
     def __init__(
         self,
-        given: VehicleInput,
+        robot: str,
         sheet: Sheet,
         craft: Craft,
-        duties: Duties,
-        keeper: Keeper,
+        orders: Orders,
         *,
+        box: BlackBox | None = None,
+        say: Callable[[str], None] = lambda words: None,
+        seen: Callable[[], Mapping[str, Vector]] = dict,
         clearance: float = 0.0,
     ) -> None:
-        """Drive a craft; `clearance`: metres ahead within which sonar must see nothing."""
-        self._given, self._sheet, self._craft, self._duties = given, sheet, craft, duties
-        self._keeper = keeper
-        self._waters = Waters(given.program.frame.surface)
+        """Drive a craft.
+
+        Args:
+            robot: identifier, for people.
+            sheet: data of the vehicle.
+            craft: on its bus.
+            orders: what its program says.
+            box: None: nothing is kept.
+            say: tells people something about this robot.
+            seen: returns where things are that are seen now, by name: metres north, east and down.
+            clearance: metres ahead within which sonar must see nothing; 0: it may.
+        """
+        self._robot, self._sheet, self._craft, self._orders = robot, sheet, craft, orders
+        self._box, self._note, self._say, self._fixed = box, notes_in(box), say, -inf
+        self._seen = seen
         self._helm, self._drives = Helm(craft), Drives(craft, sheet)
-        self._policies = (*given.robot.policies, *given.policies)
-        self._watch = Watch(craft, given.program.reserve, self._after, clearance)
-        self._escapes = Escapes(given, kinematics_of(given), given.robot.home or (0.0, 0.0, 0.0))
+        self._watch = Watch(craft, orders.reserve, self._after, clearance)
         self._afloat = float(abilities_of(sheet).afloat)
         self._response, self._instead = "", ""
         self._given_up = self._unheard = self._bears = False
@@ -83,28 +88,21 @@ class CanRobot(Vehicle):
         self._answered: set[str] = set()
         self._now = 0.0
         self._told: dict[str, Position] = {}
-        self._places: dict[str, Position] = {}
-        self._place: Position = given.robot.home or (0.0, 0.0, given.program.frame.surface)
+        self._places: dict[str, Vector] = {}
+        self._place = orders.home
 
     def do(self, order: object, now: float, *, through: bool = False) -> None:
-        """Begin a grounded movement or action."""
+        """Begin a movement or an action of the program."""
         self.done, self.trouble, self._silent_device = False, None, None
         self._forget_answers()
-        if isinstance(order, Move):
-            self._helm.watch = self._watch
-            self._helm.begin(self._duties.movement(order, self._here(), through=through), now)
-        else:
-            assert isinstance(order, Action)
-            self._act(order, now)
-
-    def _act(self, action: Action, now: float) -> None:
-        duty = self._duties.action(action)
-        if duty is None:
-            self._silent_device = Fault("DEVICE_SILENT", f"'{action.device}' does not do '{action.name}'")
+        if (report := self._orders.reports(order)) is not None:
+            self._report(report)
+        found = self._orders.duty(order, self._here(), through=through)
+        if isinstance(found, Fault):
+            self._silent_device = found
             return
-        if not action.is_a(DEVICE_ACTION):
-            self.note("reported", {"name": action.name, **dict(action.parameters)})
-        self._helm.begin(duty, now)
+        self._helm.watch = self._watch
+        self._helm.begin(found, now)
 
     def look(self, now: float) -> float:
         """See what went wrong up to now, and whether what was begun last has finished."""
@@ -142,7 +140,7 @@ class CanRobot(Vehicle):
         for name, place in places.items():
             if self._told.get(name) != place:
                 self._told[name] = place
-                self._duties.told[name] = self._waters.below(place)
+                self._orders.learn(name, self._orders.waters.below(place))
                 self.note("told", {"object": name, "east": place[0], "north": place[1]})
 
     def wait(self, now: float) -> None:
@@ -151,7 +149,7 @@ class CanRobot(Vehicle):
         if self._helm.watch is not None:
             self._craft.stay()
 
-    def state(self, now: float) -> RobotState:
+    def state(self, now: float) -> Known:
         """Return what the vehicle has told last."""
         self._look(now)
         return self._state(now, self._craft.state())
@@ -221,14 +219,14 @@ class CanRobot(Vehicle):
         return True
 
     def recover(self, passed: Sequence[str], begun: str, now: float) -> bool:
-        """Go back to where the last of the moves ended, round forbidden areas and obstacles."""
+        """Go back to where the last of the moves ended, by a way that is known."""
         self.done, self.trouble, self._silent_device = False, None, None
         self._response = ""
         self._forget_answers()
         self._helm.watch = self._watch
         try:
-            duty: Duty = self._duties.way(self._way_back(passed))
-        except UnreachableError as error:
+            duty = self._orders.back(passed, begun, self._here())
+        except NoWayError as error:
             duty = _Refuse(f"{NO_WAY}: {error}")
         self._helm.begin(duty, now)
         return True
@@ -241,8 +239,8 @@ class CanRobot(Vehicle):
         if state.emergency is not None:
             return f"its dive was given up: {state.emergency}"
         try:
-            self._way_back(passed)
-        except UnreachableError as error:
+            self._orders.back(passed, begun, self._here())
+        except NoWayError as error:
             return f"{NO_WAY}: {error}"
         return ""
 
@@ -250,7 +248,7 @@ class CanRobot(Vehicle):
         """Return how far it is from its home; empty at home, or where nobody has heard of it."""
         state, home = self._craft.state(), self._sheet.home
         metres = hypot(state.north - home[0], state.east - home[1])
-        return f"it is {metres:.0f} m from home" if state.age < 60.0 and metres > AT_HOME else ""
+        return f"it is {metres:.0f} m from home" if state.age < LATELY and metres > AT_HOME else ""
 
     def moves(self, now: float) -> bool:
         """Return whether the vehicle may move by thrust at any moment."""
@@ -258,20 +256,12 @@ class CanRobot(Vehicle):
 
     def told(self) -> Mapping[str, object]:
         """Return what the vehicle has told last."""
-        state = self._craft.state()
-        if not state.age < 60.0:
-            return {}
-        return {
-            "mode": state.progress.lower(),
-            "place": {"north": state.north, "east": state.east, "height": -state.depth},
-            "heading": round(state.heading, 2),
-            "speed": round(hypot(state.surge, state.sway, state.heave), 3),
-            "energy": state.charge,
-        }
+        known = self._craft.state()
+        return told_of(self._told_by(known)) if known.age < LATELY else {}
 
     def note(self, kind: str, content: Mapping[str, object]) -> None:
         """Keep something in the black box."""
-        self._keeper.note(kind, content)
+        self._note(kind, content)
 
     def _answer(self, response: str) -> Duty:
         if response in STAYS:
@@ -279,8 +269,7 @@ class CanRobot(Vehicle):
         if response in RESTS:
             return _Idle()
         if response in FINDS:
-            path = self._escapes.clear(response, self._here())
-            return _Then(self._duties.way(path), self._surface())
+            return _Then(self._orders.refuge(response, self._here()), self._surface())
         return self._surface()
 
     def _surface(self) -> Duty:
@@ -288,35 +277,66 @@ class CanRobot(Vehicle):
 
     def _look(self, now: float) -> None:
         self._now = max(self._now, now)
-        self._keeper.seen(self._state(now, self._craft.state()))
+        self._find()
+        if self._box is not None and now - self._fixed >= FIX_SECONDS:
+            self._fixed = now
+            fix(self._box, self._told_by(self._craft.state()))
         for grave, words in self._drives.news():
             self.note("text", {"severity": grave, "text": words})
-            if self._given.live is not None:
-                self._given.live.say(words)
+            self._say(words)
 
-    def _state(self, now: float, known: State) -> RobotState:
-        if known.age < 60.0:
-            self._place = self._waters.above((known.north, known.east, known.depth))
-        speed = hypot(known.surge, known.sway, known.heave)
+    def _find(self) -> None:
+        known = self._craft.state()
+        if known.age < LATELY:
+            self._place = (known.north, known.east, known.depth)
+        self._places.update(self._seen())
+
+    def _state(self, now: float, known: State) -> Known:
+        above = self._orders.waters.above
         energy = None if known.charge is None else known.charge * self._sheet.battery
-        self._places.update({name: self._waters.above(place) for name, place in self._detected().items()})
-        return RobotState(
+        told = self._told_by(known)
+        return Known(
             now,
-            self._place,
-            speed,
+            above(self._place),
+            told.speed,
             known.heading,
             energy,
             known.charge,
-            detected=frozenset(self._places),
-            places=dict(self._places),
+            detected=told.detected,
+            places={name: above(place) for name, place in self._places.items()},
+            told=told,
         )
 
-    def _detected(self) -> Mapping[str, Vector]:
-        """Return what is seen now, and where: metres north, east and below the surface."""
-        return {}
+    def _told_by(self, known: State) -> Told:
+        """Return what the vehicle tells, as black boxes and people have it: places count from its home."""
+        mode = MODES.get(self._craft.goal.mode, "guided")
+        return Told(
+            self._now,
+            self._from_home((known.north, known.east, known.depth)),
+            hypot(known.surge, known.sway, known.heave),
+            known.heading,
+            known.charge,
+            mode,
+            armed=mode != "off",
+            detected=frozenset(self._places),
+            places={name: self._from_home(place) for name, place in self._places.items()},
+        )
 
-    def _here(self) -> Position:
-        return self._state(self._now, self._craft.state()).position
+    def _from_home(self, place: Vector) -> Local:
+        home = self._sheet.home
+        return Local(place[0] - home[0], place[1] - home[1], -place[2])
+
+    def _report(self, report: Mapping[str, object]) -> None:
+        name, content = report["name"], {key: value for key, value in report.items() if key != "name"}
+        self.reported = {"name": name, "content": content}
+        self.note(
+            "reported", {"name": name, "content": content, "place": self._told_by(self._craft.state()).place}
+        )
+        self._say(f"reported '{name}': {', '.join(f'{key} {value}' for key, value in content.items())}")
+
+    def _here(self) -> Vector:
+        self._find()
+        return self._place
 
     def _fault(self, found: FailureError) -> Fault:
         comes_up = found.event in COMES_UP or (found.event in NEVER_BORNE and self._is_borne(found.event))
@@ -325,10 +345,10 @@ class CanRobot(Vehicle):
     def _after(self, event: str) -> float:
         if event in NEVER_BORNE and self._is_borne(event):
             return AFTER[event]
-        return patience(event, self._policies) or 0.0
+        return patience(event, self._orders.policies) or 0.0
 
     def _is_borne(self, event: str) -> bool:
-        return response_to(event, self._policies) == "CONTINUE"
+        return response_to(event, self._orders.policies) == "CONTINUE"
 
     def _overtakes(self, found: FailureError) -> bool:
         """Return whether something keeps the vehicle from the response that it was told; told once."""
@@ -348,18 +368,7 @@ class CanRobot(Vehicle):
 
     def _is_up(self) -> bool:
         state = self._craft.state()
-        return state.age < 60.0 and state.depth < self._afloat + 0.15
-
-    def _way_back(self, passed: Sequence[str]) -> tuple[Position, ...]:
-        return self._escapes.way(self._here(), self._ended_at(passed))
-
-    def _ended_at(self, passed: Sequence[str]) -> Position:
-        moves = {move.id: move for move in self._given.robot.moves}
-        place = self._given.robot.home or self._place
-        for id in passed:
-            path = self._duties.path(moves[id], place)
-            place = path[-1] if path else place
-        return place
+        return state.age < LATELY and state.depth < self._afloat + 0.15
 
 
 class _Idle:

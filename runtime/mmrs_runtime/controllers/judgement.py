@@ -2,35 +2,36 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, TypeAlias
+from collections.abc import Callable, Collection, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from typing import TypeAlias
 
-from mmrs_runtime.conditions import is_standard, standard, undecided
-from mmrs_runtime.vehicle import Condition as Decided
-from mmrs_runtime.vehicle import State as Asked
-
-from .driving.threaded import Known
+from ..conditions import is_standard, standard, undecided
+from ..vehicle import Condition as Decided
+from ..vehicle import State as Asked
 from .objects import Locator, not_looked_for
-from .program import Choose, GoTo, Movement, Object, Robot, Turn
+from .state import Known, State
+from .words import Choose, GoTo, Object, Robot, Turn
 
-if TYPE_CHECKING:
-    from .vehicles.vehicle import State
-
-Condition: TypeAlias = "Callable[[State], bool | None]"
+Condition: TypeAlias = Callable[[State], "bool | None"]
 """Whether a condition holds, by what a robot knows; None while that cannot be said yet."""
 
 
 @dataclass(frozen=True, slots=True)
 class Judgement:
-    """The user's functions: conditions by identifier, locators by description of the object."""
+    """The user's functions: conditions by identifier, locators by description of the object.
+
+    Attributes:
+        seen: by robot, objects that its vehicle finds by itself.
+    """
 
     conditions: Mapping[str, Condition]
     locators: Mapping[str, Locator]
+    seen: Mapping[str, Collection[str]] = field(default_factory=dict)
 
     def faults(self, robots: Sequence[Robot]) -> list[str]:
         """Return what is missing for these robots."""
-        objects = {found for r in robots for s in r.steps for found in objects_of(s.movement)}
+        objects = {found for r in robots for found in _sought(r) if found not in self.seen.get(r.id, ())}
         return [
             *(fault for name in sorted(conditions_of(robots)) if (fault := self._undecided(name))),
             *self._unasked(robots),
@@ -84,12 +85,16 @@ def _as_asked(name: str, condition: Condition) -> Decided:
     return Decided(name, holds, known)
 
 
+def _sought(robot: Robot) -> set[str]:
+    return {found for step in robot.steps for found in objects_of(step.movement)}
+
+
 def conditions_of(robots: Sequence[Robot]) -> set[str]:
     """Return the identifiers of the conditions that the choices of robots have."""
     return {step.then.condition for robot in robots for step in robot.steps if isinstance(step.then, Choose)}
 
 
-def objects_of(movement: Movement) -> list[str]:
+def objects_of(movement: object) -> list[str]:
     """Return the descriptions of the objects that a movement leads to or points at."""
     look = movement.look if isinstance(movement, GoTo | Turn) else None
     targets = [look.at if look else None, movement.at if isinstance(movement, GoTo) else None]

@@ -7,69 +7,66 @@ from collections.abc import Callable, Mapping, Sequence
 from contextlib import ExitStack
 from functools import partial
 from itertools import chain
-from typing import TYPE_CHECKING
 
-from mmrs_runtime.bus import Incomplete
-from mmrs_runtime.bus.program_bus import ProgramBus, begin_all, shared_bus, strangers_of
-from mmrs_runtime.control import Taken
-from mmrs_runtime.engine.clocks import RealClock
-from mmrs_runtime.engine.hearing import hear_orders
-from mmrs_runtime.engine.interrupts import stopping
-from mmrs_runtime.engine.live import FAILED, INTERRUPTED, LINK, Venture, exit_code, run_live
-from mmrs_runtime.engine.orders import Orders
-from mmrs_runtime.engine.resuming import over_by, restore
-from mmrs_runtime.engine.terms import Ending
-from mmrs_runtime.engine.unready import Unready
-from mmrs_runtime.faults import LINK_LOST, Fault
-from mmrs_runtime.injection import Rehearsal
-from mmrs_runtime.program import Program
-from mmrs_runtime.records.log import LogWriter, read
-from mmrs_runtime.records.steps import StepRecord
-from mmrs_runtime.screen import bear_all_characters, say, unfailing
-from mmrs_runtime.slots import LocalSlots
-
-from .connecting import Garage, Vehicles
+from ..bus import Incomplete
+from ..bus.program_bus import ProgramBus, begin_all, shared_bus, strangers_of
+from ..control import Taken
+from ..engine.clocks import RealClock
+from ..engine.connecting import Live
+from ..engine.hearing import hear_orders
+from ..engine.interrupts import stopping
+from ..engine.live import FAILED, INTERRUPTED, LINK, Venture, exit_code, run_live
+from ..engine.orders import Orders
+from ..engine.resuming import over_by, restore
+from ..engine.terms import Ending
+from ..engine.unready import Unready
+from ..faults import LINK_LOST, Fault
+from ..injection import Rehearsal
+from ..policies import NOTHING
+from ..program import Program
+from ..records.blackbox import BlackBox, black_box_path
+from ..records.log import LogWriter, read
+from ..records.steps import StepRecord
+from ..screen import bear_all_characters, say, unfailing
+from ..slots import LocalSlots
+from ..vehicle import Vehicle
+from .driver import Driver, Outfit
 from .judgement import Condition, Judgement
 from .objects import Locator
 from .options import Options, options_of, parser_for
-from .program import Robot
+from .start import start_of
 from .team import program_of
-
-if TYPE_CHECKING:
-    from mmrs_runtime.ports import Port
-
-    from .links.radios import Radios
+from .words import Robot
 
 
-def main(
+def run_controllers(
+    driver: Driver,
     robots: Sequence[Robot],
     conditions: Mapping[str, Condition] | None = None,
     locators: Mapping[str, Locator] | None = None,
     arguments: Sequence[str] | None = None,
-    *,
-    vehicles: Vehicles | None = None,
 ) -> int:
     """Run the programs of robots on the engine, and return the exit code.
 
     Args:
+        driver: of their vehicles.
         robots: at least one.
         conditions: what decides Choices, by identifier.
         locators: what finds objects, by description.
         arguments: as on the command line; None: those of this process.
-        vehicles: what makes vehicles that are reached otherwise than by MAVLink.
     """
     bear_all_characters()
-    parser = parser_for(robots)
-    options = options_of(parser, robots, arguments)
-    judgement = Judgement(conditions or {}, locators or {})
+    parser = parser_for(robots, driver)
+    options = options_of(parser, robots, driver, arguments)
+    seen = {robot.id: driver.sees(robot) for robot in robots}
+    judgement = Judgement(conditions or {}, locators or {}, seen)
     for fault in judgement.faults(robots):
         parser.error(fault)
     with ExitStack() as stack:
         stack.enter_context(unfailing())
         rehearsal = Rehearsal(options.inject, options.clock, say)
         program, resumed = program_of(robots), _resumed(robots, options)
-        radios = None if vehicles is not None or options.dry else _radios(options, rehearsal)
-        garage = Garage(options, radios, rehearsal, judgement.locators, vehicles)
+        driver.open(Outfit(options, rehearsal, judgement.locators, stack))
         bus = _slots(parser, program, robots, options, rehearsal, resumed, stack)
         writer = stack.enter_context(_log(parser, options))
         orders = Orders(options.on_stop.upper())
@@ -77,7 +74,7 @@ def main(
         assert isinstance(options.clock.followed, RealClock)
         venture = Venture(
             program,
-            {robot.id: partial(garage.connect, robot) for robot in robots},
+            {robot.id: partial(_connect, driver, options, rehearsal, robot) for robot in robots},
             bus,
             judgement.decides(robots),
             clock=options.clock.followed,
@@ -92,9 +89,24 @@ def main(
         )
         stack.callback(rehearsal.close)
         rehearsal.start()
-        _hear(parser, options, ids, venture, garage, stack)
+        _hear(parser, options, ids, venture, stack)
         stack.enter_context(stopping(orders, ids, say))
         return _run(venture)
+
+
+def _connect(driver: Driver, options: Options, rehearsal: Rehearsal, robot: Robot, live: Live) -> Vehicle:
+    """Return a robot's vehicle; one that cannot be reached leaves its black box, which says so."""
+    path, mark = black_box_path(options.log / robot.log), {"dry_run": True} if options.dry else {}
+    box = BlackBox(path, live.run, robot.id, options.clock.now, mark=mark, say=live.say)
+    rehearsal.record(robot.id, lambda fault, content: box.write("injected", fault=fault, **content))
+    try:
+        return driver.connect(robot, live, box)
+    except Fault as fault:
+        box.write("start", **start_of(robot, None))
+        box.write("decision", what=fault.event, why=str(fault), response=NOTHING, move=robot.start)
+        box.close()
+        live.say(str(fault))
+        raise
 
 
 def _run(venture: Venture) -> int:
@@ -190,8 +202,8 @@ def _slots(
         slots = LocalSlots(program)
         restore(slots, program, resumed)
         return slots
-    from mmrs_runtime.bus.carriers.over_zenoh import ZenohCarrier
-    from mmrs_runtime.bus.carriers.sessions import Endpoints
+    from ..bus.carriers.over_zenoh import ZenohCarrier
+    from ..bus.carriers.sessions import Endpoints
 
     ids = [robot.id for robot in robots]
     reached = Endpoints(options.bus.listen, options.bus.connect, options.bus.file)
@@ -208,32 +220,18 @@ def _slots(
     return bus
 
 
-def _radios(options: Options, rehearsal: Rehearsal) -> Radios:
-    from .links.radios import Radios  # MAVLink's library need not be there where no robot speaks it
-
-    reach = options.reach
-
-    def wrap(port: Port, url: str) -> Port:
-        return rehearsal.wrap(port, reach.sharers(url))
-
-    return Radios(options.clock, reach.signer, reach.retries, wrap)
-
-
 def _hear(
     parser: argparse.ArgumentParser,
     options: Options,
     robots: Sequence[str],
     venture: Venture,
-    garage: Garage,
     stack: ExitStack,
 ) -> None:
     """Have the run hear the orders of people who call from elsewhere."""
-
-    def status(robot: str) -> Mapping[str, object]:
-        return {**venture.standing.status(robot), **garage.reported(robot)}
-
     try:
-        stack.enter_context(hear_orders(options.log, options.run, robots, venture.orders, status))
+        stack.enter_context(
+            hear_orders(options.log, options.run, robots, venture.orders, venture.standing.status)
+        )
     except Taken as error:
         parser.error(f"--log {options.log}: {error}")
     except OSError as error:

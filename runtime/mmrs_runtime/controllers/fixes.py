@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from mmrs_runtime.records.blackbox import BlackBox
-
-from ..program import Place
-from ..vehicles.vehicle import State
+from ..records.blackbox import BlackBox
+from .state import State
+from .words import Place
 
 FIX_SECONDS = 0.19
 """Least time between two fixes: five in a second, and a little for uneven sending."""

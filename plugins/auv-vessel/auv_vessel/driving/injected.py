@@ -2,38 +2,17 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
 from typing import Protocol
 
 from auv_vessel.hosting import Port, tells_time
 from auv_vessel.wire import ports
 from auv_vessel.wire.frame import Frame
-from mmrs_core.contributions.vehicles import Live, VehicleInput
-from mmrs_core.errors import UsageError
-from mmrs_runtime.engine.clocks import FollowingClock
-from mmrs_runtime.injection import Rehearsal, injections
+from mmrs_runtime.injection import Rehearsal
 from mmrs_runtime.injection.port import Line
-from mmrs_runtime.injection.spec import OF_STATIONS, OF_VEHICLE
 from mmrs_runtime.ports import NOTHING, Address, Received
 from mmrs_runtime.ports import Port as Carrier
 
-SHARED = "faults made on purpose on CAN buses"
 EXTENDED, LONG, SHORT = 1 << 31, (1 << 29) - 1, (1 << 11) - 1
-
-
-@dataclass(slots=True)
-class Faults:
-    """The faults of all robots of a run; `users` are those that still have any."""
-
-    rehearsal: Rehearsal
-    users: set[str] = field(default_factory=set)
-
-    def let_go(self, robot: str) -> None:
-        """End what concerns a robot, and everything with the last one."""
-        self.rehearsal.forget(robot)
-        self.users.discard(robot)
-        if not self.users:
-            self.rehearsal.close()
 
 
 class FrameLine(Line):
@@ -88,32 +67,9 @@ class ClosablePort(Port, Protocol):
         ...
 
 
-def faults_of(given: VehicleInput, live: Live, text: str) -> Faults | None:
-    """Return the faults of a run, begun; None if none are asked for.
-
-    Raises:
-        UsageError: one is none, or concerns what no vehicle on a bus has.
-    """
-    found = live.shared.get(SHARED)
-    if isinstance(found, Faults) or not text:
-        return found if isinstance(found, Faults) else None
-    buses = {robot.id: live.links.get(robot.id, robot.id) for robot in given.program.robots}
-    try:
-        asked = injections([text], buses)
-    except ValueError as error:
-        raise UsageError(f"option 'inject': {error}") from error
-    for fault in asked.faults:
-        if fault.name in (*OF_VEHICLE, *OF_STATIONS):
-            raise UsageError(f"option 'inject': {fault.text}: is for vehicles that speak MAVLink")
-    made = live.shared[SHARED] = Faults(Rehearsal(asked, FollowingClock(live.clock), live.announce))
-    made.rehearsal.start()
-    return made
-
-
-def injected(port: ports.Port, faults: Faults, robot: str) -> ClosablePort:
+def injected(port: ports.Port, rehearsal: Rehearsal, robot: str) -> ClosablePort:
     """Return a connection with the faults of a robot's bus in front of it."""
-    faults.users.add(robot)
-    return _Frames(faults.rehearsal.wrap(_Pieces(port), (robot,), FrameLine))
+    return _Frames(rehearsal.wrap(_Pieces(port), (robot,), FrameLine))
 
 
 def piece_of(frame: Frame) -> bytes:

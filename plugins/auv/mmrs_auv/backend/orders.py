@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 
 from auv_vessel.decision.duties import (
@@ -20,46 +20,30 @@ from auv_vessel.decision.duties import (
     Travel,
     Use,
 )
+from auv_vessel.driving.orders import NoWayError, Waters
 from auv_vessel.sheet import Sheet, Vector
 from mmrs_auv.sayable import Bus, mount_of, parameter_of, unturnable
 from mmrs_auv.sheets import action_number
 from mmrs_core.behaviour.program import BEHAVIOUR, Action, Heading, Move
 from mmrs_core.contributions.vehicles import VehicleInput
-from mmrs_core.errors import UnsupportedError
+from mmrs_core.errors import UnreachableError, UnsupportedError
+from mmrs_core.runtime.escape import Escapes
 from mmrs_core.runtime.known import DEVICE_ACTION, kinematics_of, move_kinds_of
 from mmrs_core.scene import Position
 from mmrs_runtime.faults import DEVICE_SILENT
-from mmrs_runtime.policies import AFTER, patience
+from mmrs_runtime.policies import AFTER, Policy, patience
+from mmrs_runtime.vehicle import Fault
 
 START, STOP, HEAD_TO, GO_TO, RECHARGE = (
     (BEHAVIOUR, name) for name in ("Start", "Stop", "HeadTo", "GoTo", "Recharge")
 )
 
 
-class Waters:
-    """The local frame of a behaviour and the world of a vehicle: north, east and down from the surface."""
-
-    def __init__(self, surface: float) -> None:
-        """Lay it; `surface`: height of the water surface above the origin, metres."""
-        self._surface = surface
-
-    def below(self, position: Position) -> Vector:
-        """Return metres north, east and below the surface."""
-        east, north, up = position
-        return (north, east, self._surface - up)
-
-    def above(self, place: Vector) -> Position:
-        """Return metres east, north and up of the origin."""
-        north, east, depth = place
-        return (east, north, self._surface - depth)
-
-
-class Duties:
+class BehaviourOrders:
     """Knows what a robot's moves and actions are to its vehicle.
 
     Attributes:
         charged: called when batteries were charged.
-        told: by name, where other robots have detected objects: metres north, east and below the surface.
     """
 
     def __init__(self, given: VehicleInput, sheet: Sheet, waters: Waters, sight: Sight | None) -> None:
@@ -69,17 +53,64 @@ class Duties:
             UnsupportedError: moves or actions are of kinds that nobody knows, or more than the vehicle's bus
                 can say; lists all of them.
         """
-        self._given, self._sheet, self._waters, self._sight = given, sheet, waters, sight
+        self.policies: Sequence[Policy] = (*given.robot.policies, *given.policies)
+        self.reserve, self.waters = given.program.reserve, waters
+        self._home = given.robot.home or (0.0, 0.0, given.program.frame.surface)
+        self.home = waters.below(self._home)
+        self._given, self._sheet, self._sight = given, sheet, sight
         self._kinds = move_kinds_of(given)
         self._kinematics = kinematics_of(given)
+        self._escapes = Escapes(given, self._kinematics, given.robot.home or (0.0, 0.0, 0.0))
         self.charged: Callable[[], None] = lambda: None
-        self.told: dict[str, Vector] = {}
+        self._told: dict[str, Vector] = {}
         self._found: dict[str, Vector] = {}
         strange = tuple(self._strange())
         if strange:
             raise UnsupportedError(
                 f"robot '{given.robot.id}': what no underwater vehicle does, or nobody has told", strange
             )
+
+    def duty(self, order: object, here: Vector, *, through: bool) -> Duty | Fault:
+        """Return what a move or an action is; a fault where the device does not have that action."""
+        if isinstance(order, Move):
+            return self.movement(order, self.waters.above(here), through=through)
+        assert isinstance(order, Action)
+        found = self.action(order)
+        return found or Fault(DEVICE_SILENT, f"'{order.device}' does not do '{order.name}'")
+
+    def reports(self, order: object) -> Mapping[str, object] | None:
+        """Return what an action reports, with its `name`; None: it is no report."""
+        if not isinstance(order, Action) or order.is_a(DEVICE_ACTION):
+            return None
+        return {"name": order.name, **dict(order.parameters)}
+
+    def learn(self, name: str, place: Vector) -> None:
+        """Take note of where another robot has detected an object."""
+        self._told[name] = place
+
+    def refuge(self, response: str, here: Vector) -> Duty:
+        """Return the way home, or to an emergency area, round what is in the way."""
+        return self.way(self._escapes.clear(response, self.waters.above(here)))
+
+    def back(self, passed: Sequence[str], begun: str, here: Vector) -> Duty:
+        """Return the way to where the last of the moves ended, round what is in the way.
+
+        Raises:
+            NoWayError: there is none.
+        """
+        above = self.waters.above(here)
+        try:
+            return self.way(self._escapes.way(above, self._ended_at(passed, above)))
+        except UnreachableError as error:
+            raise NoWayError(str(error)) from error
+
+    def _ended_at(self, passed: Sequence[str], here: Position) -> Position:
+        moves = {move.id: move for move in self._given.robot.moves}
+        place = self._given.robot.home or here
+        for id in passed:
+            path = self.path(moves[id], place)
+            place = path[-1] if path else place
+        return place
 
     def movement(self, move: Move, here: Position, *, through: bool) -> Duty:
         """Return what a move is; `through`: it need not stop at the end."""
@@ -122,10 +153,10 @@ class Duties:
 
     def way(self, path: tuple[Position, ...]) -> Travel:
         """Return the way along a path whose first position is where the vehicle is."""
-        return Travel([self._waters.below(each) for each in path[1:]], self._kinematics.cruise)
+        return Travel([self.waters.below(each) for each in path[1:]], self._kinematics.cruise)
 
     def _travel(self, move: Move, path: tuple[Position, ...], through: bool) -> Travel:
-        points = [self._waters.below(each) for each in path[1:]]
+        points = [self.waters.below(each) for each in path[1:]]
         look = self._look(move.heading) if move.heading is not None else None
         return Travel(points, self._speed(move), look, through=through)
 
@@ -139,21 +170,21 @@ class Duties:
         def way(place: Vector, found: bool) -> Duty:
             if found:
                 self._found[name] = place
-            aimed = replace(move, target=replace(target, position=self._waters.above(place)))
+            aimed = replace(move, target=replace(target, position=self.waters.above(place)))
             path = kind.path(aimed, here, home)
             if path is None:
                 raise FailureError(NO_PROGRESS, f"no way to {place}")
             return self._travel(aimed, path, through=False)
 
-        expected = self._waters.below(target.position)
-        told = self._place(name, expected) if name in self.told else None
+        expected = self.waters.below(target.position)
+        told = self._place(name, expected) if name in self._told else None
         return Seek(name, expected, target.tolerance, self._sight, way, told)
 
     def _place(self, name: str, expected: Vector) -> Vector:
         """Return where an object was found, or was detected by others: at the depth expected."""
         if name in self._found:
             return self._found[name]
-        north, east, _ = self.told.get(name, expected)
+        north, east, _ = self._told.get(name, expected)
         return (north, east, expected[2])
 
     def _is_sought(self, move: Move) -> bool:
@@ -165,7 +196,7 @@ class Duties:
     def _look(self, heading: Heading) -> Look | None:
         if heading.target.position is None:
             return None
-        expected = self._waters.below(heading.target.position)
+        expected = self.waters.below(heading.target.position)
         north, east, _ = self._place(heading.target.description or "", expected)
         return Look(north, east, heading.angle_degrees + mount_of(heading.device, self._given.type))
 

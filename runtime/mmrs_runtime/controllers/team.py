@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
-from mmrs_runtime import program as runtime
-from mmrs_runtime.program import Move, Notify, SlotId
-
-from .program import Robot
+from .. import program as runtime
+from ..program import Move, Notify, SlotId
+from .words import Robot
 
 ELSEWHERE = "elsewhere"
 """The one move that is known of a robot that another process runs."""

@@ -1,0 +1,136 @@
+"""The driver of vehicles that speak MAVLink, for controllers: it reads its options, and makes vehicles."""
+
+from __future__ import annotations
+
+from argparse import ArgumentParser, Namespace
+from collections.abc import Callable, Mapping, Sequence
+from math import inf
+from typing import TYPE_CHECKING
+
+from mmrs_runtime.controllers import words
+from mmrs_runtime.controllers.driver import Driver, Outfit
+from mmrs_runtime.controllers.judgement import Condition
+from mmrs_runtime.controllers.objects import Locator
+from mmrs_runtime.controllers.places import offset
+from mmrs_runtime.controllers.running import run_controllers
+from mmrs_runtime.engine.connecting import Live
+from mmrs_runtime.records.blackbox import BlackBox, black_box_path
+from mmrs_runtime.vehicle import Position
+
+from .driving.equipment import Equipment, Guard, Radio
+from .driving.threaded import ThreadedVehicle
+from .options import Reach, add_reach, reach_of
+from .program import Place, Robot
+from .vehicles.dry import DryVehicle
+
+if TYPE_CHECKING:
+    from mmrs_runtime.ports import Port
+
+    from .links.radios import Radios
+
+
+def main(
+    robots: Sequence[Robot],
+    conditions: Mapping[str, Condition] | None = None,
+    locators: Mapping[str, Locator] | None = None,
+    arguments: Sequence[str] | None = None,
+) -> int:
+    """Run the programs of robots whose vehicles speak MAVLink; return the exit code.
+
+    Args:
+        robots: at least one.
+        conditions: what decides Choices, by identifier.
+        locators: what finds objects, by description.
+        arguments: as on the command line; None: those of this process.
+    """
+    return run_controllers(MavlinkDriver(), robots, conditions, locators, arguments)
+
+
+class MavlinkDriver(Driver):
+    """Reaches vehicles by MAVLink, or makes them up for a dry run."""
+
+    _reach: Reach
+    _outfit: Outfit
+
+    def __init__(self) -> None:
+        """Speak to nobody yet."""
+        self._radios: Radios | None = None
+
+    def add_options(self, parser: ArgumentParser) -> None:
+        """Add those of links, and of what a vehicle is told."""
+        add_reach(parser)
+
+    def settle(
+        self, parser: ArgumentParser, robots: Sequence[words.Robot], given: Namespace
+    ) -> Mapping[str, str]:
+        """Keep how robots are reached; return the urls of their links."""
+        self._reach = reach_of(parser, robots, given)
+        return self._reach.urls
+
+    def open(self, outfit: Outfit) -> None:
+        """Open nothing yet: ports are opened with the first vehicle on them."""
+        self._outfit = outfit
+        if outfit.options.dry:
+            return
+        from .links.radios import Radios  # MAVLink's library need not be there for a dry run
+
+        reach = self._reach
+
+        def wrap(port: Port, url: str) -> Port:
+            return outfit.rehearsal.wrap(port, reach.sharers(url))
+
+        self._radios = Radios(outfit.options.clock, reach.signer, reach.retries, wrap)
+
+    def connect(self, robot: words.Robot, live: Live, box: BlackBox) -> ThreadedVehicle:
+        """Return a robot's vehicle, which need not have been heard yet.
+
+        Raises:
+            Fault: its port cannot be opened.
+        """
+        assert isinstance(robot, Robot)
+        outfit, guard = self._outfit, Guard()
+        options, radio = outfit.options, None
+        if self._radios is not None:
+            radio = self._radio(robot, live, guard, box, self._radios)
+        equipment = Equipment(
+            radio.vehicle if radio is not None else DryVehicle(options.clock, robot.home, guard),
+            guard,
+            options.clock,
+            _from(robot.home),
+            live.say,
+            live.wake,
+            radio=radio,
+            locators=outfit.locators,
+            box=box,
+            home_tolerance=options.home_tolerance,
+            fence=self._reach.fence,
+            dry=options.dry,
+            records=live.records,
+            let_go=lambda: outfit.rehearsal.forget(robot.id),
+        )
+        return ThreadedVehicle(robot, equipment)
+
+    def _radio(self, robot: Robot, live: Live, guard: Guard, box: BlackBox, radios: Radios) -> Radio:
+        from .linked import at_end_of  # MAVLink's library need not be there for a dry run
+        from .services.satellites import attended
+        from .vehicles.recognition import system_of
+
+        options, reach = self._outfit.options, self._reach
+        url = reach.urls[robot.id]
+        link = radios.open(url, reach.systems[robot.id])
+        link.guard = guard
+        home_tolerance = inf if live.resumed else options.home_tolerance
+        vehicle = at_end_of(link, robot, reach.acceptance, home_tolerance, live.say, box, options.clock)
+        self._outfit.rehearsal.attend(robot.id, attended(link))
+        system = system_of(black_box_path(options.log / robot.log)) if options.resume else 0
+        return Radio(url, link, vehicle, radios, options.patience * options.clock.speedup, system)
+
+
+def _from(home: Place) -> Callable[[Place], Position]:
+    """Return what tells where a place is from home: metres east and north of it, and its height."""
+
+    def position(place: Place) -> Position:
+        north, east, _ = offset(home, place)
+        return (east, north, place.height)
+
+    return position

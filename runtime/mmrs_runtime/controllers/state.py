@@ -1,0 +1,65 @@
+"""What is known of a robot, as its vehicle tells it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from .. import vehicle
+from ..records.blackbox import plain
+from .words import Place
+
+
+@dataclass(frozen=True, slots=True)
+class State:
+    """What a robot knows of itself; conditions are asked with it.
+
+    Attributes:
+        time: seconds of the run. place: where it is. speed: metres per second.
+        heading: degrees clockwise from north. energy: part of the battery that is left, 0 to 1, or
+            None where the vehicle does not say.
+        wind: metres per second; wind_from: degrees clockwise from north; None where nobody knows.
+        detected: names of what the vehicle has detected so far. places: where, as far as it knows.
+        found: names of what it, or a robot that has notified it since, has detected.
+        answers: what the operator has answered, by question, and no choice has used up.
+        mode: in the runtime's words (``guided``, ``auto``, ``hold``, ``land`` …) or, where it has none
+            for it, the vehicle's number. armed: whether the motors may run.
+    """
+
+    time: float
+    place: Place
+    speed: float
+    heading: float
+    energy: float | None
+    mode: str = ""
+    armed: bool = False
+    wind: float | None = None
+    wind_from: float | None = None
+    detected: frozenset[str] = frozenset()
+    places: Mapping[str, Place] = field(default_factory=dict)
+    found: frozenset[str] = frozenset()
+    answers: Mapping[str, bool] = field(default_factory=dict)
+
+    @property
+    def charge(self) -> float | None:
+        """Return the part of the battery that is left, as the standard conditions call it."""
+        return self.energy
+
+
+def told_of(state: State) -> dict[str, object]:
+    """Return what there is to say of a vehicle's state, as JSON has it."""
+    found = {
+        "mode": state.mode,
+        "armed": state.armed,
+        "energy": state.energy,
+        "place": state.place,
+        "speed": round(state.speed, 2),
+    }
+    return {name: plain(value) for name, value in found.items()}
+
+
+@dataclass(frozen=True, slots=True)
+class Known(vehicle.State):
+    """What the engine knows of a robot; `told`: as its vehicle tells it."""
+
+    told: State | None = None

@@ -1,0 +1,208 @@
+"""The words that all programs of robots are written in; drivers add those of their vehicles.
+
+A program is a table of steps. Each step is one move of the behaviour: actions before it, the
+movement, actions after it, and what comes then. Places are metres or degrees with seven decimals;
+heights are metres above the robot's home (under water: above the surface, so negative).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import TypeAlias
+
+from .. import program as runtime
+from ..policies import Policy as Policy
+from ..program import Choose as Choose
+from ..program import Move
+from ..program import Notify as Notify
+from ..program import Then as Then
+
+
+@dataclass(frozen=True, slots=True)
+class Geographic:
+    """A place on the Earth: degrees, and metres above home."""
+
+    latitude: float
+    longitude: float
+    height: float
+
+
+@dataclass(frozen=True, slots=True)
+class Local:
+    """A place near home: metres north and east of it, and above it."""
+
+    north: float
+    east: float
+    height: float
+
+
+Place: TypeAlias = Geographic | Local
+
+
+@dataclass(frozen=True, slots=True)
+class Object:
+    """Something that has to be found first.
+
+    Attributes:
+        expected: where it should be; None where nobody knows.
+        tolerance: metres that it may be from there; None where nobody knows.
+    """
+
+    description: str
+    expected: Place | None = None
+    tolerance: float | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Look:
+    """What a device points at: `at` is a place by the time the robot turns.
+
+    Attributes:
+        angle: at 90 the target is on the device's right side, degrees.
+        mount: where the device points when the robot looks north, degrees clockwise.
+        gimbal: whether the device turns by itself, so that the robot need not.
+        device: number of the gimbal; 0: the first, or all.
+    """
+
+    at: Place | Object
+    angle: float = 0.0
+    mount: float = 0.0
+    gimbal: bool = False
+    device: int = 0
+
+
+@dataclass(frozen=True, slots=True)
+class Start:
+    """The beginning: nothing moves."""
+
+
+@dataclass(frozen=True, slots=True)
+class Stop:
+    """The end."""
+
+
+@dataclass(frozen=True, slots=True)
+class Land:
+    """Descend straight down and stop the motors."""
+
+
+@dataclass(frozen=True, slots=True)
+class GoTo:
+    """Go to a place.
+
+    Attributes:
+        speed: metres per second; None: the vehicle's own.
+        legs: ``direct``, ``level first`` or ``climb first``.
+        distance: stop so many metres before the place.
+        look: None: the front points the way the robot goes.
+    """
+
+    at: Place | Object
+    speed: float | None = None
+    legs: str = "direct"
+    distance: float = 0.0
+    look: Look | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Hold:
+    """Stay for so many seconds."""
+
+    seconds: float
+
+
+@dataclass(frozen=True, slots=True)
+class Recharge:
+    """Stay at home until the batteries are full, and for so many seconds at least."""
+
+    seconds: float
+
+
+@dataclass(frozen=True, slots=True)
+class Turn:
+    """Turn on the spot until a device points at something."""
+
+    look: Look
+
+
+@dataclass(frozen=True, slots=True)
+class Skip:
+    """A movement that could not be expressed: the robot does nothing; `why` says what is missing."""
+
+    why: str
+
+
+@dataclass(frozen=True, slots=True)
+class Report:
+    """Tell the control station something: (key, value) pairs."""
+
+    name: str
+    pairs: tuple[tuple[str, str], ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class NoEffect:
+    """An action that could not be expressed: it is logged as done; `why` says what is missing."""
+
+    name: str
+    why: str
+
+
+@dataclass(frozen=True, slots=True)
+class Step:
+    """One move of the behaviour; `task` and `rule` say what it serves."""
+
+    move: str
+    movement: object
+    before: tuple[object, ...] = ()
+    after: tuple[object, ...] = ()
+    then: Then | Choose | None = None
+    task: str = ""
+    rule: str = ""
+
+
+@dataclass(frozen=True)
+class Robot:
+    """One robot and all that it does.
+
+    Attributes:
+        id: as in the behaviour; log: name of its log file.
+        vehicle: a word of its driver, such as ``copter``.
+        start: the first move.
+        slots: its own; senders: robots that activate each of them; resets: robots that deactivate it.
+        volatile: of the (robot, slot) pairs that it notifies, those that any robot deactivates.
+        reserve: part of the energy that must be left.
+        cruise: metres per second at which the robot goes back; None: the vehicle's own.
+        escapes: by move, the way to go in an emergency from where that move ends.
+        mission: name of it; plan: what differs where two plans of it do.
+        fleet: all robots of it, this one included.
+    """
+
+    id: str
+    log: str
+    vehicle: str
+    home: Place
+    start: str
+    steps: tuple[Step, ...]
+    slots: tuple[str, ...] = ()
+    senders: tuple[tuple[str, tuple[str, ...]], ...] = ()
+    resets: tuple[tuple[str, tuple[str, ...]], ...] = ()
+    volatile: tuple[tuple[str, str], ...] = field(default=(), kw_only=True)
+    policies: tuple[Policy, ...] = ()
+    reserve: float = 0.2
+    cruise: float | None = field(default=None, kw_only=True)
+    escapes: tuple[tuple[str, tuple[Place, ...]], ...] = field(default=(), kw_only=True)
+    mission: str = field(default="", kw_only=True)
+    plan: str = field(default="", kw_only=True)
+    fleet: tuple[str, ...] = field(default=(), kw_only=True)
+
+    def step(self, move: str) -> Step:
+        """Return the step of that move."""
+        return next(step for step in self.steps if step.move == move)
+
+    @cached_property
+    def executable(self) -> runtime.Robot:
+        """Return the robot as the engine has it; a movement's order is its step, an action its own."""
+        moves = tuple(Move(each.move, each, each.before, each.after, each.then) for each in self.steps)
+        return runtime.Robot(self.id, moves, self.start, self.slots, self.policies, self.reserve)
