@@ -279,15 +279,44 @@ def _refuse_rivals(own: Path, robots: Collection[str]) -> None:
 
 
 def _was_left(path: Path) -> bool:
-    """Return whether an announcement is that of a process that is not there any more."""
+    """Return whether an announcement is that of a process that is not there any more.
+
+    Its port may be somebody else's by now, where its process does not run, or runs in another container.
+    """
     try:
-        port = int(object_in(path.read_bytes())["port"])
-        socket.create_connection(("127.0.0.1", port), 1.0).close()
+        facts = object_in(path.read_bytes())
+        port, process = int(facts["port"]), facts.get("pid")
+        with socket.create_connection(("127.0.0.1", port), 1.0) as connected:
+            return isinstance(process, int) and not _runs(process) and not _answers(connected, facts)
     except (ValueError, KeyError, TypeError, OverflowError):
         return False  # it may be being written right now
     except OSError:
         return True
-    return False
+
+
+def _runs(process: int) -> bool:
+    if os.name != "posix":
+        return True  # there, to ask would be to kill
+    try:
+        os.kill(process, 0)
+    except PermissionError:
+        return True
+    except OSError:
+        return False
+    return True
+
+
+def _answers(connected: socket.socket, facts: Mapping[str, object]) -> bool:
+    """Return whether whoever listens there takes orders."""
+    ask = {"token": facts.get("token"), "order": STATUS}
+    try:
+        with connected.makefile("rwb") as file:
+            file.write(json.dumps(ask).encode() + b"\n")
+            file.flush()
+            object_in(file.readline(LONGEST_LINE))
+    except (OSError, ValueError):
+        return False
+    return True
 
 
 if __name__ == "__main__":

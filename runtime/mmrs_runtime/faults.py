@@ -27,6 +27,12 @@ FAILURES = (Exception, SystemExit)
 """What may come out of code that is wrong, or somebody else's: what it raises must end no thread unseen."""
 
 
+def reason_of(error: OSError) -> str:
+    """Return what a system says of a file, with its name where that is known."""
+    said = error.strerror or str(error)
+    return f"{error.filename}: {said}" if error.filename else said
+
+
 class Fault(Exception):  # noqa: N818  # the word that policies and logs use
     """Something went wrong; `event` says what, and the robot's policies say what it does about it.
 

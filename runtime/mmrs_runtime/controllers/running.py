@@ -20,7 +20,7 @@ from ..engine.orders import Orders
 from ..engine.resuming import over_by, restore
 from ..engine.terms import Ending
 from ..engine.unready import Unready
-from ..faults import LINK_LOST, Fault
+from ..faults import LINK_LOST, Fault, reason_of
 from ..injection import Rehearsal
 from ..policies import NOTHING
 from ..program import Program
@@ -213,7 +213,7 @@ def _slots(
     try:
         bus = shared_bus(program, ids, options.run, options.log, carrier, resumed if options.resume else None)
     except OSError as error:
-        parser.error(f"{error.filename}: {error.strerror}" if error.filename else str(error))
+        parser.error(reason_of(error))
     except ValueError as error:
         parser.error(f"--log {options.log}: {error}")
     stack.callback(bus.close)

@@ -19,6 +19,9 @@ from ..policies import (
 )
 from ..vehicle import Fault
 
+LEAST_PEER_SECONDS = 2.0
+"""Real seconds that other processes have at least to answer: networks are no faster when vehicles are."""
+
 
 @dataclass(frozen=True, slots=True)
 class Answers:
@@ -27,10 +30,12 @@ class Answers:
     Attributes:
         live: whether the robot is a real one, which does not hold for want of a better idea when it
             cannot be reached, or when its battery gets low, and does not wait for lost peers for ever.
+        least: seconds for which it waits at least for what other processes say.
     """
 
     policies: Sequence[Policy]
     live: bool = False
+    least: float = 0.0
 
     def response(self, found: Fault) -> str:
         """Return what the robot does, a response of policies or NOTHING."""
@@ -46,11 +51,16 @@ class Answers:
         """Return whether the robot goes on as if nothing were."""
         return not found.instead and response_to(found.which, self.policies) == "CONTINUE"
 
-    def patience(self, found: Fault) -> float:
-        """Return for how many seconds the robot bears it; inf: for ever."""
+    def patience(self, found: Fault, *, away: bool = False) -> float:
+        """Return for how many seconds the robot bears it; inf: for ever.
+
+        Args:
+            found: what went wrong.
+            away: whether it is another process that is not heard.
+        """
         if self.bears(found):
             return inf
         seconds = patience(found.which, self.policies)
-        if seconds is not None:
-            return seconds
-        return UNDECLARED_AFTER.get(found.which, inf) if self.live else inf
+        if seconds is None:
+            seconds = UNDECLARED_AFTER.get(found.which, inf) if self.live else inf
+        return max(seconds, self.least) if away else seconds

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, TypeAlias
 
 from ..bus.words import CommandId, Find
 from ..conditions import awaiting, question_of
-from ..faults import BATTERY_LOW, DEVICE_SILENT, LINK_LOST, LOG_FAILED, PEER_LOST
+from ..faults import BATTERY_LOW, DEVICE_SILENT, LINK_LOST, LOG_FAILED, PEER_LOST, reason_of
 from ..policies import COMES_DOWN, NOTHING
 from ..program import Choose, Notify, SlotId, Then
 from ..records.steps import StepRecord
@@ -138,7 +138,7 @@ class Life(Situation):
         self._look()
         if not self.held:
             found, answers = Fault(PEER_LOST, silent(owners, self._slots)), self.answers()
-            if self._outgoing.silence(self.now()) >= answers.patience(found):
+            if self._outgoing.silence(self.now()) >= answers.patience(found, away=True):
                 raise Broken(found)
         self._unsure = True
         yield self._later()
@@ -282,7 +282,7 @@ class Life(Situation):
         try:
             self._run.made(record)
         except OSError as error:
-            why = f"{error.filename}: {error.strerror}" if error.filename else str(error)
+            why = reason_of(error)
             if not self._live:
                 raise
             if step.label != "fault":

@@ -10,7 +10,7 @@ from math import inf
 from pathlib import Path
 
 from ..bus import Incomplete
-from ..faults import LINK_LOST, ORDERED, STOPPED
+from ..faults import LINK_LOST, ORDERED, STOPPED, reason_of
 from ..policies import Policy
 from ..program import Program
 from ..records.steps import StepRecord
@@ -88,7 +88,7 @@ class Venture:
             if self.observe is not None:
                 self.observe(StepRecord(self.run, robot, 0, 1, time, "fault", start, which))
         except OSError as error:
-            self.say(f"'{robot}': the fault is not in the log: {error.strerror or error}")
+            self.say(f"'{robot}': the fault is not in the log: {reason_of(error)}")
 
 
 def run_live(venture: Venture) -> Ending:

@@ -14,7 +14,7 @@ from ..questions import Questions
 from ..records.steps import StepRecord
 from ..semantics import Phase, Step, awaited, entry
 from ..vehicle import Fault, Vehicle
-from .answers import Answers
+from .answers import LEAST_PEER_SECONDS, Answers
 from .halt import Halt
 from .resuming import step_of
 from .waits import Outgoing, Wait, noted
@@ -74,6 +74,7 @@ class Situation:
         self.halt = Halt()
         self.questions = Questions(robot.conditions)
         self._run, self._slots, self._live = run, run.slots, live
+        self._least = LEAST_PEER_SECONDS * getattr(run.clock, "speedup", 1.0) if live else 0.0
         self._policies = (*robot.policies, *policies)
         self._passed: list[str] = []
         self._outgoing = Outgoing()
@@ -113,7 +114,7 @@ class Situation:
         declared = self._policies
         if self.point.phase is Phase.OUT and self.move.then is not None:
             declared = (*self.move.then.policies, *declared)
-        return Answers(declared, live=self._live)
+        return Answers(declared, live=self._live, least=self._least)
 
     def now(self) -> float:
         """Return the time of the run."""

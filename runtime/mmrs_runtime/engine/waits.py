@@ -45,6 +45,10 @@ class Peers:
             return ()
         return tuple(sorted(away | {robot for robot in gone if self._retired[robot]}))
 
+    def are_away(self, robots: Iterable[str]) -> bool:
+        """Return whether some of these robots are of other processes."""
+        return not self._here.issuperset(robots)
+
 
 class Wait:
     """What keeps a robot at a move that it has done.
@@ -96,7 +100,7 @@ class Wait:
             return inf, found
         if self._peer_lost_at is None:
             self._peer_lost_at = now
-        return self._peer_lost_at + answers.patience(found), found
+        return self._peer_lost_at + answers.patience(found, away=peers.are_away(lost)), found
 
 
 class Outgoing:

@@ -121,7 +121,7 @@ def test_a_battery_that_does_not_get_full_is_borne_and_the_robot_watched_on():
 def test_a_link_that_has_ended_cannot_be_borne():
     with rover(Policy("LINK_LOST", "CONTINUE")) as driven:
         driven.begin("out")
-        driven.backend._with.link.learns("the port has ended")
+        driven.backend._with.radio.link.learns("the port has ended")
         until(lambda: driven.fault == "LINK_LOST")
         assert not driven.backend.bear(driven.clock.now())
 

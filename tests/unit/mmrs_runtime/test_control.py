@@ -283,6 +283,27 @@ def test_the_announcement_of_a_process_that_was_killed_is_replaced(tmp_path, ope
     assert len(list(give(tmp_path, "hold"))) == 2
 
 
+def test_a_port_that_somebody_else_has_by_now_is_no_process_that_runs(tmp_path, opened, inboxes):
+    gone = subprocess.Popen([sys.executable, "-c", ""])
+    gone.wait()
+    with socket.create_server(("127.0.0.1", 0)) as stranger:
+        port = stranger.getsockname()[1]
+        facts = {"port": port, "token": "old", "pid": gone.pid, "robots": ["alpha"]}
+        (tmp_path / "control.json").write_text(json.dumps(facts), "ascii")
+        opened(inboxes)
+    assert json.loads((tmp_path / "control.json").read_text("ascii"))["pid"] == os.getpid()
+
+
+def test_a_process_that_answers_runs_in_another_container_maybe(tmp_path, opened, inboxes):
+    opened({"alpha": inboxes["alpha"]})
+    path = tmp_path / "control.json"
+    gone = subprocess.Popen([sys.executable, "-c", ""])
+    gone.wait()
+    path.write_text(json.dumps(json.loads(path.read_text("ascii")) | {"pid": gone.pid}), "ascii")
+    with pytest.raises(Taken):
+        opened({"alpha": inboxes["alpha"]})
+
+
 def test_a_killed_process_keeps_no_order_from_the_robots_of_others(tmp_path, opened, inboxes, robots, capsys):
     opened(inboxes)
     robots(*inboxes.values())
