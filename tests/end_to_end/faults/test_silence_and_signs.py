@@ -9,7 +9,7 @@ import time
 from contextlib import ExitStack
 
 import pytest
-from fault_table.fleet import EXECUTIONS, GENERATED, INTERPRETED, Fleet, mainly, wait_for
+from fault_table.fleet import Fleet, wait_for
 from fault_table.project import Pad
 from stalls import Stalls
 
@@ -25,12 +25,10 @@ def fly(tmp_path):
     """Return a function that switches a vehicle on, and starts what flies it."""
     with ExitStack() as stack:
 
-        def start(
-            execution: str, *policies, before=lambda vehicle: None, speedup: float = SPEEDUP, **settings
-        ):
+        def start(*policies, speedup: float = SPEEDUP, **settings):
             pads = (Pad("a", policies=policies, stay=60.0),)
             fleet = stack.enter_context(
-                Fleet(tmp_path, pads, execution, speedup=speedup, settings={"a": settings})
+                Fleet(tmp_path, pads, GENERATED, speedup=speedup, settings={"a": settings})
             )
             fleet.start()
             return fleet, fleet.vehicles["a"]
@@ -42,10 +40,9 @@ def uploading(vehicle) -> bool:
     return any(kind == MISSION_COUNT for _, kind in vehicle.received)
 
 
-@mainly(INTERPRETED)
-def test_a_vehicle_that_is_silent_during_an_upload_is_waited_for_as_the_policy_says(fly, execution):
+def test_a_vehicle_that_is_silent_during_an_upload_is_waited_for_as_the_policy_says(fly):
     """Three and a half seconds of silence are more than all tries take."""
-    fleet, vehicle = fly(execution, ("LINK_LOST", "HOLD", 60.0))
+    fleet, vehicle = fly(("LINK_LOST", "HOLD", 60.0))
     assert wait_for(lambda: uploading(vehicle), PATIENCE), fleet.process.said
     vehicle.mute()
     time.sleep(3.5)
@@ -54,9 +51,8 @@ def test_a_vehicle_that_is_silent_during_an_upload_is_waited_for_as_the_policy_s
     assert wait_for(lambda: vehicle.autopilot.airborne, PATIENCE), fleet.process.said
 
 
-@mainly(GENERATED)
-def test_a_vehicle_that_stays_silent_during_an_upload_is_lost_when_the_policy_says(fly, execution):
-    fleet, vehicle = fly(execution, ("LINK_LOST", "HOLD", 25.0))
+def test_a_vehicle_that_stays_silent_during_an_upload_is_lost_when_the_policy_says(fly):
+    fleet, vehicle = fly(("LINK_LOST", "HOLD", 25.0))
     assert wait_for(lambda: uploading(vehicle), PATIENCE), fleet.process.said
     vehicle.mute()
     begun = time.monotonic()
@@ -84,9 +80,8 @@ def drift_home(vehicle) -> None:
         body.target, body.speed = (north - 2.0, east, up), 0.6
 
 
-@mainly(INTERPRETED)
-def test_a_vehicle_that_is_driven_home_but_does_not_obey_confirms_no_return(fly, execution):
-    fleet, vehicle = fly(execution, speedup=4.0)
+def test_a_vehicle_that_is_driven_home_but_does_not_obey_confirms_no_return(fly):
+    fleet, vehicle = fly(speedup=4.0)
     assert wait_for(lambda: any(step["move"] == "stay" for step in fleet.steps("a")), PATIENCE)
     deafen(vehicle)
     before = vehicle.autopilot.body.position[0]
@@ -97,9 +92,8 @@ def test_a_vehicle_that_is_driven_home_but_does_not_obey_confirms_no_return(fly,
 
 
 @pytest.mark.thorough
-@pytest.mark.parametrize("execution", EXECUTIONS)
-def test_a_vehicle_that_obeys_confirms_a_return_within_a_second(fly, execution):
-    fleet, vehicle = fly(execution, speedup=1.0, gusts=(2.0, 5.0))
+def test_a_vehicle_that_obeys_confirms_a_return_within_a_second(fly):
+    fleet, vehicle = fly(speedup=1.0, gusts=(2.0, 5.0))
     assert wait_for(lambda: vehicle.autopilot.airborne and vehicle.autopilot.body.position[2] > 5.0, PATIENCE)
     stalls = Stalls()
     (reply,) = give(fleet.logs, "return", seconds=4.0)
@@ -107,11 +101,8 @@ def test_a_vehicle_that_obeys_confirms_a_return_within_a_second(fly, execution):
     assert reply["seconds"] < 1.0 + stalls.seconds
 
 
-@mainly(GENERATED)
-def test_a_vehicle_that_does_nothing_about_its_link_is_told_the_response_once_it_is_heard_again(
-    fly, execution
-):
-    fleet, vehicle = fly(execution, ("LINK_LOST", "LAND", 5.0))
+def test_a_vehicle_that_does_nothing_about_its_link_is_told_the_response_once_it_is_heard_again(fly):
+    fleet, vehicle = fly(("LINK_LOST", "LAND", 5.0))
     assert wait_for(lambda: any(step["move"] == "stay" for step in fleet.steps("a")), PATIENCE)
     with vehicle.lock:
         vehicle.autopilot.parameters["FS_GCS_ENABLE"] = 0.0

@@ -5,7 +5,7 @@ from __future__ import annotations
 import threading
 
 import pytest
-from fault_table.fleet import EXECUTIONS, Fleet, wait_for
+from fault_table.fleet import GENERATED, Fleet, wait_for
 from fault_table.project import Pad
 
 from mmrs_runtime.orders.ordering import give
@@ -19,10 +19,10 @@ pytestmark = pytest.mark.thorough
 """Setting a vehicle up takes half a minute so; what a request is has tests of its own."""
 
 
-@pytest.fixture(params=EXECUTIONS)
-def flown(request, tmp_path):
+@pytest.fixture
+def flown(tmp_path):
     """Return a robot whose vehicle hears, and is heard, late; its program has begun."""
-    with Fleet(tmp_path, [Pad("a", stay=30.0)], request.param, speedup=5.0, delay=DELAY) as fleet:
+    with Fleet(tmp_path, [Pad("a", stay=30.0)], GENERATED, speedup=5.0, delay=DELAY) as fleet:
         fleet.start()
         yield fleet
 

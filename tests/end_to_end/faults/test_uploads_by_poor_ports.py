@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pytest
-from fault_table.fleet import GENERATED, INTERPRETED, Fleet, mainly, wait_for
+from fault_table.fleet import GENERATED, Fleet, wait_for
 from fault_table.project import Pad
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
@@ -30,9 +30,8 @@ def refusals(monkeypatch):
 
 
 @pytest.mark.thorough
-@mainly(GENERATED)
-def test_items_that_come_twice_since_the_way_is_long_end_no_upload(tmp_path, execution, refusals):
-    with Fleet(tmp_path, [Pad("a")], execution, speedup=10.0, delay=SLOW) as fleet:
+def test_items_that_come_twice_since_the_way_is_long_end_no_upload(tmp_path, refusals):
+    with Fleet(tmp_path, [Pad("a")], GENERATED, speedup=10.0, delay=SLOW) as fleet:
         fleet.start()
         plans = fleet.vehicles["a"].autopilot.stores
         # Rally points come last, after the mission was read back.
@@ -41,10 +40,9 @@ def test_items_that_come_twice_since_the_way_is_long_end_no_upload(tmp_path, exe
         assert mavlink.MAV_MISSION_INVALID_SEQUENCE in refusals
 
 
-@mainly(INTERPRETED)
-def test_a_port_that_stays_at_mavlink_1_is_named_at_once(tmp_path, execution):
+def test_a_port_that_stays_at_mavlink_1_is_named_at_once(tmp_path):
     settings = {"a": {"mavlink": 1}}
-    with Fleet(tmp_path, [Pad("a")], execution, speedup=10.0, settings=settings) as fleet:
+    with Fleet(tmp_path, [Pad("a")], GENERATED, speedup=10.0, settings=settings) as fleet:
         process = fleet.start()
         process.end(PATIENCE)
         said = "\n".join(process.said)

@@ -10,7 +10,7 @@ import sys
 from math import hypot
 
 import pytest
-from fault_table.fleet import EXECUTIONS, Fleet, wait_for
+from fault_table.fleet import GENERATED, Fleet, wait_for
 from fault_table.project import LATITUDE, LONGITUDE, OUT, Pad
 
 from mmrs_runtime.semantics import Outcome
@@ -22,10 +22,10 @@ BEYOND = 5.0
 """Metres beyond the perch, eastwards, from which on the second sortie has begun its leg."""
 
 
-@pytest.fixture(params=[EXECUTIONS[0], pytest.param(EXECUTIONS[1], marks=pytest.mark.thorough)])
-def flown(request, tmp_path):
-    """Return a robot that lands on its way, and its vehicle, flown one way or the other."""
-    with Fleet(tmp_path, [PERCHED], request.param, speedup=SPEEDUP) as fleet:
+@pytest.fixture
+def flown(tmp_path):
+    """Return a robot that lands on its way, and its vehicle."""
+    with Fleet(tmp_path, [PERCHED], GENERATED, speedup=SPEEDUP) as fleet:
         yield fleet
 
 

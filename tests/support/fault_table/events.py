@@ -44,14 +44,14 @@ def event_rows() -> list[Row]:
             "satellites lost",
             "POSITION_LOST",
             strikes.satellites,
-            [(AT, "LAND", "here"), (AUTO, "LAND", "here"), (LEG, "HOLD", "here")],
+            [(AUTO, "LAND", "here"), (LEG, "HOLD", "here")],
             "LAND",
         ),
         *_landed(
             "position leaps by 40 m",
             "POSITION_LOST",
             strikes.shift,
-            [(AT, "LAND", "here"), (AUTO, "LAND", "here"), (LEG, "HOLD", "here")],
+            [(AUTO, "LAND", "here"), (LEG, "HOLD", "here")],
             "LAND",
         ),
         *_event_rows(
@@ -61,8 +61,7 @@ def event_rows() -> list[Row]:
             [
                 (AT, "HOLD", "holds"),
                 (LEG, "EMERGENCY_AREA", "meadow"),
-                (AUTO, "RETURN", "home"),
-                (AT, "LAND", "here"),
+                (AUTO, "LAND", "here"),
             ],
             "EMERGENCY_AREA",
         ),
@@ -70,14 +69,14 @@ def event_rows() -> list[Row]:
             "fence breached",
             "FENCE_BREACHED",
             strikes.breach,
-            [(AT, "RETURN", "home"), (AUTO, "EMERGENCY_AREA", "meadow"), (LEG, "LAND", "here")],
+            [(AT, "RETURN", "home"), (LEG, "LAND", "here")],
             "RETURN",
         ),
         *_event_rows(
             "autopilot reset, motors on",
             "VEHICLE_RESTARTED",
             strikes.reset,
-            [(AT, "LAND", "here"), (LEG, "RETURN", "home"), (AUTO, "EMERGENCY_AREA", "meadow")],
+            [(AT, "LAND", "here"), (LEG, "RETURN", "home")],
             "RETURN",
         ),
         *_fallen(
@@ -91,14 +90,14 @@ def event_rows() -> list[Row]:
             "battery low",
             "",
             strikes.battery,
-            [(AT, "RETURN", "home"), (AUTO, "EMERGENCY_AREA", "meadow"), (LEG, "LAND", "here")],
+            [(AUTO, "EMERGENCY_AREA", "meadow"), (LEG, "LAND", "here")],
             "EMERGENCY_AREA",
         ),
         *_event_rows(
             "point of no return",
             "",
             strikes.barely,
-            [(AUTO, "RETURN", "home"), (AT, "EMERGENCY_AREA", "meadow")],
+            [(AUTO, "RETURN", "home")],
             "",
         ),
         *(
@@ -107,7 +106,7 @@ def event_rows() -> list[Row]:
                 "battery critical, as only the vehicle says",
                 "",
                 strikes.critical,
-                [(AUTO, "RETURN", "home"), (AT, "EMERGENCY_AREA", "meadow")],
+                [(AT, "EMERGENCY_AREA", "meadow")],
                 "",
             )
         ),
@@ -117,7 +116,7 @@ def event_rows() -> list[Row]:
 def own_failsafe_rows() -> list[Row]:
     """Return rows in which the vehicle answers by itself, too, and otherwise than the policy."""
     own = {"parameters": {"BATT_FS_LOW_ACT": 2.0, "BATT_LOW_TIMER": 2.0, "BATT_LOW_VOLT": 11.0}}
-    cases = [(LEG, "LAND", "here"), (AUTO, "EMERGENCY_AREA", "meadow"), (AT, "HOLD", "holds")]
+    cases = [(AUTO, "EMERGENCY_AREA", "meadow"), (AT, "HOLD", "holds")]
     batteries = [
         replace(row, settings=own, suspends=row.ends != "holds")
         for row in _event_rows(
@@ -129,7 +128,7 @@ def own_failsafe_rows() -> list[Row]:
         "satellites lost, and vehicle holds its height",
         "POSITION_LOST",
         strikes.satellites,
-        [(AT, "HOLD", "here"), (LEG, "LAND", "here"), (AUTO, "CONTINUE", "here")],
+        [(AT, "HOLD", "here"), (AUTO, "CONTINUE", "here")],
         "",
     )
     return [*batteries, *(replace(row, settings={"parameters": {"FS_EKF_ACTION": 2.0}}) for row in blind)]
@@ -148,5 +147,5 @@ def landing_rows() -> list[Row]:
             stay=2.0,
             stays=3.0,
         )
-        for response in ("RETURN", "LAND")
+        for response in ("RETURN",)
     ]

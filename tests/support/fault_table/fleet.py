@@ -11,7 +11,6 @@ from functools import cache
 from pathlib import Path
 from typing import IO
 
-import pytest
 from ports import free_port
 
 from fault_table.process import Process
@@ -23,16 +22,9 @@ from mmrs_core.languages.reading import read_model
 from mmrs_core.plugins import load_plugins
 from mmrs_core.sitl import Settings, SimulatedVehicle
 
-EXECUTIONS = GENERATED, INTERPRETED = ("generated", "interpreted")
+GENERATED, INTERPRETED = "generated", "interpreted"
+"""What flies robots: their controllers, or `mmrs run`; both run the same engine and driver."""
 GROUND_STATION = Path(__file__).parents[2] / "peers" / "ground_station.py"
-
-
-def mainly(usual: str) -> pytest.MarkDecorator:
-    """Fly by both executions what they share; in the fast profile by the usual one only."""
-    return pytest.mark.parametrize(
-        "execution",
-        [usual, *(pytest.param(each, marks=pytest.mark.thorough) for each in EXECUTIONS if each != usual)],
-    )
 
 
 class Fleet:
@@ -62,7 +54,7 @@ class Fleet:
         Args:
             folder: for all files.
             pads: robots with their programs and policies.
-            execution: one of `EXECUTIONS`.
+            execution: `GENERATED` or `INTERPRETED`.
             speedup: seconds of the run in a second.
             settings: of the vehicles, by robot.
             watched: whether somebody looks on, by a ground station of pymavlink's.

@@ -7,12 +7,13 @@ import signal
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from math import dist
 from pathlib import Path
 
 from ports import free_endpoint
 
-from fault_table.fleet import Fleet, wait_for
+from fault_table.fleet import GENERATED, Fleet, wait_for
 from fault_table.project import OUT, TOUR, Pad
 from fault_table.record import MOMENTS, Answer, answered, ending, story, struck
 from fault_table.row import Outcome, within
@@ -48,11 +49,11 @@ def _finish(outcome: Outcome, fleet: Fleet, robot: str) -> None:
         outcome.problems.append("said: " + " | ".join(fleet.process.said[-12:]))
 
 
-def new_battery(execution: str, folder: Path, response: str, moment: str) -> Outcome:
+def new_battery(folder: Path, response: str, moment: str) -> Outcome:
     """Fly until the battery is low, change it, and go on with ``--resume``."""
     policy = ("BATTERY_LOW", response, None)
-    outcome = Outcome(f"battery low {moment}, changed, resumed", execution, f"BATTERY_LOW → {response}")
-    with Fleet(folder, [Pad("r0", policies=(policy,), stay=5.0)], execution) as fleet:
+    outcome = Outcome(f"battery low {moment}, changed, resumed", f"BATTERY_LOW → {response}")
+    with Fleet(folder, [Pad("r0", policies=(policy,), stay=5.0)], GENERATED) as fleet:
         vehicle = fleet.vehicles["r0"]
         first = fleet.start()
         _reached(fleet, "r0", moment)
@@ -75,11 +76,11 @@ def new_battery(execution: str, folder: Path, response: str, moment: str) -> Out
     return outcome
 
 
-def killed_and_resumed(execution: str, folder: Path, response: str, moment: str) -> Outcome:
+def killed_and_resumed(folder: Path, response: str, moment: str) -> Outcome:
     """Kill the process in the air, let the vehicle do what it does by itself, and go on with ``--resume``."""
     policy = ("LINK_LOST", response, 5.0)
-    outcome = Outcome(f"process killed {moment}, resumed", execution, f"LINK_LOST → {response} after 5 s")
-    with Fleet(folder, [Pad("r0", policies=(policy,), stay=5.0)], execution) as fleet:
+    outcome = Outcome(f"process killed {moment}, resumed", f"LINK_LOST → {response} after 5 s")
+    with Fleet(folder, [Pad("r0", policies=(policy,), stay=5.0)], GENERATED) as fleet:
         vehicle = fleet.vehicles["r0"]
         first = fleet.start()
         _reached(fleet, "r0", moment)
@@ -97,15 +98,15 @@ def killed_and_resumed(execution: str, folder: Path, response: str, moment: str)
     return outcome
 
 
-def peer(execution: str, folder: Path, number: int, response: str, ends: str) -> Outcome:
+def peer(folder: Path, number: int, response: str, ends: str) -> Outcome:
     """Have two robots in two processes over the bus, and kill or freeze the one that the other waits for."""
     word = "killed" if number == signal.SIGKILL else "frozen"
-    outcome = Outcome(f"peer's process {word}", execution, f"PEER_LOST → {response} after 5 s")
+    outcome = Outcome(f"peer's process {word}", f"PEER_LOST → {response} after 5 s")
     pads = [
         Pad("r0", "wait", (("PEER_LOST", response, 5.0),)),
         Pad("g0", "give", (), 200.0, gives="r0"),
     ]
-    with Fleet(folder, pads, execution) as fleet:
+    with Fleet(folder, pads, GENERATED) as fleet:
         vehicle, endpoint = fleet.vehicles["r0"], free_endpoint()
         waiting = fleet.start("--bus-listen", endpoint, robot="r0")
         giving = fleet.start("--bus-connect", endpoint, robot="g0")
@@ -137,14 +138,14 @@ def peer(execution: str, folder: Path, number: int, response: str, ends: str) ->
     return outcome
 
 
-def split_network(execution: str, folder: Path, faults: str, after: float, event: str, ends: str) -> Outcome:
+def split_network(folder: Path, faults: str, after: float, event: str, ends: str) -> Outcome:
     """Have two robots in two processes, and a bus between them that is cut or poor."""
-    outcome = Outcome(f"bus between processes: {faults}", execution, f"PEER_LOST → RETURN after {after:g} s")
+    outcome = Outcome(f"bus between processes: {faults}", f"PEER_LOST → RETURN after {after:g} s")
     pads = [
         Pad("r0", "wait", (("PEER_LOST", "RETURN", after),)),
         Pad("g0", "give", (("PEER_LOST", "RETURN", after),), 60.0, gives="r0"),
     ]
-    with Fleet(folder, pads, execution) as fleet:
+    with Fleet(folder, pads, GENERATED) as fleet:
         vehicle, endpoint = fleet.vehicles["r0"], free_endpoint()
         waiting = fleet.start("--bus-listen", endpoint, "--inject", faults, robot="r0")
         giving = fleet.start("--bus-connect", endpoint, robot="g0")
@@ -169,36 +170,22 @@ def split_network(execution: str, folder: Path, faults: str, after: float, event
 
 @dataclass(frozen=True, slots=True)
 class Journey:
-    """A story with several processes: execution and folder to what became of it."""
+    """A story with several processes: from a folder to what became of it."""
 
     name: str
-    fly: Callable[[str, Path], Outcome]
+    fly: Callable[[Path], Outcome]
 
 
-def _journeys() -> tuple[Journey, ...]:
-    made = []
-    for response, moment in (("RETURN", AUTO), ("EMERGENCY_AREA", AT)):
-        fly = lambda e, f, r=response, m=moment: new_battery(e, f, r, m)  # noqa: E731
-        made.append(Journey(f"battery changed, {response}, {moment}", fly))
-    for moment in (AUTO, AT):
-        fly = lambda e, f, m=moment: killed_and_resumed(e, f, "RETURN", m)  # noqa: E731
-        made.append(Journey(f"killed and resumed, {moment}", fly))
-    for number, response, ends in (
-        (signal.SIGKILL, "RETURN", "home"),
-        (signal.SIGKILL, "EMERGENCY_AREA", "meadow"),
-        (signal.SIGSTOP, "RETURN", "home"),
-        (signal.SIGSTOP, "LAND", "here"),
-    ):
-        fly = lambda e, f, n=number, r=response, d=ends: peer(e, f, n, r, d)  # noqa: E731
-        made.append(Journey(f"peer {signal.Signals(number).name}, {response}", fly))
-    for name, faults, after, event in (
-        ("bus cut for 20 s", "bus-cut@45+20", 60.0, ""),
-        ("bus cut for good", "bus-cut@45", 5.0, "PEER_LOST"),
-        ("poor bus", "bus-loss=0.3,bus-delay=0.5~0.5,bus-duplicate=0.3,seed=7", 60.0, ""),
-    ):
-        fly = lambda e, f, x=faults, a=after, v=event: split_network(e, f, x, a, v, "home")  # noqa: E731
-        made.append(Journey(name, fly))
-    return tuple(made)
+def _split(faults: str, after: float, event: str) -> Callable[[Path], Outcome]:
+    return partial(split_network, faults=faults, after=after, event=event, ends="home")
 
 
-JOURNEYS = _journeys()
+JOURNEYS = (
+    Journey("battery changed", partial(new_battery, response="RETURN", moment=AUTO)),
+    Journey("killed and resumed", partial(killed_and_resumed, response="RETURN", moment=AUTO)),
+    Journey("peer killed", partial(peer, number=signal.SIGKILL, response="RETURN", ends="home")),
+    Journey("peer frozen", partial(peer, number=signal.SIGSTOP, response="LAND", ends="here")),
+    Journey("bus cut for 20 s", _split("bus-cut@45+20", 60.0, "")),
+    Journey("bus cut for good", _split("bus-cut@45", 5.0, "PEER_LOST")),
+    Journey("poor bus", _split("bus-loss=0.3,bus-delay=0.5~0.5,bus-duplicate=0.3,seed=7", 60.0, "")),
+)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from fault_table import strikes
-from fault_table.row import AT, AUTO, LEG, UP, Row, answered_rows, policy
+from fault_table.row import AT, AUTO, LEG, Row, answered_rows, policy
 
 SILENCE = 2.5
 """Real seconds that a vehicle of ours bears silence at least, with the moment until its next heartbeat."""
@@ -14,8 +14,6 @@ def link_rows() -> list[Row]:
         (LEG, "RETURN", "home"),
         (AT, "LAND", "here"),
         (AUTO, "HOLD", "holds"),
-        (AT, "EMERGENCY_AREA", "meadow"),
-        (UP, "RETURN", "home"),
     ]
     rows = answered_rows(
         "link lost for good",
@@ -40,7 +38,7 @@ def link_rows() -> list[Row]:
             mends=(8.0, strikes.mend_link),
             fast=during == LEG,
         )
-        for during, response in ((LEG, "RETURN"), (AUTO, "LAND"), (AT, "EMERGENCY_AREA"))
+        for during, response in ((LEG, "RETURN"), (AT, "EMERGENCY_AREA"))
     ]
     rows += [
         Row(
@@ -56,9 +54,7 @@ def link_rows() -> list[Row]:
             fast=during == AUTO,
         )
         for during, response, ends, mends in (
-            (LEG, "RETURN", "home", None),
             (AUTO, "LAND", "here", None),
-            (AT, "HOLD", "holds", None),
             (AT, "RETURN", "home", (45.0, strikes.speak)),
         )
     ]

@@ -6,16 +6,6 @@ from dataclasses import replace
 
 from fault_table.row import Row, leave_alone
 
-STATES = (
-    "on the ground",
-    "climbing",
-    "on a leg (GUIDED)",
-    "on a mission (AUTO)",
-    "at its place",
-    "waiting",
-    "landing at home",
-    "charging",
-)
 DOWN = ("on the ground", "charging")
 ABOVE_HOME = ("climbing", "landing at home")
 FAST = (
@@ -68,20 +58,33 @@ def _of(state: str) -> list[Row]:
     return rows
 
 
-ORDERS: tuple[Row, ...] = tuple(row for state in STATES for row in _of(state))
+CHOSEN = {
+    "hold": ("on a mission (AUTO)", "charging"),
+    "return": ("at its place", "on the ground"),
+    "land": ("climbing",),
+    "stop": ("waiting", "landing at home"),
+    "hold, then resume": ("on a leg (GUIDED)", "charging"),
+}
+"""For each order a state in which the robot flies, and one in which it does not, or hardly."""
 
-AT_ONCE = ("on a mission (AUTO)", "at its place", "waiting", "charging")
+ORDERS: tuple[Row, ...] = tuple(
+    row
+    for order, states in CHOSEN.items()
+    for state in states
+    for row in _of(state)
+    if row.fault == f"order {order}"
+)
+
+AT_ONCE = ("on a mission (AUTO)", "waiting")
 """States in which the robots of one process are at the same moment."""
 
 
 def to_all(order: str, *, resumes: bool = False) -> tuple[Row, ...]:
     """Return the rows of an order that all robots get at once, each in another state."""
-    stays = {"at its place": 45.0, "charging": 45.0}
     return tuple(
         replace(
             row,
             fault=row.fault.replace("order ", "order to all: "),
-            stay=stays.get(row.during, row.stay),
             together=True,
             fast=False,
             resumes=None,

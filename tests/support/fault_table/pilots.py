@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from fault_table import strikes
-from fault_table.row import AT, AUTO, LEG, UP, Row, policy
+from fault_table.row import AT, AUTO, LEG, Row, policy
 
 
 def pilot_rows() -> list[Row]:
@@ -22,10 +22,8 @@ def pilot_rows() -> list[Row]:
             fast=during == AUTO,
         )
         for during, strike, response in (
-            (LEG, strikes.stick, "RETURN"),
             (AUTO, strikes.stick, "LAND"),
             (AT, strikes.by_hand, "EMERGENCY_AREA"),
-            (UP, strikes.stick, "HOLD"),
         )
     ]
     # Whatever else is wrong at that moment, a pilot goes before it.
@@ -41,59 +39,42 @@ def pilot_rows() -> list[Row]:
             stay=5.0 if during == AUTO else 20.0,
             hands_off=True,
         )
-        for during, response in ((LEG, "RETURN"), (AUTO, "EMERGENCY_AREA"), (AT, "LAND"))
+        for during, response in ((LEG, "RETURN"), (AT, "LAND"))
     ]
     rows += [
         Row(
-            "battery low, and pilot's stick on the way back",
-            during,
-            policy("BATTERY_LOW", response),
-            strikes.battery,
-            "TAKEN_OVER|",
-            "holds",
-            stay=5.0 if during == AUTO else 20.0,
-            mends=(3.0, strikes.stick),
-            hands_off=True,
-        )
-        for during, response in ((AT, "RETURN"), (AUTO, "EMERGENCY_AREA"))
-    ]
-    rows += [
-        Row(
-            f"{fault}, then pilot's stick",
+            "satellites lost, then pilot's stick",
             AT,
-            declared,
-            strike,
+            policy("POSITION_LOST", "LAND"),
+            strikes.satellites,
             "TAKEN_OVER",
             "holds",
             within=None,
-            mends=(after, stick),
+            mends=(0.4, strikes.by_hand),
             hands_off=True,
-        )
-        for fault, declared, strike, after, stick in (
-            ("satellites lost", policy("POSITION_LOST", "LAND"), strikes.satellites, 0.4, strikes.by_hand),
-            ("obstacle reported", policy("OBSTACLE", "HOLD", 10.0), strikes.obstacle, 3.0, strikes.stick),
-            (
-                "obstacle reported",
-                policy("OBSTACLE", "EMERGENCY_AREA", 10.0),
-                strikes.obstacle,
-                3.0,
-                strikes.stick,
-            ),
-        )
-    ]
-    rows += [
+        ),
         Row(
-            f"obstacle reported, held, then pilot's stick, then order {order}",
+            "obstacle reported, held, then pilot's stick, then order land",
             AT,
             policy("OBSTACLE", "HOLD"),
             strikes.obstacle,
             "OBSTACLE",
             "holds",
-            mends=(8.0, stick),
+            mends=(8.0, strikes.by_hand),
             hands_off=True,
-            refuses=order,
+            refuses="land",
             responds="HOLD",
-        )
-        for stick, order in ((strikes.stick, "return"), (strikes.by_hand, "land"))
+        ),
+        Row(
+            "battery low, and pilot's stick on the way back",
+            AUTO,
+            policy("BATTERY_LOW", "EMERGENCY_AREA"),
+            strikes.battery,
+            "TAKEN_OVER|",
+            "holds",
+            stay=5.0,
+            mends=(3.0, strikes.stick),
+            hands_off=True,
+        ),
     ]
     return rows

@@ -155,7 +155,6 @@ class Outcome:
     """
 
     title: str
-    execution: str
     declared: str
     happened: str = ""
     answered: float | None = None

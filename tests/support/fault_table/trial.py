@@ -6,7 +6,7 @@ import signal
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
-from fault_table.fleet import Fleet, wait_for
+from fault_table.fleet import GENERATED, Fleet, wait_for
 from fault_table.process import Process
 from fault_table.project import Pad
 from fault_table.row import Outcome, Row
@@ -25,7 +25,6 @@ Blow = Callable[[Fleet, Process], object]
 
 def fly(
     rows: Sequence[Row],
-    execution: str,
     folder: Path,
     *,
     speedup: float = 10.0,
@@ -38,7 +37,6 @@ def fly(
 
     Args:
         rows: to be flown.
-        execution: one of `fleet.EXECUTIONS`.
         folder: for all files.
         speedup: seconds of the run in a second.
         until: waits, once all robots are where their rows want them.
@@ -49,7 +47,7 @@ def fly(
     patience = max(REAL_SECONDS, RUN_SECONDS / speedup)
     pads, names = _pads(rows)
     settings = {name: row.settings for row, name in zip(rows, names, strict=True)}
-    with Fleet(folder, pads, execution, speedup=speedup, settings=settings, watched=watched) as fleet:
+    with Fleet(folder, pads, GENERATED, speedup=speedup, settings=settings, watched=watched) as fleet:
         process = fleet.start(*arguments)
         watches = [Watch(row, name, fleet) for row, name in zip(rows, names, strict=True)]
         for watch in watches:

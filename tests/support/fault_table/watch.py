@@ -33,7 +33,7 @@ class Watch:
 
     def __init__(self, row: Row, robot: str, fleet: Fleet) -> None:
         """Follow a robot of this name."""
-        self.outcome = Outcome(row.title, fleet.execution, row.declared)
+        self.outcome = Outcome(row.title, row.declared)
         self._row, self._robot, self._fleet = row, robot, fleet
         self._vehicle = fleet.vehicles[robot]
         self._victim = fleet.vehicles[f"g{robot[1:]}"] if row.strikes_peer else self._vehicle
