@@ -275,8 +275,14 @@ class Condition:
         identifier: as in Choice.conditionIdentifier.
         holds: whether it holds for a robot in that state. What it raises is a fault of the robot.
         known: whether it can be decided yet; until then the robot waits, as it does for slots.
+        instant: whether both answer at once; otherwise a run in real time asks them in a thread of their own.
     """
 
     identifier: str
     holds: Callable[[State], bool]
     known: Callable[[State], bool] = field(default=_always)
+    instant: bool = False
+
+    def asked(self, state: State) -> object:
+        """Return whether it holds in a state, as it says; None while it cannot be decided."""
+        return self.holds(state) if self.known(state) else None

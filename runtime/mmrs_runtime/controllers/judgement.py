@@ -40,10 +40,11 @@ class Judgement:
 
     def decides(self, robots: Sequence[Robot]) -> dict[str, Decided]:
         """Return what decides each choice of these robots: the user's function, or a standard condition."""
-        return {
-            name: _as_asked(name, self.conditions.get(name) or standard(name))
-            for name in conditions_of(robots)
-        }
+        return {name: self._decides(name) for name in conditions_of(robots)}
+
+    def _decides(self, name: str) -> Decided:
+        own = self.conditions.get(name)
+        return _Asked(name, _never, instant=own is None, asks=own or standard(name))
 
     def _unasked(self, robots: Sequence[Robot]) -> list[str]:
         """Return what is decided for nobody; while other robots run elsewhere, it may be for them."""
@@ -67,22 +68,21 @@ class Judgement:
         return "" if name in self.locators else f"objects.py finds nothing for {name!r}"
 
 
-def _as_asked(name: str, condition: Condition) -> Decided:
-    """Return a condition that is asked with the state that the vehicle tells, once each time."""
-    said: bool | None = None
+@dataclass(frozen=True, slots=True)
+class _Asked(Decided):
+    """A condition that is asked with the state that the vehicle tells."""
 
-    def known(state: Asked) -> bool:
-        nonlocal said
+    asks: Condition = field(kw_only=True)
+
+    def asked(self, state: Asked) -> object:
         assert isinstance(state, Known)
         assert state.told is not None
-        said = condition(replace(state.told, found=state.found, answers=state.answers))
-        return said is not None
+        return self.asks(replace(state.told, found=state.found, answers=state.answers))
 
-    def holds(state: Asked) -> bool:
-        assert said is not None
-        return said
 
-    return Decided(name, holds, known)
+def _never(state: Asked) -> bool:
+    """Stand for what `_Asked` asks."""
+    raise NotImplementedError
 
 
 def _sought(robot: Robot) -> set[str]:

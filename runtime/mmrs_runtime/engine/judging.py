@@ -2,11 +2,17 @@
 
 from __future__ import annotations
 
+import threading
+import time
 from collections.abc import Callable, Iterable, Mapping
 
 from ..conditions import is_standard, standard, truth
 from ..faults import CONDITION_FAILED, FAILURES
+from ..questions import Heard
 from ..vehicle import Condition, Fault, LinkLost, State
+
+ANSWER_SECONDS = 10.0
+"""Real seconds that a function of the user has to say whether a condition holds."""
 
 
 def decided(condition: Condition, know: Callable[[], State]) -> bool | Fault | None:
@@ -17,14 +23,43 @@ def decided(condition: Condition, know: Callable[[], State]) -> bool | Fault | N
     """
     identifier = condition.identifier
     try:
-        state = know()
-        if not condition.known(state):
-            return None
-        return truth(condition.holds(state))
+        holds = condition.asked(know())
+        return None if holds is None else truth(holds)
     except LinkLost:
         raise
     except FAILURES as error:  # a condition is foreign code: whatever it raises is the robot's fault
         return Fault(CONDITION_FAILED, f"condition '{identifier}' fails: {type(error).__name__}: {error}")
+
+
+class Asking:
+    """A condition that is being asked in a thread of its own, so that whatever it does, the run goes on.
+
+    Attributes:
+        done: whether `answer` is there.
+        answer: as of `decided`.
+        heard: the answers of people that it is asked with.
+    """
+
+    def __init__(self, condition: Condition, state: State, heard: Heard, wake: Callable[[], None]) -> None:
+        """Ask; `wake` is called once there is an answer."""
+        self.done, self.heard = False, heard
+        self.answer: bool | Fault | None = None
+        self._condition, self._until = condition, time.monotonic() + ANSWER_SECONDS
+        name = f"condition {condition.identifier!r}"
+        threading.Thread(target=self._ask, args=(state, wake), name=name, daemon=True).start()
+
+    def look(self) -> bool:
+        """Return whether there is an answer, which is a fault where it has not come in time."""
+        if not self.done and time.monotonic() > self._until:
+            words = f"condition '{self._condition.identifier}' has not answered for {ANSWER_SECONDS:g} s"
+            self.answer, self.done = Fault(CONDITION_FAILED, words), True
+        return self.done
+
+    def _ask(self, state: State, wake: Callable[[], None]) -> None:
+        answer = decided(self._condition, lambda: state)
+        if not self.done:
+            self.answer, self.done = answer, True
+            wake()
 
 
 def standard_conditions(identifiers: Iterable[str]) -> dict[str, Condition]:
@@ -41,12 +76,16 @@ def standard_conditions(identifiers: Iterable[str]) -> dict[str, Condition]:
 
 def assumed(answers: Mapping[str, bool]) -> dict[str, Condition]:
     """Return conditions that always hold, or never, by identifier."""
-    return {identifier: Condition(identifier, _always(holds)) for identifier, holds in answers.items()}
+    return {
+        identifier: Condition(identifier, _always(holds), instant=True)
+        for identifier, holds in answers.items()
+    }
 
 
 def _standard(identifier: str) -> Condition:
     asks = standard(identifier)
-    return Condition(identifier, lambda state: asks(state) is True, lambda state: asks(state) is not None)
+    known = lambda state: asks(state) is not None  # noqa: E731
+    return Condition(identifier, lambda state: asks(state) is True, known, instant=True)
 
 
 def _always(holds: bool) -> Callable[[State], bool]:

@@ -19,9 +19,9 @@ from ..program import Choose, Notify, SlotId, Then
 from ..records.steps import StepRecord
 from ..semantics import Phase, Step, action_at, awaited, fault, steps
 from ..slots import with_own
-from ..vehicle import Fault, LinkLost, State
+from ..vehicle import Fault, LinkLost, Progress, State
 from .agenda import Until
-from .judging import decided
+from .judging import Asking, decided
 from .situation import Situation, Stage
 from .waits import Outgoing, silent
 
@@ -196,18 +196,31 @@ class Life(Situation):
         """Return what the condition of a choice says; None as long as nobody can know."""
         then = self.move.then
         assert isinstance(then, Choose)
-        heard = self.questions.heard()
-        holds = decided(self._run.conditions[then.condition], lambda: self._known(heard))
+        condition, heard = self._run.conditions[then.condition], self.questions.heard()
+        holds: bool | Fault | None
+        if condition.instant or not self._live:
+            holds = decided(condition, lambda: self._known(heard))
+        else:
+            if self.wait.asking is None:
+                self.wait.asking = Asking(condition, self._known(heard), heard, self._wake)
+            asking, self.wait.question = self.wait.asking, then.condition
+            if not asking.look():
+                return None
+            holds, heard, self.wait.asking = asking.answer, asking.heard, None
         if isinstance(holds, Fault):
             raise Broken(holds)
         if holds is not None:
             self.questions.use_up(heard)
-        elif self.wait.question != then.condition:
+        elif not self.wait.is_told:
             self.wait.question, self.questions.asked = then.condition, question_of(then.condition)
+            self.wait.is_told = True
             words = awaiting(then.condition)
             self._run.say(self, words)
             self.decided("CHOICE", then.condition, words)
         return holds
+
+    def _wake(self) -> None:
+        self.vehicle.post(Progress())
 
     def _known(self, heard: Mapping[str, bool]) -> State:
         state = self.vehicle.state(self.now())

@@ -10,6 +10,7 @@ from ..program import Program, SlotId
 from ..slots import Slots
 from ..vehicle import Fault
 from .answers import Answers
+from .judging import Asking
 
 
 class Peers:
@@ -57,6 +58,8 @@ class Wait:
         since: when it began to wait; None: it does not.
         lacking: names of the slots that it waited for when last looked at.
         question: identifier of the condition that it waits to be decided; empty: of none.
+        asking: that condition while a function of the user is asked; None: none is.
+        is_told: whether people were told that it waits to be decided.
         deadline: when the wait ends by a fault; inf: never.
     """
 
@@ -65,6 +68,8 @@ class Wait:
         self.since: float | None = None
         self.lacking: tuple[str, ...] = ()
         self.question = ""
+        self.asking: Asking | None = None
+        self.is_told = False
         self.deadline = inf
         self._robot = robot
         self._peer_lost_at: float | None = None

@@ -9,7 +9,7 @@ import time
 from contextlib import ExitStack
 
 import pytest
-from fault_table.fleet import Fleet, wait_for
+from fault_table.fleet import GENERATED, Fleet, wait_for
 from fault_table.project import Pad
 from stalls import Stalls
 
