@@ -71,6 +71,10 @@ def is_standard(identifier: str) -> bool:
     return word in _MAKE and bool(rest) and (word not in (BATTERY, WIND) or _is_number(rest))
 
 
+ANSWER_SECONDS = 10.0
+"""Real seconds that a function of the user has to say whether a condition holds, or where an object is."""
+
+
 def truth(found: object) -> bool:
     """Return what a function of the user's has decided.
 

@@ -284,5 +284,13 @@ class Condition:
     instant: bool = False
 
     def asked(self, state: State) -> object:
-        """Return whether it holds in a state, as it says; None while it cannot be decided."""
-        return self.holds(state) if self.known(state) else None
+        """Return whether it holds in a state, as it says; None while it cannot be decided.
+
+        Raises:
+            TypeError: it says neither.
+        """
+        if not self.known(state):
+            return None
+        if (holds := self.holds(state)) is None:
+            raise TypeError("None is neither True nor False")
+        return holds

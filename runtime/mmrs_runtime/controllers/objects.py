@@ -2,16 +2,22 @@
 
 from __future__ import annotations
 
+import threading
+import time
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 from math import isfinite
 
+from ..conditions import ANSWER_SECONDS
 from ..faults import FAILURES, OBJECT_NOT_FOUND, Fault
 from .places import distance
 from .state import State
 from .words import Look, Object, Place
 
 Locator = Callable[[State, Place | None], Place]
+
+LOOK_SECONDS = 0.05
+"""Real seconds from one call of a guard to the next, while an object is looked for."""
 
 
 def where_expected(state: State, expected: Place | None) -> Place:
@@ -34,25 +40,65 @@ def not_looked_for(state: State, expected: Place | None) -> Place:
     raise NotImplementedError("nobody has said yet how this object is found")
 
 
-def place_of(target: Place | Object, locators: Mapping[str, Locator], state: State) -> Place:
-    """Return where a target is.
+class Finding:
+    """An object that a function of the user looks for, in a thread of its own: it may take its time."""
+
+    def __init__(self, target: Object, locators: Mapping[str, Locator], state: State) -> None:
+        """Have it looked for."""
+        self._target, self._until = target, time.monotonic() + ANSWER_SECONDS
+        self._found: Place | BaseException | None = None
+        self._done = threading.Event()
+        name = f"locator of {target.description!r}"
+        threading.Thread(target=self._look, args=(locators, state), name=name, daemon=True).start()
+
+    def place(self, seconds: float = 0.0) -> Place | None:
+        """Return where it is; None where the function has not answered within so many real seconds.
+
+        Raises:
+            Fault: its locator does not find it, or not in time, or finds it farther from where it is
+                expected than it may be: routes were checked for no other places.
+        """
+        description = self._target.description
+        if not self._done.wait(seconds):
+            if time.monotonic() < self._until:
+                return None
+            words = f"its locator has not answered for {ANSWER_SECONDS:g} s"
+            raise Fault(OBJECT_NOT_FOUND, f"object {description!r}: {words}")
+        if isinstance(self._found, BaseException):
+            raise Fault(OBJECT_NOT_FOUND, f"object {description!r}: {self._found!r}") from self._found
+        assert self._found is not None
+        if self._target.expected is not None and self._target.tolerance is not None:
+            away = distance(self._target.expected, self._found)
+            if away > self._target.tolerance:
+                words = f"{away:.1f} m from where it should be"
+                raise Fault(OBJECT_NOT_FOUND, f"object {description!r}: {words}")
+        return self._found
+
+    def _look(self, locators: Mapping[str, Locator], state: State) -> None:
+        try:
+            locator = locators[self._target.description]
+            self._found = _somewhere(locator(state, self._target.expected), state.place)
+        except FAILURES as error:
+            self._found = error
+        self._done.set()
+
+
+def place_of(
+    target: Place | Object,
+    locators: Mapping[str, Locator],
+    state: State,
+    guard: Callable[[], None] = lambda: None,
+) -> Place:
+    """Return where a target is; `guard` is called while it is looked for, and may raise.
 
     Raises:
-        Fault: its locator does not find it, or finds it farther from where it is expected than it may
-            be: routes were checked for no other places.
+        Fault: as of `Finding.place`.
     """
     if not isinstance(target, Object):
         return target
-    try:
-        found = _somewhere(locators[target.description](state, target.expected), state.place)
-    except FAILURES as error:
-        raise Fault(OBJECT_NOT_FOUND, f"object {target.description!r}: {error!r}") from error
-    if target.expected is not None and target.tolerance is not None:
-        away = distance(target.expected, found)
-        if away > target.tolerance:
-            raise Fault(
-                OBJECT_NOT_FOUND, f"object {target.description!r}: {away:.1f} m from where it should be"
-            )
+    finding = Finding(target, locators, state)
+    while (found := finding.place(LOOK_SECONDS)) is None:
+        guard()
     return found
 
 
@@ -67,6 +113,11 @@ def _somewhere(found: Place, here: Place) -> Place:
     return found
 
 
-def look_at(look: Look | None, locators: Mapping[str, Locator], state: State) -> Look | None:
-    """Return a look whose target is a place."""
-    return None if look is None else replace(look, at=place_of(look.at, locators, state))
+def look_at(
+    look: Look | None,
+    locators: Mapping[str, Locator],
+    state: State,
+    guard: Callable[[], None] = lambda: None,
+) -> Look | None:
+    """Return a look whose target is a place; the rest as of `place_of`."""
+    return None if look is None else replace(look, at=place_of(look.at, locators, state, guard))

@@ -6,13 +6,10 @@ import threading
 import time
 from collections.abc import Callable, Iterable, Mapping
 
-from ..conditions import is_standard, standard, truth
+from ..conditions import ANSWER_SECONDS, is_standard, standard, truth
 from ..faults import CONDITION_FAILED, FAILURES
 from ..questions import Heard
 from ..vehicle import Condition, Fault, LinkLost, State
-
-ANSWER_SECONDS = 10.0
-"""Real seconds that a function of the user has to say whether a condition holds."""
 
 
 def decided(condition: Condition, know: Callable[[], State]) -> bool | Fault | None:

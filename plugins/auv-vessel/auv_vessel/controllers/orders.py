@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import threading
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from concurrent.futures import Future
 from functools import partial
 from itertools import pairwise
 
@@ -27,7 +25,7 @@ from auv_vessel.decision.duties import Look as Bearing
 from auv_vessel.driving.orders import NoWayError, Waters
 from auv_vessel.movement.abilities import abilities_of
 from auv_vessel.sheet import Sheet, Vector
-from mmrs_runtime.controllers.objects import Locator, place_of
+from mmrs_runtime.controllers.objects import Finding, Locator
 from mmrs_runtime.controllers.places import distance_to_leg, ends_of
 from mmrs_runtime.controllers.state import State
 from mmrs_runtime.controllers.ways import steps_back
@@ -157,7 +155,7 @@ class ProgramOrders:
             return Face(self._towards(look.at, look))
         at = look.at
         return _Found(
-            lambda: place_of(at, self._locators, self._state()),
+            partial(self._finding, at),
             lambda place: Face(self._towards(place, look)),
         )
 
@@ -172,7 +170,7 @@ class ProgramOrders:
         if not isinstance(target, Object):
             return self._looking(movement, lambda: way(target))
         if self._sight is None:
-            return _Found(lambda: place_of(target, self._locators, self._state()), way)
+            return _Found(partial(self._finding, target), way)
         if target.expected is None:
             why = f"object {target.description!r}: nobody knows where it is expected"
             return _Fails(NotFound(OBJECT_NOT_FOUND, why))
@@ -186,6 +184,9 @@ class ProgramOrders:
             None if told is None else (told[0], told[1], expected[2]),
         )
 
+    def _finding(self, target: Object) -> Finding:
+        return Finding(target, self._locators, self._state())
+
     def _looking(self, movement: GoTo, way: Callable[[], Duty]) -> Duty:
         """Return the way of a movement, once it is known where an object is that is looked at meanwhile."""
         look = movement.look
@@ -198,7 +199,7 @@ class ProgramOrders:
             self._seen[at] = place
             return way()
 
-        return _Found(lambda: place_of(at, self._locators, self._state()), known)
+        return _Found(partial(self._finding, at), known)
 
     def _legs(self, move: str, movement: GoTo, target: Place, *, through: bool) -> Duty:
         ends = ends_of(self._state().place, target, movement.legs, movement.distance)
@@ -276,41 +277,29 @@ class _Chain:
 class _Found:
     """A duty that nobody knows before a function of the user has found where it leads."""
 
-    def __init__(self, find: Callable[[], Place], then: Callable[[Place], Duty]) -> None:
+    def __init__(self, find: Callable[[], Finding], then: Callable[[Place], Duty]) -> None:
         self._find, self._then = find, then
+        self._finding: Finding | None = None
         self._duty: Duty | None = None
-        self._asked: Future[Place] | None = None
 
     def begin(self, craft: Craft, now: float) -> None:
         if self._duty is not None:
             self._duty.begin(craft, now)
-        elif self._asked is None:
-            asked: Future[Place] = Future()
-            self._asked = asked
-            threading.Thread(target=_answer, args=(asked, self._find), name="locator", daemon=True).start()
+        elif self._finding is None:
+            self._finding = self._find()
 
     def done(self, craft: Craft, now: float) -> bool:
         if self._duty is None:
-            assert self._asked is not None
-            if not self._asked.done():
+            assert self._finding is not None
+            try:
+                place = self._finding.place()
+            except NotFound as fault:
+                raise FailureError(fault.event, str(fault)) from fault
+            if place is None:
                 return False
-            self._duty = self._then(_result(self._asked))
+            self._duty = self._then(place)
             self._duty.begin(craft, now)
         return self._duty.done(craft, now)
-
-
-def _answer(asked: Future[Place], find: Callable[[], Place]) -> None:
-    try:
-        asked.set_result(find())
-    except BaseException as error:
-        asked.set_exception(error)
-
-
-def _result(asked: Future[Place]) -> Place:
-    try:
-        return asked.result()
-    except NotFound as fault:
-        raise FailureError(fault.event, str(fault)) from fault
 
 
 class _Fails:

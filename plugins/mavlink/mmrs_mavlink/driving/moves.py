@@ -59,6 +59,7 @@ class Moves:
         locators: Mapping[str, Locator],
         told: Told,
         passed: Callable[[Place], None] = lambda place: None,
+        guard: Callable[[], None] = lambda: None,
     ) -> None:
         """Move that vehicle.
 
@@ -69,6 +70,7 @@ class Moves:
             locators: what finds objects, by description.
             told: called with what was reported or measured: kind, name, content.
             passed: called with each place that it has come to.
+            guard: called in waits for what locators find.
         """
         self.track: list[tuple[str, Place]] = []
         self._steps = {step.move: step for step in robot.steps}
@@ -77,7 +79,7 @@ class Moves:
         self._silence = seconds_of(policy)
         self._silence_of_values = seconds_of(policy, {DEVICE_SILENT: VALUE_SECONDS})
         self._vehicle, self._clock, self._locators, self._told = vehicle, clock, locators, told
-        self._passed = passed
+        self._passed, self._guard = passed, guard
 
     def movement(self, move: str, *, through: bool = False) -> Job:
         """Return what is to be done for a move; `through`: without a stop at its end."""
@@ -130,7 +132,7 @@ class Moves:
         Raises:
             Fault: it leads to an object, and nobody finds it.
         """
-        return place_of(movement.at, self._locators, self._vehicle.state())
+        return place_of(movement.at, self._locators, self._vehicle.state(), self._guard)
 
     def speed_of(self, move: str) -> float | None:
         """Return how fast a move is, metres per second; None: as the vehicle likes."""
@@ -180,7 +182,7 @@ class Moves:
             state = self._vehicle.state()
             here = at_height(state.place, self.track[-1][1].height)
             target = self.target_of(movement)
-            look = look_at(movement.look, self._locators, state)
+            look = look_at(movement.look, self._locators, state, self._guard)
             ends = ends_of(here, target, movement.legs, movement.distance)
             on = through and goes_through(self._steps[move], self._following(move), here)
             job.then(*(self._leg(move, end, movement, look, on and end == ends[-1]) for end in ends))
@@ -216,7 +218,7 @@ class Moves:
                 return
 
     def _turn(self, look: Look) -> None:
-        found = look_at(look, self._locators, self._vehicle.state())
+        found = look_at(look, self._locators, self._vehicle.state(), self._guard)
         assert found is not None
         self._vehicle.turn(found)
 

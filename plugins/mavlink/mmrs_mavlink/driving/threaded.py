@@ -51,7 +51,13 @@ class ThreadedVehicle(Vehicle):
         self._watch = self._new_watch()
         self._link = None if equipment.radio is None else equipment.radio.link
         self._moves = Moves(
-            robot, equipment.vehicle, equipment.clock, equipment.locators, self._keep, self._come_to
+            robot,
+            equipment.vehicle,
+            equipment.clock,
+            equipment.locators,
+            self._keep,
+            self._come_to,
+            equipment.guard,
         )
         self._way = WayBack(robot, self._moves, equipment.vehicle, equipment.home_tolerance)
         uploads = uploads_of(robot, fenced=equipment.fence)
