@@ -14,6 +14,7 @@ from mmrs_runtime.controllers.objects import Locator
 from mmrs_runtime.controllers.places import offset
 from mmrs_runtime.controllers.running import run_controllers
 from mmrs_runtime.engine.connecting import Live
+from mmrs_runtime.injection.spec import OF_STATIONS, OF_VEHICLE
 from mmrs_runtime.records.blackbox import BlackBox, black_box_path
 from mmrs_runtime.vehicle import Position
 
@@ -49,6 +50,7 @@ def main(
 class MavlinkDriver(Driver):
     """Reaches vehicles by MAVLink, or makes them up for a dry run."""
 
+    rehearses = (*OF_VEHICLE, *OF_STATIONS)
     _reach: Reach
     _outfit: Outfit
 

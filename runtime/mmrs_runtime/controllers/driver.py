@@ -37,7 +37,13 @@ class Outfit:
 
 
 class Driver(ABC):
-    """Reaches vehicles of one kind; made for one run of controllers."""
+    """Reaches vehicles of one kind; made for one run of controllers.
+
+    Attributes:
+        rehearses: faults of vehicles, and of ground stations, that it can make on purpose.
+    """
+
+    rehearses: Collection[str] = ()
 
     def add_options(self, parser: ArgumentParser) -> None:  # noqa: B027
         """Add the options of its own to a command line."""

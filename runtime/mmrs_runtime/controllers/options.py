@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from math import inf
 from pathlib import Path
@@ -13,6 +13,7 @@ from ..bus import PATIENCE
 from ..engine.clocks import FollowingClock, RealClock
 from ..faults import Fault
 from ..injection import HELP, Injections, injections
+from ..injection.spec import OF_STATIONS, OF_VEHICLE
 from ..records.blackbox import black_box_path, last_time, plan_of
 from ..records.log import read
 from .driver import Driver
@@ -130,7 +131,7 @@ def options_of(
         home_tolerance=given.home_tolerance,
         bus=_bus(given),
         sync=given.sync_patience if given.sync else None,
-        inject=_inject(parser, links, given),
+        inject=_inject(parser, links, driver.rehearses, given),
     )
 
 
@@ -202,12 +203,18 @@ def _run(parser: argparse.ArgumentParser, robots: Sequence[Robot], given: Any) -
     return (runs[0] if runs else given.run or FIRST_RUN), start
 
 
-def _inject(parser: argparse.ArgumentParser, links: Mapping[str, str], given: Any) -> Injections:
+def _inject(
+    parser: argparse.ArgumentParser, links: Mapping[str, str], rehearses: Collection[str], given: Any
+) -> Injections:
     try:
         alone = not (_bus(given).used or given.sync)
-        return injections(given.inject, links, dry=given.dry_run, alone=alone)
+        found = injections(given.inject, links, dry=given.dry_run, alone=alone)
     except ValueError as error:
         parser.error(f"--inject {error}")
+    for fault in found.faults:
+        if fault.name in (*OF_VEHICLE, *OF_STATIONS) and fault.name not in rehearses:
+            parser.error(f"--inject {fault.text}: these vehicles cannot do that")
+    return found
 
 
 def _bus(given: Any) -> Bus:

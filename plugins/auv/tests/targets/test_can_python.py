@@ -222,3 +222,10 @@ def test_objects_that_no_camera_looks_for_are_asked_for(tmp_path: Path) -> None:
 def to_buoy() -> Program:
     seeks = replace(swim("a", 1.0, 2.0, 1.0), target=Target((1.0, 2.0, -1.0), "red buoy", 3.0))
     return dive(seeks)
+
+
+def test_faults_that_no_vehicle_on_a_bus_can_make_are_refused(tmp_path: Path) -> None:
+    folder = generated(dive(swim("a", 1.0, 0.0, 1.0)), tmp_path / "code")
+    done = call(folder, "--log", str(tmp_path / "logs"), "--inject", "gps-lost@60")
+    assert done.returncode == 2
+    assert "--inject gps-lost@60: these vehicles cannot do that" in done.stderr
