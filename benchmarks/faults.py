@@ -4,8 +4,9 @@
 
 Every row is flown by generated controllers, as processes, on simulated vehicles of ours. What happened is
 the vehicle's own record: its modes, and where it came to rest; the log line is the robot's. Seconds are those
-of the run, which goes faster than real time; orders are confirmed in real ones. Those to single robots are flown in real time, one flight after the other with nothing beside: how soon they
-are confirmed depends on what else the machine does. Then several flights go on at once: ``--jobs``.
+of the run, which goes faster than real time; orders are confirmed in real ones. Those to
+single robots are flown in real time, one flight after the other with nothing beside: how soon they are
+confirmed depends on what else the machine does. Then several flights go on at once: ``--jobs``.
 """
 
 from __future__ import annotations

@@ -94,16 +94,6 @@ def _popped(stack: list[int], on_stack: set[int], root: int) -> tuple[int, ...]:
     return tuple(sorted(part))
 
 
-def cycles(robot: RobotProgram) -> tuple[tuple[int, ...], ...]:
-    """Return the sets of moves that lead back to themselves, by their smallest index.
-
-    Each is a strongly connected component with at least one edge inside; linear time.
-    """
-    graph = successors(robot)
-    round_trips = (part for part in components(graph) if len(part) > 1 or part[0] in graph[part[0]])
-    return tuple(sorted(round_trips))
-
-
 def in_order(robot: RobotProgram) -> tuple[int, ...]:
     """Return the moves reachable from Start, each before what follows it as far as cycles allow."""
     graph = successors(robot)

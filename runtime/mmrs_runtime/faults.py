@@ -68,13 +68,6 @@ class Strange(Refused):
     """The vehicle is not the robot's, or somebody else may have it: it must be told nothing."""
 
 
-class Alone(Fault):
-    """The robots that it was to begin with have not come: nothing has begun."""
-
-    def __init__(self, message: str) -> None:
-        super().__init__(PEER_LOST, message)
-
-
 class Stopped(Fault):
     """Somebody asked the robot to stop."""
 

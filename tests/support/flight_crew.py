@@ -171,13 +171,6 @@ class Manned:
         """Return how far the vehicle is from a place, metres."""
         return distance(self.vehicle.state().place, place)
 
-    def land_for_the_battery(self) -> None:
-        """Have the vehicle land by itself since it finds its battery low."""
-        found = {"BATT_FS_LOW_ACT": 1.0, "BATT_LOW_TIMER": 0.0, "BATT_LOW_VOLT": 99.0}
-        with self.simulated.lock:
-            self.simulated.autopilot.parameters |= found
-        until(lambda: self.vehicle.state().mode == "land")
-
     @property
     def mode(self) -> str:
         """Return the mode of the vehicle itself."""

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from mmrs_core.behaviour.walk import (
     components,
-    cycles,
     in_order,
     moves_reaching_stop,
     reachable,
@@ -37,19 +36,6 @@ def test_a_move_that_is_jumped_over_is_not_reachable():
 def test_moves_in_a_cycle_without_a_way_out_do_not_reach_stop():
     each = robot("r", [hold("a"), hold("b"), hold("c")], jumps={"b": "a"})
     assert moves_reaching_stop(each) == {3, 4}
-
-
-def test_a_loop_is_found_with_all_its_moves():
-    assert cycles(looped()) == ((1, 2),)
-
-
-def test_a_move_that_follows_itself_is_a_cycle():
-    each = robot("r", [hold("a")], choices={"a": ("c", "a", "stop")})
-    assert cycles(each) == ((1,),)
-
-
-def test_a_robot_without_loops_has_no_cycles():
-    assert cycles(robot("r", [hold("a"), hold("b")])) == ()
 
 
 def test_moves_come_in_order_with_what_follows_later():

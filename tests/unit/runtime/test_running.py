@@ -1,4 +1,4 @@
-"""The interpreter: who steps when, what it does about waits, choices and faults."""
+"""Robots that run on the engine: who steps when, what it does about waits, choices and faults."""
 
 from __future__ import annotations
 
