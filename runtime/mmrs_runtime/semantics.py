@@ -5,9 +5,10 @@ Steps of different robots interleave. Slots are latches: passing a wait leaves t
 All awaited slots are tested in one state, after the actions that follow the movement. A Choice may go
 either way here; the engine asks its condition once, at the instant when it fires.
 
-Robots run by `steps`, `fault` and `missing`; `told_by` finds the step that a log tells of. States of all
-robots together (`initial`, `enabled`, `apply`, `is_success`, `is_deadlock`) are the oracle that the engine
-and the check of synchronisation are tested against, over every interleaving.
+Robots run by `steps`, `fault` and `missing`, and the check of synchronisation reads a behaviour by `steps`;
+`told_by` finds the step that a log tells of. States of all robots together (`initial`, `enabled`, `apply`,
+`is_success`, `is_deadlock`) are the oracle that the engine and that check are tested against, over every
+interleaving.
 """
 
 from __future__ import annotations

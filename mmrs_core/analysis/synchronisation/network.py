@@ -13,6 +13,9 @@ from dataclasses import dataclass
 
 from mmrs_core.behaviour.program import Program, RobotProgram, SlotId
 from mmrs_core.behaviour.walk import reachable, reachable_moves
+from mmrs_runtime.program import Robot
+from mmrs_runtime.semantics import Phase, entry, steps
+from mmrs_runtime.semantics import awaited as awaited_at
 
 
 @dataclass(frozen=True, slots=True)
@@ -79,7 +82,10 @@ def network_of(program: Program) -> Network:
         if move in robot.transitions
         for slot in robot.transitions[move].waits
     )
-    nets = tuple(_net(robot, reached[robot.id], awaited) for robot in program.robots)
+    nets = tuple(
+        _net(robot, executable, reached[robot.id], awaited)
+        for robot, executable in zip(program.robots, program.executable.robots, strict=True)
+    )
     volatile = frozenset(
         slot
         for net in nets
@@ -133,8 +139,9 @@ def _part(network: Network, group: Sequence[int]) -> Network:
     )
 
 
-def _net(robot: RobotProgram, reached: frozenset[int], awaited: frozenset[SlotId]) -> Net:
-    full = {move: _node(robot, move, awaited) for move in reached}
+def _net(robot: RobotProgram, executable: Robot, reached: frozenset[int], awaited: frozenset[SlotId]) -> Net:
+    numbers = {move.id: index for index, move in enumerate(executable.moves)}
+    full = {move: _node(executable, move, numbers, awaited) for move in reached}
     kept = [move for move in sorted(reached) if move == robot.stop or _matters(full[move])]
     kept_moves = frozenset(kept)
     first = _next_kept(robot.start, full, kept_moves)
@@ -153,18 +160,18 @@ def _net(robot: RobotProgram, reached: frozenset[int], awaited: frozenset[SlotId
     return Net(robot.id, tuple(nodes), number.get(robot.stop))
 
 
-def _node(robot: RobotProgram, index: int, awaited: frozenset[SlotId]) -> Node:
-    move = robot.moves[index]
-    groups = ((frozenset(action.sets) & awaited, action.active) for action in (*move.before, *move.after))
-    transition = robot.transitions.get(index)
-    if transition is None:
-        return Node(index, tuple(group for group in groups if group[0]))
-    return Node(
-        move=index,
-        sets=tuple(group for group in groups if group[0]),
-        waits=frozenset((robot.id, slot) for slot in transition.waits),
-        ways=tuple(dict.fromkeys(transition.ways)),
-    )
+def _node(robot: Robot, index: int, numbers: Mapping[str, int], awaited: frozenset[SlotId]) -> Node:
+    """Return a move as the step rules lead through it."""
+    point = entry(robot, robot.moves[index].id)
+    sets: list[tuple[frozenset[SlotId], bool]] = []
+    while point.phase is not Phase.OUT and not point.is_final:
+        (step,) = steps(robot, point, frozenset())
+        if group := awaited.intersection(step.sets):
+            sets.append((group, step.active))
+        point = step.leads_to
+    waits = frozenset(awaited_at(robot, point))
+    ways = (numbers[step.leads_to.move] for step in steps(robot, point, waits))
+    return Node(index, tuple(sets), waits, tuple(dict.fromkeys(ways)))
 
 
 def _matters(node: Node) -> bool:
