@@ -19,7 +19,7 @@ from mmrs_runtime.vehicle import Vehicle
 
 MOST_EVENTS = 1000
 """Questions after which a movement is taken for one that never ends."""
-STOPPED_SECONDS = 100.0
+STOPPED_SECONDS = 30.0
 """For so long a vehicle that has stopped must stay where it is."""
 
 NO_OPTION = "an option that no vehicle has"

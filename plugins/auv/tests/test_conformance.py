@@ -95,4 +95,4 @@ class TestVehicles(VehicleConformance):
     behaviour = dive(swim("out", 3.0, 0.0, 1.0), swim("back", 0.0, 0.0, 1.0))
     type = diver()
     options = {"can-sim": {"noise": "no"}}
-    still = {"can-sim": (20.0, 0.05)}  # a body in water bobs until it has come to rest
+    still = {"can-sim": (10.0, 0.05)}  # a body in water bobs until it has come to rest
