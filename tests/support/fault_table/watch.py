@@ -7,6 +7,8 @@ import threading
 from collections.abc import Callable, Mapping, Sequence
 from math import inf
 
+from stalls import Stalls
+
 from fault_table.fleet import Fleet
 from fault_table.record import MOMENTS, Answer, Struck, ending, stops_short, story, strayed, struck, talked
 from fault_table.row import Outcome, Row, within
@@ -35,6 +37,7 @@ class Watch:
         """Follow a robot of this name."""
         self.outcome = Outcome(row.title, row.declared)
         self._row, self._robot, self._fleet = row, robot, fleet
+        self._stalls = Stalls()
         self._vehicle = fleet.vehicles[robot]
         self._victim = fleet.vehicles[f"g{robot[1:]}"] if row.strikes_peer else self._vehicle
         self._struck: Struck | None = None
@@ -53,6 +56,7 @@ class Watch:
 
     def strike(self) -> None:
         """Make it happen."""
+        self._stalls = Stalls()
         target, before = self._vehicle.autopilot.body.target, struck(self._vehicle)
         self._row.strike(self._victim)
         after = struck(self._vehicle)
@@ -138,6 +142,7 @@ class Watch:
         if self._row.within is not None:
             speedup = self._fleet.speedup
             limit = within(max(self._row.within, self._row.least * speedup), speedup)
+            limit += self._stalls.seconds * speedup
             if self.outcome.answered is None or self.outcome.answered > limit:
                 problems.append(f"answered after {self.outcome.answered}, not {limit} s")
 
@@ -183,7 +188,7 @@ class Watch:
     def _judge(self, order: str, reply: Mapping[str, object]) -> None:
         if not reply.get("confirmed"):
             self.outcome.problems.append(f"{order} is not confirmed: {reply}")
-        elif float(str(reply["seconds"])) > ORDER_SECONDS:
+        elif float(str(reply["seconds"])) > ORDER_SECONDS + self._stalls.seconds:
             self.outcome.problems.append(f"{order} is confirmed after {reply['seconds']} s")
         seconds = float(str(reply.get("seconds", inf)))
         self.outcome.confirmed[order] = max(seconds, self.outcome.confirmed.get(order, 0.0))
