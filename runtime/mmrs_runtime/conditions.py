@@ -61,6 +61,11 @@ def standard(identifier: str) -> Standard:
     return _MAKE[word](rest)
 
 
+def answers_at_once(condition: Callable[..., object]) -> bool:
+    """Return whether a function is one that `standard` returns, and so never keeps anybody waiting."""
+    return condition.__module__ == __name__
+
+
 def is_standard(identifier: str) -> bool:
     """Return whether an identifier asks for a standard condition.
 

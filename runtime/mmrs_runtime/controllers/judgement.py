@@ -6,7 +6,7 @@ from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import TypeAlias
 
-from ..conditions import is_standard, standard, undecided
+from ..conditions import answers_at_once, is_standard, standard, undecided
 from ..vehicle import Condition as Decided
 from ..vehicle import State as Asked
 from .objects import Locator, not_looked_for
@@ -44,7 +44,7 @@ class Judgement:
 
     def _decides(self, name: str) -> Decided:
         own = self.conditions.get(name)
-        return _Asked(name, _never, instant=own is None, asks=own or standard(name))
+        return _Asked(name, _never, instant=own is None or answers_at_once(own), asks=own or standard(name))
 
     def _unasked(self, robots: Sequence[Robot]) -> list[str]:
         """Return what is decided for nobody; while other robots run elsewhere, it may be for them."""

@@ -202,11 +202,14 @@ class Life(Situation):
             holds = decided(condition, lambda: self._known(heard))
         else:
             if self.wait.asking is None:
+                if self.now() < self.wait.ask_at:
+                    return None
                 self.wait.asking = Asking(condition, self._known(heard), heard, self._wake)
             asking, self.wait.question = self.wait.asking, then.condition
             if not asking.look():
                 return None
             holds, heard, self.wait.asking = asking.answer, asking.heard, None
+            self.wait.ask_at = self.now() + PACE
         if isinstance(holds, Fault):
             raise Broken(holds)
         if holds is not None:

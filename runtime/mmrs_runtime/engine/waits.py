@@ -59,6 +59,7 @@ class Wait:
         lacking: names of the slots that it waited for when last looked at.
         question: identifier of the condition that it waits to be decided; empty: of none.
         asking: that condition while a function of the user is asked; None: none is.
+        ask_at: when that function may be asked again, if it could not say yet; its answer wakes the robot.
         is_told: whether people were told that it waits to be decided.
         deadline: when the wait ends by a fault; inf: never.
     """
@@ -69,6 +70,7 @@ class Wait:
         self.lacking: tuple[str, ...] = ()
         self.question = ""
         self.asking: Asking | None = None
+        self.ask_at = -inf
         self.is_told = False
         self.deadline = inf
         self._robot = robot

@@ -7,6 +7,7 @@ from dataclasses import replace
 from flight_crew import robot_of
 
 from mmrs_mavlink.program import Choose
+from mmrs_runtime.conditions import standard
 from mmrs_runtime.controllers.judgement import Judgement
 
 ASKS = "battery-below:0.3"
@@ -32,3 +33,11 @@ def test_a_condition_that_no_choice_of_a_whole_fleet_asks_for_is_refused_since_i
 
 def test_conditions_of_robots_that_run_elsewhere_may_be_there():
     assert decides(ASKS, "calm").faults([robot(asks=ASKS)]) == []
+
+
+def test_standard_conditions_need_no_thread_but_those_that_users_write_do():
+    low, high = "battery-below:0.3", "battery-below:0.9"
+    conditions = {low: standard(low), high: lambda state: True}
+    robots = [robot("alpha", asks=low), robot("beta", asks=high)]
+    decides = Judgement(conditions, {}).decides(robots)
+    assert {name: each.instant for name, each in decides.items()} == {low: True, high: False}
