@@ -73,6 +73,7 @@ class Moves:
             guard: called in waits for what locators find.
         """
         self.track: list[tuple[str, Place]] = []
+        self._found: dict[GoTo, Place] = {}
         self._steps = {step.move: step for step in robot.steps}
         self._robot, self._home = robot.id, robot.home
         policy = policy_for(DEVICE_SILENT, robot)
@@ -127,12 +128,17 @@ class Moves:
         self._passed(place)
 
     def target_of(self, movement: GoTo) -> Place:
-        """Return where a movement leads to, without the distance that it keeps.
+        """Return where a movement led to, or leads to, without the distance that it keeps.
 
         Raises:
             Fault: it leads to an object, and nobody finds it.
         """
-        return place_of(movement.at, self._locators, self._vehicle.state(), self._guard)
+        return self._found.get(movement) or self._find(movement)
+
+    def _find(self, movement: GoTo) -> Place:
+        found = place_of(movement.at, self._locators, self._vehicle.state(), self._guard)
+        self._found[movement] = found
+        return found
 
     def speed_of(self, move: str) -> float | None:
         """Return how fast a move is, metres per second; None: as the vehicle likes."""
@@ -181,7 +187,7 @@ class Moves:
                 self._pass(move, self._vehicle.state().place)
             state = self._vehicle.state()
             here = at_height(state.place, self.track[-1][1].height)
-            target = self.target_of(movement)
+            target = self._find(movement)
             look = look_at(movement.look, self._locators, state, self._guard)
             ends = ends_of(here, target, movement.legs, movement.distance)
             on = through and goes_through(self._steps[move], self._following(move), here)
