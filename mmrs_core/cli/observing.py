@@ -1,4 +1,4 @@
-"""Watches robots of this process at work: writes their logs, and remembers what each did last."""
+"""Watches robots of this process at work: writes their logs, and remembers what each has reported last."""
 
 from __future__ import annotations
 
@@ -19,13 +19,11 @@ class Observer:
         """Have seen nothing of that behaviour yet; who is in the gallery is shown all of it, too."""
         self._gallery, self._writer = gallery, writer
         self._actions = _actions_of(program)
-        self._last: dict[str, StepRecord] = {}
         self._reported: dict[str, Mapping[str, object]] = {}
 
     def observe(self, record: StepRecord) -> None:
         """Write a step down."""
         self._writer.write(record)
-        self._last[record.robot] = record
         action = self._actions.get((record.robot, record.move, record.detail))
         if record.label == "act" and action is not None and action.is_a(FEEDBACK):
             self._reported[record.robot] = {
@@ -35,12 +33,9 @@ class Observer:
         self._gallery.show(record)
 
     def status(self, robot: str) -> Mapping[str, object]:
-        """Return what a robot did last, and what it has reported last if it has; empty before it began."""
-        last, reported = self._last.get(robot), self._reported.get(robot)
-        if last is None:
-            return {}
-        done = {"move": last.move, "step": last.label, "time": last.time}
-        return done | ({} if reported is None else {"reported": reported})
+        """Return what a robot has reported last; empty before it has."""
+        reported = self._reported.get(robot)
+        return {} if reported is None else {"reported": reported}
 
 
 def _actions_of(program: Program) -> dict[tuple[str, str, str], Action]:

@@ -304,7 +304,7 @@ class Life(Situation):
             if step.label != "fault":
                 raise Broken(Fault(LOG_FAILED, why), unkept=record) from error
             self._run.say(self, f"the fault is not in the log: {why}")
-        self.lamport, self.number = lamport, self.number + 1
+        self.lamport, self.number, self.last = lamport, self.number + 1, record
         self.follow(step, now)
 
     def _finds(self) -> tuple[Find, ...]:

@@ -51,7 +51,7 @@ class Situation:
         point: where it is in its program.
         stage: how far it is with getting there.
         lamport: its logical time.
-        number: of its next step.
+        number: of its next step. last: that it has made; None: none yet.
         wait: what keeps it from leaving its move.
         sending: whether it notifies others, and they have still to answer.
         held: whether somebody ordered it to hold, and nothing else since.
@@ -68,6 +68,7 @@ class Situation:
         self.point = entry(robot, robot.start)
         self.stage = Stage.WORKING
         self.lamport, self.number = 0, 0
+        self.last: StepRecord | None = None
         self.wait = Wait(robot.id)
         self.held = False
         self.ordered: tuple[Fault, str] | None = None
@@ -91,7 +92,7 @@ class Situation:
         """
         for record in records:
             self.follow(step_of(self.robot, self.point, record), record.time)
-            self.lamport, self.number = record.lamport, record.seq + 1
+            self.lamport, self.number, self.last = record.lamport, record.seq + 1, record
 
     def follow(self, step: Step, now: float) -> None:
         """Be where a step leads."""

@@ -42,7 +42,7 @@ class Standing:
         held = life.held if life is not None else robot in self.held
         found: dict[str, object] = {"phase": if_held(phase) if held else phase}
         if life is not None:
-            found["move"] = life.point.move
+            found |= _at(life)
         if vehicle is not None:
             found |= vehicle.told()
         if life is not None and _responds(life, armed=found.get("armed") is True):
@@ -61,6 +61,13 @@ class Standing:
         if life.point.is_final or life.is_absent:
             return LOST if life.halt.is_for(LINK_LOST) else ENDED
         return SUSPENDED if life.suspended else WORKS
+
+
+def _at(life: Life) -> Mapping[str, object]:
+    """Return which step a robot has made last, and when, if it has made any."""
+    if (last := life.last) is None:
+        return {"move": life.point.move}
+    return {"move": last.move, "step": last.label, "time": last.time}
 
 
 def _responds(life: Life, *, armed: bool) -> bool:
