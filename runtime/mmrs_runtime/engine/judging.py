@@ -11,6 +11,9 @@ from ..faults import CONDITION_FAILED, FAILURES
 from ..questions import Heard
 from ..vehicle import Condition, Fault, LinkLost, State
 
+SLOW_SECONDS = 1.0
+"""Real seconds after which people are told that a function of theirs has not answered yet."""
+
 
 def decided(condition: Condition, know: Callable[[], State]) -> bool | Fault | None:
     """Return whether a condition holds, or the fault that asking leaves; None: nobody can know yet.
@@ -44,6 +47,11 @@ class Asking:
         self._condition, self._until = condition, time.monotonic() + ANSWER_SECONDS
         name = f"condition {condition.identifier!r}"
         threading.Thread(target=self._ask, args=(state, wake), name=name, daemon=True).start()
+
+    @property
+    def is_slow(self) -> bool:
+        """Return whether it takes so long that people should know."""
+        return time.monotonic() > self._until - ANSWER_SECONDS + SLOW_SECONDS
 
     def look(self) -> bool:
         """Return whether there is an answer, which is a fault where it has not come in time."""

@@ -207,6 +207,8 @@ class Life(Situation):
                 self.wait.asking = Asking(condition, self._known(heard), heard, self._wake)
             asking, self.wait.question = self.wait.asking, then.condition
             if not asking.look():
+                if asking.is_slow:
+                    self._tell_undecided(then.condition)
                 return None
             holds, heard, self.wait.asking = asking.answer, asking.heard, None
             self.wait.ask_at = self.now() + PACE
@@ -214,13 +216,18 @@ class Life(Situation):
             raise Broken(holds)
         if holds is not None:
             self.questions.use_up(heard)
-        elif not self.wait.is_told:
+        else:
             self.wait.question, self.questions.asked = then.condition, question_of(then.condition)
-            self.wait.is_told = True
-            words = awaiting(then.condition)
-            self._run.say(self, words)
-            self.decided("CHOICE", then.condition, words)
+            self._tell_undecided(then.condition)
         return holds
+
+    def _tell_undecided(self, condition: str) -> None:
+        """Tell people, once, what a choice waits for."""
+        if not self.wait.is_told:
+            self.wait.is_told = True
+            words = awaiting(condition)
+            self._run.say(self, words)
+            self.decided("CHOICE", condition, words)
 
     def _wake(self) -> None:
         self.vehicle.post(Progress())

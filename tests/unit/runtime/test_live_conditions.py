@@ -97,3 +97,11 @@ def test_what_nobody_can_know_yet_is_asked_again_and_told_once(live):
     assert seen[3] - seen[0] > 0.1
     assert "r choose h false" in run.shown()
     assert len([line for line in run.said if "sunny" in line]) == 1
+
+
+def test_people_are_told_that_a_function_takes_its_time(asked, monkeypatch):
+    monkeypatch.setattr(judging, "SLOW_SECONDS", 0.1)
+    monkeypatch.setattr(judging, "ANSWER_SECONDS", 0.6)
+    run = asked(hangs)
+    run.end()
+    assert next(line for line in run.said if "sunny" in line) == "'r': waits until 'sunny' is known"

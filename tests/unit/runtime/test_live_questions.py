@@ -93,7 +93,9 @@ def test_people_who_ask_are_told_how_robots_are_in_the_words_of_controllers(live
     standing = run.venture.standing
     assert standing.status("r")["phase"] == "waits for its vehicle"
     run.wait_for(lambda: "asks" in standing.status("r"))
-    assert standing.status("r") == {"phase": "works", "move": "h", "armed": True, "asks": "go on?"}
+    status = dict(standing.status("r"))
+    assert 0.0 < status.pop("time") < 20.0
+    assert status == {"phase": "works", "move": "h", "step": "end", "armed": True, "asks": "go on?"}
     run.orders.give("answer", ["r"], question="go on?", answer=True)
     run.end()
     assert standing.status("r")["phase"] == "has ended"
