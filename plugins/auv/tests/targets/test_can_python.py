@@ -3,6 +3,7 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
+import time
 from dataclasses import replace
 from pathlib import Path
 
@@ -83,7 +84,7 @@ import glob, sys, runpy
 sys.path += {[path for path in sys.path if path.endswith("site-packages")]!r}
 class Barred:
     def find_spec(self, name, path=None, target=None):
-        if name.partition(".")[0] in ("mmrs_core", "mmrs_auv", "pymavlink"):
+        if name.partition(".")[0] in ("mmrs_core", "mmrs_auv", "mmrs_mavlink", "pymavlink"):
             raise ImportError(name)
 sys.meta_path.insert(0, Barred())
 sys.path[:0] = [".", *glob.glob("wheels/*.whl")]
@@ -98,6 +99,26 @@ def test_controllers_stand_alone_and_their_dry_logs_replay(tmp_path: Path) -> No
     judged = replay(pair(), read_logs([tmp_path / "logs"]))
     assert judged.accepted
     assert judged.outcome is Outcome.SUCCESS
+
+
+def test_a_program_that_was_killed_goes_on_where_its_log_ends(tmp_path: Path) -> None:
+    behaviour = dive(*(swim(f"s{number}", 4.0, 4.0 * (number % 2), 1.0) for number in range(6)))
+    folder, logs = generated(behaviour, tmp_path / "code"), tmp_path / "logs"
+    words = ("--dry-run", "--log", str(logs), "--speedup")
+    process = begun(folder, "fleet.py", *words, "10")
+    log = logs / f"{behaviour.robots[0].id}.jsonl"
+    until = time.monotonic() + 60.0
+    while not (log.exists() and '"begin","move":"s3"' in log.read_text(encoding="utf-8")):
+        assert process.poll() is None, process.communicate()
+        assert time.monotonic() < until
+        time.sleep(0.02)
+    process.kill()
+    process.communicate()
+    done = call(folder, *words, "500", "--resume")
+    assert done.returncode == 0, done.stderr
+    assert "'s1'" not in done.stderr
+    judged = replay(behaviour, read_logs([logs]))
+    assert (judged.complaints, judged.outcome) == ((), Outcome.SUCCESS)
 
 
 def test_nothing_of_this_project_is_imported(tmp_path: Path) -> None:
