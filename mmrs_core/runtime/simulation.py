@@ -154,6 +154,8 @@ class SimulatedRobot(Vehicle):
         """Return when the movement ends or something goes wrong."""
         if self._fault is not None:
             return now
+        if self._legs[-1].end <= now:
+            return inf
         flow = self._flow()
         events = [self._legs[-1].end]
         for leg in self._legs[self._leg_index(now) :]:

@@ -73,8 +73,10 @@ class LogFile:
             OSError: not all is written, in a log that is not synced.
         """
         if self._file is not None and not self._synced:
-            with self._named():
+            try:
                 self._file.close()
+            except OSError as error:
+                raise self._named(error) from None
             return
         with suppress(OSError):
             if self._owed is not None:
@@ -88,20 +90,18 @@ class LogFile:
 
     def _append(self, record: StepRecord) -> None:
         line = to_line(record, spaced=self._spaced).encode("utf-8") + b"\n"
-        with self._named():
+        try:
             if self._synced:
                 append_whole(self.open(), line, at_once=record.label in KEPT_AT_ONCE)
             else:
                 self.open().write(line)
-
-    @contextmanager
-    def _named(self) -> Iterator[None]:
-        """Have errors about the file name it."""
-        try:
-            yield
         except OSError as error:
-            error.filename = error.filename or str(self._path)
-            raise
+            raise self._named(error) from None
+
+    def _named(self, error: OSError) -> OSError:
+        """Return an error about the file that names it."""
+        error.filename = error.filename or str(self._path)
+        return error
 
 
 class LogWriter:
