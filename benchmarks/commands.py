@@ -1,8 +1,8 @@
 """Measures how long an order to a robot takes until its vehicle has confirmed it, against a bare command.
 
-One simulated vehicle hovers under `mmrs run`'s interpreter; it is ordered to hold and to go on, in turns,
-over the control channel of the run. The bare command is a COMMAND_LONG to the same kind of vehicle and its
-COMMAND_ACK, by pymavlink alone, in the same process and at the same time of day.
+One simulated vehicle hovers under `mmrs run`; it is ordered to hold and to go on, in turns, over the control
+channel of the run. The bare command is a COMMAND_LONG to the same kind of vehicle and its COMMAND_ACK, by
+pymavlink alone, in the same process and at the same time of day.
 
     python benchmarks/commands.py --seed 1 > benchmarks/results/commands.txt
 """
