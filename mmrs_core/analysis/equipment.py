@@ -13,15 +13,14 @@ from mmrs_core.analysis.verdicts import (
     safe,
     violated,
 )
-from mmrs_core.behaviour.program import BEHAVIOUR, Action, RobotProgram
+from mmrs_core.behaviour.program import DEVICE_ACTION, Action, RobotProgram
 from mmrs_core.behaviour.walk import reachable_moves
 from mmrs_core.contributions.checks import Check, CheckInput, Verdict
-from mmrs_core.scene import Name, RobotType
+from mmrs_core.scene import RobotType
 
 PAYLOAD_NAME = "payload"
 SPEED_NAME = "speed"
 DEVICES_NAME = "devices"
-DEVICE_ACTION: Name = (BEHAVIOUR, "DeviceAction")
 
 
 def _judge_payload(input: CheckInput, robot: RobotProgram) -> Iterator[Verdict]:

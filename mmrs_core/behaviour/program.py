@@ -18,6 +18,9 @@ from mmrs_runtime.program import Program as ExecutableProgram
 from mmrs_runtime.program import SlotId as SlotId
 
 BEHAVIOUR = "urn:mmrs:behaviour:1.0"
+DEVICE_ACTION: Name = (BEHAVIOUR, "DeviceAction")
+FEEDBACK: Name = (BEHAVIOUR, "Feedback")
+NOTIFY: Name = (BEHAVIOUR, "Notify")
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,7 +77,7 @@ class Action:
     @property
     def notifies(self) -> bool:
         """Return whether the action sets slots."""
-        return (BEHAVIOUR, "Notify") in self.metaclasses
+        return NOTIFY in self.metaclasses
 
 
 @dataclass(frozen=True, slots=True)

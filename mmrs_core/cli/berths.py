@@ -168,10 +168,10 @@ def berths_of(settings: CliSettings, path: Path) -> list[Berth]:
         UnsupportedError: they have no place on Earth, or no vehicle carries one of them.
         InvalidModelError: the models are not valid.
     """
+    from mmrs_core.behaviour.earth import degrees_of
     from mmrs_core.cli.behaviours import is_behaviour, load_behaviour
     from mmrs_core.cli.journey import Journey, Workshop
     from mmrs_core.languages.modelset import model_in
-    from mmrs_core.mavlink.earth import degrees_of
     from mmrs_core.mavlink.vehicles import class_of_type, uncarried, vehicle_class
 
     workshop = Workshop(settings)

@@ -4,12 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from mmrs_core.behaviour.program import BEHAVIOUR, Action, Program
+from mmrs_core.behaviour.program import FEEDBACK, Action, Program
 from mmrs_core.cli.onlookers import Gallery
 from mmrs_runtime.records.log import LogWriter
 from mmrs_runtime.records.steps import StepRecord
-
-FEEDBACK = (BEHAVIOUR, "Feedback")
 
 
 class Observer:

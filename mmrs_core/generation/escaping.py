@@ -23,10 +23,12 @@ class Code(str):
     __slots__ = ()
 
 
-class Name(str):
-    """A name of our own in generated Python code, which stands for a value that the code says elsewhere."""
+@dataclass(frozen=True, slots=True)
+class Constant:
+    """A value that generated Python code says by a name of our own, and defines once."""
 
-    __slots__ = ()
+    name: str
+    value: object
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,7 +41,7 @@ class Call:
 
 
 def python_literal(value: object) -> Code:
-    """Return a value as a Python expression in ASCII on one line: a literal, a `Name`, or a `Call` of these.
+    """Return a value as a Python expression in ASCII on one line: literals, each `Constant` and `Call`.
 
     Raises:
         ValueError: it is a number that is not finite, or no plain value.
@@ -54,8 +56,8 @@ def python_literal(value: object) -> Code:
         return Code(repr(value))
     if value is None or isinstance(value, bool | int):
         return Code(repr(value))
-    if isinstance(value, Name):
-        return name(value)
+    if isinstance(value, Constant):
+        return name(value.name)
     if isinstance(value, str):
         return _quoted(str(value))
     if isinstance(value, tuple | list):
@@ -108,12 +110,12 @@ def comment(value: object) -> Code:
 
 
 def name(value: object) -> Code:
-    """Return a name of our own as it is.
+    """Return a name of our own, dotted or not, as it is.
 
     Raises:
-        ValueError: it is no name of ASCII letters, digits and ``_``.
+        ValueError: it is none of ASCII letters, digits and ``_``.
     """
-    if not re.fullmatch(r"[A-Za-z_][A-Za-z0-9_]*", str(value)):
+    if re.fullmatch(r"[A-Za-z_]\w*(\.[A-Za-z_]\w*)*", str(value), re.ASCII) is None:
         raise ValueError(f"{value!r} is no name")
     return Code(str(value))
 

@@ -1,43 +1,15 @@
-"""Which MAVLink vehicle a robot is, and how fast it goes."""
+"""Which MAVLink vehicle a robot is."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
-from mmrs_core.behaviour.program import Move, RobotProgram
+from mmrs_core.behaviour.program import RobotProgram
 from mmrs_core.contributions.rules import RobotKind, most_specific, robot_kind_of
-from mmrs_core.scene import Capability, Name, RobotType
+from mmrs_core.scene import Name, RobotType
 
 TAKE_OFF = ("urn:mmrs:multicopter:1.0", "TakeOff")
-
-TRAVEL_FACTORS: Mapping[str, float] = {"SAFE": 0.5, "NORMAL": 0.75, "AGGRESSIVE": 1.0}
-
-
-@dataclass(frozen=True, slots=True)
-class Manner:
-    """How carefully robots travel in a travel mode.
-
-    Attributes:
-        acceptance: metres from a place at which it counts as reached, where the mission's position
-            error covers them; never less than `NEAREST`.
-        radius: metres within which the vehicle itself counts the places of a run as passed, at most.
-        margin: metres that the vehicle keeps from what it perceives itself, at least; 0: its owner's.
-    """
-
-    acceptance: float
-    radius: float
-    margin: float
-
-
-NEAREST = 0.5
-"""Metres at which a place counts as reached, whatever the position error."""
-
-MANNERS: Mapping[str, Manner] = {
-    "SAFE": Manner(NEAREST, 1.0, 4.0),
-    "NORMAL": Manner(NEAREST, 2.0, 2.0),
-    "AGGRESSIVE": Manner(1.0, 2.0, 0.0),
-}
 
 
 @dataclass(frozen=True, slots=True)
@@ -160,25 +132,3 @@ def autopilot_fault(type: RobotType | None) -> str:
     if found and found[0] not in AUTOPILOTS:
         return f"{AUTOPILOT} is {shown}; known are {' and '.join(AUTOPILOTS)}"
     return ""
-
-
-def capability_of(robot: RobotProgram, type: RobotType) -> Capability | None:
-    """Return how the robot moves with its payload: by the lightest listed one that is not lighter."""
-    return next((each for each in type.capabilities if each.payload >= robot.payload), None)
-
-
-def speed_of(move: Move, robot: RobotProgram, type: RobotType | None) -> float | None:
-    """Return the commanded speed of a move in metres per second; None where it is not known."""
-    if move.speed is not None:
-        return move.speed
-    capability = capability_of(robot, type) if type is not None else None
-    if capability is None:
-        return None
-    slowest, fastest = capability.speed
-    return max(slowest, TRAVEL_FACTORS.get(robot.travel_mode, 0.75) * fastest)
-
-
-def manner_of(robot: RobotProgram, position_error: float) -> Manner:
-    """Return how carefully a robot travels; it goes no nearer past corners than its clearance covers."""
-    manner = MANNERS[robot.travel_mode]
-    return replace(manner, acceptance=max(NEAREST, min(manner.acceptance, position_error)))

@@ -5,14 +5,11 @@ from __future__ import annotations
 from dataclasses import replace
 
 from mmrs_core.behaviour.as_scene import scene_of
-from mmrs_core.behaviour.program import BEHAVIOUR, Action
+from mmrs_core.behaviour.program import DEVICE_ACTION, FEEDBACK, Action
 from mmrs_core.contributions.rules import MoveKind, most_specific, robot_kind_of
 from mmrs_core.contributions.vehicles import VehicleInput
 from mmrs_core.errors import UnsupportedError
 from mmrs_core.scene import Kinematics
-
-DEVICE_ACTION = (BEHAVIOUR, "DeviceAction")
-FEEDBACK = (BEHAVIOUR, "Feedback")
 
 
 def kinematics_of(given: VehicleInput) -> Kinematics:

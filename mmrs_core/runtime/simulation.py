@@ -16,14 +16,14 @@ from operator import attrgetter
 from pathlib import Path
 
 from mmrs_core.behaviour.as_scene import robot_of
-from mmrs_core.behaviour.program import BEHAVIOUR, Action, Heading, Move
+from mmrs_core.behaviour.program import BEHAVIOUR, DEVICE_ACTION, Action, Heading, Move
 from mmrs_core.contributions.execution import Fault, RobotState, Sample
 from mmrs_core.contributions.rules import MoveKind
 from mmrs_core.contributions.vehicles import VehicleFactory, VehicleInput
 from mmrs_core.errors import InternalError, UnreadableError, UsageError
 from mmrs_core.runtime.battery import SLACK, Battery
 from mmrs_core.runtime.escape import Escapes
-from mmrs_core.runtime.known import DEVICE_ACTION, kinematics_of, move_kinds_of
+from mmrs_core.runtime.known import kinematics_of, move_kinds_of
 from mmrs_core.runtime.legs import (
     STILL,
     Flow,

@@ -7,6 +7,7 @@ from itertools import pairwise
 from math import dist, hypot, inf, sqrt
 from typing import TYPE_CHECKING
 
+from mmrs_core.behaviour.travel import SHARE_OF_LARGEST_SPEED
 from mmrs_core.contributions.rules import MoveKind, MoveSpec, RobotKind
 from mmrs_core.errors import InfeasibleError
 from mmrs_core.scene import Capability, Kinematics, Position, Robot, RobotType, Scene
@@ -16,7 +17,6 @@ if TYPE_CHECKING:
 
 ROBOT = ("urn:mmrs:robot:1.0", "Robot")
 BEHAVIOUR = "urn:mmrs:behaviour:1.0"
-SHARE_OF_LARGEST_SPEED = {"SAFE": 0.5, "NORMAL": 0.75, "AGGRESSIVE": 1.0}
 ANYWHERE = frozenset({"grounded", "airborne", "moving"})
 AFLOAT = frozenset({"airborne", "moving"})
 

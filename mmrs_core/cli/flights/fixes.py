@@ -12,11 +12,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from mmrs_core.behaviour.earth import WGS84
 from mmrs_core.behaviour.program import Program, RobotProgram
 from mmrs_core.cli.flights.values import Flags, Track
 from mmrs_core.contributions.rules import RobotKind
 from mmrs_core.geometry.frames import Floats, LocalFrame
-from mmrs_core.mavlink.earth import WGS84
 from mmrs_core.mavlink.vehicles import VEHICLES, vehicle_class
 from mmrs_core.scene import Frame, Name, Position, RobotType
 from mmrs_runtime.records.entries import Entry, number_of

@@ -7,12 +7,10 @@ from dataclasses import dataclass
 from math import sqrt
 from shlex import quote
 
+from mmrs_core.behaviour.travel import SHARE_OF_LARGEST_SPEED
 from mmrs_core.languages import behaviour as bl
 from mmrs_core.languages.element import Element
 from mmrs_core.languages.grounding.values import child, children, number, text
-
-SHARE_OF_LARGEST_SPEED = {"SAFE": 0.5, "NORMAL": 0.75, "AGGRESSIVE": 1.0}
-"""At which a robot goes by its travel mode where nobody says how fast."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -8,10 +8,9 @@ from math import isfinite
 from auv_vessel.sheet import Sheet
 from auv_vessel.wire.catalogue import messages_of
 from auv_vessel.wire.layout import layout_of
-from mmrs_core.behaviour.program import BEHAVIOUR, Action, Move
+from mmrs_core.behaviour.program import DEVICE_ACTION, Action, Move
 from mmrs_core.scene import Position, RobotType
 
-DEVICE_ACTION = (BEHAVIOUR, "DeviceAction")
 ROUNDING = 1e-3
 """Metres by which places may differ that are the same."""
 

@@ -13,11 +13,11 @@ import pytest
 from patience import until
 from ports import free_port
 
+from mmrs_core.behaviour.earth import degrees_of
 from mmrs_core.behaviour.log import read_logs
 from mmrs_core.behaviour.replay import ReplayResult, replay
 from mmrs_core.generation.render import render
 from mmrs_core.generation.writing import write
-from mmrs_core.mavlink.earth import degrees_of
 from mmrs_core.mavlink.vehicles import vehicle_class
 from mmrs_core.sitl import Settings, SimulatedVehicle
 from mmrs_core.testing.programs import target_input

@@ -11,7 +11,7 @@ import pytest
 from ports import free_port
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from mmrs_core.mavlink.earth import degrees_of
+from mmrs_core.behaviour.earth import degrees_of
 from mmrs_core.sitl import Settings, SimulatedVehicle
 from mmrs_core.testing.programs import LAND, program, robot_program, take_off, two_drones
 from mmrs_mavlink.links.link import Link

@@ -8,11 +8,11 @@ import sys
 import pytest
 from ports import free_port
 
+from mmrs_core.behaviour.earth import degrees_of
 from mmrs_core.behaviour.log import read_logs
 from mmrs_core.behaviour.replay import replay
 from mmrs_core.generation.render import render
 from mmrs_core.generation.writing import write
-from mmrs_core.mavlink.earth import degrees_of
 from mmrs_core.sitl import Host, Settings, SimulatedVehicle
 from mmrs_core.testing.programs import target_input, two_drones
 from mmrs_mavlink.plugin.controllers import MAVLINK_PYTHON

@@ -12,9 +12,9 @@ from shutil import copytree
 from shapely import LineString, Polygon
 
 from mmrs_core import pipeline
+from mmrs_core.behaviour.earth import degrees_of
 from mmrs_core.behaviour.program import Program
 from mmrs_core.languages.writing import write_model
-from mmrs_core.mavlink.earth import degrees_of
 from mmrs_core.mavlink.vehicles import vehicle_class
 from mmrs_core.plugins import load_plugins
 from mmrs_core.resources import shipped

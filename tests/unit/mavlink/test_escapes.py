@@ -10,6 +10,8 @@ from shapely import LineString, Polygon
 from mmrs_core import pipeline
 from mmrs_core.behaviour.refuges import refuges_of
 from mmrs_core.contributions.targets import TargetInput
+from mmrs_core.generation.python.program import robot_view
+from mmrs_core.generation.safety import clearance_of
 from mmrs_core.plugins import load_plugins
 from mmrs_core.resources import shipped
 from mmrs_core.scene import Area, AreaUse, Policy
@@ -22,14 +24,13 @@ from mmrs_core.testing.programs import (
     take_off,
     target_input,
 )
+from mmrs_mavlink.plugin.controllers import DRIVER
 from mmrs_mavlink.plugin.escapes import escapes_of
-from mmrs_mavlink.plugin.program import robot_view
-from mmrs_mavlink.plugin.safety import clearance_of
 
 
 def escapes(*moves) -> list[str]:
     robot = robot_program("alpha", moves)
-    view = robot_view(robot, target_input(program(robot)))
+    view = robot_view(robot, target_input(program(robot)), DRIVER)
     return [name for name, _ in dict(view.head)["escapes"]]
 
 
@@ -45,7 +46,7 @@ def test_there_is_one_from_every_start_at_home_but_from_no_other_place():
 
 def test_the_way_out_is_level():
     robot = robot_program("alpha", [take_off("up", 10.0), LAND])
-    ((_, (place,)),) = dict(robot_view(robot, target_input(program(robot))).head)["escapes"]
+    ((_, (place,)),) = dict(robot_view(robot, target_input(program(robot)), DRIVER).head)["escapes"]
     assert place.positional[2] == 10.0
 
 
@@ -135,7 +136,7 @@ def test_ways_out_of_the_carbon_dioxide_mission_are_short_and_clear():
 
 def alone(*moves, response: str = "EMERGENCY_AREA") -> dict:
     robot = replace(robot_program("alpha", moves), policies=(Policy("LINK_LOST", response),))
-    return dict(robot_view(robot, target_input(program(robot))).head)
+    return dict(robot_view(robot, target_input(program(robot)), DRIVER).head)
 
 
 BEHIND_THE_SCHOOL = (160.0, 20.0, 10.0)

@@ -7,9 +7,9 @@ from dataclasses import replace
 
 import pytest
 
+from mmrs_core.behaviour.earth import degrees_of
 from mmrs_core.errors import UnsupportedError
 from mmrs_core.generation.render import render
-from mmrs_core.mavlink.earth import degrees_of
 from mmrs_core.mavlink.vehicles import VEHICLES, vehicle_class
 from mmrs_core.scene import Frame
 from mmrs_core.sitl.__main__ import parser_of_arguments

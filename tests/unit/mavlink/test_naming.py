@@ -18,9 +18,7 @@ from mmrs_core.testing.programs import (
     take_off,
     target_input,
 )
-from mmrs_mavlink.plugin.built import robot_of
-from mmrs_mavlink.plugin.controllers import MAVLINK_PYTHON
-from mmrs_mavlink.plugin.naming import command_name
+from mmrs_mavlink.plugin.controllers import MAVLINK_PYTHON, command_name, robot_of
 
 REEL = Device("reel", {"pull": DeviceAction("pull", 2.0)}, {"kites.reel": "9"})
 REELS = DeviceWiring("kites.reel", "reels", lambda action, device: Wired(183, (9.0,), more=((31_999, ()),)))

@@ -5,9 +5,9 @@ from dataclasses import replace
 import pytest
 
 from mmrs_core.behaviour.program import Heading, Target, Transition
+from mmrs_core.mavlink.context import context_of
 from mmrs_core.scene import Frame
 from mmrs_core.testing.programs import L_AQUILA, go_to, photo, program, robot_program, target_input
-from mmrs_mavlink.plugin.context import context_of
 from mmrs_mavlink.plugin.runs import runs_of
 
 EAST = [(float(10 * index), 0.0, 20.0) for index in range(1, 6)]
@@ -17,7 +17,7 @@ def runs(moves=None, transitions=None, frame: Frame = L_AQUILA, fluid=(1, 2, 3, 
     made = moves or [go_to(f"m{index}", place) for index, place in enumerate(EAST, start=1)]
     flowing = {index: Transition(index, index + 1, fluid=True) for index in fluid}
     robot = robot_program("alpha", made, transitions=flowing | dict(transitions or {}))
-    context = context_of(robot, target_input(program(robot, frame=frame)), geographic=False)
+    context = context_of(robot, target_input(program(robot, frame=frame)))
     return runs_of(context)
 
 

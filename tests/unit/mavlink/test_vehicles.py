@@ -5,9 +5,11 @@ from dataclasses import replace
 import pytest
 
 from mmrs_core.analysis.corners import RADIUS
+from mmrs_core.behaviour.earth import degrees_of, metres, sea_level_of
+from mmrs_core.behaviour.travel import MANNERS, manner_of, speed_of
 from mmrs_core.errors import UnsupportedError
-from mmrs_core.mavlink.earth import degrees_of, metres, sea_level_of
-from mmrs_core.mavlink.vehicles import COPTER, MANNERS, ROVER, SUB, manner_of, speed_of, vehicle_class
+from mmrs_core.mavlink.context import context_of
+from mmrs_core.mavlink.vehicles import COPTER, ROVER, SUB, vehicle_class
 from mmrs_core.scene import Capability, Frame
 from mmrs_core.testing.programs import (
     L_AQUILA,
@@ -20,7 +22,6 @@ from mmrs_core.testing.programs import (
     target_input,
 )
 from mmrs_core.transformation.fluid import LEAST_CUT
-from mmrs_mavlink.plugin.context import context_of
 from mmrs_mavlink.plugin.controllers import MAVLINK_PYTHON
 from mmrs_mavlink.plugin.plans.wpl import WPL
 
@@ -68,7 +69,7 @@ def test_heights_of_what_dives_count_from_the_surface():
     robot = robot_program("a", [], home=(0.0, 0.0, 1.5))
     frame = replace(L_AQUILA, surface=1.0)
     given = target_input(program(robot, frame=frame), [replace(DIVER, name="Quad")])
-    assert context_of(robot, given, geographic=False).height((0.0, 0.0, -4.0)) == -5.0
+    assert context_of(robot, given).height((0.0, 0.0, -4.0)) == -5.0
 
 
 def test_degrees_of_another_crs_are_those_of_wgs84():

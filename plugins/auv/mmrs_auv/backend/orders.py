@@ -24,11 +24,11 @@ from auv_vessel.driving.orders import NoWayError, Waters
 from auv_vessel.sheet import Sheet, Vector
 from mmrs_auv.sayable import Bus, mount_of, parameter_of, unturnable
 from mmrs_auv.sheets import action_number
-from mmrs_core.behaviour.program import BEHAVIOUR, Action, Heading, Move
+from mmrs_core.behaviour.program import BEHAVIOUR, DEVICE_ACTION, Action, Heading, Move
 from mmrs_core.contributions.vehicles import VehicleInput
 from mmrs_core.errors import UnreachableError, UnsupportedError
 from mmrs_core.runtime.escape import Escapes
-from mmrs_core.runtime.known import DEVICE_ACTION, kinematics_of, move_kinds_of
+from mmrs_core.runtime.known import kinematics_of, move_kinds_of
 from mmrs_core.scene import Position
 from mmrs_runtime.faults import DEVICE_SILENT
 from mmrs_runtime.policies import AFTER, Policy, patience

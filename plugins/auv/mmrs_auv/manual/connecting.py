@@ -7,11 +7,11 @@ from mmrs_auv.manual.robot import ManualRobot
 from mmrs_core.contributions.targets import TargetInput
 from mmrs_core.contributions.vehicles import Live, VehicleInput
 from mmrs_core.errors import LinkLostError, UnsupportedError
+from mmrs_core.mavlink.context import context_of
 from mmrs_mavlink.links.link import Link
 from mmrs_mavlink.links.ports import split_system
 from mmrs_mavlink.links.radios import Radios
 from mmrs_mavlink.options import FIRST_PORT, PORT_STEP
-from mmrs_mavlink.plugin.context import context_of
 from mmrs_runtime import faults
 from mmrs_runtime.engine.clocks import FollowingClock
 
@@ -35,7 +35,7 @@ def connect(given: VehicleInput) -> ManualRobot:
     types = {**given.types, given.type.name: given.type}
     wirings = given.device_actions
     input = TargetInput(given.program, types, given.robot_kinds, given.move_kinds, device_actions=wirings)
-    context = context_of(given.robot, input, geographic=False)
+    context = context_of(given.robot, input)
     found = list(refusals(context))
     if found:
         raise UnsupportedError(f"robot '{given.robot.id}': cannot be driven to do all of it by hand", found)

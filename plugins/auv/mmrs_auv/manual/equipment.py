@@ -6,11 +6,11 @@ from mmrs_auv.manual.autopilot import Autopilot
 from mmrs_auv.targets.moves import seconds_of
 from mmrs_core.behaviour.program import Action
 from mmrs_core.contributions.wiring import Wired
-from mmrs_mavlink.plugin.context import RobotContext
+from mmrs_core.mavlink.context import VehicleContext
 from mmrs_runtime import faults
 
 
-def carry_out(action: Action, context: RobotContext, autopilot: Autopilot) -> float:
+def carry_out(action: Action, context: VehicleContext, autopilot: Autopilot) -> float:
     """Have a device do something; return the seconds that it takes from then on.
 
     Raises:

@@ -8,11 +8,11 @@ from math import atan2, degrees
 from mmrs_auv.manual.helm import Goal, Helm
 from mmrs_auv.targets.moves import MOVES, above_surface, seconds_of_hold
 from mmrs_core.behaviour.program import Move
+from mmrs_core.mavlink.context import VehicleContext
 from mmrs_core.transformation.kinds import before_target
-from mmrs_mavlink.plugin.context import RobotContext
 
 
-def refusals(context: RobotContext) -> Iterator[str]:
+def refusals(context: VehicleContext) -> Iterator[str]:
     """Yield what a robot cannot be driven to do by hand, with its moves."""
     if not context.vehicle.dives:
         yield f"robot '{context.robot.id}': is no underwater vehicle"
@@ -23,7 +23,7 @@ def refusals(context: RobotContext) -> Iterator[str]:
             yield f"{context.label(move)}: {why}"
 
 
-def _of_move(move: Move, context: RobotContext) -> Iterator[str]:
+def _of_move(move: Move, context: VehicleContext) -> Iterator[str]:
     known = MOVES.get(move.metaclasses[0])
     if known is None:
         yield f"{move.kind} is not known to this backend"
@@ -39,7 +39,7 @@ def _of_move(move: Move, context: RobotContext) -> Iterator[str]:
             yield f"leads {above_surface(position, context):g} m above the surface"
 
 
-def goal_of(move: Move, helm: Helm, context: RobotContext, depth: float) -> Goal | None:
+def goal_of(move: Move, helm: Helm, context: VehicleContext, depth: float) -> Goal | None:
     """Return what a move leads to; None for one that does nothing.
 
     Args:

@@ -14,14 +14,13 @@ from mmrs_auv.manual.keeping import keeper_of
 from mmrs_auv.manual.route import Route
 from mmrs_auv.manual.troubles import LINK_PATIENCE, Troubles
 from mmrs_auv.manual.ways import Ways
-from mmrs_core.behaviour.program import Action, Move
+from mmrs_core.behaviour.program import DEVICE_ACTION, Action, Move
 from mmrs_core.contributions.execution import Fault, RobotState
 from mmrs_core.contributions.vehicles import Live, VehicleInput
 from mmrs_core.errors import UnreachableError
+from mmrs_core.mavlink.context import VehicleContext
 from mmrs_core.scene import Position
 from mmrs_mavlink.links.link import Link
-from mmrs_mavlink.plugin.actions import DEVICE_ACTION
-from mmrs_mavlink.plugin.context import RobotContext
 from mmrs_runtime import faults
 from mmrs_runtime.controllers.start import PROCESS
 from mmrs_runtime.policies import NOTHING, OVERTAKES, response_to
@@ -45,7 +44,7 @@ class ManualRobot(Vehicle):
     """A vehicle in depth hold, and the thread that moves its sticks."""
 
     def __init__(
-        self, given: VehicleInput, context: RobotContext, link: Link, live: Live, full_speed: float
+        self, given: VehicleInput, context: VehicleContext, link: Link, live: Live, full_speed: float
     ) -> None:
         """Know the robot; nothing is sent before it is to get ready."""
         self._ways = Ways(given, context)

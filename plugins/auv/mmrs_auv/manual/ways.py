@@ -7,11 +7,11 @@ from math import hypot
 
 from mmrs_auv.manual.helm import Goal
 from mmrs_core.contributions.vehicles import VehicleInput
+from mmrs_core.mavlink.context import VehicleContext
 from mmrs_core.runtime.escape import Escapes
 from mmrs_core.runtime.known import kinematics_of
 from mmrs_core.scene import Position
 from mmrs_core.transformation.kinds import before_target
-from mmrs_mavlink.plugin.context import RobotContext
 
 AT_HOME = 2.0
 """Metres from home, as reckoned, that count as at home."""
@@ -24,7 +24,7 @@ class Ways:
         home: of the robot.
     """
 
-    def __init__(self, given: VehicleInput, context: RobotContext) -> None:
+    def __init__(self, given: VehicleInput, context: VehicleContext) -> None:
         """Know the robot.
 
         Raises:

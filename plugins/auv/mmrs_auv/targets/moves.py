@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Literal, TypeAlias
 
+from mmrs_core.behaviour.earth import metres
 from mmrs_core.behaviour.program import BEHAVIOUR, Action, Move
-from mmrs_core.mavlink.earth import metres
+from mmrs_core.mavlink.context import VehicleContext
 from mmrs_core.scene import Name, Position, RobotType
-from mmrs_mavlink.plugin.context import RobotContext
 
 Sort: TypeAlias = Literal["start", "stop", "go", "hold", "turn"]
 
@@ -34,7 +34,7 @@ def writable_speed(speed: float) -> float:
     return min(FASTEST, max(SLOWEST, speed))
 
 
-def above_surface(position: Position, context: RobotContext) -> float:
+def above_surface(position: Position, context: VehicleContext) -> float:
     """Return how far a position is above the surface, metres; one of a robot that stays on it never is."""
     return metres(position[2] - context.frame.surface) if context.vehicle.dives else 0.0
 

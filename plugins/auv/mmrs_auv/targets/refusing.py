@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 from mmrs_auv.targets.moves import DEEPEST, FASTEST, MOVES, SLOWEST, above_surface
 from mmrs_core.behaviour.program import Move, RobotProgram, Target
+from mmrs_core.mavlink.context import VehicleContext
 from mmrs_core.scene import Policy
-from mmrs_mavlink.plugin.context import RobotContext
 
 
 @dataclass(frozen=True, slots=True)
@@ -26,7 +26,7 @@ class Wording:
     policy: str
 
 
-def of_policies(robot: RobotProgram, context: RobotContext, wording: Wording) -> Iterator[str]:
+def of_policies(robot: RobotProgram, context: VehicleContext, wording: Wording) -> Iterator[str]:
     """Yield the policies of a robot and of its type."""
     of_type = context.type.policies if context.type is not None else ()
     for policy in dict.fromkeys((*robot.policies, *of_type)):
@@ -39,7 +39,7 @@ def of_policy(policy: Policy, wording: Wording) -> str:
     return f"policy {policy.event}{after}: {policy.response}, which only {wording.policy} can do"
 
 
-def of_movement(move: Move, context: RobotContext, wording: Wording) -> Iterator[str]:
+def of_movement(move: Move, context: VehicleContext, wording: Wording) -> Iterator[str]:
     """Yield why a movement is refused, whatever is done before and after it."""
     known = MOVES.get(move.metaclasses[0])
     if known is None:
@@ -61,7 +61,7 @@ def _of_speed(speed: float | None) -> Iterator[str]:
         yield f"its speed of {speed:g} m/s is not from {SLOWEST:g} to {FASTEST:g}"
 
 
-def _of_target(target: Target, context: RobotContext, wording: Wording) -> Iterator[str]:
+def _of_target(target: Target, context: VehicleContext, wording: Wording) -> Iterator[str]:
     if target.description is not None:
         yield f"object '{target.description}', {wording.object}"
     if target.position is not None and not context.vehicle.flies:

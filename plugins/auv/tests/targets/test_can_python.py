@@ -168,6 +168,19 @@ def test_robots_of_other_kinds_are_left_out_where_that_is_allowed(tmp_path: Path
     assert "needs 'Kite'" in alone.stderr
 
 
+def test_actions_say_how_long_their_devices_take_for_them(tmp_path: Path) -> None:
+    folder = generated(dive(swim("a", 1.0, 0.0, 1.0, after=(use("ctd", "Sample"),))), tmp_path)
+    seconds = diver().devices["ctd"].actions["Sample"].duration
+    assert seconds > 0.0
+    said = f'Operate("ctd", "Sample", 0, 0.0, {seconds!r})'
+    assert said in (folder / "robot_naiad.py").read_text(encoding="utf-8")
+
+
+def test_a_vehicle_that_meets_others_has_what_it_meets_them_by(tmp_path: Path) -> None:
+    write(render(CAN_PYTHON, given(mixed()), allow_lossy=True), tmp_path)
+    assert "eclipse-zenoh==" in (tmp_path / "requirements.txt").read_text(encoding="utf-8")
+
+
 def test_its_plan_is_that_of_all_other_controllers_of_the_mission(tmp_path: Path) -> None:
     folder = generated(pair(), tmp_path)
     assert repr(pair().fingerprint)[1:-1] in (folder / "robot_Pollux.py").read_text(encoding="utf-8")

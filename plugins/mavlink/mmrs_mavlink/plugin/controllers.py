@@ -2,72 +2,215 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections import Counter
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
+from typing import Any, ClassVar
 
-from mmrs_core.behaviour.program import Program, RobotProgram
-from mmrs_core.contributions.targets import FileSpec, Target, TargetInput, TracedStep
-from mmrs_core.generation.deployment import Deployment, deployment_of
-from mmrs_core.generation.escaping import file_stems
-from mmrs_core.mavlink.earth import at_a_pole, degrees_of
+from mmrs_core.behaviour.earth import degrees_of, metres
+from mmrs_core.behaviour.program import Action, Heading, Move, RobotProgram
+from mmrs_core.behaviour.refuges import Refuges, refuges_of
+from mmrs_core.behaviour.travel import capability_of, manner_of
+from mmrs_core.contributions.targets import TargetInput
+from mmrs_core.contributions.wiring import Sampled, Unwired, Wired
+from mmrs_core.generation.context import require_home
+from mmrs_core.generation.escaping import Call, Constant
+from mmrs_core.generation.python import MOVEMENTS, PythonDriver, go_to, place_of, python_target
+from mmrs_core.generation.python.moves import look_of, number_of, unturnable
+from mmrs_core.generation.python.program import program_of
+from mmrs_core.generation.safety import areas_of, policies_of
+from mmrs_core.mavlink.context import VehicleContext, context_of, neighbours_of, vehicleless
 from mmrs_core.mavlink.vehicles import PX4, autopilot_of
-from mmrs_core.scene import Policy
+from mmrs_core.scene import Name, Point, Policy
+from mmrs_mavlink import program as words
 from mmrs_mavlink.options import FIRST_PORT, PORT_STEP
-from mmrs_mavlink.plugin.actions import action_losses
 from mmrs_mavlink.plugin.capabilities import OF_CONTROLLERS
-from mmrs_mavlink.plugin.context import RobotContext, context_of, homeless, require_home, vehicleless
-from mmrs_mavlink.plugin.fencing import fence_faults
-from mmrs_mavlink.plugin.movements import losses_of
-from mmrs_mavlink.plugin.naming import command_name, with_names
-from mmrs_mavlink.plugin.places import templates_of
-from mmrs_mavlink.plugin.program import deciding, robot_view, seeking, trace_of
-from mmrs_mavlink.plugin.safety import areas_of, policies_of
-from mmrs_runtime.conditions import is_standard
+from mmrs_mavlink.plugin.escapes import Escape, escapes_of, straight_lines_are_clear
+from mmrs_mavlink.plugin.fencing import Fence, fence_faults, fences_of
+from mmrs_mavlink.plugin.headings import NO_TURNING, gimbal_of, on_gimbal, turns_to
+from mmrs_mavlink.plugin.places import MULTICOPTER, templates_of
+from mmrs_mavlink.plugin.runs import Run, runs_of
 
-FINDING_ITS_WAY = frozenset({"RETURN", "EMERGENCY_AREA"})
+TAKE_OFF = (MULTICOPTER, "TakeOff")
 
 
 @dataclass(frozen=True, slots=True)
-class ModuleView:
-    """The module of one robot's controller as the templates see it."""
+class _Protection:
+    """What protects a robot beside its program."""
 
-    name: str
-    robot: str
-    trace: TracedStep
+    fences: tuple[Fence, ...]
+    refuges: Refuges
+    escapes: tuple[Escape, ...]
+
+    @property
+    def vertices(self) -> list[Point]:
+        """Return all points that it consists of, seen from above."""
+        corners = [vertex for fence in self.fences for vertex in fence.ring]
+        ways = [place[:2] for escape in self.escapes for place in escape.places]
+        return [*corners, *self.refuges.points, *ways]
 
 
-def files(input: TargetInput) -> Iterator[FileSpec]:
-    """Yield one controller a robot, the fleet, the conditions where there are any, and what they need.
+def _take_off(move: Move, context: VehicleContext, driver: object) -> Call:
+    return Call("TakeOff", (metres(number_of(move, "altitude")),))
+
+
+def _land(move: Move, context: VehicleContext, driver: object) -> Call:
+    return Call("Land")
+
+
+class MavlinkPython(PythonDriver[VehicleContext]):
+    """How programs in Python drive vehicles that speak MAVLink."""
+
+    name = "mavlink-python"
+    description = "standalone pymavlink controllers, one for each robot and one for the whole fleet"
+    module = "mmrs_mavlink"
+    requires = ("mmrs-mavlink",)
+    templates = templates_of("mavlink-python")
+    movements: ClassVar[Mapping[Name, Any]] = {
+        **MOVEMENTS,
+        TAKE_OFF: _take_off,
+        (MULTICOPTER, "Land"): _land,
+        (MULTICOPTER, "GoTo"): go_to,
+    }
+    capabilities = OF_CONTROLLERS
+
+    def undriven(self, robot: RobotProgram, input: TargetInput) -> str:
+        """Return why no vehicle carries a robot."""
+        return vehicleless(robot, input)
+
+    def context(self, robot: RobotProgram, input: TargetInput) -> VehicleContext:
+        """Return what there is to know of a robot."""
+        return context_of(robot, input)
+
+    def vehicle(self, context: VehicleContext) -> str:
+        """Return ``copter``, ``sub`` or ``rover``."""
+        return context.vehicle.name
+
+    def device(self, action: Action, context: VehicleContext) -> Call | Unwired:
+        """Return a command, or a value that is measured."""
+        wiring = context.wiring(action)
+        if isinstance(wiring, Wired):
+            return _operate(action, wiring)
+        if isinstance(wiring, Sampled):
+            return Call("Measure", (action.device, action.name, wiring.value, wiring.seconds))
+        return wiring
+
+    def look(self, heading: Heading, context: VehicleContext) -> Call | None:
+        """Return how a device or a gimbal is pointed."""
+        if not turns_to(heading, context):
+            return None
+        more: list[tuple[str, object]] = []
+        if on_gimbal(heading, context):
+            more.append(("gimbal", True))
+            if number := gimbal_of(heading, context):
+                more.append(("device", number))
+        return look_of(heading, context, tuple(more))
+
+    def unseen(self, heading: Heading, context: VehicleContext) -> Iterator[str]:
+        """Yield why neither the vehicle nor a gimbal can be turned so."""
+        if not turns_to(heading, context):
+            yield NO_TURNING
+        yield from unturnable(heading, context)
+        if on_gimbal(heading, context):
+            if heading.angle_degrees:
+                yield "a gimbal points straight at its target, not at an angle to it"
+            if context.frame.is_local:
+                yield "a gimbal is pointed at places on the Earth, and the behaviour is local"
+
+    def unsaid(self, move: Move, context: VehicleContext) -> Iterator[str]:
+        """Yield that a vehicle takes off to where it stands."""
+        if move.metaclasses[0] == TAKE_OFF and number_of(move, "altitude") <= 0:
+            yield f"takes off to {number_of(move, 'altitude'):g} m above the ground"
+
+    def unanswerable(self, policy: Policy, context: VehicleContext) -> str:
+        """Return what a vehicle cannot do, or not by itself."""
+        vehicle, response = context.vehicle, policy.response
+        if policy.event == "LINK_LOST" and response not in vehicle.alone:
+            return f"no {vehicle.name} does {response} by itself"
+        return "" if response in vehicle.responses else f"no {vehicle.name} can answer it by {response}"
+
+    def refusals(self, context: VehicleContext, input: TargetInput) -> Iterable[str]:
+        """Return what no geofence can keep."""
+        robot = context.robot
+        return () if context.frame.is_local else fence_faults(robot, areas_of(robot, input))
+
+    def head(self, context: VehicleContext, input: TargetInput) -> Iterator[tuple[str, object]]:
+        """Yield what protects a robot, and how it travels."""
+        robot = context.robot
+        kept, homes = _protection(robot, input), neighbours_of(robot, input)
+        if not context.frame.is_local:
+            context.degrees.find([*kept.vertices, *(home[:2] for _, home in homes)])
+        yield "neighbours", tuple((name, place_of(home, context)) for name, home in homes)
+        yield from _endurance(context)
+        manner = manner_of(robot, input.program.position_error)
+        names = ("acceptance", "radius", "margin")
+        how = tuple((name, getattr(manner, name)) for name in names)
+        yield "travel", Call("Travel", (robot.travel_mode,), how)
+        yield "runs", tuple(_run(run, robot) for run in runs_of(context))
+        yield (
+            "fence",
+            tuple(tuple(_ground(each, context) for each in fence.ring) for fence in kept.fences),
+        )
+        shared = (kept.refuges.shared,) if kept.refuges.shared else ()
+        yield "tight", (*(str(fence) for fence in kept.fences if fence.is_tight), *shared)
+        points = kept.refuges.points
+        yield "rally", tuple(place_of((*point, _highest(context)), context) for point in points)
+        yield "escapes", tuple(_escapes(kept.escapes, context))
+        if _escapes_alone(robot, input) and not straight_lines_are_clear(context, input, points):
+            yield "straight", False
+
+    def readme(self, input: TargetInput) -> Mapping[str, object]:
+        """Return how its controllers are tried with simulated vehicles."""
+        return {"local": input.program.frame.is_local, "rehearsal": tuple(_rehearsal(self, input))}
+
+
+DRIVER = MavlinkPython()
+MAVLINK_PYTHON = python_target(DRIVER)
+
+
+def robot_of(robot: RobotProgram, input: TargetInput) -> words.Robot:
+    """Return the program that a controller of that robot would carry out.
 
     Raises:
-        UnsupportedError: a robot has no home.
+        UnsupportedError: degrees are needed, and the behaviour has none.
     """
-    robots = input.program.robots
-    for robot in robots:
-        require_home(robot)
-    stems = file_stems([robot.id for robot in robots], hyphens=False)
-    modules = [f"robot_{stems[robot.id]}" for robot in robots]
-    for robot, module in zip(robots, modules, strict=True):
-        view = {"robot": with_names(robot_view(robot, input), command_name)}
-        yield FileSpec(f"{module}.py", "robot.py.jinja", view, trace=trace_of(robot))
-    needs = deployment_of(*carried(len(robots)))
-    yield from fleet_files(input.program, modules, needs, tuple(_rehearsal(input)))
+    made: words.Robot = program_of(robot, input, DRIVER, words)
+    return made
 
 
-def carried(robots: int) -> tuple[str, ...]:
-    """Return the distributions that controllers of so many robots carry: one alone meets nobody on a bus."""
-    bus, driver = ("mmrs-runtime[bus]" if robots > 1 else "mmrs-runtime"), "mmrs-mavlink"
-    return bus, driver
+def command_name(number: int) -> str:
+    """Return the name of a MAVLink command, such as ``MAV_CMD_DO_SET_SERVO``; empty where it has none."""
+    from pymavlink.dialects.v20 import ardupilotmega as mavlink
+
+    commands: Mapping[int, Any] = mavlink.enums["MAV_CMD"]
+    return "" if number == mavlink.MAV_CMD_ENUM_END or number not in commands else str(commands[number].name)
 
 
-def _rehearsal(input: TargetInput) -> Iterator[str]:
+def _named(number: int) -> object:
+    name = command_name(number)
+    return Constant(name, number) if name else number
+
+
+def _operate(action: Action, wiring: Wired) -> Call:
+    named: list[tuple[str, object]] = []
+    if wiring.more:
+        more = tuple((_named(number), tuple(map(float, params))) for number, params in wiring.more)
+        named.append(("more", more))
+    if wiring.confirmed:
+        named.append(("confirmed", True))
+    given = (_named(wiring.command), tuple(map(float, wiring.params)), wiring.seconds)
+    return Call("Operate", (action.device, action.name, *given), tuple(named))
+
+
+def _rehearsal(driver: MavlinkPython, input: TargetInput) -> Iterator[str]:
     """Yield the arguments of a simulated vehicle for each robot: where its controller expects one.
 
     A local behaviour has no place on the Earth, and its robots count from wherever their vehicles are.
     """
     frame = input.program.frame
-    for number, robot in enumerate(input.program.robots):
-        context = context_of(robot, input, geographic=False)
+    driven = [robot for robot in input.program.robots if not driver.undriven(robot, input)]
+    for number, robot in enumerate(driven):
+        context = context_of(robot, input)
         given = (
             f"--port {FIRST_PORT + PORT_STEP * number} --system {number + 1} --kind {context.vehicle.name}"
         )
@@ -79,86 +222,49 @@ def _rehearsal(input: TargetInput) -> Iterator[str]:
         yield given
 
 
-def fleet_files(
-    program: Program, modules: Sequence[str], needs: Deployment, rehearsal: Sequence[str] = ()
-) -> Iterator[FileSpec]:
-    """Yield what controllers of a mission share: fleet, README, needs, and what people are asked for.
-
-    Args:
-        program: of the mission.
-        modules: names of the controllers, in the order of its robots.
-        needs: what has to be installed where they run.
-        rehearsal: arguments of the simulated vehicle of each robot.
-    """
-    conditions, objects = deciding(program), seeking(program)
-    common = {
-        "mission": program.name,
-        "modules": [
-            ModuleView(module, robot.id, TracedStep("controller", robot.id, ""))
-            for module, robot in zip(modules, program.robots, strict=True)
-        ],
-        "conditions": conditions,
-        "standard_conditions": [name for name in conditions if is_standard(name)],
-        "own_conditions": [name for name in conditions if not is_standard(name)],
-        "objects": objects,
-        "rehearsal": rehearsal,
-        "local": program.frame.is_local,
-        "libraries": needs.libraries,
-        "bus": "eclipse-zenoh" in needs.libraries,
-    }
-    yield FileSpec("fleet.py", "fleet.py.jinja", common)
-    yield FileSpec("README.md", "README.md.jinja", common)
-    if conditions:
-        asks = tuple(f"when '{name}' holds" for name in conditions if not is_standard(name))
-        yield FileSpec("conditions.py", "conditions.py.jinja", common, once=True, asks=asks)
-    if objects:
-        asks = tuple(f"how '{name}' is found" for name in objects)
-        yield FileSpec("objects.py", "objects.py.jinja", common, once=True, asks=asks)
-    yield from needs.files(program.name, modules)
+def _protection(robot: RobotProgram, input: TargetInput) -> _Protection:
+    if input.program.frame.is_local:
+        return _Protection((), Refuges(), ())
+    refuges = refuges_of(robot, input.program, input.types, input.areas)
+    escapes = escapes_of(robot, input, refuges.points)
+    return _Protection(fences_of(robot, input, escapes), refuges, escapes)
 
 
-def refusals(input: TargetInput) -> Iterator[str]:
-    """Yield what no controller can do."""
-    yield from at_a_pole(input.program.frame)
-    for robot in input.program.robots:
-        if unknown := vehicleless(robot, input):
-            yield unknown
-            continue
-        yield from _refused(robot, input)
+def _escapes(escapes: Iterable[Escape], context: VehicleContext) -> Iterator[tuple[str, object]]:
+    """Yield the way from the end of each move; one that several share has a name."""
+    ways = [(each.move, tuple(place_of(place, context) for place in each.places)) for each in escapes]
+    uses = Counter(way for _, way in ways)
+    shared = [way for way, count in uses.items() if count > 1]
+    names = {way: Constant(f"ESCAPE_{number}", way) for number, way in enumerate(shared, start=1)}
+    yield from ((move, names.get(way, way)) for move, way in ways)
 
 
-def _refused(robot: RobotProgram, input: TargetInput) -> Iterator[str]:
-    if robot.home is None:
-        yield homeless(robot)
-    if not input.program.frame.is_local:
-        yield from fence_faults(robot, areas_of(robot, input))
-    context = context_of(robot, input, geographic=False)
-    for policy in policies_of(robot, input):
-        yield from _impossible(policy, f"robot '{robot.id}'", context)
-    for index, move in enumerate(robot.moves):
-        yield from losses_of(move, context)
-        yield from action_losses(move, context)
-        transition = robot.transitions.get(index)
-        for policy in transition.policies if transition is not None else ():
-            yield from _impossible(policy, context.label(move), context)
+def _escapes_alone(robot: RobotProgram, input: TargetInput) -> bool:
+    """Return whether the vehicle is to reach an emergency area by itself, anywhere."""
+    everywhere = policies_of(robot, input)
+    somewhere = (policy for each in robot.transitions.values() for policy in each.policies)
+    return ("LINK_LOST", "EMERGENCY_AREA") in ((p.event, p.response) for p in (*everywhere, *somewhere))
 
 
-def _impossible(policy: Policy, where: str, context: RobotContext) -> Iterator[str]:
-    """Yield what a vehicle is to do when something goes wrong, and cannot do, or not by itself."""
-    vehicle, event, response = context.vehicle, policy.event, policy.response
-    if event == "LINK_LOST" and response not in vehicle.alone:
-        yield f"{where}: policy {event}: no {vehicle.name} does {response} by itself"
-    elif response not in vehicle.responses:
-        yield f"{where}: policy {event}: no {vehicle.name} can answer it by {response}"
-    elif event == "POSITION_LOST" and response in FINDING_ITS_WAY:
-        yield f"{where}: policy {event}: without its position, nobody can answer it by {response}"
+def _endurance(context: VehicleContext) -> Iterator[tuple[str, object]]:
+    """Yield what the robot's type says of how long it lasts, and how fast it goes and comes down."""
+    if context.type is None or (capability := capability_of(context.robot, context.type)) is None:
+        return
+    if capability.lifetime is not None:
+        yield "endurance", capability.lifetime
+    yield "fastest", metres(capability.speed[1])
+    if context.vehicle.flies and capability.descent_rate is not None:
+        yield "descent", capability.descent_rate
 
 
-MAVLINK_PYTHON = Target(
-    name="mavlink-python",
-    description="standalone pymavlink controllers, one for each robot and one for the whole fleet",
-    templates=templates_of("mavlink-python"),
-    files=files,
-    refusals=refusals,
-    capabilities=OF_CONTROLLERS,
-)
+def _run(run: Run, robot: RobotProgram) -> Call:
+    return Call("Run", (tuple(robot.moves[move].id for move in run.moves), run.holds))
+
+
+def _ground(vertex: Point, context: VehicleContext) -> Call:
+    return place_of((*vertex, context.zero), context)
+
+
+def _highest(context: VehicleContext) -> float:
+    ups = [move.target.position[2] for move in context.robot.moves if move.target and move.target.position]
+    return max(ups, default=context.zero)

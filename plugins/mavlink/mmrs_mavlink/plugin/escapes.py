@@ -11,15 +11,15 @@ import numpy as np
 from shapely import Polygon, intersects, linestrings, prepare, unary_union
 
 from mmrs_core.behaviour.program import BEHAVIOUR, Move, RobotProgram
+from mmrs_core.behaviour.travel import capability_of
 from mmrs_core.contributions.targets import TargetInput
 from mmrs_core.errors import UnreachableError
-from mmrs_core.mavlink.vehicles import capability_of
+from mmrs_core.generation.safety import areas_of, clearance_of
+from mmrs_core.mavlink.context import VehicleContext, context_of
 from mmrs_core.planning.layers import Rates
 from mmrs_core.planning.paths import Space
 from mmrs_core.scene import AreaUse, Point, Position
-from mmrs_mavlink.plugin.context import RobotContext, context_of
-from mmrs_mavlink.plugin.movements import MULTICOPTER
-from mmrs_mavlink.plugin.safety import areas_of, clearance_of
+from mmrs_mavlink.plugin.places import MULTICOPTER
 
 AT_HOME = ((BEHAVIOUR, "Start"), (BEHAVIOUR, "Recharge"))
 """Moves after which a robot is at home."""
@@ -66,7 +66,7 @@ def escapes_of(robot: RobotProgram, input: TargetInput, points: Sequence[Point])
     Ways keep what the robot must keep from all areas, and stay between the lowest and the highest place
     that its moves lead to. Whoever comes down there does so in a clear column.
     """
-    context = context_of(robot, input, geographic=False)
+    context = context_of(robot, input)
     ends = [
         (move.id, end)
         for index, move in enumerate(robot.moves)
@@ -100,7 +100,7 @@ def _quickest(space: Space, begin: Position, points: Sequence[Point]) -> tuple[P
     return quickest[:-1] if comes_down else quickest
 
 
-def _rates(context: RobotContext) -> Rates:
+def _rates(context: VehicleContext) -> Rates:
     """Return how fast a robot travels, as far as its type says so."""
     capability = capability_of(context.robot, context.type) if context.type is not None else None
     if capability is None:
@@ -110,7 +110,7 @@ def _rates(context: RobotContext) -> Rates:
     return Rates(cruise, capability.climb_rate or upright, capability.descent_rate or upright, ACCELERATION)
 
 
-def _end_of(index: int, move: Move, context: RobotContext) -> Position | None:
+def _end_of(index: int, move: Move, context: VehicleContext) -> Position | None:
     """Return where a move ends, metres; None where it does not say."""
     if move.target is not None:
         return move.target.position
@@ -122,13 +122,13 @@ def _end_of(index: int, move: Move, context: RobotContext) -> Position | None:
     return (home[0], home[1], home[2] + altitude)
 
 
-def _leaves_home(index: int, context: RobotContext) -> bool:
+def _leaves_home(index: int, context: VehicleContext) -> bool:
     robot = context.robot
     before = [robot.moves[source] for source, each in robot.transitions.items() if index in each.ways]
     return bool(before) and all(kind in AT_HOME for move in before for kind in move.metaclasses[:1])
 
 
-def straight_lines_are_clear(context: RobotContext, input: TargetInput, points: Sequence[Point]) -> bool:
+def straight_lines_are_clear(context: VehicleContext, input: TargetInput, points: Sequence[Point]) -> bool:
     """Return whether a vehicle may fly straight to the nearest point from anywhere on its way.
 
     That is what it does by itself: it knows no areas and, on its way up and down, no heights; so all
@@ -154,7 +154,7 @@ def straight_lines_are_clear(context: RobotContext, input: TargetInput, points: 
     return not bool(np.any(intersects(blocked, lines)))
 
 
-def _legs(context: RobotContext) -> Iterator[tuple[Point, Point]]:
+def _legs(context: VehicleContext) -> Iterator[tuple[Point, Point]]:
     """Yield where each move may begin, and where it then ends."""
     robot = context.robot
     if robot.home is None:

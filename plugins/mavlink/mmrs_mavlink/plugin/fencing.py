@@ -32,10 +32,10 @@ from shapely.geometry.base import BaseGeometry
 from mmrs_core.behaviour.program import RobotProgram
 from mmrs_core.behaviour.walk import Graph, successors
 from mmrs_core.contributions.targets import TargetInput
+from mmrs_core.generation.safety import areas_of, clearance_of
 from mmrs_core.scene import Area, AreaUse, Ring
 from mmrs_core.scene import Point as Vertex
 from mmrs_mavlink.plugin.escapes import Escape
-from mmrs_mavlink.plugin.safety import areas_of, clearance_of
 
 STRAY = 0.5
 """Metres that a vehicle may stray from its legs at least; more where the mission's position error is more.

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from math import acos, degrees, hypot
 
 from mmrs_core.behaviour.program import BEHAVIOUR, Move, RobotProgram, Transition
+from mmrs_core.mavlink.context import VehicleContext
 from mmrs_core.scene import Position
-from mmrs_mavlink.plugin.context import RobotContext
 
 SHORTEST = 3
 """Runs of fewer moves are stepped: uploading them gains nothing."""
@@ -30,7 +30,7 @@ class Run:
     holds: tuple[float, ...]
 
 
-def runs_of(context: RobotContext) -> tuple[Run, ...]:
+def runs_of(context: VehicleContext) -> tuple[Run, ...]:
     """Return the robot's runs, in the order of their first moves; none for a local behaviour.
 
     A run is a longest chain of at least three straight GoTo moves with fluid, unconditional

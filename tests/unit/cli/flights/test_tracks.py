@@ -7,8 +7,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from mmrs_core.behaviour.earth import degrees_of
 from mmrs_core.cli.flights.fixes import Fixes, Zero, zero_of
-from mmrs_core.mavlink.earth import degrees_of
 from mmrs_core.scene import Frame
 from mmrs_core.testing.programs import L_AQUILA, program, quad, robot_program, take_off
 from mmrs_core.transformation.kinds import PLAIN_ROBOT

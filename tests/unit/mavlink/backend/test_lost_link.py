@@ -6,7 +6,7 @@ from dataclasses import replace
 
 from mmrs_core.testing.programs import LAND, program, robot_program, take_off, target_input
 from mmrs_mavlink.driving.lost_link import LostLink
-from mmrs_mavlink.plugin.built import robot_of
+from mmrs_mavlink.plugin.controllers import robot_of
 from mmrs_mavlink.program import Policy
 from mmrs_mavlink.steps.responses import BLOCKED
 from mmrs_mavlink.vehicles.dry import DryVehicle

@@ -19,7 +19,7 @@ from mmrs_core.testing.programs import (
 )
 from mmrs_mavlink.driving.moves import Moves
 from mmrs_mavlink.driving.way_back import WayBack, sortie_of
-from mmrs_mavlink.plugin.built import robot_of
+from mmrs_mavlink.plugin.controllers import robot_of
 from mmrs_mavlink.program import Policy
 from mmrs_mavlink.vehicles.dry import DryVehicle
 from mmrs_runtime.clock import Clock

@@ -12,7 +12,7 @@ from hub import Hub
 
 from mmrs_core.testing.programs import program, quad, robot_program, target_input
 from mmrs_core.testing.small_programs import hold, notify
-from mmrs_mavlink.plugin.built import robot_of
+from mmrs_mavlink.plugin.controllers import robot_of
 from mmrs_runtime.bus import CommandId, Node
 from mmrs_runtime.bus.gateway.server import Gateway
 from mmrs_runtime.bus.owner import Owner

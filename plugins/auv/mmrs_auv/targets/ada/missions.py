@@ -14,13 +14,23 @@ from mmrs_auv.names import IN_WATER_SIZE
 from mmrs_auv.sayable import mount_of, parameter_of
 from mmrs_auv.sheets import action_number
 from mmrs_auv.targets.ada import policies as answers
-from mmrs_auv.targets.ada.refusals import DEVICE_ACTION, NOTIFY, SORTS, of_action, of_movement
+from mmrs_auv.targets.ada.refusals import SORTS, of_action, of_movement
 from mmrs_auv.targets.moves import seconds_of
-from mmrs_core.behaviour.program import Action, Move, Program, RobotProgram, SlotId, Target, Transition
+from mmrs_core.behaviour.program import (
+    DEVICE_ACTION,
+    NOTIFY,
+    Action,
+    Move,
+    Program,
+    RobotProgram,
+    SlotId,
+    Target,
+    Transition,
+)
+from mmrs_core.behaviour.travel import capability_of, cruise_of
 from mmrs_core.contributions.targets import TracedStep
-from mmrs_core.mavlink.vehicles import TRAVEL_FACTORS, capability_of
+from mmrs_core.mavlink.context import VehicleContext
 from mmrs_core.scene import Part, Policy, Position
-from mmrs_mavlink.plugin.context import RobotContext
 from mmrs_runtime.conditions import BATTERY, DETECTED, FOUND, is_standard
 from mmrs_runtime.faults import DEVICE_SILENT
 from mmrs_runtime.policies import AFTER, patience
@@ -40,7 +50,7 @@ class Mission:
     """A robot's behaviour as its decision centre holds it."""
 
     def __init__(
-        self, context: RobotContext, program: Program, policies: Sequence[Policy], step: float
+        self, context: VehicleContext, program: Program, policies: Sequence[Policy], step: float
     ) -> None:
         """Hold it.
 
@@ -151,11 +161,7 @@ class Mission:
 
     def _cruise(self) -> float:
         """Return metres per second at which the vehicle goes back; 0: as it likes."""
-        if self._speeds is None:
-            return 0.0
-        slowest, fastest = self._speeds
-        factor = TRAVEL_FACTORS.get(self._context.robot.travel_mode, 0.75)
-        return _sayable(max(slowest, factor * fastest))
+        return _sayable(cruise_of(self._context.robot, self._context.type) or 0.0)
 
     @property
     def _speeds(self) -> tuple[float, float] | None:

@@ -10,8 +10,8 @@ from auv_vessel.decision.helm import COMES_UP, NEVER_BORNE
 from mmrs_auv.kinds import AUV_KIND
 from mmrs_core.behaviour.program import RobotProgram
 from mmrs_core.contributions.targets import TargetInput
+from mmrs_core.generation.safety import policies_of
 from mmrs_core.scene import Policy, PolicyResponse
-from mmrs_mavlink.plugin.safety import policies_of
 from mmrs_runtime.engine.answers import Answers
 from mmrs_runtime.faults import (
     BATTERY_LOW,

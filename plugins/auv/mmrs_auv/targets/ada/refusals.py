@@ -10,12 +10,10 @@ from mmrs_auv.sheets import action_number
 from mmrs_auv.targets.ada.bus import can_be_said, depth_step_of
 from mmrs_auv.targets.ada.policies import declared, obstacles_to
 from mmrs_auv.targets.moves import MOVES, above_surface
-from mmrs_core.behaviour.program import BEHAVIOUR, Action, Move, RobotProgram
+from mmrs_core.behaviour.program import BEHAVIOUR, DEVICE_ACTION, FEEDBACK, NOTIFY, Action, Move, RobotProgram
 from mmrs_core.contributions.targets import TargetInput
+from mmrs_core.mavlink.context import VehicleContext, context_of, vehicleless
 from mmrs_core.scene import Name, Policy
-from mmrs_mavlink.plugin.context import RobotContext, context_of, vehicleless
-
-DEVICE_ACTION, FEEDBACK, NOTIFY = ((BEHAVIOUR, name) for name in ("DeviceAction", "Feedback", "Notify"))
 
 SORTS: Mapping[Name, str] = {**MOVES, (BEHAVIOUR, "Recharge"): "charge"}
 """Sorts of moves by their own metaclass."""
@@ -30,7 +28,7 @@ def refusals(input: TargetInput) -> Iterator[str]:
         if unknown := vehicleless(robot, input):
             yield f"{unknown}: --allow-lossy leaves it out beside others"
             continue
-        context = context_of(robot, input, geographic=False)
+        context = context_of(robot, input)
         if not context.vehicle.dives:
             yield f"robot '{robot.id}': is no underwater vehicle: --allow-lossy leaves it out beside others"
             continue
@@ -49,10 +47,10 @@ def refusals(input: TargetInput) -> Iterator[str]:
 
 def is_diver(robot: RobotProgram, input: TargetInput) -> bool:
     """Return whether a robot is an underwater vehicle."""
-    return not vehicleless(robot, input) and context_of(robot, input, geographic=False).vehicle.dives
+    return not vehicleless(robot, input) and context_of(robot, input).vehicle.dives
 
 
-def of_movement(move: Move, context: RobotContext, step: float = 0.0) -> Iterator[str]:
+def of_movement(move: Move, context: VehicleContext, step: float = 0.0) -> Iterator[str]:
     """Yield why a movement cannot be made at all.
 
     Args:
@@ -98,7 +96,7 @@ def _numbers(move: Move) -> Iterator[tuple[str, float]]:
         yield "tolerance", move.target.tolerance or 0.0
 
 
-def of_action(action: Action, context: RobotContext) -> Iterator[str]:
+def of_action(action: Action, context: VehicleContext) -> Iterator[str]:
     """Yield why an action cannot be done."""
     if action.is_a(NOTIFY) or action.is_a(FEEDBACK):
         return
@@ -115,7 +113,7 @@ def of_action(action: Action, context: RobotContext) -> Iterator[str]:
             yield f"{field.lower()} {told:g} of device '{action.device}' is more than its bus can say"
 
 
-def _of_move(move: Move, context: RobotContext, step: float) -> Iterator[str]:
+def _of_move(move: Move, context: VehicleContext, step: float) -> Iterator[str]:
     yield from of_movement(move, context, step)
     sort = SORTS.get(move.metaclasses[0])
     if sort == "go" and move.target is not None and move.target.position is not None:

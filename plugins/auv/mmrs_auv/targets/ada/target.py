@@ -17,7 +17,7 @@ from mmrs_auv.targets.places import templates_of
 from mmrs_core.contributions.targets import FileSpec, Target, TargetInput
 from mmrs_core.errors import UnsupportedError
 from mmrs_core.generation.escaping import file_stems
-from mmrs_mavlink.plugin.context import context_of
+from mmrs_core.mavlink.context import context_of
 
 TEMPLATES = templates_of("ada")
 NO_VEHICLE = "no robot is an underwater vehicle"
@@ -41,7 +41,7 @@ def files(input: TargetInput) -> Iterator[FileSpec]:
     stems = file_stems([robot.id for robot in robots])
     yield FileSpec("README.md", "README.md.jinja", {"robots": list(stems.items()), "tables": tables.view()})
     for robot in robots:
-        context = context_of(robot, input, geographic=False)
+        context = context_of(robot, input)
         mission = Mission(context, input.program, declared(robot, input), depth_step_of(robot, input))
         folder = f"robot-{stems[robot.id]}"
         for name in OWN:

@@ -24,7 +24,7 @@ from mmrs_core.behaviour.program import BEHAVIOUR, RobotProgram
 from mmrs_core.contributions.targets import FileSpec, Target, TargetInput, TracedStep
 from mmrs_core.errors import UnsupportedError
 from mmrs_core.generation.escaping import file_stems
-from mmrs_mavlink.plugin.context import vehicleless
+from mmrs_core.mavlink.context import vehicleless
 
 SHARED = "drives"
 """Folder of what the drives of all vehicles share."""

@@ -5,10 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from mmrs_auv.targets.capabilities import OF_VEHICLES
-from mmrs_mavlink.plugin.capabilities import OF_THE_RUNTIME
 
 CAPABILITIES: Mapping[str, str] = {
-    **OF_THE_RUNTIME,
     **OF_VEHICLES,
     "Robot.home": "the vehicle's zero",
     "Robot.payload": "the vehicle's mass; speed, by the capability for it",

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from math import ceil, dist, radians
 
@@ -25,13 +25,12 @@ from mmrs_auv.targets.moves import (
     seconds_of_hold,
     writable_speed,
 )
-from mmrs_core.behaviour.program import Action, Move
+from mmrs_core.behaviour.earth import metres
+from mmrs_core.behaviour.program import DEVICE_ACTION, Action, Move
 from mmrs_core.generation.escaping import file_stems
-from mmrs_core.mavlink.earth import metres
+from mmrs_core.mavlink.context import VehicleContext
 from mmrs_core.scene import Position
 from mmrs_core.transformation.kinds import before_target
-from mmrs_mavlink.plugin.actions import DEVICE_ACTION
-from mmrs_mavlink.plugin.context import RobotContext
 
 LONGEST_TEXT = 200
 """Letters of a description at most."""
@@ -67,14 +66,14 @@ class Plan:
     faults: tuple[tuple[Move, str], ...]
 
 
-def plan_of(context: RobotContext, name: str, stem: str) -> Plan:
+def plan_of(context: VehicleContext, name: str, stem: str) -> Plan:
     """Return the plan of a robot.
 
     What plans cannot express is left out, but never so that a vehicle goes on where it should wait: a
     wait becomes a hold without end, and the plan ends at a choice.
 
     Args:
-        context: of the robot, with degrees.
+        context: of the robot.
         name: of the behaviour, for people.
         stem: of the robot's file, which identifies the plan.
     """
@@ -103,7 +102,7 @@ def plan_of(context: RobotContext, name: str, stem: str) -> Plan:
 class _Walk:
     """Goes through a robot's moves from its start to where they end, or come round again."""
 
-    def __init__(self, context: RobotContext) -> None:
+    def __init__(self, context: VehicleContext) -> None:
         self.maneuvers: list[Maneuver] = []
         self.faults: list[tuple[Move, str]] = []
         self._context = context
@@ -183,11 +182,16 @@ class _Walk:
             self._pending.append(made)
 
     def _add(self, id: str, move: Move, name: str, values: Mapping[str, Value]) -> None:
-        latitude, longitude = self._context.degrees.get(self._here[:2], (0.0, 0.0))
+        latitude, longitude = self._degrees()
         place = {"lat": radians(latitude), "lon": radians(longitude), "z": self._depth(), "z_units": DEPTH}
         whole = {**place, "speed_units": METRES_PER_SECOND, "custom": "", **values}
         self.maneuvers.append(Maneuver(id, move, Message(name, whole), self._pending))
         self._pending = []
+
+    def _degrees(self) -> tuple[float, float]:
+        """Return where the robot is; 0 where there are no degrees, which is refused."""
+        context = self._context
+        return (0.0, 0.0) if context.frame.is_local else context.degrees.at(self._here[:2])
 
     def _depth(self) -> float:
         return metres(min(DEEPEST, max(0.0, -above_surface(self._here, self._context))))
@@ -196,23 +200,6 @@ class _Walk:
         type = self._context.type
         known = [each.speed for each in type.capabilities] if type is not None else []
         return max(known[0][0], known[0][1] / 2.0) if known else 0.5
-
-
-def places_of(context: RobotContext) -> Iterator[tuple[float, float]]:
-    """Yield where manoeuvres of a robot are, (east, north): places short of targets among them."""
-    here: Position = context.robot.home or (0.0, 0.0, 0.0)
-    yield here[:2]
-    index, seen = context.robot.start, set[int]()
-    while index not in seen:
-        seen.add(index)
-        move = context.robot.moves[index]
-        if MOVES.get(move.metaclasses[0]) == "go" and move.target and move.target.position:
-            here = before_target(here, move.target.position, move.distance)
-            yield here[:2]
-        transition = context.robot.transitions.get(index)
-        if transition is None or transition.condition is not None:
-            return
-        index = transition.to
 
 
 def _plan_maneuver(each: Maneuver, id: str) -> Message:

@@ -8,10 +8,11 @@ from mmrs_auv.targets.imc.plans import LONGEST, plan_of
 from mmrs_auv.targets.imc.wiring import set_by
 from mmrs_auv.targets.moves import seconds_of_hold
 from mmrs_auv.targets.refusing import Wording, of_movement, of_policies, of_policy
-from mmrs_core.behaviour.program import Action, Move, RobotProgram, Transition
+from mmrs_core.behaviour.earth import LOCAL
+from mmrs_core.behaviour.program import DEVICE_ACTION, Action, Move, RobotProgram, Transition
 from mmrs_core.contributions.targets import TargetInput
-from mmrs_mavlink.plugin.actions import DEVICE_ACTION
-from mmrs_mavlink.plugin.context import RobotContext, context_of, homeless, vehicleless
+from mmrs_core.generation.context import homeless
+from mmrs_core.mavlink.context import VehicleContext, context_of, vehicleless
 
 WORDING = Wording(
     turn="which no manoeuvre of IMC does",
@@ -24,7 +25,7 @@ WORDING = Wording(
 def refusals(input: TargetInput) -> Iterator[str]:
     """Yield each thing that plans cannot express, with robot and move."""
     if input.program.frame.is_local:
-        yield "behaviour: is local, its origin has no latitude and longitude"
+        yield LOCAL
     for robot in input.program.robots:
         yield from _of_robot(robot, input)
 
@@ -35,7 +36,7 @@ def _of_robot(robot: RobotProgram, input: TargetInput) -> Iterator[str]:
     if unknown := vehicleless(robot, input):
         yield unknown
         return
-    context = context_of(robot, input, geographic=False)
+    context = context_of(robot, input)
     if context.vehicle.flies:
         yield f"robot '{robot.id}': flies, and heights of these plans count down from the water surface"
     else:
@@ -52,7 +53,7 @@ def _of_robot(robot: RobotProgram, input: TargetInput) -> Iterator[str]:
             yield f"{context.label(move)}: {why}"
 
 
-def _of_move(move: Move, context: RobotContext) -> Iterator[str]:
+def _of_move(move: Move, context: VehicleContext) -> Iterator[str]:
     yield from of_movement(move, context, WORDING)
     if seconds_of_hold(move) > LONGEST:
         yield f"holds for {seconds_of_hold(move):g} s, of {LONGEST:,} at most"
@@ -60,7 +61,7 @@ def _of_move(move: Move, context: RobotContext) -> Iterator[str]:
         yield from _of_action(action, context)
 
 
-def _of_action(action: Action, context: RobotContext) -> Iterator[str]:
+def _of_action(action: Action, context: VehicleContext) -> Iterator[str]:
     if not action.is_a(DEVICE_ACTION):
         yield f"action {action.metaclasses[0][1]} has no form in a plan"
         return

@@ -13,13 +13,15 @@ from collections.abc import Iterator
 from mmrs_auv.targets.imc.capabilities import CAPABILITIES
 from mmrs_auv.targets.imc.messages import REQUEST, SET, Message, Value
 from mmrs_auv.targets.imc.packing import packet
-from mmrs_auv.targets.imc.plans import Plan, places_of, plan_of
+from mmrs_auv.targets.imc.plans import Plan, plan_of
 from mmrs_auv.targets.imc.refusals import refusals
 from mmrs_auv.targets.places import templates_of
+from mmrs_core.behaviour.earth import LOCAL
 from mmrs_core.contributions.targets import FileSpec, Target, TargetInput, TracedStep
 from mmrs_core.errors import UnsupportedError
+from mmrs_core.generation.context import require_home
 from mmrs_core.generation.escaping import file_stems
-from mmrs_mavlink.plugin.context import RobotContext, context_of, require_home
+from mmrs_core.mavlink.context import VehicleContext, context_of
 
 
 def files(input: TargetInput) -> Iterator[FileSpec]:
@@ -28,13 +30,14 @@ def files(input: TargetInput) -> Iterator[FileSpec]:
     Raises:
         UnsupportedError: the behaviour is local, a robot has no home or flies, or a plan is too long.
     """
+    if input.program.frame.is_local:
+        raise UnsupportedError(LOCAL)
     stems = file_stems([robot.id for robot in input.program.robots])
     for robot in input.program.robots:
         require_home(robot)
-        bare = context_of(robot, input, geographic=False)
-        if bare.vehicle.flies:
+        context = context_of(robot, input)
+        if context.vehicle.flies:
             raise UnsupportedError(f"robot '{robot.id}': flies")
-        context = context_of(robot, input, tuple(places_of(bare)), geographic=True)
         stem = stems[robot.id]
         plan = plan_of(context, input.program.name, stem)
         if not plan.maneuvers:
@@ -45,7 +48,7 @@ def files(input: TargetInput) -> Iterator[FileSpec]:
         yield FileSpec(f"{stem}.json", "plan.json.jinja", {"plan": _shown(plan.message)})
 
 
-def _steps(context: RobotContext, plan: Plan) -> Iterator[TracedStep]:
+def _steps(context: VehicleContext, plan: Plan) -> Iterator[TracedStep]:
     for each in plan.maneuvers:
         move = each.move
         yield TracedStep(f"manoeuvre {each.id}", context.robot.id, move.id, move.task, move.rule)

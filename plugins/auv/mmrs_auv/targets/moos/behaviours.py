@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 from mmrs_auv.targets.moos.steps import TOLERANCE, Step
 from mmrs_auv.targets.moos.words import DEPLOY, DONE, STEP, text
-from mmrs_core.mavlink.vehicles import MANNERS
-from mmrs_mavlink.plugin.context import RobotContext
+from mmrs_core.behaviour.travel import MANNERS
+from mmrs_core.mavlink.context import VehicleContext
 
 WEIGHT = 100
 SLIP = 4.0
@@ -23,7 +23,7 @@ class Behaviour:
     parameters: tuple[tuple[str, str], ...]
 
 
-def behaviours_of(step: Step, context: RobotContext) -> Iterator[Behaviour]:
+def behaviours_of(step: Step, context: VehicleContext) -> Iterator[Behaviour]:
     """Yield what a helm does in a step, all of it at once.
 
     A way ends at its place as seen from above; then the helm holds until the depth is right, too.
@@ -69,7 +69,7 @@ def behaviours_of(step: Step, context: RobotContext) -> Iterator[Behaviour]:
     yield from _ends(step, name, turn, context)
 
 
-def _ends(step: Step, name: str, turn: list[tuple[str, str]], context: RobotContext) -> Iterator[Behaviour]:
+def _ends(step: Step, name: str, turn: list[tuple[str, str]], context: VehicleContext) -> Iterator[Behaviour]:
     """Yield what ends a step: a timer for each way on, which runs while its conditions are met."""
     met = [("condition", f"{variable} = {value}") for variable, value in step.waits]
     if step.speed is not None and context.vehicle.dives:
@@ -96,7 +96,9 @@ def _ends(step: Step, name: str, turn: list[tuple[str, str]], context: RobotCont
         )
 
 
-def _depth(step: Step, name: str, turn: list[tuple[str, str]], context: RobotContext) -> Iterator[Behaviour]:
+def _depth(
+    step: Step, name: str, turn: list[tuple[str, str]], context: VehicleContext
+) -> Iterator[Behaviour]:
     if not context.vehicle.dives:
         return
     yield Behaviour(
@@ -111,6 +113,6 @@ def _depth(step: Step, name: str, turn: list[tuple[str, str]], context: RobotCon
     )
 
 
-def _slow(context: RobotContext) -> float:
+def _slow(context: VehicleContext) -> float:
     type = context.type
     return type.capabilities[0].speed[1] / 2.0 if type is not None and type.capabilities else TOLERANCE

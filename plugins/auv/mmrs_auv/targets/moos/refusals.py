@@ -8,8 +8,9 @@ from mmrs_auv.targets.moos.steps import Variables, course_of, posts_of, variable
 from mmrs_auv.targets.refusing import Wording, of_movement, of_policies, of_policy
 from mmrs_core.behaviour.program import Move, RobotProgram, Transition
 from mmrs_core.contributions.targets import TargetInput
+from mmrs_core.generation.context import homeless
 from mmrs_core.generation.escaping import file_stems
-from mmrs_mavlink.plugin.context import RobotContext, context_of, homeless, vehicleless
+from mmrs_core.mavlink.context import VehicleContext, context_of, vehicleless
 
 WORDING = Wording(
     turn="which no behaviour of a helm does",
@@ -37,7 +38,7 @@ def _of_robot(robot: RobotProgram, input: TargetInput, nodes: Mapping[str, str])
     if unknown := vehicleless(robot, input):
         yield unknown
         return
-    context = context_of(robot, input, geographic=False)
+    context = context_of(robot, input)
     if context.vehicle.flies:
         yield f"robot '{robot.id}': flies, and depths of a helm count down from the water surface"
         return
@@ -54,7 +55,7 @@ def _of_robot(robot: RobotProgram, input: TargetInput, nodes: Mapping[str, str])
         yield f"{context.label(move)}: {why}"
 
 
-def _of_move(move: Move, context: RobotContext, variables: Variables) -> Iterator[str]:
+def _of_move(move: Move, context: VehicleContext, variables: Variables) -> Iterator[str]:
     yield from of_movement(move, context, WORDING)
     for action in (*move.before, *move.after):
         posts = posts_of(action, context.type, variables)
@@ -62,7 +63,7 @@ def _of_move(move: Move, context: RobotContext, variables: Variables) -> Iterato
             yield posts
 
 
-def _rings(robot: RobotProgram, context: RobotContext) -> Iterator[str]:
+def _rings(robot: RobotProgram, context: VehicleContext) -> Iterator[str]:
     """Yield which moves lead back to one from which they come."""
     state: dict[int, str] = {}
     path: list[tuple[int, Iterator[int]]] = [(robot.start, iter(_ways(robot.transitions.get(robot.start))))]

@@ -8,18 +8,16 @@ from math import ceil, dist
 
 from mmrs_auv.targets.moos.words import MESSAGE, variables_of, words_of
 from mmrs_auv.targets.moves import DEEPEST, MOVES, above_surface, seconds_of, seconds_of_hold, writable_speed
-from mmrs_core.behaviour.program import BEHAVIOUR, Action, Move, SlotId
+from mmrs_core.behaviour.earth import metres
+from mmrs_core.behaviour.program import DEVICE_ACTION, FEEDBACK, Action, Move, SlotId
 from mmrs_core.contributions.targets import TargetInput
-from mmrs_core.mavlink.earth import metres
+from mmrs_core.mavlink.context import VehicleContext
 from mmrs_core.scene import Position, RobotType
 from mmrs_core.transformation.kinds import before_target
-from mmrs_mavlink.plugin.actions import DEVICE_ACTION
-from mmrs_mavlink.plugin.context import RobotContext
 
 POSTS = "moos.post."
 """Property of a device before the name of an action: what is posted, as in ``SONAR=on;RANGE=50``."""
 
-FEEDBACK = (BEHAVIOUR, "Feedback")
 TOLD = "MMRS_FEEDBACK"
 """The variable in which feedback is posted for people."""
 
@@ -76,7 +74,7 @@ class Variables:
     told: Mapping[tuple[SlotId, bool], tuple[str, str]]
 
 
-def variables_for(context: RobotContext, input: TargetInput, nodes: Mapping[str, str]) -> Variables:
+def variables_for(context: VehicleContext, input: TargetInput, nodes: Mapping[str, str]) -> Variables:
     """Return the variables of a robot; `nodes`: names of the communities of all robots."""
     robot = context.robot
     conditions = {each.condition for each in robot.transitions.values() if each.condition is not None}
@@ -106,7 +104,7 @@ class Course:
     faults: tuple[tuple[Move, str], ...]
 
 
-def course_of(context: RobotContext, variables: Variables) -> Course:
+def course_of(context: VehicleContext, variables: Variables) -> Course:
     """Return the steps of a robot, from its start on; of those that come after a choice, one way first."""
     walk = _Walk(context, variables)
     walk.go_through()
@@ -116,7 +114,7 @@ def course_of(context: RobotContext, variables: Variables) -> Course:
 class _Walk:
     """Goes through a robot's moves, each once."""
 
-    def __init__(self, context: RobotContext, variables: Variables) -> None:
+    def __init__(self, context: VehicleContext, variables: Variables) -> None:
         self._context, self._variables = context, variables
         names = [move.id for move in context.robot.moves]
         self._words = words_of(names, "s_")

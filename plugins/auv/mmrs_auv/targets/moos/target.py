@@ -18,8 +18,9 @@ from mmrs_auv.targets.moos.words import text
 from mmrs_auv.targets.places import templates_of
 from mmrs_core.contributions.targets import FileSpec, Target, TargetInput, TracedStep
 from mmrs_core.errors import UnsupportedError
+from mmrs_core.generation.context import require_home
+from mmrs_core.mavlink.context import VehicleContext, context_of
 from mmrs_core.scene import Frame
-from mmrs_mavlink.plugin.context import RobotContext, context_of, require_home
 
 
 def files(input: TargetInput) -> Iterator[FileSpec]:
@@ -31,7 +32,7 @@ def files(input: TargetInput) -> Iterator[FileSpec]:
     nodes = nodes_of(input)
     for robot in input.program.robots:
         require_home(robot)
-        context = context_of(robot, input, geographic=False)
+        context = context_of(robot, input)
         if context.vehicle.flies:
             raise UnsupportedError(f"robot '{robot.id}': flies")
         variables = variables_for(context, input, nodes)
@@ -43,7 +44,7 @@ def files(input: TargetInput) -> Iterator[FileSpec]:
         )
 
 
-def _view(context: RobotContext, variables: Variables, frame: Frame) -> dict[str, object]:
+def _view(context: VehicleContext, variables: Variables, frame: Frame) -> dict[str, object]:
     steps = course_of(context, variables).steps
     return {
         "robot": context.robot.id,
@@ -55,7 +56,7 @@ def _view(context: RobotContext, variables: Variables, frame: Frame) -> dict[str
     }
 
 
-def _shown(step: Step, context: RobotContext) -> dict[str, object]:
+def _shown(step: Step, context: VehicleContext) -> dict[str, object]:
     move = step.move
     return {
         "traced": TracedStep(f"step {step.id}", context.robot.id, move.id, move.task, move.rule),

@@ -13,6 +13,10 @@ from mmrs_core.behaviour.program import Move, Program
 from mmrs_core.contributions.targets import TargetInput
 from mmrs_core.contributions.vehicles import Live, VehicleInput
 from mmrs_core.errors import LinkLostError, UnsupportedError, UsageError
+from mmrs_core.generation.python.moves import action_of
+from mmrs_core.generation.python.program import built, objects_in
+from mmrs_core.mavlink.context import VehicleContext, context_of
+from mmrs_mavlink import program as words
 from mmrs_mavlink.driving.equipment import Equipment, Guard, Radio
 from mmrs_mavlink.driving.threaded import ThreadedVehicle
 from mmrs_mavlink.linked import at_end_of
@@ -22,13 +26,9 @@ from mmrs_mavlink.links.radios import Radios
 from mmrs_mavlink.links.retries import Retries
 from mmrs_mavlink.links.signing import Signer, signer_for
 from mmrs_mavlink.options import FIRST_PORT, PORT_STEP
-from mmrs_mavlink.plugin.actions import action_of
 from mmrs_mavlink.plugin.backend.options import LinkOptions, link_options
 from mmrs_mavlink.plugin.backend.whereabouts import Ground
-from mmrs_mavlink.plugin.built import built, robot_of
-from mmrs_mavlink.plugin.context import RobotContext, context_of
-from mmrs_mavlink.plugin.controllers import refusals
-from mmrs_mavlink.plugin.program import objects_in
+from mmrs_mavlink.plugin.controllers import DRIVER, MAVLINK_PYTHON, robot_of
 from mmrs_mavlink.program import Action, Robot
 from mmrs_mavlink.services.satellites import attended
 from mmrs_mavlink.vehicles.recognition import system_of
@@ -81,9 +81,9 @@ def connect(given: VehicleInput, live: Live) -> ThreadedVehicle:
         link = fleet.radios.open(url, system)
     except Fault as fault:
         raise LinkLostError(f"robot '{given.robot.id}': {fault}") from fault
-    context = context_of(given.robot, input, geographic=False)
+    context = context_of(given.robot, input)
     equipment = _equipment(given, live, context, program, fleet, link)
-    return BehaviourVehicle(program, equipment, lambda each: cast(Action, built(action_of(each, context))))
+    return BehaviourVehicle(program, equipment, lambda each: built(action_of(each, context, DRIVER), words))
 
 
 class BehaviourVehicle(ThreadedVehicle):
@@ -102,7 +102,7 @@ class BehaviourVehicle(ThreadedVehicle):
 
 def _refuse(given: VehicleInput, input: TargetInput, options: LinkOptions) -> None:
     alone = replace(input, program=replace(given.program, robots=(given.robot,)))
-    found = list(refusals(alone))
+    found = list(MAVLINK_PYTHON.refusals(alone))
     if not options.objects:
         found += [
             f"robot '{given.robot.id}': object '{each}': nobody looks for it; say objects=expected to fly"
@@ -168,7 +168,7 @@ def _split(text: str) -> tuple[str, int]:
 
 
 def _equipment(
-    given: VehicleInput, live: Live, context: RobotContext, program: Robot, fleet: Fleet, link: Link
+    given: VehicleInput, live: Live, context: VehicleContext, program: Robot, fleet: Fleet, link: Link
 ) -> Equipment:
     options = link_options(given.options)
     home_tolerance = inf if live.resumed else options.home_tolerance

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from functools import cached_property
 
+from mmrs_core.behaviour.earth import from_wgs84
 from mmrs_core.geometry.frames import LocalFrame
-from mmrs_core.mavlink.earth import from_wgs84
 from mmrs_core.scene import Frame, Position
 from mmrs_mavlink.program import Geographic, Place
 

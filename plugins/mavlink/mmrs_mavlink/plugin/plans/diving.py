@@ -10,27 +10,27 @@ from collections.abc import Iterator
 
 from mmrs_core.behaviour.program import RobotProgram
 from mmrs_core.contributions.targets import TargetInput
+from mmrs_core.mavlink.context import VehicleContext, context_of
 from mmrs_core.scene import Position
-from mmrs_mavlink.plugin.context import RobotContext, context_of
 
 AT_THE_SURFACE = -0.01
 """Metres: the least that ArduSub tells from no height at all, as it counts in centimetres."""
 
 
-def height_in(context: RobotContext, position: Position) -> float:
+def height_in(context: VehicleContext, position: Position) -> float:
     """Return a position's height in a mission, metres above home; below the surface for what dives."""
     height = context.height(position)
     return min(height, AT_THE_SURFACE) if context.vehicle.dives else height
 
 
-def zero_of(context: RobotContext, home: Position) -> Position:
+def zero_of(context: VehicleContext, home: Position) -> Position:
     """Return where the heights of a mission count from: home, or the surface above it."""
     return (home[0], home[1], context.zero) if context.vehicle.dives else home
 
 
 def above_water(robot: RobotProgram, input: TargetInput) -> Iterator[str]:
     """Yield what leads a vehicle that dives out of the water."""
-    context = context_of(robot, input, geographic=False)
+    context = context_of(robot, input)
     for move in robot.moves if context.vehicle.dives else ():
         position = move.target.position if move.target is not None else None
         if position is not None and context.height(position) > 0.0:

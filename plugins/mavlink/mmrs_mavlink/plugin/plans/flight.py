@@ -5,13 +5,14 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from math import atan2, ceil, degrees, dist
 
-from mmrs_core.behaviour.program import BEHAVIOUR, Action, Move
+from mmrs_core.behaviour.program import BEHAVIOUR, DEVICE_ACTION, Action, Move
+from mmrs_core.behaviour.travel import MANNERS
 from mmrs_core.contributions.wiring import Wired
-from mmrs_core.mavlink.vehicles import COPTER, MANNERS, PX4, ROVER, autopilot_of
+from mmrs_core.generation.python.moves import mount_of, number_of
+from mmrs_core.mavlink.context import VehicleContext
+from mmrs_core.mavlink.vehicles import COPTER, PX4, ROVER, autopilot_of
 from mmrs_core.scene import Name, Position
-from mmrs_mavlink.plugin.actions import DEVICE_ACTION
-from mmrs_mavlink.plugin.context import RobotContext
-from mmrs_mavlink.plugin.movements import gimbal_of, mount_of, on_gimbal, turns_to
+from mmrs_mavlink.plugin.headings import gimbal_of, on_gimbal, turns_to
 from mmrs_mavlink.plugin.plans import items as cmd
 from mmrs_mavlink.plugin.plans.items import Item
 from mmrs_mavlink.plugin.plans.px4 import unknown_in
@@ -21,7 +22,7 @@ MULTICOPTER = "urn:mmrs:multicopter:1.0"
 ORIGIN = (0.0, 0.0, 0.0)
 
 
-def sorties_of(context: RobotContext) -> tuple[tuple[Item, ...], ...]:
+def sorties_of(context: VehicleContext) -> tuple[tuple[Item, ...], ...]:
     """Return the items of each sortie: what a vehicle does between two stays on the ground.
 
     What missions cannot express is left out, but never so that a vehicle goes on where it should
@@ -32,7 +33,7 @@ def sorties_of(context: RobotContext) -> tuple[tuple[Item, ...], ...]:
     return tuple(flown(context).sorties)
 
 
-def flown(context: RobotContext) -> Flight:
+def flown(context: VehicleContext) -> Flight:
     """Return the moves of a robot as missions, up to where they end."""
     flight = Flight(context)
     robot, index, seen = context.robot, context.robot.start, set[int]()
@@ -63,7 +64,7 @@ class Flight:
         beyond: indices of the moves that come after the end of the last mission, if ever; Stop is nothing.
     """
 
-    def __init__(self, context: RobotContext) -> None:
+    def __init__(self, context: VehicleContext) -> None:
         """Stand at home."""
         self.sorties: list[tuple[Item, ...]] = []
         self.left: list[str] = []
@@ -119,7 +120,7 @@ class Flight:
         """Climb straight up."""
         self._down = False
         east, north, _ = self._position
-        self._position = (east, north, self._context.zero + _number(move, "altitude"))
+        self._position = (east, north, self._context.zero + number_of(move, "altitude"))
         self._add(cmd.TAKE_OFF, move, here=True)
 
     def land(self, move: Move, fluid: bool) -> None:
@@ -148,7 +149,7 @@ class Flight:
 
     def hold(self, move: Move, fluid: bool) -> None:
         """Stay, which a vehicle that flies does only in the air."""
-        seconds = _number(move, "duration")
+        seconds = number_of(move, "duration")
         if self._down and seconds == 0.0:
             return
         if not self._leaves_out(move, f"no mission stays {seconds:g} s on the ground"):
@@ -212,11 +213,6 @@ def _ends(start: Position, target: Position, move: Move) -> tuple[Position, ...]
 
 def _bearing(a: Position, b: Position) -> float:
     return degrees(atan2(b[0] - a[0], b[1] - a[1]))
-
-
-def _number(move: Move, feature: str) -> float:
-    value = move.attributes.get(feature)
-    return float(value) if isinstance(value, int | float) else 0.0
 
 
 _MOVES: Mapping[Name, Callable[[Flight, Move, bool], None]] = {

@@ -6,12 +6,13 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from math import nan
 
+from mmrs_core.behaviour.earth import degrees_of
 from mmrs_core.behaviour.program import Move
+from mmrs_core.behaviour.travel import MANNERS
 from mmrs_core.contributions.targets import TracedStep
-from mmrs_core.mavlink.earth import degrees_of
-from mmrs_core.mavlink.vehicles import MANNERS, PX4, autopilot_of
+from mmrs_core.mavlink.context import VehicleContext
+from mmrs_core.mavlink.vehicles import PX4, autopilot_of
 from mmrs_core.scene import Position
-from mmrs_mavlink.plugin.context import RobotContext
 from mmrs_mavlink.plugin.plans.diving import height_in
 
 WAYPOINT, LOITER_UNLIMITED, LOITER_TIME, LAND, TAKE_OFF = 16, 17, 19, 21, 22
@@ -65,14 +66,14 @@ class Row:
         return self.frame != NO_FRAME
 
 
-def rows_of(context: RobotContext, sortie: Sequence[Item]) -> tuple[Row, ...]:
+def rows_of(context: VehicleContext, sortie: Sequence[Item]) -> tuple[Row, ...]:
     """Return the items of a sortie, counted from 1: home, where a file has one, is number 0."""
     positions = [item.position for item in sortie if item.position is not None]
     degrees = iter(degrees_of([(east, north) for east, north, _ in positions], context.frame))
     return tuple(_row(number, item, context, degrees) for number, item in enumerate(sortie, start=1))
 
 
-def _row(number: int, item: Item, context: RobotContext, degrees: Iterator[tuple[float, float]]) -> Row:
+def _row(number: int, item: Item, context: VehicleContext, degrees: Iterator[tuple[float, float]]) -> Row:
     place: tuple[float, ...] = ()
     if item.position is not None:
         place = (*next(degrees), height_in(context, item.position))
@@ -85,7 +86,7 @@ def _row(number: int, item: Item, context: RobotContext, degrees: Iterator[tuple
     return Row(number, frame, item.command, (*item.params, *filled, *place), step)
 
 
-def _as_px4_has_it(item: Item, filled: list[float], context: RobotContext) -> list[float]:
+def _as_px4_has_it(item: Item, filled: list[float], context: VehicleContext) -> list[float]:
     """Return the parameters behind those that an item has, which mean something to a PX4 where they are 0.
 
     A heading of 0 is north, and none at all is what the vehicle chooses; a radius of 0 is NAV_ACC_RAD,

@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterator
 from math import isnan
 
+from mmrs_core.behaviour.travel import capability_of
 from mmrs_core.contributions.targets import FileSpec, Target, TargetInput
-from mmrs_core.mavlink.vehicles import AUTOPILOTS, autopilot_of, capability_of
+from mmrs_core.mavlink.context import VehicleContext
+from mmrs_core.mavlink.vehicles import AUTOPILOTS, autopilot_of
 from mmrs_mavlink.plugin.capabilities import OF_MISSIONS
-from mmrs_mavlink.plugin.context import RobotContext
 from mmrs_mavlink.plugin.places import templates_of
 from mmrs_mavlink.plugin.plans.items import Row
 from mmrs_mavlink.plugin.plans.refusals import refusals
@@ -64,7 +65,7 @@ def _polygon(ring: tuple[tuple[float, float], ...]) -> dict[str, object]:
     return {"version": 1, "inclusion": False, "polygon": [list(vertex) for vertex in ring]}
 
 
-def _usual_speed(context: RobotContext) -> float:
+def _usual_speed(context: VehicleContext) -> float:
     speeds = [speed for move in context.robot.moves if (speed := context.speed(move)) is not None]
     capability = capability_of(context.robot, context.type) if context.type else None
     return max(speeds, default=capability.speed[1] if capability else DEFAULT_SPEED)

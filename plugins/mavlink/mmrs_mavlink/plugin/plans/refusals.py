@@ -5,25 +5,27 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import replace
 
-from mmrs_core.behaviour.program import Action, Move, RobotProgram
+from mmrs_core.behaviour.earth import LOCAL, at_a_pole, sea_level_of
+from mmrs_core.behaviour.program import DEVICE_ACTION, Action, Move, RobotProgram
 from mmrs_core.contributions.targets import TargetInput
 from mmrs_core.contributions.wiring import Sampled, Unwired
-from mmrs_core.mavlink.earth import at_a_pole, sea_level_of
+from mmrs_core.generation.context import homeless
+from mmrs_core.generation.python.moves import losses_of, mount_of, objects_of
+from mmrs_core.generation.safety import explicit, policies_of
+from mmrs_core.mavlink.context import VehicleContext, context_of, vehicleless
 from mmrs_core.mavlink.vehicles import PX4, autopilot_fault, autopilot_of
 from mmrs_core.scene import Policy
-from mmrs_mavlink.plugin.actions import DEVICE_ACTION
-from mmrs_mavlink.plugin.context import RobotContext, context_of, homeless, vehicleless
-from mmrs_mavlink.plugin.movements import losses_of, mount_of, objects_of, on_gimbal
+from mmrs_mavlink.plugin.controllers import DRIVER
+from mmrs_mavlink.plugin.headings import on_gimbal
 from mmrs_mavlink.plugin.plans.diving import above_water
 from mmrs_mavlink.plugin.plans.flight import flown
 from mmrs_mavlink.plugin.plans.px4 import unknown_in
-from mmrs_mavlink.plugin.safety import explicit, policies_of
 
 
 def refusals(input: TargetInput) -> Iterator[str]:
     """Yield each thing that plans cannot express, with robot and move."""
     if input.program.frame.is_local:
-        yield "behaviour: is local, its origin has no latitude and longitude"
+        yield LOCAL
     yield from at_a_pole(input.program.frame)
     for robot in input.program.robots:
         if unknown := vehicleless(robot, input):
@@ -45,7 +47,7 @@ def _of_robot(robot: RobotProgram, input: TargetInput) -> Iterator[str]:
         yield f"robot '{robot.id}': {fault}"
     for policy in _declared(robot, input):
         yield f"robot '{robot.id}': {_described(policy)}"
-    context = context_of(robot, input, geographic=False)
+    context = context_of(robot, input)
     yield from _coming_round(robot, context)
     flight = flown(context)
     yield from flight.left
@@ -53,7 +55,7 @@ def _of_robot(robot: RobotProgram, input: TargetInput) -> Iterator[str]:
         if index in flight.beyond:
             yield f"{context.label(move)}: comes after the end of the plan, so it is in none"
             continue
-        yield from losses_of(move, context)
+        yield from losses_of(move, context, DRIVER)
         for description in objects_of(move):
             yield f"{context.label(move)}: object '{description}', which a plan cannot have looked for"
         for action in (*move.before, *move.after):
@@ -74,10 +76,10 @@ def _of_robot(robot: RobotProgram, input: TargetInput) -> Iterator[str]:
 
 def _dives(robot: RobotProgram, input: TargetInput) -> bool:
     """Return whether a robot's heights count from the surface, wherever that is above the sea."""
-    return context_of(robot, input, geographic=False).vehicle.dives
+    return context_of(robot, input).vehicle.dives
 
 
-def _coming_round(robot: RobotProgram, context: RobotContext) -> Iterator[str]:
+def _coming_round(robot: RobotProgram, context: VehicleContext) -> Iterator[str]:
     """Yield where the moves up to the first choice lead back to one of them."""
     index, seen = robot.start, set[int]()
     while index not in seen and (transition := robot.transitions.get(index)) is not None:
@@ -100,7 +102,7 @@ def _described(policy: Policy) -> str:
     return f"policy {policy.event}{after}: {policy.response}, which only settings of the vehicle can do"
 
 
-def _of_action(action: Action, move: Move, context: RobotContext) -> Iterator[str]:
+def _of_action(action: Action, move: Move, context: VehicleContext) -> Iterator[str]:
     if not action.is_a(DEVICE_ACTION):
         yield f"{context.label(move)}: action {action.metaclasses[0][1]} has no form in a plan"
         return
@@ -114,7 +116,7 @@ def _of_action(action: Action, move: Move, context: RobotContext) -> Iterator[st
         yield f"{context.label(move)}: action '{action.name}': no mission of a PX4 has command {shown}"
 
 
-def _of_heading(move: Move, context: RobotContext) -> Iterator[str]:
+def _of_heading(move: Move, context: VehicleContext) -> Iterator[str]:
     """Yield what a region of interest cannot say: it always turns the front, or a gimbal, straight to it."""
     if move.heading is None or move.target is None:
         return

@@ -6,13 +6,14 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import TypeAlias
 
+from mmrs_core.behaviour.earth import degrees_of, metres, sea_level_of
 from mmrs_core.behaviour.program import RobotProgram
 from mmrs_core.behaviour.refuges import refuges_of
 from mmrs_core.contributions.targets import TargetInput
+from mmrs_core.generation.context import require_home
 from mmrs_core.generation.escaping import file_stems
-from mmrs_core.mavlink.earth import degrees_of, metres, sea_level_of
+from mmrs_core.mavlink.context import VehicleContext, context_of
 from mmrs_core.scene import Point
-from mmrs_mavlink.plugin.context import RobotContext, context_of, require_home
 from mmrs_mavlink.plugin.escapes import escapes_of
 from mmrs_mavlink.plugin.fencing import fences_of
 from mmrs_mavlink.plugin.plans.diving import zero_of
@@ -38,7 +39,7 @@ class Mission:
         rally: heights are above home: the greatest of the sortie, which is above what lies on its way.
     """
 
-    context: RobotContext
+    context: VehicleContext
     stem: str
     home: Spot
     rows: tuple[Row, ...]
@@ -54,13 +55,13 @@ def missions_of(input: TargetInput) -> Iterator[Mission]:
     """
     stems = file_stems([robot.id for robot in input.program.robots])
     for robot in input.program.robots:
-        context = context_of(robot, input, geographic=True)
+        context = context_of(robot, input)
         for number, sortie in enumerate(sorties_of(context), start=1):
             suffix = f".sortie-{number}" if number > 1 else ""
             yield _mission(context, input, stems[robot.id] + suffix, sortie)
 
 
-def _mission(context: RobotContext, input: TargetInput, stem: str, sortie: Sequence[Item]) -> Mission:
+def _mission(context: VehicleContext, input: TargetInput, stem: str, sortie: Sequence[Item]) -> Mission:
     robot = context.robot
     points = refuges_of(robot, input.program, input.types, input.areas).points
     return Mission(
@@ -76,13 +77,13 @@ def _mission(context: RobotContext, input: TargetInput, stem: str, sortie: Seque
     )
 
 
-def _home(robot: RobotProgram, context: RobotContext) -> Spot:
+def _home(robot: RobotProgram, context: VehicleContext) -> Spot:
     home = require_home(robot)
     ((latitude, longitude),) = degrees_of([(home[0], home[1])], context.frame)
     return (latitude, longitude, sea_level_of(zero_of(context, home), context.frame) or 0.0)
 
 
-def _rally(context: RobotContext, points: Sequence[Point], sortie: Sequence[Item]) -> tuple[Spot, ...]:
+def _rally(context: VehicleContext, points: Sequence[Point], sortie: Sequence[Item]) -> tuple[Spot, ...]:
     highest = max(item.position[2] for item in sortie if item.position is not None)
     up = metres(highest - context.zero)
     return tuple((*degrees, up) for degrees in degrees_of(points, context.frame))

@@ -15,6 +15,7 @@ if TYPE_CHECKING:
 
 WGS84 = "EPSG:4326"
 DECIMALS = 7
+LOCAL = "behaviour: is local, its origin has no latitude and longitude"
 FARTHEST = 89.0
 """Latitude, north or south, up to which a straight leg is one in degrees, too: to a metre in a kilometre."""
 
@@ -30,7 +31,7 @@ def degrees_of(points: Sequence[Point], frame: Frame) -> tuple[tuple[float, floa
         UnsupportedError: the frame has no place on the Earth.
     """
     if frame.latitude is None or frame.longitude is None:
-        raise UnsupportedError("behaviour: is local, its origin has no latitude and longitude")
+        raise UnsupportedError(LOCAL)
     if not points:
         return ()
     own = LocalFrame(frame.crs, frame.latitude, frame.longitude).to_geographic(points)
