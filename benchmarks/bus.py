@@ -207,7 +207,12 @@ def carry_on(
         if each.id in mine
     }
     with LogWriter(folder) as log:
-        terms = Terms("run-0", observe=lambda record: observe(record, log.write), attention=Attention(clock))
+        terms = Terms(
+            "run-0",
+            observe=lambda record: observe(record, log.write),
+            sync=log.sync,
+            attention=Attention(clock),
+        )
         carry_out(made.executable, vehicles, slots=slots, clock=clock, conditions={}, terms=terms)
 
 

@@ -119,6 +119,7 @@ def carry_out(workshop: Workshop, loaded: Loaded, wishes: Wishes) -> Result:
             patience=wishes.patience,
             meet=begin_all(bus, program.executable, _unbegun(here, resumed), wishes.bus.sync, tell),
             observe=_telling(observer.observe, program),
+            sync=writer.sync,
             say=tell,
         )
 

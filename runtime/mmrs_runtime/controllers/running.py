@@ -85,6 +85,7 @@ def run_controllers(
             patience=options.battery_patience * options.clock.speedup,
             meet=begin_all(bus, program, _unbegun(ids, resumed), options.sync, say),
             observe=_telling(writer, robots),
+            sync=writer.sync,
             say=say,
         )
         stack.callback(rehearsal.close)

@@ -28,6 +28,9 @@ from .waits import Outgoing, silent
 if TYPE_CHECKING:
     pass
 
+DISK_SECONDS = 5.0
+"""Real seconds after which a log that is not on the disk yet counts as one that cannot be written."""
+
 PACE = 0.05
 """Seconds between two looks at what cannot say when to look again."""
 
@@ -123,6 +126,7 @@ class Life(Situation):
                 yield from self._await_owners(delivery.waiting)
             yield from self._room()
             self._make(step, delivery.lamport)
+            yield from self._kept()
             delivery.send(self.lamport)
             self._run.notified(owner for owner, _ in step.sets)
             self._outgoing = Outgoing()
@@ -305,14 +309,39 @@ class Life(Situation):
         try:
             self._run.made(record)
         except OSError as error:
-            why = reason_of(error)
             if not self._live:
                 raise
             if step.label != "fault":
-                raise Broken(Fault(LOG_FAILED, why), unkept=record) from error
-            self._run.say(self, f"the fault is not in the log: {why}")
+                raise Broken(Fault(LOG_FAILED, reason_of(error)), unkept=record) from error
+            self._unkept(error)
+        if step.label == "fault":
+            self._run.sync(self.id, self._unkept)
         self.lamport, self.number, self.last = lamport, self.number + 1, record
         self.follow(step, now)
+
+    def _kept(self) -> Waits:
+        """Wait until the steps that were made are on the disk: nobody is told of one that may yet be lost."""
+        if self._run.terms.sync is None:
+            return
+        kept: list[OSError | None] = []
+
+        def answered(error: OSError | None) -> None:
+            kept.append(error)
+            self._wake()
+
+        self._run.sync(self.id, answered)
+        until = self.now() + DISK_SECONDS * self._speedup
+        while not kept and self.now() < until:
+            yield Until(min(until, self.now() + PACE))
+            if self.ordered is not None:
+                raise Broken(*self.ordered)
+        if error := kept[0] if kept else TimeoutError(f"the disk has not answered for {DISK_SECONDS:g} s"):
+            raise Broken(Fault(LOG_FAILED, reason_of(error)))
+
+    def _unkept(self, error: OSError | None) -> None:
+        """Tell people if the log does not have its fault; from any thread."""
+        if error is not None:
+            self._run.say(self, f"the fault is not in the log: {reason_of(error)}")
 
     def _finds(self) -> tuple[Find, ...]:
         """Return what it, and those that notified it, have detected; its own only while it is reached."""
@@ -391,6 +420,7 @@ class Life(Situation):
         ended = fault(self.robot, self.point, found.which if self._live else str(found))
         if broken.unkept is not None:
             self._run.keep(replace(broken.unkept, label="fault", detail=LOG_FAILED, slot=""))
+            self._run.sync(self.id, self._unkept)
             self.point = ended.leads_to
         else:
             self._make(ended)

@@ -25,7 +25,7 @@ from .orders import Orders
 from .resuming import over_by
 from .run import run
 from .standing import Standing
-from .terms import Attention, Ending, Terms
+from .terms import Attention, Ending, Observer, Syncer, Terms
 from .unready import Unready, note_alone, record
 
 OK, FAILED, LINK, INTERRUPTED = 0, 1, 5, 130
@@ -58,6 +58,7 @@ class Venture:
             where they have not come.
         ready: called with the vehicles before anything moves; raises what must keep them from it.
         observe: called with each step before it has an effect.
+        sync: as of `Terms`.
         say: tells people what goes on.
         standing: for people who ask how robots are.
     """
@@ -77,18 +78,26 @@ class Venture:
     patience: float = 0.0
     meet: Callable[[Callable[[], None]], Mapping[str, str]] = lambda look: {}
     ready: Callable[[Mapping[str, Vehicle]], None] = lambda vehicles: None
-    observe: Callable[[StepRecord], None] | None = None
+    observe: Observer | None = None
+    sync: Syncer | None = None
     say: Callable[[str], None] = print
     standing: Standing = field(default_factory=Standing)
 
     def fail(self, robot: str, which: str) -> None:
         """Have a robot's log say that its program has ended before its first step; tell if it cannot."""
         start, time = self.program.by_id[robot].start, round(self.clock.now(), 6)
+
+        def kept(error: OSError | None) -> None:
+            if error is not None:
+                self.say(f"'{robot}': the fault is not in the log: {reason_of(error)}")
+
         try:
             if self.observe is not None:
                 self.observe(StepRecord(self.run, robot, 0, 1, time, "fault", start, which))
+            if self.sync is not None:
+                self.sync(robot, kept)
         except OSError as error:
-            self.say(f"'{robot}': the fault is not in the log: {reason_of(error)}")
+            kept(error)
 
 
 def run_live(venture: Venture) -> Ending:
@@ -140,6 +149,7 @@ def run_live(venture: Venture) -> Ending:
                 run=venture.run,
                 incarnation=uuid.uuid4().hex,
                 observe=venture.observe,
+                sync=venture.sync,
                 resumed=venture.resumed,
                 unready=under_way,
                 suspends=venture.suspends,

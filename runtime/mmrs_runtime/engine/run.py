@@ -14,6 +14,7 @@ from math import inf
 
 from ..policies import NOTHING, Policy
 from ..program import Program
+from ..records.disk import Kept
 from ..records.steps import StepRecord
 from ..semantics import Outcome, Phase, Waiting
 from ..slots import Slots
@@ -158,6 +159,16 @@ class Run:
         if self.terms.observe is not None:
             with suppress(OSError):
                 self.terms.observe(record)
+
+    def sync(self, robot: str, kept: Kept) -> None:
+        """Have a robot's steps be on the disk, and call `kept` then, if anything is kept of them at all."""
+        try:
+            if self.terms.sync is not None:
+                self.terms.sync(robot, kept)
+            else:
+                kept(None)
+        except OSError as error:
+            kept(error)
 
     @property
     def is_full(self) -> bool:

@@ -75,7 +75,8 @@ class Situation:
         self.halt = Halt()
         self.questions = Questions(robot.conditions)
         self._run, self._slots, self._live = run, run.slots, live
-        self._least = LEAST_PEER_SECONDS * getattr(run.clock, "speedup", 1.0) if live else 0.0
+        self._speedup: float = getattr(run.clock, "speedup", 1.0)
+        self._least = LEAST_PEER_SECONDS * self._speedup if live else 0.0
         self._policies = (*robot.policies, *policies)
         self._passed: list[str] = []
         self._outgoing = Outgoing()

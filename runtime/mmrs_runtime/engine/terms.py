@@ -7,6 +7,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from math import inf
 
+from ..records.disk import Kept
 from ..records.steps import StepRecord
 from ..semantics import Outcome, Waiting
 from ..vehicle import Event, Fault, Progress
@@ -15,6 +16,7 @@ from .orders import Orders
 from .standing import Standing
 
 Observer = Callable[[StepRecord], None]
+Syncer = Callable[[str, Kept], None]
 
 BUS = ""
 """Stands for the bus, where otherwise the identifier of a robot stands."""
@@ -52,6 +54,8 @@ class Terms:
         run: identifier of the run.
         incarnation: differs each time that these robots are started within a run.
         observe: called with each step before it has an effect; a log, for example.
+        sync: has all that was observed of a robot be on the disk, and calls, from any thread, what it is
+            given then; no notify is sent before. None: nothing is kept.
         seconds: of the run's clock, after which it is cut off.
         steps: number of them after which it is cut off, since a Choice can go round for ever.
         resumed: the steps that were made before the run was broken off, those of a robot in order.
@@ -68,6 +72,7 @@ class Terms:
     run: str = "run-0"
     incarnation: str = "0"
     observe: Observer | None = None
+    sync: Syncer | None = None
     seconds: float = inf
     steps: int = 1_000_000
     resumed: tuple[StepRecord, ...] = ()

@@ -34,10 +34,14 @@ from dataclasses import asdict, is_dataclass
 from datetime import UTC, datetime
 from math import isfinite
 from pathlib import Path
-from typing import IO
+from typing import IO, TYPE_CHECKING
 
 from ..screen import say
+from .disk import sync
 from .entries import entry_in
+
+if TYPE_CHECKING:
+    from concurrent.futures import Future
 
 BOX = ".blackbox"
 BOX_SUFFIX = ".ndjson"
@@ -50,7 +54,7 @@ LONGEST_END = 1 << 16
 
 DIGITS = 9
 KEPT_AT_ONCE = frozenset({"start", "decision", "failed", "order"})
-"""Kinds that are on the disk when they have been written, and are written later where that fails."""
+"""Kinds that are to be on the disk soon after they are written, and are written later where that fails."""
 
 OWED = 1000
 """How many lines are kept until they can be written, at most; then the oldest are given up."""
@@ -132,6 +136,7 @@ class BlackBox:
         self._lock = threading.Lock()
         self._file: IO[bytes] | None = None
         self._closed = False
+        self._syncing: Future[None] | None = None
 
     def write(self, kind: str, **content: object) -> None:
         """Append one line; nothing is raised where that fails."""
@@ -151,6 +156,8 @@ class BlackBox:
             self._closed = True
             self._settle()
             self._let_go()
+        if self._syncing is not None:
+            self._syncing.result()
 
     def _settle(self) -> None:
         try:
@@ -170,7 +177,12 @@ class BlackBox:
         file.write(data)
         file.flush()
         if at_once:
-            os.fsync(file.fileno())
+            self._syncing = sync(file, self._synced)
+
+    def _synced(self, error: OSError | None) -> None:
+        if error is not None:
+            with self._lock:
+                self._complain(error)
 
     def _open(self) -> IO[bytes]:
         self._path.parent.mkdir(parents=True, exist_ok=True)

@@ -29,13 +29,12 @@ def keep_whole_lines(path: Path) -> None:
         os.truncate(path, whole)
 
 
-def append_whole(file: IO[bytes], line: bytes, *, at_once: bool = False) -> None:
+def append_whole(file: IO[bytes], line: bytes) -> None:
     """Append a line to a file without a buffer, whole or not at all.
 
     Args:
         file: at its end.
         line: with its end.
-        at_once: whether it is to be on the disk when this returns.
 
     Raises:
         OSError: it cannot be written; nothing of it is left in the file then. It names the file.
@@ -45,8 +44,6 @@ def append_whole(file: IO[bytes], line: bytes, *, at_once: bool = False) -> None
         left = line
         while left:
             left = left[file.write(left) :]
-        if at_once:
-            os.fsync(file.fileno())
     except OSError as error:
         # What follows must not become part of half a line.
         with suppress(OSError):

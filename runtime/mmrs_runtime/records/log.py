@@ -2,42 +2,40 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from contextlib import ExitStack, contextmanager, suppress
+from contextlib import ExitStack, suppress
 from pathlib import Path
 from types import TracebackType
-from typing import IO, Literal
+from typing import IO, TYPE_CHECKING, Literal
 
 from ..faults import LOG_FAILED, Fault
+from .disk import Kept, sync
 from .lines import append_whole, keep_whole_lines, whole_lines
 from .steps import StepRecord, log_name, step_in, to_line
 
-KEPT_AT_ONCE = frozenset({"ntf", "fault"})
-"""Labels of steps that are on the disk when they have been written."""
+if TYPE_CHECKING:
+    from concurrent.futures import Future
 
 
 class LogFile:
-    """One robot's log. Every step is out of the process, a notify or a fault on the disk, once it is written.
+    """One robot's log. A step is out of the process once it is written, on the disk once that was asked for.
 
-    So a notify that is written before it is delivered survives whatever happens next. Of what cannot be
+    So what is written and synced before it has an effect survives whatever happens next. Of what cannot be
     written, nothing is left in the log; a fault is tried once more when it is closed.
     """
 
-    def __init__(
-        self, path: Path, mode: Literal["a", "w", "x"], *, spaced: bool = False, synced: bool = True
-    ) -> None:
+    def __init__(self, path: Path, mode: Literal["a", "w"], *, synced: bool = True) -> None:
         """Open nothing yet.
 
         Args:
             path: of the log.
-            mode: ``a``: go on after its last whole line; ``w``: replace it; ``x``: refuse one that is there.
-            spaced: as `to_line` takes it.
-            synced: whether a step is out of the process, and a notify or a fault on the disk, once it is
-                written; else nothing is known to be there before the log is closed.
+            mode: ``a``: go on after its last whole line; ``w``: replace it.
+            synced: whether a step is out of the process once it is written; else nothing is known to be
+                there before the log is closed.
         """
-        self._path, self._mode, self._spaced, self._synced = path, mode, spaced, synced
+        self._path, self._mode, self._synced = path, mode, synced
         self._file: IO[bytes] | None = None
         self._owed: StepRecord | None = None
+        self._syncing: Future[None] | None = None
 
     def open(self) -> IO[bytes]:
         """Return the open file; its folder is made.
@@ -64,6 +62,17 @@ class LogFile:
         self._append(record)
         self._owed = None
 
+    def sync(self, kept: Kept) -> None:
+        """Have what was written be on the disk; `kept` is called then, from another thread.
+
+        Raises:
+            OSError: there are too many open files.
+        """
+        if self._synced:
+            self._syncing = sync(self.open(), kept)
+        else:
+            kept(None)
+
     def close(self) -> None:
         """Close the file, after a fault that could not be written before, as on a full disk.
 
@@ -81,6 +90,8 @@ class LogFile:
         with suppress(OSError):
             if self._owed is not None:
                 self._append(self._owed)
+        if self._syncing is not None:
+            self._syncing.result()
         if self._file is not None:
             # Every line was written, or its fault raised, before: nothing new can fail here.
             with suppress(OSError):
@@ -89,10 +100,10 @@ class LogFile:
                     self._path.unlink()
 
     def _append(self, record: StepRecord) -> None:
-        line = to_line(record, spaced=self._spaced).encode("utf-8") + b"\n"
+        line = to_line(record).encode("utf-8") + b"\n"
         try:
             if self._synced:
-                append_whole(self.open(), line, at_once=record.label in KEPT_AT_ONCE)
+                append_whole(self.open(), line)
             else:
                 self.open().write(line)
         except OSError as error:
@@ -133,6 +144,13 @@ class LogWriter:
             self._files[record.robot] = LogFile(path, "a" if self._resumed else "w", synced=self._synced)
         self._files[record.robot].write(record)
 
+    def sync(self, robot: str, kept: Kept) -> None:
+        """Have what was written of a robot be on the disk, as `LogFile.sync` does."""
+        if robot in self._files:
+            self._files[robot].sync(kept)
+        else:
+            kept(None)
+
     def close(self) -> None:
         """Close all files, after faults that could not be written before.
 
@@ -152,49 +170,6 @@ class LogWriter:
     ) -> None:
         """Close all files."""
         self.close()
-
-
-class Log:
-    """Numbers and writes the steps of one controller.
-
-    Attributes:
-        steps: all that are in the file, those of before a break included.
-    """
-
-    def __init__(self, path: Path, run: str, robot: str, *, resume: bool = False) -> None:
-        """Open a new file, or go on with one; a last line that was cut off is taken away then.
-
-        Raises:
-            Fault: it cannot be, or there is one already and it is not to be gone on with; logs are
-                never overwritten.
-        """
-        self.steps: list[StepRecord] = list(read(path)) if resume else []
-        self._file = LogFile(path, "a" if resume else "x", spaced=True)
-        with _writing(path):
-            self._file.open()
-        self._path = path
-        self._run = run
-        self._robot = robot
-        self._time = self.steps[-1].time if self.steps else 0.0
-
-    def write(
-        self, label: str, move: str, *, lamport: int, time: float, detail: str = "", slot: str = ""
-    ) -> None:
-        """Write one step; a notify or a fault is on the disk when this returns.
-
-        Raises:
-            Fault: it cannot be written; nothing of it is left in the file then.
-        """
-        self._time = max(self._time, round(time, 3))
-        seq = len(self.steps)
-        step = StepRecord(self._run, self._robot, seq, lamport, self._time, label, move, detail, slot)
-        with _writing(self._path):
-            self._file.write(step)
-        self.steps.append(step)
-
-    def close(self) -> None:
-        """Close the file, as `LogFile.close` does."""
-        self._file.close()
 
 
 def read(path: Path) -> tuple[StepRecord, ...]:
@@ -218,11 +193,3 @@ def _next_step(line: bytes, number: int, path: Path) -> StepRecord:
     if step.seq != number:
         raise Fault(LOG_FAILED, f"{path}:{number + 1}: is not the next step of a log")
     return step
-
-
-@contextmanager
-def _writing(path: Path) -> Iterator[None]:
-    try:
-        yield
-    except OSError as error:
-        raise Fault(LOG_FAILED, f"{path}: cannot be written: {error.strerror or error}") from error

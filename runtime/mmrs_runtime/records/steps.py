@@ -50,9 +50,8 @@ class StepRecord:
 
 _FIELDS = tuple(field.name for field in fields(StepRecord))
 _VALUES = attrgetter(*_FIELDS)
-_DENSE = "{" + ",".join(f'"{name}":%s' for name in _FIELDS) + "}"
-_SPACED = "{" + ", ".join(f'"{name}": %s' for name in _FIELDS) + "}"
-_AS_IT_IS, _IN_ASCII = json.encoder.encode_basestring, json.encoder.encode_basestring_ascii
+_LINE = "{" + ",".join(f'"{name}":%s' for name in _FIELDS) + "}"
+_TEXT = json.encoder.encode_basestring
 _COUNTS = ("seq", "lamport")
 _NEVER_EMPTY = ("run", "robot", "move")
 
@@ -70,29 +69,23 @@ def merge(records: Iterable[StepRecord]) -> tuple[StepRecord, ...]:
     return tuple(sorted(records, key=lambda record: (record.lamport, record.robot, record.seq)))
 
 
-def to_line(record: StepRecord, *, spaced: bool = False) -> str:
-    """Return a step as one line of a log, without the line's end.
-
-    Args:
-        record: the step.
-        spaced: as controllers write it: with blanks between the fields, and in ASCII.
-    """
+def to_line(record: StepRecord) -> str:
+    """Return a step as one line of a log, without the line's end."""
     if not isfinite(record.time):
         raise ValueError(f"time {record.time}: no number that JSON has")
-    text, line = (_IN_ASCII, _SPACED) if spaced else (_AS_IT_IS, _DENSE)
     run, robot, seq, lamport, time, label, move, detail, slot = _VALUES(record)
     texts = (
-        text(run),
-        text(robot),
+        _TEXT(run),
+        _TEXT(robot),
         seq,
         lamport,
         repr(time),
-        text(label),
-        text(move),
-        text(detail),
-        text(slot),
+        _TEXT(label),
+        _TEXT(move),
+        _TEXT(detail),
+        _TEXT(slot),
     )
-    return line % texts
+    return _LINE % texts
 
 
 def step_in(line: str) -> StepRecord:

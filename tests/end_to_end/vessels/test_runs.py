@@ -52,7 +52,7 @@ def devices_confirm(folder: Path) -> bool:
 def test_a_dive_is_carried_out_over_the_bus(berth, contributions, tmp_path):
     venture = interpreted(short_dive(), berth, contributions, tmp_path)
     with LogWriter(tmp_path / "logs") as writer:
-        ending = run_live(replace(venture, observe=writer.write))
+        ending = run_live(replace(venture, observe=writer.write, sync=writer.sync))
     assert ending.outcome is Outcome.SUCCESS, ending
     assert replay(short_dive(), read_logs([tmp_path / "logs"])).accepted
     assert len(entries_in(tmp_path / "logs", "fix")) > 10

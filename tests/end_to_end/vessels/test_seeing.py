@@ -105,7 +105,7 @@ def test_the_interpreter_goes_and_chooses_by_what_three_processes_see(seen, cont
     berth, port = seen
     venture = interpreted(looking(), berth, contributions, tmp_path, detections=str(port))
     with LogWriter(tmp_path / "logs") as writer:
-        run_live(replace(venture, observe=writer.write))
+        run_live(replace(venture, observe=writer.write, sync=writer.sync))
     judge(tmp_path / "logs")
 
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from queue import SimpleQueue
+
 import pytest
 
 from mmrs_core.behaviour.log import read_log, read_logs
@@ -29,16 +31,17 @@ def test_each_robot_has_its_own_log_and_a_folder_is_read_merged(tmp_path):
     assert read_logs([tmp_path]) == (FIRST, SECOND, OTHER)
 
 
-def test_a_notify_is_on_the_disk_before_the_log_is_closed(tmp_path, monkeypatch):
-    synced = []
+def test_what_is_written_is_on_the_disk_once_that_was_asked_for(tmp_path, monkeypatch):
+    synced, kept = [], SimpleQueue()
     monkeypatch.setattr("os.fsync", synced.append)
-    log = LogWriter(tmp_path)
-    log.write(FIRST)
-    assert synced == []
-    log.write(SECOND)
-    assert len(synced) == 1
-    assert read_log(tmp_path / log_name("r")) == (FIRST, SECOND)
-    log.close()
+    with LogWriter(tmp_path) as log:
+        log.write(FIRST)
+        log.write(SECOND)
+        assert synced == []
+        log.sync("r", kept.put)
+        assert kept.get(timeout=20.0) is None
+        assert len(synced) == 1
+        assert read_log(tmp_path / log_name("r")) == (FIRST, SECOND)
 
 
 def test_a_log_of_an_earlier_run_is_replaced(tmp_path):

@@ -15,9 +15,8 @@ from mmrs_core.behaviour.log import read_log
 from mmrs_core.cli import run
 from mmrs_core.languages.writing import replace_file
 from mmrs_runtime.control import Control
-from mmrs_runtime.faults import Fault
 from mmrs_runtime.orders.orders import Inbox
-from mmrs_runtime.records.log import Log, LogWriter
+from mmrs_runtime.records.log import LogWriter
 from mmrs_runtime.records.steps import StepRecord
 
 FULL = "/dev/full"
@@ -131,19 +130,6 @@ def test_a_log_on_a_full_disk_has_its_fault_once_there_is_room_and_no_step_that_
                 writer.write(lost)
         limit(None)
     assert read_log(tmp_path / "alpha.jsonl") == (STEP, fault)
-
-
-def test_generated_code_keeps_its_fault_until_there_is_room_too(tmp_path, limit):
-    path = tmp_path / "alpha.jsonl"
-    log = Log(path, "run-0", "alpha")
-    log.write("begin", "start", lamport=1, time=0.0)
-    limit(path.stat().st_size + 10)
-    for label, detail in (("end", ""), ("fault", "LOG_FAILED")):
-        with pytest.raises(Fault, match="cannot be written"):
-            log.write(label, "start", lamport=2, time=1.0, detail=detail)
-    limit(None)
-    log.close()
-    assert [(step.seq, step.label) for step in read_log(path)] == [(0, "begin"), (1, "fault")]
 
 
 def test_a_log_is_named(tmp_path):
