@@ -4,9 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
-from mmrs_core.behaviour.program import Move, RobotProgram
 from mmrs_core.scene import Capability, RobotType
+
+if TYPE_CHECKING:
+    from mmrs_core.behaviour.program import Move, RobotProgram
 
 SHARE_OF_LARGEST_SPEED: Mapping[str, float] = {"SAFE": 0.5, "NORMAL": 0.75, "AGGRESSIVE": 1.0}
 """At which a robot goes where nobody says how fast."""

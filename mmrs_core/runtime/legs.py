@@ -9,10 +9,9 @@ holds its position has the whole wind against it.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
 from itertools import pairwise
 from math import atan2, cos, degrees, hypot, inf, radians, sin, sqrt
-from typing import TypeAlias
+from typing import NamedTuple, TypeAlias
 
 from mmrs_core.scene import Kinematics, Position
 
@@ -23,8 +22,7 @@ Flow: TypeAlias = tuple[float, float]
 STILL: Flow = (0.0, 0.0)
 
 
-@dataclass(frozen=True, slots=True)
-class Leg:
+class Leg(NamedTuple):
     """A stretch of time in which a robot goes straight and evenly, or stays where it is.
 
     Attributes:
@@ -58,11 +56,9 @@ class Leg:
         """Return how much of the leg is behind at that time, 0 to 1."""
         if self.end == inf:
             return 0.0
-        return (
-            min(1.0, max(0.0, (time - self.begin) / (self.end - self.begin)))
-            if self.end > self.begin
-            else 1.0
-        )
+        if time < self.end > self.begin:
+            return (time - self.begin) / (self.end - self.begin) if time > self.begin else 0.0
+        return 1.0
 
     def position(self, time: float) -> Position:
         """Return where the robot is."""
@@ -76,21 +72,19 @@ class Leg:
 
     def charge_at(self, time: float) -> float:
         """Return the seconds at mean power that are left."""
-        spent = self.rate * (max(self.begin, time) - self.begin)
-        return max(0.0, self.charge - spent)
+        left = self.charge - self.rate * (time - self.begin) if time > self.begin else self.charge
+        return left if left > 0.0 else 0.0
 
     def until(self, time: float) -> Leg:
         """Return the part of the leg before that time."""
-        return replace(
-            self,
+        return self._replace(
             end=max(self.begin, time),
             finish=self.position(time),
             headings=(self.headings[0], self.heading(time)),
         )
 
 
-@dataclass(frozen=True, slots=True)
-class Stretch:
+class Stretch(NamedTuple):
     """A straight part of a path: where it begins and ends, seconds, and cost in a second."""
 
     start: Position
@@ -118,12 +112,14 @@ def stretches(
         flow: velocity of the air or water, east and north, metres per second.
         stops: at how many ends of the path the robot stands still: accelerating takes time.
     """
-    legs = tuple(pairwise(path)) or ((path[0], path[0]),)
+    legs = ((path[0], path[-1]),) if len(path) < 3 else tuple(pairwise(path))
     nominal = [_leg_seconds(a, b, speed, kinematics) for a, b in legs]
     whole = sum(nominal)
-    length = sum([_length(a, b) for a, b in legs])
-    pace = length / whole if 0.0 < whole < inf else speed
-    wanted = whole + _acceleration_seconds(length, pace, kinematics.acceleration, stops)
+    wanted = whole
+    if stops and kinematics.acceleration < inf:
+        length = sum([_length(a, b) for a, b in legs])
+        pace = length / whole if 0.0 < whole < inf else speed
+        wanted += _acceleration_seconds(length, pace, kinematics.acceleration, stops)
     seconds = min(max(wanted, bounds[0]), bounds[1])
     found = []
     for (start, finish), share in zip(legs, nominal, strict=True):
@@ -161,16 +157,20 @@ def response_stretches(
 
 def cost(start: Position, finish: Position, seconds: float, kinematics: Kinematics, flow: Flow) -> float:
     """Return the power of a stretch as a multiple of the mean power, zero or more."""
-    level = hypot(finish[0] - start[0], finish[1] - start[1])
-    if level > 0.0:
-        against = -((finish[0] - start[0]) * flow[0] + (finish[1] - start[1]) * flow[1]) / level
-    else:
-        against = hypot(*flow)
     climb = (finish[2] - start[2]) / seconds if seconds > 0.0 else 0.0
     climbing = CLIMBING * min(1.0, climb / kinematics.climb) if kinematics.climb > 0.0 else 0.0
-    own_speed = _own_speed(kinematics)
-    headwind = max(0.0, against) / own_speed if own_speed > 0.0 else 0.0
+    own_speed, headwind = _own_speed(kinematics), 0.0
+    if flow != STILL and own_speed > 0.0:
+        headwind = max(0.0, _against(start, finish, flow)) / own_speed
     return max(0.0, 1.0 + climbing + headwind**2)
+
+
+def _against(start: Position, finish: Position, flow: Flow) -> float:
+    """Return how fast the flow comes towards a robot on its way, all of it where the robot stays."""
+    level = hypot(finish[0] - start[0], finish[1] - start[1])
+    if level <= 0.0:
+        return hypot(*flow)
+    return -((finish[0] - start[0]) * flow[0] + (finish[1] - start[1]) * flow[1]) / level
 
 
 def bearing(start: Position, finish: Position) -> float | None:
@@ -218,7 +218,7 @@ def _seconds(way: float, pace: float) -> float:
 
 def _acceleration_seconds(length: float, speed: float, acceleration: float, stops: int) -> float:
     """Return what `stops` standstills at the ends of a path cost against constant speed."""
-    if acceleration == inf or length <= 0.0 or speed <= 0.0 or stops == 0:
+    if length <= 0.0 or speed <= 0.0:
         return 0.0
     if length >= stops * speed**2 / (2.0 * acceleration):
         return stops * speed / (2.0 * acceleration)

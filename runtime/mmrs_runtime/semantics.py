@@ -16,6 +16,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Set
 from dataclasses import dataclass
 from enum import Enum
+from typing import NamedTuple
 
 from .program import Choose, Notify, Program, Robot, SlotId
 from .records.steps import StepRecord
@@ -47,8 +48,7 @@ class Point:
         return self.phase is Phase.DONE or self.phase is Phase.FAILED
 
 
-@dataclass(frozen=True, slots=True)
-class Step:
+class Step(NamedTuple):
     """A step that a robot may make.
 
     Attributes:

@@ -10,7 +10,7 @@ from ..conditions import answers_at_once, is_standard, standard, undecided
 from ..vehicle import Condition as Decided
 from ..vehicle import State as Asked
 from .objects import Locator, not_looked_for
-from .state import Known, State
+from .state import State, in_words
 from .words import Choose, GoTo, Object, Robot, Turn
 
 Condition: TypeAlias = Callable[[State], "bool | None"]
@@ -75,9 +75,7 @@ class _Asked(Decided):
     asks: Condition = field(kw_only=True)
 
     def asked(self, state: Asked) -> object:
-        assert isinstance(state, Known)
-        assert state.told is not None
-        return self.asks(replace(state.told, found=state.found, answers=state.answers))
+        return self.asks(replace(in_words(state), found=state.found, answers=state.answers))
 
 
 def _never(state: Asked) -> bool:

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 from .. import vehicle
 from ..records.blackbox import plain
-from .words import Place
+from .words import Local, Place
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,3 +63,14 @@ class Known(vehicle.State):
     """What the engine knows of a robot; `told`: as its vehicle tells it."""
 
     told: State | None = None
+
+
+def in_words(state: vehicle.State) -> State:
+    """Return what is known of a robot in the words of controllers, which its vehicle need not use itself."""
+    if isinstance(state, Known) and state.told is not None:
+        return state.told
+    east, north, up = state.position
+    place, detected = Local(north, east, up), state.detected
+    return State(
+        state.time, place, state.speed, state.heading, state.charge, wind=state.wind, detected=detected
+    )

@@ -8,7 +8,9 @@ from flight_crew import robot_of
 
 from mmrs_mavlink.program import Choose
 from mmrs_runtime.conditions import standard
+from mmrs_runtime.controllers import Local
 from mmrs_runtime.controllers.judgement import Judgement
+from mmrs_runtime.vehicle import State
 
 ASKS = "battery-below:0.3"
 
@@ -41,3 +43,15 @@ def test_standard_conditions_need_no_thread_but_those_that_users_write_do():
     robots = [robot("alpha", asks=low), robot("beta", asks=high)]
     decides = Judgement(conditions, {}).decides(robots)
     assert {name: each.instant for name, each in decides.items()} == {low: True, high: False}
+
+
+def test_conditions_are_asked_in_the_words_of_controllers_whatever_the_vehicle_tells():
+    asked = []
+    decides = Judgement({"calm": asked.append}, {}).decides([robot(asks="calm")])
+    plain = State(
+        4.0, (1.0, 2.0, 3.0), 0.5, 90.0, None, charge=0.8, found=frozenset({"float"}), answers={"go": True}
+    )
+    assert decides["calm"].asked(plain) is None
+    (state,) = asked
+    assert (state.place, state.energy, state.found) == (Local(2.0, 1.0, 3.0), 0.8, {"float"})
+    assert (state.time, state.speed, state.heading, state.answers) == (4.0, 0.5, 90.0, {"go": True})
