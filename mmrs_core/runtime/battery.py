@@ -87,7 +87,7 @@ class Battery:
         """Return the seconds left beyond what the response takes; inf where it takes none."""
         if self._response in _STAYING:
             return inf
-        return leg.charge_at(time) - self._needs(leg.position(time), leg.speed > 0.0, flow)
+        return leg.charge_at(time) - self._needs(leg.position(time), leg.start != leg.finish, flow)
 
     def _response_needs(self, here: Position, under_way: bool, flow: Flow) -> float:
         """Return the seconds at mean power that the response takes from there."""

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
+from functools import cached_property
 
 from mmrs_core.behaviour.program import Program
 from mmrs_core.contributions.execution import Condition, Sample
@@ -23,21 +24,29 @@ from mmrs_runtime.records.steps import StepRecord
 from mmrs_runtime.slots import LocalSlots
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Run:
     """What happened in a run.
 
     Attributes:
         records: the steps, in the order in which they were made.
         ending: how it ended.
-        tracks: by robot, the way that it came; empty where the backend does not tell.
-        notes: what was taken for granted, each line with its robot.
+        recorders: by robot, those of the vehicles that remember the way that it came.
     """
 
     records: tuple[StepRecord, ...]
     ending: Ending
-    tracks: Mapping[str, tuple[Sample, ...]] = field(default_factory=dict)
-    notes: tuple[str, ...] = ()
+    recorders: Mapping[str, Recorder]
+
+    @cached_property
+    def tracks(self) -> Mapping[str, tuple[Sample, ...]]:
+        """Return, by robot, the way that it came; without those whose vehicles do not remember it."""
+        return {id: robot.track() for id, robot in self.recorders.items()}
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """Return what was taken for granted, each line with its robot."""
+        return tuple(f"robot '{id}', {note}" for id, robot in self.recorders.items() for note in robot.notes)
 
 
 def simulate(
@@ -101,10 +110,8 @@ def simulate(
             policies={id: each.policies for id, each in given.items()},
             terms=replace(terms, observe=observe),
         )
-    told = {id: robot for id, robot in connected.items() if isinstance(robot, Recorder)}
-    tracks = {id: robot.track() for id, robot in told.items()}
-    notes = tuple(f"robot '{id}', {note}" for id, robot in told.items() for note in robot.notes)
-    return Run(tuple(made), ending, tracks, notes)
+    recorders = {id: robot for id, robot in connected.items() if isinstance(robot, Recorder)}
+    return Run(tuple(made), ending, recorders)
 
 
 def inputs_of(
