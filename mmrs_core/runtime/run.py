@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 from mmrs_core.behaviour.program import Program
@@ -36,7 +36,7 @@ class Run:
 
     records: tuple[StepRecord, ...]
     ending: Ending
-    recorders: Mapping[str, Recorder]
+    recorders: Mapping[str, Recorder] = field(compare=False)
 
     @cached_property
     def tracks(self) -> Mapping[str, tuple[Sample, ...]]:
