@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
-from functools import cached_property
 
 from mmrs_core.behaviour.program import Program
 from mmrs_core.contributions.execution import Condition, Sample
@@ -24,29 +23,21 @@ from mmrs_runtime.records.steps import StepRecord
 from mmrs_runtime.slots import LocalSlots
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, slots=True)
 class Run:
     """What happened in a run.
 
     Attributes:
         records: the steps, in the order in which they were made.
         ending: how it ended.
-        recorders: by robot, those of the vehicles that remember the way that it came.
+        tracks: by robot, the way that it came; empty where the backend does not tell.
+        notes: what was taken for granted, each line with its robot.
     """
 
     records: tuple[StepRecord, ...]
     ending: Ending
-    recorders: Mapping[str, Recorder] = field(compare=False)
-
-    @cached_property
-    def tracks(self) -> Mapping[str, tuple[Sample, ...]]:
-        """Return, by robot, the way that it came; without those whose vehicles do not remember it."""
-        return {id: robot.track() for id, robot in self.recorders.items()}
-
-    @property
-    def notes(self) -> tuple[str, ...]:
-        """Return what was taken for granted, each line with its robot."""
-        return tuple(f"robot '{id}', {note}" for id, robot in self.recorders.items() for note in robot.notes)
+    tracks: Mapping[str, tuple[Sample, ...]] = field(default_factory=dict)
+    notes: tuple[str, ...] = ()
 
 
 def simulate(
@@ -110,8 +101,28 @@ def simulate(
             policies={id: each.policies for id, each in given.items()},
             terms=replace(terms, observe=observe),
         )
-    recorders = {id: robot for id, robot in connected.items() if isinstance(robot, Recorder)}
-    return Run(tuple(made), ending, recorders)
+    told = {id: robot for id, robot in connected.items() if isinstance(robot, Recorder)}
+    notes = tuple(f"robot '{id}', {note}" for id, robot in told.items() for note in robot.notes)
+    return Run(tuple(made), ending, _Tracks(told), notes)
+
+
+class _Tracks(Mapping[str, tuple[Sample, ...]]):
+    """The ways of robots that have come to their ends, each found when it is first asked for."""
+
+    def __init__(self, recorders: Mapping[str, Recorder]) -> None:
+        self._recorders = recorders
+        self._found: dict[str, tuple[Sample, ...]] = {}
+
+    def __getitem__(self, robot: str) -> tuple[Sample, ...]:
+        if robot not in self._found:
+            self._found[robot] = self._recorders[robot].track()
+        return self._found[robot]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._recorders)
+
+    def __len__(self) -> int:
+        return len(self._recorders)
 
 
 def inputs_of(
