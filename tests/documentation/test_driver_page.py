@@ -52,14 +52,15 @@ def yard(tmp_path_factory):
     folder = tmp_path_factory.mktemp("yard")
     titled = [block for block in blocks_of(PAGE.read_text(encoding="utf-8"), PAGE.name) if block.title]
     for block in titled:
-        (folder / block.title).parent.mkdir(exist_ok=True)
+        (folder / block.title).parent.mkdir(parents=True, exist_ok=True)
         (folder / block.title).write_text(block.text, encoding="utf-8")
     described = folder / "kart-1.0.dist-info"
     described.mkdir()
     (described / "METADATA").write_text(METADATA)
     (described / "WHEEL").write_text(WHEEL)
-    (described / "entry_points.txt").write_text("[mmrs.plugins]\nkart = kart_target\n")
-    names = ["kart.py", "kart_target.py", "templates/README.md.jinja", "kart-1.0.dist-info/METADATA"]
+    (described / "entry_points.txt").write_text("[mmrs.plugins]\nkart = kart.target\n")
+    names = [block.title for block in titled if block.title.startswith("kart/")]
+    names += ["kart-1.0.dist-info/METADATA", "kart-1.0.dist-info/WHEEL"]
     (described / "RECORD").write_text("".join(f"{name},,\n" for name in names))
     done = command(folder, "mmrs_core", "generate", "round", "--target", "kart", "-o", "code")
     assert done.returncode == 0, done.stdout + done.stderr
