@@ -34,13 +34,12 @@ class Phase(Enum):
     FAILED = "failed"
 
 
-@dataclass(frozen=True, slots=True)
-class Point:
+class Point(NamedTuple):
     """A control point: a move, how far the robot is with it, and at which action."""
 
     move: str
     phase: Phase
-    index: int = 0
+    action: int = 0
 
     @property
     def is_final(self) -> bool:
@@ -160,8 +159,8 @@ def action_at(robot: Robot, point: Point) -> object | None:
     """Return the action that the robot is about to do; None where it is about to do none."""
     move = robot.by_id[point.move]
     if point.phase is Phase.BEFORE:
-        return move.before[point.index]
-    return move.after[point.index] if point.phase is Phase.AFTER else None
+        return move.before[point.action]
+    return move.after[point.action] if point.phase is Phase.AFTER else None
 
 
 def slot_text(notify: Notify) -> str:
@@ -215,12 +214,12 @@ def _action_step(robot: Robot, point: Point) -> Step:
     move = robot.by_id[point.move]
     before = point.phase is Phase.BEFORE
     actions = move.before if before else move.after
-    action = actions[point.index]
-    if point.index + 1 < len(actions):
-        leads_to = Point(point.move, point.phase, point.index + 1)
+    action = actions[point.action]
+    if point.action + 1 < len(actions):
+        leads_to = Point(point.move, point.phase, point.action + 1)
     else:
         leads_to = Point(point.move, Phase.READY) if before else _out(robot, point.move)
-    detail = f"{point.phase.value}:{point.index}"
+    detail = f"{point.phase.value}:{point.action}"
     if isinstance(action, Notify):
         text = slot_text(action)
         return Step(robot.id, "ntf", move.id, detail, text, leads_to, action.slots, action.active)

@@ -236,7 +236,7 @@ def _moved(flown: Flown, shift: Shift | None) -> Flown:
         return flown
     return replace(
         flown,
-        records=tuple(replace(each, time=shift.time(each.time)) for each in flown.records),
+        records=tuple(each._replace(time=shift.time(each.time)) for each in flown.records),
         track=replace(flown.track, times=shift.times(flown.track.times)),
         entries=tuple(replace(each, time=shift.time(each.time)) for each in flown.entries),
     )

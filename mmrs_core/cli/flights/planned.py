@@ -94,7 +94,7 @@ def _later(run: Run, seconds: float) -> Run:
         return run
     return replace(
         run,
-        records=tuple(replace(record, time=record.time + seconds) for record in run.records),
+        records=tuple(record._replace(time=record.time + seconds) for record in run.records),
         tracks={
             robot: tuple(replace(sample, time=sample.time + seconds) for sample in track)
             for robot, track in run.tracks.items()

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Generator, Mapping
 from dataclasses import replace
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TypeAlias
 
 from ..bus.words import CommandId, Find
 from ..conditions import awaiting, question_of
@@ -24,9 +24,6 @@ from .agenda import Until
 from .judging import Asking, decided
 from .situation import Situation, Stage
 from .waits import Outgoing, silent
-
-if TYPE_CHECKING:
-    pass
 
 DISK_SECONDS = 5.0
 """Real seconds after which a log that is not on the disk yet counts as one that cannot be written."""
@@ -419,7 +416,7 @@ class Life(Situation):
         self.ordered, self.stage = None, Stage.WORKING
         ended = fault(self.robot, self.point, found.which if self._live else str(found))
         if broken.unkept is not None:
-            self._run.keep(replace(broken.unkept, label="fault", detail=LOG_FAILED, slot=""))
+            self._run.keep(broken.unkept._replace(label="fault", detail=LOG_FAILED, slot=""))
             self._run.sync(self.id, self._unkept)
             self.point = ended.leads_to
         else:

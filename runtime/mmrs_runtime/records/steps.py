@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, fields
 from hashlib import sha256
 from math import inf, isfinite
-from operator import attrgetter
 from pathlib import Path
+from typing import NamedTuple
 from urllib.parse import quote
 
 SCHEMA = Path(__file__).with_name("log.schema.json")
@@ -19,8 +18,7 @@ _LONGEST_NUMBER = 400
 _LONGEST_NAME = 120
 
 
-@dataclass(frozen=True, slots=True)
-class StepRecord:
+class StepRecord(NamedTuple):
     """A step: one label of the semantics of BL.
 
     Attributes:
@@ -48,8 +46,7 @@ class StepRecord:
     slot: str = ""
 
 
-_FIELDS = tuple(field.name for field in fields(StepRecord))
-_VALUES = attrgetter(*_FIELDS)
+_FIELDS = StepRecord._fields
 _LINE = "{" + ",".join(f'"{name}":%s' for name in _FIELDS) + "}"
 _TEXT = json.encoder.encode_basestring
 _COUNTS = ("seq", "lamport")
@@ -73,7 +70,7 @@ def to_line(record: StepRecord) -> str:
     """Return a step as one line of a log, without the line's end."""
     if not isfinite(record.time):
         raise ValueError(f"time {record.time}: no number that JSON has")
-    run, robot, seq, lamport, time, label, move, detail, slot = _VALUES(record)
+    run, robot, seq, lamport, time, label, move, detail, slot = record
     texts = (
         _TEXT(run),
         _TEXT(robot),

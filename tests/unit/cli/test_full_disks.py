@@ -6,7 +6,6 @@ import errno
 import os
 import sys
 from contextlib import suppress
-from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -121,11 +120,11 @@ def test_logs_of_a_simulation_stay_where_those_of_another_cannot_be_written(tmp_
 def test_a_log_on_a_full_disk_has_its_fault_once_there_is_room_and_no_step_that_was_not_made(
     tmp_path, limit, resumed
 ):
-    fault = replace(STEP, seq=1, label="fault", detail="LOG_FAILED")
+    fault = STEP._replace(seq=1, label="fault", detail="LOG_FAILED")
     with LogWriter(tmp_path, resumed=resumed) as writer:
         writer.write(STEP)
         limit((tmp_path / "alpha.jsonl").stat().st_size + 10)
-        for lost in (replace(STEP, seq=1, label="end"), fault):
+        for lost in (STEP._replace(seq=1, label="end"), fault):
             with pytest.raises(OSError, match=r"alpha\.jsonl"):
                 writer.write(lost)
         limit(None)

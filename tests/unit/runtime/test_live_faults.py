@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import threading
 import time
-from dataclasses import replace
 from math import inf
 from types import SimpleNamespace
 
@@ -97,7 +96,7 @@ def test_a_log_that_cannot_be_written_ends_the_program_without_the_step(live):
     assert run.script.robots["r"].stops == ["LAND"]
     assert "r begin walk" not in run.shown()
     lost, fault = logged[-2:]
-    assert fault == replace(lost, label="fault", detail="LOG_FAILED")
+    assert fault == lost._replace(label="fault", detail="LOG_FAILED")
 
 
 def test_a_fault_that_cannot_be_written_is_answered_as_that_fault(live):

@@ -236,7 +236,7 @@ def test_a_run_is_resumed_from_its_log(live):
     assert second.end().outcome is Outcome.SUCCESS
     assert second.script.robots["a"].recovered == (("start", "one"), "two")
     assert second.script.robots["a"].begun[:3] == ["ready", "recovered", "two"]
-    result = replay(SURVEY, [*records, *(replace(r, time=r.time + 1e3) for r in second.records)])
+    result = replay(SURVEY, [*records, *(r._replace(time=r.time + 1e3) for r in second.records)])
     assert (result.outcome, result.complaints) == (Outcome.SUCCESS, ())
 
 
@@ -302,7 +302,7 @@ def test_a_run_is_resumed_after_any_of_its_steps(live, kept):
     restore(bus, behaviour.executable, records)
     rest = live(behaviour, Script(), resumed=records, bus=bus)
     assert rest.end().outcome is Outcome.SUCCESS
-    result = replay(behaviour, [*records, *(replace(r, time=r.time + 1e3) for r in rest.records)])
+    result = replay(behaviour, [*records, *(r._replace(time=r.time + 1e3) for r in rest.records)])
     assert (result.outcome, result.complaints) == (Outcome.SUCCESS, ())
 
 

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import pytest
 from flights_by_hand import flight_as, track_of
 
@@ -75,7 +73,7 @@ def test_time_at_home_for_a_battery_is_not_work(shown, run):
     records = [record for record in run.records if record.robot == "alpha"]
     begun = next(r.time for r in records if (r.label, r.move) == ("begin", "a3"))
     pause = 100.0
-    later = tuple(replace(r, time=r.time + pause) if r.time > begun + 1.0 else r for r in records)
+    later = tuple(r._replace(time=r.time + pause) if r.time > begun + 1.0 else r for r in records)
     samples = [(s.time, *s.position) for s in run.tracks["alpha"]]
     before = [row for row in samples if row[0] <= begun]
     home = [(begun + 30.0, 0.0, 0.0, 0.0), (begun + 80.0, 0.0, 0.0, 0.0), (begun + pause, *before[-1][1:])]
