@@ -20,6 +20,7 @@ from ..program import (
     Look,
     Measure,
     NoEffect,
+    Object,
     Operate,
     Place,
     Recharge,
@@ -134,6 +135,12 @@ class Moves:
             Fault: it leads to an object, and nobody finds it.
         """
         return self._found.get(movement) or self._find(movement)
+
+    def knows(self, move: str) -> bool:
+        """Return whether nobody need look for an object to say where a move leads to."""
+        movement = self._steps[move].movement
+        is_sought = isinstance(movement, GoTo) and isinstance(movement.at, Object)
+        return not is_sought or movement in self._found
 
     def _find(self, movement: GoTo) -> Place:
         found = place_of(movement.at, self._locators, self._vehicle.state(), self._guard)

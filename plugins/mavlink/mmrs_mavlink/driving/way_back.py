@@ -56,9 +56,13 @@ class WayBack:
     def check(self, passed: Sequence[str], begun: str) -> None:
         """Make sure that there is a way back, without a word to the vehicle.
 
+        Where an object has yet to be found, there may be one; it is looked for when the vehicle sets out.
+
         Raises:
             Refused: there is none that anybody has checked.
         """
+        if not all(self._moves.knows(move) for move in (*passed, *self._run(begun))):
+            return
         track = self._moves.track
         self._parts(passed, begun)
         self._moves.track = track
@@ -77,6 +81,11 @@ class WayBack:
         if self._lands(begun):
             ends.append([*passed, begun])
         return tuple(footing(self._robot.home, self._start(moves)) for moves in ends)
+
+    def _run(self, begun: str) -> tuple[str, ...]:
+        """Return the moves of the run that a move belongs to, or only itself, if there is one."""
+        alone = (begun,) if begun else ()
+        return next((run.moves for run in self._robot.runs if begun in run.moves), alone)
 
     def _lands(self, move: str) -> bool:
         return bool(move) and self._moves.kind(move) is Land
@@ -111,7 +120,7 @@ class WayBack:
         if leg < len(came):
             self._moves.track = came[:leg]
             return self._legs(came[leg:])
-        run = next((run.moves for run in self._robot.runs if begun in run.moves), (begun,))
+        run = self._run(begun)
         flown = list(self._places(last, run[run.index(begun) :]))[: leg - len(came)] if begun else []
         self._moves.track = [*came, *flown]
         return self._legs_back(came, flown)

@@ -20,7 +20,7 @@ from mmrs_core.testing.programs import (
 from mmrs_mavlink.driving.moves import Moves
 from mmrs_mavlink.driving.way_back import WayBack, sortie_of
 from mmrs_mavlink.plugin.controllers import robot_of
-from mmrs_mavlink.program import Policy
+from mmrs_mavlink.program import Object, Policy
 from mmrs_mavlink.vehicles.dry import DryVehicle
 from mmrs_runtime.clock import Clock
 from mmrs_runtime.controllers.places import distance, offset
@@ -166,6 +166,30 @@ def test_a_way_back_is_looked_for_before_the_vehicle_hears_a_word():
         WayBack(ROBOT, moves, vehicle, 20.0).check(MOVES[: MOVES.index("s1") + 1], "s2")
     assert vehicle.went == []
     assert moves.track == []
+
+
+def test_nobody_looks_for_objects_before_the_vehicle_sets_out():
+    asked = []
+    steps = [
+        replace(step, movement=replace(step.movement, at=Object("tent"))) if step.move == "s2" else step
+        for step in ROBOT.steps
+    ]
+    robot, vehicle = replace(ROBOT, steps=tuple(steps)), Vehicle(50.0, 55.0, 20.0)
+    place = ROBOT.steps[MOVES.index("s2")].movement.at
+
+    def locate(target, state):
+        asked.append(state)
+        return place
+
+    moves = Moves(robot, vehicle, Clock(1e6), {"tent": locate}, lambda kind, name, content: None)
+    way, passed = WayBack(robot, moves, vehicle, 20.0), MOVES[: MOVES.index("s1") + 1]
+    way.check(passed, "s2")
+    assert not asked
+    way.know(passed, "s2")
+    assert asked
+    vehicle.go_to(Vehicle(-60.0, 20.0, 20.0).state().place, None, None, False)
+    with pytest.raises(Refused, match="bring it home"):
+        way.check([*passed, "s2"], "s3")
 
 
 def test_a_vehicle_that_has_not_begun_must_be_at_home():
