@@ -14,7 +14,7 @@ from typing import TypeAlias
 from ..bus.words import CommandId, Find
 from ..conditions import awaiting, question_of
 from ..faults import BATTERY_LOW, DEVICE_SILENT, LINK_LOST, LOG_FAILED, PEER_LOST, reason_of
-from ..policies import COMES_DOWN, NOTHING
+from ..policies import COMES_DOWN, CONTINUE, NOTHING
 from ..program import Choose, Notify, SlotId, Then
 from ..records.steps import StepRecord
 from ..semantics import Phase, Step, action_at, awaited, fault, steps
@@ -257,13 +257,21 @@ class Life(Situation):
             if self.ordered is not None:
                 raise Broken(*self.ordered)
             if why := self._slots.trouble(self.id):
-                found = Fault(LOG_FAILED, why)
-                if not self.answers().bears(found):
-                    raise Broken(found)
+                self._bear_trouble(why)
             if not self.held:
                 return
             self._look()
             yield self._later()
+
+    def _bear_trouble(self, why: str) -> None:
+        """Go on, and say so once, though what others tell the robot cannot be kept; break off if it must."""
+        found = Fault(LOG_FAILED, why)
+        if not self.answers().bears(found):
+            raise Broken(found)
+        if why != self._borne:
+            self._borne = why
+            self._run.say(self, f"carries on although {why}")
+            self.decided(LOG_FAILED, why, CONTINUE)
 
     def _room(self) -> Waits:
         """Wait for ever once the run has made as many steps as it may."""

@@ -83,6 +83,7 @@ class Situation:
         self._pausing, self._held_since = False, 0.0
         self._looked, self._look_at = 0.0, inf
         self._unsure = False
+        self._borne = ""
         self.sending = False
 
     def restore(self, records: Iterable[StepRecord]) -> None:

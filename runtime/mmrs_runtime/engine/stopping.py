@@ -151,6 +151,8 @@ class Stopping:
         elif not stopping:
             self._unconfirmed.pop(robot.id, None)
             self._say(robot, self._done(robot, now))
+            if self._needs_company(robot) and robot.halt.response != NOTHING:
+                self._say(robot, "is watched; interrupt to end")
             self._tell_battery(robot)
         self._obedience.stopped(robot.id, stopping, trouble)
 

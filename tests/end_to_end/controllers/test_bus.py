@@ -193,7 +193,7 @@ def test_a_robot_that_cannot_keep_its_slots_does_as_its_policy_says(controllers,
         journal.mkdir()
         (_, said_alpha), (code, said) = (end(alpha), end(beta))
         assert (alpha.returncode, code) == codes, said_alpha + said
-    words = {"LAND": "LOG_FAILED: its slots cannot be kept", "CONTINUE": "no answer from 'beta'"}
+    words = {"LAND": "LOG_FAILED: its slots cannot be kept", "CONTINUE": "no answer from beta"}
     assert words[response] in said_alpha + said
     fault = {"LAND": {"beta": "LOG_FAILED"}, "CONTINUE": {"alpha": "PEER_LOST", "beta": "PEER_LOST"}}
     assert made.replayed(partial=True).faults == fault[response]

@@ -134,7 +134,7 @@ def test_a_pilot_who_takes_over_is_left_alone(controllers, hangar):
         time.sleep(0.5)
         interrupt_twice(process)
         process.communicate(timeout=60)
-    assert process.returncode == 1
+    assert process.returncode == 130
     assert vehicles["alpha"].received[heard:] == []
     assert vehicles["alpha"].autopilot.mode == LOITER
     assert made.replayed(partial=True).faults == {"alpha": "TAKEN_OVER"}
@@ -169,7 +169,7 @@ def test_a_robot_that_holds_is_watched_until_its_link_is_lost(controllers, hanga
         vehicles["alpha"].mute()
         _, said = process.communicate(timeout=60)
     assert process.returncode == 5, said
-    assert "cannot carry out HOLD: the vehicle has been silent" in said
+    assert "not known to have stopped (HOLD): LINK_LOST: the vehicle has been silent" in said
 
 
 def test_a_robot_that_holds_is_left_to_whoever_takes_over(controllers, hangar):

@@ -181,7 +181,7 @@ def test_a_robot_that_holds_after_a_fault_obeys_what_can_still_be_done(controlle
     made = controllers(survey(leg=20.0))
     vehicles, links = hangar(made.program, speedup=SPEEDUP, silent=frozenset({2000}))
     with made.start("fleet.py", *links, "--tries", "2") as process:
-        assert any("holds; interrupt to end" in line for line in process.stderr)
+        assert any("is watched; interrupt to end" in line for line in process.stderr)
         refused = order(made, "resume")
         assert (refused["confirmed"], refused["why"]) == (False, "its program has ended")
         told = order(made, "status")

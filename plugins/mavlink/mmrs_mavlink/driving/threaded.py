@@ -417,5 +417,8 @@ class ThreadedVehicle(Vehicle):
         if kind == "reported":
             self.reported = {"name": name, "content": dict(content)}
         self.note(kind, {"name": name, "content": dict(content), "place": place})
+        if kind == "text":
+            self._with.say(f"{name}: {content['text']}")
+            return
         named = f" '{name}'" if name else ""
         self._with.say(f"{kind}{named}: {', '.join(f'{key} {value}' for key, value in content.items())}")
