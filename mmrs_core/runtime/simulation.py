@@ -131,11 +131,12 @@ class SimulatedRobot(Vehicle):
 
     def look(self, now: float) -> float:
         """See what is wrong, and otherwise whether the movement or action has finished."""
-        self.trouble = self._fault or self._battery.fault(self._leg(now), now, self._flow())
+        flow = self._flow()
+        self.trouble = self._fault or self._battery.fault(self._leg(now), now, flow)
         if self.trouble is None or self._bears:
             self.done = self._has_finished(now)
         self._bears = False
-        return self._next_event(now)
+        return self._next_event(now, flow)
 
     def bear(self, now: float) -> bool:
         """Go on in spite of what is wrong."""
@@ -150,13 +151,12 @@ class SimulatedRobot(Vehicle):
             self._move = None
         return True
 
-    def _next_event(self, now: float) -> float:
+    def _next_event(self, now: float, flow: Flow) -> float:
         """Return when the movement ends or something goes wrong."""
         if self._fault is not None:
             return now
         if self._legs[-1].end <= now:
             return inf
-        flow = self._flow()
         events = [self._legs[-1].end]
         for leg in self._legs[self._leg_index(now) :]:
             events += self._battery.events(leg, now, flow)

@@ -139,10 +139,12 @@ class LogWriter:
         Raises:
             OSError: it cannot be written.
         """
-        if record.robot not in self._files:
+        file = self._files.get(record.robot)
+        if file is None:
             path = self._folder / log_name(record.robot)
-            self._files[record.robot] = LogFile(path, "a" if self._resumed else "w", synced=self._synced)
-        self._files[record.robot].write(record)
+            file = LogFile(path, "a" if self._resumed else "w", synced=self._synced)
+            self._files[record.robot] = file
+        file.write(record)
 
     def sync(self, robot: str, kept: Kept) -> None:
         """Have what was written of a robot be on the disk, as `LogFile.sync` does."""

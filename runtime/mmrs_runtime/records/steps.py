@@ -47,7 +47,6 @@ class StepRecord(NamedTuple):
 
 
 _FIELDS = StepRecord._fields
-_LINE = "{" + ",".join(f'"{name}":%s' for name in _FIELDS) + "}"
 _TEXT = json.encoder.encode_basestring
 _COUNTS = ("seq", "lamport")
 _NEVER_EMPTY = ("run", "robot", "move")
@@ -71,18 +70,10 @@ def to_line(record: StepRecord) -> str:
     if not isfinite(record.time):
         raise ValueError(f"time {record.time}: no number that JSON has")
     run, robot, seq, lamport, time, label, move, detail, slot = record
-    texts = (
-        _TEXT(run),
-        _TEXT(robot),
-        seq,
-        lamport,
-        repr(time),
-        _TEXT(label),
-        _TEXT(move),
-        _TEXT(detail),
-        _TEXT(slot),
+    return (
+        f'{{"run":{_TEXT(run)},"robot":{_TEXT(robot)},"seq":{seq},"lamport":{lamport},"time":{time!r},'
+        f'"label":"{label}","move":{_TEXT(move)},"detail":{_TEXT(detail)},"slot":{_TEXT(slot)}}}'
     )
-    return _LINE % texts
 
 
 def step_in(line: str) -> StepRecord:
