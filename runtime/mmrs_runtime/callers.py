@@ -48,7 +48,7 @@ class Callers:
         )
         self._silent: dict[socket.socket, float] = {}
         self._served: set[socket.socket] = set()
-        self._lock = threading.Lock()
+        self._lock = threading.Condition()
 
     def take(self) -> socket.socket | None:
         """Return the next caller; None if none came within a tick, or all that there is room for are served.
@@ -88,6 +88,12 @@ class Callers:
             with self._lock:
                 self._served.discard(caller)
                 self._silent[caller] = self._now()
+                self._lock.notify_all()
+
+    def finish(self, seconds: float) -> None:
+        """Wait until nobody is served any more, so long at most."""
+        with self._lock:
+            self._lock.wait_for(lambda: not self._served, seconds)
 
     def leave(self, caller: socket.socket) -> None:
         """Forget a caller that has gone."""

@@ -44,6 +44,9 @@ GREETING_SECONDS = 5.0
 DEAF_SECONDS = 60.0
 """How long a client may leave its answers unread."""
 
+LAST_SECONDS = 1.0
+"""How long a process that ends waits for answers to go out to those who gave orders."""
+
 SORE_SECONDS = 0.2
 CONNECTIONS = 16
 """How many clients at once are heard."""
@@ -107,13 +110,14 @@ class Control:
         self._thread.start()
 
     def close(self) -> None:
-        """Listen no more, and take the announcement away."""
+        """Listen no more, let answers go out that are known, and take the announcement away."""
         self._closing.set()
         with suppress(OSError):
             # A call wakes the thread that waits for calls.
             socket.create_connection(self._server.getsockname(), 1.0).close()
         self._thread.join()
         self._server.close()
+        self._callers.finish(LAST_SECONDS)
         self._path.unlink(missing_ok=True)
 
     def _listen(self) -> None:

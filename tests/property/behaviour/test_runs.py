@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from itertools import pairwise
 from math import dist
 
@@ -130,7 +129,7 @@ def test_a_step_of_another_kind_never_goes_unnoticed(program, decided, data):
     label = data.draw(st.sampled_from(["act", "ntf", "begin", "end", "take", "choose"]))
     if label == records[index].label:
         return
-    records[index] = replace(records[index], label=label)
+    records[index] = records[index]._replace(label=label)
     assert not replay(program, records).accepted
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import socket
+import threading
 from contextlib import ExitStack
 
 import pytest
@@ -102,3 +103,25 @@ def test_one_that_has_gone_takes_no_room(door):
     door.callers.leave(second)
     door.call()
     assert is_heard(first)
+
+
+def test_whoever_is_served_gets_the_answer_before_the_end(door):
+    near, far = door.call()
+    ended = threading.Event()
+
+    def finish() -> None:
+        door.callers.finish(60.0)
+        ended.set()
+
+    with door.callers.served(far):
+        threading.Thread(target=finish, daemon=True).start()
+        assert not ended.wait(0.1)
+        far.sendall(b"done\n")
+    assert ended.wait(60.0)
+    assert near.recv(5) == b"done\n"
+
+
+def test_the_end_waits_for_nobody_for_ever(door):
+    _, far = door.call()
+    with door.callers.served(far):
+        door.callers.finish(0.01)
