@@ -64,8 +64,9 @@ def blocks_of(text: str, page: str) -> list[Block]:
 class Reader:
     """Somebody who does in an empty folder what a page says, in the order in which it says it."""
 
-    def __init__(self, folder: Path) -> None:
-        self._folder = folder
+    def __init__(self, folder: Path, programs: Path | None = None) -> None:
+        """Read in a folder; `programs`: a folder whose programs go before those that are installed."""
+        self._folder, self._environment = folder, environment(programs)
         self._names: dict[str, object] = {"__name__": "page"}
 
     def follow(self, block: Block) -> None:
@@ -93,7 +94,7 @@ class Reader:
             done = subprocess.run(
                 ["bash", "-c", command],
                 cwd=self._folder,
-                env=environment(),
+                env=self._environment,
                 stdout=subprocess.PIPE,
                 stderr=subprocess.STDOUT,
                 text=True,
@@ -143,11 +144,11 @@ def alike(told: str, printed: str) -> bool:
     return re.fullmatch("".join(lines), printed if printed.endswith("\n") else f"{printed}\n") is not None
 
 
-def environment() -> dict[str, str]:
+def environment(programs: Path | None = None) -> dict[str, str]:
     """Return the variables of a terminal without colours in which the commands are found."""
-    here = Path(sys.executable).parent
+    folders = [programs, Path(sys.executable).parent, os.environ["PATH"]]
     return os.environ | {
-        "PATH": f"{here}{os.pathsep}{os.environ['PATH']}",
+        "PATH": os.pathsep.join(str(each) for each in folders if each is not None),
         "NO_COLOR": "1",
         "COLUMNS": "120",
     }

@@ -27,7 +27,7 @@ KINDS = {
     "robot_kinds": {PLAIN_ROBOT.metaclass: PLAIN_ROBOT},
     "move_kinds": {kind.metaclass: kind for kind in MOVE_KINDS},
 }
-FAST = settings(max_examples=60, deadline=None, suppress_health_check=[HealthCheck.too_slow])
+FAST = settings(max_examples=30, deadline=None, suppress_health_check=[HealthCheck.too_slow])
 FULL = settings(max_examples=600, deadline=None, suppress_health_check=[HealthCheck.too_slow])
 
 

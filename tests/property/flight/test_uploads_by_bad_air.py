@@ -93,7 +93,7 @@ anyhow = given(
 
 
 @anyhow
-@settings(max_examples=80, deadline=None)
+@settings(max_examples=40, deadline=None)
 def test_a_plan_is_kept_whole_or_refused_truthfully(firmware, kinds, size, before, air, seed):
     upload_all(firmware, kinds, size, before, air, seed)
 

@@ -24,7 +24,7 @@ from mmrs_core.testing.instances import drafts_of
 NEVER = 10**9
 LANGUAGES = ("urn:mmrs:mission:1.0", "urn:mmrs:robot:1.0", "urn:mmrs:behaviour:1.0", "urn:test:zoo")
 RELAXED = settings(
-    deadline=None, max_examples=100, suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large]
+    deadline=None, max_examples=50, suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large]
 )
 JUNK = (
     *("", "x", "1_0", " 5 ", "5", "-0.0", "NaN", "nan", "inf", "1.5d", "1e400", "\u0663.5", "true", "True"),

@@ -61,7 +61,7 @@ def a_damaged_model_never_breaks_us(registry, data):
         assert fault.place.line > 0
 
 
-@settings(deadline=None, max_examples=300)
+@settings(deadline=None, max_examples=150)
 @given(data=st.data())
 def test_a_damaged_model_is_unreadable_or_has_faults_but_never_breaks_us(registry, data):
     a_damaged_model_never_breaks_us(registry, data)
@@ -74,14 +74,14 @@ def test_many_damaged_models_never_break_us(registry, data):
     a_damaged_model_never_breaks_us(registry, data)
 
 
-@settings(deadline=None, max_examples=200)
+@settings(deadline=None, max_examples=100)
 @given(st.binary(max_size=200))
 def test_random_bytes_are_unreadable(registry, data):
     model, refusal = outcome(data, registry)
     assert refusal or model.diagnostics
 
 
-@settings(deadline=None, max_examples=300)
+@settings(deadline=None, max_examples=150)
 @given(data=st.data())
 def test_swapped_words_are_faults_with_a_place(registry, data):
     example = data.draw(st.sampled_from(EXAMPLES))

@@ -19,7 +19,7 @@ LANGUAGES = (
     "urn:test:zoo",
 )
 RELAXED = settings(
-    deadline=None, max_examples=100, suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large]
+    deadline=None, max_examples=50, suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large]
 )
 
 

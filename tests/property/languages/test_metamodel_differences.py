@@ -19,7 +19,7 @@ from mmrs_core.testing.instances import instances_of
 
 HARMLESS = [name for name, (_, _, verdict) in EDITS.items() if verdict != "incompatible"]
 RELAXED = settings(
-    deadline=None, max_examples=60, suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large]
+    deadline=None, max_examples=30, suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large]
 )
 
 

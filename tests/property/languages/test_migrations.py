@@ -37,7 +37,7 @@ KEYS = {
     "home": "nest",
 }
 RELAXED = settings(
-    deadline=None, max_examples=60, suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large]
+    deadline=None, max_examples=30, suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large]
 )
 
 
@@ -147,7 +147,7 @@ def a_damaged_old_model_never_breaks_us(new, data):
     assert to_json(model.roots, new)
 
 
-@settings(RELAXED, max_examples=300)
+@settings(RELAXED, max_examples=150)
 @given(data=st.data())
 def test_a_damaged_old_model_never_breaks_us(new, data):
     a_damaged_old_model_never_breaks_us(new, data)

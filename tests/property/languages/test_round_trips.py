@@ -18,7 +18,7 @@ from mmrs_core.testing.instances import drafts_of, instances_of
 
 EXAMPLES = sorted((Path(__file__).parents[3] / "examples").rglob("*.xmi"))
 RELAXED = settings(
-    deadline=None, max_examples=60, suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large]
+    deadline=None, max_examples=30, suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large]
 )
 
 

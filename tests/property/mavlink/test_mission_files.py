@@ -71,7 +71,7 @@ def items_of_list(flight):
 
 
 @given(flights())
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=30, deadline=None)
 def test_a_list_holds_the_items_of_the_plan(flight):
     assert items_of_list(flight) == items_of_plan(flight)
 

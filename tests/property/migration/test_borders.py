@@ -7,7 +7,7 @@ from shapely.geometry import LinearRing, Point, Polygon
 
 from mmrs_core.migration.building.shapes import border_of
 
-ROUNDS = settings(max_examples=300, deadline=None, derandomize=True)
+ROUNDS = settings(max_examples=150, deadline=None, derandomize=True)
 MANY = settings(ROUNDS, max_examples=20_000)
 LEAST = 1e-12
 """Degrees; a tenth of a micrometre, which is what rounding may take."""

@@ -12,7 +12,7 @@ from mmrs_core.migration.rules.mapping_file import read_mapping
 from mmrs_core.resources import shipped
 
 ROUNDS = settings(
-    max_examples=150,
+    max_examples=75,
     deadline=None,
     suppress_health_check=[HealthCheck.function_scoped_fixture, HealthCheck.too_slow],
     derandomize=True,

@@ -19,7 +19,7 @@ def check(seed):
     return True
 
 
-@pytest.mark.parametrize("seed", range(20, 32))
+@pytest.mark.parametrize("seed", range(20, 25))
 def test_a_random_plan_can_be_carried_out(seed):
     check(seed)
 

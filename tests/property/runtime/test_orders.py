@@ -263,7 +263,7 @@ AT_ONCE = st.lists(EVENTS, min_size=1, max_size=3)
 SEQUENCES = given(st.lists(AT_ONCE, max_size=12), *[st.booleans()] * 3)
 
 
-@settings(max_examples=400, deadline=None)
+@settings(max_examples=200, deadline=None)
 @SEQUENCES
 def test_every_order_is_answered_once_and_confirmed_only_when_it_is_obeyed(events, armed, stays, resumed):
     check(events, armed, stays, resumed)

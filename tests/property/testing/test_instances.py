@@ -19,7 +19,7 @@ from mmrs_core.testing.instances import drafts_of, instances_of, models_of
 HERE = Path(__file__).parent
 PROJECT = HERE.parents[2]
 RELAXED = settings(
-    deadline=None, max_examples=40, suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large]
+    deadline=None, max_examples=20, suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large]
 )
 KNOTS = "urn:test:knots"
 

@@ -63,7 +63,7 @@ def read_back(expression):
     return data.decode("utf-8")
 
 
-@settings(max_examples=100)
+@settings(max_examples=50)
 @given(st.text(st.characters(exclude_categories=("Cs",))))
 def test_a_text_is_written_so_that_it_can_be_read_back_and_lines_stay_short(text):
     made = literals.string(text)
