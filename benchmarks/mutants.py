@@ -24,7 +24,9 @@ PLANNING = ("tests/unit/planning", "tests/property/planning")
 ANALYSIS = ("tests/unit/analysis", "tests/property/analysis")
 ENGINE = ("tests/unit/runtime", "tests/unit/mmrs_runtime", "tests/property/runtime", "tests/property/bus")
 READER = ("tests/unit/languages", "tests/property/languages")
-VESSEL = tuple(f"plugins/auv/tests/{folder}" for folder in ("control", "movement", "body", "wire"))
+VESSEL = tuple(
+    f"plugins/auv/tests/{folder}" for folder in ("control", "movement", "body", "wire", "test_guard.py")
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -118,7 +120,6 @@ MUTANTS = (
         "vessel",
         "plugins/auv-vessel/auv_vessel",
         VESSEL,
-        ("gives-way", "control/vertical.py", "GIVE_WAY = 2.0", "GIVE_WAY = 200.0"),
         ("check-sum", "wire/stuffing.py", "bool(crc & 0x4000)", "bool(crc & 0x2000)"),
         ("leak", "control/failsafe.py", "LEAK_SAID = 2", "LEAK_SAID = 20"),
         ("deepest", "control/failsafe.py", "1.02 * max_depth + 0.5", "1.2 * max_depth + 5.0"),

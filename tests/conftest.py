@@ -13,11 +13,11 @@ import pytest
 
 IN_REAL_TIME = {
     "controllers": ("tests/end_to_end/controllers",),
-    "runs and buses": ("tests/conformance/bus", "tests/end_to_end/bus", "tests/end_to_end/run"),
+    "runs": ("tests/end_to_end/run",),
+    "buses": ("tests/conformance/bus", "tests/end_to_end/bus"),
     "vessels": ("tests/end_to_end/vessels", "plugins/auv/tests/manual"),
+    "faults": ("tests/end_to_end/faults", "tests/end_to_end/vehicles"),
     "parts of flights": (
-        "tests/end_to_end/faults",
-        "tests/end_to_end/vehicles",
         "tests/unit/flight",
         "tests/unit/mmrs_runtime",
         "tests/unit/mavlink/backend/test_response.py",
@@ -26,7 +26,7 @@ IN_REAL_TIME = {
     ),
 }
 """Tests that keep to the wall clock, by group: they mostly wait; those of a group go one after another."""
-TOGETHER = ("tests/conformance/emf",)
+TOGETHER = ("tests/conformance/emf", "tests/end_to_end/examples")
 """Folders whose tests share what is long in the making; those of other folders do so within a file."""
 LONG = (
     *TOGETHER,
