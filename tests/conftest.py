@@ -2,45 +2,18 @@
 
 from __future__ import annotations
 
+import json
 import os
 import shutil
 import sys
 import tempfile
 from functools import cache
-from pathlib import Path, PurePosixPath
+from pathlib import Path
 
 import pytest
 
-IN_REAL_TIME = {
-    "controllers": ("tests/end_to_end/controllers",),
-    "runs": ("tests/end_to_end/run",),
-    "buses": ("tests/conformance/bus", "tests/end_to_end/bus"),
-    "vessels": ("tests/end_to_end/vessels", "plugins/auv/tests/manual"),
-    "faults": ("tests/end_to_end/faults", "tests/end_to_end/vehicles"),
-    "parts of flights": (
-        "tests/unit/flight",
-        "tests/unit/mmrs_runtime",
-        "tests/unit/mavlink/backend/test_response.py",
-        "tests/unit/runtime",
-        "tests/unit/sitl",
-    ),
-}
-"""Tests that keep to the wall clock, by group: they mostly wait; those of a group go one after another."""
-TOGETHER = ("tests/conformance/emf", "tests/end_to_end/examples")
-"""Folders whose tests share what is long in the making; those of other folders do so within a file."""
-LONG = (
-    *TOGETHER,
-    "plugins/auv/tests/backend/test_rehearsed.py",
-    "plugins/auv/tests/control/test_failsafe.py",
-    "plugins/auv/tests/movement/test_closed_loop.py",
-    "plugins/auv/tests/test_guard.py",
-    "tests/documentation/test_pages.py",
-    "tests/documentation/test_readme.py",
-    "tests/documentation/test_tutorial.py",
-    "tests/end_to_end/new_plugins/test_new_plugins.py",
-)
-"""What begins early, lest others wait for its end."""
 AT_WORK_WITH_OTHERS = "PYTEST_XDIST_WORKER" in os.environ
+GROUPS = pytest.StashKey[Path]()
 GIVING_WAY = 10
 """Niceness of workers, and of the processes that they start, once they have no tests in real time left."""
 
@@ -92,58 +65,74 @@ def take_time_for_examples() -> None:
     settings.load_profile("unhurried")
 
 
-def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Give tests with full counts time enough; have workers begin with what keeps to the wall clock."""
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    """Give tests with full counts time enough; sort the tests of workers, and write down their groups."""
     for item in items:
         if item.get_closest_marker("thorough") and not item.get_closest_marker("timeout"):
             item.add_marker(pytest.mark.timeout(3600))
     if AT_WORK_WITH_OTHERS:
-        items.sort(key=lambda item: rank_of(group_of(item.nodeid)))
+        items.sort(key=rank)
+        if config.workerinput["workerid"] == "gw0":  # type: ignore[attr-defined]
+            grouped = {file_of(item.nodeid): group for item in items if (group := group_of(item))}
+            Path(config.workerinput["groups"]).write_text(json.dumps(grouped))  # type: ignore[attr-defined]
 
 
-def rank_of(group: str) -> int:
-    """Return when a group of tests begins: those in real time, those that take long, all others."""
-    return 0 if group in IN_REAL_TIME else 1 if group in LONG else 2
+def rank(item: pytest.Item) -> int:
+    """Return when a test begins: those in real time, those that take long, all others."""
+    if item.get_closest_marker("real_time"):
+        return 0
+    return 1 if item.get_closest_marker("long") or item.get_closest_marker("together") else 2
+
+
+def group_of(item: pytest.Item) -> str | None:
+    """Return the group that a marker of the test's file names, if one does."""
+    marker = item.get_closest_marker("real_time") or item.get_closest_marker("together")
+    return marker.args[0] if marker else None
+
+
+def file_of(nodeid: str) -> str:
+    return nodeid.partition("::")[0]
 
 
 class Courtesy:
-    """Has tests that only compute, those of plug-ins, too, give way to those that keep to the wall clock."""
+    """Has tests that only compute give way to those that keep to the wall clock."""
 
     @pytest.hookimpl(tryfirst=True)
     def pytest_runtest_setup(self, item: pytest.Item) -> None:
-        if group_of(item.nodeid) not in IN_REAL_TIME:
+        if not item.get_closest_marker("real_time"):
             os.nice(GIVING_WAY - os.nice(0))
 
 
 @pytest.hookimpl(optionalhook=True)
+def pytest_configure_node(node) -> None:
+    """Tell a worker where to write the groups: the scheduler sees tests' names, but not their markers."""
+    config = node.config
+    if GROUPS not in config.stash:
+        folder = Path(tempfile.mkdtemp(prefix="mmrs-tests-"))
+        config.add_cleanup(lambda: shutil.rmtree(folder, ignore_errors=True))
+        config.stash[GROUPS] = folder / "groups.json"
+    node.workerinput["groups"] = str(config.stash[GROUPS])
+
+
+@pytest.hookimpl(optionalhook=True)
 def pytest_xdist_make_scheduler(config: pytest.Config, log):
-    """Give each group of tests one worker: marks of xdist 3.8 are lost with pytest 9.2."""
+    """Give each group of tests, or else each file, one worker."""
     if config.getoption("dist") != "loadgroup":
         return None
     from xdist.scheduler import LoadScopeScheduling
 
     config.option.loadscopereorder = False
 
+    @cache
+    def groups() -> dict[str, str]:
+        return json.loads(config.stash[GROUPS].read_text())
+
     class ByGroup(LoadScopeScheduling):
         def _split_scope(self, nodeid: str) -> str:
-            return group_of(nodeid)
+            file = file_of(nodeid)
+            return groups().get(file, file)
 
     return ByGroup(config, log)
-
-
-def group_of(nodeid: str) -> str:
-    """Return the group of a test, whose tests one worker runs."""
-    return group_of_file(nodeid.partition("::")[0])
-
-
-@cache
-def group_of_file(name: str) -> str:
-    """Return the group of the tests of a file: their folder's, or their own."""
-    path = PurePosixPath(name)
-    for group, folders in (*IN_REAL_TIME.items(), *((folder, (folder,)) for folder in TOGETHER)):
-        if any(path.is_relative_to(folder) for folder in folders):
-            return group
-    return name
 
 
 @pytest.fixture

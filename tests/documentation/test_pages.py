@@ -9,6 +9,8 @@ import pytest
 from code_blocks import Block, Reader, alike, blocks_of, commands_of
 from hypothesis import HealthCheck, settings
 
+pytestmark = pytest.mark.long
+
 ROOT = Path(__file__).parents[2]
 DOCS = ROOT / "docs"
 JUDGED_ELSEWHERE = ("diagnostics.md", "hooks.md", "tutorial/")

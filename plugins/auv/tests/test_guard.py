@@ -22,6 +22,8 @@ from auv_vessel.wire.catalogue import EMERGENCIES, REASONS
 from auv_vessel.wire.codec import Codec, Value
 from auv_vessel.wire.frame import Frame
 
+pytestmark = pytest.mark.long
+
 DIVING = replace(pool_sheet(), home=(0.0, 0.0, 2.0))
 
 

@@ -8,6 +8,8 @@ import pytest
 
 from mmrs_runtime.semantics import Outcome, entry, steps
 
+pytestmark = pytest.mark.real_time("buses")
+
 
 def check_success(fleet):
     result = fleet.replayed()

@@ -15,7 +15,7 @@ from mmrs_core.languages.reading import read_model
 from mmrs_core.languages.registry import MetamodelSource, registry_with
 from mmrs_core.languages.writing import write_model
 
-pytestmark = pytest.mark.peer
+pytestmark = [pytest.mark.together("emf"), pytest.mark.peer]
 
 ECORE = Path(__file__).parents[2] / "fixtures" / "models" / "values.ecore"
 CERTAIN = [

@@ -9,7 +9,7 @@ from mmrs_core.languages.element import metaclass_of
 from mmrs_core.languages.metamodels.export import export_metamodels
 from mmrs_core.languages.registry import MetamodelSource, registry_with
 
-pytestmark = pytest.mark.peer
+pytestmark = [pytest.mark.together("emf"), pytest.mark.peer]
 
 
 def test_emf_finds_no_fault_in_the_metamodels_as_they_stand(referee, every_metamodel):

@@ -21,7 +21,7 @@ from mmrs_core.languages.xmi import quick_reader, quick_writer
 from mmrs_core.testing.instances import drafts_of, instances_of
 from mmrs_core.testing.values import WORDS
 
-pytestmark = pytest.mark.peer
+pytestmark = [pytest.mark.together("emf"), pytest.mark.peer]
 
 SEED = 20261121
 COUNTS = [pytest.param(100), pytest.param(1000, marks=pytest.mark.thorough)]

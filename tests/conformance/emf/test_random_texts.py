@@ -14,7 +14,7 @@ from emf_description import model_lines
 from mmrs_core.languages.reading import read_model
 from mmrs_core.languages.registry import MetamodelSource, registry_with
 
-pytestmark = pytest.mark.peer
+pytestmark = [pytest.mark.together("emf"), pytest.mark.peer]
 
 ECORE = Path(__file__).parents[2] / "fixtures" / "models" / "values.ecore"
 HEAD = '<xmi:XMI xmi:version="2.0" xmlns:xmi="http://www.omg.org/XMI" xmlns:v="urn:test:values">\n'

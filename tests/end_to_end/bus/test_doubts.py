@@ -15,6 +15,8 @@ from mmrs_runtime.bus.carriers import doubts
 from mmrs_runtime.bus.carriers.doubts import Papers, why_not
 from mmrs_runtime.bus.carriers.sessions import Endpoints
 
+pytestmark = pytest.mark.real_time("buses")
+
 
 def papers(folder, holder="b"):
     own = folder / holder

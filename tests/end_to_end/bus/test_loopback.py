@@ -12,6 +12,8 @@ from ports import free_port
 from mmrs_runtime.bus.carriers import looking, over_zenoh, sessions
 from mmrs_runtime.bus.carriers.sessions import Endpoints, exposed
 
+pytestmark = pytest.mark.real_time("buses")
+
 SOCKETS = Path("/proc/self/net")
 LISTENS = {"tcp": "0A", "tcp6": "0A", "udp": "07", "udp6": "07"}
 

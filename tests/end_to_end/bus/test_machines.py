@@ -16,7 +16,11 @@ import pytest
 from mmrs_core.behaviour.replay import replay
 from mmrs_runtime.semantics import Outcome
 
-pytestmark = [pytest.mark.thorough, pytest.mark.skipif(bool(why := machines.why_not()), reason=why)]
+pytestmark = [
+    pytest.mark.real_time("buses"),
+    pytest.mark.thorough,
+    pytest.mark.skipif(bool(why := machines.why_not()), reason=why),
+]
 
 
 class Asking:

@@ -10,6 +10,8 @@ from stalls import Stalls
 
 from mmrs_runtime.bus import Incomplete, begin_together
 
+pytestmark = pytest.mark.real_time("buses")
+
 NAMES = ("a", "b", "c")
 CLOCKS_AGREE = 1e-4
 """Seconds that rounding may cost."""

@@ -18,6 +18,8 @@ from mmrs_runtime.bus.carriers.over_zenoh import ZenohCarrier
 from mmrs_runtime.bus.carriers.sessions import Endpoints
 from mmrs_runtime.bus.program_bus import shared_bus
 
+pytestmark = pytest.mark.real_time("buses")
+
 SCRIPT = Path(bus_walking.__file__)
 LEASE = 1.5
 

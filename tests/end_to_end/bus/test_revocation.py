@@ -11,6 +11,8 @@ from mmrs_core.cli.bus_certificates import revoke
 from mmrs_runtime.bus.carriers import over_zenoh, renewing
 from mmrs_runtime.bus.watching import Unwelcome
 
+pytestmark = pytest.mark.real_time("buses")
+
 LONG_ENOUGH = 1.5
 
 

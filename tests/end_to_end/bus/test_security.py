@@ -14,6 +14,8 @@ from mmrs_core.cli.running import run_command
 from mmrs_runtime.bus.carriers.over_zenoh import ZenohCarrier
 from mmrs_runtime.bus.carriers.sessions import Endpoints
 
+pytestmark = pytest.mark.real_time("buses")
+
 LONG_ENOUGH = 1.5
 
 

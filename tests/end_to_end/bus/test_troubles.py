@@ -12,6 +12,8 @@ from mmrs_runtime.bus.carriers.looking import states_of
 from mmrs_runtime.bus.carriers.sessions import Endpoints
 from mmrs_runtime.bus.words import digest
 
+pytestmark = pytest.mark.real_time("buses")
+
 
 @pytest.fixture
 def pair(ends, until):

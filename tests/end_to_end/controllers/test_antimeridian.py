@@ -8,6 +8,8 @@ from mmrs_core.behaviour.program import Transition
 from mmrs_core.scene import Frame
 from mmrs_core.testing.programs import LAND, go_to, program, robot_program, take_off
 
+pytestmark = pytest.mark.real_time("controllers")
+
 AUTO = 3
 FIJI = Frame("EPSG:4326", -17.0, 179.9999, 20.0, "MSL")
 """Ten metres west of the line."""

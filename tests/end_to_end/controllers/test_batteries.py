@@ -10,6 +10,8 @@ import pytest
 from mmrs_core.scene import Policy
 from mmrs_core.testing.programs import LAND, move, program, robot_program, take_off
 
+pytestmark = pytest.mark.real_time("controllers")
+
 TAKE_OFF = 22
 
 

@@ -27,6 +27,8 @@ from mmrs_core.testing.programs import (
 )
 from mmrs_runtime.semantics import Outcome
 
+pytestmark = pytest.mark.real_time("controllers")
+
 
 @pytest.fixture
 def endpoint():

@@ -11,6 +11,8 @@ from mmrs_core.behaviour.program import Transition
 from mmrs_core.scene import Policy
 from mmrs_core.testing.programs import LAND, go_to, program, robot_program, take_off
 
+pytestmark = pytest.mark.real_time("controllers")
+
 
 def choosing(condition, *policies):
     """Return a drone that goes to `a` if a condition holds, else home."""

@@ -21,6 +21,8 @@ from mmrs_core.testing.programs import (
 )
 from mmrs_mavlink.plugin.controllers import MAVLINK_PYTHON
 
+pytestmark = pytest.mark.real_time("controllers")
+
 ACTS = replace(go_to("a", (0.0, 12.0, 5.0)), after=(photo("device", "act"),))
 MADE = program(robot_program("alpha", [take_off("up", 5.0), ACTS, LAND]))
 REEL = DeviceWiring(

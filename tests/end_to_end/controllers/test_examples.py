@@ -13,6 +13,8 @@ from mmrs_core.behaviour.replay import replay
 from mmrs_core.resources import shipped
 from mmrs_runtime.semantics import Outcome
 
+pytestmark = pytest.mark.real_time("controllers")
+
 EXAMPLES = ("carbon-dioxide", "drone-and-rover", "mixed-team", "outfall", "pool", "solar-park")
 OTHERS = ("carbon-dioxide", "drone-and-rover", "outfall", "solar-park")
 

@@ -23,6 +23,8 @@ from mmrs_core.testing.programs import (
 )
 from mmrs_runtime.orders.ordering import give
 
+pytestmark = pytest.mark.real_time("controllers")
+
 BRAKE = 17
 LOITER = 5
 AT_HOME = 0.6

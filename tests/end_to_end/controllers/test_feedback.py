@@ -14,6 +14,8 @@ from mmrs_core.sitl import Settings, SimulatedVehicle
 from mmrs_core.testing.programs import LAND, feedback, move, program, robot_program, take_off
 from mmrs_runtime.orders.ordering import give
 
+pytestmark = pytest.mark.real_time("controllers")
+
 LONG = "a word that is longer than one frame of MAVLink can carry"
 STAYS = replace(move("stay", "HoldPosition", duration=40.0), before=(feedback("seen", ("what", LONG)),))
 REPORTS = program(robot_program("alpha", [take_off("up", 5.0), STAYS, LAND]))

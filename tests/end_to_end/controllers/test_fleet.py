@@ -19,6 +19,8 @@ from mmrs_core.testing.programs import (
 )
 from mmrs_runtime.semantics import Outcome
 
+pytestmark = pytest.mark.real_time("controllers")
+
 PHOTO = 2000
 AT_HOME = 0.6
 """Metres from home at which a vehicle may land: the radius in which places count as reached, and a little."""

@@ -19,6 +19,8 @@ from mmrs_core.testing.programs import (
 )
 from mmrs_mavlink.plugin.controllers import MAVLINK_PYTHON
 
+pytestmark = pytest.mark.real_time("controllers")
+
 SHELL = ((20.0, 0.0), (60.0, 0.0), (60.0, 40.0), (20.0, 40.0))
 SAFETY, ERROR, HALF = 2.0, 0.5, 0.5
 YARD = Area("yard", AreaUse.FORBIDDEN, SHELL, safety_distance=SAFETY)

@@ -20,6 +20,8 @@ from mmrs_runtime.clock import Clock
 from mmrs_runtime.faults import Fault
 from mmrs_runtime.ports import NOTHING
 
+pytestmark = pytest.mark.real_time("controllers")
+
 UP_AND_DOWN = program(robot_program("alpha", [take_off("up", 5.0), LAND]))
 TWO = two_drones()
 NOISE = b"\xfd\x05\x00\x00\x00\x01\x01\x00\x00\x00noise"

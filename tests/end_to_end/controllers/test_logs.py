@@ -20,6 +20,8 @@ from mmrs_core.testing.programs import (
     take_off,
 )
 
+pytestmark = pytest.mark.real_time("controllers")
+
 UP_AND_DOWN = program(robot_program("alpha", [take_off("up", 5.0), LAND]))
 
 

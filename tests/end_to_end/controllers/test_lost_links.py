@@ -21,6 +21,8 @@ from mmrs_core.testing.programs import (
 )
 from mmrs_mavlink.vehicles.modes import LINK_LOST
 
+pytestmark = pytest.mark.real_time("controllers")
+
 ARM = 400
 
 

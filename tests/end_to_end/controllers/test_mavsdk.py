@@ -27,6 +27,8 @@ from mmrs_mavlink.services.commands import command
 from mmrs_mavlink.services.uploads import mission_of
 from mmrs_runtime.clock import Clock
 
+pytestmark = pytest.mark.real_time("controllers")
+
 PEERS = Path(__file__).parents[2] / "peers"
 
 

@@ -19,6 +19,8 @@ from mmrs_core.testing.programs import quad, target_input, two_drones
 from mmrs_mavlink.plugin.plans.qgc import QGC_PLAN
 from mmrs_mavlink.plugin.plans.wpl import WPL
 
+pytestmark = pytest.mark.real_time("controllers")
+
 IMPORTER = Path(__file__).parents[2] / "peers" / "mavsdk_import.py"
 
 

@@ -12,6 +12,8 @@ from mmrs_core.behaviour.program import Transition
 from mmrs_core.sitl.items import MISSION
 from mmrs_core.testing.programs import LAND, go_to, program, robot_program, take_off
 
+pytestmark = pytest.mark.real_time("controllers")
+
 AUTO, BRAKE = 3, 17
 PLACES = [(0.0, 60.0, 20.0), (60.0, 60.0, 20.0), (60.0, 0.0, 20.0), (30.0, -30.0, 20.0), (0.0, -60.0, 20.0)]
 

@@ -13,6 +13,8 @@ from mmrs_core.testing.programs import LAND, go_to, move, photo, program, robot_
 from mmrs_runtime.orders.calling import Unreachable
 from mmrs_runtime.orders.ordering import give
 
+pytestmark = pytest.mark.real_time("controllers")
+
 BRAKE, GUIDED, LANDING = 17, 4, 9
 AT_HOME = 0.6
 """Metres from home at which a vehicle may land: the radius in which places count as reached, and a little."""

@@ -9,6 +9,8 @@ import pytest
 from mmrs_core.behaviour.program import Transition
 from mmrs_core.testing.programs import LAND, go_to, program, robot_program, take_off
 
+pytestmark = pytest.mark.real_time("controllers")
+
 OFFBOARD, TAKE_OFF, MISSION, LANDING = 0x6_0000, 0x204_0000, 0x404_0000, 0x604_0000
 PASSED = 2.5
 """Metres from a place of a run at which it counts as passed, and what a vehicle flies in a tick."""

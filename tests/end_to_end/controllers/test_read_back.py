@@ -15,6 +15,8 @@ from mmrs_mavlink.services.items import Item
 from mmrs_runtime.clock import Clock
 from mmrs_runtime.faults import Refused
 
+pytestmark = pytest.mark.real_time("controllers")
+
 WAYPOINT, SPEED, VERTEX, RALLY_POINT = 16, 178, 5002, 5100
 SEA, RELATIVE, SEA_INT, RELATIVE_INT, TERRAIN, TERRAIN_INT, NO_FRAME = 0, 3, 5, 6, 10, 11, 2
 MISSION, FENCE, RALLY = 0, 1, 2

@@ -26,6 +26,8 @@ from mmrs_core.testing.programs import (
 )
 from mmrs_runtime.orders.ordering import give
 
+pytestmark = pytest.mark.real_time("controllers")
+
 TAKE_OFF = 22
 AT_HOME = 0.6
 """Metres from home at which a vehicle may land: the radius in which places count as reached, and a little."""

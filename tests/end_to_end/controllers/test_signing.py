@@ -6,6 +6,8 @@ import pytest
 
 from mmrs_core.testing.programs import LAND, program, robot_program, take_off
 
+pytestmark = pytest.mark.real_time("controllers")
+
 KEY = bytes(range(32))
 UP_AND_DOWN = program(robot_program("alpha", [take_off("up", 5.0), LAND]))
 

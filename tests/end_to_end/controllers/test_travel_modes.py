@@ -15,6 +15,8 @@ from mmrs_mavlink.program import Travel
 from mmrs_mavlink.vehicles.travel import set_up
 from mmrs_runtime.clock import Clock
 
+pytestmark = pytest.mark.real_time("controllers")
+
 SAFE = Travel("SAFE", radius=1.0, margin=4.0)
 AGGRESSIVE = Travel("AGGRESSIVE", radius=2.0, margin=0.0)
 

@@ -10,6 +10,8 @@ from mmrs_core.languages.grounding.scenes import robot_type_of
 from mmrs_core.languages.reading import read_model
 from mmrs_core.runtime.run import simulate
 
+pytestmark = pytest.mark.together("examples")
+
 
 @pytest.fixture(scope="module")
 def model(contributions, folder_of):

@@ -18,6 +18,8 @@ from mmrs_core.pipeline import simulate
 from mmrs_core.runtime.run import Run
 from mmrs_runtime.semantics import Outcome
 
+pytestmark = pytest.mark.together("examples")
+
 FOLDER = example_folder("lost-float")
 FLOAT = (23.5, 27.5)
 NEAR = 2.5

@@ -6,6 +6,8 @@ import pytest
 
 from mmrs_core.languages.element import descendants, metaclass_of
 
+pytestmark = pytest.mark.together("examples")
+
 BEGIN, END = "<!-- metaclasses: begin -->\n", "<!-- metaclasses: end -->\n"
 MISSIONS = (
     "carbon-dioxide",

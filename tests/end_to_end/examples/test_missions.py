@@ -15,6 +15,8 @@ from mmrs_core.diagnostics import Severity
 from mmrs_core.runtime.run import simulate
 from mmrs_core.scene import Serve, Step
 
+pytestmark = pytest.mark.together("examples")
+
 JUSTIFIED_UNKNOWNS = {
     name: {"range"} for name in ("Objects in the pool", "Outfall", "Course", "Two fields", "Lost float")
 }

@@ -9,6 +9,8 @@ import pytest
 from mmrs_core import pipeline
 from mmrs_core.errors import InfeasibleError, InvalidModelError
 
+pytestmark = pytest.mark.together("examples")
+
 MISTAKES = [
     ("carbon-dioxide", "mission.xmi", 'altitude="15.0" grid', 'altitude="150.0" grid', "MUL009"),
     ("carbon-dioxide", "mission.xmi", "gridResolution=", 'footprintWidth="5.0" gridResolution=', "SUR001"),

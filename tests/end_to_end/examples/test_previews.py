@@ -12,6 +12,8 @@ from mmrs_core.cli.preview.moves import with_moves
 from mmrs_core.cli.preview.page import page
 from mmrs_core.scene import Branch, Serve
 
+pytestmark = pytest.mark.together("examples")
+
 
 @pytest.fixture
 def picture_of(contributions):

@@ -13,6 +13,8 @@ from mmrs_core import pipeline
 from mmrs_core.contributions.checks import Status
 from mmrs_core.errors import InfeasibleError
 
+pytestmark = pytest.mark.together("examples")
+
 
 @pytest.fixture(scope="module")
 def yard(taken):

@@ -4,6 +4,8 @@ import pytest
 
 from mmrs_core import pipeline
 
+pytestmark = pytest.mark.together("examples")
+
 
 @pytest.fixture
 def pool(taken):

@@ -17,6 +17,8 @@ from mmrs_core.languages.reading import read_model
 from mmrs_core.languages.registry import Registry
 from mmrs_core.languages.writing import to_xmi
 
+pytestmark = pytest.mark.together("examples")
+
 SOLAR = "urn:mmrs:solar:1.0"
 ROWS = {"rows of the south field": 8, "rows of the east field": 5}
 

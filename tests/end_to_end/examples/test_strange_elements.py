@@ -15,6 +15,8 @@ from mmrs_core.hookspecs import hookimpl
 from mmrs_core.languages.registry import MetamodelSource
 from mmrs_core.plugins import load_plugins
 
+pytestmark = pytest.mark.together("examples")
+
 SOLAR = "urn:test:solar:1.0"
 ECORE = f"""<?xml version="1.0" encoding="UTF-8"?>
 <ecore:EPackage xmi:version="2.0" xmlns:xmi="http://www.omg.org/XMI"

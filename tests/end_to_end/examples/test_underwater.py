@@ -22,6 +22,8 @@ from mmrs_core.pipeline import simulate
 from mmrs_core.scene import Position
 from mmrs_runtime.semantics import Outcome
 
+pytestmark = pytest.mark.together("examples")
+
 TARGET, UP = (23.0, 8.0, -3.0), (25.0, 8.0)
 """Where the course's vehicle holds over the target, and comes up: metres east, north and up."""
 

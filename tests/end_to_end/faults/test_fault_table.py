@@ -19,6 +19,8 @@ from fault_table.trial import batches, fly
 
 from mmrs_core.scene import PolicyEvent
 
+pytestmark = pytest.mark.real_time("faults")
+
 ALL = (*ROWS, *ORDERS)
 FAST = tuple(row for row in ALL if row.fast)
 REST = tuple(row for row in ROWS if not row.fast)

@@ -15,6 +15,8 @@ from stalls import Stalls
 
 from mmrs_runtime.orders.ordering import give
 
+pytestmark = pytest.mark.real_time("faults")
+
 PATIENCE = 60.0
 SPEEDUP = 10.0
 MISSION_COUNT = "MISSION_COUNT"

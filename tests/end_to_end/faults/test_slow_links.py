@@ -15,7 +15,7 @@ DELAY = 0.15
 
 PATIENCE = 60.0
 
-pytestmark = pytest.mark.thorough
+pytestmark = [pytest.mark.real_time("faults"), pytest.mark.thorough]
 """Setting a vehicle up takes half a minute so; what a request is has tests of its own."""
 
 

@@ -10,6 +10,8 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 from mmrs_core.sitl.items import MISSION, RALLY
 from mmrs_core.sitl.transfers import MissionProtocol
 
+pytestmark = pytest.mark.real_time("faults")
+
 PATIENCE = 60.0
 SLOW = 0.15
 """Real seconds, either way: there and back it takes longer than the vehicles wait before they ask again."""

@@ -10,6 +10,8 @@ from pathlib import Path
 
 import pytest
 
+pytestmark = pytest.mark.long
+
 KINDS = {"polygon": "class", "line": "import", "point": "while-typing"}
 """A plug-in for each kind of task, by names that are hard on Python."""
 

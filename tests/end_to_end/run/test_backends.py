@@ -6,6 +6,7 @@ import json
 from contextlib import contextmanager
 from dataclasses import replace
 
+import pytest
 from flight_crew import SPEEDUP
 from patience import until
 from ports import free_port
@@ -17,6 +18,8 @@ from mmrs_core.testing.programs import move
 from mmrs_core.testing.small_programs import go, program, robot, robot_type
 from mmrs_mavlink.plugin.backend import MAVLINK
 from mmrs_runtime.engine.clocks import RealClock
+
+pytestmark = pytest.mark.real_time("runs")
 
 EARTH = Frame("EPSG:4326", 42.37, 13.35, 720.0, "MSL")
 ROVER = robot(

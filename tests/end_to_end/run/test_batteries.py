@@ -9,6 +9,8 @@ from real_runs import PATIENCE, begun, judged, ordered
 
 from mmrs_runtime.semantics import Outcome
 
+pytestmark = pytest.mark.real_time("runs")
+
 
 @pytest.mark.thorough
 def test_a_robot_that_came_down_elsewhere_for_its_battery_is_not_resumed_before_it_stands_at_home(fleet):

@@ -11,7 +11,7 @@ from mmrs_core.behaviour.log import read_logs
 from mmrs_core.behaviour.replay import replay
 from mmrs_runtime.semantics import Outcome
 
-pytestmark = pytest.mark.thorough
+pytestmark = [pytest.mark.real_time("runs"), pytest.mark.thorough]
 
 
 CALM, GUSTY = 0.0, 2.0

@@ -15,6 +15,8 @@ from fault_table.project import LATITUDE, LONGITUDE, OUT, Pad
 
 from mmrs_runtime.semantics import Outcome
 
+pytestmark = pytest.mark.real_time("runs")
+
 PATIENCE = 60.0
 SPEEDUP = 30.0
 PERCHED = Pad("a", "perch", stay=40.0)

@@ -16,6 +16,8 @@ from stalls import Stalls
 
 from mmrs_runtime.semantics import Outcome
 
+pytestmark = pytest.mark.real_time("runs")
+
 
 def control(fleet, order):
     """Give an order to all robots by `mmrs control`; return its answer by robot."""

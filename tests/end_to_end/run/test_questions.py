@@ -12,6 +12,8 @@ from fault_table.project import Pad
 
 from mmrs_runtime.semantics import Outcome
 
+pytestmark = pytest.mark.real_time("runs")
+
 PATIENCE = 60.0
 QUESTION = "go on?"
 PLAIN = '<moveTransitions from="//@robots.0/@moves.1" to="//@robots.0/@moves.2"'

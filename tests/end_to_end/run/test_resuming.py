@@ -26,6 +26,8 @@ from real_runs import (
 from mmrs_core.sitl import Settings, SimulatedVehicle
 from mmrs_runtime.semantics import Outcome
 
+pytestmark = pytest.mark.real_time("runs")
+
 STAYS = ("LINK_LOST", "HOLD", 5.0)
 """Has a vehicle be in the air still when its run is resumed, however long that takes on a busy machine."""
 

@@ -17,6 +17,8 @@ from real_runs import PATIENCE, SYNCHRONISED, begun, fly_by_hand, judged, landed
 from mmrs_core.cli import run
 from mmrs_runtime.semantics import Outcome
 
+pytestmark = pytest.mark.real_time("runs")
+
 FULL = Path("/dev/full")
 
 

@@ -13,6 +13,8 @@ from mmrs_core.behaviour.log import read_logs
 from mmrs_core.behaviour.replay import replay
 from mmrs_runtime.semantics import Outcome
 
+pytestmark = pytest.mark.real_time("faults")
+
 
 def _needs(fleet: str) -> list[pytest.MarkDecorator]:
     variable = getattr(FLEETS[fleet], "variable", "")

@@ -16,6 +16,8 @@ from mmrs_core.generation.writing import write
 from mmrs_core.testing.programs import target_input, two_drones
 from mmrs_mavlink.plugin.controllers import MAVLINK_PYTHON
 
+pytestmark = pytest.mark.real_time("faults")
+
 
 @pytest.mark.thorough
 def test_its_vehicles_are_started_reached_and_recorded(tmp_path, monkeypatch):

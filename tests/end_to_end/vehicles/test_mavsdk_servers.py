@@ -18,6 +18,8 @@ from mmrs_core.testing.programs import target_input, two_drones
 from mmrs_mavlink.plugin.controllers import MAVLINK_PYTHON
 from mmrs_runtime.semantics import Outcome
 
+pytestmark = pytest.mark.real_time("faults")
+
 UPLOADED = {"MISSION_REQUEST_INT", "MISSION_ACK", "MISSION_COUNT", "MISSION_ITEM_INT"}
 FLOWN = {"MISSION_CURRENT", "MISSION_ITEM_REACHED"}
 ALWAYS = {"COMMAND_ACK", "PARAM_VALUE", "GLOBAL_POSITION_INT", "EXTENDED_SYS_STATE"}

@@ -18,6 +18,8 @@ from mmrs_core.testing.programs import target_input, two_drones
 from mmrs_mavlink.plugin.controllers import MAVLINK_PYTHON
 from mmrs_runtime.semantics import Outcome
 
+pytestmark = pytest.mark.real_time("faults")
+
 SPEEDUP = 10.0
 OFFBOARD, MISSION = "guided", "auto"
 

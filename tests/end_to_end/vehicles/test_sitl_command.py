@@ -16,6 +16,8 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from mmrs_core.resources import shipped
 
+pytestmark = pytest.mark.real_time("faults")
+
 
 def start(*arguments: str) -> subprocess.Popen[str]:
     command = [sys.executable, "-W", "error", "-m", "mmrs_core", "sitl", *arguments]

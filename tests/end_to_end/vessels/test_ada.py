@@ -37,6 +37,8 @@ from mmrs_core.transformation.kinds import MOVE_KINDS
 from mmrs_runtime.engine.judging import standard_conditions
 from mmrs_runtime.semantics import Outcome
 
+pytestmark = pytest.mark.real_time("vessels")
+
 SLOTS = ("go", "GO")
 
 PHOTO = Action(((BEHAVIOUR, "DeviceAction"), (BEHAVIOUR, "Action")), "TakePicture", "front-camera")

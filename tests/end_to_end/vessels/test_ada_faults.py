@@ -27,7 +27,7 @@ from mmrs_core.languages.registry import registry_with
 from mmrs_core.scene import Policy
 from mmrs_core.testing.programs import move
 
-pytestmark = pytest.mark.thorough
+pytestmark = [pytest.mark.real_time("vessels"), pytest.mark.thorough]
 
 PHOTO = Action(((BEHAVIOUR, "DeviceAction"), (BEHAVIOUR, "Action")), "TakePicture", "front-camera")
 FAR = swim("far", 0.0, 12.0, 1.0)

@@ -19,6 +19,8 @@ from auv_vessel.wire.codec import Codec
 from auv_vessel.wire.frame import Frame
 from auv_vessel.wire.load import heard_load, load_of
 
+pytestmark = pytest.mark.real_time("vessels")
+
 SHEET = pool_sheet()
 SECONDS = 20.0
 SOMETIMES = {"Fix": "at the surface only", "Clock": "said by hosts"}

@@ -14,6 +14,8 @@ from vessel_processes import Boat, boat, until
 
 from auv_vessel.control import failsafe
 
+pytestmark = pytest.mark.real_time("vessels")
+
 BUSY = 0.6
 """Seconds that this machine may make everything late: other tests run beside."""
 

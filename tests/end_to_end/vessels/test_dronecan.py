@@ -28,6 +28,8 @@ from auv_vessel.sheet import Sheet, to_json
 from auv_vessel.wire.codec import Codec
 from auv_vessel.wire.frame import Frame
 
+pytestmark = pytest.mark.real_time("vessels")
+
 HIGHEST = 3000.0
 DRIVES = f"mmrs_dronecan.speed_controllers:opened,node=7,max-rpm={HIGHEST:g}"
 

@@ -15,6 +15,8 @@ from mmrs_auv.vision.renderer import Renderer
 from vessel_processes import until
 from vision_processes import POOL, Head, eyes
 
+pytestmark = pytest.mark.real_time("vessels")
+
 HERE = Pose(0.0, 0.0, 1.5, 2.0, -3.0, 5.0)
 NAMES = frozenset(thing.name for thing in POOL.things)
 HALF_A_CORE = 0.5

@@ -11,6 +11,8 @@ import pytest
 from mmrs_core.cli import run
 from mmrs_core.resources import shipped
 
+pytestmark = pytest.mark.real_time("vessels")
+
 POOL = shipped("examples") / "pool"
 FIGURES = 'operatingThrust="18.0" maxThrust="35.0"'
 

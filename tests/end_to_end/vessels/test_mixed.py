@@ -19,7 +19,7 @@ from ports import free_endpoint, free_port
 from auv_vessel.body.surroundings import from_json
 from mmrs_core.cli.demo import example_folder
 
-pytestmark = pytest.mark.thorough
+pytestmark = [pytest.mark.real_time("vessels"), pytest.mark.thorough]
 
 MMRS = (sys.executable, "-m", "mmrs_core")
 SPEED, LONGEST = 2.0, 600.0

@@ -24,6 +24,8 @@ from mmrs_runtime.records.log import LogWriter
 from mmrs_runtime.records.steps import StepRecord
 from mmrs_runtime.semantics import Outcome
 
+pytestmark = pytest.mark.real_time("vessels")
+
 
 def short_dive() -> Program:
     return dive(swim("out", 1.5, 0.0, 1.0, after=(use("ctd", "Sample"),)))

@@ -29,7 +29,7 @@ from mmrs_core.testing.programs import feedback, move
 from mmrs_runtime.records.log import LogWriter
 from mmrs_runtime.semantics import Outcome
 
-pytestmark = pytest.mark.thorough
+pytestmark = [pytest.mark.real_time("vessels"), pytest.mark.thorough]
 
 AROUND = Surroundings(
     bottom=5.0,

@@ -19,6 +19,8 @@ from vessel_processes import Ear, until
 from auv_vessel.wire.catalogue import EMERGENCIES
 from auv_vessel.wire.ports import open_port
 
+pytestmark = pytest.mark.real_time("vessels")
+
 POOL = Path(__file__).parents[3] / "examples" / "pool"
 
 

@@ -19,7 +19,7 @@ from pathlib import Path
 
 import pytest
 
-pytestmark = pytest.mark.thorough
+pytestmark = [pytest.mark.real_time("vessels"), pytest.mark.thorough]
 
 WANTED = ("virtio_pci", "9pnet_virtio", "9p", "can_raw", "vcan")
 PAIR = Path(__file__).parents[2] / "support" / "vcan_pair.py"

@@ -8,6 +8,8 @@ from flight_crew import robot_of
 from mmrs_mavlink.driver import MavlinkDriver
 from mmrs_runtime.controllers.options import options_of, parser_for
 
+pytestmark = pytest.mark.real_time("parts of flights")
+
 
 @pytest.fixture
 def asked(tmp_path):

@@ -13,6 +13,8 @@ from mmrs_mavlink.services import parameters
 from mmrs_mavlink.vehicles import modes, preparation, safeguards
 from mmrs_runtime.faults import Refused
 
+pytestmark = pytest.mark.real_time("parts of flights")
+
 INT = mavlink.MAV_PARAM_TYPE_INT32
 
 

@@ -10,6 +10,8 @@ from patience import until
 
 from mmrs_mavlink.services.uploads import uploads_of
 
+pytestmark = pytest.mark.real_time("parts of flights")
+
 ROBOT = robot_of()
 
 

@@ -17,6 +17,8 @@ from mmrs_mavlink.vehicles.preparation import HEARING_SECONDS, hear_out
 from mmrs_runtime.clock import Clock
 from mmrs_runtime.faults import Fault, Refused
 
+pytestmark = pytest.mark.real_time("parts of flights")
+
 ELSEWHERE = ("10.0.0.3", 14_550)
 ITEM = mavlink.MAVLink_mission_current_message(3)
 NOISE = b"\xfd\x05\x00\x00\x00\x01\x01\x00\x00\x00noise!!"

@@ -15,6 +15,8 @@ from mmrs_runtime.clock import Clock
 from mmrs_runtime.controllers.state import State
 from mmrs_runtime.records.blackbox import BlackBox, black_box_path
 
+pytestmark = pytest.mark.real_time("parts of flights")
+
 BEFORE = State(0.0, Geographic(42.0, 13.0, 5.0), 9.0, 90.0, 0.5, "guided", True)
 
 

@@ -21,6 +21,8 @@ from mmrs_mavlink.vehicles.px4 import Px4
 from mmrs_mavlink.vehicles.telemetry import Telemetry
 from mmrs_runtime.faults import LINK_LOST, Fault, Refused
 
+pytestmark = pytest.mark.real_time("parts of flights")
+
 ARM = mavlink.MAV_CMD_COMPONENT_ARM_DISARM
 HOME = Geographic(42.37, 13.35, 0.0)
 ITEM = Item(mavlink.MAV_CMD_NAV_WAYPOINT, x=423_700_000, y=133_500_000)

@@ -10,6 +10,8 @@ import pytest
 
 from mmrs_runtime.callers import Callers
 
+pytestmark = pytest.mark.real_time("parts of flights")
+
 
 class Door:
     """A server with a clock of its own."""

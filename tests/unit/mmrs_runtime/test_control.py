@@ -22,6 +22,8 @@ from mmrs_runtime.orders.ordering import give, main
 from mmrs_runtime.orders.orders import Inbox, Order
 from mmrs_runtime.questions import Questions
 
+pytestmark = pytest.mark.real_time("parts of flights")
+
 
 @pytest.fixture
 def inboxes():

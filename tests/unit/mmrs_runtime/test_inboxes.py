@@ -5,7 +5,11 @@ from __future__ import annotations
 import threading
 from collections import deque
 
+import pytest
+
 from mmrs_runtime.orders.orders import Inbox, Order
+
+pytestmark = pytest.mark.real_time("parts of flights")
 
 
 def test_an_order_that_is_given_while_the_inbox_is_being_closed_is_refused():

@@ -10,6 +10,8 @@ import pytest
 from mmrs_runtime.engine.interrupts import stopping
 from mmrs_runtime.engine.orders import Orders
 
+pytestmark = pytest.mark.real_time("parts of flights")
+
 
 def test_the_first_interrupt_stops_all_robots_and_the_second_ends_the_waiting():
     orders, said = Orders(), []

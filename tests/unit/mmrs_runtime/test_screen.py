@@ -14,6 +14,8 @@ from stalls import Stalls
 
 from mmrs_runtime.screen import say, unfailing
 
+pytestmark = pytest.mark.real_time("parts of flights")
+
 LINE = "'Alba': LAND"
 
 

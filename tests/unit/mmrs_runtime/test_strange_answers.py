@@ -12,6 +12,8 @@ import pytest
 from mmrs_runtime.orders.calling import Unreachable
 from mmrs_runtime.orders.ordering import give, main
 
+pytestmark = pytest.mark.real_time("parts of flights")
+
 
 @pytest.fixture
 def stranger(tmp_path):

@@ -13,6 +13,8 @@ from mmrs_core.scene import Policy
 from mmrs_core.testing.small_programs import program, robot
 from mmrs_runtime.semantics import Outcome
 
+pytestmark = pytest.mark.real_time("parts of flights")
+
 
 class Breaking(Walker):
     """A robot that does nothing more once something has gone wrong, until it is to bear that."""

@@ -10,6 +10,8 @@ from stalls import Stalls
 
 from mmrs_runtime.engine.clocks import RealClock, SimulatedClock
 
+pytestmark = pytest.mark.real_time("parts of flights")
+
 
 def test_simulated_time_jumps_and_never_goes_back():
     clock = SimulatedClock()

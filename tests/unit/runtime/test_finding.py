@@ -20,6 +20,8 @@ from mmrs_runtime.engine.clocks import RealClock
 from mmrs_runtime.engine.judging import standard_conditions
 from mmrs_runtime.slots import LocalSlots, with_own
 
+pytestmark = pytest.mark.real_time("parts of flights")
+
 FLYER, RISE = ("urn:test", "Flyer"), ("urn:test", "Rise")
 
 

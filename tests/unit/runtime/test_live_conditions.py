@@ -15,6 +15,8 @@ from mmrs_runtime.engine.orders import HOLD, RETURN
 from mmrs_runtime.semantics import Outcome
 from mmrs_runtime.vehicle import Condition
 
+pytestmark = pytest.mark.real_time("parts of flights")
+
 CHOOSES = robot("r", [do("h"), do("x"), do("y")], choices={"h": ("sunny", "x", "y")})
 OTHER = robot("other", [do("walk"), do("rest")])
 

@@ -18,6 +18,8 @@ from mmrs_runtime.engine.orders import RETURN, STOP
 from mmrs_runtime.records.log import LogWriter, read
 from mmrs_runtime.semantics import Outcome
 
+pytestmark = pytest.mark.real_time("parts of flights")
+
 TEAM = program(
     robot("a", [do("h", after=(notify("b.go"),)), do("walk")], policies=(Policy("LOG_FAILED", "LAND"),)),
     robot("b", [hold("h", 0.0), do("last")], waits={"h": ["go"]}),

@@ -22,6 +22,8 @@ from mmrs_runtime.engine.connecting import let_go
 from mmrs_runtime.engine.orders import HOLD, LAND, RESUME, RETURN, STOP
 from mmrs_runtime.semantics import Outcome
 
+pytestmark = pytest.mark.real_time("parts of flights")
+
 
 def test_a_fault_is_answered_by_its_policy_and_the_run_waits_for_it(live):
     behaviour = program(robot("r", [do("walk")], policies=(Policy("OBSTACLE", "RETURN"),)))

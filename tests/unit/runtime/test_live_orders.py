@@ -15,6 +15,8 @@ from mmrs_core.testing.small_programs import notify, program, robot
 from mmrs_runtime.engine.orders import HOLD, LAND, RESUME, RETURN, STOP
 from mmrs_runtime.semantics import Outcome
 
+pytestmark = pytest.mark.real_time("parts of flights")
+
 
 @pytest.mark.parametrize(
     ("kind", "response", "fault"),

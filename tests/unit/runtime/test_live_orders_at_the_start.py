@@ -17,6 +17,8 @@ from mmrs_core.testing.small_programs import program, robot
 from mmrs_runtime.engine.orders import HOLD, LAND, RESUME, RETURN, STOP
 from mmrs_runtime.semantics import Outcome
 
+pytestmark = pytest.mark.real_time("parts of flights")
+
 
 def connected(live, script, **more):
     """Return a run of two robots that are connected, and get ready."""

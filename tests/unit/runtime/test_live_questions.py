@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 from math import inf
 
+import pytest
 from live_runs import Script, do, walking
 
 from mmrs_core.contributions.execution import Fault
@@ -13,6 +14,8 @@ from mmrs_core.testing.small_programs import program, robot
 from mmrs_runtime.engine.judging import standard_conditions
 from mmrs_runtime.engine.orders import RETURN
 from mmrs_runtime.semantics import Outcome
+
+pytestmark = pytest.mark.real_time("parts of flights")
 
 
 def test_an_answer_that_comes_before_the_question_counts(live):

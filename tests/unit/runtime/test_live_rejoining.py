@@ -17,6 +17,8 @@ from mmrs_runtime.engine.resuming import restore
 from mmrs_runtime.semantics import Outcome
 from mmrs_runtime.slots import LocalSlots
 
+pytestmark = pytest.mark.real_time("parts of flights")
+
 WAITING = program(
     robot("a", [do("h")], waits={"h": ["s"]}, policies=(Policy("PEER_LOST", "LAND", 0.2),)),
     robot("b", [do("walk", after=(notify("a.s"),))]),

@@ -20,6 +20,8 @@ from mmrs_runtime.engine.resuming import restore
 from mmrs_runtime.semantics import Outcome
 from mmrs_runtime.slots import LocalSlots
 
+pytestmark = pytest.mark.real_time("parts of flights")
+
 LOW = (Policy("BATTERY_LOW", "RETURN"),)
 
 

@@ -14,6 +14,8 @@ from mmrs_core.runtime.simulation import SIMULATION
 from mmrs_core.testing.small_programs import go, hold, notify, program, robot
 from mmrs_runtime.semantics import Outcome
 
+pytestmark = pytest.mark.real_time("parts of flights")
+
 
 def test_simulated_robots_run_in_real_time_too(live):
     behaviour = program(

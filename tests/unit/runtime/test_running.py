@@ -22,6 +22,8 @@ from mmrs_runtime.semantics import Outcome
 from mmrs_runtime.slots import LocalSlots
 from mmrs_runtime.vehicle import Vehicle
 
+pytestmark = pytest.mark.real_time("parts of flights")
+
 
 def shown(records):
     return [f"{r.robot} {r.label} {r.move} {r.detail}".strip() for r in records]

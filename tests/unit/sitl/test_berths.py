@@ -9,6 +9,8 @@ from mmrs_core.cli.berths import Berths, berths_of, plain_berths
 from mmrs_core.cli.settings import Settings
 from mmrs_core.resources import shipped
 
+pytestmark = pytest.mark.real_time("parts of flights")
+
 
 def berths(example: str):
     return {each.robot: each for each in berths_of(Settings(), shipped("examples") / example)}

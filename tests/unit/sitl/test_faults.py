@@ -9,6 +9,8 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from mmrs_core.sitl import FAULTS, Settings, SimulatedVehicle
 
+pytestmark = pytest.mark.real_time("parts of flights")
+
 SPEEDUP = 10.0
 PREARM = 0x1000_0000
 METRES_PER_DEGREE = 111_412.0

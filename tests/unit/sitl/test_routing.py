@@ -10,6 +10,8 @@ from simulated.ground import Ground
 
 from mmrs_core.sitl import Settings, SimulatedVehicle
 
+pytestmark = pytest.mark.real_time("parts of flights")
+
 STATION = mavlink.MAVLink_heartbeat_message(mavlink.MAV_TYPE_GCS, mavlink.MAV_AUTOPILOT_INVALID, 0, 0, 4, 3)
 SOON = 1.0
 

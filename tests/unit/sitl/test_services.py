@@ -11,6 +11,8 @@ from stalls import Stalls
 
 from mmrs_core.sitl import Settings, SimulatedVehicle
 
+pytestmark = pytest.mark.real_time("parts of flights")
+
 SPEEDUP = 10.0
 
 

@@ -7,6 +7,8 @@ import pytest
 from mmrs_core.sitl import Settings, SimulatedVehicle
 from mmrs_core.sitl.sights import Sight
 
+pytestmark = pytest.mark.real_time("parts of flights")
+
 LONG = "a float with a very long name"
 HERE = (Sight("float", 0.0, 0.0, 1.0), Sight(LONG, 0.0, 0.0, 1.0), Sight("wreck", 0.0, 0.0, 20.0))
 

@@ -20,6 +20,8 @@ from mmrs_core.scene import Area, AreaUse, Device, Policy, RobotType
 from mmrs_core.testing.programs import feedback, move, notify, program, robot_program, take_off, use
 from mmrs_runtime.semantics import Outcome
 
+pytestmark = pytest.mark.long
+
 SAMPLE = use("ctd", "Sample")
 BUOY_NAME = "red buoy"
 AFLOAT = 0.4

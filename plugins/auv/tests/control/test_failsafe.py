@@ -17,6 +17,8 @@ from auv_vessel.hosting import WireFault
 from auv_vessel.sheet import Sheet
 from auv_vessel.wire.catalogue import EMERGENCIES
 
+pytestmark = pytest.mark.long
+
 CURRENT = Surroundings(current=(0.2, -0.1), bottom=20.0)
 
 

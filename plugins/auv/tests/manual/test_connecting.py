@@ -18,6 +18,8 @@ from mmrs_core.sitl import Settings, SimulatedVehicle
 from mmrs_core.testing.programs import move
 from mmrs_runtime.engine.clocks import RealClock
 
+pytestmark = pytest.mark.real_time("vessels")
+
 
 def test_what_it_does_by_itself_is_told():
     with sub(parameters={"FS_PILOT_INPUT": 1.0}) as driven:

@@ -10,6 +10,8 @@ from hypothesis import strategies as st
 from mmrs_auv.manual.autopilot import manual_control
 from mmrs_auv.manual.helm import Goal, Helm, Sticks
 
+pytestmark = pytest.mark.real_time("vessels")
+
 FULL, CLIMB, TURN, STEP = 1.0, 0.5, 45.0, 0.1
 
 

@@ -13,6 +13,8 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 from mmrs_core.scene import Area, AreaUse
 from mmrs_mavlink.services.commands import command
 
+pytestmark = pytest.mark.real_time("vessels")
+
 
 def test_a_program_is_driven_to_its_end_without_any_position():
     with sub() as driven:

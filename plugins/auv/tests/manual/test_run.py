@@ -6,10 +6,13 @@ import json
 import shutil
 from pathlib import Path
 
+import pytest
 from ports import free_port
 
 from mmrs_core.sitl import Settings, SimulatedVehicle
 from mmrs_core.testing.conformance.missions import run_command
+
+pytestmark = pytest.mark.real_time("vessels")
 
 ROBOT = Path(__file__).parents[4] / "examples" / "outfall" / "robots" / "survey-auv.xmi"
 MISSION = """<?xml version="1.0" encoding="UTF-8"?>

@@ -14,6 +14,8 @@ from mmrs_core.behaviour.program import Action
 from mmrs_core.scene import Policy
 from mmrs_mavlink.services.commands import command
 
+pytestmark = pytest.mark.real_time("vessels")
+
 
 @pytest.mark.parametrize("number", TOLD)
 def test_nobody_is_driven_by_a_heading_or_a_depth_of_the_past(number):

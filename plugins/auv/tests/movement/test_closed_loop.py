@@ -17,6 +17,8 @@ from auv_vessel.movement import progress
 from auv_vessel.movement.progress import DEPTH, HEADING, PLACE, SETTLED, SPEED
 from auv_vessel.sheet import Sheet
 
+pytestmark = pytest.mark.long
+
 SHEETS = {"six thrusters": pool_sheet, "no sway": torpedo_sheet, "eight thrusters": heavy_sheet}
 
 

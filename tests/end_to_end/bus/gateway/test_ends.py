@@ -13,6 +13,8 @@ from stalls import Stalls
 
 from mmrs_runtime.bus.gateway.server import Gateway
 
+pytestmark = pytest.mark.real_time("buses")
+
 LEASE = 1.5
 
 

@@ -13,6 +13,8 @@ import pytest
 
 from mmrs_runtime.bus.gateway.server import MOST_CALLERS, Gateway
 
+pytestmark = pytest.mark.real_time("buses")
+
 
 def test_only_its_user_can_read_the_token(gateway):
     assert stat.S_IMODE(gateway.file.stat().st_mode) == 0o600

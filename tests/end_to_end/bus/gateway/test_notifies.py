@@ -5,7 +5,11 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
+import pytest
+
 from mmrs_runtime.bus.words import MOST_FINDS
+
+pytestmark = pytest.mark.real_time("buses")
 
 PAGE = Path(__file__).parents[4] / "docs" / "how-to" / "bus.md"
 SESSION = [line for line in PAGE.read_text(encoding="utf-8").splitlines() if line.startswith(("> {", "< {"))]

@@ -11,6 +11,8 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 from mmrs_runtime.clock import Clock
 from mmrs_runtime.injection import Rehearsal, injections
 
+pytestmark = pytest.mark.real_time("parts of flights")
+
 STATION = heartbeat(kind=mavlink.MAV_TYPE_GCS, autopilot=mavlink.MAV_AUTOPILOT_INVALID)
 NOBODY = "'alpha': ground-cut@0+0.5: no ground station was heard yet"
 

@@ -8,6 +8,8 @@ from hub import Hub
 from mmrs_runtime.clock import Clock
 from mmrs_runtime.injection import Rehearsal, injections
 
+pytestmark = pytest.mark.real_time("parts of flights")
+
 
 class End:
     """One end of a bus that answers everything, and remembers whom it has seen come and go."""

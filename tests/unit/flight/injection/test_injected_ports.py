@@ -11,6 +11,8 @@ from mmrs_runtime.clock import Clock
 from mmrs_runtime.injection import Rehearsal, injections
 from mmrs_runtime.ports import NOTHING, Received
 
+pytestmark = pytest.mark.real_time("parts of flights")
+
 URLS = {"alpha": "udpin:127.0.0.1:1"}
 PIECES = [b"%04d" % number for number in range(2000)]
 

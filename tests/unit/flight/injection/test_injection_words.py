@@ -6,6 +6,8 @@ import pytest
 
 from mmrs_runtime.injection import injections
 
+pytestmark = pytest.mark.real_time("parts of flights")
+
 URLS = {"alpha": "udpin:127.0.0.1:1", "beta": "udpin:127.0.0.1:2", "a,b:c": "udpin:127.0.0.1:3"}
 
 

@@ -8,6 +8,10 @@ import sys
 import time
 from pathlib import Path
 
+import pytest
+
+pytestmark = pytest.mark.real_time("parts of flights")
+
 PREFACE = """
 import json, sys, threading, time
 from mmrs_runtime.clock import Clock

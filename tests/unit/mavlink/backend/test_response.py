@@ -13,6 +13,8 @@ from mmrs_mavlink.driving.response import Response
 from mmrs_mavlink.program import Geographic, Policy
 from mmrs_runtime.faults import Fault
 
+pytestmark = pytest.mark.real_time("parts of flights")
+
 NOWHERE = tuple((move, (Geographic(nan, nan, nan),)) for move in ("up", "out"))
 
 

@@ -11,6 +11,8 @@ from mmrs_runtime.bus import Member, Node, Owned
 from mmrs_runtime.bus.watching import Watching
 from mmrs_runtime.bus.words import CommandId, Ended, written
 
+pytestmark = pytest.mark.real_time("parts of flights")
+
 RUN = "run-0"
 
 

@@ -7,6 +7,8 @@ import pytest
 from mmrs_core.cli.running import run_command
 from mmrs_runtime.bus.carriers.endpoints import first_fault
 
+pytestmark = pytest.mark.real_time("parts of flights")
+
 GOOD = ("tcp/10.0.0.2:7447", "tls/[::1]:0", "udp/drone.local:1?rel=0#iface=eth0", "unixsock-stream//run/bus")
 WRONG = (
     "nonsense",

@@ -13,6 +13,8 @@ from mmrs_runtime.bus.carriers.carrier import NoCarrier
 from mmrs_runtime.bus.watching import Roster
 from mmrs_runtime.bus.words import Meet, request_in, written
 
+pytestmark = pytest.mark.real_time("parts of flights")
+
 AT_ONCE = 1.5
 """Seconds, on a busy machine; for an answer that does not come a robot waits for longer."""
 

@@ -20,6 +20,8 @@ from mmrs_runtime.bus.program_bus import members_of, recorded_of
 from mmrs_runtime.controllers.team import program_of
 from mmrs_runtime.records.steps import StepRecord
 
+pytestmark = pytest.mark.real_time("parts of flights")
+
 RUN = "run-0"
 
 

@@ -10,6 +10,8 @@ from mmrs_core.cli.bus_access import Holder
 from mmrs_core.cli.bus_access import configuration as secured
 from mmrs_runtime.bus.carriers.sessions import Endpoints, configuration, exposed
 
+pytestmark = pytest.mark.real_time("parts of flights")
+
 
 def listens(*listen, connect=()):
     return json.loads(configuration(Endpoints(listen, connect)).get_json("listen/endpoints"))
