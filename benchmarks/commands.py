@@ -28,9 +28,9 @@ from pymavlink import mavutil
 from mmrs_core.behaviour.program import Program
 from mmrs_core.runtime.live import run_live, venture_for
 from mmrs_core.runtime.run import inputs_of
-from mmrs_core.sitl import Settings, SimulatedVehicle
 from mmrs_core.testing.programs import move, program, quad, robot_program, take_off
 from mmrs_mavlink.plugin.backend import MAVLINK
+from mmrs_mavlink.sitl import Settings, SimulatedVehicle
 from mmrs_runtime.engine.hearing import hear_orders
 from mmrs_runtime.engine.orders import LAND, Orders
 from mmrs_runtime.orders.ordering import give

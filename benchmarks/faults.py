@@ -185,8 +185,8 @@ def main():
     print(f"# Faults: what was declared, and what happened ({datetime.now(UTC):%Y-%m-%d})\n")
     print(
         f"Speed-up {given.speedup:g}, orders in real time, those to all at 4; losses on purpose"
-        f" by seed 7; vehicles of ours (mmrs_core.sitl); orders in real time one flight after the other with"
-        f" nothing beside, of all else {given.jobs} flights at once; {minutes:.1f} min.\n"
+        f" by seed 7; vehicles of ours (mmrs_mavlink.sitl); orders in real time one flight after the other"
+        f" with nothing beside, of all else {given.jobs} flights at once; {minutes:.1f} min.\n"
     )
     print(*summary(outcomes), "", line(HEAD), line(["---"] * len(HEAD)), *table, sep="\n")
     return 1 if any(outcome.problems for outcome in outcomes) else 0

@@ -103,10 +103,10 @@ def ports(given: argparse.Namespace) -> list[int]:
 
 
 def be_vehicles(given: argparse.Namespace) -> None:
-    from mmrs_core.sitl import Host, Settings, SimulatedVehicle
-    from mmrs_core.sitl.commands import obey
-    from mmrs_core.sitl.items import Item
-    from mmrs_core.sitl.simulation import advance
+    from mmrs_mavlink.sitl import Host, Settings, SimulatedVehicle
+    from mmrs_mavlink.sitl.commands import obey
+    from mmrs_mavlink.sitl.items import Item
+    from mmrs_mavlink.sitl.simulation import advance
 
     vehicles = []
     for number, port in enumerate(ports(given), start=1):

@@ -9,6 +9,7 @@ from typing import Annotated, Any
 
 import typer
 
+from mmrs_core.cli.as_typed import take_as_typed
 from mmrs_core.cli.output import say, tell
 from mmrs_core.cli.settings import DEBUG, NO_PLUGINS, QUIET_MIGRATION, Settings
 from mmrs_core.contributions.commands import Command
@@ -37,7 +38,6 @@ _COMMANDS = (
         "Carry out a behaviour in simulation, faster than real time.",
         "mmrs_core.cli.simulate:simulate",
     ),
-    Command("sitl", "Start simulated vehicles that speak MAVLink.", "mmrs_core.cli.sitl:sitl"),
     Command("run", "Carry out a behaviour with real robots.", "mmrs_core.cli.live:run"),
     Command("control", "Give an order to robots that are running.", "mmrs_core.cli.control:control"),
     Command(
@@ -162,18 +162,21 @@ def _add_plugin_commands(app: typer.Typer, settings: Settings, called: str | Non
     for command in commands:
         passed = {"allow_extra_args": True, "ignore_unknown_options": True, "help_option_names": []}
         app.command(command.name, help=command.help, context_settings=passed, add_help_option=False)(
-            _runner(command, contributions.blamed("commands", command))
+            _runner(command, contributions.blamed("commands", command), settings)
         )
 
 
-def _runner(command: Command, blamed: str) -> Callable[[typer.Context], int]:
+def _runner(command: Command, blamed: str, settings: Settings) -> Callable[[typer.Context], int]:
     def run(context: typer.Context) -> int:
         try:
             entry = _imported(command)
         except Exception as error:
             raise PluginError(f"{blamed}: {command.entry} cannot be imported: {error!r}") from error
         try:
-            result = entry(list(context.args))
+            if isinstance(entry, typer.Typer):
+                result = _result_of(entry, command.name, context.args, settings)
+            else:
+                result = entry(list(context.args))
         except (MmrsError, OSError, typer.TyperException, typer.Exit, typer.Abort):
             raise  # about what the user gave, in the words of all commands
         except Exception as error:
@@ -181,3 +184,9 @@ def _runner(command: Command, blamed: str) -> Callable[[typer.Context], int]:
         return result if isinstance(result, int) else 0
 
     return run
+
+
+def _result_of(app: typer.Typer, name: str, arguments: list[str], settings: Settings) -> object:
+    command = typer.main.get_command(app)
+    take_as_typed(command, arguments)
+    return command.main(arguments, prog_name=f"mmrs {name}", standalone_mode=False, obj=settings)

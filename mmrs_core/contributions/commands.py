@@ -20,7 +20,6 @@ CORE_COMMANDS = frozenset(
         "diff",
         "migrate",
         "bus",
-        "sitl",
         "report",
         "control",
         "run",
@@ -39,7 +38,8 @@ class Command:
         name: as typed after ``mmrs``.
         help: one line.
         entry: ``package.module:function``; called with the remaining arguments as a list of strings,
-            returns the exit code.
+            returns the exit code. Or ``package.module:app``, an application of typer, whose commands
+            find the global options by `mmrs_core.cli.settings.settings_of`.
     """
 
     name: str

@@ -38,8 +38,8 @@ from mmrs_core.runtime.legs import (
     wind,
 )
 from mmrs_core.scene import Position
-from mmrs_core.sitl.sights import Sight, seen, sights_in
 from mmrs_runtime.policies import in_precedence
+from mmrs_runtime.sights import Sight, seen, sights_in
 from mmrs_runtime.vehicle import Vehicle
 
 RECHARGE = (BEHAVIOUR, "Recharge")

@@ -9,6 +9,8 @@ from mmrs_core.cli import run
 from mmrs_core.cli.app import app_for
 from mmrs_core.cli.settings import Settings
 
+FROM_PLUGINS = ("sitl",)
+
 PAGE = Path(__file__).parents[2] / "docs" / "commands.md"
 HEAD = "# Commands\n\nThis page is made from the help of the commands; do not edit it.\n"
 
@@ -24,6 +26,10 @@ def names_of_all():
         yield from (f"{name} {inner}".strip() for inner in getattr(called([name])[name], "commands", [""]))
 
 
+def section(name: str, text: str) -> str:
+    return f"## {name}\n\n```text\n{text.strip()}\n```\n"
+
+
 @pytest.fixture
 def made(capsys, monkeypatch):
     """Return the page as the commands' help gives it."""
@@ -32,7 +38,10 @@ def made(capsys, monkeypatch):
     for command in ("", *names_of_all()):
         assert run([*command.split(), "--help", "--no-plugins"]) == 0
         name = f"mmrs {command}".strip()
-        sections.append(f"## {name}\n\n```text\n{capsys.readouterr().out.strip()}\n```\n")
+        sections.append(section(name, capsys.readouterr().out))
+    for command in FROM_PLUGINS:
+        assert run([command, "--help"]) == 0
+        sections.append(section(f"mmrs {command}", capsys.readouterr().out))
     return "\n".join(sections)
 
 

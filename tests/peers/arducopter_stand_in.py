@@ -9,7 +9,7 @@ import argparse
 import threading
 from pathlib import Path
 
-from mmrs_core.sitl import Settings, SimulatedVehicle
+from mmrs_mavlink.sitl import Settings, SimulatedVehicle
 
 
 def main() -> None:

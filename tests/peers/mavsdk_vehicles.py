@@ -23,13 +23,13 @@ from mavsdk.plugins.mission_raw_server import MissionRawServer
 from mavsdk.plugins.param_server import ParamServer
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from mmrs_core.sitl.commands import complaint, obey
-from mmrs_core.sitl.hosting import Host
-from mmrs_core.sitl.items import Item
-from mmrs_core.sitl.settings import Settings
-from mmrs_core.sitl.streams import Streams
-from mmrs_core.sitl.vehicle import SimulatedVehicle
-from mmrs_core.sitl.words import deeds_of
+from mmrs_mavlink.sitl.commands import complaint, obey
+from mmrs_mavlink.sitl.hosting import Host
+from mmrs_mavlink.sitl.items import Item
+from mmrs_mavlink.sitl.settings import Settings
+from mmrs_mavlink.sitl.streams import Streams
+from mmrs_mavlink.sitl.vehicle import SimulatedVehicle
+from mmrs_mavlink.sitl.words import deeds_of
 
 ARM, TAKE_OFF, JUMP, INTERVAL, REQUEST = 400, 22, 224, 511, 512
 COMMANDS = {ARM, TAKE_OFF, INTERVAL, REQUEST}

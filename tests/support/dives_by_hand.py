@@ -14,8 +14,8 @@ from ports import free_port
 from mmrs_core.behaviour.program import BEHAVIOUR, Heading, Target
 from mmrs_core.contributions.vehicles import Live, VehicleInput
 from mmrs_core.scene import Capability, Device, DeviceAction, Frame, Part, RobotType
-from mmrs_core.sitl import Settings, SimulatedVehicle
 from mmrs_core.testing.programs import move, program, robot_program
+from mmrs_mavlink.sitl import Settings, SimulatedVehicle
 from mmrs_runtime.engine.clocks import RealClock
 
 SPEEDUP = 10.0

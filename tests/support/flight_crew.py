@@ -12,8 +12,6 @@ from dataclasses import dataclass, field
 from patience import until
 from ports import free_port
 
-from mmrs_core.sitl import Settings, SimulatedVehicle
-from mmrs_core.sitl.hosting import LONGEST_STEP
 from mmrs_mavlink.links.link import Link
 from mmrs_mavlink.links.ports import open_port
 from mmrs_mavlink.links.radio import Radio
@@ -32,6 +30,8 @@ from mmrs_mavlink.program import (
     Then,
 )
 from mmrs_mavlink.services.uploads import Uploads
+from mmrs_mavlink.sitl import Settings, SimulatedVehicle
+from mmrs_mavlink.sitl.hosting import LONGEST_STEP
 from mmrs_mavlink.steps.watch import Watch
 from mmrs_mavlink.vehicles.mavlink_vehicle import MavlinkVehicle
 from mmrs_runtime.clock import Clock

@@ -7,7 +7,7 @@ from math import dist
 from fault_table.fleet import wait_for
 from fault_table.project import Pad
 
-from mmrs_core.sitl.commands import obey
+from mmrs_mavlink.sitl.commands import obey
 from mmrs_runtime.orders.ordering import give
 
 PATIENCE = 60.0

@@ -16,11 +16,11 @@ from dataclasses import dataclass
 from mavlink_peer import ARDUPILOT, PX4, heartbeat
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from mmrs_core.sitl.items import Item
-from mmrs_core.sitl.old_frames import packed
-from mmrs_core.sitl.px4_transfers import Px4MissionProtocol
-from mmrs_core.sitl.transfers import MissionProtocol
 from mmrs_mavlink.links.retries import Retries
+from mmrs_mavlink.sitl.items import Item
+from mmrs_mavlink.sitl.old_frames import packed
+from mmrs_mavlink.sitl.px4_transfers import Px4MissionProtocol
+from mmrs_mavlink.sitl.transfers import MissionProtocol
 
 TICK = 0.05
 """Seconds between two looks of the vehicle at what it waits for."""

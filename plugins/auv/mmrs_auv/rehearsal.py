@@ -16,8 +16,8 @@ from auv_vessel.body.surroundings import Surroundings
 from auv_vessel.body.surroundings import to_json as surroundings_json
 from auv_vessel.sheet import Sheet, to_json
 from auv_vessel.wire.hub import Troubles
+from mmrs_core.cli.typed import EVERYBODY, addressed
 from mmrs_core.errors import LinkLostError
-from mmrs_core.sitl.schedule import EVERYBODY, addressed
 
 PARTS = ("vehicle", "sensors", "actuators", "movement")
 QUIT = frozenset({"quit", "exit"})

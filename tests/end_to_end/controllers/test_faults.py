@@ -10,7 +10,6 @@ from patience import until
 
 from mmrs_core.behaviour.program import Transition
 from mmrs_core.scene import Policy
-from mmrs_core.sitl.commands import obey
 from mmrs_core.testing.programs import (
     LAND,
     go_to,
@@ -21,6 +20,7 @@ from mmrs_core.testing.programs import (
     robot_program,
     take_off,
 )
+from mmrs_mavlink.sitl.commands import obey
 from mmrs_runtime.orders.ordering import give
 
 pytestmark = pytest.mark.real_time("controllers")

@@ -10,8 +10,8 @@ import pytest
 from ports import free_port
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from mmrs_core.sitl import Settings, SimulatedVehicle
 from mmrs_core.testing.programs import LAND, feedback, move, program, robot_program, take_off
+from mmrs_mavlink.sitl import Settings, SimulatedVehicle
 from mmrs_runtime.orders.ordering import give
 
 pytestmark = pytest.mark.real_time("controllers")

@@ -12,10 +12,10 @@ from ports import free_port
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from mmrs_core.behaviour.earth import degrees_of
-from mmrs_core.sitl import Settings, SimulatedVehicle
 from mmrs_core.testing.programs import LAND, program, robot_program, take_off, two_drones
 from mmrs_mavlink.links.link import Link
 from mmrs_mavlink.links.ports import open_port
+from mmrs_mavlink.sitl import Settings, SimulatedVehicle
 from mmrs_runtime.clock import Clock
 from mmrs_runtime.faults import Fault
 from mmrs_runtime.ports import NOTHING

@@ -16,7 +16,6 @@ from ports import free_port
 import mmrs_mavlink as flight
 from mmrs_core.generation.render import render
 from mmrs_core.generation.writing import write
-from mmrs_core.sitl import Settings, SimulatedVehicle
 from mmrs_core.testing.programs import target_input, two_drones
 from mmrs_mavlink.links.link import Link
 from mmrs_mavlink.links.ports import open_port
@@ -25,6 +24,7 @@ from mmrs_mavlink.plugin.plans.qgc import QGC_PLAN
 from mmrs_mavlink.services import missions, parameters
 from mmrs_mavlink.services.commands import command
 from mmrs_mavlink.services.uploads import mission_of
+from mmrs_mavlink.sitl import Settings, SimulatedVehicle
 from mmrs_runtime.clock import Clock
 
 pytestmark = pytest.mark.real_time("controllers")

@@ -9,8 +9,8 @@ import pytest
 
 from mmrs_core.behaviour.log import read_logs
 from mmrs_core.behaviour.program import Transition
-from mmrs_core.sitl.items import MISSION
 from mmrs_core.testing.programs import LAND, go_to, program, robot_program, take_off
+from mmrs_mavlink.sitl.items import MISSION
 
 pytestmark = pytest.mark.real_time("controllers")
 

@@ -7,11 +7,11 @@ from dataclasses import replace
 import pytest
 from ports import free_port
 
-from mmrs_core.sitl import Settings, SimulatedVehicle
 from mmrs_mavlink.links.link import Link
 from mmrs_mavlink.links.ports import open_port
 from mmrs_mavlink.services import missions
 from mmrs_mavlink.services.items import Item
+from mmrs_mavlink.sitl import Settings, SimulatedVehicle
 from mmrs_runtime.clock import Clock
 from mmrs_runtime.faults import Refused
 

@@ -7,11 +7,11 @@ from dataclasses import replace
 import pytest
 from ports import free_port
 
-from mmrs_core.sitl import Settings, SimulatedVehicle
 from mmrs_core.testing.programs import LAND, go_to, program, robot_program, take_off
 from mmrs_mavlink.links.link import Link
 from mmrs_mavlink.links.ports import open_port
 from mmrs_mavlink.program import Travel
+from mmrs_mavlink.sitl import Settings, SimulatedVehicle
 from mmrs_mavlink.vehicles.travel import set_up
 from mmrs_runtime.clock import Clock
 

@@ -7,8 +7,8 @@ from fault_table.fleet import GENERATED, Fleet, wait_for
 from fault_table.project import Pad
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from mmrs_core.sitl.items import MISSION, RALLY
-from mmrs_core.sitl.transfers import MissionProtocol
+from mmrs_mavlink.sitl.items import MISSION, RALLY
+from mmrs_mavlink.sitl.transfers import MissionProtocol
 
 pytestmark = pytest.mark.real_time("faults")
 

@@ -13,7 +13,7 @@ from ports import free_port
 from mmrs_core.behaviour.log import read_logs
 from mmrs_core.cli import run
 from mmrs_core.resources import shipped
-from mmrs_core.sitl import Settings, SimulatedVehicle
+from mmrs_mavlink.sitl import Settings, SimulatedVehicle
 
 HOMES = {"left": (42.3502, 13.399379), "right": (42.3502, 13.399621)}
 PATIENCE = 90.0

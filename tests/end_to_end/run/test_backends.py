@@ -13,10 +13,10 @@ from ports import free_port
 
 from mmrs_core.contributions.vehicles import Live, VehicleInput
 from mmrs_core.scene import Frame, Policy
-from mmrs_core.sitl import Settings, SimulatedVehicle
 from mmrs_core.testing.programs import move
 from mmrs_core.testing.small_programs import go, program, robot, robot_type
 from mmrs_mavlink.plugin.backend import MAVLINK
+from mmrs_mavlink.sitl import Settings, SimulatedVehicle
 from mmrs_runtime.engine.clocks import RealClock
 
 pytestmark = pytest.mark.real_time("runs")

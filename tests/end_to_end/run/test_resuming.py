@@ -23,7 +23,7 @@ from real_runs import (
     ordered,
 )
 
-from mmrs_core.sitl import Settings, SimulatedVehicle
+from mmrs_mavlink.sitl import Settings, SimulatedVehicle
 from mmrs_runtime.semantics import Outcome
 
 pytestmark = pytest.mark.real_time("runs")

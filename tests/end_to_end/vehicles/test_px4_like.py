@@ -13,9 +13,9 @@ from mmrs_core.behaviour.log import read_logs
 from mmrs_core.behaviour.replay import replay
 from mmrs_core.generation.render import render
 from mmrs_core.generation.writing import write
-from mmrs_core.sitl import Host, Settings, SimulatedVehicle
 from mmrs_core.testing.programs import target_input, two_drones
 from mmrs_mavlink.plugin.controllers import MAVLINK_PYTHON
+from mmrs_mavlink.sitl import Host, Settings, SimulatedVehicle
 from mmrs_runtime.semantics import Outcome
 
 pytestmark = pytest.mark.real_time("faults")

@@ -9,9 +9,9 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 from pyproj import Geod
 
-from mmrs_core.sitl.autopilot import Autopilot
-from mmrs_core.sitl.settings import Settings
 from mmrs_mavlink import Geographic
+from mmrs_mavlink.sitl.autopilot import Autopilot
+from mmrs_mavlink.sitl.settings import Settings
 from mmrs_runtime.controllers.places import between, distance
 
 GEOD = Geod(ellps="WGS84")

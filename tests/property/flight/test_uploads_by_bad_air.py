@@ -10,9 +10,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from virtual_link import Air, VirtualLink
 
-from mmrs_core.sitl.items import Item as Kept
 from mmrs_mavlink.services.items import FENCE, MISSION, NAMES, RALLY, Item
 from mmrs_mavlink.services.missions import upload, verify
+from mmrs_mavlink.sitl.items import Item as Kept
 from mmrs_runtime.faults import Refused
 
 FIRMWARES = ("ardupilot", "px4")

@@ -23,7 +23,7 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 from pyproj import Geod
 
 from example_flight.mission import Home
-from mmrs_core.sitl import Host, Settings, SimulatedVehicle
+from mmrs_mavlink.sitl import Host, Settings, SimulatedVehicle
 
 PEERS = Path(__file__).parents[2] / "peers"
 ENERGY = 20_000.0

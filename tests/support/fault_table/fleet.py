@@ -20,7 +20,7 @@ from mmrs_core.behaviour.log import read_logs
 from mmrs_core.behaviour.replay import ReplayResult, replay
 from mmrs_core.languages.reading import read_model
 from mmrs_core.plugins import load_plugins
-from mmrs_core.sitl import Settings, SimulatedVehicle
+from mmrs_mavlink.sitl import Settings, SimulatedVehicle
 
 GENERATED, INTERPRETED = "generated", "interpreted"
 """What flies robots: their controllers, or `mmrs run`; both run the same engine and driver."""

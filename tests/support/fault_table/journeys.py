@@ -17,7 +17,7 @@ from fault_table.fleet import GENERATED, Fleet, wait_for
 from fault_table.project import OUT, TOUR, Pad
 from fault_table.record import MOMENTS, Answer, answered, ending, story, struck
 from fault_table.row import Outcome, within
-from mmrs_core.sitl import SimulatedVehicle
+from mmrs_mavlink.sitl import SimulatedVehicle
 
 AT, AUTO = "at its place", "on a mission (AUTO)"
 PEER_SECONDS, LEASE_SECONDS = 2.0, 1.5

@@ -10,9 +10,9 @@ from math import dist, hypot, sqrt
 from shapely import Point, Polygon
 
 from fault_table.project import MEADOW, OUT, TOUR
-from mmrs_core.sitl import SimulatedVehicle
-from mmrs_core.sitl.autopilot import Autopilot
-from mmrs_core.sitl.body import Vector
+from mmrs_mavlink.sitl import SimulatedVehicle
+from mmrs_mavlink.sitl.autopilot import Autopilot
+from mmrs_mavlink.sitl.body import Vector
 
 NAMES = {
     0: "STABILIZE",

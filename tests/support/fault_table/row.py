@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from fault_table.project import POLICY
-from mmrs_core.sitl import SimulatedVehicle
+from mmrs_mavlink.sitl import SimulatedVehicle
 
 Act = Callable[[SimulatedVehicle], object]
 

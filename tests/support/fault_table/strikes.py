@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from mmrs_core.sitl import SimulatedVehicle
+from mmrs_mavlink.sitl import SimulatedVehicle
 
 PHOTO = 2000
 

@@ -6,11 +6,11 @@ from collections.abc import Callable, Sequence
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from mmrs_core.sitl.autopilot import Autopilot
-from mmrs_core.sitl.commands import obey
-from mmrs_core.sitl.items import Item
-from mmrs_core.sitl.settings import Settings
-from mmrs_core.sitl.simulation import advance
+from mmrs_mavlink.sitl.autopilot import Autopilot
+from mmrs_mavlink.sitl.commands import obey
+from mmrs_mavlink.sitl.items import Item
+from mmrs_mavlink.sitl.settings import Settings
+from mmrs_mavlink.sitl.simulation import advance
 
 TICK = 0.05
 Place = tuple[float, float, float]

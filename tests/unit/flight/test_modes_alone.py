@@ -5,8 +5,8 @@ from __future__ import annotations
 import pytest
 from mavlink_peer import PX4, linked
 
-from mmrs_core.sitl import failsafes, px4_failsafes
-from mmrs_core.sitl.modes import MODES
+from mmrs_mavlink.sitl import failsafes, px4_failsafes
+from mmrs_mavlink.sitl.modes import MODES
 from mmrs_mavlink.vehicles import modes
 
 CASES = [

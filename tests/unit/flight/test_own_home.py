@@ -6,10 +6,10 @@ import pytest
 from flight_crew import HOME, manned
 from patience import until
 
-from mmrs_core.sitl import commands
 from mmrs_mavlink.links.retries import Retries
 from mmrs_mavlink.program import Geographic
 from mmrs_mavlink.services.uploads import Uploads
+from mmrs_mavlink.sitl import commands
 from mmrs_mavlink.vehicles.footing import aside, footing
 from mmrs_runtime.faults import Refused
 

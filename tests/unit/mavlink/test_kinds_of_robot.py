@@ -12,7 +12,6 @@ from mmrs_core.errors import UnsupportedError
 from mmrs_core.generation.render import render
 from mmrs_core.mavlink.vehicles import VEHICLES, vehicle_class
 from mmrs_core.scene import Frame
-from mmrs_core.sitl.__main__ import parser_of_arguments
 from mmrs_core.testing.programs import (
     LAND,
     go_to,
@@ -27,6 +26,7 @@ from mmrs_core.transformation.kinds import PLAIN_ROBOT
 from mmrs_mavlink.plugin.controllers import MAVLINK_PYTHON
 from mmrs_mavlink.plugin.plans.qgc import QGC_PLAN
 from mmrs_mavlink.plugin.plans.wpl import WPL
+from mmrs_mavlink.sitl.__main__ import parser_of_arguments
 
 KITE = ("urn:kites:1.0", "Kite")
 KITES = replace(quad(), metaclasses=(KITE, ("urn:mmrs:robot:1.0", "Robot")))
@@ -73,7 +73,7 @@ def test_every_kind_that_is_installed_names_its_vehicle(contributions):
 
 def rehearsal(behaviour, *types):
     files = {each.path: each.content for each in render(MAVLINK_PYTHON, target_input(behaviour, types))}
-    start = "    python -m mmrs_core.sitl "
+    start = "    python -m mmrs_mavlink.sitl "
     lines = files["README.md"].decode().splitlines()
     return [
         parser_of_arguments().parse_args(shlex.split(line.removeprefix(start)))

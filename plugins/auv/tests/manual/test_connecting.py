@@ -14,8 +14,8 @@ from ports import free_port
 from mmrs_core.behaviour.program import Target
 from mmrs_core.contributions.vehicles import Live
 from mmrs_core.errors import UnsupportedError
-from mmrs_core.sitl import Settings, SimulatedVehicle
 from mmrs_core.testing.programs import move
+from mmrs_mavlink.sitl import Settings, SimulatedVehicle
 from mmrs_runtime.engine.clocks import RealClock
 
 pytestmark = pytest.mark.real_time("vessels")

@@ -9,8 +9,8 @@ from pathlib import Path
 import pytest
 from ports import free_port
 
-from mmrs_core.sitl import Settings, SimulatedVehicle
 from mmrs_core.testing.conformance.missions import run_command
+from mmrs_mavlink.sitl import Settings, SimulatedVehicle
 
 pytestmark = pytest.mark.real_time("vessels")
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
+from mmrs_core.contributions.commands import Command
 from mmrs_core.hookspecs import hookimpl
 
 if TYPE_CHECKING:
@@ -26,3 +27,11 @@ def mmrs_vehicles() -> Iterable[VehicleFactory]:
     from mmrs_mavlink.plugin.backend import MAVLINK
 
     return (MAVLINK,)
+
+
+@hookimpl
+def mmrs_commands() -> Iterable[Command]:
+    """Contribute simulated vehicles at the ends of MAVLink links."""
+    return (
+        Command("sitl", "Start simulated vehicles that speak MAVLink.", "mmrs_mavlink.commands.sitl:app"),
+    )

@@ -1,0 +1,156 @@
+"""Flies a mission, item by item, with ArduPilot's habits."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
+
+from mmrs_mavlink.sitl.autopilot import Autopilot, bearing
+from mmrs_mavlink.sitl.body import CUT
+from mmrs_mavlink.sitl.items import MISSION, MOVING, Item
+
+CLOSE = 0.2
+MEASURED_RADIUS = 2.0
+"""Metres for which it was measured how corners are cut; with another, it is taken to be in proportion."""
+
+TURN_SECONDS = 10.0
+"""A circle of LOITER_TURNS takes so long: it is flown on the spot."""
+
+UNTOLD = frozenset({203, 206, 2000, 2001, 2500, 2501})
+"""Items for cameras, which are carried out in their order and never told as reached."""
+
+
+def fly_mission(pilot: Autopilot, seconds: float) -> str:
+    """Work on the mission for a while; return ``land`` or ``return`` where an item asks for that."""
+    items = pilot.stores[MISSION]
+    pilot.item = max(pilot.first_item, pilot.item)
+    while not pilot.finished and pilot.item < len(items):
+        item = items[pilot.item]
+        if item.command == mavlink.MAV_CMD_NAV_RETURN_TO_LAUNCH:
+            return "return"
+        if item.command == mavlink.MAV_CMD_NAV_LAND and _arrives_to_land(pilot, item):
+            return "land"
+        if not _perform(pilot, item, seconds):
+            return ""
+        if not _leave(pilot, item):
+            return ""
+    return ""
+
+
+def jump(pilot: Autopilot, number: int) -> None:
+    """Go on with another item."""
+    pilot.item, pilot.held, pilot.finished = number, 0.0, False
+    pilot.returning = []
+
+
+def _leave(pilot: Autopilot, item: Item) -> bool:
+    """Go on to the next item; return whether there is one."""
+    pilot.visited.append((pilot.time, pilot.item))
+    if item.command not in UNTOLD:
+        pilot.pending = pilot.item
+    if item.command == mavlink.MAV_CMD_DO_JUMP and _jumps(pilot, item):
+        return True
+    if item.command in MOVING:
+        pilot.body.leave()
+    if pilot.item + 1 >= len(pilot.stores[MISSION]):
+        pilot.finished = True
+        pilot.body.target = pilot.body.onward = pilot.body.origin = None
+        return False
+    jump(pilot, pilot.item + 1)
+    return True
+
+
+def _jumps(pilot: Autopilot, item: Item) -> bool:
+    times = pilot.loops.get(pilot.item, 0)
+    if 0 <= item.params[1] <= times:
+        return False
+    pilot.loops[pilot.item] = times + 1
+    jump(pilot, int(item.params[0]))
+    return True
+
+
+def _perform(pilot: Autopilot, item: Item, seconds: float) -> bool:
+    """Work on an item for a while; return whether it is done."""
+    if item.command in MOVING:
+        return _go(pilot, item, seconds)
+    if item.command in (mavlink.MAV_CMD_NAV_DELAY, mavlink.MAV_CMD_CONDITION_DELAY):
+        pilot.held += seconds
+        return pilot.held >= item.params[0]
+    if item.command == mavlink.MAV_CMD_DO_CHANGE_SPEED:
+        pilot.body.speed = item.params[1]
+    elif item.command == mavlink.MAV_CMD_CONDITION_YAW:
+        pilot.body.wanted_heading = item.params[0]
+    elif item.command in (mavlink.MAV_CMD_DO_SET_ROI, mavlink.MAV_CMD_DO_SET_ROI_LOCATION):
+        pilot.roi = pilot.place_of(item)
+    elif item.command == mavlink.MAV_CMD_DO_SET_ROI_NONE:
+        pilot.roi = None
+    elif item.command == mavlink.MAV_CMD_DO_FENCE_ENABLE:
+        pilot.parameters["FENCE_ENABLE"] = item.params[0]
+    pilot.note(item.command, (*item.params, item.x, item.y, item.z))
+    return True
+
+
+def _go(pilot: Autopilot, item: Item, seconds: float) -> bool:
+    body, takes_off = pilot.body, item.command == mavlink.MAV_CMD_NAV_TAKEOFF
+    if pilot.flies and not pilot.airborne and not takes_off:
+        return False
+    place = pilot.place_of(item)
+    if takes_off:
+        place = (*body.position[:2], place[2])
+    body.target = place
+    body.onward, body.cut = _onward(pilot, item), CUT * _radius(pilot.parameters) / MEASURED_RADIUS
+    wanted = bearing(body.position, pilot.roi or place)
+    if wanted is not None:
+        body.wanted_heading = wanted
+    if body.onward is not None:
+        return body.goes_by()
+    if body.distance_to(place) > CLOSE and not pilot.held:
+        return False
+    pilot.held += seconds
+    return pilot.held >= _hold_of(item)
+
+
+def _radius(values: Mapping[str, float]) -> float:
+    """Return the metres from a place at which it counts as passed, as parameters have it."""
+    for name, metres in (
+        ("WP_RADIUS_M", 1.0),
+        ("WPNAV_RADIUS", 0.01),
+        ("WP_RADIUS", 1.0),
+        ("NAV_ACC_RAD", 1.0),
+    ):
+        if name in values:
+            return values[name] * metres
+    return MEASURED_RADIUS
+
+
+def _onward(pilot: Autopilot, item: Item) -> tuple[float, float, float] | None:
+    """Return where it goes after an item at which it does not stop; None where it stops."""
+    if item.command not in (mavlink.MAV_CMD_NAV_WAYPOINT, 82) or item.params[0] >= 1.0:
+        return None
+    for following in pilot.stores[MISSION][pilot.item + 1 :]:
+        if following.command in (mavlink.MAV_CMD_NAV_LAND, mavlink.MAV_CMD_NAV_TAKEOFF):
+            return None
+        if following.command in MOVING and (following.x or following.y):
+            return pilot.place_of(following)
+        if following.command in (20, 93, 112, 177):
+            return None
+    return None
+
+
+def _hold_of(item: Item) -> float:
+    if item.command == mavlink.MAV_CMD_NAV_LOITER_UNLIM:
+        return float("inf")
+    turns = item.command == mavlink.MAV_CMD_NAV_LOITER_TURNS
+    return item.params[0] * TURN_SECONDS if turns else item.params[0]
+
+
+def _arrives_to_land(pilot: Autopilot, item: Item) -> bool:
+    """Fly above the place of a landing; return whether it is there."""
+    if not (item.x or item.y) or pilot.held:
+        return True
+    place = pilot.place_of(item)
+    above = (place[0], place[1], pilot.body.position[2])
+    pilot.body.target, pilot.body.onward = above, None
+    pilot.held = 1.0 if pilot.body.distance_to(above) <= CLOSE else 0.0
+    return bool(pilot.held)

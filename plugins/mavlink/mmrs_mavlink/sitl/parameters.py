@@ -1,0 +1,178 @@
+"""Parameters of the simulated vehicle, as they are after a reset.
+
+ArduPilot's names and values are those of its versions 4.3 to 4.6; where they are whole numbers there,
+they are here. PX4's are from its parameter reference.
+"""
+
+from __future__ import annotations
+
+import struct
+from collections.abc import Mapping
+
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
+
+from mmrs_mavlink.sitl.settings import PX4, Settings
+
+_COMMON: Mapping[str, float] = {
+    "SYSID_THISMAV": 1,
+    "SYSID_MYGCS": 255,
+    "FS_GCS_ENABLE": 0,
+    "FS_GCS_TIMEOUT": 5.0,
+    "BATT_MONITOR": 4,
+    "BATT_CAPACITY": 5000,
+    "BATT_LOW_VOLT": 10.5,
+    "BATT_LOW_MAH": 0.0,
+    "BATT_LOW_TIMER": 10,
+    "BATT_CRT_VOLT": 0.0,
+    "BATT_CRT_MAH": 0.0,
+    "BATT_FS_LOW_ACT": 0,
+    "BATT_FS_CRT_ACT": 0,
+    "FENCE_ENABLE": 0,
+    "FENCE_ACTION": 1,
+    "FENCE_TYPE": 7,
+    "FENCE_ALT_MAX": 100.0,
+    "FENCE_RADIUS": 300.0,
+    "FENCE_MARGIN": 2.0,
+    "RALLY_TOTAL": 0,
+    "RALLY_LIMIT_KM": 0.3,
+    "RALLY_INCL_HOME": 1,
+    "MIS_TOTAL": 0,
+    "MIS_RESTART": 0,
+    "ARMING_CHECK": 1,
+    "SIM_GPS1_ENABLE": 1,
+}
+_COPTER: Mapping[str, float] = {
+    "FS_THR_ENABLE": 1,
+    "FS_OPTIONS": 16,
+    "FS_EKF_ACTION": 1,
+    "FS_EKF_THRESH": 0.8,
+    "DISARM_DELAY": 10,
+    "AUTO_OPTIONS": 0,
+    "RTL_ALT": 1500,
+    "RTL_ALT_FINAL": 0,
+    "RTL_LOIT_TIME": 5000,
+    "RTL_SPEED": 0,
+    "LAND_SPEED": 50,
+    "LAND_SPEED_HIGH": 0,
+    "WPNAV_SPEED": 500.0,
+    "WPNAV_SPEED_UP": 250.0,
+    "WPNAV_SPEED_DN": 150.0,
+    "WPNAV_RADIUS": 200.0,
+    "WPNAV_ACCEL": 250.0,
+    "PILOT_TKOFF_ALT": 0.0,
+    "GUID_TIMEOUT": 3.0,
+    "AVOID_ENABLE": 3,
+    "AVOID_MARGIN": 2.0,
+    "AVOID_BEHAVE": 0,
+    "OA_TYPE": 0,
+    "OA_MARGIN_MAX": 5.0,
+    "FLTMODE_GCSBLOCK": 0,
+    "PRX1_TYPE": 0,
+    "CAM1_TYPE": 1,
+}
+_ROVER: Mapping[str, float] = {
+    "FS_ACTION": 2,
+    "FS_TIMEOUT": 1.5,
+    "FS_OPTIONS": 0,
+    "RALLY_LIMIT_KM": 0.5,
+    "FS_THR_ENABLE": 1,
+    "FS_EKF_ACTION": 1,
+    "FS_EKF_THRESH": 0.8,
+    "CRUISE_SPEED": 2.0,
+    "WP_SPEED": 2.0,
+    "WP_RADIUS": 2.0,
+    "RTL_SPEED": 0.0,
+    "AVOID_ENABLE": 0,
+    "AVOID_MARGIN": 2.0,
+    "OA_TYPE": 0,
+    "OA_MARGIN_MAX": 5.0,
+}
+_SUB: Mapping[str, float] = {
+    "FS_GCS_ENABLE": 1,
+    "FS_GCS_TIMEOUT": 3.0,
+    "FS_EKF_ACTION": 0,
+    "FS_EKF_THRESH": 0.8,
+    "FS_LEAK_ENABLE": 1,
+    "SURFACE_DEPTH": -10.0,
+    "WPNAV_SPEED": 50.0,
+    "WPNAV_RADIUS": 200.0,
+}
+_PX4: Mapping[str, float] = {
+    "MAV_SYS_ID": 1,
+    "NAV_DLL_ACT": 0,
+    "NAV_RCL_ACT": 2,
+    "COM_DL_LOSS_T": 10,
+    "COM_DLL_EXCEPT": 0,
+    "COM_LOW_BAT_ACT": 0,
+    "BAT_LOW_THR": 0.15,
+    "BAT_CRIT_THR": 0.07,
+    "BAT_EMERGEN_THR": 0.05,
+    "GF_ACTION": 2,
+    "GF_MAX_HOR_DIST": 0.0,
+    "GF_MAX_VER_DIST": 0.0,
+    "COM_OF_LOSS_T": 1.0,
+    "COM_OBL_RC_ACT": 0,
+    "COM_FAIL_ACT_T": 5.0,
+    "COM_TAKEOFF_ACT": 0,
+    "COM_RCL_EXCEPT": 0,
+    "COM_RC_IN_MODE": 1,
+    "COM_DISARM_PRFLT": 10.0,
+    "COM_DISARM_LAND": 2.0,
+    "COM_OBS_AVOID": 0,
+    "COM_POS_FS_DELAY": 1,
+    "NAV_ACC_RAD": 2.0,
+    "MIS_TAKEOFF_ALT": 2.5,
+    "MIS_DIST_1WP": 900.0,
+    "RTL_RETURN_ALT": 15.0,
+    "RTL_TYPE": 0,
+    "MPC_XY_CRUISE": 5.0,
+    "MPC_XY_VEL_MAX": 12.0,
+    "MPC_Z_V_AUTO_UP": 3.0,
+    "MPC_Z_V_AUTO_DN": 1.5,
+    "MPC_LAND_SPEED": 0.7,
+}
+_BY_KIND: Mapping[str, Mapping[str, float]] = {"copter": _COPTER, "rover": _ROVER, "sub": _SUB}
+
+
+def defaults(settings: Settings) -> dict[str, float]:
+    """Return the parameters of a vehicle that nobody has set up, but for what its settings say."""
+    found = dict(_PX4) if settings.firmware == PX4 else {**_COMMON, **_BY_KIND[settings.kind]}
+    own = {
+        "SYSID_THISMAV": settings.system,
+        "MAV_SYS_ID": settings.system,
+        "DISARM_DELAY": settings.disarm_delay,
+        "COM_DISARM_PRFLT": settings.disarm_delay,
+        "BATT_CAPACITY": settings.capacity,
+    }
+    found.update({name: value for name, value in own.items() if name in found})
+    return {**found, **settings.parameters}
+
+
+def encoded(name: str, value: float, firmware: str) -> tuple[float, int]:
+    """Return a parameter as PARAM_VALUE carries it, and its MAV_PARAM_TYPE.
+
+    ArduPilot tells every number as a float; PX4 puts the bytes of whole numbers in the place of one.
+    """
+    if not _is_whole(name, firmware):
+        return value, int(mavlink.MAV_PARAM_TYPE_REAL32)
+    if firmware == PX4:
+        (packed,) = struct.unpack("<f", struct.pack("<i", round(value)))
+        return packed, int(mavlink.MAV_PARAM_TYPE_INT32)
+    return float(value), int(mavlink.MAV_PARAM_TYPE_INT32)
+
+
+def decoded(name: str, value: float, kind: int, firmware: str) -> float:
+    """Return the parameter that PARAM_SET asks for.
+
+    ArduPilot keeps of whole numbers the whole part only.
+    """
+    if not _is_whole(name, firmware):
+        return value
+    if firmware == PX4 and kind == mavlink.MAV_PARAM_TYPE_INT32:
+        return float(struct.unpack("<i", struct.pack("<f", value))[0])
+    return float(int(value))
+
+
+def _is_whole(name: str, firmware: str) -> bool:
+    tables = (_PX4,) if firmware == PX4 else (_COMMON, _COPTER, _ROVER, _SUB)
+    return any(isinstance(table.get(name), int) for table in tables)

@@ -1,0 +1,98 @@
+"""Time passes: what a vehicle decides, how it moves, what it uses up."""
+
+from __future__ import annotations
+
+from math import dist
+
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
+
+from mmrs_mavlink.sitl.autopilot import Autopilot
+from mmrs_mavlink.sitl.battery import load_of
+from mmrs_mavlink.sitl.body import STILL
+from mmrs_mavlink.sitl.failsafes import watch
+from mmrs_mavlink.sitl.modes import MANUAL, first_mode
+from mmrs_mavlink.sitl.pilots import decide
+from mmrs_mavlink.sitl.settings import PX4
+
+CONTROL_SECONDS = 0.05
+"""Longest time between two decisions."""
+
+TRACK_SECONDS = 0.1
+CRUMB_METRES = 3.0
+FALL_SPEED = 10.0
+
+
+def advance(pilot: Autopilot, seconds: float) -> None:
+    """Let time pass for a vehicle."""
+    while seconds > 1e-9:
+        step = min(seconds, CONTROL_SECONDS)
+        seconds -= step
+        pilot.time += step
+        watch(pilot, step)
+        if pilot.armed:
+            decide(pilot, step)
+        if pilot.armed:
+            _move(pilot, step)
+        else:
+            _stand(pilot, step)
+
+
+def _move(pilot: Autopilot, seconds: float) -> None:
+    body = pilot.body
+    body.adrift = pilot.airborne and (not pilot.located or pilot.mode_name in MANUAL)
+    _blow(pilot, seconds)
+    body.advance(seconds)
+    pilot.battery.drain(seconds, load_of(body) if pilot.flies else 0.3 + 0.7 * min(1.0, body.pace))
+    pilot.camera.move(body)
+    if pilot.airborne and pilot.battery.level <= 0.0 and pilot.settings.falls:
+        pilot.say(mavlink.MAV_SEVERITY_CRITICAL, "Battery 1 is empty, motors stop")
+        pilot.armed = False
+    if pilot.flies:
+        _touch_ground(pilot)
+    _remember(pilot)
+
+
+def _blow(pilot: Autopilot, seconds: float) -> None:
+    """Let gusts come; only what is in the air is carried by them, and what drifts goes with all of it."""
+    if pilot.flies and pilot.airborne:
+        pilot.gusts.go_on(seconds)
+        pilot.body.gust = (*pilot.gusts.air, 0.0)
+        pilot.body.push = STILL if pilot.body.adrift else (*pilot.gusts.push, 0.0)
+    else:
+        pilot.gusts.rest()
+        pilot.body.gust = pilot.body.push = STILL
+
+
+def _stand(pilot: Autopilot, seconds: float) -> None:
+    pilot.battery.charge(seconds, pilot.settings.recharge)
+    if pilot.airborne:
+        north, east, up = pilot.body.position
+        pilot.body.position = (north, east, max(0.0, up - FALL_SPEED * seconds))
+        pilot.body.velocity = (0.0, 0.0, -FALL_SPEED)
+        _remember(pilot)
+    else:
+        pilot.body.rest_at(0.0 if pilot.flies else pilot.body.position[2])
+    if pilot.uptime < pilot.settings.boot:
+        pilot.mode_name = first_mode(pilot.settings)
+        pilot.mode = pilot.numbers[pilot.mode_name]
+
+
+def _touch_ground(pilot: Autopilot) -> None:
+    target = pilot.body.target
+    climbs = target is not None and target[2] > 0.0
+    if pilot.body.position[2] < 0.0:
+        pilot.body.rest_at(0.0)
+        pilot.body.target = target if climbs else None
+    delay = pilot.parameters["COM_DISARM_PRFLT" if pilot.settings.firmware == PX4 else "DISARM_DELAY"]
+    if pilot.airborne or climbs:
+        pilot.grounded_since = pilot.time
+    elif 0.0 < delay < pilot.time - pilot.grounded_since:
+        pilot.disarm()
+
+
+def _remember(pilot: Autopilot) -> None:
+    position = pilot.body.position
+    if not pilot.track or pilot.time - pilot.track[-1][0] >= TRACK_SECONDS - 1e-6:
+        pilot.track.append((pilot.time, *pilot.body.place))
+    if pilot.armed and not pilot.returning and dist(position, pilot.crumbs[-1]) >= CRUMB_METRES:
+        pilot.crumbs.append(position)

@@ -1,0 +1,111 @@
+"""Gusts: as unrest as was asked for, the same for the same seed, and as far as they carry a copter."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+from math import exp, hypot
+from statistics import fmean, pstdev
+
+import pytest
+from simulated import Bench
+
+from mmrs_mavlink.sitl.commands import steer
+from mmrs_mavlink.sitl.gusts import Gusts
+from mmrs_mavlink.sitl.settings import Settings
+
+LEG = 300.0
+
+
+def hovering(seconds: float, **settings) -> list[float]:
+    """Return how far from where it hovers a copter was at each moment."""
+    bench = Bench(**settings)
+    bench.fly_up(10.0)
+    bench.mode("brake")
+    bench.wait(5.0)
+    before = len(bench.pilot.track)
+    bench.wait(seconds)
+    return [hypot(north, east) for _, north, east, _ in bench.pilot.track[before:]]
+
+
+def along_a_leg(**settings) -> Bench:
+    """Return a vehicle that has flown a leg to the east."""
+    bench = Bench(**settings)
+    bench.fly_up(10.0)
+    bench.command(178, 1, 5.0)
+    steer(bench.pilot, (0.0, LEG, 10.0), None)
+    assert bench.wait_for(lambda: bench.pilot.body.distance_to((0.0, LEG, 10.0)) < 1.0, 120.0)
+    return bench
+
+
+def blown(strength: float, lasting: float, seconds: float) -> list[float]:
+    gusts, found = Gusts(strength, lasting, "test"), []
+    for _ in range(round(seconds)):
+        gusts.go_on(1.0)
+        found.append(gusts.air[0])
+    return found
+
+
+def test_the_air_is_as_unrestful_as_was_asked_for():
+    air = blown(2.0, 5.0, 8_000.0)
+    assert fmean(air) == pytest.approx(0.0, abs=0.15)
+    assert pstdev(air) == pytest.approx(2.0, rel=0.06)
+
+
+def test_gusts_last_as_long_as_was_asked_for():
+    air = blown(1.0, 5.0, 8_000.0)
+    alike = fmean(a * b for a, b in pairwise(air)) / fmean(a * a for a in air)
+    assert alike == pytest.approx(exp(-1.0 / 5.0), abs=0.03)
+
+
+def test_the_same_seed_makes_the_same_gusts_however_time_is_cut_up():
+    one, other = Gusts(2.0, 5.0, "7"), Gusts(2.0, 5.0, "7")
+    for _ in range(100):
+        one.go_on(0.1)
+    for _ in range(250):
+        other.go_on(0.04)
+    assert one.air == other.air != (0.0, 0.0)
+    assert one.push == other.push
+
+
+def test_another_seed_and_another_vehicle_meet_other_gusts():
+    tracks = [
+        along_a_leg(gusts=(2.0, 5.0), seed=seed, system=system).pilot.track
+        for seed, system in ((1, 1), (1, 1), (2, 1), (1, 2))
+    ]
+    assert tracks[0] == tracks[1]
+    assert tracks[0] != tracks[2]
+    assert tracks[0] != tracks[3]
+
+
+@pytest.mark.parametrize(("strength", "most"), [(1.0, 0.25), (2.0, 0.5), (4.0, 1.0)])
+def test_gusts_carry_a_copter_as_far_from_its_place_and_its_leg_as_the_documentation_says(strength, most):
+    away = hovering(200.0, gusts=(strength, 5.0))
+    assert most / 4.0 < max(away) <= most
+    aside = max(abs(point[1]) for point in along_a_leg(gusts=(strength, 5.0)).pilot.track)
+    assert most / 4.0 < aside <= most
+
+
+def test_what_is_told_of_the_speed_has_the_gusts_in_it():
+    bench = Bench(gusts=(4.0, 5.0))
+    bench.fly_up(10.0)
+    bench.mode("brake")
+    bench.wait(20.0)
+    assert bench.pilot.body.pace > 0.01
+    assert bench.pilot.body.motion != bench.pilot.body.velocity
+
+
+def test_without_gusts_a_copter_stays_where_it_is():
+    assert max(hovering(60.0)) == pytest.approx(0.0, abs=1e-6)
+
+
+@pytest.mark.parametrize("kind", ["rover", "sub"])
+def test_gusts_carry_no_rover_and_no_submarine(kind):
+    bench = Bench(kind=kind, gusts=(5.0, 5.0))
+    bench.wait(60.0)
+    assert hypot(*bench.pilot.body.position) == pytest.approx(0.0, abs=1e-6)
+
+
+def test_gusts_that_make_no_sense_are_refused():
+    for gusts in ((-1.0, 5.0), (2.0, 0.0)):
+        with pytest.raises(ValueError, match="are no gusts"):
+            Settings(gusts=gusts)

@@ -1,0 +1,96 @@
+"""An underwater vehicle goes by its pilot's sticks, and disarms when nobody moves them any more."""
+
+from __future__ import annotations
+
+import pytest
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
+
+from mmrs_mavlink.sitl.autopilot import Autopilot
+from mmrs_mavlink.sitl.commands import obey
+from mmrs_mavlink.sitl.settings import Settings
+from mmrs_mavlink.sitl.simulation import advance
+from mmrs_mavlink.sitl.sticks import FULL_CLIMB, FULL_SPEED, FULL_TURN, sticks_of
+
+ARM = mavlink.MAV_CMD_COMPONENT_ARM_DISARM
+
+
+def sub(mode="alt_hold", *, located=False):
+    pilot = Autopilot(Settings(kind="sub", ready=0.0, boot=0.0))
+    pilot.located = located
+    pilot.take_stick(mode)
+    advance(pilot, 0.1)
+    return pilot
+
+
+def drive(pilot, seconds, x=0, y=0, z=500, r=0):
+    for _ in range(round(seconds / 0.1)):
+        pilot.sticks = sticks_of(mavlink.MAVLink_manual_control_message(1, x, y, z, r, 0), pilot.time)
+        advance(pilot, 0.1)
+
+
+def armed(**options):
+    pilot = sub(**options)
+    assert obey(pilot, ARM, (1.0, *[0.0] * 6)) == mavlink.MAV_RESULT_ACCEPTED
+    return pilot
+
+
+@pytest.mark.parametrize(
+    ("mode", "result"), [("alt_hold", "ACCEPTED"), ("manual", "ACCEPTED"), ("guided", "FAILED")]
+)
+def test_what_goes_by_hand_is_armed_without_a_position(mode, result):
+    pilot = sub(mode, located=True)
+    pilot.located = False
+    assert obey(pilot, ARM, (1.0, *[0.0] * 6)) == getattr(mavlink, f"MAV_RESULT_{result}")
+
+
+def test_a_stick_ahead_moves_it_where_it_looks():
+    pilot = armed()
+    pilot.body.heading = 90.0
+    drive(pilot, 10.0, x=500)
+    north, east, up = pilot.body.position
+    assert east == pytest.approx(0.5 * FULL_SPEED * 10.0, abs=0.5)
+    assert (north, up) == pytest.approx((0.0, 0.0), abs=1e-6)
+
+
+def test_a_stick_aside_moves_it_to_the_right():
+    pilot = armed()
+    drive(pilot, 10.0, y=1000)
+    assert pilot.body.position[:2] == pytest.approx((0.0, 10.0 * FULL_SPEED), abs=1.0)
+
+
+def test_it_dives_and_stays_at_its_depth_where_the_stick_is_let_go():
+    pilot = armed()
+    drive(pilot, 8.0, z=0)
+    depth = -pilot.body.position[2]
+    assert depth == pytest.approx(8.0 * FULL_CLIMB, abs=0.5)
+    drive(pilot, 10.0)
+    assert -pilot.body.position[2] == pytest.approx(depth, abs=0.2)
+
+
+def test_it_does_not_come_out_of_the_water():
+    pilot = armed()
+    drive(pilot, 4.0, z=0)
+    drive(pilot, 60.0, z=1000)
+    assert -0.3 <= pilot.body.position[2] <= 1e-6
+
+
+def test_a_turn_is_as_fast_as_the_stick_says():
+    pilot = armed()
+    drive(pilot, 2.0, r=-500)
+    assert pilot.body.heading == pytest.approx(360.0 - FULL_TURN, abs=3.0)
+
+
+def test_it_disarms_when_nobody_moves_the_sticks_any_more():
+    pilot = armed()
+    drive(pilot, 2.0, x=1000)
+    advance(pilot, 2.5)
+    assert pilot.armed
+    advance(pilot, 1.0)
+    assert not pilot.armed
+
+
+def test_other_kinds_heed_no_sticks():
+    pilot = Autopilot(Settings(kind="rover", ready=0.0, boot=0.0))
+    pilot.arm()
+    drive(pilot, 5.0, x=1000)
+    assert pilot.body.position == (0.0, 0.0, 0.0)

@@ -1,0 +1,98 @@
+"""Wind over ground and in the air, and what a battery gives."""
+
+from __future__ import annotations
+
+import pytest
+from simulated import Bench
+
+from mmrs_mavlink.sitl.battery import Battery
+from mmrs_mavlink.sitl.body import Body, wind_of
+from mmrs_mavlink.sitl.commands import steer
+
+
+def test_wind_comes_from_where_it_is_said_to():
+    assert wind_of(5.0, 270.0) == pytest.approx((0.0, 5.0, 0.0))
+
+
+def flown(wind: tuple[float, float], metres: float = 100.0, speed: float = 5.0) -> Bench:
+    """Return a vehicle that has flown so far to the west."""
+    bench = Bench(wind=wind)
+    bench.fly_up(10.0)
+    bench.command(178, 1, speed)
+    steer(bench.pilot, (0.0, -metres, 10.0), None)
+    assert bench.wait_for(lambda: bench.pilot.body.distance_to((0.0, -metres, 10.0)) < 0.3, 600.0)
+    return bench
+
+
+def test_a_moderate_wind_costs_energy_and_no_time():
+    calm, head, tail = flown((0.0, 0.0)), flown((5.0, 270.0)), flown((5.0, 90.0))
+    assert head.pilot.time == pytest.approx(calm.pilot.time, abs=0.2)
+    assert head.pilot.energy < calm.pilot.energy < tail.pilot.energy + 0.01
+    assert tail.pilot.energy > head.pilot.energy
+
+
+def test_a_strong_head_wind_slows_it_down():
+    calm, storm = flown((0.0, 0.0)), flown((15.0, 270.0))
+    assert storm.pilot.time > calm.pilot.time + 10.0
+
+
+def test_a_side_wind_does_not_take_it_off_its_way():
+    bench = flown((10.0, 0.0))
+    assert max(abs(point[1]) for point in bench.pilot.track) < 0.05
+
+
+def test_a_wind_that_is_too_strong_blows_it_away():
+    body = Body(position=(0.0, 0.0, 10.0), target=(0.0, 0.0, 10.0), wind=wind_of(25.0, 0.0))
+    body.advance(10.0)
+    assert body.position[0] < -40.0
+
+
+def test_without_a_position_it_drifts_with_the_wind():
+    bench = Bench(wind=(4.0, 0.0))
+    bench.fly_up(10.0)
+    bench.pilot.located = False
+    bench.mode("alt_hold")
+    bench.wait(20.0)
+    assert bench.pilot.body.position[0] == pytest.approx(-75.0, abs=10.0)
+
+
+def test_a_battery_lasts_for_its_seconds_of_hovering():
+    bench = Bench(energy=120.0)
+    bench.fly_up(10.0)
+    bench.mode("loiter")
+    began = bench.pilot.time
+    assert bench.wait_for(lambda: bench.pilot.energy <= 0.0, 200.0)
+    assert bench.pilot.time - began == pytest.approx(114.0, abs=4.0)
+
+
+def test_an_empty_battery_brings_it_down_the_hard_way():
+    bench = Bench(energy=30.0)
+    bench.fly_up(20.0)
+    assert bench.wait_for(lambda: not bench.pilot.armed, 60.0)
+    assert bench.wait_for(lambda: not bench.pilot.airborne, 10.0)
+    assert "motors stop" in bench.pilot.said[-1][2]
+
+
+def test_a_battery_does_not_become_full_on_the_ground_unless_it_is_charged():
+    for recharge, level in ((0.0, 0.5), (60.0, 1.0)):
+        bench = Bench(recharge=recharge)
+        bench.pilot.battery.change(0.5)
+        bench.wait(31.0)
+        assert bench.pilot.energy == pytest.approx(level)
+
+
+def test_a_battery_that_was_changed_is_told_to_be_full():
+    bench = Bench()
+    bench.pilot.battery.change(0.2)
+    assert bench.command(42_651, 1, 100) == 0
+    assert bench.pilot.battery.used == 0.0
+
+
+def test_voltage_falls_with_use_and_under_load():
+    battery = Battery(1200.0, 5000.0)
+    full = battery.voltage
+    battery.drain(600.0, 1.0)
+    half = battery.voltage
+    battery.drain(1e-6, 3.0)
+    assert full > half > battery.voltage > 0.0
+    assert battery.used == pytest.approx(2500.0, rel=1e-3)
