@@ -45,11 +45,11 @@ _COMMANDS = (
         "Replay the logs of a run through the rules of its behaviour.",
         "mmrs_core.cli.replay:replay",
     ),
-    Command("report", "Tell people how a flight went.", "mmrs_core.cli.report.command:report"),
+    Command("report", "Tell people how a flight went.", "mmrs_core.cli.report:report"),
     Command(
         "preview",
         "Draw a mission: map, timeline, heights, on one page.",
-        "mmrs_core.cli.preview.command:preview",
+        "mmrs_core.cli.preview:preview",
     ),
     Command("show", "Print a model as a tree, or what a path leads to.", "mmrs_core.cli.show:show"),
     Command(

@@ -15,7 +15,7 @@ from mmrs_core.cli.journey import Journey
 from mmrs_core.cli.output import counted
 from mmrs_core.cli.plan_words import plan_lines, plan_summary
 from mmrs_core.cli.planned import require_sound, require_writable
-from mmrs_core.cli.preview.command import picture_of, write_pictures
+from mmrs_core.cli.preview import picture_of, write_pictures
 from mmrs_core.cli.simulation import Chosen, fly, run_lines, succeeded, write_logs
 from mmrs_core.cli.verdict_words import verdict_table
 from mmrs_core.contributions.targets import GeneratedFile

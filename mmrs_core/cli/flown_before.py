@@ -11,10 +11,10 @@ from mmrs_core.behaviour.log import read_log, read_logs
 from mmrs_core.behaviour.program import Program
 from mmrs_core.behaviour.replay import replay
 from mmrs_core.behaviour.salvage import salvage_log
-from mmrs_core.cli.figures import clock
 from mmrs_core.cli.output import counted, tell
 from mmrs_core.cli.wishes import Wishes
 from mmrs_core.errors import InvalidModelError
+from mmrs_core.pictures.figures import clock
 from mmrs_runtime.bus.program_bus import slots_path
 from mmrs_runtime.engine.resuming import over_by
 from mmrs_runtime.records.blackbox import black_box_path, last_time, plan_of

@@ -13,7 +13,6 @@ from mmrs_core.behaviour.program import Program
 from mmrs_core.cli.behaviours import Loaded
 from mmrs_core.cli.bus_faults import bus_faults
 from mmrs_core.cli.buses import bus_for
-from mmrs_core.cli.figures import clock
 from mmrs_core.cli.flown_before import end_of, resumed_steps
 from mmrs_core.cli.journey import Workshop
 from mmrs_core.cli.observing import Observer
@@ -27,6 +26,7 @@ from mmrs_core.cli.wishes import (
     robots_of,
     stop_response,
 )
+from mmrs_core.pictures.figures import clock
 from mmrs_core.pipeline import backend_for, conditions_for, inputs_of
 from mmrs_core.runtime.live import run_live, venture_for
 from mmrs_runtime.bus.program_bus import begin_all

@@ -109,10 +109,13 @@ def export(
 @app.command("docs")
 def docs(call: typer.Context, directory: Folder, json: Json = False) -> int:
     """Write the page about the languages, with a diagram of each."""
-    from mmrs_core.cli.pages.languages_page import write_pages
+    from mmrs_core.cli.replacing import replace_files
+    from mmrs_core.pictures.pages.languages_page import pages
 
     registry = settings_of(call).plugins().contributions.languages
-    return _written(write_pages(registry, directory), json)
+    contents = {directory / path: content.encode() for path, content in pages(registry).items()}
+    replace_files(contents)
+    return _written(tuple(contents), json)
 
 
 @app.command("stubs")

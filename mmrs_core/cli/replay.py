@@ -14,7 +14,7 @@ from mmrs_core.cli.settings import Json, settings_of
 if TYPE_CHECKING:
     from mmrs_core.behaviour.program import Program
     from mmrs_core.behaviour.replay import ReplayResult
-    from mmrs_core.cli.flights.values import Flight
+    from mmrs_core.pictures.flights.values import Flight
 
 
 def replay(
@@ -38,8 +38,8 @@ def replay(
     from mmrs_core.behaviour.replay import replay as replayed
     from mmrs_core.behaviour.salvage import logs_in, salvage_log
     from mmrs_core.cli.behaviours import load_program
-    from mmrs_core.cli.flights.gathering import read_flight
     from mmrs_core.cli.journey import Workshop
+    from mmrs_core.pictures.flights.gathering import read_flight
     from mmrs_runtime.semantics import Outcome
 
     workshop = Workshop(settings_of(call))
@@ -61,7 +61,7 @@ def replay(
 
 
 def _say(result: ReplayResult, flight: Flight | None) -> None:
-    from mmrs_core.cli.figures import clock
+    from mmrs_core.pictures.figures import clock
 
     verdict = "accepted" if result.accepted else "not what the behaviour says"
     say(f"{verdict}: {result.outcome.value} after {result.steps} steps and {clock(result.duration)}")
@@ -79,10 +79,10 @@ def _say(result: ReplayResult, flight: Flight | None) -> None:
 
 
 def _say_steps(flight: Flight, program: Program) -> None:
-    from mmrs_core.cli.figures import clock
-    from mmrs_core.cli.flights.steps import steps_of
-    from mmrs_core.cli.report.words import place
     from mmrs_core.cli.tables import table
+    from mmrs_core.pictures.figures import clock
+    from mmrs_core.pictures.flights.steps import steps_of
+    from mmrs_core.pictures.report.words import place
 
     rows = [
         (clock(step.time), step.robot, place(step.where), step.words) for step in steps_of(flight, program)
@@ -93,7 +93,7 @@ def _say_steps(flight: Flight, program: Program) -> None:
 
 def _say_json(result: ReplayResult, flight: Flight | None, program: Program, *, steps: bool) -> None:
     from mmrs_core.cli.encoding import plain
-    from mmrs_core.cli.flights.steps import steps_of
+    from mmrs_core.pictures.flights.steps import steps_of
 
     told = plain(result)
     assert isinstance(told, dict)

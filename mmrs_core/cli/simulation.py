@@ -14,11 +14,11 @@ import typer
 
 from mmrs_core.behaviour.log import read_log
 from mmrs_core.behaviour.program import Program
-from mmrs_core.cli.figures import clock, length
 from mmrs_core.cli.journey import Workshop
 from mmrs_core.cli.output import progress
 from mmrs_core.contributions.rules import RobotKind
 from mmrs_core.errors import MmrsError
+from mmrs_core.pictures.figures import clock, length
 from mmrs_core.pipeline import Place, simulate
 from mmrs_core.resources import new_folders
 from mmrs_core.runtime.run import Run
@@ -138,7 +138,7 @@ def write_logs(
         ProtectedError: if the black box of a flight lies there.
         OSError: if the folder cannot be written to.
     """
-    from mmrs_core.cli.flights.recording import remove_boxes, write_boxes
+    from mmrs_core.cli.simulated_boxes import remove_boxes, write_boxes
 
     names = [log_name(robot.id) for robot in program.robots]
     with new_folders() as make:

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 
-from mmrs_core.cli.figures import quantity
 from mmrs_core.contributions.checks import Check, Status, Verdict
+from mmrs_core.pictures.figures import quantity
 
 _RANK = {Status.VIOLATED: 0, Status.UNKNOWN: 1, Status.NOT_CHECKED: 2, Status.SAFE: 3}
 

@@ -6,6 +6,7 @@ import runpy
 from pathlib import Path
 
 import pytest
+from diagnostics_page import page_of
 from fault_examples import (
     contrast,
     core_examples,
@@ -19,7 +20,6 @@ from fault_examples import (
 )
 
 from mmrs_core.cli.catalogue import catalogue_of
-from mmrs_core.cli.pages.diagnostics_page import page_of
 from mmrs_core.contributions.checks import Status
 
 ROOT = Path(__file__).parents[2]

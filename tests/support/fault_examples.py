@@ -12,10 +12,10 @@ from pathlib import Path
 from tempfile import mkdtemp
 
 from checking import given, rover
+from diagnostics_page import Example
 
 from mmrs_core.behaviour.log import read_log
 from mmrs_core.behaviour.program import Action, RobotProgram
-from mmrs_core.cli.pages.diagnostics_page import Example
 from mmrs_core.contributions.checks import Check, CheckInput, Verdict
 from mmrs_core.diagnostics import Diagnostic
 from mmrs_core.errors import InvalidModelError, UnreadableError

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from mmrs_core.cli.flights.values import Flight, Flown, Track
+from mmrs_core.pictures.flights.values import Flight, Flown, Track
 
 
 def track_of(points, energies=None, broken=()) -> Track:

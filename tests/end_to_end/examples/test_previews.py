@@ -5,11 +5,11 @@ from __future__ import annotations
 import pytest
 from lxml import etree
 
-from mmrs_core.cli.preview.from_plan import picture_of_plan
-from mmrs_core.cli.preview.map_drawing import map_markup
-from mmrs_core.cli.preview.map_ways import leg_tip
-from mmrs_core.cli.preview.moves import with_moves
-from mmrs_core.cli.preview.page import page
+from mmrs_core.pictures.preview.from_plan import picture_of_plan
+from mmrs_core.pictures.preview.map_drawing import map_markup
+from mmrs_core.pictures.preview.map_ways import leg_tip
+from mmrs_core.pictures.preview.moves import with_moves
+from mmrs_core.pictures.preview.page import page
 from mmrs_core.scene import Branch, Serve
 
 pytestmark = pytest.mark.together("examples")

@@ -10,12 +10,12 @@ import pytest
 from lxml import etree
 
 from mmrs_core import pipeline
-from mmrs_core.cli.preview.from_plan import picture_of_plan
-from mmrs_core.cli.preview.map_drawing import map_markup
 from mmrs_core.contributions.checks import Status
 from mmrs_core.languages.reading import read_model
 from mmrs_core.languages.registry import Registry
 from mmrs_core.languages.writing import to_xmi
+from mmrs_core.pictures.preview.from_plan import picture_of_plan
+from mmrs_core.pictures.preview.map_drawing import map_markup
 
 pytestmark = pytest.mark.together("examples")
 

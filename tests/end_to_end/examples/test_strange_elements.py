@@ -8,11 +8,11 @@ import pytest
 from lxml import etree
 
 from mmrs_core import pipeline
-from mmrs_core.cli.preview.from_plan import picture_of_plan
-from mmrs_core.cli.preview.map_drawing import map_markup
 from mmrs_core.contributions.symbols import MapSymbol
 from mmrs_core.hookspecs import hookimpl
 from mmrs_core.languages.registry import MetamodelSource
+from mmrs_core.pictures.preview.from_plan import picture_of_plan
+from mmrs_core.pictures.preview.map_drawing import map_markup
 from mmrs_core.plugins import load_plugins
 
 pytestmark = pytest.mark.together("examples")

@@ -1,0 +1,152 @@
+"""``mmrs preview``: pictures of a planned mission."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from mmrs_core.cli.output import progress, say, say_json
+from mmrs_core.cli.parameters import (
+    Assume,
+    Context,
+    Robots,
+    Seed,
+    behaviour_file,
+    robot_files,
+    without_mission,
+)
+from mmrs_core.cli.settings import Json, settings_of
+
+if TYPE_CHECKING:
+    from mmrs_core.cli.journey import Journey, Workshop
+    from mmrs_core.pictures.preview.picture import Picture
+
+PAGE = "preview.html"
+MAP = "preview.svg"
+
+
+def preview(
+    call: typer.Context,
+    project: Annotated[
+        Path,
+        typer.Argument(
+            metavar="PROJECT",
+            help="The project's folder, the file of its mission, or a behaviour; FLYAQ 2015's, too.",
+        ),
+    ],
+    output: Annotated[
+        Path | None,
+        typer.Option("-o", "--output", metavar="DIR", help="Where to write; else the project's folder."),
+    ] = None,
+    context: Context = None,
+    robots: Robots = None,
+    seed: Seed = 0,
+    assume: Assume = None,
+    logs: Annotated[
+        list[Path] | None,
+        typer.Option("--logs", metavar="DIR", help="Logs of a flight of the behaviour; may be repeated."),
+    ] = None,
+    json: Json = False,
+) -> int:
+    """Draw a mission: map, timeline, heights, on one page.
+
+    A mission is planned and drawn as planned. A behaviour is simulated and drawn as it went, with what
+    its conditions are told to answer. With --logs it is drawn as it was flown, over what was planned.
+    The map is written as SVG, too.
+    """
+    from mmrs_core.cli.behaviours import is_behaviour
+    from mmrs_core.cli.journey import Journey, Workshop
+    from mmrs_core.cli.plan import folder_of
+    from mmrs_core.cli.protection import refuse_inputs
+
+    workshop = Workshop(settings_of(call))
+    types = robot_files(robots)
+    if logs:
+        picture = _of_flight(workshop, behaviour_file(project), context, types, assume, logs)
+    elif is_behaviour(workshop, alone := without_mission(project)):
+        picture = _of_behaviour(workshop, alone, context, types, assume)
+    elif assume:
+        raise typer.BadParameter(
+            "--assume goes with a behaviour, or with --logs; a mission is drawn as planned"
+        )
+    else:
+        picture = picture_of(Journey(workshop, project, context=context, robots=types, seed=seed))
+    folder = output if output is not None else folder_of(project)
+    refuse_inputs((folder / PAGE, folder / MAP), workshop.inputs)
+    written = write_pictures(picture, folder)
+    if json:
+        say_json({"files": written})
+    else:
+        for path in written:
+            say(f"written: {path}")
+    return 0
+
+
+def picture_of(journey: Journey) -> Picture:
+    """Return the picture of a planned mission, with the moves that carry it out."""
+    from mmrs_core.pictures.preview.from_plan import picture_of_plan
+    from mmrs_core.pictures.preview.moves import with_moves
+
+    symbols = journey.workshop.contributions.map_symbols
+    return with_moves(picture_of_plan(journey.scene, journey.plan, symbols), journey.program)
+
+
+def _of_behaviour(
+    workshop: Workshop,
+    file: Path,
+    context: Path | None,
+    robots: tuple[Path, ...],
+    assume: list[str] | None,
+) -> Picture:
+    from mmrs_core.cli.behaviours import load_behaviour
+    from mmrs_core.cli.simulation import answers, fly
+    from mmrs_core.pictures.preview.from_run import Surroundings, picture_of_run
+
+    conditions = answers(assume)
+    loaded = load_behaviour(workshop, file, context=context, robots=robots)
+    program, place = loaded.program, loaded.place
+    run = fly(workshop, program, place, conditions)
+    around = Surroundings(place.areas or (), loaded.elements, place.types)
+    contributed = workshop.contributions
+    return picture_of_run(
+        program, run.records, run.tracks, contributed.move_kinds, contributed.map_symbols, around
+    )
+
+
+def _of_flight(
+    workshop: Workshop,
+    file: Path,
+    context: Path | None,
+    robots: tuple[Path, ...],
+    assume: list[str] | None,
+    logs: list[Path],
+) -> Picture:
+    from mmrs_core.cli.behaviours import load_behaviour
+    from mmrs_core.cli.report import picture_of as picture_of_flight
+    from mmrs_core.cli.simulation import answers
+    from mmrs_core.pictures.flights.gathering import read_flight
+    from mmrs_core.pictures.flights.planned import planned_for
+    from mmrs_core.pictures.report.making import Given, report_of
+
+    loaded = load_behaviour(workshop, file, context=context, robots=robots)
+    contributed = workshop.contributions
+    flight = read_flight(logs, loaded.program, loaded.place.types, contributed.robot_kinds)
+    with progress("simulating the plan"):
+        planned = planned_for(loaded.program, loaded.place, contributed, flight, answers(assume))
+    given = Given(
+        loaded.program, loaded.place, flight, planned, contributed.move_kinds, contributed.robot_kinds
+    )
+    return picture_of_flight(workshop, loaded, given, report_of(given), file.parent)
+
+
+def write_pictures(picture: Picture, folder: Path) -> tuple[Path, ...]:
+    """Write the page and the map into a folder, which is made where it is missing; return both paths."""
+    from mmrs_core.cli.replacing import replace_files
+    from mmrs_core.pictures.preview.map_drawing import map_markup
+    from mmrs_core.pictures.preview.page import page
+
+    contents = {folder / PAGE: page(picture), folder / MAP: map_markup(picture, legend=True) + "\n"}
+    replace_files({path: content.encode() for path, content in contents.items()})
+    return tuple(contents)

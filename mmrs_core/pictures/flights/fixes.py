@@ -1,0 +1,193 @@
+"""Collects the fixes of one robot, and lays them into the local frame of the behaviour."""
+
+from __future__ import annotations
+
+from array import array
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from functools import lru_cache
+from math import isfinite, nan
+from types import MappingProxyType
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from mmrs_core.behaviour.earth import WGS84
+from mmrs_core.behaviour.program import Program, RobotProgram
+from mmrs_core.contributions.rules import RobotKind
+from mmrs_core.geometry.frames import Floats, LocalFrame
+from mmrs_core.mavlink.vehicles import VEHICLES, vehicle_class
+from mmrs_core.pictures.flights.values import Flags, Track
+from mmrs_core.scene import Frame, Name, Position, RobotType
+from mmrs_runtime.records.entries import Entry, number_of
+
+if TYPE_CHECKING:
+    from pyproj import Transformer
+
+SHORTEST_GAP = 3.0
+"""Seconds without a fix that are a gap at least."""
+_USUAL_TIMES = 5.0
+_ROW = 6
+
+
+@dataclass(slots=True)
+class Fixes:
+    """Fixes so far.
+
+    Attributes:
+        unplaced: how many had no place that can be used. turned: how many were older than one before.
+        astray: how many were left out because their time makes no sense among those around.
+    """
+
+    unplaced: int = 0
+    turned: int = 0
+    astray: int = 0
+    _values: array[float] = field(default_factory=lambda: array("d"))
+
+    def add(self, entry: Entry) -> None:
+        """Take a fix; one without a usable place is counted."""
+        place = entry.content.get("place")
+        found = spot_of(place) if isinstance(place, Mapping) else None
+        if found is None:
+            self.unplaced += 1
+            return
+        energy = number_of(entry.content.get("energy"))
+        on_earth, first, second, height = found
+        row = (entry.time, on_earth, first, second, height, nan if energy is None else energy)
+        self._values.extend(row)
+
+    def track(self, zero: Zero, *, exact: bool) -> Track:
+        """Return the track in the local frame; fixes that cannot be laid into it are counted.
+
+        Args:
+            zero: what places count from.
+            exact: whether the robot went straight between fixes, however far apart.
+        """
+        every = np.frombuffer(self._values, dtype=np.float64).reshape(-1, _ROW)
+        rows = every[_in_order(every[:, 0])]
+        self.astray = len(every) - len(rows)
+        positions = zero.positions(rows[:, 1] > 0, rows[:, 2:5])
+        placed = np.isfinite(positions).all(axis=1)
+        self.unplaced += int(len(rows) - placed.sum())
+        times: Floats = np.maximum.accumulate(rows[placed, 0]) if placed.any() else rows[placed, 0]
+        self.turned = int((rows[placed, 0] < times).sum())
+        return Track(times, positions[placed], rows[placed, 5], _broken(times, exact))
+
+
+def _in_order(times: Floats) -> Flags:
+    """Return false for those times that alone are later than what follows them, as a damaged figure is."""
+    sound = np.ones(len(times), dtype=bool)
+    if len(times) > 2:
+        sound[1:-1] = ~((times[1:-1] > times[2:]) & (times[2:] >= times[:-2]))
+    return sound
+
+
+def _broken(times: Floats, exact: bool) -> Flags:
+    broken = np.zeros(len(times), dtype=bool)
+    if len(times) > 1 and not exact:
+        passed = np.diff(times)
+        broken[:-1] = passed > max(SHORTEST_GAP, _USUAL_TIMES * float(np.median(passed)))
+    return broken
+
+
+def spot_of(place: Mapping[str, object]) -> tuple[bool, float, float, float] | None:
+    """Return whether a place is on the Earth, and its three figures; None where it is no place.
+
+    They are latitude and longitude in degrees, or metres north and east of home; then the height.
+    """
+    height = number_of(place.get("height"))
+    for on_earth, names in ((True, ("latitude", "longitude")), (False, ("north", "east"))):
+        first, second = (number_of(place.get(name)) for name in names)
+        if first is not None and second is not None and height is not None:
+            return on_earth, first, second, height
+    return None
+
+
+@dataclass(frozen=True, slots=True)
+class Zero:
+    """What the places of one robot count from.
+
+    Attributes:
+        home: of the robot. up: height of its own zero above the origin, metres: home, or the water surface.
+    """
+
+    frame: Frame
+    home: Position
+    up: float
+
+    def positions(self, on_earth: np.typing.NDArray[np.bool_], figures: Floats) -> Floats:
+        """Return (n, 3) metres east, north, up; nan for what has no place in the frame."""
+        laid = np.full((len(figures), 3), nan)
+        laid[:, 2] = figures[:, 2] + self.up
+        local = ~on_earth
+        laid[local, 0] = self.home[0] + figures[local, 1]
+        laid[local, 1] = self.home[1] + figures[local, 0]
+        if on_earth.any() and self.frame.latitude is not None:
+            laid[on_earth, :2] = _on_ground(figures[on_earth, :2], self.frame)
+        return laid
+
+    def position(self, place: object) -> Position | None:
+        """Return where a place is; None for what is no place, or has none in the frame."""
+        found = spot_of(place) if isinstance(place, Mapping) else None
+        if found is None:
+            return None
+        east, north, up = self.positions(np.array([found[0]]), np.array([found[1:]]))[0].tolist()
+        return (east, north, up) if isfinite(east + north + up) else None
+
+
+def zero_of(
+    robot: RobotProgram,
+    program: Program,
+    robot_type: RobotType | None,
+    vehicle: str = "",
+    kinds: Mapping[Name, RobotKind] = MappingProxyType({}),
+) -> Zero:
+    """Return what the places in the black box of a robot count from.
+
+    Args:
+        robot_type: None where it is not known.
+        vehicle: what the black box says that it was; empty where it says nothing.
+        kinds: of robots, by metaclass; without them, the type's metaclasses tell what carries it.
+    """
+    home = robot.home if robot.home is not None else (0.0, 0.0, 0.0)
+    known = VEHICLES.get(vehicle) if vehicle else vehicle_class(robot, robot_type, kinds)
+    dives = known is not None and known.dives
+    return Zero(program.frame, home, program.frame.surface if dives else home[2])
+
+
+def _on_ground(degrees: Floats, frame: Frame) -> Floats:
+    """Return metres east and north; nan for degrees that are none."""
+    metres = np.full(degrees.shape, nan)
+    sound = (np.abs(degrees[:, 0]) < 90) & (np.abs(degrees[:, 1]) <= 360)
+    if not sound.any():
+        return metres
+    longitudes, latitudes = _from_wgs84(frame.crs).transform(degrees[sound, 1], degrees[sound, 0])
+    assert frame.latitude is not None
+    assert frame.longitude is not None
+    try:
+        metres[sound] = LocalFrame(frame.crs, frame.latitude, frame.longitude).to_local(latitudes, longitudes)
+    except ValueError:
+        metres[sound] = list(_one_by_one(latitudes, longitudes, frame))
+    return metres
+
+
+def _one_by_one(latitudes: Floats, longitudes: Floats, frame: Frame) -> Iterator[tuple[float, float]]:
+    """Yield metres for each, nan for those at the other side of the Earth."""
+    assert frame.latitude is not None
+    assert frame.longitude is not None
+    laid = LocalFrame(frame.crs, frame.latitude, frame.longitude)
+    for latitude, longitude in zip(latitudes.tolist(), longitudes.tolist(), strict=True):
+        try:
+            east, north = laid.to_local(latitude, longitude)[0].tolist()
+        except ValueError:
+            yield nan, nan
+        else:
+            yield east, north
+
+
+@lru_cache(maxsize=16)
+def _from_wgs84(crs: str) -> Transformer:
+    from pyproj import Transformer
+
+    known = WGS84 if crs.strip().lower() in ("wgs84", "wgs 84", "wgs-84") else crs
+    return Transformer.from_crs(WGS84, known, always_xy=True)

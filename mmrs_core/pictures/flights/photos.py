@@ -1,0 +1,111 @@
+"""Photos: those that were ordered, those that the vehicle confirmed, and where they were taken."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from types import MappingProxyType
+
+from mmrs_core.behaviour.program import Action, Move, Program, RobotProgram
+from mmrs_core.contributions.rules import RobotKind
+from mmrs_core.mavlink.wiring import DIGICAM_CONTROL, IMAGE_START_CAPTURE, Unwired, Wired, wiring_of
+from mmrs_core.pictures.flights.fixes import Zero, zero_of
+from mmrs_core.pictures.flights.values import Flight, Flown
+from mmrs_core.scene import Name, Position, RobotType
+from mmrs_runtime.records.entries import number_of
+
+TAKEN, UNCONFIRMED, SIMULATED = "taken", "not confirmed", "simulated"
+_LIKE_PHOTO = re.compile(r"photo|picture|image|snap|capture", re.IGNORECASE)
+_MATCHING = 10.0
+"""Seconds that the confirmation of a photo may be from the step that ordered it."""
+
+
+@dataclass(frozen=True, slots=True)
+class Shot:
+    """A photo.
+
+    Attributes:
+        time: when it was confirmed, else when its order was done; seconds of the run.
+        at: where the vehicle says that it was taken, else where the robot was; None where nobody knows.
+        state: ``taken``, ``not confirmed``, or ``simulated``.
+        index: as the vehicle counts; None where it does not.
+        move, task: that it was ordered for; empty where nobody ordered it, as when a distance triggers.
+    """
+
+    time: float
+    at: Position | None
+    state: str
+    index: int | None = None
+    move: str = ""
+    task: str = ""
+
+
+def shots_in(
+    program: Program,
+    flight: Flight,
+    types: Mapping[str, RobotType],
+    kinds: Mapping[Name, RobotKind] = MappingProxyType({}),
+) -> dict[str, tuple[Shot, ...]]:
+    """Return all photos of a flight, by robot; types by name, as far as known, kinds by metaclass."""
+    return {
+        robot.id: shots_of(
+            robot,
+            flown := flight.robots[robot.id],
+            zero_of(robot, program, types.get(robot.type_name), flown.vehicle, kinds),
+            types.get(robot.type_name),
+        )
+        for robot in program.robots
+    }
+
+
+def shots_of(
+    robot: RobotProgram, flown: Flown, zero: Zero, robot_type: RobotType | None = None
+) -> tuple[Shot, ...]:
+    """Return all photos of a robot by time, each order matched with the nearest confirmation."""
+    taken = [*_taken(flown, zero)]
+    shots: list[Shot] = []
+    for time, move in _orders(robot, flown, robot_type):
+        near = min(taken, key=lambda shot: abs(shot.time - time), default=None)
+        if near is not None and abs(near.time - time) <= _MATCHING:
+            taken.remove(near)
+            shots.append(Shot(near.time, near.at, TAKEN, near.index, move.id, move.task))
+        else:
+            state = SIMULATED if flown.simulated else TAKEN if _devices_confirm(flown) else UNCONFIRMED
+            shots.append(Shot(time, flown.track.at(time), state, None, move.id, move.task))
+    return tuple(sorted([*shots, *taken], key=lambda shot: shot.time))
+
+
+def takes_photo(action: Action, robot_type: RobotType | None) -> bool:
+    """Return whether an action takes one photo: by how its device is wired, else by its name."""
+    if not action.device:
+        return False
+    wiring = wiring_of(action, robot_type)
+    if isinstance(wiring, Wired):
+        return wiring.command in (IMAGE_START_CAPTURE, DIGICAM_CONTROL)
+    return isinstance(wiring, Unwired) and bool(_LIKE_PHOTO.search(action.name))
+
+
+def _devices_confirm(flown: Flown) -> bool:
+    """Return whether an action counts as done only once its device has said so, as on a CAN bus."""
+    return any(entry.content.get("confirms") is True for entry in flown.of_kind("start"))
+
+
+def _taken(flown: Flown, zero: Zero) -> Iterator[Shot]:
+    for entry in flown.of_kind("photo"):
+        index = number_of(entry.content.get("index"))
+        place = entry.content.get("place")
+        # Cameras that know no place say 0, 0.
+        unknown = isinstance(place, dict) and not (place.get("latitude", 1) or place.get("longitude", 1))
+        at = None if unknown else zero.position(place)
+        at = at if at is not None else flown.track.at(entry.time)
+        yield Shot(entry.time, at, TAKEN, None if index is None else int(index))
+
+
+def _orders(robot: RobotProgram, flown: Flown, robot_type: RobotType | None) -> Iterator[tuple[float, Move]]:
+    moves = {move.id: move for move in robot.moves}
+    for record in flown.records:
+        if record.label == "act":
+            move = moves[record.move]
+            if takes_photo(move.action(record.detail), robot_type):
+                yield record.time, move

@@ -1,0 +1,105 @@
+"""Thins out tracks for pictures, by a stated tolerance."""
+
+from __future__ import annotations
+
+from math import inf, sqrt
+
+import numpy as np
+
+from mmrs_core.geometry.frames import Floats
+from mmrs_core.pictures.flights.values import Track
+
+TOLERANCE = 0.2
+"""Metres that a thinned track may be off at first."""
+MOST_POINTS = 6_000
+"""Points of a track from which on the tolerance is doubled."""
+
+
+def thinned(track: Track, tolerance: float = TOLERANCE) -> tuple[Track, float]:
+    """Return a track with fewer points, and the tolerance in metres that it keeps to.
+
+    At the time of every fix that is left out, the thinned track is within the tolerance of it; ends of
+    gaps stay. The tolerance is doubled until the track has at most `MOST_POINTS` points, but for gaps.
+    Linear in the number of fixes for each tolerance.
+    """
+    while True:
+        kept = _kept(track, tolerance)
+        if len(kept) <= MOST_POINTS or len(kept) <= 2 * len(track.gaps) + 2:
+            chosen = track.times[kept], track.positions[kept], track.energies[kept], track.broken[kept]
+            return Track(*chosen), tolerance
+        tolerance *= 2
+
+
+def _kept(track: Track, tolerance: float) -> list[int]:
+    """Return the indices of the points that stay.
+
+    From the last point that stays, cones of velocities lead through all points since; where a point's
+    own velocity is outside of one, the point before it stays, too. Each direction may be off by as
+    much as keeps the distance within the tolerance.
+    """
+    if not len(track.times):
+        return []
+    cones = _Cones(track, tolerance / sqrt(3))
+    times, broken = cones.times, track.broken.tolist()
+    for i in range(1, len(times)):
+        if broken[i - 1]:
+            cones.stay(i - 1)
+            cones.stay(i)
+        elif cones.hold(i):
+            cones.narrow(i)
+        else:
+            cones.stay(i - 1)
+            if cones.hold(i):
+                cones.narrow(i)
+            else:  # it was there in no time
+                cones.stay(i)
+    cones.stay(len(times) - 1)
+    return cones.kept
+
+
+class _Cones:
+    """The velocities, in each direction, that lead from the last point that stays through all since."""
+
+    def __init__(self, track: Track, off: float) -> None:
+        self.times: list[float] = track.times.tolist()
+        self.kept = [0]
+        self._along: list[list[float]] = [track.positions[:, axis].tolist() for axis in range(3)]
+        self._off = off
+        self._low, self._high = [-inf] * 3, [inf] * 3
+
+    def stay(self, i: int) -> None:
+        """Have a point stay, and begin anew there."""
+        if i != self.kept[-1]:
+            self.kept.append(i)
+        self._low, self._high = [-inf] * 3, [inf] * 3
+
+    def hold(self, i: int) -> bool:
+        """Return whether a straight way to the point passes near enough to all points since."""
+        first = self.kept[-1]
+        passed = self.times[i] - self.times[first]
+        if passed <= 0.0:
+            return all(values[i] == values[first] for values in self._along)
+        for values, low, high in zip(self._along, self._low, self._high, strict=True):
+            if not low <= (values[i] - values[first]) / passed <= high:
+                return False
+        return True
+
+    def narrow(self, i: int) -> None:
+        """Have the cones lead through a point, too."""
+        first = self.kept[-1]
+        passed = self.times[i] - self.times[first]
+        if passed <= 0.0:
+            return
+        reach = self._off / passed
+        for axis, values in enumerate(self._along):
+            middle = (values[i] - values[first]) / passed
+            self._low[axis] = max(self._low[axis], middle - reach)
+            self._high[axis] = min(self._high[axis], middle + reach)
+
+
+def pieces(track: Track) -> list[Floats]:
+    """Return the positions between gaps, each (n, 3)."""
+    if not len(track.times):
+        return []
+    ends = np.flatnonzero(track.broken) + 1
+    return list(np.split(track.positions, ends))

@@ -1,0 +1,170 @@
+"""Places words on a picture so that they do not cover each other."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, field
+from itertools import pairwise
+from math import dist, hypot, inf
+
+from shapely import box
+from shapely.geometry import Point as ShapelyPoint
+from shapely.geometry import Polygon
+
+from mmrs_core.pictures.preview.markup import element, number, text, title
+from mmrs_core.scene import Point
+
+FONT = 12.0
+_WIDTH_OF_A_LETTER = 0.58
+_LONGEST = 34
+_STEP = FONT * 1.25
+_GAP = 7.0
+_SAMPLE = 10.0
+_FARTHEST = 4
+_SHARES = (0.0, 0.3, -0.3, 0.6, -0.6, 0.9, -0.9)
+_COVERING = 100.0
+_MISLEADING = 25.0
+_CROSSING = 1.5
+_OUTSIDE = 30.0
+_FARTHER = 3.0
+_APART = 14.0
+"""Pixels between words and what they name from which on a line joins them."""
+
+
+def shortened(words: str, longest: int = _LONGEST) -> str:
+    """Return the words, cut with an ellipsis where they are too long."""
+    return words if len(words) <= longest else words[: longest - 1] + "…"
+
+
+def width_of(words: str, size: float = FONT) -> float:
+    """Return about how many pixels wide words are."""
+    return len(words) * size * _WIDTH_OF_A_LETTER
+
+
+Box = tuple[float, float, float, float]
+"""Left, top, right, bottom in pixels."""
+
+
+@dataclass(slots=True)
+class Labels:
+    """Words placed so far, within a picture of that size in pixels."""
+
+    width: float
+    height: float = inf
+    _taken: list[Box] = field(default_factory=list)
+    _lines: list[Point] = field(default_factory=list)
+    _areas: list[Polygon] = field(default_factory=list)
+    _markup: list[str] = field(default_factory=list)
+
+    def keep_off(self, box: Box) -> None:
+        """Keep later words off a box."""
+        self._taken.append(box)
+
+    def avoid(self, line: Iterable[Point]) -> None:
+        """Place later words where they cover little of a line."""
+        for (x1, y1), (x2, y2) in pairwise(line):
+            count = int(hypot(x2 - x1, y2 - y1) / _SAMPLE) + 1
+            self._lines += [(x1 + (x2 - x1) * i / count, y1 + (y2 - y1) * i / count) for i in range(count)]
+
+    def lay_out(self, outline: Sequence[Point]) -> None:
+        """Keep later words off an area, but those of what lies in it: elsewhere they would name it, too."""
+        area = Polygon(outline) if len(outline) > 2 else Polygon()
+        if area.is_valid and not area.is_empty:
+            self._areas.append(area)
+
+    def put(
+        self,
+        words: str,
+        around: Box,
+        kind: str,
+        *,
+        colour: str | None = None,
+        tip: str = "",
+        icon: tuple[str, str] = ("", ""),
+    ) -> None:
+        """Place words on what they name if it is large enough, else beside it: where they cover least.
+
+        Args:
+            words: cut with an ellipsis where they are too long.
+            around: what they name.
+            kind: class of the style.
+            colour: of the words; None: the style's.
+            tip: shown when the pointer rests on them.
+            icon: what stands before them, and its colour.
+        """
+        shown = shortened(words)
+        before = f"{icon[0]}\u00a0" if icon[0] else ""
+        half = width_of(before + shown) / 2
+        places = [(rank, self._inside(place, half)) for rank, place in _places(around, half)]
+        others = self._others(around)
+        _, (x, y) = min((self._cost(rank, place, half, others), place) for rank, place in places)
+        self._taken.append(_box((x, y), half + _GAP))
+        self._markup += _leader(around, _box((x, y), half))
+        attributes = {"class": f"label {kind}", "x": x, "y": y, "fill": colour, "text_anchor": "middle"}
+        sign = element("tspan", {"class": "icon", "fill": icon[1]}, text(before)) if before else ""
+        self._markup.append(element("text", attributes, sign, text(shown), title(tip) if tip else ""))
+
+    def markup(self) -> str:
+        """Return all of them."""
+        return "".join(self._markup)
+
+    def _inside(self, place: Point, half: float) -> Point:
+        x = min(max(place[0], half + 4), max(self.width - half - 4, half + 4))
+        return x, min(max(place[1], FONT + 2), max(self.height - 5, FONT + 2))
+
+    def _others(self, around: Box) -> list[Polygon]:
+        """Return the areas in which something does not lie that is to be named."""
+        middle = ShapelyPoint((around[0] + around[2]) / 2, (around[1] + around[3]) / 2)
+        return [area for area in self._areas if not area.covers(middle)]
+
+    def _cost(self, rank: float, place: Point, half: float, others: Sequence[Polygon]) -> float:
+        left, top, right, bottom = _box(place, half)
+        words = box(left, top, right, bottom)
+        misleading = sum(area.intersects(words) for area in others)
+        covered = sum(
+            not (right < taken[0] or left > taken[2] or bottom < taken[1] or top > taken[3])
+            for taken in self._taken
+        )
+        crossed = sum(left < x < right and top < y < bottom for x, y in self._lines)
+        return _COVERING * covered + _MISLEADING * misleading + _CROSSING * crossed + rank
+
+
+def _leader(named: Box, words: Box) -> Iterator[str]:
+    """Yield a line from words to what they name where these are so far apart that nobody would guess it."""
+    x, y = (named[0] + named[2]) / 2, (named[1] + named[3]) / 2
+    start = min(max(x, words[0]), words[2]), min(max(y, words[1]), words[3])
+    end = min(max(start[0], named[0]), named[2]), min(max(start[1], named[1]), named[3])
+    if dist(start, end) > _APART:
+        line = "L".join(f"{number(x)} {number(y)}" for x, y in (start, end))
+        yield element("path", {"class": "leader", "d": f"M{line}"})
+
+
+def _box(place: Point, half: float) -> Box:
+    return place[0] - half, place[1] - FONT, place[0] + half, place[1] + 3
+
+
+def around(at: Point, reach: float, above: float = 0.0) -> Box:
+    """Return the box that reaches so far from a point to all sides, and farther above."""
+    return at[0] - reach, at[1] - reach - above, at[0] + reach, at[1] + reach
+
+
+def _places(around: Box, half: float) -> Iterator[tuple[float, Point]]:
+    """Yield (rank, place) for words: on what they name, then beside it, ever farther away."""
+    left, top, right, bottom = around
+    x, y = (left + right) / 2, (top + bottom) / 2
+    room = right - left > 2 * half and bottom - top > 2 * FONT
+    if room:
+        aside, rows = (right - left) / 2 - half, (bottom - top) / 2 - FONT
+        for i, share in enumerate(_SHARES):
+            up = y + 4 + share * rows
+            yield from ((i / 2 + j / 2, (x + part * aside, up)) for j, part in enumerate(_SHARES))
+    rank = _OUTSIDE if room else 0.0
+    for ring in range(_FARTHEST):
+        out = ring * _STEP
+        rank += _FARTHER
+        yield rank, (x, top - 5 - out)
+        yield rank, (x, bottom + FONT + 3 + out)
+        for beside in (right + half + 5 + out, left - half - 5 - out):
+            yield rank + 0.5, (beside, y + 4)
+            yield rank + 0.7, (beside, top - 5)
+            yield rank + 0.7, (beside, bottom + FONT)

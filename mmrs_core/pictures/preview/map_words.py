@@ -1,0 +1,189 @@
+"""Writes the names on the map."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from itertools import chain
+
+import shapely
+from shapely.geometry import LineString, Polygon
+from shapely.geometry.base import BaseGeometry
+
+from mmrs_core.pictures.figures import heights
+from mmrs_core.pictures.preview.labels import Box, Labels, around
+from mmrs_core.pictures.preview.map_furniture import furniture_places
+from mmrs_core.pictures.preview.map_places import BADGE, STEM, badge_places, task_tip, thing_tip
+from mmrs_core.pictures.preview.map_ways import STAY, STAYING
+from mmrs_core.pictures.preview.palette import style_of
+from mmrs_core.pictures.preview.picture import Picture, RobotPicture, TaskPicture, Zone
+from mmrs_core.pictures.preview.projection import Projection
+from mmrs_core.scene import AreaUse, Point, Position, Ring
+
+_FEW = 20
+_HOME = 9.0
+"""Half the width of the mark of a home, pixels."""
+
+
+def words(picture: Picture, projection: Projection, first: int = 0) -> str:
+    """Return the names of robots, tasks, areas and things, none over another where there is room.
+
+    Args:
+        first: index of the first robot, for its style.
+    """
+    labels = Labels(projection.width, projection.height)
+    for box in chain(furniture_places(projection), _marks(picture, projection)):
+        labels.keep_off(box)
+    for line in _lines(picture):
+        labels.avoid([projection.place(point) for point in line])
+    for outline in _outlines(picture):
+        labels.lay_out([projection.place(point) for point in outline])
+    kinds = (_of_tasks, _of_things, _of_zones)
+    names = chain.from_iterable(of_kind(picture, projection) for of_kind in kinds)
+    smallest_first = sorted(names, key=lambda name: _area(name.around))
+    for name in chain(_of_robots(picture, projection, first), smallest_first):
+        labels.put(name.words, name.around, name.kind, colour=name.colour, tip=name.tip, icon=name.icon)
+    return labels.markup()
+
+
+def _area(box: Box) -> float:
+    left, top, right, bottom = box
+    return (right - left) * (bottom - top)
+
+
+def _marks(picture: Picture, projection: Projection) -> Iterator[Box]:
+    """Yield what small marks cover."""
+    for robot in picture.robots:
+        yield around(projection.place(robot.home), _HOME)
+        stays = (leg.points[0] for leg in robot.legs if leg.stays and leg.kind in STAYING)
+        yield from (around(projection.place(at), STAY) for at in stays)
+    for at in badge_places(picture.tasks, projection).values():
+        yield around(at, BADGE)
+    for thing in picture.things:
+        yield from (around(projection.place(mark), BADGE, STEM) for mark in thing.marks)
+
+
+def _lines(picture: Picture) -> Iterator[Sequence[Point | Position]]:
+    """Yield what names should not hide: ways and borders."""
+    if picture.flown:
+        yield from (way for robot in picture.robots for way in robot.planned or _flown(robot))
+    else:
+        yield from (leg.points for robot in picture.robots for leg in robot.legs)
+    yield from ((*zone.shell, zone.shell[0]) for zone in picture.zones if zone.shell)
+    for thing in picture.things:
+        yield from (*thing.lines, *((*ring, ring[0]) for ring in thing.outlines))
+
+
+def _outlines(picture: Picture) -> Iterator[Ring]:
+    """Yield what names of other things would be taken to name."""
+    yield from (zone.shell for zone in picture.zones if zone.types is None)
+    yield from (ring for task in picture.tasks for ring in task.rings[:1])
+    yield from (ring for thing in picture.things if not thing.inner for ring in thing.outlines)
+
+
+def _flown(robot: RobotPicture) -> Iterator[Sequence[Position]]:
+    """Yield the legs of a robot that has flown and had no plan, with few of their points."""
+    yield from (leg.points[:: max(len(leg.points) // _FEW, 1)] for leg in robot.legs)
+
+
+@dataclass(frozen=True, slots=True)
+class _Name:
+    """What to write, beside what, how."""
+
+    words: str
+    around: Box
+    kind: str
+    colour: str | None = None
+    tip: str = ""
+    icon: tuple[str, str] = ("", "")
+
+
+def _of_robots(picture: Picture, projection: Projection, first: int) -> Iterator[_Name]:
+    for index, robot in enumerate(picture.robots, start=first):
+        x, y = projection.place(robot.home)
+        yield _Name(robot.name, (x - _HOME, y - _HOME, x + _HOME, y + _HOME), "name", style_of(index).colour)
+
+
+def _of_tasks(picture: Picture, projection: Projection) -> Iterator[_Name]:
+    places = badge_places(picture.tasks, projection)
+    for task in picture.tasks:
+        shape, icon = _shape(task), (task.symbol.icon, task.symbol.colour)
+        if task.name in places:
+            yield _Name(task.name, around(places[task.name], BADGE), "of-task", tip=task_tip(task))
+        elif shape is not None:
+            yield _Name(task.name, _box(shape, projection), "of-task", tip=task_tip(task), icon=icon)
+
+
+def _shape(task: TaskPicture) -> BaseGeometry | None:
+    if task.rings:
+        return _polygon(task.rings[0])
+    if task.line:
+        return shapely.Point(task.line[len(task.line) // 2])
+    return None
+
+
+def _of_things(picture: Picture, projection: Projection) -> Iterator[_Name]:
+    shown = _shown(projection)
+    for thing in picture.things:
+        shapes = (
+            *map(shapely.Point, thing.marks),
+            *map(_polygon, thing.outlines),
+            *(shapely.Point(line[len(line) // 2]) for line in thing.lines),
+        )
+        if shapes and not thing.inner and shown.intersects(shapes[0]):
+            icon = ("" if thing.marks else thing.symbol.icon, thing.symbol.colour)
+            box = (
+                around(projection.place(thing.marks[0]), BADGE, STEM)
+                if thing.marks
+                else _box(shapes[0], projection)
+            )
+            yield _Name(thing.name, box, "of-thing", tip=thing_tip(thing), icon=icon)
+
+
+def _of_zones(picture: Picture, projection: Projection) -> Iterator[_Name]:
+    shown = _shown(projection)
+    # What bars some types only is a thing at the place, and named as such.
+    for zone in (zone for zone in picture.zones if zone.types is None):
+        seen = shapely.intersection(Polygon(zone.shell), shown)
+        if not seen.is_empty:
+            box = _box(_polygon(zone.shell), projection)
+            yield _Name(_zone_words(zone), box, f"of-{zone.use.value}")
+
+
+def _zone_words(zone: Zone) -> str:
+    return f"{zone.name} ({heights(zone.low, zone.high)})" if zone.use is AreaUse.OBSTACLE else zone.name
+
+
+def _shown(projection: Projection) -> Polygon:
+    return shapely.box(projection.west, projection.south, projection.east, projection.north)
+
+
+def _polygon(ring: Ring) -> BaseGeometry:
+    return Polygon(ring) if len(ring) > 2 else shapely.MultiPoint(ring)
+
+
+def _box(shape: BaseGeometry, projection: Projection, reach: float = 0.0) -> Box:
+    """Return what words about a shape are placed on or beside, in pixels: a box around its middle.
+
+    The box is as wide and as high as the shape is at its middle, so that words on it are on the shape;
+    `reach` pixels more where what is drawn there is larger.
+    """
+    shown = _shown(projection)
+    seen = shapely.intersection(shape, shown) if shape.is_valid else shape
+    middle = (shape if seen.is_empty else seen).representative_point()
+    west, _, east, _ = _across(seen, middle, ((shown.bounds[0], middle.y), (shown.bounds[2], middle.y)))
+    _, south, _, north = _across(seen, middle, ((middle.x, shown.bounds[1]), (middle.x, shown.bounds[3])))
+    left, top = projection.place((west, north))
+    right, bottom = projection.place((east, south))
+    return left - reach, top - reach, right + reach, bottom + reach
+
+
+def _across(
+    shape: BaseGeometry, middle: shapely.Point, line: tuple[Point, Point]
+) -> tuple[float, float, float, float]:
+    """Return the bounds of the part of a line in a shape that is nearest to a point in both."""
+    pieces = [piece for piece in shapely.get_parts(shape.intersection(LineString(line))) if piece.length]
+    if not pieces:
+        return middle.x, middle.y, middle.x, middle.y
+    west, south, east, north = min(pieces, key=middle.distance).bounds
+    return float(west), float(south), float(east), float(north)

@@ -1,0 +1,108 @@
+"""Figures of a report in words, with their units."""
+
+from __future__ import annotations
+
+import re
+
+from mmrs_core.pictures.figures import clock, energy, length
+from mmrs_core.pictures.flights.places import Place
+from mmrs_runtime.policies import EVENTS, RESPONSES
+
+UNKNOWN = "not known"
+_CODES = frozenset((*EVENTS, *RESPONSES, "ORDERED", "REFUSED", "STOPPED", "CRASHED"))
+_CODE = re.compile(r"(?<![\w'])[A-Z]+(?:_[A-Z]+)*(?![\w'])")
+
+
+def seconds(value: float | None) -> str:
+    """Return a duration.
+
+    >>> seconds(3.25), seconds(75.0), seconds(None)
+    ('3.2 s', '1:15', 'not known')
+    """
+    if value is None:
+        return UNKNOWN
+    return f"{value:.1f} s" if abs(value) < 60 else clock(value)
+
+
+def more_or_less(flown: float, planned: float | None) -> str:
+    """Return by how much something took longer than planned.
+
+    >>> more_or_less(12.0, 10.0), more_or_less(10.0, 12.0), more_or_less(1.0, None)
+    ('+2.0 s', '−2.0 s', '')
+    """
+    if planned is None:
+        return ""
+    return f"{'+' if flown >= planned else '−'}{seconds(abs(flown - planned))}"
+
+
+def metres(value: float | None) -> str:
+    """Return a distance as exact as it is measured.
+
+    >>> metres(0.034), metres(12.34), metres(None)
+    ('0.03 m', '12.3 m', 'not known')
+    """
+    if value is None:
+        return UNKNOWN
+    return f"{value:.2f} m" if abs(value) < 10 else length(value)
+
+
+def percent(part: float | None) -> str:
+    """Return a part of something.
+
+    >>> percent(0.256), percent(0.9999), percent(0.0001), percent(None)
+    ('26 %', '99.9 %', '0.1 %', 'not known')
+    """
+    if part is None:
+        return UNKNOWN
+    if 0 < part < 0.005:
+        return "0.1 %"
+    return "99.9 %" if 0.995 <= part < 1 else f"{100 * part:.0f} %"
+
+
+def level(part: float | None, capacity: float | None = None) -> str:
+    """Return a part of a battery, with the energy where it is known how much a full one holds.
+
+    >>> level(0.25, 360_000.0), level(0.25), level(None)
+    ('25 % (25.0 Wh)', '25 %', 'not known')
+    """
+    if part is None or capacity is None:
+        return UNKNOWN if part is None else f"{100 * part:.0f} %"
+    return f"{100 * part:.0f} % ({energy(part * capacity)})"
+
+
+def place(where: Place | None) -> str:
+    """Return where something was: degrees where it lies on the Earth, else metres; and the height.
+
+    >>> place(Place((1.0, 2.0, 3.0), 42.37, 13.35)), place(Place((1.0, -2.0, 3.0)))
+    ('42.3700000, 13.3500000, 3.0 m up', '1.0 m east, -2.0 m north, 3.0 m up')
+    """
+    if where is None:
+        return UNKNOWN
+    east, north, up = where.position
+    if where.latitude is None or where.longitude is None:
+        return f"{east:.1f} m east, {north:.1f} m north, {up:.1f} m up"
+    return f"{where.latitude:.7f}, {where.longitude:.7f}, {up:.1f} m up"
+
+
+def spoken(words: str) -> str:
+    """Return words with the names of events and responses as people write them; GPS stays GPS.
+
+    >>> spoken("no GPS fix; by itself it has gone into mode land; response: EMERGENCY_AREA")
+    'no GPS fix; by itself it has gone into mode land; response: emergency area'
+    """
+    return _CODE.sub(lambda found: _plain(found[0]), words)
+
+
+def _plain(code: str) -> str:
+    return code.replace("_", " ").lower() if "_" in code or code in _CODES else code
+
+
+def span(times: tuple[float, float | None] | None) -> str:
+    """Return from when to when.
+
+    >>> span((0.0, 65.0)), span((5.0, None)), span(None)
+    ('0:00 to 1:05', 'from 0:05', 'not known')
+    """
+    if times is None:
+        return UNKNOWN
+    return f"from {clock(times[0])}" if times[1] is None else f"{clock(times[0])} to {clock(times[1])}"

@@ -1,0 +1,135 @@
+"""Where a robot was at a time, as far as anybody knows; and where fixes lie in the frame of a behaviour."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from mmrs_core.behaviour.earth import degrees_of
+from mmrs_core.pictures.flights.fixes import Fixes, Zero, zero_of
+from mmrs_core.scene import Frame
+from mmrs_core.testing.programs import L_AQUILA, program, quad, robot_program, take_off
+from mmrs_core.transformation.kinds import PLAIN_ROBOT
+from mmrs_runtime.records.entries import Entry
+
+HOME = (100.0, -50.0, 7.0)
+UP = [take_off("up", 5.0)]
+
+
+def fix(time, place, energy=None):
+    return Entry("r", "Ann", time, "", "fix", {"place": place, "energy": energy})
+
+
+def local(north, east, height):
+    return {"north": north, "east": east, "height": height}
+
+
+def track_of(entries, frame=L_AQUILA, *, exact=False):
+    fixes = Fixes()
+    for entry in entries:
+        fixes.add(entry)
+    return fixes, fixes.track(Zero(frame, HOME, HOME[2]), exact=exact)
+
+
+def test_places_near_home_count_from_home():
+    _, track = track_of([fix(0.0, local(1.0, 2.0, 3.0))])
+    assert track.positions.tolist() == [[102.0, -49.0, 10.0]]
+
+
+def test_places_on_the_earth_are_where_targets_put_them():
+    points = [(12.5, -80.25), (4000.0, 3000.0)]
+    places = [
+        {"latitude": latitude, "longitude": longitude, "height": 4.0}
+        for latitude, longitude in degrees_of(points, L_AQUILA)
+    ]
+    _, track = track_of([fix(float(i), place) for i, place in enumerate(places)])
+    assert track.positions[:, :2] == pytest.approx(np.array(points), abs=0.02)
+    assert track.positions[:, 2].tolist() == [11.0, 11.0]
+
+
+def test_places_on_the_earth_have_none_in_a_local_frame_and_are_counted():
+    frame = Frame("EPSG:4326", None, None)
+    fixes, track = track_of([fix(0.0, {"latitude": 42.0, "longitude": 13.0, "height": 0.0})], frame)
+    assert len(track.times) == 0
+    assert fixes.unplaced == 1
+
+
+@pytest.mark.parametrize(
+    "place",
+    [None, {}, {"north": 1.0, "east": "x", "height": 0.0}, {"latitude": 1e9, "longitude": 0, "height": 0}],
+)
+def test_a_place_that_is_none_is_counted_and_left_out(place):
+    fixes, track = track_of([fix(0.0, place), fix(1.0, local(0, 0, 0))])
+    assert fixes.unplaced == 1
+    assert track.times.tolist() == [1.0]
+
+
+def test_a_place_at_the_other_side_of_the_earth_does_not_hide_the_others():
+    near = {"latitude": 42.37, "longitude": 13.35, "height": 0.0}
+    fixes, track = track_of([fix(0.0, near), fix(1.0, {**near, "longitude": -120.0, "latitude": 0.0})])
+    assert track.times.tolist()[0] == 0.0
+    assert len(track.times) + fixes.unplaced == 2
+
+
+def test_between_two_fixes_a_robot_went_straight():
+    _, track = track_of([fix(0.0, local(0, 0, 0)), fix(2.0, local(10, 0, 4))])
+    assert track.at(0.5) == pytest.approx((100.0, -47.5, 8.0))
+
+
+def test_before_the_first_fix_and_after_the_last_nobody_knows():
+    _, track = track_of([fix(1.0, local(0, 0, 0)), fix(2.0, local(10, 0, 4))])
+    assert track.at(0.4) is None
+    assert track.at(2.6) is None
+    assert track.at(2.0) == pytest.approx((100.0, -40.0, 11.0))
+
+
+def test_half_a_second_beyond_the_ends_does_not_matter():
+    _, track = track_of([fix(1.0, local(0, 0, 0)), fix(2.0, local(10, 0, 4))])
+    assert track.at(0.6) == pytest.approx((100.0, -50.0, 7.0))
+    assert track.at(2.4) == pytest.approx((100.0, -40.0, 11.0))
+
+
+def test_in_a_gap_nobody_knows():
+    _, track = track_of([fix(time, local(time, 0, 0)) for time in (0.0, 1.0, 2.0, 10.0, 11.0)])
+    assert track.gaps == ((2.0, 10.0),)
+    assert track.at(5.0) is None
+    assert track.at(2.0) is not None
+    assert track.at(10.0) is not None
+
+
+def test_slow_telemetry_is_no_gap():
+    _, track = track_of([fix(10.0 * i, local(i, 0, 0)) for i in range(5)])
+    assert track.gaps == ()
+
+
+def test_a_simulation_has_no_gaps():
+    _, track = track_of([fix(t, local(t, 0, 0)) for t in (0.0, 1.0, 2.0, 500.0)], exact=True)
+    assert track.gaps == ()
+    assert track.at(251.0) is not None
+
+
+def test_a_fix_of_which_the_time_was_damaged_is_left_out_and_counted():
+    fixes, track = track_of([fix(t, local(t, 0, 0)) for t in (0.0, 1.0, 9e9, 2.0, 3.0)])
+    assert track.times.tolist() == [0.0, 1.0, 2.0, 3.0]
+    assert (fixes.astray, fixes.turned) == (1, 0)
+
+
+def test_time_that_goes_back_stands_still_and_is_counted():
+    fixes, track = track_of([fix(t, local(t, 0, 0)) for t in (0.0, 4.0, 5.0, 2.0, 3.0, 6.0)])
+    assert track.times.tolist() == [0.0, 4.0, 5.0, 5.0, 5.0, 6.0]
+    assert fixes.turned == 2
+
+
+def test_heights_under_water_count_from_the_surface():
+    behaviour = program(robot_program("Ann", UP, home=HOME), frame=replace(L_AQUILA, surface=2.0))
+    assert zero_of(behaviour.robots[0], behaviour, None, "sub").up == 2.0
+    assert zero_of(behaviour.robots[0], behaviour, None, "copter").up == 7.0
+
+
+def test_heights_of_a_robot_whose_box_is_silent_count_as_its_kind_says():
+    behaviour = program(robot_program("Ann", UP, home=HOME), frame=replace(L_AQUILA, surface=2.0))
+    diver = replace(PLAIN_ROBOT, name="ray", metaclass=("urn:rays:1.0", "Ray"), vehicle="sub")
+    ray = replace(quad(), metaclasses=(diver.metaclass, PLAIN_ROBOT.metaclass))
+    assert zero_of(behaviour.robots[0], behaviour, ray, kinds={diver.metaclass: diver}).up == 2.0
