@@ -24,7 +24,8 @@ Metamodels = Annotated[
     typer.Option(
         "--metamodel",
         metavar="FILE",
-        help="An .ecore file it uses; may be repeated. Else what xsi:schemaLocation names, or lies beside.",
+        help="Metamodel of the input. Default: the .ecore file that xsi:schemaLocation names, or one next to "
+        "the input. Repeatable.",
     ),
 ]
 

@@ -15,56 +15,57 @@ from mmrs_core.cli.settings import DEBUG, NO_PLUGINS, QUIET_MIGRATION, Settings
 from mmrs_core.contributions.commands import Command
 from mmrs_core.errors import MmrsError, PluginError
 
-_HELP = "Missions of mobile multi-robot systems: from a mission model to robots that carry it out."
+_HELP = "Plan, verify and run missions of multi-robot teams."
 _EPILOG = (
-    "Exit codes: 0 done, 1 model invalid or mission failed, 2 wrong usage, 3 file not readable or writable, "
+    "Exit codes: 0 success, 1 invalid model or failed mission, 2 usage error, 3 file not readable or "
+    "writable, "
     "4 no feasible plan, 5 link or robot lost, 130 interrupted."
 )
 _COMMANDS = (
-    Command("demo", "Take an example all the way, into one folder.", "mmrs_core.cli.demo:demo"),
+    Command("demo", "Run an example end to end.", "mmrs_core.cli.demo:demo"),
     Command(
         "validate",
-        "List everything that is wrong with a mission's models.",
+        "Validate the models of a mission.",
         "mmrs_core.cli.validate:validate",
     ),
-    Command("plan", "Plan a mission and write the behaviour of every robot.", "mmrs_core.cli.plan:plan"),
-    Command("check", "Say what is known of the safety of a behaviour.", "mmrs_core.cli.check:check"),
-    Command("generate", "Generate the code of every robot's controller.", "mmrs_core.cli.generate:generate"),
-    Command(
-        "explain", "Say which move a line of a generated file comes from.", "mmrs_core.cli.explain:explain"
-    ),
+    Command("plan", "Plan a mission and write the robots' behaviour.", "mmrs_core.cli.plan:plan"),
+    Command("check", "Verify the safety of a behaviour.", "mmrs_core.cli.check:check"),
+    Command("generate", "Generate controller code for every robot.", "mmrs_core.cli.generate:generate"),
+    Command("explain", "Trace a generated line to its move.", "mmrs_core.cli.explain:explain"),
     Command(
         "simulate",
-        "Carry out a behaviour in simulation, faster than real time.",
+        "Simulate a behaviour faster than real time.",
         "mmrs_core.cli.simulate:simulate",
     ),
-    Command("run", "Carry out a behaviour with real robots.", "mmrs_core.cli.live:run"),
-    Command("control", "Give an order to robots that are running.", "mmrs_core.cli.control:control"),
+    Command("run", "Run a behaviour on real or simulated vehicles.", "mmrs_core.cli.live:run"),
+    Command("control", "Send a command to running robots.", "mmrs_core.cli.control:control"),
     Command(
         "replay",
-        "Replay the logs of a run through the rules of its behaviour.",
+        "Check the logs of a run against its behaviour.",
         "mmrs_core.cli.replay:replay",
     ),
-    Command("report", "Tell people how a flight went.", "mmrs_core.cli.report:report"),
+    Command("report", "Write a flight report as HTML.", "mmrs_core.cli.report:report"),
     Command(
         "preview",
-        "Draw a mission: map, timeline, heights, on one page.",
+        "Draw a mission's map, timeline and altitude profile.",
         "mmrs_core.cli.preview:preview",
     ),
-    Command("show", "Print a model as a tree, or what a path leads to.", "mmrs_core.cli.show:show"),
+    Command("show", "Print a model, or one element, as a tree.", "mmrs_core.cli.show:show"),
     Command(
         "convert",
-        "Write models in their other form: XMI as JSON, JSON as XMI.",
+        "Convert models between XMI and JSON.",
         "mmrs_core.cli.convert:convert",
     ),
-    Command("diff", "Say what differs between two models.", "mmrs_core.cli.diff:diff"),
-    Command("migrate", "Turn models of another dialect into a project.", "mmrs_core.cli.migrate:migrate"),
+    Command("diff", "Compare two models.", "mmrs_core.cli.diff:diff"),
+    Command(
+        "migrate", "Migrate models of another dialect to an MMRS project.", "mmrs_core.cli.migrate:migrate"
+    ),
 )
 """The help of all together imports none of them: each line is the first of the command's own help."""
 _GROUPS = (
-    Command("plugin", "Plug-ins: who contributed what, and new ones.", "mmrs_core.cli.plugin:app"),
-    Command("metamodel", "The languages that are installed.", "mmrs_core.cli.metamodel:app"),
-    Command("bus", "Slots of robots on different machines.", "mmrs_core.cli.bus:app"),
+    Command("plugin", "List and create plug-ins.", "mmrs_core.cli.plugin:app"),
+    Command("metamodel", "Inspect and export the metamodels.", "mmrs_core.cli.metamodel:app"),
+    Command("bus", "Synchronise slots between machines.", "mmrs_core.cli.bus:app"),
 )
 
 
@@ -136,13 +137,13 @@ def _global_options(
     version: Annotated[
         bool, typer.Option("--version", help="Print the version.", callback=_print_version, is_eager=True)
     ] = False,
-    no_plugins: Annotated[bool, typer.Option(NO_PLUGINS, help="Load nothing but the core.")] = False,
-    debug: Annotated[bool, typer.Option(DEBUG, help="Show where errors come from.")] = False,
+    no_plugins: Annotated[bool, typer.Option(NO_PLUGINS, help="Disable plug-ins.")] = False,
+    debug: Annotated[bool, typer.Option(DEBUG, help="Print the Python traceback of an error.")] = False,
     quiet_migration: Annotated[
         bool,
         typer.Option(
             QUIET_MIGRATION,
-            help="Do not list what is defaulted or changed in models of FLYAQ 2015.",
+            help="Do not list the changes made when reading models of another dialect.",
         ),
     ] = False,
 ) -> None:

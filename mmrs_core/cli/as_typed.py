@@ -48,6 +48,8 @@ def take_as_typed(command: Any, line: Sequence[str]) -> None:
     for parameter in command.get_params(typer.Context(command)):
         made = AsTyped(_MAKERS.get(parameter.type_descriptor.annotation), parameter.get_runtime_param)
         parameter.get_runtime_param = lambda made=made: made
+        if parameter.param_type_name == "argument":
+            parameter.display_type_rich = lambda ctx: None  # its help says more than "<list[Path]>"
     for name, inner in getattr(command, "commands", {}).items():
         if name in line:
             take_as_typed(inner, line)

@@ -29,26 +29,30 @@ if TYPE_CHECKING:
 
 app = typer.Typer(
     rich_markup_mode=None,
-    help="Slots of robots on different machines.",
+    help="Synchronise slots between machines.",
     no_args_is_help=True,
     add_completion=False,
 )
 
 Listen = Annotated[
     list[str] | None,
-    typer.Option("--listen", metavar="ENDPOINT", help="To listen at, such as tcp/0.0.0.0:7447; repeatable."),
+    typer.Option(
+        "--listen", metavar="ENDPOINT", help="Zenoh endpoint to listen on, e.g. tcp/0.0.0.0:7447. Repeatable."
+    ),
 ]
 Connect = Annotated[
     list[str] | None,
     typer.Option(
-        "--connect", metavar="ENDPOINT", help="Of another process, as tcp/10.0.0.2:7447; repeatable."
+        "--connect",
+        metavar="ENDPOINT",
+        help="Zenoh endpoint to connect to, e.g. tcp/10.0.0.2:7447. Repeatable.",
     ),
 ]
 Config = Annotated[
     Path | None,
-    typer.Option("--config", metavar="FILE", help="Zenoh's configuration, as mmrs bus keys makes it."),
+    typer.Option("--config", metavar="FILE", help="Zenoh configuration from 'mmrs bus keys'."),
 ]
-Run = Annotated[str, typer.Option("--run", metavar="NAME", help="Identifier of the run.")]
+Run = Annotated[str, typer.Option("--run", metavar="NAME", help="Run name.")]
 
 _NAME = re.compile(r"(?!-)[A-Za-z0-9_-]+(\.[A-Za-z0-9_-]+)*")
 _HOLDER = re.compile(r"[A-Za-z0-9][A-Za-z0-9_.-]*")
@@ -56,31 +60,35 @@ _HOLDER = re.compile(r"[A-Za-z0-9][A-Za-z0-9_.-]*")
 
 @app.callback()
 def bus() -> None:
-    """Slots of robots on different machines."""
+    """Synchronise slots between machines."""
 
 
 @app.command("keys")
 def keys(
-    folder: Annotated[Path, typer.Argument(metavar="DIR", help="Where to write.")],
+    folder: Annotated[Path, typer.Argument(metavar="DIR", help="Output folder.")],
     robots: Annotated[
         list[str],
         typer.Option(
-            "--robot", metavar="NAME", help="A robot, or NAME=ROBOT,ROBOT: a process that runs several."
+            "--robot",
+            metavar="NAME",
+            help="Robot, or NAME=ROBOT,ROBOT for a process that runs several robots. Repeatable.",
         ),
     ],
     hosts: Annotated[
         list[str] | None,
-        typer.Option("--host", metavar="HOST", help="By which they are reached; repeatable."),
+        typer.Option("--host", metavar="HOST", help="Host name or address of the robots. Repeatable."),
     ] = None,
-    days: Annotated[int, typer.Option("--days", min=1, max=36_500, help="How long they are valid.")] = 730,
+    days: Annotated[
+        int, typer.Option("--days", metavar="DAYS", min=1, max=36_500, help="Validity in days.")
+    ] = 730,
     json: Json = False,
 ) -> int:
-    """Make certificates for robots, and configurations with them.
+    """Create certificates and bus configurations.
 
-    By them each robot can speak only for itself. DIR/NAME holds all that the machine of that robot needs:
-    copy it there, and give its bus.json5 to the controller as --bus-config. DIR/observer is for looking on.
-    The authority's key stays with you. Call it again with all robots to add one, or to replace a certificate
-    that is revoked or whose folder is gone: the rest is kept. Copy the folders again then.
+    With a certificate, a robot can set and acknowledge only its own slots. Copy DIR/NAME to the machine of
+    robot NAME and pass its bus.json5 to the controller as --bus-config. DIR/observer is for monitoring. Keep
+    DIR/authority.key.pem private. To add a robot, or to replace a revoked certificate or a missing folder,
+    run the command again with all robots and copy the folders again; existing certificates are kept.
 
     Example: mmrs bus keys keys --robot Drone1 --robot Drone2 --host 10.0.0.1 --host 10.0.0.2
     """
@@ -103,16 +111,16 @@ def keys(
 
 @app.command("revoke")
 def revoke(
-    folder: Annotated[Path, typer.Argument(metavar="DIR", help="Where mmrs bus keys wrote.")],
+    folder: Annotated[Path, typer.Argument(metavar="DIR", help="Output folder of 'mmrs bus keys'.")],
     name: Annotated[
-        str, typer.Argument(metavar="NAME", help="Robot, or process, whose key is not to be valid.")
+        str, typer.Argument(metavar="NAME", help="Robot or process whose certificate is revoked.")
     ],
     json: Json = False,
 ) -> int:
     """Revoke the certificate of a robot.
 
     Copy DIR/revoked.pem to every machine, next to its bus.json5. Running processes read it within seconds and
-    refuse the old key from then on. mmrs bus keys makes another certificate for the robot.
+    then refuse the old certificate. 'mmrs bus keys' creates a new one.
 
     Example: mmrs bus revoke keys Drone1
     """
@@ -134,23 +142,30 @@ def revoke(
 def gateway(
     call: typer.Context,
     behaviour: Behaviour,
-    robot: Annotated[str, typer.Option("--robot", metavar="NAME", help="For which a program speaks.")],
+    robot: Annotated[str, typer.Option("--robot", metavar="NAME", help="Robot that the program represents.")],
     listen: Listen = None,
     connect: Connect = None,
     config: Config = None,
     port: Annotated[
-        int, typer.Option("--port", min=0, max=65_535, help="Of this machine, for the program; 0: any.")
+        int,
+        typer.Option(
+            "--port",
+            metavar="PORT",
+            min=0,
+            max=65_535,
+            help="Local port for the program; 0 picks a free port.",
+        ),
     ] = 0,
     run: Run = "run-0",
     log: Annotated[
-        Path, typer.Option("--log", metavar="DIR", help="Where slots are kept, and gateway.json.")
+        Path, typer.Option("--log", metavar="DIR", help="Folder for the slots' journal and gateway.json.")
     ] = Path("logs"),
 ) -> int:
-    """Let a program without Zenoh take part as one robot.
+    """Connect a program without Zenoh as one robot.
 
-    It may be in Ada, C, Lua or any other language: it speaks lines of JSON over TCP. The program reads port
-    and token from DIR/gateway.json; the page "bus" shows a session. When the program goes without having
-    ended, or this gateway does, the robot is lost to the others. It runs until it is interrupted.
+    The program, in any language, exchanges JSON lines over TCP; it reads port and token from
+    DIR/gateway.json. See the page "bus" of the documentation for a session. If the program or the gateway
+    ends early, the other robots report the robot as lost. Runs until interrupted.
 
     Example: mmrs bus gateway survey.bl.xmi --robot Auv1 --connect tcp/10.0.0.2:7447
     """
@@ -183,14 +198,16 @@ def state(
     config: Config = None,
     run: Run = "run-0",
     robots: Annotated[
-        list[str] | None, typer.Option("--robot", metavar="NAME", help="Whose slots; repeatable.")
+        list[str] | None, typer.Option("--robot", metavar="NAME", help="Robot to query. Repeatable.")
     ] = None,
-    seconds: Annotated[float, typer.Option("--seconds", min=0.1, help="To wait for answers.")] = 2.0,
+    seconds: Annotated[
+        float, typer.Option("--seconds", metavar="SECONDS", min=0.1, help="Seconds to wait for answers.")
+    ] = 2.0,
     json: Json = False,
 ) -> int:
-    """Show the slots of all robots that can be reached.
+    """Show the slots of all reachable robots.
 
-    Exit codes: 0 where all robots that were asked for have answered, 5 where one has not.
+    Exit codes: 0 every robot queried has answered, 5 one has not.
 
     Example: mmrs bus state survey --connect tcp/10.0.0.2:7447 --robot Drone1
     """

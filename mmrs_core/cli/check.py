@@ -24,9 +24,10 @@ def check(
     sarif: Sarif = None,
     json: Json = False,
 ) -> int:
-    """Say what is known of the safety of a behaviour.
+    """Verify the safety of a behaviour.
 
-    It may be planned or written by hand.
+    Checks clearance, separation, energy, synchronisation and more, independently of the planner. Behaviours
+    written by hand are checked in the same way.
 
     Example: mmrs check field/behaviour.xmi --sarif check.sarif
     """

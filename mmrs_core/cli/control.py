@@ -17,25 +17,33 @@ if TYPE_CHECKING:
 def control(
     order: Annotated[
         str,
-        typer.Argument(metavar="ORDER", help="hold, resume, return, land, stop, answer or status."),
+        typer.Argument(metavar="ORDER", help="Command: hold, resume, return, land, stop, answer or status."),
     ],
     robots: Annotated[
-        list[str] | None, typer.Argument(metavar="ROBOT...", help="None: all robots that are running.")
+        list[str] | None,
+        typer.Argument(metavar="ROBOT...", help="Robots to command. Default: all running robots."),
     ] = None,
-    log: Annotated[Path, typer.Option("--log", metavar="DIR", help="Folder of their logs.")] = Path("logs"),
-    question: Annotated[str, typer.Option("--question", help="Of answer: what is answered.")] = "",
-    says: Annotated[str, typer.Option("--says", metavar="yes|no", help="Of answer: the answer.")] = "",
+    log: Annotated[Path, typer.Option("--log", metavar="DIR", help="Folder of the run's logs.")] = Path(
+        "logs"
+    ),
+    question: Annotated[
+        str, typer.Option("--question", metavar="NAME", help="With answer: the question.")
+    ] = "",
+    says: Annotated[str, typer.Option("--says", metavar="yes|no", help="With answer: the answer.")] = "",
     seconds: Annotated[
-        float, typer.Option("--seconds", min=0.1, max=30.0, help="To wait for the robots.")
+        float,
+        typer.Option(
+            "--seconds", metavar="SECONDS", min=0.1, max=30.0, help="Seconds to wait for confirmation."
+        ),
     ] = 10.0,
     json: Json = False,
 ) -> int:
-    """Give an order to robots that are running.
+    """Send a command to running robots.
 
-    It tells which of them have obeyed. hold: halt and stay until the next order. resume: go on after a hold,
-    or after a change of batteries. return: end the program and come home by the way it came. land: end the
-    program and come down. stop: end the program as the robots were started to do. answer: answer a question
-    that a choice asks.
+    Prints which robots have executed it. hold: stop moving and wait. resume: continue after a hold or a
+    battery change. return: abort the program, retrace the path and return home. land: abort the program and
+    land. stop: abort the program with the --on-stop response of 'mmrs run'. answer: answer the question of a
+    Choice. status: print the state of each robot.
 
     Example: mmrs control hold Drone1 --log logs
     """

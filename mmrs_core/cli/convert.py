@@ -28,26 +28,34 @@ def convert(
         list[Path],
         typer.Argument(
             metavar="IN [OUT]",
-            help="A model, XMI or JSON, of any language, and the file to write; else it is printed. "
-            "With -o: any number of models, and of folders with a project.",
+            help="Model to convert, and the file to write. Default: standard output. With -o, any number of "
+            "models and project folders.",
         ),
     ],
     output: Annotated[
         Path | None,
-        typer.Option("-o", "--output", metavar="DIR", help="Convert all files together, into this folder."),
+        typer.Option(
+            "-o",
+            "--output",
+            metavar="DIR",
+            help="Output folder for several models, whose references are kept.",
+        ),
     ] = None,
     to: Annotated[
         Form | None,
-        typer.Option("--to", help="The form to write; else by OUT's ending, or the one that IN has not."),
+        typer.Option(
+            "--to", help="Output format. Default: by the suffix of OUT, else the one IN does not have."
+        ),
     ] = None,
     metamodel: Metamodels = None,
     schema_location: SchemaLocation = None,
-    force: Annotated[bool, typer.Option("--force", help="Replace files that exist.")] = False,
+    force: Annotated[bool, typer.Option("--force", help="Overwrite existing files.")] = False,
     json: Json = False,
 ) -> int:
-    """Write models in their other form: XMI as JSON, JSON as XMI. Nothing is lost on the way.
+    """Convert models between XMI and JSON.
 
-    Models that are converted together refer to each other as before; all of them are written, or none.
+    The conversion is lossless. Models converted together keep their references to each other; all of them are
+    written, or none.
 
     Examples: mmrs convert field/mission.xmi mission.json; mmrs convert field -o field-json
     """

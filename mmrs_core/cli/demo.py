@@ -17,17 +17,20 @@ DEFAULT = "carbon-dioxide"
 def demo(
     call: typer.Context,
     example: Annotated[
-        str, typer.Argument(metavar="EXAMPLE", help="Name of an example; --list shows them.")
+        str, typer.Argument(metavar="EXAMPLE", help="Name of the example. See --list.")
     ] = DEFAULT,
     out: Annotated[
-        Path, typer.Option("-o", "--output", "--out", metavar="DIR", help="Where everything goes.")
+        Path, typer.Option("-o", "--output", "--out", metavar="DIR", help="Output folder.")
     ] = Path("mmrs-demo"),
     list_examples: Annotated[bool, typer.Option("--list", help="List the examples.")] = False,
     json: Json = False,
 ) -> int:
-    """Take an example all the way, into one folder.
+    """Run an example end to end.
 
-    Plans it, checks the behaviour, generates code, simulates, replays the logs, and draws everything.
+    Plans the mission, verifies the behaviour, generates controllers, simulates the run, checks its logs and
+    draws the mission.
+
+    Example: mmrs demo pool
     """
     if list_examples:
         return _list_examples(json)

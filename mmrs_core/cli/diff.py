@@ -27,19 +27,18 @@ Pair = tuple[str, Path | None, Path | None]
 
 def diff(
     call: typer.Context,
-    before: Annotated[Path, typer.Argument(metavar="A", help="A model, or the folder of a project.")],
-    after: Annotated[Path, typer.Argument(metavar="B", help="Another model, or another folder.")],
+    before: Annotated[Path, typer.Argument(metavar="A", help="Old model, or project folder.")],
+    after: Annotated[Path, typer.Argument(metavar="B", help="New model, or project folder.")],
     metamodel: Metamodels = None,
     json: Json = False,
 ) -> int:
-    """Say what differs between two models.
+    """Compare two models.
 
-    What was added, removed, moved or changed. Formatting, comments and defaults are no differences, and
-    neither is XMI or JSON. Of two .ecore files, what 'mmrs metamodel diff' says: what changed, and whether
-    old models still load. Exit codes: 0 where the models say the same, 1 where they differ, 3 where one
-    cannot be read wholly.
+    Lists added, removed, moved and changed elements. Formatting, comments, explicit defaults and the format
+    (XMI or JSON) are ignored. Two .ecore files are compared as by 'mmrs metamodel diff'. Exit codes: 0 equal,
+    1 different, 3 incompletely read.
 
-    Example: mmrs diff mission.xmi mission-of-yesterday.xmi
+    Example: mmrs diff mission-of-yesterday.xmi mission.xmi
     """
     from mmrs_core.cli.diff_words import change_as_json, change_lines, colour_of, summary_line
     from mmrs_core.cli.journey import Workshop

@@ -22,18 +22,28 @@ CHANGED = "was changed after it was generated; lines may have moved"
 
 def explain(
     where: Annotated[
-        str, typer.Argument(metavar="FILE:LINE", help="A line, or with the options a folder of such files.")
+        str,
+        typer.Argument(
+            metavar="FILE:LINE",
+            help="Generated line; with --robot, --move or --task, a folder of generated files.",
+        ),
     ] = ".",
-    robot: Annotated[str, typer.Option("--robot", metavar="ID", help="Lines that serve this robot.")] = "",
-    move: Annotated[str, typer.Option("--move", metavar="ID", help="Lines that serve this move.")] = "",
-    task: Annotated[str, typer.Option("--task", metavar="NAME", help="Lines that serve this task.")] = "",
+    robot: Annotated[
+        str, typer.Option("--robot", metavar="ID", help="List the lines generated for this robot.")
+    ] = "",
+    move: Annotated[
+        str, typer.Option("--move", metavar="ID", help="List the lines generated for this move.")
+    ] = "",
+    task: Annotated[
+        str, typer.Option("--task", metavar="NAME", help="List the lines generated for this task.")
+    ] = "",
     json: Json = False,
 ) -> int:
-    """Say which move a line of a generated file comes from.
+    """Trace a generated line to its move.
 
-    It tells the task and the rule, too. With --robot, --move or --task: the lines that serve these.
+    Prints the move's task and rule as well. With --robot, --move or --task, lists the lines generated for it.
 
-    Example: mmrs explain code/robot_d1.py:40, and mmrs explain code --task survey
+    Examples: mmrs explain code/robot_d1.py:40; mmrs explain code --task survey
     """
     if robot or move or task:
         return _places(Path(where), robot, move, task, json)

@@ -24,44 +24,43 @@ def generate(
     call: typer.Context,
     behaviour: Annotated[
         Path | None,
-        typer.Argument(metavar="BEHAVIOUR", help="A behaviour, or the folder with a behaviour.xmi."),
+        typer.Argument(metavar="BEHAVIOUR", help="Behaviour file, or a folder that contains behaviour.xmi."),
     ] = None,
-    target: Annotated[str | None, typer.Option("--target", metavar="NAME", help="What to generate.")] = None,
+    target: Annotated[
+        str | None,
+        typer.Option("--target", metavar="NAME", help="Target to generate code for. See --list-targets."),
+    ] = None,
     output: Annotated[
-        Path | None, typer.Option("-o", "--output", metavar="DIR", help="Where to write the files.")
+        Path | None, typer.Option("-o", "--output", metavar="DIR", help="Output folder.")
     ] = None,
     robots: Robots = None,
     context: Context = None,
     allow_lossy: Annotated[
-        bool, typer.Option("--allow-lossy", help="Leave out what the target cannot express.")
+        bool, typer.Option("--allow-lossy", help="Omit elements the target does not support.")
     ] = False,
     templates: Annotated[
         Path | None,
-        typer.Option(
-            "--templates", metavar="DIR", help="Files to use in place of the target's own: DIR/TARGET/FILE."
-        ),
+        typer.Option("--templates", metavar="DIR", help="Folder of your own templates, as DIR/TARGET/FILE."),
     ] = None,
-    force: Annotated[
-        bool, typer.Option("--force", help="Overwrite files that were changed by hand.")
-    ] = False,
+    force: Annotated[bool, typer.Option("--force", help="Overwrite files changed by hand.")] = False,
     wheels: Annotated[
         list[str] | None,
         typer.Option(
             "--wheels",
             metavar="PLATFORM",
-            help="Download the wheels that controllers require on a platform, such as manylinux2014_aarch64.",
+            help="Download the controllers' wheels for a platform, e.g. manylinux2014_aarch64. Repeatable.",
         ),
     ] = None,
     list_targets: Annotated[bool, typer.Option("--list-targets", help="List the targets.")] = False,
     capabilities: Annotated[
-        bool, typer.Option("--capabilities", help="Say what the target, or every target, can express.")
+        bool,
+        typer.Option("--capabilities", help="List the elements that the target, or every target, supports."),
     ] = False,
     json: Json = False,
 ) -> int:
-    """Generate the code of every robot's controller.
+    """Generate controller code for every robot.
 
-    'mmrs-gen explain FILE:LINE' says which move a line of it comes from. A behaviour of FLYAQ 2015 is taken
-    as it is; --quiet-migration does not list what was defaulted or changed in it.
+    'mmrs-gen explain FILE:LINE' traces a generated line to its move.
 
     Example: mmrs-gen field --target mavlink-python -o code
     """

@@ -18,14 +18,14 @@ def run(
     call: typer.Context,
     behaviour: Behaviour,
     log: Annotated[
-        Path, typer.Option("--log", metavar="DIR", help="Where to write logs and black boxes.")
+        Path, typer.Option("--log", metavar="DIR", help="Folder for logs and black boxes.")
     ] = Path("logs"),
     backend: Annotated[
         _Texts,
         typer.Option(
             "--backend",
             metavar="[ROBOT=]NAME",
-            help="What drives the robots, or one of them; may be repeated. [mavlink]",
+            help="Backend of all robots or one. Default: mavlink. Repeatable.",
         ),
     ] = None,
     connect: Annotated[
@@ -33,23 +33,25 @@ def run(
         typer.Option(
             "--connect",
             metavar="[ROBOT=]URL[@SYSTEM]",
-            help="How a robot is reached, such as udpin:127.0.0.1:14550 or /dev/ttyUSB0,57600@3; may be"
-            " repeated, and robots may share one.",
+            help="Connection URL of a robot, such as udpin:127.0.0.1:14550 or /dev/ttyUSB0,57600@3. Robots "
+            "may share one. Repeatable.",
         ),
     ] = None,
     only: Annotated[
-        _Texts, typer.Option("--robot", metavar="ROBOT", help="Run this robot only; may be repeated.")
+        _Texts, typer.Option("--robot", metavar="ROBOT", help="Run only this robot. Repeatable.")
     ] = None,
-    resume: Annotated[
-        bool, typer.Option("--resume", help="Go on with the run whose logs are in that folder.")
-    ] = False,
-    name: Annotated[str, typer.Option("--run", metavar="NAME", help="Of the run, in its logs.")] = "run-0",
+    resume: Annotated[bool, typer.Option("--resume", help="Resume the run logged in --log.")] = False,
+    name: Annotated[
+        str, typer.Option("--run", metavar="NAME", help="Run name, recorded in the logs.")
+    ] = "run-0",
     speedup: Annotated[
         float,
-        typer.Option("--speedup", min=0.01, max=1000.0, help="Of robots that are simulated themselves."),
+        typer.Option(
+            "--speedup", metavar="FACTOR", min=0.01, max=1000.0, help="Time factor of simulated vehicles."
+        ),
     ] = 1.0,
     on_stop: Annotated[
-        str, typer.Option("--on-stop", metavar="hold|return|land", help="What robots do when interrupted.")
+        str, typer.Option("--on-stop", metavar="hold|return|land", help="Behaviour on interrupt.")
     ] = "hold",
     battery_patience: Annotated[
         float,
@@ -57,28 +59,38 @@ def run(
             "--battery-patience",
             min=0.0,
             metavar="SECONDS",
-            help="To wait for 'mmrs control resume' with a new battery once no other robot works.",
+            help="Timeout for a battery change ('mmrs control resume') once no other robot is active.",
         ),
     ] = 0.0,
     bus: Annotated[
         bool,
         typer.Option(
             "--bus",
-            help="Keep slots with robots of other processes, by Zenoh; without an address or keys,"
-            " of processes on this computer.",
+            help="Synchronise slots with other processes over Zenoh. Without endpoints: on this machine.",
         ),
     ] = False,
     bus_listen: Annotated[
-        _Texts, typer.Option("--bus-listen", metavar="ENDPOINT", help="Such as tcp/0.0.0.0:7447.")
+        _Texts,
+        typer.Option(
+            "--bus-listen",
+            metavar="ENDPOINT",
+            help="Zenoh endpoint to listen on, e.g. tcp/0.0.0.0:7447. Repeatable.",
+        ),
     ] = None,
     bus_connect: Annotated[
-        _Texts, typer.Option("--bus-connect", metavar="ENDPOINT", help="Such as tcp/10.0.0.2:7447.")
+        _Texts,
+        typer.Option(
+            "--bus-connect",
+            metavar="ENDPOINT",
+            help="Zenoh endpoint to connect to, e.g. tcp/10.0.0.2:7447. Repeatable.",
+        ),
     ] = None,
     bus_config: Annotated[
-        Path | None, typer.Option("--bus-config", metavar="FILE", help="As 'mmrs bus keys' makes it.")
+        Path | None,
+        typer.Option("--bus-config", metavar="FILE", help="Zenoh configuration from 'mmrs bus keys'."),
     ] = None,
     sync: Annotated[
-        bool, typer.Option("--sync", help="Begin at one instant, once the robots of all processes are ready.")
+        bool, typer.Option("--sync", help="Start at one instant, once the robots of all processes are ready.")
     ] = False,
     sync_patience: Annotated[
         float,
@@ -86,15 +98,17 @@ def run(
             "--sync-patience",
             min=0.1,
             metavar="SECONDS",
-            help="To wait with --sync for robots that are not ready; then nothing begins.",
+            help="Start timeout for --sync. No robot starts after it.",
         ),
     ] = 300.0,
     signing_key: Annotated[
-        Path | None, typer.Option("--signing-key", metavar="FILE", help="Sign MAVLink frames with it.")
+        Path | None, typer.Option("--signing-key", metavar="FILE", help="MAVLink 2 signing key file.")
     ] = None,
     inject: Annotated[
         _Texts,
-        typer.Option("--inject", metavar="FAULTS", help="Faults to rehearse, such as Drone1:cut@60+20."),
+        typer.Option(
+            "--inject", metavar="FAULTS", help="Faults to inject, e.g. Drone1:cut@60+20. Repeatable."
+        ),
     ] = None,
     assume: Assume = None,
     context: Context = None,
@@ -104,16 +118,16 @@ def run(
         typer.Option(
             "--backend-option",
             metavar="[ROBOT:]KEY=VALUE",
-            help="Of the backend of all robots, or of one; may be repeated.",
+            help="Backend option of all robots or one. Repeatable.",
         ),
     ] = None,
     json: Json = False,
 ) -> int:
-    """Carry out a behaviour with real robots.
+    """Run a behaviour on real or simulated vehicles.
 
-    Vehicles that are simulated elsewhere, as by mmrs sitl, are driven in the same way. Every robot gets ready
-    first; then all begin. Interrupt once to stop every robot, from any state: the command ends when each has
-    confirmed that it has stopped. 'mmrs control' gives other orders.
+    All robots start once every one of them is ready. Interrupt (Ctrl-C) once to stop every robot, from any
+    state: the command ends when each has confirmed that it has stopped. Use 'mmrs control' for other
+    commands.
 
     Example: mmrs run mission/behaviour.xmi --connect Drone1=udpin:127.0.0.1:14550 --log flight-1
     """

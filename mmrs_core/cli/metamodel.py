@@ -14,22 +14,22 @@ from mmrs_core.errors import UnreadableError
 
 app = typer.Typer(
     rich_markup_mode=None,
-    help="The languages that are installed.",
+    help="Inspect and export the metamodels.",
     no_args_is_help=True,
     add_completion=False,
 )
 
-Folder = Annotated[Path, typer.Argument(metavar="DIR", help="Where to write.")]
+Folder = Annotated[Path, typer.Argument(metavar="DIR", help="Output folder.")]
 
 
 @app.callback()
 def metamodel() -> None:
-    """The languages that are installed."""
+    """Inspect and export the metamodels."""
 
 
 @app.command("list")
 def list_metamodels(call: typer.Context, json: Json = False) -> int:
-    """List the languages and who provides them."""
+    """List metamodels and their providers."""
     registry = settings_of(call).plugins().contributions.languages
     rows = [
         (package.ns_uri, package.name, package.provider, str(len(package.metaclasses)))
@@ -47,16 +47,21 @@ def list_metamodels(call: typer.Context, json: Json = False) -> int:
 @app.command("diff")
 def diff(
     call: typer.Context,
-    old: Annotated[str, typer.Argument(metavar="OLD", help="An .ecore file, or the nsURI of a language.")],
-    new: Annotated[str, typer.Argument(metavar="NEW", help="Another version of it.")],
+    old: Annotated[
+        str,
+        typer.Argument(
+            metavar="OLD", help="Old version: an .ecore file, or the nsURI of an installed metamodel."
+        ),
+    ],
+    new: Annotated[str, typer.Argument(metavar="NEW", help="New version: an .ecore file, or an nsURI.")],
     json: Json = False,
 ) -> int:
-    """Say what changed between two versions of a metamodel.
+    """Compare two versions of a metamodel.
 
-    It also says whether old models still load. Files that an .ecore file refers to are compared as well;
-    which ones, is told.
+    Lists the differences, and whether old models still load. Metamodels that an .ecore file refers to are
+    compared as well.
 
-    Exit codes: 0 where they do, 1 where some do not.
+    Exit codes: 0 old models load, 1 some do not.
 
     Example: mmrs metamodel diff kites-1.0.ecore kites.ecore
     """
@@ -95,11 +100,11 @@ def export(
     call: typer.Context,
     directory: Folder,
     force: Annotated[
-        bool, typer.Option("--force", help="Replace files that were changed or come from elsewhere.")
+        bool, typer.Option("--force", help="Overwrite files that were changed or that MMRS did not write.")
     ] = False,
     json: Json = False,
 ) -> int:
-    """Write all languages side by side as an Eclipse project."""
+    """Export all metamodels as an Eclipse project."""
     from mmrs_core.languages.metamodels.export import export_metamodels
 
     registry = settings_of(call).plugins().contributions.languages
@@ -108,7 +113,10 @@ def export(
 
 @app.command("docs")
 def docs(call: typer.Context, directory: Folder, json: Json = False) -> int:
-    """Write the page about the languages, with a diagram of each."""
+    """Generate the metamodel reference.
+
+    Writes one Markdown page with a class diagram of each metamodel.
+    """
     from mmrs_core.cli.replacing import replace_files
     from mmrs_core.pictures.pages.languages_page import pages
 
@@ -121,17 +129,16 @@ def docs(call: typer.Context, directory: Folder, json: Json = False) -> int:
 @app.command("stubs")
 def stubs(
     call: typer.Context,
-    file: Annotated[Path, typer.Argument(metavar="FILE.ecore", help="The metamodel.")],
+    file: Annotated[Path, typer.Argument(metavar="FILE.ecore", help="Metamodel.")],
     directory: Annotated[
         Path | None,
-        typer.Option("-o", "--output", metavar="DIR", help="Where to write. By default beside FILE."),
+        typer.Option("-o", "--output", metavar="DIR", help="Output folder. Default: the folder of FILE."),
     ] = None,
     json: Json = False,
 ) -> int:
-    """Write typed stubs (.pyi) of a metamodel.
+    """Generate type stubs (.pyi) for a metamodel.
 
-    They are for completion in editors and for type checkers. Needs pyecoregen, which pip install
-    "mmrs-core[extend]" brings.
+    Editors and type checkers use them. Requires pyecoregen: pip install "mmrs-core[extend]".
 
     Example: mmrs metamodel stubs mmrs_solar/metamodels/solar.ecore -o mmrs_solar
     """

@@ -13,22 +13,28 @@ from mmrs_core.cli.settings import Json, settings_of
 if TYPE_CHECKING:
     from mmrs_core.migration.migrate import Migration
 
-Files = Annotated[list[Path], typer.Argument(metavar="FILE...", help="Models, in XMI or JSON.")]
-Output = Annotated[Path, typer.Option("-o", "--output", metavar="DIR", help="The project's folder.")]
+Files = Annotated[list[Path], typer.Argument(metavar="FILE...", help="Models to migrate, in XMI or JSON.")]
+Output = Annotated[Path, typer.Option("-o", "--output", metavar="DIR", help="Project folder to write.")]
 Mapping = Annotated[
     Path | None,
-    typer.Option("--mapping", metavar="FILE", help="What becomes of what; else that of the files' dialect."),
+    typer.Option(
+        "--mapping",
+        metavar="FILE",
+        help="Mapping file. Default: the one of the files' dialect, e.g. FLYAQ 2015.",
+    ),
 ]
 Metamodels = Annotated[
     list[Path] | None,
     typer.Option(
-        "--metamodels", metavar="PATH", help="An .ecore file, or a folder of them; may be repeated."
+        "--metamodels",
+        metavar="PATH",
+        help="Metamodel of the models (.ecore), or a folder of metamodels. Repeatable.",
     ),
 ]
 Types = Annotated[
     list[str] | None,
     typer.Option(
-        "--type", metavar="OLD=NAME", help="The robot type that a name stands for; may be repeated."
+        "--type", metavar="OLD=NAME", help="Robot type that replaces the type called OLD. Repeatable."
     ),
 ]
 
@@ -41,16 +47,16 @@ def migrate(
     metamodels: Metamodels = None,
     types: Types = None,
     force: Annotated[
-        bool, typer.Option("--force", help="Replace files of the project that say something else.")
+        bool, typer.Option("--force", help="Overwrite project files with other content.")
     ] = False,
     json: Json = False,
 ) -> int:
-    """Turn models of another dialect into a project.
+    """Migrate models of another dialect to an MMRS project.
 
-    Tells every value that was defaulted, changed in meaning, or not carried over. The other commands take
-    models of FLYAQ 2015 as they are, and write no project.
+    Lists every value that was defaulted, changed in meaning or dropped. The other commands read models of
+    FLYAQ 2015 directly and migrate them in memory.
 
-    For example: mmrs migrate mission.json context.json Heron.xmi -o orchard
+    Example: mmrs migrate mission.json context.json Heron.xmi -o orchard
     """
     from mmrs_core.cli.journey import Workshop
     from mmrs_core.cli.migration import read_sources, write_outputs

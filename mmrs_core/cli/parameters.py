@@ -13,32 +13,27 @@ from mmrs_core.errors import UnreadableError
 
 ROBOTS = "--robots"
 
-_AS_THEY_ARE = "Models of FLYAQ 2015 are taken as they are."
 Project = Annotated[
     Path,
-    typer.Argument(
-        metavar="PROJECT", help=f"The project's folder, or the file of its mission. {_AS_THEY_ARE}"
-    ),
+    typer.Argument(metavar="PROJECT", help="Folder of the project, or its mission file."),
 ]
 Behaviour = Annotated[
     Path,
-    typer.Argument(
-        metavar="BEHAVIOUR", help=f"A behaviour, or the folder with a behaviour.xmi. {_AS_THEY_ARE}"
-    ),
+    typer.Argument(metavar="BEHAVIOUR", help="Behaviour file, or a folder that contains behaviour.xmi."),
 ]
 Context = Annotated[
     Path | None,
-    typer.Option("--context", metavar="FILE", help="The place; else context.xmi beside the named file."),
+    typer.Option("--context", metavar="FILE", help="Context. Default: context.xmi next to the input."),
 ]
 Robots = Annotated[
     list[Path] | None,
-    typer.Option(ROBOTS, metavar="FILE...", help="Robot types; else robots/*.xmi beside the named file."),
+    typer.Option(ROBOTS, metavar="FILE...", help="Robot types. Default: robots/*.xmi next to the input."),
 ]
-Seed = Annotated[int, typer.Option("--seed", min=0, help="Start of the planner's random numbers.")]
+Seed = Annotated[int, typer.Option("--seed", metavar="N", min=0, help="Planner random seed.")]
 
 Assume = Annotated[
     list[str] | None,
-    typer.Option("--assume", metavar="CONDITION=yes|no", help="What a condition answers; may be repeated."),
+    typer.Option("--assume", metavar="CONDITION=yes|no", help="Assumed outcome of a condition. Repeatable."),
 ]
 
 

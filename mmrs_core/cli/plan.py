@@ -47,23 +47,25 @@ def plan(
     output: Annotated[
         Path | None,
         typer.Option(
-            "-o", "--output", metavar="FILE", help="The behaviour; else behaviour.xmi in the project."
+            "-o", "--output", metavar="FILE", help="Output file. Default: behaviour.xmi in the project."
         ),
     ] = None,
     context: Context = None,
     robots: Robots = None,
     seed: Seed = 0,
-    force: Annotated[bool, typer.Option("--force", help="Replace a behaviour written by hand.")] = False,
+    force: Annotated[bool, typer.Option("--force", help="Overwrite a behaviour written by hand.")] = False,
     stop_after: Annotated[
         Stage | None,
-        typer.Option("--stop-after", help="Print what a stage makes as JSON, and write nothing."),
+        typer.Option("--stop-after", help="Print the result of a stage as JSON and write no file."),
     ] = None,
     schema_location: SchemaLocation = None,
     json: Json = False,
 ) -> int:
-    """Plan a mission and write the behaviour of every robot.
+    """Plan a mission and write the robots' behaviour.
 
-    The behaviour is checked first; one that is not safe is not written.
+    The behaviour is verified first and written only if it passes all checks.
+
+    Example: mmrs plan field
     """
     from mmrs_core.cli.journey import Journey, Workshop
     from mmrs_core.cli.plan_words import plan_lines, plan_summary

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 app = typer.Typer(
     rich_markup_mode=None,
-    help="Plug-ins: who contributed what, and new ones.",
+    help="List and create plug-ins.",
     no_args_is_help=True,
     add_completion=False,
 )
@@ -26,12 +26,15 @@ app = typer.Typer(
 
 @app.callback()
 def plugin() -> None:
-    """Plug-ins: who contributed what, and new ones."""
+    """List and create plug-ins."""
 
 
 @app.command("list")
 def list_plugins(call: typer.Context, json: Json = False) -> int:
-    """List the plug-ins and what they contribute, broken ones too."""
+    """List plug-ins, including those that fail to load.
+
+    Prints the contributions of each.
+    """
     from mmrs_core.errors import PluginError
 
     settings = settings_of(call)

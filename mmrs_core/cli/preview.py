@@ -33,12 +33,12 @@ def preview(
         Path,
         typer.Argument(
             metavar="PROJECT",
-            help="The project's folder, the file of its mission, or a behaviour; FLYAQ 2015's, too.",
+            help="Folder of the project, its mission file, or a behaviour file.",
         ),
     ],
     output: Annotated[
         Path | None,
-        typer.Option("-o", "--output", metavar="DIR", help="Where to write; else the project's folder."),
+        typer.Option("-o", "--output", metavar="DIR", help="Output folder. Default: the project's folder."),
     ] = None,
     context: Context = None,
     robots: Robots = None,
@@ -46,15 +46,17 @@ def preview(
     assume: Assume = None,
     logs: Annotated[
         list[Path] | None,
-        typer.Option("--logs", metavar="DIR", help="Logs of a flight of the behaviour; may be repeated."),
+        typer.Option("--logs", metavar="DIR", help="Logs of a run of the behaviour. Repeatable."),
     ] = None,
     json: Json = False,
 ) -> int:
-    """Draw a mission: map, timeline, heights, on one page.
+    """Draw a mission's map, timeline and altitude profile.
 
-    A mission is planned and drawn as planned. A behaviour is simulated and drawn as it went, with what
-    its conditions are told to answer. With --logs it is drawn as it was flown, over what was planned.
-    The map is written as SVG, too.
+    Writes preview.html and preview.svg (the map alone). A mission is planned first; a behaviour is simulated,
+    with the outcomes that --assume gives to its conditions. With --logs, the flown tracks are drawn over the
+    planned paths.
+
+    Example: mmrs preview field
     """
     from mmrs_core.cli.behaviours import is_behaviour
     from mmrs_core.cli.journey import Journey, Workshop

@@ -20,18 +20,19 @@ if TYPE_CHECKING:
 def replay(
     call: typer.Context,
     behaviour: Behaviour,
-    logs: Annotated[list[Path], typer.Argument(metavar="LOG...", help="Logs, or folders of logs.")],
-    partial: Annotated[
-        bool, typer.Option("--partial", help="Accept logs that end before the run does.")
-    ] = False,
+    logs: Annotated[list[Path], typer.Argument(metavar="LOG...", help="Log files, or folders of logs.")],
+    partial: Annotated[bool, typer.Option("--partial", help="Accept logs that end before the run.")] = False,
     steps: Annotated[
-        bool, typer.Option("--steps", help="Tell every step, and where its robot was by its black box.")
+        bool, typer.Option("--steps", help="Print every step with the robot's position from its black box.")
     ] = False,
     json: Json = False,
 ) -> int:
-    """Replay the logs of a run through the rules of its behaviour.
+    """Check the logs of a run against its behaviour.
 
-    Black boxes beside the logs are read, too: what is damaged or missing of them is told.
+    Replays every logged step by the rules of the Behaviour Language. Black boxes next to the logs are read as
+    well; damaged and missing records are reported.
+
+    Example: mmrs replay field field/logs
     """
     from mmrs_core.behaviour.box_files import black_boxes, is_part
     from mmrs_core.behaviour.log import read_logs

@@ -25,12 +25,12 @@ def report(
     call: typer.Context,
     behaviour: Behaviour,
     logs: Annotated[
-        list[Path], typer.Argument(metavar="LOG...", help="Folders with logs and black boxes, or files.")
+        list[Path], typer.Argument(metavar="LOG...", help="Log files, or folders of logs and black boxes.")
     ],
     output: Annotated[
         Path | None,
         typer.Option(
-            "-o", "--output", metavar="FILE", help="Where to write; else report.html beside the logs."
+            "-o", "--output", metavar="FILE", help="Output file. Default: report.html next to the logs."
         ),
     ] = None,
     context: Context = None,
@@ -38,11 +38,11 @@ def report(
     assume: Assume = None,
     json: Json = False,
 ) -> int:
-    """Tell people how a flight went.
+    """Write a flight report as HTML.
 
-    What was asked, what was achieved, what happened: planned against flown, times, energy, photos, faults,
-    orders and links, on one page that needs no network. What is planned is the behaviour as simulated,
-    choosing as the flight did.
+    Compares the flight with its plan: tasks, tracks, times, energy, photos, faults, commands and links, on
+    one page that works offline. The plan is the simulated behaviour, with the conditions as they were
+    answered in flight.
 
     Example: mmrs report mission/ mission/logs -o report.html
     """

@@ -11,7 +11,7 @@ STANDARD_OUTPUT = Path("-")
 
 Sarif = Annotated[
     Path | None,
-    typer.Option("--sarif", metavar="FILE", help="Write the faults in SARIF 2.1.0; - for standard output."),
+    typer.Option("--sarif", metavar="FILE", help="Write diagnostics as SARIF 2.1.0 (- for stdout)."),
 ]
 
 

@@ -18,7 +18,7 @@ SchemaLocation = Annotated[
     typer.Option(
         "--schema-location",
         metavar="DIR",
-        help="Write where Eclipse finds the metamodels that 'mmrs metamodel export DIR' wrote.",
+        help="Folder written by 'mmrs metamodel export', recorded as xsi:schemaLocation for Eclipse.",
     ),
 ]
 

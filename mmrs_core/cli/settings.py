@@ -64,4 +64,4 @@ def settings_of(context: typer.Context) -> Settings:
     return found if found is not None else Settings()
 
 
-Json = Annotated[bool, typer.Option("--json", help="Print one JSON object.")]
+Json = Annotated[bool, typer.Option("--json", help="Print the result as JSON.")]

@@ -24,22 +24,23 @@ def show(
     call: typer.Context,
     model: Annotated[
         Path,
-        typer.Argument(metavar="MODEL", help="Any model, XMI or JSON, of any language; or an .ecore file."),
+        typer.Argument(metavar="MODEL", help="Model in XMI or JSON, of any language, or an .ecore file."),
     ],
     path: Annotated[
-        str, typer.Option("--path", metavar="PATH", help="What to show of it, such as 'tasks[2].shell'.")
+        str, typer.Option("--path", metavar="PATH", help="Element to show, e.g. 'tasks[2].shell'.")
     ] = "",
     metamodel: Metamodels = None,
-    depth: Annotated[int, typer.Option("--depth", min=0, help="How deep to go; 0 goes all the way.")] = 0,
+    depth: Annotated[
+        int, typer.Option("--depth", metavar="N", min=0, help="Maximum depth; 0 is unlimited.")
+    ] = 0,
     json: Json = False,
 ) -> int:
-    """Print a model as a tree, or what a path leads to.
+    """Print a model, or one element, as a tree.
 
-    Of an .ecore file, its classes.
+    Prints the classes of an .ecore file. Elements of a plug-in that is not installed are shown as unknown.
 
-    Examples of paths: 'tasks[2].shell', 'team.robots[name=Hawk].home', '//GoTo[speed>3]', '//@tasks.0'.
-    Where a file has several roots, '/1' is the second. What belongs to a plug-in that is not installed is
-    shown as unknown.
+    Examples of paths: 'tasks[2].shell', 'team.robots[name=Hawk].home', '//GoTo[speed>3]', '//@tasks.0'; '/1'
+    is the second root of a file.
     """
     from mmrs_core.cli.any_model import faults_in, read_foreign
     from mmrs_core.cli.journey import Workshop

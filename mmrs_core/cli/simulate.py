@@ -17,7 +17,12 @@ def simulate(
     behaviour: Behaviour,
     output: Annotated[
         Path | None,
-        typer.Option("-o", "--output", metavar="DIR", help="Where to write logs and black boxes."),
+        typer.Option(
+            "-o",
+            "--output",
+            metavar="DIR",
+            help="Folder for logs and black boxes. Default: none are written.",
+        ),
     ] = None,
     context: Context = None,
     robots: Robots = None,
@@ -27,7 +32,7 @@ def simulate(
         typer.Option(
             "--backend",
             metavar="[ROBOT=]NAME",
-            help="What moves the robots, or one of them, in simulated time; may be repeated. [simulation]",
+            help="Backend of all robots or one, in simulated time. Default: simulation. Repeatable.",
         ),
     ] = None,
     backend_option: Annotated[
@@ -35,12 +40,15 @@ def simulate(
         typer.Option(
             "--backend-option",
             metavar="[ROBOT:]KEY=VALUE",
-            help="Of the backend of all robots, or of one; may be repeated.",
+            help="Backend option of all robots or one. Repeatable.",
         ),
     ] = None,
     json: Json = False,
 ) -> int:
-    """Carry out a behaviour in simulation, faster than real time."""
+    """Simulate a behaviour faster than real time.
+
+    Example: mmrs simulate field -o field/logs
+    """
     from mmrs_core.cli.behaviours import load_behaviour
     from mmrs_core.cli.journey import Workshop
     from mmrs_core.cli.protection import refuse_inputs

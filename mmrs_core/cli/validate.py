@@ -20,9 +20,9 @@ if TYPE_CHECKING:
     from mmrs_core.analysis.fixes.repair import Diagnosis, Proposal, Repair
     from mmrs_core.diagnostics import Diagnostic
 
-_Fix = Annotated[bool, typer.Option("--fix", help="Mend what has one right answer: shown as a diff first.")]
-_Yes = Annotated[bool, typer.Option("--yes", help="With --fix: change the files without asking.")]
-_DryRun = Annotated[bool, typer.Option("--dry-run", help="With --fix: only show what would change.")]
+_Fix = Annotated[bool, typer.Option("--fix", help="Fix unambiguous problems after showing a diff.")]
+_Yes = Annotated[bool, typer.Option("--yes", help="With --fix, skip confirmation.")]
+_DryRun = Annotated[bool, typer.Option("--dry-run", help="With --fix, show the diff only.")]
 
 
 def validate(
@@ -37,12 +37,12 @@ def validate(
     sarif: Sarif = None,
     json: Json = False,
 ) -> int:
-    """List everything that is wrong with a mission's models.
+    """Validate the models of a mission.
 
-    With --fix, what can only be meant in one way is mended. Robot types and context are checked with the
-    mission, or by themselves where their file is named. A behaviour is checked by itself, and so is a model
-    of any other language whose .ecore file is given, pointed to or beside it: by its metamodel only. An
-    .ecore file is checked for whether models can be read by it.
+    Prints every problem with its file, line and a hint. A project's mission, context and robot types are
+    checked together; a single file is checked alone. A model of a language that is not installed is checked
+    against its .ecore file, which --metamodel names, the model refers to or its folder contains. An .ecore
+    file is checked as a metamodel.
 
     Example: mmrs validate field --fix
     """

@@ -116,8 +116,8 @@ def mmrs_vehicles() -> tuple[VehicleFactory, ...]:
 @hookimpl
 def mmrs_commands() -> tuple[Command, ...]:
     """Contribute what concerns the CAN buses of vehicles, and vehicles that are simulated on them."""
-    said = "CAN buses of vehicles: database, hub, what is said, how busy."
-    rehearse = "Simulated underwater vehicles to rehearse on."
+    said = "Work with vehicle CAN buses."
+    rehearse = "Simulate underwater vehicles."
     return (
         Command("can", said, "mmrs_auv.commands.can:main"),
         Command("auv", rehearse, "mmrs_auv.commands.auv:main"),

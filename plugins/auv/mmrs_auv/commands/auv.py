@@ -33,38 +33,57 @@ def main(arguments: list[str]) -> int:
     return result if isinstance(result, int) else 0
 
 
-@app.callback(help="Simulated underwater vehicles to rehearse on.")
+@app.callback(help="Simulate underwater vehicles.")
 def auv() -> None:
     """Leave the help to the application; without this, one command alone would lose its name."""
 
 
 @app.command("sitl")
 def sitl(
-    path: Annotated[Path, typer.Argument(metavar="PROJECT|BEHAVIOUR", help="Whose vehicles are simulated.")],
+    path: Annotated[
+        Path, typer.Argument(metavar="PROJECT|BEHAVIOUR", help="Mission or behaviour with the vehicles.")
+    ],
     port: Annotated[
-        int, typer.Option("--port", min=1, max=65_000, help="Of the first vehicle's hub; then counted up.")
+        int,
+        typer.Option(
+            "--port",
+            metavar="PORT",
+            min=1,
+            max=65_000,
+            help="TCP port of the first vehicle's bus; one more for each vehicle.",
+        ),
     ] = FIRST_PORT,
     speedup: Annotated[
-        float, typer.Option("--speedup", min=0.1, max=20.0, help="Seconds of theirs in a second.")
+        float,
+        typer.Option(
+            "--speedup", metavar="FACTOR", min=0.1, max=20.0, help="Simulated seconds per real second."
+        ),
     ] = 1.0,
     surroundings: Annotated[
-        Path | None, typer.Option("--surroundings", metavar="FILE", help="What is around them, as JSON.")
+        Path | None,
+        typer.Option("--surroundings", metavar="FILE", help="Surroundings of the vehicles, as JSON."),
     ] = None,
     current: Annotated[
-        str, typer.Option("--current", metavar="NORTH,EAST", help="Of the water, metres a second.")
+        str, typer.Option("--current", metavar="NORTH,EAST", help="Water current north and east, in m/s.")
     ] = "0,0",
-    bottom: Annotated[float, typer.Option("--bottom", min=1.0, help="Its depth, metres.")] = 30.0,
-    seed: Annotated[int, typer.Option("--seed", min=0, help="Of instruments' noise and bias.")] = 0,
+    bottom: Annotated[
+        float, typer.Option("--bottom", metavar="METRES", min=1.0, help="Water depth in metres.")
+    ] = 30.0,
+    seed: Annotated[
+        int, typer.Option("--seed", metavar="N", min=0, help="Random seed for instrument noise and bias.")
+    ] = 0,
     seconds: Annotated[
-        float, typer.Option("--for", min=0.0, metavar="SECONDS", help="End by itself; 0: when interrupted.")
+        float,
+        typer.Option(
+            "--for", min=0.0, metavar="SECONDS", help="Stop after SECONDS; 0 runs until interrupted."
+        ),
     ] = 0.0,
 ) -> int:
-    """Start a body and a control layer for each vehicle of a mission.
+    """Start each AUV's simulator and control layer.
 
-    Bodies are simulated, and each vehicle has a bus of its own. It prints the arguments with which mmrs run
-    reaches them. Lines that are typed make faults at once, such as 'Thetis leak', 'Thetis mend leak', 'all
-    thruster-dead T1', 'Thetis frozen Pressure', 'Thetis battery 0.2', 'Thetis cut' (its bus) and 'Thetis mend
-    bus'; 'status' tells how they are, 'quit' ends.
+    Each vehicle has its own virtual CAN bus. Prints the --connect arguments for 'mmrs run'. Type 'Thetis
+    leak', 'all thruster-dead T1', 'Thetis frozen Pressure', 'Thetis battery 0.2' or 'Thetis cut' (its bus) to
+    inject a fault, 'Thetis mend leak' to clear it, 'status' to print the vehicles' state, 'quit' to stop.
 
     Example: mmrs auv sitl examples/pool-course --speedup 2
     """
@@ -124,14 +143,16 @@ def _ending() -> list[signal.Signals]:
 
 @app.command("sheet")
 def sheet(
-    path: Annotated[Path, typer.Argument(metavar="PROJECT|BEHAVIOUR", help="Whose vehicles are meant.")],
+    path: Annotated[
+        Path, typer.Argument(metavar="PROJECT|BEHAVIOUR", help="Mission or behaviour with the vehicles.")
+    ],
     output: Annotated[
-        Path, typer.Option("-o", "--output", metavar="DIR", help="Where to write a file for each vehicle.")
+        Path, typer.Option("-o", "--output", metavar="DIR", help="Output folder; one file per vehicle.")
     ] = Path("sheets"),
 ) -> int:
-    """Write what each vehicle is made of.
+    """Export each vehicle's configuration.
 
-    Its control layer and its eyes take that with --sheet.
+    The control layer and the vision node read it with --sheet.
 
     Example: mmrs auv sheet examples/pool-course -o sheets
     """

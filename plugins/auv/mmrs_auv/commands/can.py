@@ -21,9 +21,7 @@ if TYPE_CHECKING:
     from auv_vessel.wire.frame import Frame
     from auv_vessel.wire.ports import Port
 
-_HELP = (
-    "CAN buses of vehicles: their database (DBC), a hub for processes of one machine, what is said, how busy."
-)
+_HELP = "Work with vehicle CAN buses."
 
 app = typer.Typer(rich_markup_mode=None, help=_HELP, no_args_is_help=True, add_completion=False)
 
@@ -31,13 +29,19 @@ _COUNTED = ("frames", "lost", "corrupted", "overdue", "missed", "slowed", "wrong
 
 Interface = Annotated[
     str,
-    typer.Option("--interface", metavar="NAME", help="As python-can calls it: socketcand, socketcan, ..."),
+    typer.Option("--interface", metavar="NAME", help="python-can interface, e.g. socketcand or socketcan."),
 ]
 Channel = Annotated[
-    str, typer.Option("--channel", metavar="NAME", help="Of it; of a hub elsewhere: NAME@HOST:PORT.")
+    str,
+    typer.Option(
+        "--channel",
+        metavar="NAME",
+        help="Channel of the interface; NAME@HOST:PORT for a hub on another machine.",
+    ),
 ]
 Seconds = Annotated[
-    float, typer.Option("--for", min=0.0, metavar="SECONDS", help="End by itself; 0: when interrupted.")
+    float,
+    typer.Option("--for", min=0.0, metavar="SECONDS", help="Stop after SECONDS; 0 runs until interrupted."),
 ]
 
 
@@ -58,10 +62,10 @@ def dbc(
     robot: RobotName = "",
     output: Annotated[
         Path | None,
-        typer.Option("-o", "--output", metavar="FILE", help="Where to write; else it is printed."),
+        typer.Option("-o", "--output", metavar="FILE", help="Output file. Default: standard output."),
     ] = None,
 ) -> int:
-    """Write the database of a vehicle's bus, for other people's tools.
+    """Export a vehicle's CAN database (DBC).
 
     Example: mmrs can dbc examples/pool --robot Naiad -o auv.dbc
     """
@@ -82,34 +86,43 @@ def dbc(
 @app.command("hub")
 def hub(
     host: Annotated[
-        str, typer.Option("--host", help="Where to listen; who reaches that can drive what is there.")
+        str, typer.Option("--host", metavar="HOST", help="Address to listen on. The bus is unauthenticated.")
     ] = "127.0.0.1",
-    port: Annotated[int, typer.Option("--port", min=0, max=65_535, help="TCP port; 0: any.")] = 29536,
+    port: Annotated[
+        int, typer.Option("--port", metavar="PORT", min=0, max=65_535, help="TCP port; 0 picks a free port.")
+    ] = 29536,
     loss: Annotated[
-        float, typer.Option("--loss", min=0.0, max=1.0, help="Part of the frames that nobody hears.")
+        float,
+        typer.Option("--loss", metavar="FRACTION", min=0.0, max=1.0, help="Fraction of frames to drop."),
     ] = 0.0,
     delay: Annotated[
-        float, typer.Option("--delay", min=0.0, max=60.0, help="Seconds that each takes.")
+        float, typer.Option("--delay", metavar="SECONDS", min=0.0, max=60.0, help="Frame latency in seconds.")
     ] = 0.0,
     corruption: Annotated[
-        float, typer.Option("--corrupt", min=0.0, max=1.0, help="Part with one to three bits of data wrong.")
+        float,
+        typer.Option(
+            "--corrupt",
+            metavar="FRACTION",
+            min=0.0,
+            max=1.0,
+            help="Fraction of frames in which to flip one to three data bits.",
+        ),
     ] = 0.0,
-    seed: Annotated[int, typer.Option("--seed", help="Of the chances.")] = 0,
+    seed: Annotated[int, typer.Option("--seed", metavar="N", help="Random seed.")] = 0,
     log: Annotated[
-        Path | None, typer.Option("--log", metavar="FILE", help="Write all frames there, as candump does.")
+        Path | None, typer.Option("--log", metavar="FILE", help="Log all frames to FILE in candump format.")
     ] = None,
     simulated: Annotated[
         bool,
-        typer.Option("--simulated-time", help="Let frames that tell simulated time pass in any case."),
+        typer.Option("--simulated-time", help="Exempt frames that carry simulated time from faults."),
     ] = False,
     seconds: Seconds = 0.0,
 ) -> int:
-    """Be a bus for several processes of this machine.
+    """Run a virtual CAN bus on this machine.
 
-    It speaks the protocol of socketcand, and passes on what one says to all others on the same channel, in
-    the order in which it comes. It is no CAN: it has no arbitration, no bit rate, no acknowledgement, no
-    error frames and no bus-off. Lines such as 'loss 0.2', 'delay 0.05', 'corruption 0.1', 'cut', 'mend' and
-    'quit' count at once.
+    Forwards each frame to all other processes on the same channel, in order, over the socketcand protocol. It
+    has no arbitration, bit rate, acknowledgement, error frames or bus-off. Type 'loss 0.2', 'delay 0.05',
+    'corruption 0.1' or 'cut' to inject faults, 'mend' to clear them, 'quit' to stop.
 
     Example: mmrs can hub --loss 0.05 --log bus.log
     """
@@ -138,13 +151,14 @@ def monitor(
     interface: Interface = "socketcand",
     channel: Channel = "can0",
     only: Annotated[
-        list[str] | None, typer.Option("--only", metavar="MESSAGE", help="Tell this one; may be repeated.")
+        list[str] | None,
+        typer.Option("--only", metavar="MESSAGE", help="Show only this message. Repeatable."),
     ] = None,
     seconds: Seconds = 0.0,
 ) -> int:
-    """Tell what is said on a vehicle's bus.
+    """Decode and print a vehicle's CAN traffic.
 
-    At the end it tells what was missed, and what was not believed.
+    Ends with a summary of missing and implausible messages.
 
     Example: mmrs can monitor examples/pool --robot Naiad --only Depth --only ActuatorsEmergency
     """
@@ -174,21 +188,24 @@ def load(
     robot: RobotName = "",
     log: Annotated[
         Path | None,
-        typer.Option("--log", metavar="FILE", help="Of a bus, as candump or mmrs can hub write it."),
+        typer.Option("--log", metavar="FILE", help="Log of a bus, from candump or 'mmrs can hub'."),
     ] = None,
     interface: Annotated[
-        str, typer.Option("--interface", metavar="NAME", help="Listen to a bus, --for so many seconds.")
+        str,
+        typer.Option("--interface", metavar="NAME", help="python-can interface to listen on. Default: none."),
     ] = "",
     channel: Channel = "can0",
-    seconds: Annotated[float, typer.Option("--for", min=0.1, metavar="SECONDS", help="To listen.")] = 10.0,
-    messages: Annotated[bool, typer.Option("--messages", help="Tell each message by itself.")] = False,
+    seconds: Annotated[
+        float, typer.Option("--for", min=0.1, metavar="SECONDS", help="Seconds to listen.")
+    ] = 10.0,
+    messages: Annotated[bool, typer.Option("--messages", help="List each message.")] = False,
     json: Json = False,
 ) -> int:
-    """Tell how busy a vehicle's bus is at its bit rate.
+    """Compute a vehicle's CAN bus load.
 
-    By design: from lengths and periods, without any stuff bit and with as many as there can be; and by when
-    each message is over in the worst case. With a log or a bus to listen to: also as it was, by the stuff
-    bits of the very frames.
+    Computes the load from message lengths and periods, with no and with the most stuff bits, and the
+    worst-case response time of each message. With --log or --interface, also measures the load of the frames
+    received.
 
     Example: mmrs can load examples/pool --robot Naiad --messages
     """

@@ -13,10 +13,12 @@ from mmrs_core.errors import UnreadableError, UnsupportedError
 
 Vehicle = Annotated[
     Path,
-    typer.Argument(metavar="VEHICLE", help="A vehicle's data (*.json), or a PROJECT or BEHAVIOUR with one."),
+    typer.Argument(
+        metavar="VEHICLE", help="Vehicle configuration (*.json), or a project or behaviour with a vehicle."
+    ),
 ]
 RobotName = Annotated[
-    str, typer.Option("--robot", metavar="NAME", help="Which one, if the models have several.")
+    str, typer.Option("--robot", metavar="NAME", help="Vehicle to use, if there are several.")
 ]
 
 

@@ -27,96 +27,125 @@ def sitl(
         Path | None,
         typer.Argument(
             metavar="BEHAVIOUR|PROJECT",
-            help="Whose robots get a vehicle each, at their homes; none: --count vehicles at --home.",
+            help="Mission or behaviour; one vehicle starts at the home of each robot. Default: --count "
+            "vehicles at --home.",
         ),
     ] = None,
-    count: Annotated[int, typer.Option("--count", min=1, max=250, help="Vehicles without a model.")] = 1,
+    count: Annotated[
+        int,
+        typer.Option(
+            "--count", metavar="N", min=1, max=250, help="Number of vehicles when no model is given."
+        ),
+    ] = 1,
     home: Annotated[
-        str, typer.Option("--home", metavar="LATITUDE,LONGITUDE", help="Of the first of them.")
+        str, typer.Option("--home", metavar="LATITUDE,LONGITUDE", help="Home of the first such vehicle.")
     ] = "42.37,13.35",
-    kind: Annotated[str, typer.Option("--kind", metavar="copter|sub|rover", help="Of them.")] = "copter",
+    kind: Annotated[str, typer.Option("--kind", metavar="copter|sub|rover", help="Vehicle type.")] = "copter",
     firmware: Annotated[
         str,
-        typer.Option("--firmware", metavar="ardupilot|px4", help="px4: from documents, copters only."),
+        typer.Option(
+            "--firmware", metavar="ardupilot|px4", help="Autopilot to imitate; px4 supports copters only."
+        ),
     ] = "ardupilot",
     port: Annotated[
-        int, typer.Option("--port", min=1, max=65_535, help="UDP port of the first robot.")
+        int, typer.Option("--port", metavar="PORT", min=1, max=65_535, help="UDP port of the first vehicle.")
     ] = FIRST_PORT,
     step: Annotated[
-        int, typer.Option("--port-step", min=0, help="To the port of the next; 0: all share one.")
+        int,
+        typer.Option(
+            "--port-step", metavar="N", min=0, help="Port increment per vehicle; 0 shares one port."
+        ),
     ] = PORT_STEP,
-    host: Annotated[str, typer.Option("--host", help="Where the controllers listen.")] = "127.0.0.1",
+    host: Annotated[
+        str, typer.Option("--host", metavar="HOST", help="Host of the controllers.")
+    ] = "127.0.0.1",
     ground: Annotated[
         str,
         typer.Option(
             "--ground",
             metavar="[HOST:]PORT",
-            help="Where a ground station listens, too; controllers hear it as an autopilot hands it on.",
+            help="UDP address of a ground station. Its messages are forwarded to the controllers.",
         ),
     ] = "",
     speedup: Annotated[
-        float, typer.Option("--speedup", min=0.1, max=100.0, help="Seconds of theirs in a second.")
+        float,
+        typer.Option(
+            "--speedup", metavar="FACTOR", min=0.1, max=100.0, help="Simulated seconds per real second."
+        ),
     ] = 1.0,
     wind: Annotated[
-        str, typer.Option("--wind", metavar="SPEED,FROM", help="Metres a second, degrees it comes from.")
+        str, typer.Option("--wind", metavar="SPEED,FROM", help="Wind speed (m/s) and origin (degrees).")
     ] = "0,0",
     gusts: Annotated[
         str,
         typer.Option(
             "--gusts",
             metavar="SPEED[,SECONDS]",
-            help="Unrest of the air about the wind: standard deviation, and how long gusts last (5 s).",
+            help="Turbulence: standard deviation (m/s) and duration of a gust (default 5 s).",
         ),
     ] = "0",
     energy: Annotated[
         float | None,
         typer.Option(
-            "--energy", min=1.0, help="Seconds of hovering in a full battery; else as the robot's type says."
+            "--energy",
+            metavar="SECONDS",
+            min=1.0,
+            help="Hover time of a full battery, in seconds. Default: by robot type.",
         ),
     ] = None,
     recharge: Annotated[
         float | None,
         typer.Option(
             "--recharge",
+            metavar="SECONDS",
             min=0.0,
-            help="Seconds on the ground until it is full; 0: never. Else as the robot's type says.",
+            help="Recharge time on the ground, in seconds; 0 disables recharging. Default: by robot type.",
         ),
     ] = None,
     parameter: Annotated[
-        _Texts, typer.Option("--parameter", metavar="NAME=VALUE", help="Of all vehicles; may be repeated.")
+        _Texts,
+        typer.Option(
+            "--parameter", metavar="NAME=VALUE", help="Autopilot parameter set on all vehicles. Repeatable."
+        ),
     ] = None,
     loss: Annotated[
-        float, typer.Option("--loss", min=0.0, max=0.9, help="Part of all datagrams that get lost.")
+        float,
+        typer.Option("--loss", metavar="FRACTION", min=0.0, max=0.9, help="Packet loss, as a fraction."),
     ] = 0.0,
     delay: Annotated[
-        float, typer.Option("--delay", min=0.0, max=10.0, help="Real seconds that each takes.")
+        float,
+        typer.Option("--delay", metavar="SECONDS", min=0.0, max=10.0, help="Packet latency in real seconds."),
     ] = 0.0,
-    seed: Annotated[int, typer.Option("--seed", min=0, help="Of losses and gusts.")] = 0,
+    seed: Annotated[
+        int, typer.Option("--seed", metavar="N", min=0, help="Random seed for packet loss and gusts.")
+    ] = 0,
     fault: Annotated[
         _Texts,
         typer.Option(
             "--fault",
             metavar="[ROBOT:]FAULT[=VALUE,…][@SECONDS[+SECONDS]]",
-            help="After so many seconds under way, for so long; may be repeated. --fault list: all of them.",
+            help="Fault to inject SECONDS after the start of motion, for SECONDS. Repeatable. '--fault list' "
+            "lists all faults.",
         ),
     ] = None,
     surroundings: Annotated[
         Path | None,
-        typer.Option(
-            "--surroundings", metavar="FILE", help="What there is to be detected in photos; of a mission's."
-        ),
+        typer.Option("--surroundings", metavar="FILE", help="Objects that photos can show, as JSON."),
     ] = None,
     seconds: Annotated[
-        float, typer.Option("--for", min=0.0, metavar="SECONDS", help="End by itself; 0: when interrupted.")
+        float,
+        typer.Option(
+            "--for", min=0.0, metavar="SECONDS", help="Stop after SECONDS; 0 runs until interrupted."
+        ),
     ] = 0.0,
     json: Json = False,
 ) -> int:
     """Start simulated MAVLink vehicles.
 
-    They are for rehearsing controllers and mmrs run. It prints the --connect arguments to copy. On a terminal
-    it tells now and then how each vehicle is. A line such as 'Drone1 gps-lost', 'Drone1 mend gps-lost' or
-    'all battery 0.2' makes a fault at once, 'quit' ends. They are ours: what flies here may still be refused
-    by a real autopilot.
+    Prints the --connect arguments for 'mmrs run' and generated controllers, and reports the vehicles' state
+    on a terminal. Type 'Drone1 gps-lost' or 'all battery 0.2' to inject a fault, 'Drone1 mend gps-lost' to
+    clear it, 'quit' to stop. The autopilots are imitations: a real autopilot may still reject what works
+    here.
 
     Example: mmrs sitl examples/carbon-dioxide --speedup 5 --fault 'Alba:gps-lost@60+20'
     """

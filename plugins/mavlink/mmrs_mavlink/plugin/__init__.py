@@ -32,6 +32,4 @@ def mmrs_vehicles() -> Iterable[VehicleFactory]:
 @hookimpl
 def mmrs_commands() -> Iterable[Command]:
     """Contribute simulated vehicles at the ends of MAVLink links."""
-    return (
-        Command("sitl", "Start simulated vehicles that speak MAVLink.", "mmrs_mavlink.commands.sitl:app"),
-    )
+    return (Command("sitl", "Start simulated MAVLink vehicles.", "mmrs_mavlink.commands.sitl:app"),)
