@@ -35,7 +35,7 @@ class Callers:
             most: callers at a time.
             seconds: that a caller may be silent, however much of a line it sends meanwhile.
             refusal: sent to a caller for whom there is no room.
-            tick: seconds between two looks for those that were silent for too long.
+            tick: seconds between two checks for callers that were silent for too long.
             now: the clock.
         """
         server.settimeout(tick)
@@ -71,14 +71,14 @@ class Callers:
         return caller
 
     def dismiss(self) -> None:
-        """Hear no more of callers that were silent for too long: to whoever reads them, their lines end."""
+        """Stop reading callers that were silent for too long: their lines end."""
         with self._lock:
             while self._silent and self._now() - next(iter(self._silent.values())) >= self._seconds:
                 self._dismiss_first()
 
     @contextmanager
     def served(self, caller: socket.socket) -> Iterator[None]:
-        """Count a caller as served, even one that was dismissed just now; afterwards it is silent anew."""
+        """Count a caller as served, even one that was dismissed just now; its silence counts from the end."""
         with self._lock:
             self._silent.pop(caller, None)
             self._served.add(caller)
@@ -91,7 +91,7 @@ class Callers:
                 self._lock.notify_all()
 
     def finish(self, seconds: float) -> None:
-        """Wait until nobody is served any more, so long at most."""
+        """Wait until no caller is served any more, at most for that long."""
         with self._lock:
             self._lock.wait_for(lambda: not self._served, seconds)
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 
 SIGNAL_SECONDS = 0.5
-"""Real seconds that a main thread waits at most before it heeds a signal that did not end its wait.
+"""Real seconds that a main thread waits at most before it handles a signal that did not end its wait.
 
 One that comes just before a thread waits, or to another thread, does not.
 """
@@ -30,7 +30,7 @@ class Clock:
         return self._start + (time.monotonic() - self._zero) * self.speedup
 
     def real(self, seconds: float) -> float:
-        """Return how many real seconds so many seconds of the run are."""
+        """Return the real seconds of some seconds of the run."""
         return max(0.0, seconds) / self.speedup
 
     def patience(self, seconds: float, least: float = 0.5) -> float:

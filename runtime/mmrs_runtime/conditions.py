@@ -1,7 +1,7 @@
-"""Conditions of choices that need nobody to write them: their identifiers say what they ask.
+"""Standard conditions of choices: their identifiers define what they ask.
 
-``battery-below:0.3`` holds with less than that part of the battery left, ``wind-above:8`` in wind of
-more metres per second, ``detected:NAME`` once the vehicle has told that it detected that,
+``battery-below:0.3`` holds with less than that fraction of the battery left, ``wind-above:8`` in wind of
+more metres per second, ``detected:NAME`` once the vehicle has reported that detection,
 ``found:NAME`` once that, or a robot that has notified this one since, has detected it, and
 ``answer:QUESTION`` if the operator answers yes. Where there is no figure to go by, or no answer yet,
 they are undecided, and the robot waits.
@@ -15,7 +15,7 @@ from typing import Protocol, TypeAlias
 
 
 class Known(Protocol):
-    """What standard conditions go by, in whichever execution; None where nobody knows."""
+    """The input of standard conditions in all executions; None where unknown."""
 
     @property
     def charge(self) -> float | None:
@@ -62,7 +62,7 @@ def standard(identifier: str) -> Standard:
 
 
 def answers_at_once(condition: Callable[..., object]) -> bool:
-    """Return whether a function is one that `standard` returns, and so never keeps anybody waiting."""
+    """Return whether a function is one that `standard` returns, and so never blocks."""
     return condition.__module__ == __name__
 
 
@@ -77,7 +77,7 @@ def is_standard(identifier: str) -> bool:
 
 
 ANSWER_SECONDS = 10.0
-"""Real seconds that a function of the user has to say whether a condition holds, or where an object is."""
+"""Real seconds that a function of the user has to decide a condition, or to locate an object."""
 
 
 def truth(found: object) -> bool:
@@ -95,26 +95,26 @@ def truth(found: object) -> bool:
 
 
 def undecided(known: Known) -> bool | None:
-    """Decide nothing: stands in conditions.py until somebody writes what decides a choice.
+    """Decide nothing: placeholder in conditions.py for what decides a choice.
 
     Raises:
         NotImplementedError: always; programs whose choices have this are not begun.
     """
-    raise NotImplementedError("nobody has said yet when this condition holds")
+    raise NotImplementedError("this condition is not implemented yet")
 
 
 def awaiting(identifier: str) -> str:
-    """Return what a robot does that cannot decide a condition yet, as people read it.
+    """Return what a robot does that cannot decide a condition yet, as printed.
 
-    >>> awaiting("answer:go on?"), awaiting("wind-above:8")
-    ("waits for an answer to 'go on?'", "waits until 'wind-above:8' is known")
+    >>> awaiting("answer:continue?"), awaiting("wind-above:8")
+    ("waits for an answer to 'continue?'", "waits until 'wind-above:8' is known")
     """
     question = question_of(identifier)
     return f"waits for an answer to {question!r}" if question else f"waits until {identifier!r} is known"
 
 
 def question_of(identifier: str) -> str:
-    """Return what an operator is asked by a condition; empty where nobody is."""
+    """Return a condition's question to the operator; empty where it has none."""
     word, _, rest = identifier.partition(":")
     return rest if word == ANSWER else ""
 

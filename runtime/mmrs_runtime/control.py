@@ -7,8 +7,8 @@ robots, readable by its user only. An order is one line::
 
 without `robots` it is for all of them; ``answer`` has `question` and `answer` beside. There is one line of
 answer for each robot, as soon as it has obeyed or refused, with the seconds that it took, then
-``{"done": true}``; or one ``{"error": "…"}``. Whoever gives no order in time, or one without the token, is
-hung up on. Run this module to give orders: ``python -m mmrs_runtime.control hold --log logs``.
+``{"done": true}``; or one ``{"error": "…"}``. A client that gives no order in time, or one without the token,
+is disconnected. Run this module to give orders: ``python -m mmrs_runtime.control hold --log logs``.
 """
 
 from __future__ import annotations
@@ -49,7 +49,7 @@ LAST_SECONDS = 1.0
 
 SORE_SECONDS = 0.2
 CONNECTIONS = 16
-"""How many clients at once are heard."""
+"""Clients served at once."""
 
 Status = Callable[[str], Mapping[str, object]]
 
@@ -70,13 +70,13 @@ class Control:
         *,
         greeting_seconds: float = GREETING_SECONDS,
     ) -> None:
-        """Begin to listen.
+        """Start listening.
 
         Args:
             folder: of the logs; where the channel is announced.
             run: identifier of the run.
             inboxes: by robot; all robots of this process.
-            status: what there is to say of a robot, as JSON has it; called from any thread.
+            status: the status of a robot, as JSON has it; called from any thread.
             greeting_seconds: that a client has for the line of an order.
 
         Raises:
@@ -110,7 +110,7 @@ class Control:
         self._thread.start()
 
     def close(self) -> None:
-        """Listen no more, let answers go out that are known, and take the announcement away."""
+        """Stop listening, send the answers that are known, and remove the announcement."""
         self._closing.set()
         with suppress(OSError):
             # A call wakes the thread that waits for calls.
@@ -201,7 +201,7 @@ class Control:
     def _understood(self, given: Mapping[str, Any]) -> tuple[Order, list[str], float]:
         robots = given.get("robots", list(self._inboxes))
         if not isinstance(robots, list) or not robots or not all(isinstance(robot, str) for robot in robots):
-            raise ValueError("robots: is no list of names")
+            raise ValueError("robots: must be a list of names")
         unknown = [robot for robot in robots if robot not in self._inboxes]
         if unknown:
             known = ", ".join(map(ascii, self._inboxes))
@@ -238,7 +238,7 @@ def _order(given: Mapping[str, Any]) -> Order:
 
 def _seconds(given: object) -> float:
     if isinstance(given, bool) or not isinstance(given, int | float) or not 0 < given <= ANSWER_SECONDS:
-        raise ValueError(f"seconds: is no number above 0 up to {ANSWER_SECONDS:.0f}")
+        raise ValueError(f"seconds: must be a number above 0 up to {ANSWER_SECONDS:.0f}")
     return float(given)
 
 
@@ -283,9 +283,10 @@ def _refuse_rivals(own: Path, robots: Collection[str]) -> None:
 
 
 def _was_left(path: Path) -> bool:
-    """Return whether an announcement is that of a process that is not there any more.
+    """Return whether an announcement is that of a process that no longer runs.
 
-    Its port may be somebody else's by now, where its process does not run, or runs in another container.
+    Its port may belong to another program by now, where its process does not run, or runs in another
+    container.
     """
     try:
         facts = object_in(path.read_bytes())
@@ -311,7 +312,7 @@ def _runs(process: int) -> bool:
 
 
 def _answers(connected: socket.socket, facts: Mapping[str, object]) -> bool:
-    """Return whether whoever listens there takes orders."""
+    """Return whether the listener there takes orders."""
     ask = {"token": facts.get("token"), "order": STATUS}
     try:
         with connected.makefile("rwb") as file:

@@ -24,20 +24,20 @@ LOG_FAILED = "LOG_FAILED"
 CRASHED = "CRASHED"
 
 FAILURES = (Exception, SystemExit)
-"""What may come out of code that is wrong, or somebody else's: what it raises must end no thread unseen."""
+"""Exceptions of faulty or foreign code: none of them may end a thread unnoticed."""
 
 
 def reason_of(error: OSError) -> str:
-    """Return what a system says of a file, with its name where that is known."""
+    """Return the system's message about a file, with its name where that is known."""
     said = error.strerror or str(error)
     return f"{error.filename}: {said}" if error.filename else said
 
 
 class Fault(Exception):  # noqa: N818  # the word that policies and logs use
-    """Something went wrong; `event` says what, and the robot's policies say what it does about it.
+    """A fault; `event` names it, and the robot's policies define the response.
 
     Attributes:
-        instead: the response, where what policies say cannot be carried out; else empty.
+        instead: the response, where that of the policies cannot be carried out; otherwise empty.
     """
 
     def __init__(self, event: str, message: str, instead: str = "") -> None:
@@ -47,14 +47,14 @@ class Fault(Exception):  # noqa: N818  # the word that policies and logs use
 
 
 class Displaced(Fault):
-    """The vehicle has left by itself what it was told, for an event that is borne, or answered already.
+    """The vehicle has left its commanded state for an event that is tolerated, or answered already.
 
-    What it was told goes on: it is to be taken back.
+    The command still holds: the vehicle is to be brought back to it.
     """
 
 
 class Refused(Fault):
-    """The vehicle does not accept something that it was told."""
+    """The vehicle does not accept a command."""
 
     def __init__(self, message: str) -> None:
         super().__init__(REFUSED, message)
@@ -65,11 +65,11 @@ class Unanswered(Refused):
 
 
 class Strange(Refused):
-    """The vehicle is not the robot's, or somebody else may have it: it must be told nothing."""
+    """The vehicle is not the robot's, or may be under external control: it must not be commanded."""
 
 
 class Stopped(Fault):
-    """Somebody asked the robot to stop."""
+    """The robot was ordered to stop."""
 
     def __init__(self) -> None:
         super().__init__(STOPPED, "stop was asked for")

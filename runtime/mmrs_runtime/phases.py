@@ -1,4 +1,4 @@
-"""What robots are at, as whoever asks is told."""
+"""Activities of robots, as status queries report them."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ HELD_EARLY = "is held before it begins"
 WORKS = "works"
 HELD = "is held"
 RESPONDS = "responds"
-TAKEN = "somebody else has it"
+TAKEN = "under external control"
 SUSPENDED = "waits for its battery"
 LOST = "has ended by a lost link"
 ENDED = "has ended"
@@ -21,5 +21,5 @@ def if_held(phase: str) -> str:
 
 
 def answering(response: str) -> dict[str, object]:
-    """Return what there is to say of a robot that does something else than its program, as JSON has it."""
+    """Return the status of a robot that carries out a response, as JSON has it."""
     return {"phase": TAKEN} if response == NOTHING else {"phase": RESPONDS, "response": response}

@@ -1,4 +1,4 @@
-"""What robots do when something goes wrong: events, responses, what counts first, how long it is borne."""
+"""Policies: events, responses, precedence, and how long an event is tolerated."""
 
 from __future__ import annotations
 
@@ -68,13 +68,14 @@ AFTER: Mapping[str, float] = {
     WAIT_TOO_LONG: inf,
     GROUND_LOST: 10.0,
 }
-"""Seconds that an event lasts before the robot responds, where its policy in a model does not say; else 0.
+"""Seconds that an event lasts before the robot responds, where its policy in a model does not define it;
+otherwise 0.
 
-A wait is part of the plan, however long: it is too long only where somebody said how long that is.
+A wait is part of the plan, however long: it is too long only where a model limits it.
 """
 
 UNDECLARED_AFTER: Mapping[str, float] = {**AFTER, LINK_LOST: 5.0, DEVICE_SILENT: 5.0, POSITION_LOST: 2.0}
-"""Seconds that real robots bear an event whose policy has none when it comes to them; else 0.
+"""Seconds that real robots tolerate an event whose policy has none when it reaches them; otherwise 0.
 
 Programs are written with the seconds of `AFTER`: so these are of events that no model names, and of a lost
 position, which estimators report for moments.
@@ -84,10 +85,10 @@ VALUE_SECONDS = 10.0
 """The same of a sensor that publishes no value: some do every few seconds only."""
 
 LAST_RESORT = HOLD
-"""What a robot does about an event that nobody declared a response to."""
+"""A robot's response to an event without a declared one."""
 
 BORNE: Mapping[str, str] = {GROUND_LOST: CONTINUE}
-"""What goes before that: nobody needs to look on for a robot to finish."""
+"""Responses that take precedence over it: a robot can finish without a ground station."""
 
 UNDECLARED: Mapping[str, str] = {**BORNE, LINK_LOST: RETURN, BATTERY_LOW: RETURN}
 """What real robots do where no policy says anything; to anything else they hold."""
@@ -99,7 +100,7 @@ OVERTAKES = frozenset({POSITION_LOST, VEHICLE_RESTARTED, BATTERY_LOW, GROUND_LOS
 """Events that are answered although the robot already responds to another."""
 
 CAME_DOWN_AWAY = "came down for its battery where its sortie began, away from home"
-"""What people are told of a robot that can go on from there, once its battery has been changed."""
+"""Message about a robot that can continue from there, once its battery has been changed."""
 
 
 def in_precedence(
@@ -117,7 +118,7 @@ def in_precedence(
 
 
 def policy_for(event: str, policies: Iterable[Policy]) -> Policy | None:
-    """Return the policy that counts for an event; None where nobody declared one."""
+    """Return the policy that counts for an event; None where none is declared."""
     return next((policy for policy in policies if policy.event == event), None)
 
 
@@ -128,7 +129,7 @@ def response_to(event: str, policies: Iterable[Policy]) -> str:
 
 
 def patience(event: str, policies: Iterable[Policy]) -> float | None:
-    """Return for how many seconds the robot bears an event; None: for ever, no policy names it."""
+    """Return for how many seconds the robot tolerates an event; None: without limit, no policy names it."""
     policy = policy_for(event, policies)
     if policy is None:
         return None
@@ -136,16 +137,16 @@ def patience(event: str, policies: Iterable[Policy]) -> float | None:
 
 
 def seconds_of(policy: Policy, usual: Mapping[str, float] = UNDECLARED_AFTER) -> float:
-    """Return for how many seconds a real robot bears the event of a policy; `usual` where it does not say."""
+    """Return for how many seconds a real robot tolerates the event of a policy; `usual` where it has none."""
     return usual.get(policy.event, 0.0) if policy.after is None else policy.after
 
 
 def still_low(charge: float | None, reserve: float) -> str:
-    """Return why a battery is not to be flown with; empty where it is, or nobody knows.
+    """Return why a battery is too low for a flight; empty where it is not, or unknown.
 
     Args:
-        charge: part of it that is left; None where nobody knows.
-        reserve: part with less than which it counts as low.
+        charge: fraction of it that is left; None where unknown.
+        reserve: fraction below which it counts as low.
     """
     if charge is None or charge >= reserve:
         return ""

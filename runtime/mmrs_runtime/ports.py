@@ -29,7 +29,7 @@ class Port(Protocol):
         ...
 
     def write(self, data: bytes, to: Address | None = None) -> object:
-        """Send bytes to a sender, or drop them where nobody can be reached yet.
+        """Send bytes to a sender, or drop them where no receiver is known yet.
 
         Raises:
             OSError: they are lost; those after them need not be.

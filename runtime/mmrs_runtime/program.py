@@ -1,7 +1,7 @@
-"""What robots do, as plain values: the Behaviour Language with orders that vehicles understand.
+"""Programs of robots, as plain values: the Behaviour Language with orders that vehicles understand.
 
-A program is a table of moves. Each has actions before it, a movement, actions after it, and what comes then.
-Movements and actions carry an *order*, which nobody but the robot's vehicle looks into: the driver of an
+A program is a table of moves. Each has actions before it, a movement, actions after it, and its transition.
+Movements and actions carry an *order*, which only the robot's vehicle interprets: the driver of an
 autopilot has its own, and for the simulation it is the grounded move itself.
 """
 

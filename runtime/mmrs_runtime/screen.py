@@ -1,4 +1,4 @@
-"""Tells people what goes on, and lets nobody wait for them."""
+"""Messages on standard error that never block a run."""
 
 from __future__ import annotations
 
@@ -12,20 +12,20 @@ from contextlib import contextmanager, redirect_stderr, suppress
 from typing import Any, TextIO
 
 PATIENCE_SECONDS = 0.2
-"""How long nobody may read before something is left out."""
+"""Seconds without a reader before lines are left out."""
 
 ROOM = 1000
 """Characters that whatever takes anything takes without a wait."""
 
 
 def bear_all_characters() -> None:
-    """Have results and help shown on any terminal: what its encoding lacks, by its code."""
+    """Make all characters printable on any terminal: those that its encoding lacks, by their codes."""
     if isinstance(sys.stdout, io.TextIOWrapper):
         sys.stdout.reconfigure(errors="backslashreplace")
 
 
 def say(line: str) -> None:
-    """Tell people something, one line at a time."""
+    """Print a line to standard error."""
     # Nobody may read any more, or the disk that is written to be full: robots fly on all the same.
     with suppress(OSError, ValueError):
         print(f"{line}\n", end="", file=sys.stderr, flush=True)
@@ -44,7 +44,7 @@ def unfailing() -> Iterator[None]:
 
 
 def let_end_in_nothing(stream: TextIO) -> None:
-    """Have a stream be one to nobody, so that flushing it at the exit does not fail again."""
+    """Redirect a stream to the null device, so that flushing it at the exit does not fail again."""
     nothing = os.open(os.devnull, os.O_WRONLY)
     os.dup2(nothing, stream.fileno())
     os.close(nothing)
@@ -65,7 +65,7 @@ class _Unfailing:
         with self._lock:
             if self._left_out and self._takes(0.0):
                 lines, self._left_out = self._left_out, 0
-                self._put(f"(lines left out here, which nobody took: {lines})\n")
+                self._put(f"(lines left out here, which were not read: {lines})\n")
             for begin in range(0, len(words), ROOM):
                 if not self._takes(0.0 if self._left_out else PATIENCE_SECONDS):
                     self._left_out += max(1, words.count("\n", begin))

@@ -2,11 +2,11 @@
 
 Each robot is at a control point; a step of one robot leads it to its next point and may set slots.
 Steps of different robots interleave. Slots are latches: passing a wait leaves them as they are.
-All awaited slots are tested in one state, after the actions that follow the movement. A Choice may go
-either way here; the engine asks its condition once, at the instant when it fires.
+All awaited slots are tested in one state, after the actions that follow the movement. A Choice may take
+either branch here; the engine asks its condition once, at the instant when it fires.
 
 Robots run by `steps`, `fault` and `missing`, and the check of synchronisation reads a behaviour by `steps`;
-`told_by` finds the step that a log tells of. States of all robots together (`initial`, `enabled`, `apply`,
+`told_by` finds the step of a log record. States of all robots together (`initial`, `enabled`, `apply`,
 `is_success`, `is_deadlock`) are the oracle that the engine and that check are tested against, over every
 interleaving.
 """
@@ -128,12 +128,12 @@ def steps(robot: Robot, point: Point, active: Set[SlotId]) -> tuple[Step, ...]:
 
 
 def fault(robot: Robot, point: Point, which: str) -> Step:
-    """Return the step by which a robot that is not at a final point stops for ever."""
+    """Return the step by which a robot that is not at a final point stops for good."""
     return Step(robot.id, "fault", point.move, which, "", Point(point.move, Phase.FAILED))
 
 
 def told_by(record: StepRecord, robot: Robot, point: Point, active: Set[SlotId]) -> Step | None:
-    """Return the step of a robot from a point that a record tells of; None: it can make no such step."""
+    """Return the step of a robot from a point that a record belongs to; None: it can make no such step."""
     if record.label == "fault":
         may = not point.is_final and not record.slot and record.move == point.move
         return fault(robot, point, record.detail) if may else None
@@ -148,7 +148,7 @@ def missing(robot: Robot, point: Point, active: Set[SlotId]) -> tuple[str, ...]:
 
 
 def awaited(robot: Robot, point: Point) -> tuple[SlotId, ...]:
-    """Return the own slots that must be active before the robot goes on; none but at the end of a move."""
+    """Return the own slots that must be active before the robot continues; none but at the end of a move."""
     if point.phase is not Phase.OUT:
         return ()
     then = robot.by_id[point.move].then

@@ -17,7 +17,7 @@ from .vehicle import State
 
 
 class Delivery(Protocol):
-    """A notify on its way to the owners of its slots."""
+    """A notify in progress to the owners of its slots."""
 
     @property
     def lamport(self) -> int | None:
@@ -30,9 +30,9 @@ class Delivery(Protocol):
         ...
 
     def send(self, lamport: int) -> None:
-        """Have every owner apply it; called once, after the notify was recorded with that time.
+        """Let every owner apply it; called once, after the notify was recorded with that time.
 
-        Sent again until all have acknowledged, whether or not anybody still waits for that.
+        It is resent until all have acknowledged, whether or not its sender still waits for that.
 
         Raises:
             ValueError: if the time is less than `lamport`, or that is not known yet.
@@ -57,8 +57,8 @@ class Slots(Protocol):
         """Begin a notify; returns at once.
 
         Owners that share a process answer, and apply what is sent, before the call returns, in one
-        instant. A command is applied once, however often it arrives. With the notify goes what its sender
-        knows to have been detected: owners know it before anybody sees the slots set.
+        instant. A command is applied once, however often it arrives. With the notify go its sender's known
+        detections: owners know them before the slots are seen set.
         """
         ...
 
@@ -74,7 +74,7 @@ class Slots(Protocol):
         """Return whether a wait for these own slots is passed at that time, and if so keep the time.
 
         To be called before the step is recorded: notifies of these slots are then ordered after it.
-        False where one is inactive, or kept for a sender, or something happened to it since that time.
+        False where one is inactive, or kept for a sender, or changed since that time.
         """
         ...
 
@@ -91,11 +91,11 @@ class Slots(Protocol):
         ...
 
     def leave(self, robot: str) -> None:
-        """Tell everybody that a robot of this process will set no more slots; idempotent."""
+        """Announce that a robot of this process will set no more slots; idempotent."""
         ...
 
     def on_change(self, callback: Callable[[], None]) -> None:
-        """Have a function called, from any thread, when something may have changed; it must not block."""
+        """Call a function, from any thread, when something may have changed; it must not block."""
         ...
 
 
@@ -184,18 +184,18 @@ class LocalSlots:
         return ""
 
     def leave(self, robot: str) -> None:
-        """Have a robot set no more slots."""
+        """Mark a robot as one that sets no more slots."""
         self._left.add(robot)
 
     def on_change(self, callback: Callable[[], None]) -> None:
-        """Do nothing: nobody else changes anything."""
+        """Do nothing: these slots have no other source of changes."""
 
     def close(self) -> None:
-        """Do nothing: there is nobody to leave."""
+        """Do nothing: there are no other processes."""
 
 
 class _Sending:
-    """A notify within one process: nobody has to be asked, and who has it acknowledges at once."""
+    """A notify within one process: no owner has to be asked, and all acknowledge at once."""
 
     waiting: tuple[str, ...] = ()
 

@@ -1,8 +1,8 @@
-"""What carries a robot: the one class that every driver implements, and what it tells.
+"""What carries a robot: the one class that every driver implements, and its events.
 
-The engine gives one order at a time. Every call returns at once; what comes of it is told later, by `post`
-or by `look`: that it is done, that something went wrong, or that there is news. Vehicles say what happened;
-only the engine answers, by policy.
+The engine gives one order at a time. Every call returns at once; its outcome is reported later, by `post`
+or by `look`: that it is done, that there is a fault, or that there is progress. Vehicles report events;
+only the engine responds, by policy.
 
 Times are seconds of the run's clock throughout.
 """
@@ -64,13 +64,13 @@ class Progress:
 
 @dataclass(frozen=True, slots=True)
 class Fault:
-    """Something that ends a robot's program, unless a policy says to carry on.
+    """A fault, which ends a robot's program unless a policy tolerates it.
 
     Attributes:
         which: an event of policies where these answer it, otherwise a word of the vehicle's, such as
             ``BATTERY_EMPTY``.
-        reason: for people; may be empty.
-        instead: the response, where what policies say cannot be carried out; else empty.
+        reason: in words; may be empty.
+        instead: the response, where that of the policies cannot be carried out; otherwise empty.
     """
 
     which: str
@@ -88,14 +88,14 @@ Event: TypeAlias = Done | Progress | Fault
 class Vehicle(ABC):
     """Carries one robot.
 
-    Only what is abstract must be there; the rest says what a plain vehicle does, which needs no time to get
-    ready, cannot pause, and is taken at its word when it is told to stop. Any method may raise `LinkLost`.
+    Only the abstract methods are required; the defaults are those of a plain vehicle, which needs no time to
+    get ready, cannot pause, and confirms a stop at once. Any method may raise `LinkLost`.
 
     Attributes:
-        post: tells the engine what happened, from any thread; the engine sets it before anything else.
-        done: whether what was ordered last is done, as far as the engine has heard.
-        trouble: what is wrong, as far as the engine has heard; None: nothing.
-        reported: `name` and `content` of what the robot has reported last; empty before it has.
+        post: reports an event to the engine, from any thread; the engine sets it before anything else.
+        done: whether the last order is done, as far as the engine knows.
+        trouble: the present fault, as far as the engine knows; None: none.
+        reported: `name` and `content` of the robot's last report; empty before the first.
     """
 
     post: Callable[[Event], None]
@@ -122,10 +122,10 @@ class Vehicle(ABC):
 
     @abstractmethod
     def respond(self, response: str, now: float) -> None:
-        """Carry out a response to what went wrong, or to an order of people, from any state; idempotent.
+        """Carry out a response to a fault, or to an order, from any state; idempotent.
 
-        `done` then says when nothing is left to do, and `trouble` why it cannot be carried out. ``NOTHING``:
-        hands off, somebody else has the robot.
+        `done` then reports that nothing is left to do, and `trouble` why it cannot be carried out.
+        ``NOTHING``: hands off, the vehicle is under external control.
         """
 
     @abstractmethod
@@ -140,7 +140,7 @@ class Vehicle(ABC):
         """Hold the pose until the next order."""
 
     def bear(self, now: float) -> bool:
-        """Go on although there is `trouble`, since a policy says so.
+        """Continue although there is `trouble`, which a policy tolerates.
 
         Returns:
             Whether it can; what was broken off then counts as done.
@@ -154,7 +154,7 @@ class Vehicle(ABC):
         return False
 
     def known(self, now: float) -> bool:
-        """Return whether it is known, while it gets ready, to be the robot's, and may be told something."""
+        """Return whether it is known, while it gets ready, to be the robot's, and may be commanded."""
         return False
 
     def recover(self, passed: Sequence[str], begun: str, now: float) -> bool:
@@ -166,7 +166,7 @@ class Vehicle(ABC):
             now: the time.
 
         Returns:
-            False where the vehicle knows nothing of that: it goes on from wherever it is.
+            False where the vehicle cannot do that: it continues from wherever it is.
         """
         return False
 
@@ -176,15 +176,15 @@ class Vehicle(ABC):
 
     @property
     def comes_home(self) -> bool:
-        """Return whether it knows the way back, so that it comes home for its battery."""
+        """Return whether it knows the return path, so that it returns for its battery."""
         return False
 
     def away(self, now: float) -> str:
-        """Return why the robot does not stand at home, as far as anybody knows, where it can go on or not."""
+        """Return why the robot does not stand at home, as far as is known; empty where it may."""
         return ""
 
     def moves(self, now: float) -> bool:
-        """Return whether the robot was seen to be under way, or able to be at any moment."""
+        """Return whether the robot was seen in motion, or able to move at any moment."""
         return False
 
     # Holding in the middle of anything.
@@ -198,10 +198,10 @@ class Vehicle(ABC):
         """Begin to halt; idempotent."""
 
     def resume(self, now: float) -> None:  # noqa: B027
-        """Go on with what was begun before; idempotent."""
+        """Resume what was begun before; idempotent."""
 
     def paused(self, now: float) -> bool:
-        """Return whether the robot has confirmed that it halts, and not yet that it goes on."""
+        """Return whether the robot has confirmed that it halts, and not yet that it continues."""
         return False
 
     # What is seen of it once it was told to stop.
@@ -211,7 +211,7 @@ class Vehicle(ABC):
         return False
 
     def watched(self, now: float) -> bool:
-        """Return whether the robot has stopped, or is out of reach, and somebody must stay with it."""
+        """Return whether the robot has stopped, or is out of reach, and an operator must stay with it."""
         return False
 
     def undone(self, now: float) -> str:
@@ -219,11 +219,11 @@ class Vehicle(ABC):
         return ""
 
     def reachable(self, now: float) -> bool:
-        """Return whether the robot was heard of lately, so that it can be told something."""
+        """Return whether a message of the robot was received lately, so that it can be commanded."""
         return True
 
     def in_doubt(self, now: float) -> bool:
-        """Return whether it is being found out if somebody else has the robot; orders wait for it."""
+        """Return whether external control is suspected, but not yet certain; orders wait for the answer."""
         return False
 
     # What people, and other robots, learn.

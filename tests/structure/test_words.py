@@ -27,7 +27,7 @@ AVOIDED = (
     r"\bmay be repeated\b",
     r"\b(?:for ever|anew|afresh)\b",
     r"\b(?:in vain|on purpose|stands? against)\b",
-    r"\b(?:is|are) no (?!longer|more)\w+\b",
+    r"(?<!\bthere )\b(?:is|are) no (?!longer|more|such|faster)\w+\b",
     r"\bgo(?:es)? on\b",
     r"\bwhoever\b",
     r"\b(?:bears?|borne)\b",
@@ -37,9 +37,8 @@ AVOIDED = (
     r"\bfor people\b",
     r"\bthe place\b",
     r"\bmotors (?:run|are o(?:n|ff))\b",
-    r"^Have\b",
-    r"^(?:Be|Know|Hear|Bear|Tell|Say)\b",
-    r"^(?:Of|To|By|Such as|As)\s",
+    r"\A(?-i:Have|Be|Know|Hear|Bear|Tell|Say)\b",
+    r"\A(?-i:Of|To|By|Such as|As)\s",
     r"; else\b",
 )
 """What another word says better: who acts, the field's term, the thing itself."""

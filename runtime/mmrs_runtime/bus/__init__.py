@@ -1,21 +1,22 @@
 """The bus: slots of robots in one process or in many, and notifies that set them exactly once.
 
 A slot belongs to its robot. A notify is a command to the owner: one message where its slots are never
-reset, else two, so that the logs, merged by logical time, tell what happened. To follow one, read in order:
+reset, otherwise two, so that the logs, merged by logical time, show what happened. To follow one, read in
+order:
 
 ``node.py``       one process's end of the bus; `Node.prepare` begins a notify, `Node.serve` answers one
 ``outgoing.py``   what one process sends until all have answered
-``errands.py``    the steps of one notify, with pauses and tries
-``words.py``      what is said, and how it is written
-``carriers/over_zenoh.py``   how that reaches other processes
-``owners.py``     what is heard of it there, and who answers
-``owner.py``      the owner of a robot's slots, which applies it once
-``slot.py``       what it does to a slot
-``journal.py``    what is on the disk before it is answered
+``transactions.py``   the steps of one notify, with pauses and retries
+``messages.py``   the messages and their encoding
+``carriers/over_zenoh.py``   transport to other processes
+``owners.py``     admission of messages, and who answers them
+``owner.py``      the owner of a robot's slots, which applies a command once
+``slot.py``       what a command does to a slot
+``journal.py``    what is on the disk before a message is answered
 
-Beside these, ``watching.py`` knows who is there, ``threads.py`` repeats what is due, ``meeting.py`` has
-robots begin together, ``program_bus.py`` makes all of that for a program, and ``gateway`` lets programs
-without Zenoh take part.
+In addition, ``watching.py`` tracks which robots are present, ``threads.py`` repeats what is due,
+``meeting.py`` starts robots together, ``program_bus.py`` sets all of that up for a program, and ``gateway``
+connects programs without Zenoh.
 """
 
 from .carriers.carrier import Carrier

@@ -1,4 +1,4 @@
-"""A notify on its way to the owners of its slots; a state machine that is told everything it knows."""
+"""A notify on its way to the owners of its slots: a state machine without clock, thread or transport."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from enum import Enum
 from .words import Answer, CommandId, Commit, Find, Prepare, Request, Withdraw
 
 ROUND_SECONDS, LONGEST_ROUND = 0.6, 5.0
-"""How long owners have to answer before all are asked anew, growing with each round: radios are slow."""
+"""Seconds that owners have to answer before all are asked again, growing with each round: radios are slow."""
 
 SHORTEST_PAUSE, LONGEST_PAUSE = 0.005, 1.0
 """Seconds before a sender tries again, growing with each try."""
@@ -29,7 +29,7 @@ class Phase(Enum):
 
 @dataclass(frozen=True, slots=True)
 class Message:
-    """A request on its way: by whom, to whom."""
+    """A request in transit: its sender and its owner."""
 
     sender: str
     owner: str
@@ -37,20 +37,20 @@ class Message:
 
 
 class Errand:
-    """The steps that bring a notify to its owners. Not thread-safe: whoever has it guards it.
+    """The steps that bring a notify to its owners. Not thread-safe: its holder guards it.
 
-    All owners are asked in rounds. A round in which one of them has the slot kept for somebody else,
-    or does not answer, frees the others again, so that nobody is held up by those who are not there.
+    All owners are asked in rounds. A round in which one of them keeps the slot for another sender,
+    or does not answer, frees the others again, so that an absent owner holds up no robot.
 
-    Nobody is asked where all slots are latched, that is never reset. Then the order of the notify and of what
-    else happens to them does not matter: a wait that it lets pass is given a later logical time by the owner,
-    and none that has passed before is undone by it.
+    No owner is asked where all slots are latched, that is, never reset. Then the order of the notify and of
+    other events on them does not matter: the owner gives a wait that the notify lets pass a later logical
+    time, and it undoes no wait that has passed before.
 
     Attributes:
         phase: how far it is.
         due: when `tick` has something to do; inf: never.
         lamport: the least logical time that the notify may have, once all have granted it.
-        refusals: by owner, why it will never do it.
+        refusals: by owner, why it will never apply it.
     """
 
     def __init__(
@@ -65,7 +65,7 @@ class Errand:
         *,
         latched: bool = False,
     ) -> None:
-        """Ask nobody yet.
+        """Create without requests.
 
         Args:
             id: of the command.
@@ -74,7 +74,7 @@ class Errand:
             clock: the least logical time that the sender can use now.
             chance: for pauses.
             reach: how far beyond the time granted the notify may be recorded.
-            finds: what the sender knows to have been detected.
+            finds: detections known to the sender.
             latched: whether no robot ever resets any of these slots, so that it is granted at once.
         """
         self.id, self.active = id, active
@@ -156,7 +156,7 @@ class Errand:
         self.phase = Phase.SENDING if self._open else Phase.DONE
 
     def withdraw(self) -> Notice | None:
-        """Give it up; return what its owners must be told. None: it was sent, and goes on."""
+        """Abort it; return what its owners must receive. None: it was sent already, and continues."""
         if self.phase in (Phase.SENDING, Phase.DONE, Phase.WITHDRAWN):
             return None
         freed = {message.owner: message for message in self._free()} if self._round else {}
@@ -186,7 +186,7 @@ class Errand:
         return [self._to(owner, Withdraw(self.id, self._round)) for owner in sorted(self._open)]
 
     def _settle(self) -> None:
-        """Be granted when all have answered with times that one logical time can satisfy."""
+        """Become granted when all have answered with times that one logical time can satisfy."""
         if self.phase is not Phase.ASKING or self._open - set(self._granted):
             return
         least = max((self._clock(), *self._granted.values()))
@@ -216,14 +216,14 @@ class Errand:
 
 
 class Notice:
-    """Something that others are told until they have answered, or for so long; not thread-safe.
+    """Messages repeated until each is answered, or until a deadline; not thread-safe.
 
     Attributes:
-        due: when `tick` has something to do. until: when nobody waits for answers any more.
+        due: when `tick` has something to do. until: when answers are no longer awaited.
     """
 
     def __init__(self, requests: Mapping[str, Message], until: float = float("inf")) -> None:
-        """Tell nobody yet; `requests` by who is told."""
+        """Create without sending; `requests` by receiver."""
         self.due, self.until = 0.0, until
         self.refusals: dict[str, str] = {}
         self._open = dict(requests)
@@ -256,10 +256,10 @@ class Notice:
         self._open.pop(owner, None)
 
     def gone(self, owner: str) -> None:
-        """Tell somebody who has ended nothing more."""
+        """Send no more to a receiver that has ended."""
         self._open.pop(owner, None)
 
     def back(self, owner: str, now: float) -> None:
-        """Tell somebody who has appeared at once."""
+        """Send at once to a receiver that has appeared."""
         if owner in self._open:
             self.due, self._pause = now, SHORTEST_PAUSE * 4

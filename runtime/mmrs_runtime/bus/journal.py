@@ -1,6 +1,6 @@
 """What an owner of slots must not forget, on the disk before it answers.
 
-A robot whose owner cannot keep that answers nobody, and is out of reach until it can.
+A robot whose owner cannot keep that does not answer, and is out of reach until it can.
 """
 
 from __future__ import annotations
@@ -59,13 +59,13 @@ class FileJournal:
         return str(self._path)
 
     def lines(self) -> Iterator[Line]:
-        """Yield the lines of the file; a last one that was cut off while it was written is none.
+        """Yield the lines of the file, without a last one that was cut off during writing.
 
-        What was cut off is taken away, so that the next line stands alone.
+        The cut-off part is removed, so that the next line stands alone.
 
         Raises:
             OSError: the file cannot be read.
-            ValueError: a whole line is damaged; says where.
+            ValueError: a whole line is damaged; names its line.
         """
         if not self._made:
             return
@@ -118,10 +118,10 @@ def _sync_folder(folder: Path) -> None:
 
 
 class Keeping:
-    """Knows which robots' journals can be written. Not thread-safe: whoever has it guards it."""
+    """Tracks which robots' journals are writable. Not thread-safe: its holder guards it."""
 
     def __init__(self, net: Net, now: Callable[[], float]) -> None:
-        """Know of no journal; `now`: seconds of a clock that never goes back."""
+        """Create without journals; `now`: seconds of a monotonic clock."""
         self._net, self._now = net, now
         self._journals: dict[str, Journal] = {}
         self._wrong: dict[str, str] = {}
@@ -129,7 +129,7 @@ class Keeping:
         self._probe = float("inf")
 
     def watched(self, robot: str, journal: Journal) -> Journal:
-        """Return a journal that does the same, and tells whether it can."""
+        """Return a journal that does the same, and reports whether it succeeds."""
         self._journals[robot] = journal
         return _Watched(robot, journal, self)
 
@@ -176,7 +176,7 @@ class Keeping:
             self.kept(robot)
 
     def _words(self, robot: str, why: str) -> str:
-        return f"{robot!r} answers nobody until its slots can be kept again: {why}"
+        return f"{robot!r} does not answer until its slots can be kept again: {why}"
 
 
 class _Watched:

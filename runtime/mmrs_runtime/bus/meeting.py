@@ -1,8 +1,8 @@
-"""Beginning together: all robots are ready, then all begin at one instant.
+"""Starting together: all robots are ready, then all begin at one instant.
 
-The robot whose name comes first keeps the list of who is ready, and sets the instant by its clock.
+The robot whose name comes first keeps the list of ready robots, and sets the instant by its clock.
 The others measure by round trips how far their clocks are from that one: half of the shortest round
-trip is how wrong that can be. Whoever has waited for too long is no longer ready, and says who has not
+trip bounds the error. A robot that has waited too long is no longer ready, and names the robots that have not
 come; if all begin at that very moment, it begins, too.
 """
 
@@ -53,7 +53,7 @@ class Beginning:
         return self.late + self.uncertainty
 
     def __str__(self) -> str:
-        """Return it for people, in milliseconds."""
+        """Return it in milliseconds, as printed."""
         return (
             f"at most {self.skew * 1e3:.1f} ms from the instant: {self.late * 1e3:.1f} ms late, by clocks"
             f" {self.offset * 1e3:.1f} ms apart, known to {self.uncertainty * 1e3:.1f} ms"
@@ -69,19 +69,19 @@ def begin_together(
     beside: Sequence[str] = (),
     patience: float = PATIENCE,
 ) -> Beginning:
-    """Return when all robots begin, with how well this one does.
+    """Return when all robots begin, with the accuracy of this one.
 
     Args:
         node: this process's end of the bus.
         robot: one of its robots, which is ready.
         robots: all that begin together.
-        guard: called again and again meanwhile with what is still missing; raises what should end it.
+        guard: called repeatedly meanwhile with what is still missing; raises what should end it.
         now: the clock of the node.
         beside: further robots of this process that are ready and begin with this one.
         patience: real seconds to wait for the others.
 
     Raises:
-        Incomplete: not all are ready by then; says who is not.
+        Incomplete: not all are ready by then; names those that are not.
     """
     calls = [_Asking(node, each, robots, guard, now) for each in (robot, *beside)]
     asking = calls[0]
@@ -98,7 +98,7 @@ def begin_together(
 
 
 def _gather(calls: Sequence[_Asking], guard: Callable[[str], None], until: float) -> None:
-    """Have it known that robots are ready, until the first of them knows the instant or time is up."""
+    """Announce that robots are ready, until the first of them knows the instant or time is up."""
     try:
         _call_together(calls, guard, until)
         _part(calls)
@@ -109,7 +109,7 @@ def _gather(calls: Sequence[_Asking], guard: Callable[[str], None], until: float
 
 
 def _call_together(calls: Sequence[_Asking], guard: Callable[[str], None], until: float) -> None:
-    asking, why = calls[0], "nobody has answered yet"
+    asking, why = calls[0], "no answer yet"
     while not asking.at and time.monotonic() < until:
         guard(why)
         why = asking.ask()
@@ -121,7 +121,7 @@ def _call_together(calls: Sequence[_Asking], guard: Callable[[str], None], until
 
 
 def _part(calls: Sequence[_Asking]) -> None:
-    """Have it known that robots are no longer ready, unless all begin."""
+    """Announce that robots are no longer ready, unless all begin."""
     asking = calls[0]
     for each in calls:
         if not asking.at and each.may_be_listed():
@@ -139,7 +139,7 @@ class _Asking:
     """Asks the first robot for the time, and keeps the best answer.
 
     Attributes:
-        at: when all begin, by the first robot's clock; 0: nobody knows.
+        at: when all begin, by the first robot's clock; 0: unknown.
         offset: seconds by which that clock is ahead, measured in a round trip of the `shortest` time.
         trips: round trips since the instant is known.
     """
@@ -171,7 +171,7 @@ class _Asking:
         return bool(self._ready) and other._robot not in self._ready
 
     def missing(self) -> list[str]:
-        """Return the robots that are not ready, or are out of reach where nobody says who is ready."""
+        """Return the robots that are not ready, or are out of reach where no list of ready robots arrives."""
         if not self._ready:
             return [each for each in self._robots if each in self._node.missing(self._robots)] or [
                 self._first
@@ -193,13 +193,13 @@ class _Asking:
         return self._heard or not self._node.missing([self._first])
 
     def withdraw(self) -> None:
-        """Say that the robot waits no longer; where all begin at this very moment, it does, too."""
+        """Announce that the robot waits no longer; where all begin at this very moment, it does, too."""
         for _ in range(FAREWELLS):
             if self._answer_to(replace(self._request, robots=0)) is not None:
                 return
 
     def leave_word(self) -> None:
-        """Say that the robot waits no longer, and go without an answer."""
+        """Announce that the robot waits no longer, without waiting for an answer."""
         farewell = replace(self._request, robots=0)
         self._node.ask_once(farewell.id.sender, self._first, farewell, lambda answer: None)
 

@@ -44,17 +44,17 @@ class Node:
 
         Args:
             members: the robots of this process.
-            run: identifier of the run; nothing of other runs is heard.
-            plan: what tells this plan of the mission from others; robots of others are refused.
-            team: all robots of the mission: nothing of others is heard; none: the carrier knows them.
+            run: identifier of the run; messages of other runs are ignored.
+            plan: tells this plan of the mission from others; robots of others are refused.
+            team: all robots of the mission: messages of others are ignored; none: the carrier knows them.
             carrier: to robots of other processes; None: there are none.
             journals: what survives this process, by robot.
-            recorded: by robot, what the logs say of those that are started again.
-            now: seconds of a clock that never goes back.
-            threaded: whether to repeat by itself what is not answered; else `pump` must be called.
+            recorded: by robot, the logs of those that are started again.
+            now: seconds of a monotonic clock.
+            threaded: whether to repeat unanswered messages in a thread; otherwise `pump` must be called.
             chance: for pauses between tries.
-            tell: tells people what goes wrong here, from any thread.
-            settle: seconds to look whether these robots can take part; 0: nobody looks.
+            tell: reports problems to the operator, from any thread.
+            settle: seconds to check whether these robots can take part; 0 skips the check.
 
         Raises:
             Unwelcome: another process runs one of the robots, or others are there by another plan of the
@@ -118,7 +118,7 @@ class Node:
             raise
 
     def _introduce(self, recorded: Mapping[str, Recorded], settle: float) -> None:
-        """Tell all that robots have to do with that they start, and wait for those who are there."""
+        """Announce the start to all contacts of these robots, and wait for those that are present."""
         with self.lock:
             told = [
                 self._outgoing.introduce(robot, recorded.get(robot, Recorded()))
@@ -145,7 +145,7 @@ class Node:
         return self._owners.incarnation
 
     def id_of(self, robot: str) -> CommandId:
-        """Return what the words of a robot of this process are known by that are no notifies."""
+        """Return the identifier of a local robot's messages that are not notifies."""
         return self._outgoing.id_of(robot)
 
     def slots_of(self, robot: str) -> tuple[str, ...]:
@@ -162,8 +162,8 @@ class Node:
         """Ask the owners of slots for setting them; returns at once.
 
         Owners are not asked where no robot ever resets the slots: it is granted then. Where there are robots
-        of other processes, run and incarnation are those of this node. With the notify goes what its
-        sender knows to have been detected.
+        of other processes, run and incarnation are those of this node. With the notify go its sender's known
+        detections.
         """
         return self._outgoing.prepare(id, slots, active, finds)
 
@@ -208,12 +208,12 @@ class Node:
             return tuple(robot for robot in strangers if self._watching.is_unseen(robot))
 
     def trouble(self, robot: str) -> str:
-        """Return why a robot of this process cannot keep what is told to it; empty: it can."""
+        """Return why a robot of this process cannot keep what it receives; empty where it can."""
         with self.lock:
             return self._keeping.why(robot)
 
     def leave(self, robot: str) -> None:
-        """Tell everybody that a robot has ended, whether well or by a fault; it never comes back."""
+        """Announce that a robot has ended, with success or by a fault; it never comes back."""
         with self.lock:
             if robot in self._watching.left or robot not in self._members:
                 return
@@ -223,11 +223,11 @@ class Node:
         self._tell_changed()
 
     def hide(self, robot: str) -> None:
-        """Have a robot of this process be out of reach, as one that is frozen; its slots are kept."""
+        """Make a robot of this process unreachable, as one that is frozen; its slots are kept."""
         self._vanish([robot])
 
     def show(self, robot: str) -> None:
-        """Have a robot of this process be in reach again, unless it has ended."""
+        """Make a robot of this process reachable again, unless it has ended."""
         self._appear([robot])
 
     @property
@@ -248,7 +248,7 @@ class Node:
             return self._owners.lamport
 
     def repeat(self, id: CommandId, slots: Iterable[SlotId], active: bool, lamport: int) -> None:
-        """Set own slots as a log says they were, whoever may set them."""
+        """Set own slots to their state in a log, whatever robots may set them."""
         with self.lock:
             self._owners.repeat(id, slots, active, lamport)
         self._tell_changed()
@@ -259,7 +259,7 @@ class Node:
             self._owners.restore(active, lamport)
 
     def on_change(self, callback: Callable[[], None]) -> None:
-        """Have a function called, from any thread, when something may have changed; it must not block."""
+        """Call a function, from any thread, when something may have changed; it must not block."""
         with self.lock:
             self._callbacks.append(callback)
 
@@ -334,7 +334,7 @@ class Node:
             return self._owners.shown(robot)
 
     def pump(self) -> None:
-        """Send what is due; called by itself where the bus is threaded."""
+        """Send what is due; called by a thread where the bus is threaded."""
         with self.lock:
             now = self.now()
             work = self._outgoing.begin(now)
@@ -357,7 +357,7 @@ class Node:
         self._tell_changed()
 
     def _tell_changed(self) -> None:
-        """Tell all who want to know that something may have changed; to be called without the lock."""
+        """Notify all waiters and callbacks. Call without holding the lock."""
         with self.lock:
             self.lock.notify_all()
             callbacks = tuple(self._callbacks)

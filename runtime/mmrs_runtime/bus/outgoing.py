@@ -37,13 +37,13 @@ from .words import (
 )
 
 FINDS_BYTES = 16_384
-"""Of what was detected in one message."""
+"""Detections in one message."""
 
 FAREWELL_SECONDS = 2.0
 """How long a robot that ends tries to tell those who are there."""
 
 TIDINGS_SECONDS = 10.0
-"""How long one who comes is told who has ended before, until it answers."""
+"""How long a newcomer is sent the robots that have ended before, until it answers."""
 
 Work = Sequence[tuple[Errand | Notice, Message]]
 """What is to be sent, each with what its answer is for."""
@@ -51,7 +51,7 @@ Work = Sequence[tuple[Errand | Notice, Message]]
 
 @dataclass(frozen=True, slots=True)
 class Delivery:
-    """A notify on its way, as whoever sends it sees it; see `mmrs_runtime.slots.Delivery`."""
+    """A notify in progress, as its sender sees it; see `mmrs_runtime.slots.Delivery`."""
 
     _errand: Errand
     _outgoing: Outgoing
@@ -81,7 +81,7 @@ class Delivery:
             return dict(self._errand.refusals)
 
     def send(self, lamport: int) -> None:
-        """Have every owner apply it, after it was recorded with that logical time.
+        """Let every owner apply it, after it was recorded with that logical time.
 
         Raises:
             ValueError: that time was not granted.
@@ -89,14 +89,14 @@ class Delivery:
         self._outgoing.send(self._errand, lamport)
 
     def withdraw(self) -> None:
-        """Give it up; what was sent goes on until all have acknowledged."""
+        """Abort it; what was sent continues until all have acknowledged."""
         self._outgoing.withdraw(self._errand)
 
 
 class Outgoing:
-    """Holds notifies and news until they are over, and sends what is due of them.
+    """Holds notifies and notices until they are over, and sends what is due of them.
 
-    Not thread-safe, apart from what takes the lock itself or is called without it: whoever has it guards it.
+    Not thread-safe, apart from what takes the lock or is called without it: its holder guards it.
 
     Attributes:
         lock: guards it, and what it uses.
@@ -118,17 +118,17 @@ class Outgoing:
         *,
         alone: bool,
     ) -> None:
-        """Send nothing yet.
+        """Create with nothing to send.
 
         Args:
             lock: guards owners and watching, too.
-            now: seconds of a clock that never goes back.
+            now: seconds of a monotonic clock.
             run: identifier of the run, as robots of other processes know it.
             members: the robots of this process, by name.
             owners: of their slots.
-            watching: who is there and who has ended.
+            watching: robots present, and robots that have ended.
             carrier: to the robots of other processes.
-            net: catches what fails, and tells people of those who are refused.
+            net: catches what fails, and reports refusals to the operator.
             chance: for pauses between tries.
             pump: sends what is due; called without the lock.
             settled: called without the lock when an answer was taken.
@@ -169,7 +169,7 @@ class Outgoing:
         return Delivery(errand, self)
 
     def send(self, errand: Errand, lamport: int) -> None:
-        """Have the owners of a notify apply it; they are told until all have acknowledged.
+        """Send a notify to its owners until all have acknowledged.
 
         Raises:
             ValueError: that logical time was not granted.
@@ -180,14 +180,14 @@ class Outgoing:
         self._pump()
 
     def withdraw(self, errand: Errand) -> None:
-        """Give a notify up; its owners are told until they have answered."""
+        """Abort a notify; its owners are informed until they have answered."""
         with self.lock:
             if (notice := errand.withdraw()) is not None:
                 self._errands.append(notice)
         self._pump()
 
     def introduce(self, robot: str, recorded: Recorded) -> Notice:
-        """Tell all that a robot has to do with, itself included, that it starts, and what its log says."""
+        """Announce the start of a robot, with its log's notifies, to itself and all its contacts."""
         id, requests = self.id_of(robot), dict[str, Request]()
         for owner in sorted(self._members[robot].contacts | {robot}):
             known = [(slot, *value) for (r, slot), value in recorded.notifies.items() if r == owner]
@@ -195,7 +195,7 @@ class Outgoing:
         return self._add(robot, requests)
 
     def bid_farewell(self, robot: str) -> None:
-        """Tell others that a robot has ended, for a while."""
+        """Announce for a while that a robot has ended."""
         contacts = self._members[robot].contacts - self._watching.left.keys()
         there = {each for each in contacts if each in self._owners or self._watching.is_here(each)}
         if there != contacts:
@@ -205,7 +205,7 @@ class Outgoing:
         self._farewells[robot] = self._add(robot, dict.fromkeys(there, farewell), FAREWELL_SECONDS)
 
     def inform(self, robot: str) -> None:
-        """Tell a robot that is there now who has ended before, for a while."""
+        """Inform a newly present robot for a while of those that have ended before."""
         ended = {each: at for each, at in self._watching.ended().items() if each != robot}
         if ended:
             teller = next(iter(self._members))
@@ -213,7 +213,7 @@ class Outgoing:
             self._add(teller, {robot: tidings}, TIDINGS_SECONDS)
 
     def id_of(self, robot: str) -> CommandId:
-        """Return what the words of a robot are known by that are no notifies."""
+        """Return the identifier of a robot's messages that are not notifies."""
         return CommandId(self._run, robot, self._owners.incarnation, 0)
 
     @property
@@ -257,7 +257,7 @@ class Outgoing:
                 self.publish(message.owner)
 
     def publish(self, robot: str) -> None:
-        """Tell whoever looks on that the state of a robot's slots has changed."""
+        """Publish to observers that the state of a robot's slots has changed."""
         with self._net.under(f"showing the slots of {robot!r}"):
             self._carrier.publish(robot)
 
@@ -275,7 +275,7 @@ class Outgoing:
             self._carrier.ask(sender, owner, written(request), take)
 
     def sweep(self) -> list[str]:
-        """Forget what is over; return the robots that have said farewell to everybody."""
+        """Forget what is over; return the robots whose farewells are all acknowledged."""
         self._errands = [errand for errand in self._errands if not errand.is_over]
         gone = [robot for robot, notice in self._farewells.items() if notice.is_over]
         for robot in gone:
@@ -304,7 +304,7 @@ class Outgoing:
 
     def _due_of(self, errand: Errand | Notice, now: float) -> Iterable[Message]:
         """Return what an errand has to send now; one that fails is left alone for a while."""
-        with self._net.under("a notify on its way"):
+        with self._net.under("a notify in progress"):
             return errand.tick(now)
         errand.due = now + SORE_SECONDS
         return ()

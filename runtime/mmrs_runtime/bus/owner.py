@@ -1,14 +1,14 @@
 """The owner of slots: the only one that changes them. It has no thread and no clock of its own.
 
-A sender first has slots kept for it and is told after which logical time it may set them; then it
+A sender first has slots kept for it and learns after which logical time it may set them; then it
 records its notify and sends it. While a slot is kept, it is neither passed nor set by others, so that
-what happens to it happens in the order in which the logs say so.
+events on it happen in the order of the logs.
 
-Keeping ends when the sender sends, withdraws, or is lost. In the last case nobody knows whether it
-recorded its notify. It may have done so at any time up to `REACH` beyond what it was told, so all
-that happens to the slot afterwards is later than that; and if it meant to reset the slot, the slot is
-*in doubt* and counts as inactive until somebody sets it again or the sender is back. Whatever the
-sender recorded, the logs then still tell a possible story. A command that arrives after a later one is
+Keeping ends when the sender sends, aborts, or is lost. In the last case it is unknown whether it
+recorded its notify. It may have done so at any time up to `REACH` beyond the granted time, so all
+later events on the slot are later than that; and if it meant to reset the slot, the slot is
+*in doubt* and counts as inactive until it is set again or the sender is back. Whatever the
+sender recorded, the logs then still describe a possible history. A command that arrives after a later one is
 answered and changes nothing.
 """
 
@@ -41,7 +41,7 @@ from .words import (
 STRANGE = "not a word of this run and plan"
 
 KEPT_SECONDS = 10.0
-"""How long a slot is kept for a sender from which nothing is heard; senders repeat themselves sooner."""
+"""Seconds that a slot is kept for a silent sender; senders repeat requests sooner."""
 
 Lost = Callable[[str, float], bool]
 
@@ -64,10 +64,10 @@ class Owner:
     """Keeps the slots of one robot.
 
     Attributes:
-        start: number of the last start that the journal tells of; 0: there was none.
-        lamport: the latest logical time of robots that told this one that they have ended.
-        used: whether the journal tells of anything but starts.
-        finds: by name, what those that notified this robot had detected.
+        start: number of the last start in the journal; 0: there was none.
+        lamport: the latest logical time of robots that announced their end to this one.
+        used: whether the journal holds anything but starts.
+        finds: by name, detections of the robots that notified this one.
     """
 
     def __init__(
@@ -80,15 +80,15 @@ class Owner:
         lost: Lost | None = None,
         trusting: bool = False,
     ) -> None:
-        """Take up what the journal says.
+        """Restore from the journal.
 
         Args:
             owned: the slots.
             run: identifier of the run; journals and commands of other runs are refused.
             journal: what survives.
             floor: logical time after which everything happens now.
-            lost: whether a sender has been lost for long enough at a time; None: nobody is.
-            trusting: whether commands come from this process only, so that nobody forges them.
+            lost: whether a sender has been lost for long enough at a time; None: none ever is.
+            trusting: whether commands come from this process only, so that none is forged.
 
         Raises:
             OSError: the journal cannot be read.
@@ -243,7 +243,7 @@ class Owner:
         return before != self.kept()
 
     def next_end(self, lost_at: Callable[[str], float | None]) -> float | None:
-        """Return when keeping a slot ends unless its sender is heard of; None: nothing is kept.
+        """Return when keeping a slot ends unless its sender sends again; None: nothing is kept.
 
         Args:
             lost_at: when a sender counts as lost; None: it does not.
@@ -279,7 +279,7 @@ class Owner:
         return Answer("granted", least)
 
     def _keep(self, word: Request) -> None:
-        """Have the journal tell of a word that is obeyed, unless the slots end with this process."""
+        """Write an obeyed message to the journal, unless the slots end with this process."""
         if not self._trusting:
             self._journal.keep(content_of(word))
 
@@ -325,7 +325,7 @@ class Owner:
             slot.lose_sender()
 
     def _take_up(self, line: Line) -> None:
-        """Go through a line of the journal as through what it tells of."""
+        """Apply a line of the journal as its message was applied."""
         if line.get("run", self._run) != self._run:
             raise ValueError(f"{self.robot!r}: slots were kept in run {line['run']!r}, not {self._run!r}")
         if "started" in line:
@@ -355,7 +355,7 @@ class Owner:
                 raise Unreadable("nothing that is kept")
 
     def _keep_again(self, asked: Prepare) -> None:
-        """Keep slots as before; nothing was heard of the sender since, so it is in doubt at once."""
+        """Keep slots as before; the sender has been silent since, so it is in doubt at once."""
         kept = Kept(asked.id, asked.round, asked.active, asked.lamport + REACH, float("-inf"))
         self._kept.update(asked.slots)
         for name in asked.slots:

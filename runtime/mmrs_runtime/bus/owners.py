@@ -1,8 +1,8 @@
-"""The robots of one process as others speak to them: what is heard of a word at all, and who answers it.
+"""The robots of one process as others address them: which messages are admitted, and who answers them.
 
-Every word of another process passes `Admission` before anything of it is obeyed, kept or answered: it is
-of this run and plan, by a robot of it, at a time that can be. A refusal tells the sender nothing of the
-run that it is not part of; people here are told.
+Every message of another process passes `Admission` before any of it is obeyed, kept or answered: it must be
+of this run and plan, by a robot of it, at a possible time. A refusal reveals nothing of the
+run to a sender that is not part of it; the operator here is informed.
 """
 
 from __future__ import annotations
@@ -82,11 +82,11 @@ class Member:
 
 
 class Owners:
-    """Has the owner of each slot of this process. Not thread-safe: whoever has it guards it, `told` apart.
+    """Holds the owner of each slot of this process. Not thread-safe, except `told`: its holder guards it.
 
     Attributes:
-        admission: judges words of other processes.
-        incarnation: of the robots of this process; differs, and grows, each time that they are started.
+        admission: judges messages of other processes.
+        incarnation: of the robots of this process; differs, and grows, with each start.
         lamport: the latest logical time that this process knows of.
     """
 
@@ -104,19 +104,19 @@ class Owners:
         ended: Callable[[str], None],
         trusting: bool,
     ) -> None:
-        """Take up what journals and logs say.
+        """Restore from journals and logs.
 
         Args:
             members: the robots of this process.
             run: identifier of the run.
             journals: what survives, by robot.
-            recorded: by robot, what the logs say of those that are started again.
-            watching: who is there and who has ended; those who have told these robots so are added.
-            now: seconds of a clock that never goes back.
-            net: tells people of what is refused, and of what fails.
-            team: all robots of the mission; none: the carrier alone says who they are.
-            ended: called with each robot that is said to have ended, which need not answer any more.
-            trusting: whether this process is alone, so that nobody forges commands or loses what it keeps.
+            recorded: by robot, the logs of those that are started again.
+            watching: robots present and robots that have ended; ends announced to these robots are added.
+            now: seconds of a monotonic clock.
+            net: reports refusals and failures to the operator.
+            team: all robots of the mission; none: the carrier alone knows them.
+            ended: called with each robot that has ended according to another, which need not answer any more.
+            trusting: whether this process is alone, so that no command is forged and no journal lost.
 
         Raises:
             OSError: a journal cannot be read or written.
@@ -260,7 +260,7 @@ class Owners:
         return ended
 
     def next_end(self) -> float:
-        """Return when keeping a slot ends unless its sender is heard of; inf: nothing is kept."""
+        """Return when keeping a slot ends unless its sender sends again; inf: nothing is kept."""
         ends = (owner.next_end(self._watching.long_lost_at) for owner in self._keepers.values())
         return min((end for end in ends if end is not None), default=float("inf"))
 
@@ -269,7 +269,7 @@ class Owners:
         self.lamport = max(self.lamport, lamport)
 
     def repeat(self, id: CommandId, slots: Iterable[SlotId], active: bool, lamport: int) -> None:
-        """Set slots as a log says they were, whoever may set them."""
+        """Set slots to their state in a log, whatever robots may set them."""
         self.use(lamport)
         for owner, slot in slots:
             self._owners[owner].repeat(Commit(id, (slot,), active, lamport))
@@ -312,13 +312,13 @@ class Admission:
     def __init__(
         self, run: str, team: Collection[str], lamport: Callable[[], int], tell: Callable[[str], None]
     ) -> None:
-        """Admit words of a run.
+        """Admit messages of a run.
 
         Args:
             run: identifier of the run and the plan.
-            team: all robots of the mission; none: the carrier alone says who they are.
+            team: all robots of the mission; none: the carrier alone knows them.
             lamport: returns the latest logical time that this process knows of.
-            tell: tells people of what is refused.
+            tell: reports refusals to the operator.
         """
         self._run, self._team, self._lamport, self._tell = run, frozenset(team), lamport, tell
 

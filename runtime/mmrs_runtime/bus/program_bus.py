@@ -79,11 +79,11 @@ class ProgramBus:
         return self.node.trouble(robot)
 
     def leave(self, robot: str) -> None:
-        """Tell everybody that a robot has ended."""
+        """Announce that a robot has ended."""
         self.node.leave(robot)
 
     def on_change(self, callback: Callable[[], None]) -> None:
-        """Have a function called when something may have changed."""
+        """Register a function to call when something may have changed."""
         self.node.on_change(callback)
 
     def close(self) -> None:
@@ -184,15 +184,15 @@ def begin_all(
     patience: float | None,
     say: Callable[[str], None],
 ) -> Callable[[Callable[[], None]], Mapping[str, str]]:
-    """Return what has robots of this process begin at one instant with those of all others.
+    """Return a function that starts robots of this process at one instant with all others.
 
-    It is given a look at what else happens, which may raise, and returns in words how well each began. It
-    raises `Incomplete` where not all have come in time.
+    It takes a function that looks at other events, and may raise; it returns in words how accurately each
+    began. It raises `Incomplete` where not all have come in time.
 
     Args:
-        robots: of this process, that begin anew.
-        patience: real seconds to wait; None: nobody waits.
-        say: tells people who is waited for, and how well all began.
+        robots: of this process, that begin for the first time.
+        patience: real seconds to wait; None skips the wait.
+        say: reports to the operator which robots are awaited, and how accurately all began.
     """
     here = tuple(robots)
 

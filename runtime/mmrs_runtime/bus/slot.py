@@ -1,6 +1,6 @@
-"""One slot as its owner keeps it: its value, for whom it is kept, and what may have happened to it.
+"""One slot as its owner keeps it: its value, the sender it is kept for, and what may have happened to it.
 
-Beside it what an owner knows of senders: the latest command of each, by which late requests are told from
+It also holds what an owner knows of senders: the latest command of each, which separates late requests from
 new ones, and its starts.
 """
 
@@ -16,11 +16,11 @@ Stamp = tuple[int, str]
 
 @dataclass(frozen=True, slots=True)
 class Kept:
-    """For whom a slot is kept.
+    """The sender that a slot is kept for.
 
     Attributes:
         most: the latest logical time that the notify may have.
-        heard: when the sender was heard of last, seconds of any clock that never goes back.
+        heard: when the sender was last received, seconds of any monotonic clock.
     """
 
     id: CommandId
@@ -36,7 +36,7 @@ class Slot:
 
     Attributes:
         stamp: of the last command applied.
-        kept: None while it is kept for nobody.
+        kept: None while it is not kept.
         doubts: resets that may have been recorded, by command, with the latest time that they may have.
     """
 
@@ -51,7 +51,7 @@ class Slot:
         return self.state.active and not self.doubts
 
     def may_be_kept_for(self, id: CommandId) -> bool:
-        """Return whether it is kept for nobody, for this command, or for one that this one is the heir of."""
+        """Return whether it is not kept, kept for this command, or for one that this one is the heir of."""
         return self.kept is None or id == self.kept.id or is_older(self.kept.id, id)
 
     def may_be_reset_by(self, id: CommandId) -> bool:
@@ -59,7 +59,7 @@ class Slot:
         return id in self.doubts or (self.kept is not None and self.kept.id == id and not self.kept.active)
 
     def pass_time(self, lamport: int) -> None:
-        """Have all that happens now be later than that logical time."""
+        """Advance the Lamport clock to at least `lamport`."""
         self.state = replace(self.state, lamport=max(self.state.lamport, lamport))
 
     def keep(self, kept: Kept) -> None:
@@ -69,7 +69,7 @@ class Slot:
         self.kept = kept
 
     def lose_sender(self) -> None:
-        """Stop keeping it for a sender of which nobody knows what it has recorded."""
+        """Stop keeping it for a sender whose records are unknown."""
         kept = self.kept
         if kept is None:
             return
@@ -110,7 +110,7 @@ class Latest:
     """Knows how far each sender is, and whether what it asked for last is settled."""
 
     def __init__(self) -> None:
-        """Know of no sender."""
+        """Create without senders."""
         self._places: dict[str, tuple[str, int, int]] = {}
         self._settled: dict[str, bool] = {}
 
@@ -128,7 +128,7 @@ class Latest:
         self._settled[id.sender] = False
 
     def settle(self, id: CommandId, round: int, *, for_good: bool = False) -> None:
-        """Have a late request for what has been settled found stale; `for_good`: in all rounds."""
+        """Treat late requests for what has been settled as stale; `for_good`: in all rounds."""
         place, latest = _place(id, round), self._places.get(id.sender)
         if latest is None or place >= latest:
             self._places[id.sender], self._settled[id.sender] = place, True
@@ -137,13 +137,13 @@ class Latest:
 
 
 class Starts:
-    """Knows which starts of each sender were heard of.
+    """Records the known starts of each sender.
 
-    One that is no later than those and is none of them knows nothing of what the sender did before.
+    An unknown start that is not later than those does not know what the sender did before.
     """
 
     def __init__(self) -> None:
-        """Know of no start."""
+        """Create without starts."""
         self._known: dict[str, set[str]] = {}
 
     def admits(self, id: CommandId) -> bool:

@@ -1,4 +1,4 @@
-"""The threads of one end of the bus: they do what is due, and whatever fails, go on and tell people."""
+"""The threads of one end of the bus: they do what is due, and after a failure report it and continue."""
 
 from __future__ import annotations
 
@@ -25,37 +25,37 @@ def tell_people(line: str) -> None:
 
 
 class Net:
-    """Catches what nobody else does, and tells it once."""
+    """Catches otherwise uncaught exceptions, and reports each once."""
 
     def __init__(self, tell: Tell = tell_people) -> None:
-        """Tell people by a function, which may be called from any thread."""
+        """Report with a function, which may be called from any thread."""
         self._tell = tell
         self._told: set[str] = set()
 
     @contextmanager
     def under(self, what: str) -> Iterator[None]:
-        """Go on behind the block whatever it raises; `what` is being done."""
+        """Continue after the block whatever it raises; `what` names the activity."""
         try:
             yield
         except Exception as error:
-            self.tell(f"{what}: fails, and goes on: {error!r}")
+            self.tell(f"{what}: fails, and continues: {error!r}")
 
     def tell(self, line: str) -> None:
-        """Tell people, unless they were told the same before."""
+        """Report to the operator, unless the same was reported before."""
         if line not in self._told and len(self._told) < MOST_TOLD:
             self._told.add(line)
             self._tell(line)
 
     def forget(self, line: str) -> None:
-        """Have something told again when it happens again."""
+        """Allow the same to be reported again."""
         self._told.discard(line)
 
 
 class Pacing:
-    """Does what is due when it is due; there is no thread before anything is.
+    """Does what is due when it is due; no thread is started before that.
 
     Attributes:
-        is_over: whether it has ended, or ends with what it does at present.
+        is_over: whether it has ended, or ends after its present work.
     """
 
     def __init__(
@@ -85,7 +85,7 @@ class Pacing:
 
     @property
     def is_threaded(self) -> bool:
-        """Return whether what is due is done by itself."""
+        """Return whether a thread does what is due."""
         return self._threaded
 
     def keep_going(self) -> None:

@@ -17,10 +17,10 @@ DOUBLE_SECONDS = 3.0
 """How long a robot may still look as if another process ran it, which was killed on a machine of its own."""
 
 NOTICE_SECONDS = 1.0
-"""How long before the instant it is set at least, so that everybody hears of it and can measure."""
+"""Seconds ahead at which the instant is set at least, so that all receive it and can measure."""
 
 ROUNDS = 3
-"""Of the slowest robot's questions fit in before the instant where links are slow."""
+"""Round trips of the slowest robot that fit in before the instant where links are slow."""
 
 LONGEST_ROUND = 4.0
 """Seconds between two questions of a robot that tell something of its link; it was away for longer ones."""
@@ -34,14 +34,14 @@ class Unwelcome(OSError):  # noqa: N818  # what is the matter with a robot
 
 
 class Watching:
-    """What is known of the robots of other processes, and of all robots that have ended.
+    """The robots of other processes, and all robots that have ended.
 
     Attributes:
-        left: the robots that have ended, by themselves, with the latest logical time of each.
+        left: the robots that have ended normally, with the latest logical time of each.
     """
 
     def __init__(self) -> None:
-        """Know nobody."""
+        """Create without robots."""
         self.left: dict[str, int] = {}
         self._said: dict[str, int] = {}
         self._here: set[str] = set()
@@ -108,7 +108,7 @@ class Watching:
         return not self._here.isdisjoint(robots)
 
     def is_unseen(self, robot: str) -> bool:
-        """Return whether a robot has never been here, and has told nobody here that it has ended."""
+        """Return whether a robot was never present, and has announced its end to no robot here."""
         return not self.is_here(robot) and not self.is_gone(robot)
 
     def is_gone(self, robot: str) -> bool:
@@ -144,10 +144,10 @@ class Watching:
 
 
 def refuse_oddities(watching: Watching, settle: float, now: Callable[[], float]) -> None:
-    """Return when nothing has been the matter for so many seconds with who is there.
+    """Return when the robots present have had no conflict for so long.
 
     Raises:
-        Unwelcome: something is, and does not end.
+        Unwelcome: there is one, and it does not end.
     """
     begun = now()
     while (left := begun + settle - now()) > 0:
@@ -162,7 +162,7 @@ class Roster:
     """What the first robot knows: who is ready, and when all begin."""
 
     def __init__(self, now: Callable[[], float] = time.monotonic) -> None:
-        """Know of nobody."""
+        """Create without robots."""
         self._now = now
         self._ready: set[str] = set()
         self._asked: dict[str, float] = {}
@@ -170,7 +170,7 @@ class Roster:
         self._at = 0.0
 
     def answer(self, asked: Meet, gone: Callable[[str], bool] = lambda robot: False) -> Answer:
-        """Note that a robot is ready, or no longer; say what the time is, who is ready, and when all begin.
+        """Record whether a robot is ready; return the time, the ready robots, and when all begin.
 
         Args:
             asked: by the robot.

@@ -14,7 +14,7 @@ from typing import Any, TypeAlias
 SlotId: TypeAlias = tuple[str, str]
 
 Find: TypeAlias = "tuple[str, tuple[float, float, float] | None]"
-"""What was detected, and where: metres east, north and up of the mission's origin; None: nobody knows."""
+"""Detections with their positions: metres east, north and up of the mission's origin; None: unknown."""
 
 LONGEST = 65_536
 """Bytes of the longest message; a longer one is refused unread."""
@@ -51,8 +51,8 @@ class SlotState:
 
     Attributes:
         version: how many commands its owner has applied to it.
-        lamport: logical time of the last thing that happened to it.
-        writer: who set it last; empty if nobody has.
+        lamport: logical time of its last event.
+        writer: robot that set it last; empty if none has.
     """
 
     active: bool = False
@@ -66,7 +66,7 @@ class Prepare:
     """Asks an owner to keep slots for a sender, and for the time after which it may set them.
 
     Attributes:
-        round: grows each time that the same command is prepared anew.
+        round: grows each time that the same command is prepared again.
         slots: names of slots of the owner.
         active: the value that they will be set to.
         lamport: the least logical time that the sender can use.
@@ -117,10 +117,10 @@ class Begin:
 
 @dataclass(frozen=True, slots=True)
 class Leave:
-    """Tells an owner that a robot has ended, so that it neither sets nor needs slots any more.
+    """Informs an owner that a robot has ended, so that it neither sets nor needs slots any more.
 
     Attributes:
-        lamport: the latest logical time of the robot; whoever sets its slots all the same does so later.
+        lamport: the latest logical time of the robot; a later setter of its slots is later than that.
     """
 
     id: CommandId
@@ -129,7 +129,7 @@ class Leave:
 
 @dataclass(frozen=True, slots=True)
 class Ended:
-    """Tells a robot that was not there which others have ended, as the sender has been told.
+    """Informs a newly present robot of those that have ended, as far as the sender knows.
 
     Attributes:
         robots: each with its latest logical time.
@@ -196,20 +196,20 @@ def request_in(text: str | bytes) -> Request:
     """Return the request in a text.
 
     Raises:
-        Unreadable: there is none; says what is wrong.
+        Unreadable: there is none; names the problem.
     """
     return word_in(object_in(text))
 
 
 def word_in(content: Mapping[str, Any]) -> Request:
-    """Return the request that an object holds.
+    """Return the request in an object.
 
     Raises:
-        Unreadable: there is none; says what is wrong.
+        Unreadable: there is none; names the problem.
     """
     known = _READERS.get(text_in(content, "do"))
     if known is None:
-        raise Unreadable("asks for something that nobody knows")
+        raise Unreadable("asks for something unknown")
     id = CommandId(
         text_in(content, "run"),
         text_in(content, "sender"),
@@ -257,7 +257,7 @@ def text_in(content: Mapping[str, Any], name: str, usual: str | None = None) -> 
     """Return a text of an object.
 
     Raises:
-        Unreadable: it is missing and there is no usual one, or it is no text or too long.
+        Unreadable: it is missing without a default, not a text, or too long.
     """
     found = content.get(name, usual)
     if not isinstance(found, str) or len(found) > LONGEST_NAME:
@@ -269,7 +269,7 @@ def number_in(content: Mapping[str, Any], name: str, usual: int | None = None) -
     """Return a whole number of an object, at least 0.
 
     Raises:
-        Unreadable: it is missing and there is no usual one, or it is none.
+        Unreadable: it is missing without a default, or not such a number.
     """
     found = content.get(name, usual)
     if not isinstance(found, int) or isinstance(found, bool) or not 0 <= found <= LARGEST:
@@ -302,10 +302,10 @@ def names_in(content: Mapping[str, Any], name: str) -> tuple[str, ...]:
 
 
 def finds_in(content: Mapping[str, Any], most: int = MOST_FINDS) -> tuple[Find, ...]:
-    """Return what was detected, and where; nothing where an object does not say.
+    """Return detections with their positions; none where the object has none.
 
     Raises:
-        Unreadable: it is no list of at most so many.
+        Unreadable: it is not a list within the allowed length.
     """
     return tuple(map(_find, _list_in({"finds": [], **content}, "finds", most)))
 

@@ -22,11 +22,11 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Outfit:
-    """What drivers make vehicles with, beside the robots' programs.
+    """What drivers make vehicles with, in addition to the robots' programs.
 
     Attributes:
-        rehearsal: of faults that are made on purpose.
-        locators: what finds objects, by description.
+        rehearsal: of injected faults.
+        locators: find objects, by description.
         stack: closes what vehicles share, at the end.
     """
 
@@ -40,7 +40,7 @@ class Driver(ABC):
     """Reaches vehicles of one kind; made for one run of controllers.
 
     Attributes:
-        rehearses: faults of vehicles, and of ground stations, that it can make on purpose.
+        rehearses: faults of vehicles, and of ground stations, that it can inject.
     """
 
     rehearses: Collection[str] = ()
@@ -56,7 +56,7 @@ class Driver(ABC):
         return {robot.id: robot.id for robot in robots}
 
     def sees(self, robot: Robot) -> Collection[str]:
-        """Return the objects that a robot finds by itself, so that no function of the user need do it."""
+        """Return the objects that a robot's vehicle finds, so that no function of the user has to."""
         return ()
 
     def open(self, outfit: Outfit) -> None:  # noqa: B027
@@ -64,7 +64,7 @@ class Driver(ABC):
 
     @abstractmethod
     def connect(self, robot: Robot, live: Live, box: BlackBox) -> Vehicle:
-        """Return a robot's vehicle, which need not have been heard yet; it closes the box.
+        """Return a robot's vehicle, possibly before its first message; it closes the box.
 
         Raises:
             Fault: it cannot be reached.

@@ -22,7 +22,7 @@ class Judgement:
     """The user's functions: conditions by identifier, locators by description of the object.
 
     Attributes:
-        seen: by robot, objects that its vehicle finds by itself.
+        seen: by robot, objects that its vehicle finds.
     """
 
     conditions: Mapping[str, Condition]
@@ -47,7 +47,7 @@ class Judgement:
         return _Asked(name, _never, instant=own is None or answers_at_once(own), asks=own or standard(name))
 
     def _unasked(self, robots: Sequence[Robot]) -> list[str]:
-        """Return what is decided for nobody; while other robots run elsewhere, it may be for them."""
+        """Return the user's functions that no robot needs; none while other robots run elsewhere."""
         if {name for robot in robots for name in robot.fleet} - {robot.id for robot in robots}:
             return []
         asked = conditions_of(robots)
@@ -57,14 +57,14 @@ class Judgement:
 
     def _undecided(self, name: str) -> str:
         if self.conditions.get(name) is undecided:
-            return f"conditions.py: nobody has said yet when {name!r} holds"
+            return f"conditions.py: condition {name!r} is not implemented yet"
         if name in self.conditions or is_standard(name):
             return ""
         return f"conditions.py decides nothing for {name!r}"
 
     def _not_found(self, name: str) -> str:
         if self.locators.get(name) is not_looked_for:
-            return f"objects.py: nobody has said yet how {name!r} is found"
+            return f"objects.py: finding {name!r} is not implemented yet"
         return "" if name in self.locators else f"objects.py finds nothing for {name!r}"
 
 

@@ -21,30 +21,30 @@ LOOK_SECONDS = 0.05
 
 
 def where_expected(state: State, expected: Place | None) -> Place:
-    """Take an object to be where it is expected, without looking for it.
+    """Take an object to be at its expected position, without looking for it.
 
     Raises:
-        LookupError: nobody knows where it is expected.
+        LookupError: its expected position is unknown.
     """
     if expected is None:
-        raise LookupError("nobody knows where it is expected")
+        raise LookupError("its expected position is unknown")
     return expected
 
 
 def not_looked_for(state: State, expected: Place | None) -> Place:
-    """Find nothing: stands in objects.py until somebody writes how an object is found.
+    """Find nothing: placeholder in objects.py for what finds an object.
 
     Raises:
         NotImplementedError: always; programs with objects that have this are not begun.
     """
-    raise NotImplementedError("nobody has said yet how this object is found")
+    raise NotImplementedError("finding this object is not implemented yet")
 
 
 class Finding:
     """An object that a function of the user looks for, in a thread of its own: it may take its time."""
 
     def __init__(self, target: Object, locators: Mapping[str, Locator], state: State) -> None:
-        """Have it looked for."""
+        """Start the search for it."""
         self._target, self._until = target, time.monotonic() + ANSWER_SECONDS
         self._found: Place | BaseException | None = None
         self._done = threading.Event()
@@ -103,10 +103,10 @@ def place_of(
 
 
 def _somewhere(found: Place, here: Place) -> Place:
-    """Return what a function of the user's has found.
+    """Return the position that a function of the user has found.
 
     Raises:
-        ValueError: it is no place, or not in the frame of the robot's program, or its numbers are none.
+        ValueError: it is not a position, not in the frame of the robot's program, or not finite.
     """
     if not isfinite(distance(here, found)):
         raise ValueError(f"{found} is nowhere")

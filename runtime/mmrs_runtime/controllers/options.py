@@ -39,19 +39,19 @@ class Bus:
 
 @dataclass(frozen=True, slots=True)
 class Options:
-    """What was asked for, for all robots.
+    """Options for all robots.
 
     Attributes:
         log: folder for the logs.
         run: identifier of the run.
-        resume: whether to go on where the logs end.
+        resume: whether to resume where the logs end.
         dry: whether there are no vehicles.
         on_stop: ``hold``, ``return`` or ``land``.
         battery_patience: real seconds to wait for a changed battery when no other robot works.
-        patience: real seconds to wait for a vehicle's first sign.
+        patience: real seconds to wait for a vehicle's first message.
         home_tolerance: metres that a vehicle may be from its home at first.
-        sync: real seconds to wait for all robots, which then begin at one instant; None: they need not.
-        inject: faults to be made on purpose.
+        sync: real seconds to wait for all robots, which then begin at one instant; None: no wait.
+        inject: faults to inject.
     """
 
     log: Path
@@ -80,7 +80,7 @@ def parser_for(robots: Sequence[Robot], driver: Driver) -> argparse.ArgumentPars
     add("--patience", type=positive, default=30.0, help="real seconds to wait for a vehicle's first sign")
     add("--log", type=Path, default=Path("logs"), help="folder for the logs; must not hold any yet")
     add("--run", help=f"identifier of this run, in the logs; default {FIRST_RUN}")
-    add("--resume", action="store_true", help="go on where the logs in --log end, as with a new battery")
+    add("--resume", action="store_true", help="resume where the logs in --log end, as with a new battery")
     add("--dry-run", action="store_true", help="no link: go through the program with a vehicle made up")
     add("--speedup", type=positive, default=None, help="how much faster than real time the vehicles run")
     add("--on-stop", choices=("hold", "return", "land"), default="hold", help="what to do when interrupted")
@@ -95,8 +95,20 @@ def parser_for(robots: Sequence[Robot], driver: Driver) -> argparse.ArgumentPars
     add("--sync", action="store_true", help="begin at one instant, when all robots of the mission are ready")
     add("--sync-patience", type=positive, default=PATIENCE, metavar="SECONDS", help=_SYNC_PATIENCE)
     add("--bus", action="store_true", help=_BUS)
-    add("--bus-listen", action="append", default=[], metavar="ENDPOINT", help="such as tcp/0.0.0.0:7447")
-    add("--bus-connect", action="append", default=[], metavar="ENDPOINT", help="such as tcp/10.0.0.2:7447")
+    add(
+        "--bus-listen",
+        action="append",
+        default=[],
+        metavar="ENDPOINT",
+        help="Zenoh endpoint to listen on, e.g. tcp/0.0.0.0:7447",
+    )
+    add(
+        "--bus-connect",
+        action="append",
+        default=[],
+        metavar="ENDPOINT",
+        help="Zenoh endpoint to connect to, e.g. tcp/10.0.0.2:7447",
+    )
     add("--bus-config", type=Path, metavar="FILE", help="Zenoh's configuration, as mmrs bus keys makes it")
     return parser
 
@@ -151,21 +163,21 @@ _PATIENCE = (
 def positive(text: str) -> float:
     """Return a number above 0, which is not infinite either."""
     if not 0.0 < (number := _number(text)) < inf:
-        raise argparse.ArgumentTypeError(f"{text}: is no positive number")
+        raise argparse.ArgumentTypeError(f"{text}: must be a positive number")
     return number
 
 
 def not_negative(text: str) -> float:
     """Return a number from 0 on."""
     if not (number := _number(text)) >= 0.0:
-        raise argparse.ArgumentTypeError(f"{text}: is no number from 0 on")
+        raise argparse.ArgumentTypeError(f"{text}: must be a number of at least 0")
     return number
 
 
 def count(text: str) -> int:
     """Return a whole number from 1 on."""
     if not text.isdecimal() or len(text) > 9 or int(text) < 1:
-        raise argparse.ArgumentTypeError(f"{text}: is no whole number from 1 on")
+        raise argparse.ArgumentTypeError(f"{text}: must be a whole number of at least 1")
     return int(text)
 
 
@@ -173,7 +185,7 @@ def _number(text: str) -> float:
     try:
         return float(text)
     except ValueError:
-        raise argparse.ArgumentTypeError(f"{text}: is no number") from None
+        raise argparse.ArgumentTypeError(f"{text}: must be a number") from None
 
 
 def _boxes(robots: Sequence[Robot], folder: Path) -> list[Path]:
@@ -184,7 +196,7 @@ def _run(parser: argparse.ArgumentParser, robots: Sequence[Robot], given: Any) -
     """Return the identifier of the run, and how many seconds of it have passed."""
     taken = [given.log / robot.log for robot in robots if (given.log / robot.log).exists()]
     if taken and not given.resume:
-        parser.error(f"{taken[0]}: there is a log already; choose another --log, or go on with --resume")
+        parser.error(f"{taken[0]}: there is a log already; choose another --log, or resume it with --resume")
     # A run in which nothing began has black boxes, and no logs.
     if given.resume and not any(path.exists() for path in (*taken, *_boxes(robots, given.log))):
         parser.error(f"--resume: there is no log of these robots in {given.log}")

@@ -51,7 +51,7 @@ def bearing(a: Place, b: Place) -> float:
 
 
 def between(a: Place, b: Place, part: float) -> Place:
-    """Return the place at a part of the straight way, 0 at `a` and 1 at `b`."""
+    """Return the position at a fraction of the straight line, 0 at `a` and 1 at `b`."""
     if isinstance(a, Geographic) and isinstance(b, Geographic):
         return Geographic(
             a.latitude + (b.latitude - a.latitude) * part,
@@ -72,7 +72,7 @@ def distance_to_leg(here: Place, a: Place, b: Place) -> float:
 
 
 def at_height(place: Place, height: float) -> Place:
-    """Return the place above or below another at that height."""
+    """Return the position above or below another at that height."""
     if isinstance(place, Geographic):
         return Geographic(place.latitude, place.longitude, height)
     return Local(place.north, place.east, height)

@@ -115,7 +115,7 @@ def _run(venture: Venture) -> int:
     try:
         for robot, why in over_by(venture.program, venture.resumed).items():
             say(
-                f"{robot!r}: cannot go on: it has ended by {why}"
+                f"{robot!r}: cannot be resumed: it has ended by {why}"
                 if why
                 else f"{robot!r}: it has come to its end"
             )
@@ -139,11 +139,11 @@ def _run(venture: Venture) -> int:
 
 
 def _tell(ending: Ending, robots: Sequence[str]) -> None:
-    """Tell people what became of each robot."""
+    """Print the outcome of each robot."""
     for robot in robots:
         fault, why = ending.faults.get(robot), ""
         if robot in ending.suspended:
-            why = f"; {ending.came_down.get(robot, 'has not gone on')}; --resume goes on where it stopped"
+            why = f"; {ending.came_down.get(robot, 'has not gone on')}; --resume continues where it stopped"
         elif robot in ending.unconfirmed:
             why = "; it has not confirmed that it stopped"
         if fault is not None or why:
@@ -228,7 +228,7 @@ def _hear(
     venture: Venture,
     stack: ExitStack,
 ) -> None:
-    """Have the run hear the orders of people who call from elsewhere."""
+    """Connect the run to orders from other processes."""
     try:
         stack.enter_context(
             hear_orders(options.log, options.run, robots, venture.orders, venture.standing.status)

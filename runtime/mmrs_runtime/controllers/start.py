@@ -13,13 +13,13 @@ PROCESS = uuid4().hex
 
 
 def start_of(robot: Robot, link: str | None, *libraries: str, **more: object) -> dict[str, object]:
-    """Return what is known of a robot at the start.
+    """Return the first entry of a robot's black box: what is known at the start.
 
     Args:
         robot: whose black box it is.
         link: how it is reached; None: there is no vehicle.
-        libraries: distributions that its driver uses; those that are installed are told.
-        more: what its driver tells beside.
+        libraries: distributions that its driver uses; those that are installed are listed.
+        more: further entries of its driver.
     """
     return {
         "plan": robot.plan,

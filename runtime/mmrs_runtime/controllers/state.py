@@ -12,18 +12,18 @@ from .words import Local, Place
 
 @dataclass(frozen=True, slots=True)
 class State:
-    """What a robot knows of itself; conditions are asked with it.
+    """A robot's own state, with which conditions are asked.
 
     Attributes:
-        time: seconds of the run. place: where it is. speed: metres per second.
-        heading: degrees clockwise from north. energy: part of the battery that is left, 0 to 1, or
-            None where the vehicle does not say.
-        wind: metres per second; wind_from: degrees clockwise from north; None where nobody knows.
-        detected: names of what the vehicle has detected so far. places: where, as far as it knows.
-        found: names of what it, or a robot that has notified it since, has detected.
-        answers: what the operator has answered, by question, and no choice has used up.
+        time: seconds of the run. place: position. speed: metres per second.
+        heading: degrees clockwise from north. energy: fraction of the battery that is left, 0 to 1, or
+            None where the vehicle does not report it.
+        wind: metres per second; wind_from: degrees clockwise from north; None where unknown.
+        detected: names of the vehicle's detections so far. places: their positions, as far as known.
+        found: names of detections of it, or of a robot that has notified it since.
+        answers: answers of the operator, by question, that no choice has used up.
         mode: in the runtime's words (``guided``, ``auto``, ``hold``, ``land`` …) or, where it has none
-            for it, the vehicle's number. armed: whether the motors may run.
+            for it, the vehicle's number. armed: whether the vehicle is armed.
     """
 
     time: float
@@ -47,7 +47,7 @@ class State:
 
 
 def told_of(state: State) -> dict[str, object]:
-    """Return what there is to say of a vehicle's state, as JSON has it."""
+    """Return a vehicle's status, as JSON has it."""
     found = {
         "mode": state.mode,
         "armed": state.armed,

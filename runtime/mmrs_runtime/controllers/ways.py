@@ -1,4 +1,4 @@
-"""Ways back: only where the robot's program has led, or still leads, since nobody has checked others."""
+"""Return paths: only where the robot's program has led, or still leads, since no other path is verified."""
 
 from __future__ import annotations
 
@@ -20,24 +20,24 @@ _STAYS = (Hold, Turn, Skip)
 
 
 def way_back(robot: Robot, response: str, track: Track, here: Place) -> Iterator[Place]:
-    """Yield the places by which a robot goes back, the last one above where it comes down.
+    """Yield the positions of a robot's return path, the last one above where it lands.
 
     Args:
         robot: its program.
-        response: ``RETURN`` or ``EMERGENCY_AREA``; to any other there is no way.
-        track: the places that it has passed in this sortie, with the moves that ended there.
-        here: where it is.
+        response: ``RETURN`` or ``EMERGENCY_AREA``; any other has no path.
+        track: the positions that it has passed in this sortie, with the moves that ended there.
+        here: its position.
     """
     for _, place in steps_back(robot, response, track, here):
         yield place
 
 
 def steps_back(robot: Robot, response: str, track: Track, here: Place) -> Iterator[tuple[int | None, Place]]:
-    """Yield the places of the way back, each with its number in the track; None: it is not on it.
+    """Yield the positions of the return path, each with its number in the track; None: it is not on it.
 
-    The way is cut short wherever it comes back to a place that it has passed before, and leads straight
-    through places on one line. A robot that is above the place where it took off has none, and one that
-    is nearer to the end of its programmed way home goes on to that.
+    The path is cut short wherever it comes back to a position that it has passed before, and leads straight
+    through positions on one line. A robot above the position of its take-off has none, and one that
+    is nearer to the end of its programmed return continues to that.
     """
     if response not in ("RETURN", "EMERGENCY_AREA") or not track:
         return
@@ -71,7 +71,7 @@ def _shorter(here: Place, back: Steps, ahead: Steps) -> Steps:
 
 
 def _area_ahead(robot: Robot, track: Track, here: Place) -> Steps:
-    """Return the rest of the leg that the robot is on, and the way to an emergency area from its end."""
+    """Return the rest of the leg that the robot is on, and the path to an emergency area from its end."""
     steps = {step.move: step for step in robot.steps}
     move, begun = track[-1]
     step = steps.get(move)
@@ -109,7 +109,7 @@ def _cut_short(track: Track, here: Place) -> Iterator[int]:
 
 
 def _joined(track: Track, here: Place) -> int:
-    """Return the number of the place that begins the first leg of the track on which the robot is."""
+    """Return the number of the position that begins the first leg of the track on which the robot is."""
     for index, ((_, a), (_, b)) in enumerate(pairwise(track)):
         if distance_to_leg(here, a, b) <= NEAR:
             return index
@@ -117,7 +117,7 @@ def _joined(track: Track, here: Place) -> int:
 
 
 def _home_ahead(robot: Robot, track: Track) -> list[Place]:
-    """Return the rest of the programmed way to where the robot took off; empty where it leads elsewhere."""
+    """Return the rest of the programmed path to the position of take-off; empty where it leads elsewhere."""
     steps = {step.move: step for step in robot.steps}
     move, here = track[-1]
     step: Step | None = steps.get(move)

@@ -45,8 +45,8 @@ class Object:
     """Something that has to be found first.
 
     Attributes:
-        expected: where it should be; None where nobody knows.
-        tolerance: metres that it may be from there; None where nobody knows.
+        expected: its expected position; None where unknown.
+        tolerance: metres that it may be from there; None where unknown.
     """
 
     description: str
@@ -56,12 +56,12 @@ class Object:
 
 @dataclass(frozen=True, slots=True)
 class Look:
-    """What a device points at: `at` is a place by the time the robot turns.
+    """What a device points at: `at` is its position by the time the robot turns.
 
     Attributes:
         angle: at 90 the target is on the device's right side, degrees.
         mount: where the device points when the robot looks north, degrees clockwise.
-        gimbal: whether the device turns by itself, so that the robot need not.
+        gimbal: whether the device turns on its own, so that the robot need not.
         device: number of the gimbal; 0: the first, or all.
     """
 
@@ -89,13 +89,13 @@ class Land:
 
 @dataclass(frozen=True, slots=True)
 class GoTo:
-    """Go to a place.
+    """Go to a position.
 
     Attributes:
         speed: metres per second; None: the vehicle's own.
         legs: ``direct``, ``level first`` or ``climb first``.
-        distance: stop so many metres before the place.
-        look: None: the front points the way the robot goes.
+        distance: metres before the position at which to stop.
+        look: None: the front points along the path.
     """
 
     at: Place | Object
@@ -107,14 +107,14 @@ class GoTo:
 
 @dataclass(frozen=True, slots=True)
 class Hold:
-    """Stay for so many seconds."""
+    """Stay for that time, in seconds."""
 
     seconds: float
 
 
 @dataclass(frozen=True, slots=True)
 class Recharge:
-    """Stay at home until the batteries are full, and for so many seconds at least."""
+    """Stay at home until the batteries are full, and for that time at least, in seconds."""
 
     seconds: float
 
@@ -128,14 +128,14 @@ class Turn:
 
 @dataclass(frozen=True, slots=True)
 class Skip:
-    """A movement that could not be expressed: the robot does nothing; `why` says what is missing."""
+    """A movement that could not be expressed: the robot does nothing; `why` names what is missing."""
 
     why: str
 
 
 @dataclass(frozen=True, slots=True)
 class Report:
-    """Tell the control station something: (key, value) pairs."""
+    """Send (key, value) pairs to the control station."""
 
     name: str
     pairs: tuple[tuple[str, str], ...] = ()
@@ -143,7 +143,7 @@ class Report:
 
 @dataclass(frozen=True, slots=True)
 class NoEffect:
-    """An action that could not be expressed: it is logged as done; `why` says what is missing."""
+    """An action that could not be expressed: it is logged as done; `why` names what is missing."""
 
     name: str
     why: str
@@ -151,7 +151,7 @@ class NoEffect:
 
 @dataclass(frozen=True, slots=True)
 class Step:
-    """One move of the behaviour; `task` and `rule` say what it serves."""
+    """One move of the behaviour; `task` and `rule` name what it serves."""
 
     move: str
     movement: object
@@ -164,7 +164,7 @@ class Step:
 
 @dataclass(frozen=True)
 class Robot:
-    """One robot and all that it does.
+    """One robot and all its moves.
 
     Attributes:
         id: as in the behaviour; log: name of its log file.
@@ -172,9 +172,9 @@ class Robot:
         start: the first move.
         slots: its own; senders: robots that activate each of them; resets: robots that deactivate it.
         volatile: of the (robot, slot) pairs that it notifies, those that any robot deactivates.
-        reserve: part of the energy that must be left.
-        cruise: metres per second at which the robot goes back; None: the vehicle's own.
-        escapes: by move, the way to go in an emergency from where that move ends.
+        reserve: fraction of the energy that must be left.
+        cruise: metres per second at which the robot returns; None: the vehicle's own.
+        escapes: by move, the path to an emergency area from where that move ends.
         mission: name of it; plan: what differs where two plans of it do.
         fleet: all robots of it, this one included.
     """

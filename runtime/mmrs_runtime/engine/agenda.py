@@ -32,13 +32,13 @@ class Agenda:
         return bool(self._due)
 
     def put(self, number: int) -> None:
-        """Have one be due now; when it will be due otherwise stays as it is."""
+        """Make one due now; its later time stays as it is."""
         if not self._is_due[number]:
             self._is_due[number] = True
             heappush(self._due, number)
 
     def put_at(self, number: int, time: float) -> None:
-        """Have one be due at that time, and no longer when it was to be before; inf: never."""
+        """Make one due at that time instead of an earlier set one; inf: never."""
         self._times[number] = time
         if time < inf:
             heappush(self._later, (time, number))
@@ -57,7 +57,7 @@ class Agenda:
         return self._later[0][0] if self._later else inf
 
     def advance(self, now: float) -> None:
-        """Have those be due whose time has come."""
+        """Make those due whose time has come."""
         while self._later and self._later[0][0] <= now:
             entry = heappop(self._later)
             if not self._is_outdated(entry):

@@ -1,4 +1,4 @@
-"""What a robot does about what goes wrong, and for how long it bears that."""
+"""A robot's responses to faults, and how long it tolerates them."""
 
 from __future__ import annotations
 
@@ -28,9 +28,9 @@ class Answers:
     """Policies in the order in which they count.
 
     Attributes:
-        live: whether the robot is a real one, which does not hold for want of a better idea when it
-            cannot be reached, or when its battery gets low, and does not wait for lost peers for ever.
-        least: seconds for which it waits at least for what other processes say.
+        live: whether the robot is a real one, which does not hold by default when it
+            cannot be reached or its battery gets low, and waits for lost peers for a limited time.
+        least: seconds for which it waits at least for messages of other processes.
     """
 
     policies: Sequence[Policy]
@@ -48,15 +48,15 @@ class Answers:
         return response_to(found.which, self.policies)
 
     def bears(self, found: Fault) -> bool:
-        """Return whether the robot goes on as if nothing were."""
+        """Return whether the robot tolerates a fault and continues."""
         return not found.instead and response_to(found.which, self.policies) == "CONTINUE"
 
     def patience(self, found: Fault, *, away: bool = False) -> float:
-        """Return for how many seconds the robot bears it; inf: for ever.
+        """Return for how many seconds the robot tolerates a fault; inf: without limit.
 
         Args:
-            found: what went wrong.
-            away: whether it is another process that is not heard.
+            found: the fault.
+            away: whether another process is silent.
         """
         if self.bears(found):
             return inf

@@ -1,4 +1,4 @@
-"""The clocks of runs: simulated time, which jumps, and real time, which passes by itself."""
+"""The clocks of runs: simulated time, which jumps, and real time, which passes."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ class RunClock(Protocol):
 
     @property
     def passes_by_itself(self) -> bool:
-        """Return whether it is worth waiting for what nobody can foresee: time goes on by itself."""
+        """Return whether time passes on its own, so that waiting for unforeseen events makes sense."""
         ...
 
     def now(self) -> float:
@@ -25,7 +25,7 @@ class RunClock(Protocol):
         ...
 
     def sleep_until(self, time: float) -> None:
-        """Return when that time has come, or earlier if somebody calls `wake`."""
+        """Return when that time has come, or earlier if `wake` is called."""
         ...
 
     def wake(self) -> None:
@@ -34,7 +34,7 @@ class RunClock(Protocol):
 
 
 class SimulatedClock:
-    """A clock that stands still until it is told to go on; time costs nothing."""
+    """A clock that stands still until it is advanced; time costs nothing."""
 
     passes_by_itself = False
 
@@ -50,11 +50,11 @@ class SimulatedClock:
         self._now = max(self._now, time)
 
     def wake(self) -> None:
-        """Do nothing: nobody sleeps in simulated time."""
+        """Do nothing: simulated time has no sleepers."""
 
 
 class RealClock:
-    """Counts seconds of the run by the monotonic clock, which nobody can put forward or back.
+    """Counts seconds of the run by the monotonic clock, which cannot be set.
 
     Attributes:
         speedup: seconds of the run that pass in a second, for vehicles that are simulated.
@@ -79,13 +79,13 @@ class RealClock:
         return self._start + (time.monotonic() - self._zero) * self.speedup
 
     def sleep_until(self, time: float) -> None:
-        """Return when that time has come, or as soon as somebody wakes the sleeper."""
+        """Return when that time has come, or as soon as `wake` is called."""
         while not self._is_woken((time - self.now()) / self.speedup):
             if self.now() >= time:
                 return
 
     def _is_woken(self, left: float) -> bool:
-        """Return whether somebody has woken the sleeper within so many seconds, `SIGNAL_SECONDS` at most."""
+        """Return whether the sleeper was woken within that time, `SIGNAL_SECONDS` at most."""
         try:
             self._wakes.get(timeout=min(max(left, 0.0), SIGNAL_SECONDS))
         except Empty:
@@ -96,7 +96,7 @@ class RealClock:
         return True
 
     def wake(self) -> None:
-        """End the present sleep, or the next one if nobody sleeps; from any thread or signal handler."""
+        """End the present sleep, or else the next one; from any thread or signal handler."""
         self._wakes.put(None)
 
 

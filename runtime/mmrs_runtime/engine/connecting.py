@@ -18,18 +18,18 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Live:
-    """What vehicles of a run in real time may use beside the rest.
+    """What vehicles of a run in real time may use in addition.
 
     Attributes:
         clock: of the run.
-        wake: has the engine look at this robot at once; to be called, from any thread, whenever
+        wake: makes the engine look at this robot at once; to be called, from any thread, whenever
             the robot's answers may have changed.
-        say: tells people something about this robot, from any thread.
+        say: reports about this robot to the operator, from any thread.
         run: identifier of the run.
         folder: of the logs; None where none are kept.
         links: how robots are reached, as in ``--connect``, by robot of this process.
         shared: what vehicles of the same run share, by names of their own; empty at first.
-        announce: tells people what concerns no robot alone, from any thread.
+        announce: reports what concerns no single robot, from any thread.
         records: the steps that this robot made before the run was broken off, in order.
     """
 
@@ -45,7 +45,7 @@ class Live:
 
     @property
     def resumed(self) -> bool:
-        """Return whether the run was broken off before, so that robots may be anywhere on their ways."""
+        """Return whether the run was broken off before, so that robots may be anywhere on their paths."""
         return bool(self.records)
 
     @property
@@ -60,10 +60,10 @@ class Live:
 
 
 def let_go(robots: Mapping[str, Vehicle]) -> None:
-    """Close all robots at once: each may take seconds to know what to do when nobody talks to it.
+    """Close all robots at once: each may take seconds to settle what to do without a controller.
 
     Raises:
-        Exception: one cannot be closed; its notes tell why others cannot.
+        Exception: one cannot be closed; its notes name why others cannot.
     """
     errors: list[Exception] = []
 

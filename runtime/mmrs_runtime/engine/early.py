@@ -52,19 +52,19 @@ class EarlyOrders:
             raise KeyboardInterrupt
 
     def _record_ends(self) -> None:
-        """Have the logs say that orders have ended the programs; of an interrupted run, nothing is left."""
+        """Log that orders have ended the programs; an interrupted run leaves no entry."""
         for id, order in self._ended.items():
             if id in self._venture.connect and not order.interrupt:
                 self._venture.fail(id, STOPPED if order.kind == STOP else ORDERED)
 
     def pass_on(self) -> None:
-        """Have the engine obey what was ordered, and know the answers, before what was ordered since."""
+        """Hand the orders that remain, and the answers, to the engine before later orders."""
         held = tuple(sorted(self.held))
         first = (Order(HOLD, held),) if held else ()
         self._venture.orders.put_back((*first, *self._later))
 
     def give_up(self, why: str) -> None:
-        """Refuse what nobody will obey any more."""
+        """Refuse orders that will not be obeyed any more."""
         for order in (*self._open, *self._later):
             for id in order.open:
                 order.refuse(id, why)
@@ -95,11 +95,11 @@ class EarlyOrders:
             if id not in self.held:
                 order.refuse(id, "it is not held")
             else:
-                self._take_back((id,), "it is to go on")
+                self._take_back((id,), "it is ordered to continue")
                 order.confirm(id)
 
     def _take_back(self, robots: Collection[str], why: str) -> None:
-        """Have robots be held no longer."""
+        """Release held robots."""
         self.held.difference_update(robots)
         for order in self._open:
             for id in set(robots) & set(order.open) if order.kind == HOLD else ():

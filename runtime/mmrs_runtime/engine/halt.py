@@ -12,14 +12,14 @@ OVERTAKING = OVERTAKES | {TAKEN_OVER}
 
 
 class Progress(Enum):
-    """How far a robot is with what it was told to do instead of its program.
+    """How far a robot has carried out its response.
 
     Attributes:
-        NOTHING_TOLD: it was told nothing, or is taken at its word.
+        NOTHING_TOLD: it has no response to carry out, or its confirmation is not awaited.
         STOPPING: it has still to confirm that it has stopped.
-        STOPPED: it has, or is not known to, and never will be.
-        DOWN: it has come down, as it was told to.
-        AT_REST: it has come down, and its motors were seen to be off then.
+        STOPPED: it has confirmed, or will never be able to.
+        DOWN: it has landed or surfaced, as ordered.
+        AT_REST: it has landed or surfaced, and was seen disarmed since.
     """
 
     NOTHING_TOLD = "nothing told"
@@ -30,18 +30,18 @@ class Progress(Enum):
 
 
 class Halt:
-    """Why and how a robot stops; a new one for each time that its program is taken up again.
+    """Why and how a robot stops; a new one for each time that its program is resumed.
 
     Attributes:
-        fault: what ended the program, or broke it off; None as long as nothing did.
-        response: how the robot was told to stop; empty: it was not.
-        before_hold: how it was told to stop before somebody ordered it to hold meanwhile; empty: nobody did.
-        progress: how far it is with that.
-        released: whether somebody ordered it to stop, so that it need not be watched, and nothing since.
+        fault: what ended the program, or broke it off; None while it continues.
+        response: how the robot was ordered to stop; empty: it was not.
+        before_hold: how it was ordered to stop before an order to hold meanwhile; empty: no such order.
+        progress: how far it has carried out the response.
+        released: whether its last order was to stop, so that it need not be watched.
     """
 
     def __init__(self) -> None:
-        """Have nothing wrong."""
+        """Start without a fault."""
         self.fault: Fault | None = None
         self.response = self.before_hold = ""
         self.progress = Progress.NOTHING_TOLD
@@ -60,11 +60,11 @@ class Halt:
 
     @property
     def is_down(self) -> bool:
-        """Return whether it has come down, as it was told to."""
+        """Return whether it has landed or surfaced, as ordered."""
         return self.progress in (Progress.DOWN, Progress.AT_REST)
 
     def end(self, found: Fault, response: str) -> None:
-        """Have the program end, or be broken off, by a fault with that response."""
+        """End the program, or break it off, by a fault with that response."""
         self.fault, self.response = found, response
         self._answered.add(found.which)
 
@@ -73,22 +73,22 @@ class Halt:
         return bool(found.instead) or (found.which in OVERTAKING and found.which not in self._answered)
 
     def answer(self, found: Fault, response: str) -> None:
-        """Have the robot respond to another fault than that which ended its program."""
+        """Respond to another fault than the one that ended the program."""
         self._answered.add(found.which)
         self.response = response
 
     def hold(self) -> None:
-        """Have it hold, as somebody orders, and keep what it was to do."""
+        """Hold by an order, and keep the response for later."""
         if self.response != "HOLD":
             self.before_hold = self.before_hold or self.response
         self.response = "HOLD"
 
     def go_on(self) -> None:
-        """Have it do what it was to do before it was ordered to hold."""
+        """Continue the response that an order to hold interrupted."""
         self.respond(self.before_hold)
 
     def respond(self, response: str) -> None:
-        """Have it do this, as somebody orders, and forget what it was to do."""
+        """Take this response by an order, and forget the former one."""
         self.before_hold, self.response = "", response
 
     def begin(self) -> None:
@@ -96,11 +96,11 @@ class Halt:
         self.progress = Progress.STOPPING
 
     def settle(self, *, down: bool, at_rest: bool) -> None:
-        """Wait no longer.
+        """Stop waiting for the confirmation.
 
         Args:
-            down: whether it has come down, as it was told to.
-            at_rest: whether its motors are seen to be off then.
+            down: whether it has landed or surfaced, as ordered.
+            at_rest: whether it is seen disarmed then.
         """
         self.progress = Progress.STOPPED
         if down:

@@ -1,4 +1,4 @@
-"""Has a run hear the orders of people who call from elsewhere; see `mmrs_runtime.control`."""
+"""Connects a run to orders from other processes; see `mmrs_runtime.control`."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ def hear_orders(
 
     Raises:
         Taken: if another process runs one of these robots with its logs in that folder.
-        OSError: if nobody can be listened to there.
+        OSError: if no port can be opened there.
     """
     inboxes = {robot: _inbox(robot, orders) for robot in robots}
     control = Control(folder, run, inboxes, status)

@@ -13,9 +13,9 @@ from .orders import STOP, Orders
 
 @contextmanager
 def stopping(orders: Orders, robots: tuple[str, ...], say: Callable[[str], None]) -> Iterator[None]:
-    """Have interrupts stop the robots; the second one ends the waiting for them.
+    """Stop the robots on the first interrupt; the second one ends the wait for them.
 
-    A terminal that closes gives no order: robots fly on. Outside the main thread, which alone can hear
+    A terminal that closes gives no order: robots continue. Outside the main thread, which alone receives
     signals, nothing changes.
     """
     if threading.current_thread() is not threading.main_thread():

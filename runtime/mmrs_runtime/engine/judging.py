@@ -1,4 +1,4 @@
-"""What conditions of choices decide: each is asked once, as soon as anybody can know."""
+"""Decisions of conditions of choices: each is asked once, as soon as it can be known."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ from ..questions import Heard
 from ..vehicle import Condition, Fault, LinkLost, State
 
 SLOW_SECONDS = 1.0
-"""Real seconds after which people are told that a function of theirs has not answered yet."""
+"""Real seconds after which the operator learns that a function of theirs has not answered yet."""
 
 
 def decided(condition: Condition, know: Callable[[], State]) -> bool | Fault | None:
-    """Return whether a condition holds, or the fault that asking leaves; None: nobody can know yet.
+    """Return whether a condition holds, or the fault that asking leaves; None: it cannot be known yet.
 
     Raises:
         LinkLost: the robot cannot be reached.
@@ -32,12 +32,12 @@ def decided(condition: Condition, know: Callable[[], State]) -> bool | Fault | N
 
 
 class Asking:
-    """A condition that is being asked in a thread of its own, so that whatever it does, the run goes on.
+    """A condition that is being asked in a thread of its own, so that the run continues whatever it does.
 
     Attributes:
         done: whether `answer` is there.
         answer: as of `decided`.
-        heard: the answers of people that it is asked with.
+        heard: the operator's answers that it is asked with.
     """
 
     def __init__(self, condition: Condition, state: State, heard: Heard, wake: Callable[[], None]) -> None:
@@ -70,8 +70,8 @@ class Asking:
 def standard_conditions(identifiers: Iterable[str]) -> dict[str, Condition]:
     """Return those of the conditions that are standard, by identifier.
 
-    `mmrs_runtime.conditions` says what each asks. Until there is an answer, or a figure to go by, the robot
-    waits.
+    `mmrs_runtime.conditions` defines what each asks. Until there is an answer, or a figure to go by, the
+    robot waits.
 
     >>> sorted(standard_conditions(["battery-below:0.3", "is it sunny", "wind-above:gale"]))
     ['battery-below:0.3']

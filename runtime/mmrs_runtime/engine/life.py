@@ -1,8 +1,8 @@
-"""The life of one robot of a run: its program, step by step, and what it does when that breaks off.
+"""The life of one robot of a run: its program, step by step, and its response when that breaks off.
 
 `Life.go` is a generator. Wherever the robot has to wait, it yields `Until`, and is resumed at that time or
-when there is news; what ends its program is raised there, whoever found it: the vehicle, the slots, a
-condition, or people who ordered something.
+on an event; what ends its program is raised there, whatever its source: the vehicle, the slots, a
+condition, or an order.
 """
 
 from __future__ import annotations
@@ -35,11 +35,11 @@ Waits: TypeAlias = Generator[Until, None, None]
 
 
 class Broken(Exception):  # noqa: N818  # the word for what happens to a program
-    """The program goes on no more.
+    """The program is broken off.
 
     Attributes:
         found: why.
-        response: what the robot was ordered to do; None: its policies say that.
+        response: the response that was ordered; None: its policies decide.
         unkept: the step that could not be recorded, so that it may not be made; None: all could.
     """
 
@@ -100,7 +100,7 @@ class Life(Situation):
         return steps(self.robot, self.point, frozenset())[0]
 
     def _carry_out(self, order: object, *, through: bool = False) -> Waits:
-        """Have the vehicle do something, until it is done; a device that is silent may be passed over."""
+        """Order an action from the vehicle, and wait until it is done; a silent device may be skipped."""
         movement = self.point.phase is Phase.BUSY
         vehicle = self.vehicle
         vehicle.do(order, self.now(), through=through)
@@ -112,7 +112,7 @@ class Life(Situation):
             yield from self._gate()
 
     def _notify(self) -> Waits:
-        """Have slots set: ask their owners where that is needed, record it, and wait for them to have it."""
+        """Set slots: ask their owners where needed, record it, and wait for their acknowledgements."""
         step = self._next()
         id = CommandId(self._run.terms.run, self.id, self._run.terms.incarnation, self.number)
         delivery = self._slots.prepare(id, step.sets, step.active, self._finds())
@@ -170,7 +170,7 @@ class Life(Situation):
             yield from self._gate()
 
     def _passes(self, names: tuple[SlotId, ...], lamport: int) -> bool:
-        """Return whether a wait for slots is passed at that time, at which they are kept for nobody."""
+        """Return whether a wait for slots is passed at that time: they are not kept for any sender then."""
         if not names:
             return True
         if not self._slots.passed(names, lamport):
@@ -194,7 +194,7 @@ class Life(Situation):
             raise Broken(found)
 
     def _decision(self) -> bool | None:
-        """Return what the condition of a choice says; None as long as nobody can know."""
+        """Return the decision of a choice; None while it cannot be known."""
         then = self.move.then
         assert isinstance(then, Choose)
         condition, heard = self._run.conditions[then.condition], self.questions.heard()
@@ -223,7 +223,7 @@ class Life(Situation):
         return holds
 
     def _tell_undecided(self, condition: str) -> None:
-        """Tell people, once, what a choice waits for."""
+        """Report once what a choice waits for."""
         if not self.wait.is_told:
             self.wait.is_told = True
             words = awaiting(condition)
@@ -252,7 +252,7 @@ class Life(Situation):
     # Waiting.
 
     def _gate(self) -> Waits:
-        """Let the robot go on unless its program is to end, or it is held."""
+        """Wait while the robot is held; raise what is to end its program."""
         while True:
             if self.ordered is not None:
                 raise Broken(*self.ordered)
@@ -264,7 +264,7 @@ class Life(Situation):
             yield self._later()
 
     def _bear_trouble(self, why: str) -> None:
-        """Go on, and say so once, though what others tell the robot cannot be kept; break off if it must."""
+        """Continue, and report it once, although incoming notifies cannot be kept; break off if it must."""
         found = Fault(LOG_FAILED, why)
         if not self.answers().bears(found):
             raise Broken(found)
@@ -274,15 +274,15 @@ class Life(Situation):
             self.decided(LOG_FAILED, why, CONTINUE)
 
     def _room(self) -> Waits:
-        """Wait for ever once the run has made as many steps as it may."""
+        """Wait without end once the run has made its maximum number of steps."""
         while self._run.is_full:
             yield Until()
 
     def _look(self) -> bool:
-        """Look at the vehicle; return whether a device is silent, and that is borne.
+        """Look at the vehicle; return whether a device is silent, and that is tolerated.
 
         Raises:
-            Broken: something is wrong.
+            Broken: there is another fault.
         """
         vehicle = self.vehicle
         self._looked = now = self.now()
@@ -296,7 +296,7 @@ class Life(Situation):
         return found.which == DEVICE_SILENT
 
     def _later(self) -> Until:
-        """Return when to go on at the latest."""
+        """Return when to continue at the latest."""
         now = self._run.clock.now()
         event = min(self._look_at, self.wait.deadline)
         if event <= self._looked:
@@ -325,7 +325,7 @@ class Life(Situation):
         self.follow(step, now)
 
     def _kept(self) -> Waits:
-        """Wait until the steps that were made are on the disk: nobody is told of one that may yet be lost."""
+        """Wait until the steps made are on the disk: a step that may yet be lost is not announced."""
         if self._run.terms.sync is None:
             return
         kept: list[OSError | None] = []
@@ -344,7 +344,7 @@ class Life(Situation):
             raise Broken(Fault(LOG_FAILED, reason_of(error)))
 
     def _unkept(self, error: OSError | None) -> None:
-        """Tell people if the log does not have its fault; from any thread."""
+        """Report if the log lacks its fault; from any thread."""
         if error is not None:
             self._run.say(self, f"the fault is not in the log: {reason_of(error)}")
 
@@ -374,8 +374,8 @@ class Life(Situation):
     def _get_ready(self) -> Waits:
         """Wait until the robot is ready.
 
-        What goes wrong meanwhile is answered as on the way back to where its program was broken off, unless
-        nobody knows yet whether it is the program's robot: then nobody is to touch it.
+        Faults meanwhile are answered as on the way back to where its program was broken off, unless
+        it is still unknown whether it is the program's robot: then it must not be touched.
         """
         while self.is_preparing:
             if self.ordered is not None:
@@ -393,7 +393,7 @@ class Life(Situation):
                 yield self._later()
 
     def _return_to_work(self) -> Waits:
-        """Wait until the robot is where its program goes on."""
+        """Wait until the robot is where its program continues."""
         if self.stage is Stage.AWAY:
             yield from self._gate()
             self.recover()
@@ -408,7 +408,7 @@ class Life(Situation):
     # When the program breaks off.
 
     def _break_off(self, broken: Broken) -> None:
-        """Have the program end, or only be suspended, and the robot respond."""
+        """End the program, or only suspend it, and let the robot respond."""
         found, response = broken.found, broken.response
         preparing = self.is_preparing
         strange = preparing and response is None and self.is_unknown()

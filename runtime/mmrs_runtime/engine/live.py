@@ -40,27 +40,27 @@ class Venture:
     """A run in real time, before it begins.
 
     Attributes:
-        connect: what makes the vehicle of each robot of this process, in the order in which they are
+        connect: makes the vehicle of each robot of this process, in the order in which they are
             connected. It may raise anything, and nothing begins then.
         bus: between all robots of the program.
         conditions: by identifier; all that choices of these robots ask for.
-        policies: by robot: those of its type and kind, which go after the program's own.
+        policies: by robot: those of its type and kind, which come after the program's own.
         clock: of the run.
-        orders: from people, who may give them as soon as this exists.
+        orders: from operators, who may give them as soon as this exists.
         run: identifier of the run.
         folder: of the logs; None where none are kept.
-        links: how robots are reached, by robot; backends know what is usual.
+        links: how robots are reached, by robot; backends know their defaults.
         resumed: the steps made before the run was broken off.
         suspends: whether a low battery only breaks a program off.
-        patience: seconds to wait for the order to resume once nobody else works.
-        meet: waits for robots of other processes once those of this one are ready, calling again and
-            again what it is given; returns, by robot, how well they begin together. It raises `Incomplete`
-            where they have not come.
+        patience: seconds to wait for the order to resume once no other robot works.
+        meet: waits for robots of other processes once those of this one are ready, calling
+            its argument repeatedly; returns, by robot, how accurately they begin together. It raises
+            `Incomplete` where they have not come.
         ready: called with the vehicles before anything moves; raises what must keep them from it.
         observe: called with each step before it has an effect.
         sync: as of `Terms`.
-        say: tells people what goes on.
-        standing: for people who ask how robots are.
+        say: reports events to the operator.
+        standing: status of the robots, for queries.
     """
 
     program: Program
@@ -84,7 +84,7 @@ class Venture:
     standing: Standing = field(default_factory=Standing)
 
     def fail(self, robot: str, which: str) -> None:
-        """Have a robot's log say that its program has ended before its first step; tell if it cannot."""
+        """Log that a robot's program has ended before its first step; report it if that fails."""
         start, time = self.program.by_id[robot].start, round(self.clock.now(), 6)
 
         def kept(error: OSError | None) -> None:
@@ -101,15 +101,15 @@ class Venture:
 
 
 def run_live(venture: Venture) -> Ending:
-    """Carry the programs out; return how that ended.
+    """Run the programs; return how that ended.
 
-    No robot begins before all are ready; once some are under way, as in a run that is resumed, each goes
-    on, or begins, as soon as it is ready itself, and one that does not get ready is left out. One whose
+    No robot begins before all are ready; once some are in motion, as in a run that is resumed, each
+    continues, or begins, as soon as it is ready, and one that does not get ready is left out. One whose
     program had ended before is left alone. In the end, every robot that has not come to its end has been
     stopped, all links are closed, and all orders answered.
 
     Raises:
-        Unready: if a robot does not get ready, and none is under way without it.
+        Unready: if a robot does not get ready, and none is in motion without it.
         Incomplete: if robots of other processes have not come; see `Venture.meet`.
         Exception: what `Venture.connect`, or `Venture.ready`, raises.
         ValueError: if the steps to resume from are not the program's.
@@ -214,9 +214,9 @@ def _get_ready(robots: Mapping[str, Vehicle], venture: Venture, early: EarlyOrde
 
 
 def _await_ready(robots: Mapping[str, Vehicle], clock: RealClock, early: EarlyOrders) -> None:
-    """Return when all robots are ready, and nothing has gone wrong with one that was so earlier.
+    """Return when all robots are ready, and no fault has come up on one that was so earlier.
 
-    Once something has, the others are waited for a moment, so that all that is wrong is told at once.
+    After the first fault, wait a moment for the others, so that all faults are reported at once.
     """
     unready, told_at = set(robots), inf
     while unready:

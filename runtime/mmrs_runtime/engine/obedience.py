@@ -35,7 +35,7 @@ class Obedience:
         return bool(self._open or self._waiting)
 
     def obey(self) -> tuple[str, ...]:
-        """Have robots do what was ordered, and see who has; return the robots to be looked at."""
+        """Pass orders on to robots, and check which are obeyed; return the robots to be looked at."""
         for order in self._orders.taken():
             self._open.append(order)
             self._waiting += ((order, id) for id in order.robots)
@@ -46,7 +46,7 @@ class Obedience:
         return begun
 
     def stopped(self, id: str, stopping: bool, trouble: Fault | None) -> None:
-        """Tell the orders that ended a robot's program what became of it."""
+        """Report the outcome to the orders that ended a robot's program."""
         for order in self._open:
             began = (order, id) not in self._waiting
             if id in order.responses and id in order.open and began and not stopping:
@@ -56,7 +56,7 @@ class Obedience:
                     order.confirm(id)
 
     def give_up(self) -> None:
-        """Tell all orders that are still open that the run has ended."""
+        """Refuse all open orders: the run has ended."""
         self._orders.close("the run has ended")
         for order in self._open:
             for id in order.open:
@@ -161,7 +161,7 @@ class Obedience:
         return robot.halt.is_down or robot.rests
 
     def _obey_on_the_ground(self, order: Order, robot: Life) -> None:
-        """Have a robot that waits for its battery do what it does anyway, or be waited for no longer."""
+        """Apply an order to a robot that waits for its battery: a response, or the end of the wait."""
         why = _taken(robot) if order.kind != STOP else ""
         if order.kind == RETURN:
             why = why or robot.away()
@@ -172,7 +172,7 @@ class Obedience:
         order.confirm(robot.id)
 
     def _recover(self, order: Order, robot: Life) -> None:
-        """Have a robot go on whose program was broken off, unless its battery was not changed."""
+        """Resume a robot whose program was broken off, unless its battery was not changed."""
         try:
             why = _taken(robot) or robot.hindrance()
         except LinkLost as error:
@@ -183,7 +183,7 @@ class Obedience:
             robot.recover()
 
     def _stop_again(self, order: Order, robot: Life) -> None:
-        """Have a robot whose program has ended by a fault stop in another way, if it does anything still."""
+        """Stop a robot whose program has ended by a fault in another way, if it still responds at all."""
         busy = robot.halt.fault is not None and (robot.halt.stopping or robot.is_watched())
         robot.halt.released = robot.halt.released or order.kind == STOP
         if not busy:
@@ -194,7 +194,7 @@ class Obedience:
             self._stop(order, robot)
 
     def _stop(self, order: Order, robot: Life) -> None:
-        """Have a robot do something else about what has ended its program; `resume` what it did before."""
+        """Change a robot's response to what has ended its program; `resume` returns to the former one."""
         halt = robot.halt
         held_anyway = order.kind == HOLD and halt.response == "HOLD"
         if order.kind == HOLD:
@@ -235,7 +235,7 @@ class Obedience:
             order.confirm(robot.id)
 
     def _confirm_rest(self, order: Order, robot: Life) -> bool:
-        """Confirm to a robot that still gets ready, and is to stay where it is, that its motors are off."""
+        """Confirm to a robot that is getting ready, and is to stay where it is, that it is disarmed."""
         rests = robot.is_preparing and order.kind in (HOLD, *ENDINGS) and robot.rests
         if rests:
             order.confirm(robot.id)
@@ -252,14 +252,14 @@ class Obedience:
             order.confirm(robot.id)
 
     def _settle(self, order: Order, robot: Life) -> None:
-        """Answer an order to a robot that nobody waits for: it is taken at its word, or out of reach."""
+        """Answer an order to a robot that is not awaited: its word is taken, or it is out of reach."""
         if self._clock.passes_by_itself:
             order.refuse(robot.id, "its link is lost")
         else:
             order.confirm(robot.id)
 
     def _goes_on(self, robot: Life, now: float) -> bool:
-        """Return whether a robot that was told to go on was seen to."""
+        """Return whether a robot that was ordered to continue was seen to."""
         if robot.vehicle.paused(now):
             return False
         return robot.stage is not Stage.RECOVERING or robot.vehicle.moves(now)
@@ -273,13 +273,13 @@ class Obedience:
 
 
 def _taken(robot: Life) -> str:
-    """Return that the motors of a robot run that came down and had them off; empty: nobody started them."""
+    """Return that a robot that had landed disarmed is armed now; empty where it is not."""
     rested = robot.halt.progress is Progress.AT_REST
-    return "its motors run: somebody else has it" if rested and not robot.rests else ""
+    return "it is armed: the vehicle is under external control" if rested and not robot.rests else ""
 
 
 def _since(robot: Life) -> str:
     """Return in words what a robot does instead of what it was ordered."""
     if robot.halt.response == NOTHING:
         return "a pilot has taken over"
-    return f"something else has happened since: {robot.halt.response or 'it goes on'}"
+    return f"something else has happened since: {robot.halt.response or 'it continues'}"

@@ -23,15 +23,15 @@ class Order:
 
     Attributes:
         kind: one of KINDS.
-        robots: who has to obey.
+        robots: receivers.
         question, answer: of an answer.
-        interrupt: whether it is no order to the robots but an interrupt of the run.
+        interrupt: whether it is an interrupt of the run rather than an order to the robots.
         confirmed: by robot, real seconds until its vehicle had obeyed.
         refused: by robot, why it does not obey.
         settled: set once every robot has done one or the other.
         told: called with a robot, and why it refuses, or None: it has obeyed.
-        vehicles: by robot; their black boxes know what became of it before anybody is told.
-        responses: by robot, that which shows that it obeys, where its program has ended, or is to end.
+        vehicles: by robot; their black boxes record the outcome before it is reported.
+        responses: by robot, the response that shows that it obeys, where its program has ended, or is to end.
     """
 
     kind: str
@@ -92,7 +92,7 @@ class Orders:
 
     @property
     def waiting(self) -> bool:
-        """Return whether an order was given that nobody has looked at yet."""
+        """Return whether an order was given that was not taken yet."""
         return bool(self._waiting)
 
     def give(
@@ -105,7 +105,7 @@ class Orders:
         told: Callable[[str, str | None], None] = lambda robot, why: None,
         interrupt: bool = False,
     ) -> Order:
-        """Have robots obey; return the order, which tells who has; from any thread or signal handler.
+        """Give an order to robots, from any thread or signal handler; return it, with results as they come.
 
         Raises:
             ValueError: if there is no such order.
@@ -122,12 +122,12 @@ class Orders:
         return order
 
     def put_back(self, orders: Sequence[Order]) -> None:
-        """Have orders that were taken be looked at once more, before those that were given since."""
+        """Put orders that were taken back before those that were given since."""
         self._waiting.extendleft(reversed(orders))
         self.called()
 
     def close(self, why: str) -> None:
-        """Refuse all orders that nobody has looked at, and those to come."""
+        """Refuse all orders that were not taken yet, and those to come."""
         self._closed = why
         for order in self.taken():
             for robot in order.open:

@@ -11,15 +11,15 @@ from ..slots import LocalSlots
 
 
 def step_of(robot: Robot, point: Point, record: StepRecord) -> Step:
-    """Return the step from a point that a record tells of, whatever slots are active.
+    """Return the step from a point that a record belongs to, whatever slots are active.
 
     Raises:
-        ValueError: if it is none of the program's.
+        ValueError: if it is not one of the program's.
     """
     step = told_by(record, robot, point, {(robot.id, name) for name in robot.slots})
     if step is not None:
         return step
-    raise ValueError(f"robot '{robot.id}': step {record.seq} of its log is none of its program's")
+    raise ValueError(f"robot '{robot.id}': step {record.seq} of its log is not one of its program's")
 
 
 def point_after(robot: Robot, records: Iterable[StepRecord]) -> Point:
@@ -51,7 +51,7 @@ def over_by(program: Program, records: Iterable[StepRecord]) -> dict[str, str]:
 
 
 def restore(slots: LocalSlots, program: Program, records: Iterable[StepRecord]) -> None:
-    """Have slots know every notify that was logged, and every wait that was passed.
+    """Restore slots from every notify that was logged, and every wait that was passed.
 
     A notify that was logged and not delivered is delivered by that: its log line decides.
     """

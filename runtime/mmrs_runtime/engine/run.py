@@ -1,8 +1,8 @@
-"""A run: the robots of a program that one process carries out, from where they are to whatever end.
+"""A run: the robots of a program in one process, from their present points to whatever end.
 
 There is one thread. Robots that are due are resumed in the program's order, as long as any is; then the
-clock goes on to the next time at which one will be due. Simulated time jumps there, so that the same input
-gives the same steps; real time passes, until somebody has news: a vehicle, the bus, or people.
+clock advances to the next time at which one will be due. Simulated time jumps there, so that the same input
+gives the same steps; real time passes, until an event comes from a vehicle, the bus, or the operator.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ from .terms import BUS, TO_THE_END, Ending, Terms
 from .waits import Peers
 
 UNKNOWN_SECONDS = 600.0
-"""Simulated seconds after which a condition that nobody knows, while nothing else happens, is never known."""
+"""Simulated seconds without any other event after which an unknown condition counts as never known."""
 
 
 def run(
@@ -42,7 +42,7 @@ def run(
     policies: Mapping[str, tuple[Policy, ...]] | None = None,
     terms: Terms = TO_THE_END,
 ) -> Ending:
-    """Carry out the programs of the robots that have a vehicle; return how that ended.
+    """Run the programs of the robots that have a vehicle; return how that ended.
 
     A notify is observed before it is delivered. Whatever ends the run, every robot that has not come to its
     end has then been stopped.
@@ -53,8 +53,8 @@ def run(
         slots: of all robots.
         clock: simulated or real.
         conditions: by identifier; all that choices of these robots ask for.
-        policies: by robot: those of its type and kind, which go after the program's own.
-        terms: who is told, and what cuts the run off.
+        policies: by robot: those of its type and kind, which come after the program's own.
+        terms: observers, and limits that cut the run off.
 
     Raises:
         ValueError: a vehicle is for a robot that the program does not have, a condition is missing, or the
@@ -66,12 +66,12 @@ def run(
     for robot in program.robots:
         for name in robot.conditions if robot.id in vehicles else ():
             if name not in conditions:
-                raise ValueError(f"robot '{robot.id}': nobody decides condition '{name}'")
+                raise ValueError(f"robot '{robot.id}': no function decides condition '{name}'")
     return Run(program, vehicles, slots, clock, conditions, policies or {}, terms).go()
 
 
 class Run:
-    """A run while it goes on, as its robots see it."""
+    """A run in progress, as its robots see it."""
 
     def __init__(
         self,
@@ -140,7 +140,7 @@ class Run:
     # What lives ask for.
 
     def made(self, record: StepRecord) -> None:
-        """Have a step be recorded, which is made then.
+        """Record a step, which is made then.
 
         Raises:
             OSError: it cannot be.
@@ -155,13 +155,13 @@ class Run:
         self._stepped = record.time
 
     def keep(self, record: StepRecord) -> None:
-        """Have a step be recorded in place of one that could not be, if that is possible."""
+        """Record a step in place of one that could not be, if that is possible."""
         if self.terms.observe is not None:
             with suppress(OSError):
                 self.terms.observe(record)
 
     def sync(self, robot: str, kept: Kept) -> None:
-        """Have a robot's steps be on the disk, and call `kept` then, if anything is kept of them at all."""
+        """Write a robot's steps to the disk, and call `kept` then, if they are kept at all."""
         try:
             if self.terms.sync is not None:
                 self.terms.sync(robot, kept)
@@ -176,7 +176,7 @@ class Run:
         return self._made >= self.terms.steps
 
     def notified(self, owners: Iterable[str]) -> None:
-        """Have those robots look at their slots that are here."""
+        """Wake those of these robots that are here, to look at their slots."""
         for owner in owners:
             if owner in self._numbers:
                 self._agenda.put(self._numbers[owner])
@@ -188,19 +188,19 @@ class Run:
         self.notified(owner for owner in owners if self._is_out(owner))
 
     def leave_alone(self, life: Life, found: Fault) -> None:
-        """Note that a robot did not get ready, and that nobody knows whether it is the program's."""
+        """Record that a robot did not get ready, and may not be the program's."""
         reason = found.reason or found.which
         self.say(life, f"does not get ready: {reason}")
         life.decided(found.which, reason, NOTHING)
         self.dismiss(life, failed=True)
 
     def obey(self) -> None:
-        """Have robots do what was ordered, and see who has."""
+        """Pass orders on to robots, and check which are obeyed."""
         if self.terms.orders.waiting or self._obedience.at_work:
             self.notified(self._obedience.obey())
 
     def say(self, life: Life, words: str) -> None:
-        """Tell people something about a robot."""
+        """Report something about a robot to the operator."""
         self.terms.say(f"'{life.id}': {words}")
 
     # How it goes on.
@@ -277,11 +277,11 @@ class Run:
         waiting = "; ".join(map(str, self._waiting()))
         if waiting != self._told:
             self._told = waiting
-            self.terms.say(f"nothing goes on until somebody orders something: {waiting}")
+            self.terms.say(f"nothing continues without an order: {waiting}")
         return True
 
     def _patience_ends(self, *, begin: bool = False) -> float:
-        """Return when nobody waits any longer for robots to be resumed; the past if there are none."""
+        """Return when the wait for robots to be resumed ends; the past if there are none."""
         if not any(not self._lives[number].halt.released for number in self._suspended):
             return -inf if begin else inf
         if begin and self._idle_since is None:
@@ -289,19 +289,19 @@ class Run:
         return inf if self._idle_since is None else self._idle_since + self.terms.patience
 
     def _note_deadlock(self) -> None:
-        """Keep who waits once it is certain that nobody sets what it waits for."""
+        """Keep the waiting robots once it is certain that their slots will never be set."""
         if not self._deadlock and self._is_quiet() and not any(life.may_be_resumed for life in self._lives):
             self._deadlock = self._waiting()
 
     def _is_undecidable(self) -> bool:
-        """Return whether simulated robots wait for conditions that nobody knows, and nothing else happens."""
+        """Return whether simulated robots wait for unknown conditions, and nothing else happens."""
         if self.clock.passes_by_itself or self.clock.now() < self._stepped + UNKNOWN_SECONDS:
             return False
         asked = any(life.wait.question for life in self._lives)
         return asked and all(life.point.is_final or life.waits_for_ever for life in self._lives)
 
     def _is_patient(self) -> bool:
-        """Return whether a wait of some robot will end by itself."""
+        """Return whether a wait of some robot ends at a known time."""
         return any(life.wait.deadline < inf for life in self._lives if life.is_waiting)
 
     def _is_quiet(self) -> bool:

@@ -1,4 +1,4 @@
-"""How one robot of a run is: where it is in its program, what it waits for, and what it was told."""
+"""The situation of one robot of a run: its point in its program, its wait, and its orders."""
 
 from __future__ import annotations
 
@@ -28,12 +28,12 @@ class Stage(Enum):
 
     Attributes:
         PREPARING: it has still to get ready.
-        ABSENT: it did not get ready, and nobody knows whether it is the program's robot: it is left alone.
+        ABSENT: it did not get ready, and may not be the program's robot: it is left alone.
         AWAY: it is ready, and has still to be sent back to where its program was broken off.
-        RECOVERING: it is on its way back there.
-        WORKING: its program goes on.
+        RECOVERING: it is returning there.
+        WORKING: its program continues.
         SUSPENDED: its program is broken off, until its battery was changed, or because it could not be
-            taken up again.
+            resumed.
     """
 
     PREPARING = "preparing"
@@ -51,11 +51,11 @@ class Situation:
         point: where it is in its program.
         stage: how far it is with getting there.
         lamport: its logical time.
-        number: of its next step. last: that it has made; None: none yet.
+        number: of its next step. last: the last step made; None: none yet.
         wait: what keeps it from leaving its move.
         sending: whether it notifies others, and they have still to answer.
-        held: whether somebody ordered it to hold, and nothing else since.
-        ordered: what ends its program because somebody ordered that, and the response; None: nobody did.
+        held: whether its last order was to hold.
+        ordered: the fault and response of an order that ends its program; None without one.
         halt: what ended its program, or broke it off, and how it stops.
         questions: that its choices ask the operator.
     """
@@ -63,7 +63,7 @@ class Situation:
     def __init__(
         self, robot: Robot, vehicle: Vehicle, run: Run, policies: tuple[Policy, ...], *, live: bool
     ) -> None:
-        """Be at the beginning of a program; `policies` go after its own."""
+        """Start at the beginning of a program; `policies` come after its own."""
         self.id, self.robot, self.vehicle = robot.id, robot, vehicle
         self.point = entry(robot, robot.start)
         self.stage = Stage.WORKING
@@ -87,7 +87,7 @@ class Situation:
         self.sending = False
 
     def restore(self, records: Iterable[StepRecord]) -> None:
-        """Be where its own log leads, whose steps are those of its program in order.
+        """Restore the point that its own log leads to, whose steps are those of its program in order.
 
         Raises:
             ValueError: if they are not.
@@ -97,7 +97,7 @@ class Situation:
             self.lamport, self.number, self.last = record.lamport, record.seq + 1, record
 
     def follow(self, step: Step, now: float) -> None:
-        """Be where a step leads."""
+        """Go to the point that a step leads to."""
         if step.label == "end":
             self._passed.append(step.move)
         if self.wait.since is not None:
@@ -108,7 +108,7 @@ class Situation:
         self.point = step.leads_to
 
     def teach(self) -> None:
-        """Have the vehicle know where those that notified its robot have detected things."""
+        """Pass on to the vehicle where the robots that notified this one have detected objects."""
         if places := {name: place for name, place in self._slots.finds(self.id) if place is not None}:
             self.vehicle.learn(places)
 
@@ -124,7 +124,7 @@ class Situation:
         return self._run.clock.now()
 
     def is_unknown(self) -> bool:
-        """Return whether it must not be told anything: nobody knows yet if it is the program's robot."""
+        """Return whether it must not be commanded: it may not be the program's robot."""
         return self.is_preparing and not self.vehicle.known(self.now())
 
     def recover(self) -> None:
@@ -142,14 +142,14 @@ class Situation:
         return True
 
     def end_by(self, found: Fault, response: str) -> None:
-        """Have the program end because somebody ordered that."""
+        """End the program by an order."""
         self.ordered, self.halt.released = (found, response), found.which == STOPPED
         self.forget_hold()
 
     # Holding.
 
     def hold(self) -> None:
-        """Have it stay where it is, once it may be told; nothing counts against others meanwhile."""
+        """Hold position, once it may be commanded; the time does not count against others' waits."""
         if not self.held:
             self.held, self._pausing, self._held_since = True, False, self.now()
         if not self._pausing and self.vehicle.pauses and not self.is_unknown():
@@ -157,7 +157,7 @@ class Situation:
             self.vehicle.pause(self.now())
 
     def go_on(self) -> None:
-        """Have it be held no longer."""
+        """End the hold and extend pending deadlines."""
         self.held = False
         if self._pausing:
             self.vehicle.resume(self.now())
@@ -203,12 +203,12 @@ class Situation:
 
     @property
     def is_quiet(self) -> bool:
-        """Return whether it makes no step unless others do, or somebody orders it."""
+        """Return whether it makes no step unless others do, or an order comes."""
         return self.point.is_final or bool(self.wait.lacking) or self.suspended
 
     @property
     def may_be_resumed(self) -> bool:
-        """Return whether somebody may order it to go on, although it does nothing by itself."""
+        """Return whether an order may resume it, although it does nothing now."""
         return (self.suspended and not self.halt.released) or self.held
 
     @property
@@ -217,7 +217,7 @@ class Situation:
         return self.vehicle.told().get("armed") is False
 
     def hindrance(self) -> str:
-        """Return why its program cannot be gone on with; empty if it can, as far as anybody knows."""
+        """Return why its program cannot be continued; empty if it can, as far as is known."""
         if why := self.astray():
             return why
         low = self.halt.is_for(BATTERY_LOW)
@@ -228,19 +228,19 @@ class Situation:
         return self.vehicle.hindrance(tuple(self._passed), self._underway, self.now())
 
     def away(self) -> str:
-        """Return why it does not stand at home, as far as anybody knows; empty where it may."""
+        """Return why it does not stand at home, as far as is known; empty where it may."""
         return self.vehicle.away(self.now())
 
     def may_move(self) -> bool:
-        """Return whether it is at work and its motors are seen to run, so that nobody may leave it alone."""
+        """Return whether it is at work and seen armed, so that it must not be left alone."""
         return not (self.point.is_final or self.suspended) and self.vehicle.moves(self.now())
 
     def is_watched(self) -> bool:
-        """Return whether it has stopped, or is out of reach, so that somebody must stay with it."""
+        """Return whether it has stopped, or is out of reach, so that an operator must stay with it."""
         return self.vehicle.watched(self.now())
 
     def decided(self, what: str, why: str, response: str) -> None:
-        """Have the black box know what was decided."""
+        """Record a decision in the black box."""
         self.vehicle.note("decision", {"what": what, "why": why, "response": response})
 
     @property

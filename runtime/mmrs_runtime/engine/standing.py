@@ -1,4 +1,4 @@
-"""How the robots of a run are, for people who ask while it goes on."""
+"""Status of the robots of a run, for queries while it is in progress."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ class Standing:
     """
 
     def __init__(self) -> None:
-        """Know of no robot yet."""
+        """Create without robots."""
         self.held: Collection[str] = ()
         self._vehicles: Mapping[str, Vehicle] | None = None
         self._robots: Mapping[str, Life] = {}
@@ -35,7 +35,7 @@ class Standing:
         self._robots = {robot.id: robot for robot in robots}
 
     def status(self, robot: str) -> Mapping[str, object]:
-        """Return what there is to say of a robot, as JSON has it."""
+        """Return a robot's status, as JSON has it."""
         life = self._robots.get(robot)
         vehicle = (self._vehicles or {}).get(robot)
         phase = self._phase(robot, life)

@@ -1,4 +1,4 @@
-"""Robots that were told to stop, until each has confirmed that it has, or is known to be unable to."""
+"""Robots that were ordered to stop, until each has confirmed it, or is known to be unable to."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from .life import PACE, Broken, Life, Waits
 from .obedience import Obedience
 
 WATCH_PACE = 0.5
-"""Seconds between two looks at a robot that has stopped in a way that somebody must watch."""
+"""Seconds between two looks at a stopped robot that must be watched."""
 
 
 class Stopping:
@@ -23,7 +23,7 @@ class Stopping:
     def __init__(
         self, robots: Sequence[Life], clock: RunClock, obedience: Obedience, say: Callable[[Life, str], None]
     ) -> None:
-        """Look after these robots; orders that stop them are told what became of it."""
+        """Watch these robots; orders that stop them receive the outcome."""
         self._robots, self._clock, self._obedience, self._say = robots, clock, obedience, say
         self._unconfirmed: dict[str, None] = {}
         self._came_down: dict[str, str] = {}
@@ -48,7 +48,7 @@ class Stopping:
 
     @property
     def watching(self) -> bool:
-        """Return whether a robot has stopped in a way that somebody must watch."""
+        """Return whether a stopped robot must be watched."""
         return any(self._needs_company(robot) for robot in self._robots)
 
     @property
@@ -57,13 +57,13 @@ class Stopping:
         return {each.id: self._came_down[each.id] for each in self._robots if each.id in self._came_down}
 
     def answer(self, robot: Life, found: Fault) -> None:
-        """Have a robot give the response that it decided on, and tell people why."""
+        """Carry out the response that a robot decided on, and report why."""
         self._say(robot, f"{found}; response: {robot.halt.response}")
         robot.decided(found.which, found.reason, robot.halt.response)
         self.stop(robot, robot.halt.response)
 
     def stop(self, robot: Life, response: str) -> None:
-        """Have a robot stop in some way."""
+        """Stop a robot with the given response."""
         robot.halt.response = response
         self._came_down.pop(robot.id, None)
         try:
@@ -75,10 +75,10 @@ class Stopping:
                 robot.halt.begin()
 
     def stay_with(self, robot: Life) -> Waits:
-        """Look after a robot whose program has ended, or is broken off, until it goes on.
+        """Look after a robot whose program has ended, or is broken off, until it continues.
 
         Raises:
-            Broken: somebody has ordered its program to end.
+            Broken: an order is to end its program.
         """
         while robot.suspended or robot.point.is_final:
             if robot.ordered is not None:
@@ -126,7 +126,7 @@ class Stopping:
         if not heard:
             self._unheard.add(robot.id)
         elif robot.id in self._unheard and self._needs_company(robot):
-            self._say(robot, "is heard again: orders are obeyed")
+            self._say(robot, "link restored: orders are obeyed")
             self._unheard.discard(robot.id)
 
     def _see_stop(self, robot: Life, now: float) -> None:
@@ -165,13 +165,13 @@ class Stopping:
         return f"has done {robot.halt.response}"
 
     def _tell_battery(self, robot: Life) -> None:
-        """Tell what is to be done for a robot that came down for its battery."""
+        """Report the next step for a robot that landed for its battery."""
         if robot.suspended and robot.halt.is_for(BATTERY_LOW) and robot.halt.response in COMES_DOWN:
             words = self._came_down[robot.id] = _came_down(robot)
             self._say(robot, f"{words}; change it, then order resume, or start again with --resume")
 
     def _needs_company(self, robot: Life) -> bool:
-        """Return whether this process must not end yet, since nobody has said that it may leave the robot."""
+        """Return whether this process must not end yet, since the robot was not released."""
         halt = robot.halt
         return halt.fault is not None and not halt.released and robot.is_watched()
 

@@ -23,14 +23,14 @@ BUS = ""
 
 
 class Attention:
-    """Collects what robots, and the bus, have to tell, and ends the sleep of whoever waits for it."""
+    """Collects events of robots and the bus, and wakes the engine."""
 
     def __init__(self, clock: RunClock) -> None:
         self._clock = clock
         self._called: deque[tuple[str, Event]] = deque()
 
     def call(self, who: str, event: Event | None = None) -> None:
-        """Say that a robot, or the bus, has news; from any thread or signal handler."""
+        """Report an event of a robot or the bus; from any thread or signal handler."""
         self._called.append((who, event or Progress()))
         self._clock.wake()
 
@@ -39,7 +39,7 @@ class Attention:
         return lambda: self.call(robot)
 
     def taken(self) -> list[tuple[str, Event]]:
-        """Return what was told since this was asked last, in that order."""
+        """Return the events since the last call, in their order."""
         found: list[tuple[str, Event]] = []
         while self._called:
             found.append(self._called.popleft())
@@ -48,25 +48,25 @@ class Attention:
 
 @dataclass(frozen=True, slots=True)
 class Terms:
-    """What a run goes by, whatever its robots do.
+    """Conditions of a run, whatever its robots do.
 
     Attributes:
         run: identifier of the run.
         incarnation: differs each time that these robots are started within a run.
         observe: called with each step before it has an effect; a log, for example.
-        sync: has all that was observed of a robot be on the disk, and calls, from any thread, what it is
-            given then; no notify is sent before. None: nothing is kept.
+        sync: writes all observed steps of a robot to the disk, and then calls, from any thread, its
+            argument; no notify is sent before. None: nothing is kept.
         seconds: of the run's clock, after which it is cut off.
-        steps: number of them after which it is cut off, since a Choice can go round for ever.
+        steps: number of them after which it is cut off, since a Choice can loop forever.
         resumed: the steps that were made before the run was broken off, those of a robot in order.
-        unready: whether robots have still to get ready: each goes on, or begins, as soon as it is.
-        suspends: whether a battery that is low, and whose policy brings the robot down, breaks its program
+        unready: whether robots have still to get ready: each continues, or begins, as soon as it is.
+        suspends: whether a battery that is low, and whose policy lands the robot, breaks its program
             off without a fault, so that the run can be resumed with a full one.
-        patience: seconds for which the run then waits for the order to resume once nobody else works.
-        attention: through which vehicles and the bus wake the engine; None: nobody does.
-        orders: what people order meanwhile.
-        say: tells people what goes on.
-        standing: for people who ask how robots are.
+        patience: seconds for which the run then waits for the order to resume once no other robot works.
+        attention: through which vehicles and the bus wake the engine; None: they do not.
+        orders: orders of operators.
+        say: reports events to the operator.
+        standing: status of the robots, for queries.
     """
 
     run: str = "run-0"
@@ -86,7 +86,7 @@ class Terms:
 
 
 TO_THE_END = Terms()
-"""Of a run that nobody is told of and that comes to its end, unless a Choice goes round for ever."""
+"""Terms of an unobserved run that comes to its end, unless a Choice loops forever."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -95,7 +95,7 @@ class Ending:
 
     Attributes:
         outcome: INCOMPLETE where a limit cut it off.
-        waiting: the robots that waited for slots that nobody can set any more, when that first
+        waiting: the robots that waited for slots that can never be set, when that first
             became certain; it stays when policies then end their waits by a fault.
         faults: by robot.
         unconfirmed: robots that did not confirm that they have stopped.
@@ -103,9 +103,9 @@ class Ending:
         steps: how many were made.
         suspended: robots whose programs were broken off, to be resumed with a full battery.
         responses: to faults, by robot.
-        absent: robots that did not get ready and were told nothing; those of `suspended`, too.
-        came_down: in words how robots came down for their batteries that have not gone on since; those of
-            `suspended` that are not here are not known to have come down for that.
+        absent: robots that did not get ready and received no command; those of `suspended`, too.
+        came_down: in words how robots landed for their batteries that have not continued since; those of
+            `suspended` that are not here are not known to have landed for that.
         lost: robots whose links were lost, for a time at least, when they were to stop, or had.
     """
 

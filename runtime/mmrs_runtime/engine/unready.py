@@ -31,9 +31,9 @@ def reason_of(found: Fault) -> str:
 def record(
     robots: Mapping[str, Vehicle], faults: Mapping[str, Fault], fail: Callable[[str, str], None]
 ) -> None:
-    """Have logs say which programs have ended, and black boxes why none begins.
+    """Record in logs which programs have ended, and in black boxes why none begins.
 
-    A vehicle that was never heard may be there the next time: no log says that its program has ended.
+    A vehicle that never sent a message may be there the next time: no log records that its program has ended.
 
     Args:
         robots: all that were to begin.
@@ -50,11 +50,11 @@ def record(
 
 
 def note_alone(robots: Iterable[Vehicle], why: str) -> None:
-    """Have black boxes say that robots have not begun, since others are not ready."""
+    """Record in black boxes that robots have not begun, since others are not ready."""
     for robot in robots:
         note(robot, PEER_LOST, f"has not begun: {why}")
 
 
 def note(robot: Vehicle, what: str, why: str) -> None:
-    """Have a robot's black box say why it is told nothing."""
+    """Record in a robot's black box why it receives no command."""
     robot.note("decision", {"what": what, "why": why, "response": NOTHING})

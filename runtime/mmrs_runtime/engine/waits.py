@@ -21,7 +21,7 @@ class Peers:
     """
 
     def __init__(self, program: Program, here: Collection[str], slots: Slots) -> None:
-        """Know the robots of this process, and ask the bus for the others."""
+        """Create for the robots of this process, with the bus for the others."""
         self._here, self._slots = frozenset(here), slots
         self._setters: dict[SlotId, set[str]] = {}
         self._owners: dict[str, set[str]] = {}
@@ -56,11 +56,11 @@ class Wait:
 
     Attributes:
         since: when it began to wait; None: it does not.
-        lacking: names of the slots that it waited for when last looked at.
-        question: identifier of the condition that it waits to be decided; empty: of none.
+        lacking: names of the slots that it waited for at the last look.
+        question: identifier of the undecided condition that it waits for; empty: none.
         asking: that condition while a function of the user is asked; None: none is.
-        ask_at: when that function may be asked again, if it could not say yet; its answer wakes the robot.
-        is_told: whether people were told that it waits to be decided.
+        ask_at: when that function may be asked again, if it could not answer yet; its answer wakes the robot.
+        is_told: whether it was reported that it waits for a decision.
         deadline: when the wait ends by a fault; inf: never.
     """
 
@@ -84,7 +84,7 @@ class Wait:
         return True
 
     def extend(self, seconds: float) -> None:
-        """Count so many seconds less, in which the robot was held, and nobody could have ended the wait."""
+        """Extend the wait's deadline by the seconds that the robot was held."""
         self.since = None if self.since is None else self.since + seconds
         self._peer_lost_at = None if self._peer_lost_at is None else self._peer_lost_at + seconds
         self.deadline += seconds
@@ -111,10 +111,10 @@ class Wait:
 
 
 class Outgoing:
-    """A robot's notify on its way, and for how long nobody answers."""
+    """A robot's notify in progress, and how long its owners have been silent."""
 
     def __init__(self) -> None:
-        """Have everybody answer."""
+        """Start with no silent owner."""
         self._silent_since: float | None = None
 
     def silence(self, now: float) -> float:
@@ -124,12 +124,12 @@ class Outgoing:
         return now - self._silent_since
 
     def extend(self, seconds: float) -> None:
-        """Count so many seconds less, in which the robot was held."""
+        """Leave out the seconds that the robot was held."""
         self._silent_since = None if self._silent_since is None else self._silent_since + seconds
 
 
 def silent(owners: Collection[str], slots: Slots) -> str:
-    """Return who does not answer a notify, for people."""
+    """Return the owners that do not answer a notify, as printed."""
     words = f"no answer from {', '.join(owners)}"
     if unseen := slots.unseen(owners):
         words += f"; {', '.join(unseen)} never came while this robot was there, or had ended before"
@@ -137,5 +137,5 @@ def silent(owners: Collection[str], slots: Slots) -> str:
 
 
 def noted(wait: Wait, names: Collection[str], now: float) -> Mapping[str, object]:
-    """Return what a black box is told of a wait that is over."""
+    """Return the black box's entry of a wait that is over."""
     return {"slots": list(names), "seconds": now - (wait.since or 0.0)}

@@ -1,4 +1,4 @@
-"""Faults made on purpose (``--inject``), so that people rehearse them on the links they will fly with."""
+"""Injected faults (``--inject``), for rehearsals on the links of the real flight."""
 
 from __future__ import annotations
 

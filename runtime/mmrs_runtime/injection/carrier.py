@@ -1,4 +1,4 @@
-"""A carrier of the bus on which messages are lost, late or doubled on purpose, or that is cut for a while."""
+"""A carrier of the bus that loses, delays or doubles messages, or is cut for a while, as injected."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from ..clock import Clock
 from .spec import Injection
 
 UNREAD = ""
-"""An answer that nobody understands, which is as good as none."""
+"""An unreadable answer, which counts as none."""
 
 
 class InjectedCarrier:
@@ -38,20 +38,20 @@ class InjectedCarrier:
         self._pass(lambda: self._carrier.ask(sender, owner, request, self._late(answered)))
 
     def appear(self, robot: str) -> None:
-        """Tell everybody that a robot of this process can be reached, unless the bus is cut."""
+        """Announce that a robot of this process is reachable, unless the bus is cut."""
         with self._lock:
             self._here.add(robot)
             if not self._cut:
                 self._carrier.appear(robot)
 
     def vanish(self, robot: str) -> None:
-        """Tell everybody that a robot of this process can no longer be reached."""
+        """Announce that a robot of this process is unreachable."""
         with self._lock:
             self._here.discard(robot)
             self._carrier.vanish(robot)
 
     def publish(self, robot: str) -> None:
-        """Tell whoever looks on that the state of a robot's slots has changed, unless the bus is cut."""
+        """Publish to observers that the state of a robot's slots has changed, unless the bus is cut."""
         if not self._cut:
             self._carrier.publish(robot)
 

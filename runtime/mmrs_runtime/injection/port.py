@@ -1,6 +1,6 @@
-"""A port on which pieces are lost, late, doubled or damaged on purpose.
+"""A port that loses, delays, doubles or damages pieces, as injected.
 
-A piece is what is read or written at once: a datagram over UDP, whatever has come over TCP and from
+A piece is what is read or written at once: a datagram over UDP, any bytes received over TCP and from
 serial devices.
 """
 
@@ -67,7 +67,7 @@ class Line:
 
 
 class InjectedPort:
-    """A port with a line each way in front of it."""
+    """A port with a line in each direction in front of it."""
 
     def __init__(
         self,
@@ -113,7 +113,7 @@ class InjectedPort:
         return None
 
     def close(self) -> None:
-        """Close the port; what is still under way is lost."""
+        """Close the port; what is still in transit is lost."""
         with self._changed:
             self._open = False
             self._changed.notify_all()

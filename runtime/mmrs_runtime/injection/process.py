@@ -71,10 +71,10 @@ class FullDisk:
 
 
 class ClockJump:
-    """The wall clock of this process is wrong: `time.time` and `time.time_ns` are so many seconds off."""
+    """The wall clock of this process is wrong: `time.time` and `time.time_ns` are off by some seconds."""
 
     def __init__(self, seconds: float) -> None:
-        """Be so many seconds ahead."""
+        """Advance the clock by that many seconds."""
         self._seconds = seconds
         self._right = time.time, time.time_ns
 

@@ -1,4 +1,4 @@
-"""All faults that are made on purpose in one process: begun and ended at their time, told and recorded."""
+"""All injected faults of one process: begun and ended at their time, reported and recorded."""
 
 from __future__ import annotations
 
@@ -16,30 +16,31 @@ from .process import Effect, effect_of
 from .spec import OF_BUS, OF_PROCESS, OF_STATIONS, OF_VEHICLE, Injection, Injections
 
 Note = Callable[[str, Mapping[str, object]], None]
-"""Records a fault made on purpose: its text, and what is to be said about it."""
+"""Records an injected fault: its text, and its state."""
 
 LONGEST_WAIT = 60.0
-NO_STATION = "no ground station was heard yet"
+NO_STATION = "no ground station received yet"
 ONLY_SIMULATED = "the vehicle has no simulated satellites: it is a real one, or does not answer"
 
 
 class Stations(Protocol):
-    """Ground stations that are heard by a link; `deaf`: whether they are left unheard."""
+    """Ground stations that a link receives; `deaf`: whether they are ignored."""
 
     deaf: bool
 
     @property
     def systems(self) -> Collection[object]:
-        """Return those that are heard."""
+        """Return those that are received."""
         ...
 
 
 class Attended(NamedTuple):
-    """What faults of a robot's vehicle itself need.
+    """What faults of a robot's vehicle need.
 
     Attributes:
-        stations: heard by its link.
-        satellites: gives them to its vehicle, or takes them away; returns whether the vehicle confirms it.
+        stations: received by its link.
+        satellites: enables or disables satellite reception of its vehicle; returns whether the vehicle
+            confirms it.
     """
 
     stations: Stations
@@ -60,13 +61,13 @@ class Rehearsal:
         self._ends: list[tuple[float, Injection, Effect | None]] = []
         self._closed = threading.Event()
         self._noting = threading.Lock()
-        self._thread = threading.Thread(target=self._follow, name="faults on purpose", daemon=True)
+        self._thread = threading.Thread(target=self._follow, name="injected faults", daemon=True)
 
     def start(self) -> None:
-        """Say what will be done, and do it when it is time."""
+        """Announce the faults, and inject them at their times."""
         if self._injections.faults:
             faults = ", ".join(fault.text for fault in self._injections.faults)
-            self._say(f"faults are made on purpose: {faults}, seed={self._injections.seed}")
+            self._say(f"faults are injected: {faults}, seed={self._injections.seed}")
             self._thread.start()
 
     def close(self) -> None:
@@ -76,7 +77,7 @@ class Rehearsal:
             self._thread.join()
 
     def record(self, robot: str, note: Note) -> None:
-        """Have what concerns a robot recorded, beginning with what will be."""
+        """Register the recorder of a robot's faults, beginning with the announced ones."""
         self._notes[robot] = note
         for fault in self._injections.faults:
             if fault.robot in ("", robot):
@@ -98,7 +99,7 @@ class Rehearsal:
         outgoing = line([f for f in faults if f.name != "cut-in"], self._clock, f"{seed} out")
 
         def told(counts: Mapping[str, int]) -> None:
-            self._say(f"{_list(robots)}: pieces made faulty on purpose: {dict(counts)}")
+            self._say(f"{_list(robots)}: injected, in pieces: {dict(counts)}")
             self._note(robots, "link", {"state": "counted", **counts})
 
         return InjectedPort(port, self._clock, incoming, outgoing, told)
@@ -162,7 +163,7 @@ class Rehearsal:
         self._tell(fault, "ends")
 
     def _deafen(self, fault: Injection, *, deaf: bool) -> None:
-        """Have ground stations be heard or not; say where there is none, since nothing changes then."""
+        """Receive or ignore ground stations; report where there is none, since nothing changes then."""
         for robot, vehicle in tuple(self._vehicles.items()):
             if fault.robot in ("", robot):
                 vehicle.stations.deaf = deaf

@@ -20,9 +20,9 @@ TIMED = (*CUTS, "bus-cut", *OF_VEHICLE, *OF_STATIONS, *OF_PROCESS)
 NAMES = (*OF_LINK, *OF_BUS, *OF_VEHICLE, *OF_STATIONS, *OF_PROCESS)
 
 HELP = (
-    "make faults on purpose: loss=0.15, duplicate=0.05, corrupt=0.01 (parts of what is sent and heard),"
-    " delay=0.2~0.1 (seconds, more or less), cut@60+20 (nothing passes from second 60 of the run on, for"
-    " 20 s; cut-in, cut-out: one way), ground-cut@60+20 (ground stations are not heard), freeze@60+5,"
+    "inject faults: loss=0.15, duplicate=0.05, corrupt=0.01 (fractions of all packets),"
+    " delay=0.2~0.1 (seconds, plus or minus), cut@60+20 (no packet passes for 20 s from second 60 of the run"
+    " on; cut-in, cut-out: one direction), ground-cut@60+20 (ground stations are not received), freeze@60+5,"
     " disk-full@60+20, clock-jump@60+3600, gps-lost@60+20 (simulated vehicles only), bus-loss=0.1,"
     " bus-duplicate=0.1, bus-delay=0.5, bus-cut@60+20, seed=7; several with commas, ROBOT:loss=0.15 for one"
     " robot"
@@ -37,13 +37,13 @@ _FAULT = re.compile(rf"([a-z-]+)(?:=({_NUMBER})(?:~({_NUMBER}))?|@({_NUMBER})(?:
 
 @dataclass(frozen=True, slots=True)
 class Injection:
-    """One fault made on purpose.
+    """One injected fault.
 
     Attributes:
-        text: as it was asked for.
+        text: as given.
         robot: whose; empty: every robot's.
         name: one of `NAMES`.
-        amount: part of all pieces, seconds of delay, or seconds that the clock jumps.
+        amount: fraction of all pieces, seconds of delay, or seconds that the clock jumps.
         spread: seconds that a delay may differ.
         begins, ends: seconds of the run; `ends` inf: never.
     """
@@ -92,7 +92,7 @@ class Injections:
 def injections(
     texts: Sequence[str], urls: Mapping[str, str], *, dry: bool = False, alone: bool = False
 ) -> Injections:
-    """Return what ``--inject`` asks for.
+    """Return the faults that ``--inject`` asks for.
 
     Args:
         texts: each one or several faults, with commas between them.
@@ -101,7 +101,7 @@ def injections(
         alone: whether there are no robots in other processes.
 
     Raises:
-        ValueError: something is not understood, or makes no sense.
+        ValueError: a fault is not understood, or makes no sense.
     """
     faults: list[Injection] = []
     seed = 0
@@ -136,7 +136,7 @@ def _seed(word: str) -> int:
 def _fault(robot: str, word: str) -> Injection:
     stranger, colon, rest = word.rpartition(":")
     if colon:
-        raise ValueError(f"{word}: there is no robot {stranger!r}")
+        raise ValueError(f"{word}: unknown robot {stranger!r}")
     name = re.split("[=@]", rest)[0]
     if name not in NAMES:
         raise ValueError(f"{word!r}: is not a fault; there are {', '.join(NAMES)} and seed")

@@ -36,7 +36,7 @@ def network() -> str:
 
 
 class Unreachable(Exception):  # noqa: N818  # reads as what it says of the robots
-    """There is no process to give the order to, or it does not answer."""
+    """No process to give the order to, or it does not answer."""
 
 
 def object_in(line: str | bytes) -> dict[str, Any]:

@@ -55,9 +55,10 @@ def give(
     answer: bool = False,
     seconds: float = USUAL_SECONDS,
 ) -> Iterator[dict[str, Any]]:
-    """Give an order, and yield what each robot says as soon as it says it.
+    """Give an order, and yield each robot's answer as it arrives.
 
-    A process that has died, or hangs, keeps the order from nobody else: it is told of its robots.
+    A process that has died, or hangs, does not keep the order from others: its robots are reported as
+    unreachable.
 
     Args:
         folder: of the robots' logs.
@@ -120,7 +121,7 @@ def _replies(
 def _far(machine: str) -> Unreachable:
     return Unreachable(
         f"was started on {machine!r}, in another network than this or before a restart, and takes orders only"
-        " there: nobody can tell here if it runs"
+        " there: from here, it is unknown whether it runs"
     )
 
 
@@ -198,7 +199,12 @@ def _parser() -> argparse.ArgumentParser:
     add("--log", type=Path, default=Path("logs"), help="folder of the robots' logs")
     add("--question", help="that is answered")
     add("--says", choices=tuple(WORDS), default="no", help="the answer to the question")
-    add("--seconds", type=float, default=USUAL_SECONDS, help="to wait for the robots, 30 at most")
+    add(
+        "--seconds",
+        type=float,
+        default=USUAL_SECONDS,
+        help="how long to wait for confirmation, in seconds, 30 at most",
+    )
     return parser
 
 

@@ -20,12 +20,12 @@ STATUS = "status"
 
 ORDERS = {
     HOLD: "halt and stay until the next order",
-    RESUME: "go on after a hold, or after a change of batteries",
+    RESUME: "resume after a hold, or after a change of batteries",
     RETURN: "end the program and come home by the way it came",
     LAND: "end the program and come down where it is",
     STOP: "end the program as --on-stop says",
     ANSWER: "answer a question that the robot waits for",
-    STATUS: "tell where the robot is and what it does",
+    STATUS: "report the robot's state and activity",
 }
 """What can be ordered, and what it means."""
 
@@ -69,8 +69,8 @@ class Receipt:
     """One order to one robot, until the robot has obeyed it.
 
     Attributes:
-        order: what was ordered. robot: who has to obey.
-        confirmed: whether it has; None: not yet known. why: for people, why not, or how.
+        order: its kind. robot: its receiver.
+        confirmed: whether the robot has obeyed; None: not yet known. why: in words, why not, or how.
         seconds: real seconds from the order to its confirmation.
     """
 
@@ -86,11 +86,11 @@ class Receipt:
         self._lock = threading.Lock()
 
     def confirm(self, how: str = "") -> None:
-        """Say that the robot has obeyed; only the first answer counts."""
+        """Confirm that the robot has obeyed; only the first answer counts."""
         self._answer(True, how)
 
     def refuse(self, why: str) -> None:
-        """Say why the robot does not obey; only the first answer counts."""
+        """Refuse, with the reason; only the first answer counts."""
         self._answer(False, why)
 
     @property
@@ -176,7 +176,7 @@ class Inbox:
             receipt.refuse(why)
 
     def _keep(self, receipt: Receipt) -> bool:
-        """Put an order where the robot takes it from, unless nobody looks there any more."""
+        """Put an order where the robot takes it from, unless the inbox is closed."""
         with self._lock:
             if not self._closed:
                 self._waiting.append(receipt)

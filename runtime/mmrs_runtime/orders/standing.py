@@ -55,7 +55,7 @@ def _cells(reply: Reply) -> tuple[str, ...]:
         repr(reply["robot"]),
         ": ".join(str(reply[name]) for name in ("phase", "response") if reply.get(name)),
         _move(reply),
-        _motors(reply),
+        _vehicle(reply),
         _battery(reply),
         _place(reply.get("place")),
         f"{_number(reply['speed']):.1f} m/s" if reply.get("speed") is not None else "",
@@ -74,10 +74,10 @@ def _move(reply: Reply) -> str:
     return f"at {move!r}, {step} {when}"
 
 
-def _motors(reply: Reply) -> str:
+def _vehicle(reply: Reply) -> str:
     said = [str(reply["mode"])] if reply.get("mode") else []
     if "armed" in reply:
-        said.append(f"motors {'on' if reply['armed'] else 'off'}")
+        said.append("armed" if reply["armed"] else "disarmed")
     return ", ".join(said)
 
 
@@ -85,7 +85,7 @@ def _battery(reply: Reply) -> str:
     if "energy" not in reply:
         return ""
     energy = reply["energy"]
-    return "battery not told" if energy is None else f"battery {_number(energy):.0%}"
+    return "battery unknown" if energy is None else f"battery {_number(energy):.0%}"
 
 
 def _place(place: object) -> str:

@@ -1,18 +1,18 @@
-"""The black box: all that a robot decided, said, heard and where it was, one JSON object a line.
+"""The black box: all decisions, messages and positions of a robot, one JSON object a line.
 
-Beside the log of steps, ``NAME.jsonl``, lies ``NAME.blackbox.ndjson``. Every line has `run`, `robot`,
-`time` (seconds of the run), `wall` (UTC) and `kind`; what else there is depends on the kind:
+Next to the log of steps, ``NAME.jsonl``, lies ``NAME.blackbox.ndjson``. Every line has `run`, `robot`,
+`time` (seconds of the run), `wall` (UTC) and `kind`; the other keys depend on the kind:
 
 ``start``     plan, process, link, vehicle, firmware, home, system, versions
 ``fix``       place, speed, heading, energy, mode, armed
-``text``      severity, text: what the vehicle said
+``text``      severity, text: a message of the vehicle
 ``command``   name, params, result, seconds, tries
 ``upload``    what, items, seconds
 ``parameter`` name, value, was
 ``decision``  what, why, response
-``failed``    error, trace: what has gone wrong in the program itself
+``failed``    error, trace: an error of the program
 ``order``     order, confirmed, seconds, why; of an answer, question and says, too
-``injected``  fault, state: what was made to go wrong on purpose
+``injected``  fault, state: an injected fault
 ``wait``      slots, seconds
 ``photo``     index, place
 ``reported``  name, content
@@ -78,7 +78,7 @@ def last_time(path: Path) -> float:
 
 
 def plan_of(path: Path) -> str:
-    """Return which plan of the mission a black box tells of at its beginning; empty: it does not say."""
+    """Return the plan of the mission at the beginning of a black box; empty: it has none."""
     oldest = _part(path, 1)
     try:
         with (oldest if oldest.exists() else path).open("rb") as file:
@@ -114,16 +114,16 @@ class BlackBox:
         largest: int = LARGEST_PART,
         say: Callable[[str], None] = say,
     ) -> None:
-        """Go on with a file, or begin one.
+        """Continue a file, or begin one.
 
         Args:
             path: of the file; its folder is made.
             run: identifier of the run.
             robot: whose box it is.
             now: gives the seconds of the run.
-            mark: what every line says beside the rest, as that there was no vehicle.
+            mark: further keys of every line, such as that there was no vehicle.
             largest: bytes after which a new file is begun.
-            say: tells people that it cannot be written.
+            say: reports that it cannot be written.
         """
         self._path = path
         self._head = {"run": run, "robot": robot}
@@ -215,7 +215,7 @@ class BlackBox:
 
 
 def plain(value: object) -> object:
-    """Return a value as JSON has it: what is no number is null, what JSON does not know is text."""
+    """Return a value as JSON has it: NaN is null, values that JSON does not know are text."""
     if value is None or isinstance(value, str | bool | int):
         return value
     if isinstance(value, float):

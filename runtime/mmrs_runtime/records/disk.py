@@ -1,4 +1,4 @@
-"""Has files be on the disk, in a thread of its own: whoever wrote them goes on meanwhile."""
+"""Writes files to the disk in a thread of its own, while their writers continue."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ Kept = Callable[[OSError | None], None]
 
 
 def sync(file: IO[bytes], kept: Kept) -> Future[None]:
-    """Have all that was written to a file be on the disk, after whatever was asked for before.
+    """Write all of a file to the disk, after what was asked for before.
 
     The file may be closed meanwhile.
 

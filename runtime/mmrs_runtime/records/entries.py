@@ -1,7 +1,7 @@
-"""Reads the black boxes of robots: everything that was known, decided and done, one JSON object a line.
+"""Reads the black boxes of robots: knowledge, decisions and actions, one JSON object a line.
 
-A box is read although its end was cut off or lines of it were damaged, as when the power went: what
-cannot be read is told, and the rest is used. Lines are read one by one, so that days fit in memory.
+A box is read although its end was cut off or lines of it were damaged, as after a power failure:
+unreadable lines are reported, and the rest is used. Lines are read one by one, so that days fit in memory.
 """
 
 from __future__ import annotations
@@ -25,8 +25,8 @@ class Entry:
     Attributes:
         time: seconds of the run.
         wall: date and time of day as written, ISO 8601; empty where there is none.
-        kind: ``fix``, ``command``, ``decision`` …; kinds that nobody knows are entries, too.
-        content: what else the line says, by key.
+        kind: ``fix``, ``command``, ``decision`` …; unknown kinds are entries, too.
+        content: the other values of the line, by key.
     """
 
     run: str
@@ -46,7 +46,7 @@ class Damage:
     what: str
 
     def __str__(self) -> str:
-        """Return one line for people."""
+        """Return one line as printed."""
         return f"{self.file}:{self.line}: {self.what}" if self.line else f"{self.file}: {self.what}"
 
 
@@ -54,7 +54,7 @@ Tell = Callable[[Damage], None]
 
 
 def entries_of(path: Path, tell: Tell) -> Iterator[Entry]:
-    """Yield the entries of one file; tell what cannot be read.
+    """Yield the entries of one file; report unreadable lines.
 
     Raises:
         OSError: the file cannot be read.

@@ -24,12 +24,12 @@ class LogFile:
     """
 
     def __init__(self, path: Path, mode: Literal["a", "w"], *, synced: bool = True) -> None:
-        """Open nothing yet.
+        """Create without opening a file.
 
         Args:
             path: of the log.
-            mode: ``a``: go on after its last whole line; ``w``: replace it.
-            synced: whether a step is out of the process once it is written; else nothing is known to be
+            mode: ``a``: continue after its last whole line; ``w``: replace it.
+            synced: whether a step has left the process once it is written; otherwise nothing is known to be
                 there before the log is closed.
         """
         self._path, self._mode, self._synced = path, mode, synced
@@ -63,7 +63,7 @@ class LogFile:
         self._owed = None
 
     def sync(self, kept: Kept) -> None:
-        """Have what was written be on the disk; `kept` is called then, from another thread.
+        """Write the log to the disk; `kept` is called then, from another thread.
 
         Raises:
             OSError: there are too many open files.
@@ -118,16 +118,16 @@ class LogFile:
 class LogWriter:
     """Appends steps to one log a robot in a folder; the first step of a robot replaces an older log.
 
-    A run that is resumed goes on with its logs instead, after their last whole lines.
+    A run that is resumed continues its logs instead, after their last whole lines.
     """
 
     def __init__(self, folder: Path, *, resumed: bool = False, synced: bool = True) -> None:
-        """Open no file yet; make the folder where it is missing.
+        """Create without open files; make the folder where it is missing.
 
         Args:
             folder: of the logs.
-            resumed: whether to go on with logs that are there.
-            synced: whether steps survive whatever happens next; what is simulated can be simulated again.
+            resumed: whether to continue existing logs.
+            synced: whether steps survive whatever happens next; a simulation can be repeated.
         """
         folder.mkdir(parents=True, exist_ok=True)
         self._folder, self._resumed, self._synced = folder, resumed, synced
@@ -147,7 +147,7 @@ class LogWriter:
         file.write(record)
 
     def sync(self, robot: str, kept: Kept) -> None:
-        """Have what was written of a robot be on the disk, as `LogFile.sync` does."""
+        """Write a robot's log to the disk, as `LogFile.sync` does."""
         if robot in self._files:
             self._files[robot].sync(kept)
         else:
@@ -178,7 +178,7 @@ def read(path: Path) -> tuple[StepRecord, ...]:
     """Return the steps in the whole lines of a log; none where there is no such file.
 
     Raises:
-        Fault: it cannot be read, or a line is no step.
+        Fault: it cannot be read, or a line is not a step.
     """
     try:
         lines = whole_lines(path.read_bytes()) if path.exists() else []

@@ -74,7 +74,7 @@ def test_a_certificate_that_is_not_valid_yet_is_told_with_what_the_clock_says(en
 
 
 def test_an_endpoint_without_a_listener_is_told_apart_from_one_without_a_machine():
-    assert why_not(f"tcp/127.0.0.1:{free_port()}", None) == ("nobody listens there yet", "")
+    assert why_not(f"tcp/127.0.0.1:{free_port()}", None) == ("no listener there yet", "")
     assert why_not("tcp/no-such-host.invalid:7447", None)[0]
     assert why_not("serial//dev/ttyUSB0", None) == ("", "")
 

@@ -49,4 +49,4 @@ def test_a_stolen_key_is_refused_without_a_restart_once_it_is_revoked(ends, pair
     ends.certify()
     with pytest.raises(Unwelcome, match="'c' was started before in this run"):  # it is heard, and hears
         ends.open("c", settle=5.0)
-    assert "keys have changed; opened anew, accepting the certificates a, b, c 2, observer" in told
+    assert "keys have changed; reopened, accepting the certificates a, b, c 2, observer" in told

@@ -104,7 +104,7 @@ def test_a_robot_whose_disk_cannot_be_written_is_lost_until_it_can(pair, until, 
     assert not notify(a, "a", "b", 2, active=False, seconds=1.0)
     assert b.trouble("b").startswith("its slots cannot be kept")
     until(lambda: a.lost(["b"]), 5.0)
-    assert told[0].startswith("'b' answers nobody until its slots can be kept again: ")
+    assert told[0].startswith("'b' does not answer until its slots can be kept again: ")
     free()
     until(lambda: not a.lost(["b"]) and not b.trouble("b"), 5.0)
     assert notify(a, "a", "b", 3, active=False)

@@ -151,7 +151,7 @@ def test_a_choice_is_decided_by_the_users_own_conditions(controllers):
     made = controllers(program(robot))
     code, said = made.run("fleet.py", "--dry-run")
     assert code == 2
-    assert "nobody has said yet when 'it is \"windy\"' holds" in said
+    assert "condition 'it is \"windy\"' is not implemented yet" in said
     assert not made.logs.exists()
 
     conditions = made.folder / "conditions.py"
@@ -175,8 +175,8 @@ def test_one_of_several_robots_does_not_start_alone(controllers):
     [
         (["--connect", "gamma=udpin:127.0.0.1:1"], "there is no robot 'gamma'"),
         (["--connect", "udpin:127.0.0.1:1"], "which robot"),
-        (["--speedup", "-1"], "is no positive number"),
-        (["--home-tolerance", "nan"], "is no positive number"),
+        (["--speedup", "-1"], "must be a positive number"),
+        (["--home-tolerance", "nan"], "must be a positive number"),
     ],
 )
 def test_a_wrong_command_line_is_a_usage_error(controllers, arguments, complaint):
@@ -202,7 +202,7 @@ def test_an_object_that_nobody_looks_for_is_refused_before_anything_moves(contro
     made = controllers(buoy(2.0))
     code, said = made.run("fleet.py", "--dry-run")
     assert code == 2
-    assert "nobody has said yet how 'a buoy' is found" in said
+    assert "finding 'a buoy' is not implemented yet" in said
     assert not made.logs.exists()
 
 

@@ -305,7 +305,7 @@ def test_a_program_that_has_ended_by_a_fault_does_not_go_on(controllers):
         process.communicate(timeout=60)
     code, said = made.run("fleet.py", "--dry-run", "--resume")
     assert code == 1
-    assert "cannot go on: it has ended by STOPPED" in said
+    assert "cannot be resumed: it has ended by STOPPED" in said
 
 
 @pytest.mark.parametrize(

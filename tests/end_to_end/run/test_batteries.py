@@ -39,7 +39,7 @@ def test_a_robot_in_the_air_waits_for_one_whose_battery_is_changed_and_then_goes
         lambda: any(s["move"] == "out" and s["label"] == "end" for s in flown.steps("b")), PATIENCE
     )
     vehicle.faults.set_battery(0.15)
-    words = "nothing goes on until somebody orders something: 'b' waits after 'out'"
+    words = "nothing continues without an order: 'b' waits after 'out'"
     assert wait_for(lambda: any(words in line for line in process.said), PATIENCE), process.said
     assert not vehicle.autopilot.armed
     assert flown.vehicles["b"].autopilot.armed

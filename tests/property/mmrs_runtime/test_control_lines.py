@@ -81,4 +81,4 @@ def test_any_line_without_the_token_is_refused_in_words(channel, line):
 def test_an_order_to_no_robots_is_no_order_to_all(channel, robots):
     send, token = channel
     said = send(json.dumps({"token": token, "order": "land", "robots": robots}).encode())
-    assert said == [{"error": "robots: is no list of names"}]
+    assert said == [{"error": "robots: must be a list of names"}]

@@ -19,7 +19,7 @@ from mmrs_runtime.orders.ordering import give
 
 AT = "at its place"
 INJECTED_AT = 40
-"""Second of the run at which faults are made on purpose: by then, robots are at their places."""
+"""Second of the run at which faults are injected: by then, robots are at their places."""
 
 STAY = 60.0
 STATION_SILENCE = 4.0

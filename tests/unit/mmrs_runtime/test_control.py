@@ -180,8 +180,8 @@ def test_only_its_user_may_read_the_token(tmp_path, opened, inboxes):
     [
         ({"order": "explode"}, "order: 'explode' is none of hold"),
         ({"order": "hold", "robots": ["gamma"]}, "'gamma': no robot of this process"),
-        ({"order": "hold", "robots": 7}, "robots: is no list of names"),
-        ({"order": "hold", "seconds": True}, "seconds: is no number"),
+        ({"order": "hold", "robots": 7}, "robots: must be a list of names"),
+        ({"order": "hold", "seconds": True}, "seconds: must be a number"),
         ({"order": "answer", "question": "is it safe"}, "answer: needs a question"),
     ],
 )
@@ -349,7 +349,8 @@ def test_a_robot_that_was_started_again_after_its_process_was_killed_is_told_onc
 def test_of_a_process_on_another_machine_nobody_says_that_it_has_ended(tmp_path):
     left_by_a_killed_process(tmp_path, ["alpha"], machine="heron", network="of heron")
     with pytest.raises(
-        Unreachable, match=r"'alpha': was started on 'heron', in another network.*can tell here if it runs"
+        Unreachable,
+        match=r"'alpha': was started on 'heron', in another network.*it is unknown whether it runs",
     ):
         list(give(tmp_path, "hold"))
 

@@ -46,7 +46,7 @@ def test_a_reader_who_wakes_is_told_how_much_was_left_out(full):
             say(LINE)
         os.read(reads, MOST)
         say("'Alba': stopped")
-    assert os.read(reads, MOST) == b"(lines left out here, which nobody took: 3)\n'Alba': stopped\n"
+    assert os.read(reads, MOST) == b"(lines left out here, which were not read: 3)\n'Alba': stopped\n"
 
 
 class Busy(io.StringIO):
@@ -66,7 +66,7 @@ def test_words_that_were_refused_are_counted_as_left_out():
     with redirect_stderr(stream), unfailing():
         say("stopping")
         say("stopped")
-    assert stream.getvalue() == "(lines left out here, which nobody took: 1)\nstopped\n"
+    assert stream.getvalue() == "(lines left out here, which were not read: 1)\nstopped\n"
 
 
 def test_long_words_arrive_as_they_are_where_somebody_reads():

@@ -17,9 +17,9 @@ def test_several_robots_stand_in_columns():
     flies = {**FLIES, "energy": 0.934, "move": "m18", "step": "begin", "time": 605.569903}
     stands = {**STANDS, "energy": None, "move": "start", "step": "end", "time": 3.97, "place": NEAR}
     assert list(lines_of([flies, stands])) == [
-        "'Kestrel'  works  'm18' since 10:06     guided, motors on  battery 93%       "
+        "'Kestrel'  works  'm18' since 10:06     guided, armed   battery 93%      "
         "42.350392, 13.390899, 35.0 m up      3.3 m/s",
-        "'Bo'       works  'start' done at 0:04  hold, motors off   battery not told  "
+        "'Bo'       works  'start' done at 0:04  hold, disarmed  battery unknown  "
         "-2.0 m north, 11.5 m east, 0.0 m up  0.0 m/s",
     ]
 

@@ -87,4 +87,4 @@ def test_of_figures_that_a_robot_does_not_know_nothing_is_shown(tmp_path, strang
     unknown = {"speed": None, "energy": None, "place": {"north": None, "east": None, "height": 1.0}}
     stranger(json.dumps({"robot": "gamma", "phase": "works", **unknown}).encode() + b'\n{"done": true}\n')
     assert main(["status", "--log", str(tmp_path)]) == 0
-    assert capsys.readouterr().out == "'gamma'  works  battery not told\n"
+    assert capsys.readouterr().out == "'gamma'  works  battery unknown\n"

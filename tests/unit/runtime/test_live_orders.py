@@ -214,7 +214,7 @@ def test_a_robot_whose_link_comes_back_is_waited_for_and_obeys(live):
     assert run.order(LAND).refused == {"r": "its link is lost"}
     del walker.respond, walker.watched
     walker.watched_for, walker.heard, walker.trouble = True, True, None
-    run.wait_for(lambda: "'r': is heard again: orders are obeyed" in run.said)
+    run.wait_for(lambda: "'r': link restored: orders are obeyed" in run.said)
     assert list(run.order(LAND).confirmed) == ["r"]
     walker.watched_for = False
     run.end()
@@ -235,7 +235,7 @@ def returning(live):
 def test_a_robot_that_was_told_to_stop_before_its_link_was_lost_is_listened_for(live):
     run, walker = returning(live)
     walker.heard = True
-    run.wait_for(lambda: "'r': is heard again: orders are obeyed" in run.said)
+    run.wait_for(lambda: "'r': link restored: orders are obeyed" in run.said)
     assert run.order(LAND, "r").confirmed
     walker.watched_for = False
     ending = run.end()

@@ -143,7 +143,7 @@ def test_a_hold_that_is_taken_back_before_the_robot_is_ready_is_refused(live):
     run = connected(live, Script(ready=inf))
     held = run.orders.give(HOLD, ["a"])
     assert list(run.order(RESUME, "a").confirmed) == ["a"]
-    assert held.refused == {"a": "it is to go on"}
+    assert held.refused == {"a": "it is ordered to continue"}
 
 
 def test_nobody_begins_together_while_a_robot_is_held(live):

@@ -86,7 +86,7 @@ def test_people_who_ask_are_told_what_a_robot_does_instead_of_its_program_and_wh
     walker.fail("TAKEN_OVER")
     run.wait_for(lambda: walker.stops == ["RETURN", "NOTHING"])
     told = standing.status("r")
-    assert (told["phase"], "response" in told) == ("somebody else has it", False)
+    assert (told["phase"], "response" in told) == ("under external control", False)
     run.end()
 
 

@@ -206,13 +206,13 @@ def test_nothing_is_obeyed_on_the_ground_while_somebody_else_has_started_the_mot
     walker.fail("BATTERY_LOW")
     run.wait_for(lambda: "'a': has done RETURN" in run.said)
     walker.armed = True
-    assert run.order(kind, "a").refused == {"a": "its motors run: somebody else has it"}
+    assert run.order(kind, "a").refused == {"a": "it is armed: the vehicle is under external control"}
     assert walker.stops == ["RETURN"]
 
 
 def test_robots_that_wait_for_one_whose_battery_is_changed_are_not_left_alone(live):
     run = suspended(live)
-    run.wait_for(lambda: any("nothing goes on until somebody orders something" in line for line in run.said))
+    run.wait_for(lambda: any("nothing continues without an order" in line for line in run.said))
     assert any("'b' waits after 'h' for 's'" in line for line in run.said)
     time.sleep(0.2)
     assert run.script.robots["b"].stops == []
@@ -225,7 +225,7 @@ def test_robots_that_wait_for_one_whose_battery_is_changed_are_not_left_alone(li
 def test_robots_in_the_air_that_nobody_will_ever_free_are_not_left_alone(live):
     behaviour = program(robot("a", [do("h")], waits={"h": ["s"]}), robot("b", [do("walk")], policies=LOW))
     run = live(behaviour, Script())
-    run.wait_for(lambda: any("nothing goes on until somebody orders something" in line for line in run.said))
+    run.wait_for(lambda: any("nothing continues without an order" in line for line in run.said))
     assert list(run.order(LAND, "a").confirmed) == ["a"]
     assert [each.robot for each in run.end().waiting] == ["a"]
 
@@ -314,5 +314,5 @@ def test_a_log_of_another_behaviour_is_refused(live, kinds):
     other = program(robot("r", [do("swim")]))
     given = inputs_of(other, types={ROBOT_TYPE: robot_type()}, options={}, environment={}, areas=(), **kinds)
     venture = venture_for(other, given, Script().factory, LocalSlots(other.executable), {})
-    with pytest.raises(ValueError, match="none of its program's"):
+    with pytest.raises(ValueError, match="not one of its program's"):
         run_live(replace(venture, resumed=tuple(run.records)))

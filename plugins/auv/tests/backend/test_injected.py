@@ -107,7 +107,7 @@ def test_all_robots_of_a_run_have_the_same_faults() -> None:
         ("ground-cut@3", "ground-cut@3: is for vehicles that speak MAVLink"),
         ("loss=2", "is a part of all"),
         ("flood", "'flood': is not a fault"),
-        ("Nobody:loss=0.1", "there is no robot 'Nobody'"),
+        ("Nobody:loss=0.1", "unknown robot 'Nobody'"),
     ],
 )
 def test_faults_that_no_vehicle_on_a_bus_has_are_refused(text: str, said: str) -> None:

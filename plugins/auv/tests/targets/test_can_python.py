@@ -248,7 +248,7 @@ def test_objects_that_no_camera_looks_for_are_asked_for(tmp_path: Path) -> None:
     folder = generated(to_buoy(), tmp_path / "code")
     done = call(folder, "--dry-run", "--log", str(tmp_path / "logs"))
     assert done.returncode == 2
-    assert "objects.py: nobody has said yet how 'red buoy' is found" in done.stderr
+    assert "objects.py: finding 'red buoy' is not implemented yet" in done.stderr
     done = call(folder, "--dry-run", "--log", str(tmp_path / "logs"), "--detections", "4000")
     assert done.returncode == 0, done.stderr
 

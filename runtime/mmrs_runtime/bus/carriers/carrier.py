@@ -16,8 +16,8 @@ class Station(Protocol):
 
         Args:
             owner: robot of this process.
-            sender: who asks, as far as the carrier vouches for it.
-            request: as written by whoever asks; anything.
+            sender: sender of the request, as far as the carrier vouches for it.
+            request: as written by the sender; anything.
         """
         ...
 
@@ -30,7 +30,7 @@ class Station(Protocol):
         ...
 
     def shown(self, robot: str) -> str:
-        """Return the state of the slots of one of this process's robots, for whoever looks on."""
+        """Return the state of the slots of one of this process's robots, for observers."""
         ...
 
 
@@ -53,19 +53,19 @@ class Carrier(Protocol):
         ...
 
     def appear(self, robot: str) -> None:
-        """Tell everybody that a robot of this process can be reached."""
+        """Announce that a robot of this process is reachable."""
         ...
 
     def vanish(self, robot: str) -> None:
-        """Tell everybody that a robot of this process can no longer be reached."""
+        """Announce that a robot of this process is unreachable."""
         ...
 
     def publish(self, robot: str) -> None:
-        """Tell whoever looks on that the state of a robot's slots has changed."""
+        """Publish to observers that the state of a robot's slots has changed."""
         ...
 
     def close(self) -> None:
-        """Stop; nobody is served any more when this returns."""
+        """Stop; no request is served after this returns."""
         ...
 
 

@@ -1,4 +1,4 @@
-"""Why peers cannot be reached: Zenoh tries again and again, and does not say what keeps it from them."""
+"""Why peers cannot be reached: Zenoh retries again and again without reporting the cause."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from pathlib import Path
 from ..threads import Net
 
 FIRST_SECONDS, THEN_SECONDS = 4.0, 30.0
-"""After how long people are told why peers cannot be reached, and how often that is tried anew."""
+"""Seconds after which an unreachable peer is reported, and between two checks of it."""
 
 ANSWER_SECONDS = 2.0
 _MOST = 1 << 16
@@ -41,13 +41,13 @@ class Doubts:
     def __init__(
         self, endpoints: Sequence[str], papers: Papers | None, peers: Callable[[], int], net: Net
     ) -> None:
-        """Tell nothing yet.
+        """Create without reports.
 
         Args:
             endpoints: of the peers.
             papers: None: there are none.
             peers: how many can be reached now.
-            net: tells people, each thing once.
+            net: reports to the operator, each thing once.
         """
         self._endpoints, self._papers, self._peers, self._net = endpoints, papers, peers, net
         self._over = threading.Event()
@@ -80,9 +80,9 @@ class Doubts:
 
 
 def why_not(endpoint: str, papers: Papers | None) -> tuple[str, str]:
-    """Return why nobody is heard at an endpoint, and why who is heard there and this process part again.
+    """Return why there is no listener at an endpoint, and why its listener and this process disconnect again.
 
-    Each is empty where that is not the matter, and for endpoints that are neither TCP nor TLS.
+    Each is empty where it does not apply, and for endpoints that are neither TCP nor TLS.
     """
     way, _, address = endpoint.partition("/")
     host, _, port = address.partition("#")[0].partition("?")[0].rpartition(":")
@@ -94,7 +94,7 @@ def why_not(endpoint: str, papers: Papers | None) -> tuple[str, str]:
     except TimeoutError:
         return "nothing answers at this address", ""
     except ConnectionRefusedError:
-        return "nobody listens there yet", ""
+        return "no listener there yet", ""
     except OSError as error:
         return (error.strerror or str(error)).lower(), ""
 

@@ -1,4 +1,4 @@
-"""Endpoints of Zenoh: what is none is told before anything is opened."""
+"""Endpoints of Zenoh: an invalid one is reported before anything is opened."""
 
 from __future__ import annotations
 

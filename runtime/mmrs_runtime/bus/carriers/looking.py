@@ -20,8 +20,8 @@ def states_of(
     Args:
         mission, run: of the robots.
         endpoints: how they are reached.
-        seconds: for which they are asked; less where all that are wanted have answered.
-        robots: that are wanted; none: whoever answers.
+        seconds: how long to wait for answers; less where all wanted robots have answered.
+        robots: wanted robots; empty for all that answer.
 
     Raises:
         OSError: the bus cannot be opened.

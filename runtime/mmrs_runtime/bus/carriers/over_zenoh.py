@@ -1,9 +1,9 @@
 """A carrier between processes and machines, by Zenoh (``pip install eclipse-zenoh``), peer to peer.
 
 Keys hold digests, so that no name can reach beyond its own mission and run:
-``mmrs/MISSION/RUN/OWNER/from/SENDER`` for requests, ``…/ROBOT/here/START`` for who is there,
+``mmrs/MISSION/RUN/OWNER/from/SENDER`` for requests, ``…/ROBOT/here/START`` for presence,
 ``…/ROBOT/state`` for the state of slots. With certificates, access control binds SENDER and ROBOT to
-the certificate of whoever speaks.
+the certificate of the peer.
 """
 
 from __future__ import annotations
@@ -190,14 +190,14 @@ class ZenohCarrier:
         return self._session.liveliness().declare_token(f"{self._key(robot, 'here')}/{self._start}")
 
     def vanish(self, robot: str) -> None:
-        """Tell that a robot is no longer there; it still answers."""
+        """Announce that a robot is no longer present; it still answers."""
         with self._closing:
             token = self._tokens.pop(robot, None)
         if token is not None:
             token.undeclare()
 
     def publish(self, robot: str) -> None:
-        """Tell whoever looks on the state of a robot's slots."""
+        """Publish the state of a robot's slots to observers."""
         if self._station is None:
             return
         shown = _shown(self._station, robot)
@@ -269,7 +269,7 @@ class ZenohCarrier:
         (self._station.noticed if fits else self._station.stranger)(name, bool(starts))
 
     def _lose(self, there: _There) -> None:
-        """Take note that nobody is there any more of those that were."""
+        """Mark all present peers as gone."""
         if self._station is not None:
             for (name, fits), starts in there.items():
                 if starts:
@@ -283,7 +283,7 @@ class ZenohCarrier:
         return parts[3], parts[5]
 
     def _key(self, robot: str, what: str, other: str | None = "") -> str:
-        """Return a key; `other` None: whoever it is, empty: nobody."""
+        """Return a key; `other` None: any robot, empty: none."""
         ending = "" if other == "" else f"/{'*' if other is None else digest(other)}"
         return f"{self._prefix}/{digest(robot)}/{what}{ending}"
 

@@ -58,10 +58,10 @@ class Renewing:
                 self.look()
 
     def look(self) -> None:
-        """Look once; what is wrong with changed files is told, and nothing changes.
+        """Check once; a problem with changed files is reported, and nothing changes.
 
         Raises:
-            OSError: the session cannot be opened anew.
+            OSError: the session cannot be reopened.
         """
         contents = self._contents()
         if contents == self._seen and self._access is not None:
@@ -75,7 +75,7 @@ class Renewing:
             return
         if (access := _access(config)) != self._access:
             self._net.tell(
-                f"keys have changed; opened anew, accepting the certificates {', '.join(admitted(config))}"
+                f"keys have changed; reopened, accepting the certificates {', '.join(admitted(config))}"
             )
             self._access = None  # until the session is open
             self._renew(config)

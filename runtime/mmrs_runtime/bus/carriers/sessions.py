@@ -27,7 +27,8 @@ CLOSING_SECONDS, LAST_SECONDS = 1.0, 2.0
 
 READERS = 64
 """Threads that read from the network. Zenoh blocks two of them for ten seconds with every machine that goes
-out of reach (it closes sockets that linger); without one that is free, nobody else is heard either."""
+out of reach (it closes sockets that linger); without a free one, no other peer is received either.
+"""
 
 _FILES = (
     "root_ca_certificate",
@@ -139,7 +140,7 @@ def exposed(config: Any) -> tuple[str, ...]:
 
 
 def _refuse_ways(endpoints: Endpoints, allowed: Sequence[str] | None) -> None:
-    """Refuse endpoints that Zenoh would try in vain, and without a word.
+    """Refuse endpoints that Zenoh would retry silently without success.
 
     Raises:
         OSError: one needs certificates and there are none, the file does not allow it, or Zenoh, which takes
@@ -157,7 +158,7 @@ def _refuse_ways(endpoints: Endpoints, allowed: Sequence[str] | None) -> None:
 
 
 def papers_of(file: Path | None) -> Papers | None:
-    """Return what a configuration says of certificates; None: nothing, or not all of it."""
+    """Return a configuration's certificates; None where it names none, or not all of them."""
     if file is None:
         return None
     config = _from_file(file)

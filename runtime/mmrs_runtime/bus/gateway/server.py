@@ -1,9 +1,9 @@
 """The bus for programs that have no Zenoh: lines of JSON over loopback TCP.
 
-One gateway serves one robot, and one program at a time; whoever connects and does not say hello keeps
-nobody waiting. It keeps that robot's slots as any other end
-of the bus does, but only while the program is connected: when the program goes without having ended,
-or the gateway dies, the robot is lost to the others.
+One gateway serves one robot, and one program at a time; a client that connects and does not say hello
+blocks no other. The gateway keeps that robot's slots as any other end
+of the bus does, but only while the program is connected: when the program disconnects without having ended,
+or the gateway dies, the other robots lose the robot.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ from ..words import LARGEST, LONGEST, Unreadable, number_in, object_in, text_in
 from .session import Session
 
 FILE = "gateway.json"
-"""Name of the file that says where a gateway listens, and with which token it is spoken to."""
+"""Name of the file with a gateway's address and token."""
 
 HELLO_SECONDS = 5.0
 """How long a program has to say hello, and how long it waits for the one before it to be gone."""
@@ -32,7 +32,7 @@ HELLO_SECONDS = 5.0
 SORE_SECONDS = 0.2
 MOST_WAITING = 512
 MOST_CALLERS = 16
-"""How many programs are heard at once, one of them served; the first to connect gives way to the last."""
+"""Clients connected at once, one of them served; a new client beyond that replaces the first."""
 
 LONGEST_SILENCE = 3600
 
@@ -57,15 +57,15 @@ class Gateway:
         *,
         hello_seconds: float = HELLO_SECONDS,
     ) -> None:
-        """Listen, and say where in a file that only this user can read.
+        """Listen, and announce the address in a file that only this user can read.
 
         Args:
             robot: for which a program speaks here.
             run: identifier of the run.
-            enter: opens this end of the bus for the robot; given what the log of a program that was
-                started again says, None for one that begins.
+            enter: opens this end of the bus for the robot; given the log of a program that was
+                started again, None for one that begins.
             folder: for the file.
-            port: to listen at; 0: any that is free.
+            port: to listen on; 0 picks a free port.
             hello_seconds: that a program has to say hello.
 
         Raises:
@@ -87,7 +87,7 @@ class Gateway:
         """Serve one program after the other, until `close` is called.
 
         Args:
-            say: tells people what goes on.
+            say: reports events to the operator.
         """
         while not self._closed.is_set():
             try:
@@ -216,7 +216,7 @@ def _notify_in(each: object) -> tuple[tuple[str, str], tuple[bool, int]]:
         case [str(robot), str(slot), bool(active), int(lamport)]:
             return (robot, slot), (active, _time_in({"lamport": lamport}))
         case _:
-            raise Unreadable("resumed: notifies are no lists of robot, slot, value and logical time")
+            raise Unreadable("resumed: notifies must be lists of robot, slot, value and logical time")
 
 
 def _time_in(content: Mapping[str, Any]) -> int:

@@ -1,4 +1,4 @@
-"""One program at a gateway: what it asks, and what it is told."""
+"""One program at a gateway: its requests, and the events it receives."""
 
 from __future__ import annotations
 
@@ -30,10 +30,10 @@ from ..words import (
 )
 
 WAITING_SECONDS = 1.0
-"""How often a program is told for whom its notify waits."""
+"""How often a program is sent the robots that its notify waits for."""
 
 DEAF_SECONDS = 5.0
-"""How long a program may leave what it is told unread, when no more of it can be sent."""
+"""How long a program may leave its messages unread, once no more can be sent."""
 
 WATCHING_SECONDS = 0.2
 """How often it is looked whether a program is still there that has said how often it speaks."""
@@ -52,10 +52,10 @@ def line_of(lines: IO[bytes]) -> bytes:
 
 
 class Session:
-    """Serves one program until it goes.
+    """Serves one program until it disconnects.
 
     Attributes:
-        why: it was sent away, as the end of a sentence; empty: it went by itself.
+        why: it was disconnected, as the end of a sentence; empty: it disconnected first.
     """
 
     def __init__(
@@ -87,7 +87,7 @@ class Session:
         node.on_change(self._take_note)
 
     def run(self, lines: IO[bytes]) -> None:
-        """Answer every line, and tell what changes, until the program goes."""
+        """Answer every line, and send every change, until the program disconnects."""
         slots = list(self._slots)
         self._say({"is": "welcome", "robot": self._robot, "run": self._run, "slots": slots})
         teller = threading.Thread(target=self._tell_news, name="gateway news", daemon=True)
@@ -168,7 +168,7 @@ class Session:
     def _delivery(self, number: int) -> Delivery:
         found = self._deliveries.get(number)
         if found is None:
-            raise Unreadable(f"number {number}: no such notify is on its way")
+            raise Unreadable(f"number {number}: no such notify is in progress")
         return found
 
     def _state(self, content: Mapping[str, Any]) -> Mapping[str, object]:
@@ -204,10 +204,10 @@ class Session:
         return {"is": "begun", "offset": begun.offset, "uncertainty": begun.uncertainty, "late": begun.late}
 
     def _stay(self, missing: str) -> None:
-        """Make sure that the program that waits is still there: nobody begins together with one that is not.
+        """Check that the waiting program is still connected: a robot without its program must not begin.
 
         Raises:
-            OSError: it has gone.
+            OSError: it has disconnected.
         """
         heard, _, _ = select([self._connection], [], [], 0.0)
         if heard and not self._connection.recv(1, socket.MSG_PEEK):
@@ -254,7 +254,7 @@ class Session:
         try:
             self._connection.sendall(json.dumps(content).encode() + b"\n")
         except BlockingIOError:
-            self.why = ": it reads nothing of what it is told"
+            self.why = ": it does not read its messages"
             self._over.set()
             self.hang_up()
         except OSError:

@@ -14,7 +14,7 @@ from mmrs_runtime.injection import Rehearsal, injections
 pytestmark = pytest.mark.real_time("parts of flights")
 
 STATION = heartbeat(kind=mavlink.MAV_TYPE_GCS, autopilot=mavlink.MAV_AUTOPILOT_INVALID)
-NOBODY = "'alpha': ground-cut@0+0.5: no ground station was heard yet"
+NOBODY = "'alpha': ground-cut@0+0.5: no ground station received yet"
 
 
 @pytest.fixture

@@ -78,7 +78,7 @@ def test_what_is_timed_comes_in_its_order():
         ("freeze@60", "say for how many seconds"),
         ("clock-jump@60+4000000000", "no calendar reaches so far"),
         ("clock-jump@60", "say by how many seconds"),
-        ("gamma:loss=0.1", "there is no robot 'gamma'"),
+        ("gamma:loss=0.1", "unknown robot 'gamma'"),
         ("alpha:freeze@1+1", "concerns all robots"),
         ("alpha:disk-full@1", "concerns all robots"),
         ("seed=x", "is not seed=NUMBER"),

@@ -179,7 +179,7 @@ def test_a_session_is_opened_anew_once_where_a_list_has_changed(keys):
     process.renewing.look()
     process.renewing.look()
     assert process.opened == [["a", "b 2", "observer"]]
-    assert process.told == ["keys have changed; opened anew, accepting the certificates a, b 2, observer"]
+    assert process.told == ["keys have changed; reopened, accepting the certificates a, b 2, observer"]
 
 
 def test_a_forged_list_changes_nothing_while_a_process_runs_and_is_told(keys, theirs):

@@ -86,7 +86,7 @@ def test_people_are_told_of_a_full_disk_each_time_that_it_gets_full(pair):
         pair.notify(number)
         pair.disk.full = False
         pair.go_on()
-    assert pair.told == ["'b' answers nobody until its slots can be kept again: No space left on device"] * 2
+    assert pair.told == ["'b' does not answer until its slots can be kept again: No space left on device"] * 2
 
 
 def test_a_robot_that_has_ended_does_not_come_back_when_there_is_room(pair):
@@ -115,7 +115,7 @@ def test_what_fails_when_it_hears_of_a_change_keeps_nobody_from_being_served(pai
     pair.b.on_change(lambda: heard.append(1))
     assert pair.notify(1)
     assert heard
-    assert pair.told == ["telling of a change: fails, and goes on: RuntimeError('cannot draw')"]
+    assert pair.told == ["telling of a change: fails, and continues: RuntimeError('cannot draw')"]
 
 
 def test_an_owner_that_fails_says_so_to_whoever_asks(pair, monkeypatch):
