@@ -15,6 +15,14 @@ ROBOT = ("urn:mmrs:robot:1.0", "Robot")
 
 
 @pytest.fixture(scope="session")
+def contributions():
+    """Return what the installed plug-ins contribute."""
+    from mmrs_core.plugins import load_plugins
+
+    return load_plugins().contributions
+
+
+@pytest.fixture(scope="session")
 def registry() -> Registry:
     return registry_with((*plugin.mmrs_metamodels(), sample_tasks()))
 

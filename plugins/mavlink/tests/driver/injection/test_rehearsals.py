@@ -35,7 +35,7 @@ def result_of(script: str, folder: Path):
         timeout=60,
         cwd=folder,
         check=False,
-        env={"PYTHONPATH": str(Path(__file__).parents[4])},
+        env={"PYTHONPATH": str(Path(__file__).parents[5])},
     )
     assert done.returncode == 0, done.stderr
     return json.loads(done.stdout)
