@@ -33,7 +33,7 @@ from mmrs_core.behaviour.log import read_logs
 from mmrs_core.behaviour.program import Program
 from mmrs_core.behaviour.replay import replay
 from mmrs_core.contributions.vehicles import VehicleInput
-from mmrs_core.runtime.simulation import SIMULATION
+from mmrs_core.simulation.simulation import SIMULATION
 from mmrs_core.testing.small_programs import go, hold, notify, program, robot, robot_type
 from mmrs_core.transformation.kinds import MOVE_KINDS, PLAIN_ROBOT
 from mmrs_runtime.bus import begin_together

@@ -26,8 +26,8 @@ from typing import Any
 from pymavlink import mavutil
 
 from mmrs_core.behaviour.program import Program
-from mmrs_core.runtime.live import run_live, venture_for
-from mmrs_core.runtime.run import inputs_of
+from mmrs_core.simulation.live import run_live, venture_for
+from mmrs_core.simulation.run import inputs_of
 from mmrs_core.testing.programs import move, program, quad, robot_program, take_off
 from mmrs_mavlink.plugin.backend import MAVLINK
 from mmrs_mavlink.sitl import Settings, SimulatedVehicle

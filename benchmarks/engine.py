@@ -27,9 +27,9 @@ from pathlib import Path
 from resource import RUSAGE_SELF, getrusage
 
 from mmrs_core.behaviour.program import Move, RobotProgram
-from mmrs_core.runtime.run import simulate
-from mmrs_core.runtime.simulation import SIMULATION
 from mmrs_core.scene import Policy
+from mmrs_core.simulation.run import simulate
+from mmrs_core.simulation.simulation import SIMULATION
 from mmrs_core.testing.small_programs import ROBOT_TYPE, go, hold, notify, program, robot, robot_type
 from mmrs_core.transformation.kinds import MOVE_KINDS, PLAIN_ROBOT
 from mmrs_runtime.engine.terms import Terms

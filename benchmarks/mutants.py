@@ -22,7 +22,12 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parent.parent
 PLANNING = ("tests/unit/planning", "tests/property/planning")
 ANALYSIS = ("tests/unit/analysis", "tests/property/analysis")
-ENGINE = ("tests/unit/runtime", "tests/unit/mmrs_runtime", "tests/property/runtime", "tests/property/bus")
+ENGINE = (
+    "tests/unit/simulation",
+    "tests/unit/mmrs_runtime",
+    "tests/property/simulation",
+    "tests/property/bus",
+)
 READER = ("tests/unit/languages", "tests/property/languages")
 VESSEL = tuple(
     f"plugins/auv/tests/{folder}" for folder in ("control", "movement", "body", "wire", "test_guard.py")

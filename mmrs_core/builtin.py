@@ -80,7 +80,7 @@ def mmrs_device_actions() -> Iterable[DeviceWiring]:
 @hookimpl
 def mmrs_vehicles() -> Iterable[VehicleFactory]:
     """Contribute the simulation."""
-    from mmrs_core.runtime.simulation import SIMULATION
+    from mmrs_core.simulation.simulation import SIMULATION
 
     return (SIMULATION,)
 

@@ -23,8 +23,8 @@ if TYPE_CHECKING:
     from mmrs_core.generation.capabilities.judging import Capability
     from mmrs_core.languages import behaviour as bl
     from mmrs_core.languages.modelset import ModelSet
-    from mmrs_core.runtime.run import Run
     from mmrs_core.scene import Area, Plan, RobotType, Scene
+    from mmrs_core.simulation.run import Run
     from mmrs_core.transformation.engine import Trace
     from mmrs_runtime.records.steps import StepRecord
 
@@ -110,7 +110,7 @@ def valid_models(
 
 def ground(models: ModelSet) -> Scene:
     """Return the mission in the local frame."""
-    from mmrs_core.languages.grounding.scenes import ground as grounded
+    from mmrs_core.grounding.scenes import ground as grounded
 
     return grounded(models)
 
@@ -292,7 +292,7 @@ def simulate(
             for what is assumed.
         UnsupportedError: if the behaviour holds what nobody contributed.
     """
-    from mmrs_core.runtime.run import simulate as simulated
+    from mmrs_core.simulation.run import simulate as simulated
     from mmrs_runtime.engine.terms import Terms
 
     return simulated(
@@ -326,7 +326,7 @@ def inputs_of(
     Raises:
         UnsupportedError: if the type of a robot is not given.
     """
-    from mmrs_core.runtime.run import inputs_of as found_inputs
+    from mmrs_core.simulation.run import inputs_of as found_inputs
 
     found = found_inputs(
         program,
@@ -353,7 +353,7 @@ def conditions_for(
     Raises:
         UsageError: if no Choice asks for what is assumed.
     """
-    from mmrs_core.runtime.conditions import asked_by, refuse_unasked
+    from mmrs_core.simulation.conditions import asked_by, refuse_unasked
     from mmrs_runtime.conditions import question_of
     from mmrs_runtime.engine.judging import assumed, standard_conditions
 
@@ -382,7 +382,7 @@ def backend_for(
     """
     if not own:
         return backend_named(usual, contributions)
-    from mmrs_core.runtime.mixed import mixed
+    from mmrs_core.simulation.mixed import mixed
 
     owned = {robot: backend_named(name, contributions) for robot, name in own.items()}
     return mixed(backend_named(usual, contributions), owned, [robot.id for robot in program.robots])

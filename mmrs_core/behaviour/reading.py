@@ -9,12 +9,12 @@ from mmrs_core.behaviour.notifying import resolve
 from mmrs_core.behaviour.program import Action, Heading, Move, Program, RobotProgram, Target, Transition
 from mmrs_core.diagnostics import Diagnostic, Place, in_order
 from mmrs_core.errors import InvalidModelError
+from mmrs_core.grounding.coordinates import ground_of
+from mmrs_core.grounding.frame import fault
+from mmrs_core.grounding.parts import part_of
+from mmrs_core.grounding.policies import policies_of
 from mmrs_core.languages import behaviour as bl
 from mmrs_core.languages.element import Element, container_of, metaclass_of, place_of
-from mmrs_core.languages.grounding.coordinates import ground_of
-from mmrs_core.languages.grounding.frame import fault
-from mmrs_core.languages.grounding.parts import part_of
-from mmrs_core.languages.grounding.policies import policies_of
 from mmrs_core.languages.registry import Registry
 from mmrs_core.scene import Name, Position, Value
 

@@ -12,19 +12,19 @@ from mmrs_core.cli.output import report
 from mmrs_core.contributions.rules import barriers
 from mmrs_core.diagnostics import Diagnostic, has_errors, in_order
 from mmrs_core.errors import InvalidModelError, UnreadableError
-from mmrs_core.languages import behaviour as bl
-from mmrs_core.languages import context as contexts
-from mmrs_core.languages import robot as robots_language
-from mmrs_core.languages.codes import explained, refusal
-from mmrs_core.languages.conformance import check_conformance
-from mmrs_core.languages.grounding.scenes import (
+from mmrs_core.grounding.scenes import (
     areas_of,
     environment_of,
     ground_of,
     part_of,
     robot_type_of,
 )
-from mmrs_core.languages.grounding.values import children
+from mmrs_core.grounding.values import children
+from mmrs_core.languages import behaviour as bl
+from mmrs_core.languages import context as contexts
+from mmrs_core.languages import robot as robots_language
+from mmrs_core.languages.codes import explained, refusal
+from mmrs_core.languages.conformance import check_conformance
 from mmrs_core.languages.modelset import context_in, robot_files_in, types_by_name
 from mmrs_core.languages.reading import read_model
 from mmrs_core.pipeline import Place, program_of

@@ -23,7 +23,7 @@ from mmrs_core.errors import UnreadableError, UnsupportedError
 from mmrs_core.generation.writing import write
 from mmrs_core.pipeline import render, save
 from mmrs_core.resources import new_folders
-from mmrs_core.runtime.run import Run
+from mmrs_core.simulation.run import Run
 
 _MOST_REASONS = 3
 TARGETS = ("mavlink-python", "qgc-plan")

@@ -28,7 +28,7 @@ from mmrs_core.cli.wishes import (
 )
 from mmrs_core.pictures.figures import clock
 from mmrs_core.pipeline import backend_for, conditions_for, inputs_of
-from mmrs_core.runtime.live import run_live, venture_for
+from mmrs_core.simulation.live import run_live, venture_for
 from mmrs_runtime.bus.program_bus import begin_all
 from mmrs_runtime.control import Taken
 from mmrs_runtime.engine.clocks import RealClock

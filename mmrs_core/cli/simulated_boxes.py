@@ -15,8 +15,8 @@ from mmrs_core.mavlink.vehicles import vehicle_class
 from mmrs_core.pictures.flights.fixes import zero_of
 from mmrs_core.pictures.flights.gathering import SIMULATION
 from mmrs_core.resources import named
-from mmrs_core.runtime.run import Run
 from mmrs_core.scene import Name, RobotType
+from mmrs_core.simulation.run import Run
 from mmrs_runtime.records.blackbox import black_box_path
 from mmrs_runtime.records.steps import log_name
 

@@ -21,8 +21,8 @@ from mmrs_core.errors import MmrsError
 from mmrs_core.pictures.figures import clock, length
 from mmrs_core.pipeline import Place, simulate
 from mmrs_core.resources import new_folders
-from mmrs_core.runtime.run import Run
 from mmrs_core.scene import Name, RobotType
+from mmrs_core.simulation.run import Run
 from mmrs_runtime.records.log import LogWriter
 from mmrs_runtime.records.steps import SUFFIX, StepRecord, log_name
 from mmrs_runtime.semantics import Outcome

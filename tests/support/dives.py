@@ -16,11 +16,11 @@ from mmrs_core.behaviour.program import Move, Program, Target
 from mmrs_core.behaviour.replay import replay
 from mmrs_core.contributions.execution import Condition
 from mmrs_core.contributions.vehicles import VehicleInput
-from mmrs_core.languages.grounding.scenes import robot_type_of
+from mmrs_core.grounding.scenes import robot_type_of
 from mmrs_core.languages.reading import read_model
 from mmrs_core.languages.registry import registry_with
-from mmrs_core.runtime.run import Run, simulate
 from mmrs_core.scene import Area, Frame, RobotType
+from mmrs_core.simulation.run import Run, simulate
 from mmrs_core.testing.programs import move, program, robot_program
 from mmrs_core.transformation.kinds import MOVE_KINDS
 from mmrs_runtime.records.log import LogWriter

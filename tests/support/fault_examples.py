@@ -19,12 +19,12 @@ from mmrs_core.behaviour.program import Action, RobotProgram
 from mmrs_core.contributions.checks import Check, CheckInput, Verdict
 from mmrs_core.diagnostics import Diagnostic
 from mmrs_core.errors import InvalidModelError, UnreadableError
+from mmrs_core.grounding.scenes import ground
 from mmrs_core.languages import mission, robot
 from mmrs_core.languages.codes import refusal
 from mmrs_core.languages.conformance import check_conformance
 from mmrs_core.languages.element import Element, descendants, held, holds, label_of, metaclass_of, root_of
 from mmrs_core.languages.evolution.migration import Migration
-from mmrs_core.languages.grounding.scenes import ground
 from mmrs_core.languages.model import Model
 from mmrs_core.languages.modelset import read_project
 from mmrs_core.languages.reading import read_model, read_text

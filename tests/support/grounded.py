@@ -5,9 +5,9 @@ from __future__ import annotations
 import pytest
 
 from mmrs_core.errors import InvalidModelError
+from mmrs_core.grounding.scenes import ground
 from mmrs_core.languages import mission, robot
 from mmrs_core.languages.element import Element
-from mmrs_core.languages.grounding.scenes import ground
 from mmrs_core.languages.modelset import ModelSet
 
 

@@ -11,8 +11,8 @@ from mmrs_core.behaviour.program import Move
 from mmrs_core.contributions.execution import Fault, RobotState
 from mmrs_core.contributions.vehicles import VehicleFactory, VehicleInput
 from mmrs_core.errors import MmrsError
-from mmrs_core.runtime.live import run_live, venture_for
-from mmrs_core.runtime.run import inputs_of
+from mmrs_core.simulation.live import run_live, venture_for
+from mmrs_core.simulation.run import inputs_of
 from mmrs_core.testing.small_programs import ROBOT_TYPE, hold, program, robot, robot_type
 from mmrs_runtime.engine.clocks import RealClock
 from mmrs_runtime.engine.orders import STOP, Orders

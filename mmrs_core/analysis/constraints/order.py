@@ -8,8 +8,8 @@ from functools import cached_property
 from heapq import heappop, heappush
 
 from mmrs_core.analysis.constraints.findings import MISSION
+from mmrs_core.grounding.values import child, children
 from mmrs_core.languages.element import Element, is_kind
-from mmrs_core.languages.grounding.values import child, children
 
 
 class Order:

@@ -8,8 +8,8 @@ from itertools import pairwise
 from mmrs_core.analysis.constraints.findings import ROBOT, called, finding
 from mmrs_core.contributions.constraints import Constraint, Finding
 from mmrs_core.diagnostics import Severity
+from mmrs_core.grounding.values import child, children, number, text
 from mmrs_core.languages.element import Element, container_of
-from mmrs_core.languages.grounding.values import child, children, number, text
 from mmrs_core.languages.modelset import ModelSet
 
 LARGEST_ROBOT = 50.0

@@ -15,8 +15,7 @@ from math import cos, radians
 import numpy as np
 from numpy.typing import NDArray
 
-from mmrs_core.languages.element import Element, container_of
-from mmrs_core.languages.grounding.frame import (
+from mmrs_core.grounding.frame import (
     coordinates_of,
     is_geographic,
     is_relative,
@@ -24,7 +23,8 @@ from mmrs_core.languages.grounding.frame import (
     origin_of,
     reference_in,
 )
-from mmrs_core.languages.grounding.values import child, number
+from mmrs_core.grounding.values import child, number
+from mmrs_core.languages.element import Element, container_of
 from mmrs_core.languages.modelset import ModelSet
 
 WIDEST = 100_000.0

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 from itertools import pairwise
 from math import inf, isfinite, pi, sin
 
+from mmrs_core.grounding.values import number
 from mmrs_core.languages import behaviour as bl
 from mmrs_core.languages.element import container_of, metaclass_of, root_of
-from mmrs_core.languages.grounding.values import number
 from mmrs_core.languages.registry import Registry
 from mmrs_core.migration.building.converting import number_in
 from mmrs_core.migration.building.drafts import Draft, placed

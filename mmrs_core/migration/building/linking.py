@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
+from mmrs_core.grounding.values import child, children
 from mmrs_core.languages.element import (
     Element,
     container_of,
@@ -12,7 +13,6 @@ from mmrs_core.languages.element import (
     metaclass_of,
     root_of,
 )
-from mmrs_core.languages.grounding.values import child, children
 from mmrs_core.languages.registry import Registry
 from mmrs_core.migration.building.drafts import Draft, placed
 from mmrs_core.migration.building.headings import set_heading

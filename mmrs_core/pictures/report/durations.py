@@ -8,7 +8,7 @@ from mmrs_core.behaviour.program import Program, RobotProgram, SlotId
 from mmrs_core.pictures.flights.values import Flight
 from mmrs_core.pictures.report.values import MoveReport, WaitReport
 from mmrs_core.pictures.report.visits import Visit, visits_of
-from mmrs_core.runtime.run import Run
+from mmrs_core.simulation.run import Run
 from mmrs_runtime.records.steps import StepRecord
 
 SHORTEST_WAIT = 1.0

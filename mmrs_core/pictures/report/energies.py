@@ -7,7 +7,7 @@ import numpy as np
 from mmrs_core.geometry.frames import Floats
 from mmrs_core.pictures.flights.values import Flown
 from mmrs_core.pictures.report.values import EnergyReport
-from mmrs_core.runtime.run import Run
+from mmrs_core.simulation.run import Run
 
 _CHARGED = 0.05
 """Part of a battery by which a level rises when it was charged or changed, and not only read otherwise."""

@@ -13,7 +13,7 @@ from mmrs_core.pictures.flights.planned import PlannedLeg
 from mmrs_core.pictures.flights.values import Flight, Track
 from mmrs_core.pictures.report.values import Status, TaskReport
 from mmrs_core.pictures.report.visits import Visit, visits_of
-from mmrs_core.runtime.run import Run
+from mmrs_core.simulation.run import Run
 from mmrs_runtime.records.steps import StepRecord
 
 ASIDE = frozenset({"launch", "transit", "recover", "wait", "recharge", "choice", "notify"})

@@ -17,9 +17,9 @@ from mmrs_auv.targets.can_python.target import CAN_PYTHON
 
 from mmrs_core.contributions.targets import TargetInput
 from mmrs_core.generation.render import render
+from mmrs_core.grounding.robots import robot_type_of
 from mmrs_core.languages.conformance import check_conformance
 from mmrs_core.languages.element import label_of, metaclass_of
-from mmrs_core.languages.grounding.robots import robot_type_of
 from mmrs_core.languages.reading import read_text
 from mmrs_core.languages.registry import registry_with
 from mmrs_core.languages.writing import to_xmi

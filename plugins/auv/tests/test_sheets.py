@@ -13,7 +13,7 @@ from auv_vessel.control.allocation import Allocation
 from auv_vessel.sheet import from_json, to_json
 from auv_vessel.wire.database import database_of
 from mmrs_core.errors import UnsupportedError
-from mmrs_core.languages.grounding.scenes import robot_type_of
+from mmrs_core.grounding.scenes import robot_type_of
 from mmrs_core.languages.reading import read_text
 from mmrs_core.languages.registry import Registry
 from mmrs_core.scene import Part, RobotType

@@ -5,10 +5,10 @@ import pytest
 from mmrs_core import pipeline
 from mmrs_core.analysis.constraints import check_behaviour
 from mmrs_core.behaviour.replay import replay
+from mmrs_core.grounding.scenes import robot_type_of
 from mmrs_core.languages.conformance import check_conformance
-from mmrs_core.languages.grounding.scenes import robot_type_of
 from mmrs_core.languages.reading import read_model
-from mmrs_core.runtime.run import simulate
+from mmrs_core.simulation.run import simulate
 
 pytestmark = pytest.mark.together("examples")
 

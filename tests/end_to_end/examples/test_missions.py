@@ -12,8 +12,8 @@ from mmrs_core.behaviour.replay import replay
 from mmrs_core.contributions.checks import Status
 from mmrs_core.contributions.execution import Condition
 from mmrs_core.diagnostics import Severity
-from mmrs_core.runtime.run import simulate
 from mmrs_core.scene import Serve, Step
+from mmrs_core.simulation.run import simulate
 
 pytestmark = pytest.mark.together("examples")
 

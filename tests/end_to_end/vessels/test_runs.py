@@ -18,7 +18,7 @@ from auv_vessel.driving.connected import ConnectedVehicle
 from mmrs_core.behaviour.log import read_logs
 from mmrs_core.behaviour.program import Program
 from mmrs_core.behaviour.replay import replay
-from mmrs_core.runtime.live import run_live
+from mmrs_core.simulation.live import run_live
 from mmrs_core.testing.programs import use
 from mmrs_runtime.records.log import LogWriter
 from mmrs_runtime.records.steps import StepRecord

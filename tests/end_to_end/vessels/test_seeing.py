@@ -24,7 +24,7 @@ from auv_vessel.body.surroundings import BUOY, Surroundings, Thing, to_json
 from mmrs_core.behaviour.log import read_logs
 from mmrs_core.behaviour.program import Heading, Move, Program, Target, Transition
 from mmrs_core.behaviour.replay import replay
-from mmrs_core.runtime.live import run_live
+from mmrs_core.simulation.live import run_live
 from mmrs_core.testing.programs import feedback, move
 from mmrs_runtime.records.log import LogWriter
 from mmrs_runtime.semantics import Outcome

@@ -11,8 +11,8 @@ from hypothesis import strategies as st
 
 from mmrs_core.behaviour.log import read_logs
 from mmrs_core.behaviour.replay import replay
-from mmrs_core.runtime.run import simulate
-from mmrs_core.runtime.simulation import SIMULATION
+from mmrs_core.simulation.run import simulate
+from mmrs_core.simulation.simulation import SIMULATION
 from mmrs_core.testing.random_programs import CONDITIONS, answers, programs
 from mmrs_core.testing.small_programs import ROBOT_TYPE, robot_type
 from mmrs_core.transformation.kinds import MOVE_KINDS, PLAIN_ROBOT

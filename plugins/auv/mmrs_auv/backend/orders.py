@@ -27,9 +27,9 @@ from mmrs_auv.sheets import action_number
 from mmrs_core.behaviour.program import BEHAVIOUR, DEVICE_ACTION, Action, Heading, Move
 from mmrs_core.contributions.vehicles import VehicleInput
 from mmrs_core.errors import UnreachableError, UnsupportedError
-from mmrs_core.runtime.escape import Escapes
-from mmrs_core.runtime.known import kinematics_of, move_kinds_of
 from mmrs_core.scene import Position
+from mmrs_core.simulation.escape import Escapes
+from mmrs_core.simulation.known import kinematics_of, move_kinds_of
 from mmrs_runtime.faults import DEVICE_SILENT
 from mmrs_runtime.policies import AFTER, Policy, patience
 from mmrs_runtime.vehicle import Fault

@@ -9,10 +9,10 @@ from mmrs_auv.kinds import ATMOSPHERE, GRAVITY, SEA_WATER
 from mmrs_auv.names import AUV_MOVEMENT, FOLLOW_PIPELINE_TASK, YO_YO_TASK
 from mmrs_core.analysis.constraints.sketch import sketch_of
 from mmrs_core.contributions.constraints import Finding
+from mmrs_core.grounding.coordinates import Ground
+from mmrs_core.grounding.heights import heights_of_task
+from mmrs_core.grounding.values import child, children, number, text
 from mmrs_core.languages.element import Element, is_kind, label_of
-from mmrs_core.languages.grounding.coordinates import Ground
-from mmrs_core.languages.grounding.heights import heights_of_task
-from mmrs_core.languages.grounding.values import child, children, number, text
 from mmrs_core.languages.modelset import ModelSet
 
 

@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 from mmrs_auv.names import AUV_MOVEMENT, MOUNTING
 from mmrs_core.contributions.constraints import Constraint, Finding
 from mmrs_core.diagnostics import Severity
+from mmrs_core.grounding.values import child, children, number, texts
 from mmrs_core.languages.element import Element, label_of
-from mmrs_core.languages.grounding.values import child, children, number, texts
 from mmrs_core.languages.modelset import ModelSet
 
 ROBOT_TYPE = ("urn:mmrs:robot:1.0", "Robot")

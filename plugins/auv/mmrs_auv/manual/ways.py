@@ -8,9 +8,9 @@ from math import hypot
 from mmrs_auv.manual.helm import Goal
 from mmrs_core.contributions.vehicles import VehicleInput
 from mmrs_core.mavlink.context import VehicleContext
-from mmrs_core.runtime.escape import Escapes
-from mmrs_core.runtime.known import kinematics_of
 from mmrs_core.scene import Position
+from mmrs_core.simulation.escape import Escapes
+from mmrs_core.simulation.known import kinematics_of
 from mmrs_core.transformation.kinds import before_target
 
 AT_HOME = 2.0

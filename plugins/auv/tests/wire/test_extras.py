@@ -27,7 +27,7 @@ from auv_vessel.refusals import SheetError
 from auv_vessel.sheet import Sheet, from_json, to_json
 from auv_vessel.wire.codec import Codec
 from mmrs_core.errors import UnsupportedError
-from mmrs_core.languages.grounding.scenes import robot_type_of
+from mmrs_core.grounding.scenes import robot_type_of
 
 
 def test_known_are_just_the_names_that_somebody_reads() -> None:

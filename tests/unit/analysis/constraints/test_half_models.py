@@ -8,9 +8,9 @@ import pytest
 
 from mmrs_core.analysis.constraints import CONSTRAINTS, check_behaviour, check_constraints
 from mmrs_core.errors import InvalidModelError
+from mmrs_core.grounding.scenes import ground
 from mmrs_core.languages import behaviour, context, mission, robot
 from mmrs_core.languages.element import Element, Unknown, descendants, metaclass_of
-from mmrs_core.languages.grounding.scenes import ground
 from mmrs_core.languages.modelset import ModelSet
 from mmrs_core.languages.reading import read_text
 from mmrs_core.scene import Scene

@@ -13,8 +13,8 @@ from hypothesis import strategies as st
 from mmrs_core.analysis.constraints import CONSTRAINTS
 from mmrs_core.analysis.constraints.sketch import Sketch
 from mmrs_core.geometry.segments import legs_of, prism_distance
+from mmrs_core.grounding.frame import circles_among
 from mmrs_core.languages import context, mission
-from mmrs_core.languages.grounding.frame import circles_among
 from mmrs_core.languages.modelset import ModelSet
 
 CIRCLES = [each for each in CONSTRAINTS if each.code == "MML040"]

@@ -11,8 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mmrs_core.geometry.frames import LocalFrame, known_crs
-from mmrs_core.languages.element import Element, place_of
-from mmrs_core.languages.grounding.frame import (
+from mmrs_core.grounding.frame import (
     Reference,
     coordinates_of,
     fault,
@@ -25,7 +24,8 @@ from mmrs_core.languages.grounding.frame import (
     origin_of,
     reference_in,
 )
-from mmrs_core.languages.grounding.values import child, number, text
+from mmrs_core.grounding.values import child, number, text
+from mmrs_core.languages.element import Element, place_of
 
 if TYPE_CHECKING:
     from mmrs_core.diagnostics import Diagnostic

@@ -5,8 +5,8 @@ from __future__ import annotations
 import pytest
 from grounded import faults, geo, point_of, scene, simple
 
+from mmrs_core.grounding.scenes import ground_of
 from mmrs_core.languages import behaviour, context, mission
-from mmrs_core.languages.grounding.scenes import ground_of
 from mmrs_core.languages.registry import core_registry
 
 

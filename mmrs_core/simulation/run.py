@@ -12,9 +12,9 @@ from mmrs_core.contributions.vehicles import Recorder, VehicleFactory, VehicleIn
 from mmrs_core.contributions.wiring import Wirings
 from mmrs_core.errors import UnsupportedError, UsageError
 from mmrs_core.languages.collector import collector_at_rest
-from mmrs_core.runtime.conditions import refuse_undecided
-from mmrs_core.runtime.mixed import options_for, refuse_strange
 from mmrs_core.scene import Area, Name, Policy, RobotType
+from mmrs_core.simulation.conditions import refuse_undecided
+from mmrs_core.simulation.mixed import options_for, refuse_strange
 from mmrs_runtime.engine.clocks import SimulatedClock
 from mmrs_runtime.engine.run import run
 from mmrs_runtime.engine.terms import TO_THE_END, Ending, Terms

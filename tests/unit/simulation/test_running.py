@@ -12,8 +12,8 @@ from mmrs_core.behaviour.replay import replay
 from mmrs_core.contributions.execution import Condition, Fault, RobotState
 from mmrs_core.contributions.vehicles import VehicleInput
 from mmrs_core.errors import LinkLostError, UnsupportedError
-from mmrs_core.runtime.simulation import SimulatedRobot
 from mmrs_core.scene import Policy
+from mmrs_core.simulation.simulation import SimulatedRobot
 from mmrs_core.testing.small_programs import go, hold, notify, program, robot, robot_type, use
 from mmrs_runtime.engine.clocks import RealClock
 from mmrs_runtime.engine.judging import assumed

@@ -6,8 +6,8 @@ import pytest
 from grounded import faults, geo, quad, scene, simple
 
 from mmrs_core.errors import InvalidModelError
+from mmrs_core.grounding.scenes import robot_type_of
 from mmrs_core.languages import robot
-from mmrs_core.languages.grounding.scenes import robot_type_of
 from mmrs_core.scene import Policy
 
 

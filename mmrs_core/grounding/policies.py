@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+from mmrs_core.grounding.values import children, literal, number
 from mmrs_core.languages.element import Element
-from mmrs_core.languages.grounding.values import children, literal, number
 from mmrs_core.scene import Policy
 from mmrs_runtime.policies import EVENTS, RESPONSES
 

@@ -2,7 +2,7 @@
 
 A robot follows the path of each move at the commanded speed, in the time that the move kind declares;
 wind and current slow it down where it would have to be faster than it can. Its batteries fall by mean
-power and time, faster in a climb and against the wind (`mmrs_core.runtime.legs`); on the ground, a
+power and time, faster in a climb and against the wind (`mmrs_core.simulation.legs`); on the ground, a
 robot that flies takes nothing. Holding a position in more wind than the type's `positionHold` is a
 fault. An object whose place nobody knows is taken to be where the robot looks for it. Where there are
 surroundings, a robot that flies detects what lies below it whenever one of its devices does something.
@@ -21,10 +21,11 @@ from mmrs_core.contributions.execution import Fault, RobotState, Sample
 from mmrs_core.contributions.rules import MoveKind
 from mmrs_core.contributions.vehicles import VehicleFactory, VehicleInput
 from mmrs_core.errors import InternalError, UnreadableError, UsageError
-from mmrs_core.runtime.battery import SLACK, Battery
-from mmrs_core.runtime.escape import Escapes
-from mmrs_core.runtime.known import kinematics_of, move_kinds_of
-from mmrs_core.runtime.legs import (
+from mmrs_core.scene import Position
+from mmrs_core.simulation.battery import SLACK, Battery
+from mmrs_core.simulation.escape import Escapes
+from mmrs_core.simulation.known import kinematics_of, move_kinds_of
+from mmrs_core.simulation.legs import (
     STILL,
     Flow,
     Leg,
@@ -37,7 +38,6 @@ from mmrs_core.runtime.legs import (
     turn,
     wind,
 )
-from mmrs_core.scene import Position
 from mmrs_runtime.policies import in_precedence
 from mmrs_runtime.sights import Sight, seen, sights_in
 from mmrs_runtime.vehicle import Vehicle

@@ -5,11 +5,11 @@ from __future__ import annotations
 from math import hypot
 
 from mmrs_core.errors import InvalidModelError
+from mmrs_core.grounding.frame import fault
+from mmrs_core.grounding.parts import NO_GROUND, part_of
+from mmrs_core.grounding.policies import policies_of
+from mmrs_core.grounding.values import child, children, number, text
 from mmrs_core.languages.element import Element, metaclass_of, place_of
-from mmrs_core.languages.grounding.frame import fault
-from mmrs_core.languages.grounding.parts import NO_GROUND, part_of
-from mmrs_core.languages.grounding.policies import policies_of
-from mmrs_core.languages.grounding.values import child, children, number, text
 from mmrs_core.scene import Battery, Capability, Device, DeviceAction, RobotType
 
 MILLIAMPERE_HOUR = 3.6

@@ -7,6 +7,9 @@ from itertools import chain
 from math import inf
 from typing import TypeVar
 
+from mmrs_core.grounding.coordinates import Ground
+from mmrs_core.grounding.frame import MISSION, is_geographic, is_relative
+from mmrs_core.grounding.values import children, number
 from mmrs_core.languages.element import (
     Element,
     containing_feature,
@@ -15,9 +18,6 @@ from mmrs_core.languages.element import (
     path_of,
     place_of,
 )
-from mmrs_core.languages.grounding.coordinates import Ground
-from mmrs_core.languages.grounding.frame import MISSION, is_geographic, is_relative
-from mmrs_core.languages.grounding.values import children, number
 from mmrs_core.languages.metaclass import Feature
 from mmrs_core.scene import Area, AreaUse, Frame, Part, Position, Ring, Value
 

@@ -10,9 +10,9 @@ from mmrs_core.behaviour.program import Action, Heading, Move, Target
 from mmrs_core.contributions.execution import Fault
 from mmrs_core.contributions.vehicles import VehicleInput
 from mmrs_core.errors import UnsupportedError, UsageError
-from mmrs_core.runtime.legs import CLIMBING
-from mmrs_core.runtime.simulation import SIMULATION, SimulatedRobot
 from mmrs_core.scene import Area, AreaUse, Policy
+from mmrs_core.simulation.legs import CLIMBING
+from mmrs_core.simulation.simulation import SIMULATION, SimulatedRobot
 from mmrs_core.testing.small_programs import (
     BEHAVIOUR,
     MOVE,
@@ -237,7 +237,7 @@ def test_passing_a_waypoint_saves_the_time_to_brake_and_to_get_going_again(kinds
         kinds["move_kinds"][name],
         seconds=lambda move, path, kinematics, mode: (0.0, 1e9),
     )
-    from mmrs_core.runtime.run import simulate
+    from mmrs_core.simulation.run import simulate
 
     def last_time(fluid):
         given = {**kinds, "move_kinds": {**kinds["move_kinds"], name: open_ended}}
@@ -349,7 +349,7 @@ def test_an_option_that_the_simulation_does_not_have_is_refused(kinds):
 
 
 def test_a_robot_type_that_is_missing_is_named(kinds):
-    from mmrs_core.runtime.run import simulate
+    from mmrs_core.simulation.run import simulate
 
     with pytest.raises(UnsupportedError) as caught:
         simulate(program(robot("r", [])), backend=SIMULATION, types={}, **kinds)

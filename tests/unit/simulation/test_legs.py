@@ -7,7 +7,8 @@ from math import inf
 
 import pytest
 
-from mmrs_core.runtime.legs import (
+from mmrs_core.scene import Kinematics
+from mmrs_core.simulation.legs import (
     CLIMBING,
     Leg,
     bearing,
@@ -18,7 +19,6 @@ from mmrs_core.runtime.legs import (
     turn,
     wind,
 )
-from mmrs_core.scene import Kinematics
 
 FLYER = Kinematics(cruise=5.0, slowest=0.0, fastest=10.0, climb=2.0, descent=1.0)
 ANY = (0.0, inf)

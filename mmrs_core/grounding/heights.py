@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from mmrs_core.grounding.coordinates import Ground
+from mmrs_core.grounding.values import child, children, number
 from mmrs_core.languages.element import Element
-from mmrs_core.languages.grounding.coordinates import Ground
-from mmrs_core.languages.grounding.values import child, children, number
 
 _PLACES = ("points", "shell")
 

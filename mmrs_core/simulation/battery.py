@@ -11,9 +11,9 @@ from functools import lru_cache
 from math import inf
 
 from mmrs_core.contributions.execution import Fault
-from mmrs_core.runtime.escape import Escapes
-from mmrs_core.runtime.legs import Flow, Leg, response_stretches
 from mmrs_core.scene import Kinematics, Policy, Position
+from mmrs_core.simulation.escape import Escapes
+from mmrs_core.simulation.legs import Flow, Leg, response_stretches
 from mmrs_runtime.policies import response_to
 
 SLACK = 1e-6

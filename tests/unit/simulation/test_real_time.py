@@ -10,7 +10,7 @@ from live_runs import FAST, WALK, Script, do
 
 from mmrs_core.behaviour.replay import replay
 from mmrs_core.errors import LinkLostError, MmrsError
-from mmrs_core.runtime.simulation import SIMULATION
+from mmrs_core.simulation.simulation import SIMULATION
 from mmrs_core.testing.small_programs import go, hold, notify, program, robot
 from mmrs_runtime.semantics import Outcome
 

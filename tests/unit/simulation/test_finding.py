@@ -10,9 +10,9 @@ import pytest
 from mmrs_core.behaviour.program import BEHAVIOUR, Move
 from mmrs_core.contributions.vehicles import Live, VehicleFactory, VehicleInput
 from mmrs_core.errors import UnreadableError, UsageError
-from mmrs_core.runtime.mixed import mixed, options_for
-from mmrs_core.runtime.run import simulate
-from mmrs_core.runtime.simulation import SIMULATION
+from mmrs_core.simulation.mixed import mixed, options_for
+from mmrs_core.simulation.run import simulate
+from mmrs_core.simulation.simulation import SIMULATION
 from mmrs_core.testing.small_programs import ROBOT_TYPE, go, hold, notify, program, robot, robot_type, use
 from mmrs_runtime.bus.outgoing import fitting
 from mmrs_runtime.bus.words import LONGEST, LONGEST_NAME, MOST_FINDS, CommandId, Commit, request_in, written

@@ -7,8 +7,8 @@ from live_runs import Flight
 
 from mmrs_core.behaviour.replay import replay
 from mmrs_core.contributions.rules import MoveKind, MoveSpec, RobotKind
-from mmrs_core.runtime.run import simulate
-from mmrs_core.runtime.simulation import SIMULATION
+from mmrs_core.simulation.run import simulate
+from mmrs_core.simulation.simulation import SIMULATION
 from mmrs_core.testing.small_programs import ROBOT_TYPE, robot_type
 from mmrs_core.transformation.kinds import (
     MOVE_KINDS,

@@ -8,8 +8,8 @@ import pytest
 from grounded import geo, relative, scene, simple
 
 from mmrs_core.diagnostics import Place
+from mmrs_core.grounding.scenes import area_of, ground_of, part_of
 from mmrs_core.languages import context, mission
-from mmrs_core.languages.grounding.scenes import area_of, ground_of, part_of
 from mmrs_core.scene import AreaUse, Part
 
 

@@ -7,8 +7,8 @@ import shapely
 
 from mmrs_core.behaviour.program import Program, RobotProgram
 from mmrs_core.contributions.vehicles import VehicleInput
-from mmrs_core.runtime.escape import Escapes
 from mmrs_core.scene import Area, AreaUse, Capability, Frame, Kinematics, Part, RobotType
+from mmrs_core.simulation.escape import Escapes
 
 HOME = (0.0, 0.0, 0.0)
 HERE = (100.0, 0.0, 20.0)

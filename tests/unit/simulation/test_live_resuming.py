@@ -11,9 +11,9 @@ from live_runs import TWO, WALK, Script, do
 
 from mmrs_core.behaviour.replay import replay
 from mmrs_core.contributions.execution import Fault
-from mmrs_core.runtime.live import run_live, venture_for
-from mmrs_core.runtime.run import inputs_of
 from mmrs_core.scene import Policy
+from mmrs_core.simulation.live import run_live, venture_for
+from mmrs_core.simulation.run import inputs_of
 from mmrs_core.testing.small_programs import ROBOT_TYPE, notify, program, robot, robot_type
 from mmrs_runtime.engine.orders import HOLD, LAND, RESUME, RETURN, STOP
 from mmrs_runtime.engine.resuming import restore
