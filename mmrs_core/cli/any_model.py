@@ -10,11 +10,15 @@ import typer
 
 from mmrs_core.cli.output import tell
 from mmrs_core.errors import UnreadableError
+from mmrs_core.languages.dialects import is_of_dialect
+from mmrs_core.languages.foreign import ForeignModel, missing_from, read_any
+from mmrs_core.languages.missing import DISTRIBUTIONS, stem_of
+from mmrs_core.languages.places import first_kind
+from mmrs_core.languages.registry import core_registry
 
 if TYPE_CHECKING:
     from mmrs_core.cli.journey import Workshop
     from mmrs_core.diagnostics import Diagnostic
-    from mmrs_core.languages.foreign import ForeignModel
 
 NOT_INSTALLED = "XMI001"
 MIGRATE = "'mmrs migrate' makes a project of it"
@@ -44,8 +48,6 @@ def read_foreign(
         UnreadableError: if the file or a metamodel that was named cannot be read.
         PluginError: if a metamodel is broken.
     """
-    from mmrs_core.languages.foreign import read_any
-
     refuse_metamodel(file)
     given = tuple(metamodels or ())
     found = read_any(file, workshop.contributions.languages, given, unsaved)
@@ -78,9 +80,6 @@ def refuse_metamodel(file: Path) -> None:
 
 def _strange(found: ForeignModel) -> frozenset[str]:
     """Return the languages that nobody is known to bring."""
-    from mmrs_core.languages.foreign import missing_from
-    from mmrs_core.languages.missing import DISTRIBUTIONS, stem_of
-
     missing = missing_from(found.model, found.registry, certainly=True)
     return frozenset(ns_uri for ns_uri in missing if stem_of(ns_uri) not in DISTRIBUTIONS)
 
@@ -93,10 +92,6 @@ def is_foreign(workshop: Workshop, file: Path) -> bool:
     Raises:
         UnreadableError: if it is missing or no model at all.
     """
-    from mmrs_core.languages.dialects import is_of_dialect
-    from mmrs_core.languages.places import first_kind
-    from mmrs_core.languages.registry import core_registry
-
     if file.is_dir():
         return False
     refuse_metamodel(file)

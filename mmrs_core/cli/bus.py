@@ -6,26 +6,35 @@ import json as json_format
 import re
 import signal
 import threading
+from collections.abc import Iterator
 from contextlib import contextmanager
+from datetime import UTC, datetime
+from ipaddress import ip_address
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from mmrs_core.cli.behaviours import load_program
+from mmrs_core.cli.bus_access import Holder
+from mmrs_core.cli.buses import refuse_endpoints
+from mmrs_core.cli.journey import Workshop
 from mmrs_core.cli.output import counted, say, say_json, tell
 from mmrs_core.cli.parameters import Behaviour, behaviour_file
 from mmrs_core.cli.settings import Json, settings_of
 from mmrs_core.errors import LinkLostError, UnreadableError, UnsupportedError
+from mmrs_runtime.bus.carriers.over_zenoh import ZenohCarrier
+from mmrs_runtime.bus.gateway.server import Gateway
+from mmrs_runtime.bus.program_bus import node_of
+from mmrs_runtime.bus.words import digest
+from mmrs_runtime.screen import unfailing
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
     from types import FrameType
 
     from mmrs_core.behaviour.program import Program
-    from mmrs_core.cli.bus_access import Holder
     from mmrs_runtime.bus import Node, Recorded
     from mmrs_runtime.bus.carriers.sessions import Endpoints
-    from mmrs_runtime.bus.gateway.server import Gateway
 
 app = typer.Typer(
     rich_markup_mode=None,
@@ -92,8 +101,6 @@ def keys(
 
     Example: mmrs bus keys keys --robot Drone1 --robot Drone2 --host 10.0.0.1 --host 10.0.0.2
     """
-    from datetime import UTC, datetime
-
     with _needing("cryptography"):
         from mmrs_core.cli.bus_certificates import make_keys
     holders = tuple(_holder(text) for text in robots)
@@ -124,8 +131,6 @@ def revoke(
 
     Example: mmrs bus revoke keys Drone1
     """
-    from datetime import UTC, datetime
-
     with _needing("cryptography"):
         from mmrs_core.cli import bus_certificates
     with _readable():
@@ -169,10 +174,6 @@ def gateway(
 
     Example: mmrs bus gateway survey.bl.xmi --robot Auv1 --connect tcp/10.0.0.2:7447
     """
-    from mmrs_core.cli.behaviours import load_program
-    from mmrs_core.cli.journey import Workshop
-    from mmrs_runtime.screen import unfailing
-
     with _needing("eclipse-zenoh"):
         from mmrs_runtime.bus.carriers.sessions import Endpoints
     program = load_program(Workshop(settings_of(call)), behaviour_file(behaviour))
@@ -240,8 +241,6 @@ def _said(key: str, text: str) -> tuple[str, dict[str, dict[str, object]]]:
     Whoever answers with the name of another is known by the key alone, which certificates protect;
     whoever answers something else shows no slots.
     """
-    from mmrs_runtime.bus.words import digest
-
     found = _object_in(text)
     name = found.get("robot")
     slots = found.get("slots")
@@ -285,7 +284,6 @@ def _readable() -> Iterator[None]:
 
 
 def _holder(text: str) -> Holder:
-    from mmrs_core.cli.bus_access import Holder
 
     name, separator, robots = text.partition("=")
     if name in ("observer", "authority"):
@@ -299,8 +297,6 @@ def _holder(text: str) -> Holder:
 
 def _host(text: str) -> str:
     """Return a name, or an address, also where it is written as in an endpoint: ``[fd00::1]``."""
-    from ipaddress import ip_address
-
     host = text[1:-1] if text.startswith("[") and text.endswith("]") else text
     try:
         return str(ip_address(host))
@@ -320,7 +316,6 @@ def _refuse_doubles(holders: tuple[Holder, ...]) -> None:
 
 
 def _refuse_endpoints(listen: list[str] | None, connect: list[str] | None) -> None:
-    from mmrs_core.cli.buses import refuse_endpoints
 
     refuse_endpoints("--listen", listen or ())
     refuse_endpoints("--connect", connect or ())
@@ -329,9 +324,6 @@ def _refuse_endpoints(listen: list[str] | None, connect: list[str] | None) -> No
 def _gateway(
     program: Program, robot: str, endpoints: Endpoints, run: str, folder: Path, port: int
 ) -> Gateway:
-    from mmrs_runtime.bus.carriers.over_zenoh import ZenohCarrier
-    from mmrs_runtime.bus.gateway.server import Gateway
-    from mmrs_runtime.bus.program_bus import node_of
 
     names = [each.id for each in program.robots]
 

@@ -10,6 +10,8 @@ import typer
 from mmrs_core.behaviour.program import Program
 from mmrs_core.contributions.execution import Clock
 from mmrs_runtime.bus.carriers.carrier import Carrier
+from mmrs_runtime.engine.clocks import FollowingClock
+from mmrs_runtime.injection import Rehearsal, injections
 
 
 def bus_faults(
@@ -29,8 +31,6 @@ def bus_faults(
     """
     if "bus-" not in text:
         return lambda carrier: carrier
-    from mmrs_runtime.engine.clocks import FollowingClock
-    from mmrs_runtime.injection import Rehearsal, injections
 
     robots = [robot.id for robot in program.robots]
     try:

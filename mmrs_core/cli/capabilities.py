@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from mmrs_core.cli.output import say, say_json
 from mmrs_core.cli.tables import table
+from mmrs_core.pipeline import capabilities
 
 if TYPE_CHECKING:
     from mmrs_core.cli.journey import Workshop
@@ -21,8 +22,6 @@ def print_capabilities(workshop: Workshop, target: str | None, json: bool) -> in
     Raises:
         UsageError: there is no such target.
     """
-    from mmrs_core.pipeline import capabilities
-
     contributions = workshop.contributions
     tables = workshop.stage("capabilities", "trying", lambda: capabilities(target, contributions))
     if json:

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from mmrs_core.diagnostics import Severity
+from mmrs_core.languages.codes import CODES
 
 if TYPE_CHECKING:
     from mmrs_core.contributions.registry import Contributions
@@ -39,8 +40,6 @@ class Entry:
 
 def catalogue_of(contributions: Contributions) -> Mapping[str, Entry]:
     """Return what is known of every code, by code in order."""
-    from mmrs_core.languages.codes import CODES
-
     fixes = {code: fix.title for code, fix in contributions.fixes.items()}
     entries = [
         Entry(code, about.severity, about.meaning, about.expected, about.hint, "", fixes.get(code, ""))

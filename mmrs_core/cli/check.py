@@ -7,10 +7,15 @@ from typing import TYPE_CHECKING
 
 import typer
 
+from mmrs_core.cli.behaviours import load_behaviour
+from mmrs_core.cli.journey import Workshop, verdicts_of
 from mmrs_core.cli.output import say, say_json
 from mmrs_core.cli.parameters import Behaviour, Context, Robots, behaviour_file, robot_files
 from mmrs_core.cli.reports import STANDARD_OUTPUT, Sarif, refuse_two_outputs
+from mmrs_core.cli.sarif import as_faults, refusals_in, subject_of, write_sarif
 from mmrs_core.cli.settings import Json, settings_of
+from mmrs_core.cli.verdict_words import hint_of, verdict_line, verdict_table
+from mmrs_core.pipeline import refusals
 
 if TYPE_CHECKING:
     from mmrs_core.contributions.checks import Verdict
@@ -31,12 +36,6 @@ def check(
 
     Example: mmrs check field/behaviour.xmi --sarif check.sarif
     """
-    from mmrs_core.cli.behaviours import load_behaviour
-    from mmrs_core.cli.journey import Workshop, verdicts_of
-    from mmrs_core.cli.sarif import as_faults, refusals_in, subject_of, write_sarif
-    from mmrs_core.cli.verdict_words import hint_of, verdict_line, verdict_table
-    from mmrs_core.pipeline import refusals
-
     workshop = Workshop(settings_of(call))
     file = behaviour_file(behaviour)
     refuse_two_outputs(sarif, json)

@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 import typer
 
 from mmrs_core.cli.output import say, say_json
 from mmrs_core.cli.settings import Json
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
+from mmrs_core.errors import LinkLostError
+from mmrs_runtime.orders.calling import Unreachable
+from mmrs_runtime.orders.ordering import give, words
+from mmrs_runtime.orders.orders import ANSWER, ORDERS, STATUS
+from mmrs_runtime.orders.standing import lines_of
 
 
 def control(
@@ -47,12 +50,6 @@ def control(
 
     Example: mmrs control hold Drone1 --log logs
     """
-    from mmrs_core.errors import LinkLostError
-    from mmrs_runtime.orders.calling import Unreachable
-    from mmrs_runtime.orders.ordering import words
-    from mmrs_runtime.orders.orders import STATUS
-    from mmrs_runtime.orders.standing import lines_of
-
     _check(order, question, says)
     replies = []
     try:
@@ -75,13 +72,11 @@ def control(
 def _replies(
     log: Path, order: str, robots: list[str], question: str, answer: bool, seconds: float
 ) -> Iterator[dict[str, Any]]:
-    from mmrs_runtime.orders.ordering import give
 
     return give(log, order, robots, question=question, answer=answer, seconds=seconds)
 
 
 def _check(order: str, question: str, says: str) -> None:
-    from mmrs_runtime.orders.orders import ANSWER, ORDERS
 
     if order not in ORDERS:
         raise typer.BadParameter(f"{order}: is none of {', '.join(ORDERS)}")

@@ -13,11 +13,15 @@ from typing import TYPE_CHECKING
 from mmrs_core.cli.any_model import MIGRATE, is_mistake, read_foreign
 from mmrs_core.cli.protection import ProtectedError, refuse_inputs
 from mmrs_core.cli.schema_places import places_in
+from mmrs_core.diagnostics import Diagnostic, in_order
 from mmrs_core.errors import InvalidModelError, UnreadableError, UnsupportedError
+from mmrs_core.languages.foreign import kept_places
+from mmrs_core.languages.metamodels.gathering import gathered
+from mmrs_core.languages.reading import Reading
+from mmrs_core.languages.writing import to_json, to_xmi
 
 if TYPE_CHECKING:
     from mmrs_core.cli.journey import Workshop
-    from mmrs_core.diagnostics import Diagnostic
     from mmrs_core.languages.element import Element
     from mmrs_core.languages.model import Model
     from mmrs_core.languages.registry import Registry
@@ -155,9 +159,6 @@ def converted_together(
         ProtectedError: if a target is one of the models, or a file that one refers to.
         UnsupportedError: if one cannot be written.
     """
-    from mmrs_core.diagnostics import in_order
-    from mmrs_core.languages.reading import Reading
-
     registry = _registry_for(workshop, tuple(targets), metamodels)
     base = Path(os.path.commonpath([file.resolve().parent for file in targets]))
     reading = Reading(registry, base)
@@ -188,8 +189,6 @@ def converted_together(
 
 def _registry_for(workshop: Workshop, files: Sequence[Path], metamodels: Sequence[Path]) -> Registry:
     """Return the metamodels that are installed, and those that were found for some files."""
-    from mmrs_core.languages.metamodels.gathering import gathered
-
     installed = workshop.contributions.languages
     read = [read_foreign(workshop, file, metamodels) for file in files]
     for each in read:
@@ -219,9 +218,6 @@ def text_of(
     Raises:
         UnsupportedError: if it cannot be written in that form.
     """
-    from mmrs_core.languages.foreign import kept_places
-    from mmrs_core.languages.writing import to_json, to_xmi
-
     places = {**kept_places(source, target), **places_in(exported, registry, target)}
     write = to_json if form is Form.JSON else to_xmi
     try:

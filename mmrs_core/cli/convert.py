@@ -9,16 +9,31 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from mmrs_core.cli.any_model import Metamodels, is_mistake
-from mmrs_core.cli.conversion import Form, form_of, other_form
+from mmrs_core.cli.any_model import Metamodels, faults_in, is_mistake, read_foreign
+from mmrs_core.cli.conversion import (
+    Converted,
+    Form,
+    converted_together,
+    form_of,
+    is_followed,
+    other_form,
+    refuse_dialect,
+    refuse_existing,
+    refuse_links_outside,
+    targets_in,
+    text_of,
+)
+from mmrs_core.cli.journey import Workshop
 from mmrs_core.cli.output import counted, report, say, say_file, say_json, tell
+from mmrs_core.cli.protection import files_of, refuse_inputs
+from mmrs_core.cli.replacing import replace_files
 from mmrs_core.cli.schema_places import SchemaLocation
 from mmrs_core.cli.settings import Json, settings_of
 from mmrs_core.errors import InvalidModelError
+from mmrs_core.languages.element import Unknown
+from mmrs_core.languages.writing import replace_file
 
 if TYPE_CHECKING:
-    from mmrs_core.cli.conversion import Converted
-    from mmrs_core.cli.journey import Workshop
     from mmrs_core.languages.foreign import ForeignModel
 
 
@@ -59,8 +74,6 @@ def convert(
 
     Examples: mmrs convert field/mission.xmi mission.json; mmrs convert field -o field-json
     """
-    from mmrs_core.cli.journey import Workshop
-
     asked = _Asked(Workshop(settings_of(call)), to, tuple(metamodel or ()), schema_location, force, json)
     if output is not None:
         return _together(asked, files, output)
@@ -82,8 +95,6 @@ class _Asked:
 
 
 def _together(asked: _Asked, given: Sequence[Path], directory: Path) -> int:
-    from mmrs_core.cli.conversion import converted_together, is_followed, refuse_existing, targets_in
-    from mmrs_core.cli.replacing import replace_files
 
     targets = targets_in(directory, given, asked.to)
     made, faults = converted_together(asked.workshop, targets, asked.metamodels, asked.exported)
@@ -115,10 +126,6 @@ def _as_json(made: Converted) -> dict[str, object]:
 
 
 def _alone(asked: _Asked, source: Path, target: Path | None) -> int:
-    from mmrs_core.cli.any_model import faults_in, read_foreign
-    from mmrs_core.cli.conversion import refuse_dialect, refuse_existing, refuse_links_outside, text_of
-    from mmrs_core.cli.protection import files_of, refuse_inputs
-    from mmrs_core.languages.writing import replace_file
 
     found = read_foreign(asked.workshop, source, asked.metamodels)
     refuse_dialect(found.model)
@@ -148,8 +155,6 @@ def _alone(asked: _Asked, source: Path, target: Path | None) -> int:
 
 def _tell_of_kept_links(found: ForeignModel, source: Path, target: Path) -> None:
     """Say that links in what is kept as it is were not adjusted to another folder."""
-    from mmrs_core.languages.element import Unknown
-
     if source.resolve().parent == target.resolve().parent:
         return
     if any(isinstance(each, Unknown) for each in found.model.elements()):

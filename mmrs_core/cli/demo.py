@@ -7,9 +7,12 @@ from typing import Annotated
 
 import typer
 
+from mmrs_core.cli.demonstration import demonstrate, manner_of
+from mmrs_core.cli.journey import Journey, Workshop
 from mmrs_core.cli.output import say, say_json
 from mmrs_core.cli.settings import Json, settings_of
 from mmrs_core.errors import UnreadableError
+from mmrs_core.resources import shipped
 
 DEFAULT = "carbon-dioxide"
 
@@ -36,9 +39,6 @@ def demo(
         return _list_examples(json)
     folder = example_folder(example)
 
-    from mmrs_core.cli.demonstration import demonstrate, manner_of
-    from mmrs_core.cli.journey import Journey, Workshop
-
     journey = Journey(Workshop(settings_of(call)), folder)
     made = demonstrate(journey, folder, out, manner_of(folder), examples().values())
     if json:
@@ -64,8 +64,6 @@ def example_folder(name: str) -> Path:
 
 def examples() -> dict[str, Path]:
     """Return the folders of the shipped missions by name, sorted."""
-    from mmrs_core.resources import shipped
-
     return {
         mission.parent.name: mission.parent for mission in sorted(shipped("examples").glob("*/mission.xmi"))
     }
@@ -73,8 +71,6 @@ def examples() -> dict[str, Path]:
 
 def also_called(folder: Path) -> str:
     """Return a shorter name of an example; empty: it has none."""
-    from mmrs_core.cli.demonstration import manner_of
-
     return manner_of(folder).also
 
 

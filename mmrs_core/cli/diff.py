@@ -9,14 +9,16 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from mmrs_core.cli.any_model import Metamodels, is_metamodel, is_mistake
-from mmrs_core.cli.output import say, say_json
+from mmrs_core.cli.any_model import Metamodels, is_metamodel, is_mistake, read_foreign
+from mmrs_core.cli.diff_words import change_as_json, change_lines, colour_of, summary_line
+from mmrs_core.cli.journey import Workshop
+from mmrs_core.cli.metamodel import diff as between_metamodels
+from mmrs_core.cli.output import report, say, say_json
 from mmrs_core.cli.settings import Json, settings_of
 from mmrs_core.errors import UnreadableError
+from mmrs_core.languages.comparison.changes import Change, changes_between
 
 if TYPE_CHECKING:
-    from mmrs_core.cli.journey import Workshop
-    from mmrs_core.languages.comparison.changes import Change
     from mmrs_core.languages.element import Element
 
 _ENDINGS = (".xmi", ".json")
@@ -40,10 +42,6 @@ def diff(
 
     Example: mmrs diff mission-of-yesterday.xmi mission.xmi
     """
-    from mmrs_core.cli.diff_words import change_as_json, change_lines, colour_of, summary_line
-    from mmrs_core.cli.journey import Workshop
-    from mmrs_core.languages.comparison.changes import changes_between
-
     if is_metamodel(before) or is_metamodel(after):
         return _metamodels(call, before, after, json)
     workshop = Workshop(settings_of(call))
@@ -67,8 +65,6 @@ def diff(
 
 def _metamodels(call: typer.Context, before: Path, after: Path, json: bool) -> int:
     """Do what ``mmrs metamodel diff`` does."""
-    from mmrs_core.cli.metamodel import diff as between_metamodels
-
     if not (is_metamodel(before) and is_metamodel(after)):
         one, other = (before, after) if is_metamodel(before) else (after, before)
         raise UnreadableError(f"{one}: a metamodel, which is not compared with the model {other}")
@@ -110,8 +106,6 @@ def _models_in(folder: Path) -> dict[str, Path]:
 
 
 def _roots(workshop: Workshop, file: Path | None, metamodels: Sequence[Path] | None) -> tuple[Element, ...]:
-    from mmrs_core.cli.any_model import read_foreign
-    from mmrs_core.cli.output import report
 
     if file is None:
         return ()

@@ -8,10 +8,10 @@ from dataclasses import fields, is_dataclass
 from enum import Enum
 from math import isfinite
 from pathlib import PurePath
-from typing import TYPE_CHECKING
 
-if TYPE_CHECKING:
-    from mmrs_core.languages.metaclass import Feature
+from mmrs_core.languages.element import Element, Hidden, Unknown, get, is_set, metaclass_of, path_of
+from mmrs_core.languages.json_form.values import written
+from mmrs_core.languages.metaclass import Feature, Metaclass
 
 Plain = object
 """None, bool, int, float, str, list of plain values, or dict from str to plain values."""
@@ -68,8 +68,6 @@ def _element(value: object) -> Plain:
 
     An element whose metamodel is not installed keeps its XML; what is inside it is told by its path.
     """
-    from mmrs_core.languages.element import Element, Hidden, Unknown, get, is_set, metaclass_of, path_of
-
     if not isinstance(value, Element):
         raise TypeError(f"{type(value).__name__}: no such value passes between stages")
     if isinstance(value, Hidden):
@@ -97,10 +95,6 @@ def value_of(feature: Feature, value: object) -> Plain:
     Raises:
         TypeError: for a value that is not of the feature's type.
     """
-    from mmrs_core.languages.element import Element, path_of
-    from mmrs_core.languages.json_form.values import written
-    from mmrs_core.languages.metaclass import Metaclass
-
     if isinstance(value, Element):
         return _element(value) if feature.containment else path_of(value)
     if value is None:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
+from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -10,11 +12,10 @@ import typer
 from mmrs_core.cli.output import say, say_json, tell
 from mmrs_core.cli.settings import Json
 from mmrs_core.cli.tables import table
+from mmrs_core.errors import MmrsError
+from mmrs_core.generation.explaining import Explanation, Found, places_of
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
-
-    from mmrs_core.generation.explaining import Explanation, Found
     from mmrs_core.generation.manifest import Entry
 
 CHANGED = "was changed after it was generated; lines may have moved"
@@ -102,8 +103,6 @@ def _facts(entry: Entry) -> Iterator[str]:
 
 
 def _places(folder: Path, robot: str, move: str, task: str, json: bool) -> int:
-    from mmrs_core.errors import MmrsError
-    from mmrs_core.generation.explaining import places_of
 
     found = places_of(folder, robot=robot, move=move, task=task)
     asked = " ".join(
@@ -152,7 +151,6 @@ def _place_json(found: Found) -> dict[str, object]:
 
 
 def _entry_json(entry: Entry) -> dict[str, object]:
-    from dataclasses import asdict
 
     return {
         **asdict(entry.step),

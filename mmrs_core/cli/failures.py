@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import traceback
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import typer
 
-from mmrs_core.cli.journey import RefusedError
 from mmrs_core.cli.output import one_line, report, say_json, tell
 from mmrs_core.cli.settings import DEBUG, Settings
 from mmrs_core.errors import (
@@ -21,6 +21,7 @@ from mmrs_core.errors import (
 )
 
 if TYPE_CHECKING:
+    from mmrs_core.contributions.checks import Verdict
     from mmrs_core.diagnostics import Diagnostic
 
 MODEL_INVALID = 1
@@ -28,6 +29,18 @@ UNREADABLE = 3
 
 _HELP = "Usage: "
 """How the message begins when a command is called without arguments: with its help."""
+
+
+class RefusedError(MmrsError):
+    """A behaviour that is unsafe, or not known to be safe.
+
+    Attributes:
+        verdicts: the violated or unknown properties, at least one.
+    """
+
+    def __init__(self, message: str, verdicts: Sequence[Verdict]) -> None:
+        super().__init__(message)
+        self.verdicts = tuple(verdicts)
 
 
 @dataclass(frozen=True, slots=True)

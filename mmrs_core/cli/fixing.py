@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 import typer
 
+from mmrs_core.analysis.fixes.repair import Change, Diagnose, Proposal, Repair, Repairer
 from mmrs_core.cli.any_model import MIGRATE
 from mmrs_core.cli.output import counted, say, tell
 from mmrs_core.cli.protection import ProtectedError
@@ -16,7 +17,6 @@ from mmrs_core.cli.replacing import replace_files
 from mmrs_core.errors import UnreadableError
 
 if TYPE_CHECKING:
-    from mmrs_core.analysis.fixes.repair import Change, Diagnose, Proposal, Repair, Repairer
     from mmrs_core.contributions.registry import Contributions
     from mmrs_core.languages.model import Model
 
@@ -25,8 +25,6 @@ _COLOURS = {"+": "32", "-": "31", "@": "36"}
 
 def repairer_for(contributions: Contributions, diagnose: Diagnose) -> Repairer:
     """Return what finds and tries the quick fixes of all plug-ins."""
-    from mmrs_core.analysis.fixes.repair import Repairer
-
     return Repairer(contributions.fixes, contributions.languages, _names_of_checks(contributions), diagnose)
 
 

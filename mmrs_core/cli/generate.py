@@ -6,18 +6,22 @@ from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
+from mmrs_core.cli.behaviours import load_behaviour
+from mmrs_core.cli.capabilities import print_capabilities
+from mmrs_core.cli.journey import Workshop, require_safe, verdicts_of
 from mmrs_core.cli.output import counted, say, say_json
 from mmrs_core.cli.parameters import Context, Robots, behaviour_file, robot_files
+from mmrs_core.cli.protection import refuse_inputs
 from mmrs_core.cli.settings import Json, settings_of
 from mmrs_core.cli.tables import table
-
-if TYPE_CHECKING:
-    from mmrs_core.cli.journey import Workshop
-    from mmrs_core.generation.manifest import Manifest
+from mmrs_core.generation.deployment import fetch
+from mmrs_core.generation.manifest import Manifest, manifest_in
+from mmrs_core.generation.writing import write
+from mmrs_core.pipeline import render
 
 
 def generate(
@@ -64,14 +68,10 @@ def generate(
 
     Example: mmrs-gen field --target mavlink-python -o code
     """
-    from mmrs_core.cli.journey import Workshop
-
     workshop = Workshop(settings_of(call))
     if list_targets:
         return _list_targets(workshop, json)
     if capabilities:
-        from mmrs_core.cli.capabilities import print_capabilities
-
         return print_capabilities(workshop, target or (str(behaviour) if behaviour else None), json)
     if behaviour is None or target is None or output is None:
         missing = [
@@ -141,13 +141,6 @@ def _listed(written: tuple[Path, ...], folder: Path) -> list[str]:
 def _generate(
     workshop: Workshop, file: Path, order: _Order
 ) -> tuple[tuple[Path, ...], Manifest, tuple[str, ...]]:
-    from mmrs_core.cli.behaviours import load_behaviour
-    from mmrs_core.cli.journey import require_safe, verdicts_of
-    from mmrs_core.cli.protection import refuse_inputs
-    from mmrs_core.generation.deployment import fetch
-    from mmrs_core.generation.manifest import manifest_in
-    from mmrs_core.generation.writing import write
-    from mmrs_core.pipeline import render
 
     loaded = load_behaviour(workshop, file, context=order.context, robots=order.robots)
     program, place = loaded.program, loaded.place

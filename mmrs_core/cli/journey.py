@@ -7,22 +7,33 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
+from mmrs_core.cli.failures import RefusedError
 from mmrs_core.cli.interruption import interrupted
 from mmrs_core.cli.onlookers import Onlookers
 from mmrs_core.cli.output import progress, report, tell
 from mmrs_core.cli.protection import files_of
 from mmrs_core.cli.settings import Settings
-from mmrs_core.errors import MmrsError
+from mmrs_core.contributions.checks import Status, Verdict
+from mmrs_core.pipeline import (
+    Place,
+    expand,
+    ground,
+    place_of_scene,
+    plan,
+    program_of,
+    refusals,
+    transform,
+    valid_models,
+    verify,
+)
 
 if TYPE_CHECKING:
     from mmrs_core.behaviour.program import Program
-    from mmrs_core.contributions.checks import Verdict
     from mmrs_core.contributions.registry import Contributions
     from mmrs_core.diagnostics import Diagnostic
     from mmrs_core.languages.behaviour import Behaviour
     from mmrs_core.languages.model import Model
     from mmrs_core.languages.modelset import ModelSet
-    from mmrs_core.pipeline import Place
     from mmrs_core.plugins import Plugins
     from mmrs_core.scene import Plan, Scene
     from mmrs_core.transformation.engine import Trace
@@ -31,18 +42,6 @@ Result = TypeVar("Result")
 
 _UNKNOWN = "known to be safe: give what is missing, or name the property in the mission's acceptedUnknowns"
 NO_CONTEXT = "no context: nothing is known of obstacles and forbidden areas"
-
-
-class RefusedError(MmrsError):
-    """A behaviour that is not safe, or not known to be.
-
-    Attributes:
-        verdicts: those that stand against it, at least one.
-    """
-
-    def __init__(self, message: str, verdicts: Sequence[Verdict]) -> None:
-        super().__init__(message)
-        self.verdicts = tuple(verdicts)
 
 
 class Workshop:
@@ -112,7 +111,6 @@ class Journey:
 
     @cached_property
     def _valid(self) -> tuple[ModelSet, tuple[Diagnostic, ...]]:
-        from mmrs_core.pipeline import valid_models
 
         models, warnings = self.workshop.stage(
             "check",
@@ -138,16 +136,12 @@ class Journey:
     @cached_property
     def grounded(self) -> Scene:
         """Return the mission in its local frame."""
-        from mmrs_core.pipeline import ground
-
         models = self.models
         return self.workshop.stage("ground", "laying out the place", lambda: ground(models))
 
     @cached_property
     def scene(self) -> Scene:
         """Return the scene with the work of every task."""
-        from mmrs_core.pipeline import expand
-
         scene = self.grounded
         return self.workshop.stage(
             "expand", "finding the work of every task", lambda: expand(scene, self.workshop.contributions)
@@ -156,16 +150,12 @@ class Journey:
     @cached_property
     def plan(self) -> Plan:
         """Return who does what, when and by which way."""
-        from mmrs_core.pipeline import plan
-
         scene = self.scene
         return self.workshop.stage("plan", "planning", lambda: plan(scene, seed=self._seed))
 
     @cached_property
     def transformed(self) -> tuple[Behaviour, Trace]:
         """Return the behaviour, and what each of its moves is for."""
-        from mmrs_core.pipeline import transform
-
         scene, plan = self.scene, self.plan
         return self.workshop.stage(
             "transform",
@@ -176,15 +166,11 @@ class Journey:
     @cached_property
     def program(self) -> Program:
         """Return the behaviour as engines use it."""
-        from mmrs_core.pipeline import program_of
-
         return program_of(self.transformed[0], self.workshop.contributions)
 
     @property
     def place(self) -> Place:
         """Return what the behaviour is checked against."""
-        from mmrs_core.pipeline import place_of_scene
-
         return place_of_scene(self.scene)
 
     @cached_property
@@ -195,8 +181,6 @@ class Journey:
 
 def verdicts_of(workshop: Workshop, program: Program, place: Place) -> tuple[Verdict, ...]:
     """Return what is known of every property of a behaviour."""
-    from mmrs_core.pipeline import verify
-
     return workshop.stage(
         "verify", "checking the behaviour", lambda: verify(program, place, workshop.contributions)
     )
@@ -208,9 +192,6 @@ def require_safe(program: Program, verdicts: Sequence[Verdict], name: str) -> No
     Raises:
         RefusedError: if a property is violated, or unknown without the mission accepting that.
     """
-    from mmrs_core.contributions.checks import Status
-    from mmrs_core.pipeline import refusals
-
     against = refusals(verdicts, program)
     if against:
         unknown = all(each.status is Status.UNKNOWN for each in against)

@@ -7,9 +7,15 @@ from typing import Annotated
 
 import typer
 
+from mmrs_core.cli.behaviours import load_behaviour
+from mmrs_core.cli.buses import BusWishes
+from mmrs_core.cli.flying import carry_out
+from mmrs_core.cli.journey import Workshop
 from mmrs_core.cli.output import say_json
 from mmrs_core.cli.parameters import Assume, Behaviour, Context, Robots, behaviour_file, robot_files
 from mmrs_core.cli.settings import Json, settings_of
+from mmrs_core.cli.simulation import answers, backends_of, options_of
+from mmrs_core.cli.wishes import MAVLINK, Wishes
 
 _Texts = list[str] | None
 
@@ -131,13 +137,6 @@ def run(
 
     Example: mmrs run mission/behaviour.xmi --connect Drone1=udpin:127.0.0.1:14550 --log flight-1
     """
-    from mmrs_core.cli.behaviours import load_behaviour
-    from mmrs_core.cli.buses import BusWishes
-    from mmrs_core.cli.flying import carry_out
-    from mmrs_core.cli.journey import Workshop
-    from mmrs_core.cli.simulation import answers, backends_of, options_of
-    from mmrs_core.cli.wishes import MAVLINK, Wishes
-
     workshop = Workshop(settings_of(call))
     usual, own = backends_of(backend, MAVLINK)
     given = dict(options_of(backend_option))

@@ -7,10 +7,19 @@ from typing import Annotated
 
 import typer
 
+from mmrs_core.cli.metamodel_words import difference_lines, verdict_line
 from mmrs_core.cli.output import counted, say, say_json
+from mmrs_core.cli.replacing import replace_files
 from mmrs_core.cli.settings import Json, settings_of
 from mmrs_core.cli.tables import table
 from mmrs_core.errors import UnreadableError
+from mmrs_core.generation.stubs.write import write_stubs
+from mmrs_core.languages.evolution.differences import differences, ways_between
+from mmrs_core.languages.evolution.pairing import pairs_of
+from mmrs_core.languages.evolution.verdicts import Verdict
+from mmrs_core.languages.evolution.versions import version_of
+from mmrs_core.languages.metamodels.export import export_metamodels
+from mmrs_core.languages.metamodels.gathering import registry_of_files
 
 app = typer.Typer(
     rich_markup_mode=None,
@@ -65,12 +74,6 @@ def diff(
 
     Example: mmrs metamodel diff kites-1.0.ecore kites.ecore
     """
-    from mmrs_core.cli.metamodel_words import difference_lines, verdict_line
-    from mmrs_core.languages.evolution.differences import differences, ways_between
-    from mmrs_core.languages.evolution.pairing import pairs_of
-    from mmrs_core.languages.evolution.verdicts import Verdict
-    from mmrs_core.languages.evolution.versions import version_of
-
     registry = settings_of(call).plugins().contributions.languages
     try:
         versions = version_of(old, registry), version_of(new, registry)
@@ -105,8 +108,6 @@ def export(
     json: Json = False,
 ) -> int:
     """Export all metamodels as an Eclipse project."""
-    from mmrs_core.languages.metamodels.export import export_metamodels
-
     registry = settings_of(call).plugins().contributions.languages
     return _written(export_metamodels(registry, directory, force=force), json)
 
@@ -117,7 +118,6 @@ def docs(call: typer.Context, directory: Folder, json: Json = False) -> int:
 
     Writes one Markdown page with a class diagram of each metamodel.
     """
-    from mmrs_core.cli.replacing import replace_files
     from mmrs_core.pictures.pages.languages_page import pages
 
     registry = settings_of(call).plugins().contributions.languages
@@ -142,9 +142,6 @@ def stubs(
 
     Example: mmrs metamodel stubs mmrs_solar/metamodels/solar.ecore -o mmrs_solar
     """
-    from mmrs_core.generation.stubs.write import write_stubs
-    from mmrs_core.languages.metamodels.gathering import registry_of_files
-
     installed = settings_of(call).plugins().contributions.metamodels
     registry, ns_uris = registry_of_files([file], installed)
     return _written(write_stubs(registry, ns_uris, directory or file.parent), json)

@@ -10,6 +10,8 @@ import typer
 
 from mmrs_core.cli.output import say, say_json
 from mmrs_core.cli.settings import settings_of
+from mmrs_core.cli.tree_words import value_words
+from mmrs_core.languages.evolution.versions import version_of
 
 if TYPE_CHECKING:
     from mmrs_core.languages.metaclass import Enumeration, Feature, Metaclass, Package
@@ -20,8 +22,6 @@ _Branch = tuple[str, list["_Branch"]]
 
 def show_metamodel(call: typer.Context, file: Path, depth: int, json: bool) -> int:
     """Print the packages of an .ecore file; errors as in `version_of`."""
-    from mmrs_core.languages.evolution.versions import version_of
-
     version = version_of(str(file), settings_of(call).plugins().contributions.languages)
     if json:
         say_json({"file": file, "packages": [_as_json(package) for package in version.packages]})
@@ -34,8 +34,6 @@ def show_metamodel(call: typer.Context, file: Path, depth: int, json: bool) -> i
 
 def validate_metamodel(call: typer.Context, file: Path, json: bool) -> int:
     """Say that models can be read by an .ecore file; errors as in `version_of` if they cannot."""
-    from mmrs_core.languages.evolution.versions import version_of
-
     version = version_of(str(file), settings_of(call).plugins().contributions.languages)
     count = sum(len(package.metaclasses) for package in version.packages)
     if json:
@@ -80,7 +78,6 @@ def _enum(enumeration: Enumeration) -> _Branch:
 
 
 def _feature(feature: Feature) -> str:
-    from mmrs_core.cli.tree_words import value_words
 
     most = "*" if feature.most < 0 else str(feature.most)
     default = "" if feature.default is None else f" = {value_words(feature.default)}"

@@ -5,17 +5,19 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from enum import StrEnum
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
+from mmrs_core.cli.journey import Journey, Workshop
 from mmrs_core.cli.output import say, say_json
 from mmrs_core.cli.parameters import Context, Project, Robots, Seed, robot_files
+from mmrs_core.cli.plan_words import plan_lines, plan_summary
+from mmrs_core.cli.planned import require_sound, require_writable
 from mmrs_core.cli.schema_places import SchemaLocation, places_in
 from mmrs_core.cli.settings import Json, settings_of
-
-if TYPE_CHECKING:
-    from mmrs_core.cli.journey import Journey
+from mmrs_core.languages.modelset import model_in
+from mmrs_core.pipeline import save
 
 
 class Stage(StrEnum):
@@ -67,12 +69,6 @@ def plan(
 
     Example: mmrs plan field
     """
-    from mmrs_core.cli.journey import Journey, Workshop
-    from mmrs_core.cli.plan_words import plan_lines, plan_summary
-    from mmrs_core.cli.planned import require_sound, require_writable
-    from mmrs_core.languages.modelset import model_in
-    from mmrs_core.pipeline import save
-
     workshop = Workshop(settings_of(call))
     journey = Journey(workshop, project, context=context, robots=robot_files(robots), seed=seed)
     if stop_after is not None:

@@ -4,17 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from enum import StrEnum
+from importlib.metadata import EntryPoint, PackageNotFoundError, entry_points, version
 from pathlib import Path
 from shlex import quote
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
 from mmrs_core.cli.output import counted, say, say_json, tell
 from mmrs_core.cli.settings import Json, Settings, settings_of
-
-if TYPE_CHECKING:
-    from importlib.metadata import EntryPoint
+from mmrs_core.errors import PluginError, UnreadableError
+from mmrs_core.generation.scaffolding.names import plugin_names
+from mmrs_core.generation.scaffolding.write import write_plugin
+from mmrs_core.plugins import GROUP
 
 app = typer.Typer(
     rich_markup_mode=None,
@@ -35,8 +37,6 @@ def list_plugins(call: typer.Context, json: Json = False) -> int:
 
     Prints the contributions of each.
     """
-    from mmrs_core.errors import PluginError
-
     settings = settings_of(call)
     try:
         found, conflict = _loaded(settings)
@@ -48,8 +48,8 @@ def list_plugins(call: typer.Context, json: Json = False) -> int:
     if json:
         say_json({"plugins": found} | ({"error": conflict} if conflict else {}))
         return 1 if conflict else 0
-    for name, (distribution, version, sorts) in found.items():
-        say(f"{name} ({' '.join(filter(None, (distribution, version)))})")
+    for name, (distribution, release, sorts) in found.items():
+        say(f"{name} ({' '.join(filter(None, (distribution, release)))})")
         for sort, names in sorts.items():
             say(f"  {sort.replace('_', ' ')}: {_listed(names)}")
     return 1 if conflict else 0
@@ -83,9 +83,6 @@ def new_plugin(
 
     Example: mmrs plugin new roof-wash --task polygon
     """
-    from mmrs_core.generation.scaffolding.names import plugin_names
-    from mmrs_core.generation.scaffolding.write import write_plugin
-
     known = settings_of(call).plugins().contributions
     taken = {each.plugin for each in known.catalogue()}
     taken |= {part for source in known.metamodels for part in source.ns_uri.split(":")}
@@ -115,8 +112,6 @@ def _loaded(settings: Settings) -> tuple[_Found, str]:
     Raises:
         PluginError: if one is broken by itself.
     """
-    from mmrs_core.errors import PluginError, UnreadableError
-
     plugins = settings.plugins()
     found: _Found = {
         name: (distribution, _version(distribution), {})
@@ -132,7 +127,6 @@ def _loaded(settings: Settings) -> tuple[_Found, str]:
 
 
 def _version(distribution: str) -> str:
-    from importlib.metadata import PackageNotFoundError, version
 
     try:
         return version(distribution)
@@ -171,10 +165,6 @@ def _follows(before: str, name: str) -> bool:
 
 def _list_broken(reason: str, json: bool) -> int:
     """List the installed plug-ins by their entry points, each with whether it loads by itself."""
-    from importlib.metadata import entry_points
-
-    from mmrs_core.plugins import GROUP
-
     entries = sorted(entry_points(group=GROUP), key=lambda entry: entry.name)
     states = [(entry.name, entry.dist.name if entry.dist else "", _state(entry)) for entry in entries]
     if json:

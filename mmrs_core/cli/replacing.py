@@ -6,6 +6,8 @@ from collections.abc import Iterator, Mapping
 from errno import EEXIST, ENOTEMPTY
 from pathlib import Path
 
+from mmrs_core.languages.writing import replace_file
+
 
 def replace_files(texts: Mapping[Path, bytes]) -> None:
     """Put texts into files, and make the folders that they need.
@@ -15,8 +17,6 @@ def replace_files(texts: Mapping[Path, bytes]) -> None:
             that it names because they could not be put back. A folder in which somebody else has put
             something meanwhile stays.
     """
-    from mmrs_core.languages.writing import replace_file
-
     before: dict[Path, bytes | None] = {}
     folders: list[Path] = []
     try:
@@ -40,8 +40,6 @@ def _make_for(file: Path, made: list[Path]) -> None:
 
 def _put_back(before: Mapping[Path, bytes | None]) -> Iterator[Path]:
     """Give files their old content, and yield those for which that fails; None: there was no file."""
-    from mmrs_core.languages.writing import replace_file
-
     for file, text in before.items():
         try:
             if text is None:

@@ -7,13 +7,26 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from mmrs_core.behaviour.box_files import black_boxes, is_part
+from mmrs_core.behaviour.log import read_logs
+from mmrs_core.behaviour.replay import ReplayResult
+from mmrs_core.behaviour.replay import replay as replayed
+from mmrs_core.behaviour.salvage import logs_in, salvage_log
+from mmrs_core.cli.behaviours import load_program
+from mmrs_core.cli.encoding import plain
+from mmrs_core.cli.journey import Workshop
 from mmrs_core.cli.output import counted, say, say_json, tell
 from mmrs_core.cli.parameters import Behaviour, behaviour_file
 from mmrs_core.cli.settings import Json, settings_of
+from mmrs_core.cli.tables import table
+from mmrs_core.pictures.figures import clock
+from mmrs_core.pictures.flights.gathering import read_flight
+from mmrs_core.pictures.flights.steps import steps_of
+from mmrs_core.pictures.report.words import place
+from mmrs_runtime.semantics import Outcome
 
 if TYPE_CHECKING:
     from mmrs_core.behaviour.program import Program
-    from mmrs_core.behaviour.replay import ReplayResult
     from mmrs_core.pictures.flights.values import Flight
 
 
@@ -34,15 +47,6 @@ def replay(
 
     Example: mmrs replay field field/logs
     """
-    from mmrs_core.behaviour.box_files import black_boxes, is_part
-    from mmrs_core.behaviour.log import read_logs
-    from mmrs_core.behaviour.replay import replay as replayed
-    from mmrs_core.behaviour.salvage import logs_in, salvage_log
-    from mmrs_core.cli.behaviours import load_program
-    from mmrs_core.cli.journey import Workshop
-    from mmrs_core.pictures.flights.gathering import read_flight
-    from mmrs_runtime.semantics import Outcome
-
     workshop = Workshop(settings_of(call))
     program = load_program(workshop, behaviour_file(behaviour))
     given = [path for path in logs if not is_part(path)]
@@ -62,7 +66,6 @@ def replay(
 
 
 def _say(result: ReplayResult, flight: Flight | None) -> None:
-    from mmrs_core.pictures.figures import clock
 
     verdict = "accepted" if result.accepted else "not what the behaviour says"
     say(f"{verdict}: {result.outcome.value} after {result.steps} steps and {clock(result.duration)}")
@@ -80,10 +83,6 @@ def _say(result: ReplayResult, flight: Flight | None) -> None:
 
 
 def _say_steps(flight: Flight, program: Program) -> None:
-    from mmrs_core.cli.tables import table
-    from mmrs_core.pictures.figures import clock
-    from mmrs_core.pictures.flights.steps import steps_of
-    from mmrs_core.pictures.report.words import place
 
     rows = [
         (clock(step.time), step.robot, place(step.where), step.words) for step in steps_of(flight, program)
@@ -93,8 +92,6 @@ def _say_steps(flight: Flight, program: Program) -> None:
 
 
 def _say_json(result: ReplayResult, flight: Flight | None, program: Program, *, steps: bool) -> None:
-    from mmrs_core.cli.encoding import plain
-    from mmrs_core.pictures.flights.steps import steps_of
 
     told = plain(result)
     assert isinstance(told, dict)

@@ -10,9 +10,11 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from mmrs_core.cli.catalogue import Entry, catalogue_of
 from mmrs_core.cli.output import say_json
 from mmrs_core.cli.reports import STANDARD_OUTPUT
 from mmrs_core.cli.sarif_places import ROOT, Places
+from mmrs_core.cli.verdict_words import hint_of, verdict_line
 from mmrs_core.diagnostics import Diagnostic, Severity
 from mmrs_core.errors import InvalidModelError, UnreadableError
 from mmrs_core.languages.codes import refusal
@@ -20,7 +22,6 @@ from mmrs_core.languages.writing import replace_file
 
 if TYPE_CHECKING:
     from mmrs_core.analysis.fixes.repair import Proposal
-    from mmrs_core.cli.catalogue import Entry
     from mmrs_core.cli.journey import Workshop
     from mmrs_core.contributions.checks import Check, Verdict
     from mmrs_core.contributions.registry import Contributions
@@ -120,8 +121,6 @@ def as_faults(
         against: those that make the behaviour unsafe.
         checks: what says how to mend each.
     """
-    from mmrs_core.cli.verdict_words import hint_of, verdict_line
-
     known = tuple(checks)
     told = (each for each in verdicts if each in against or each.status.value == "unknown")
     return tuple(
@@ -172,8 +171,6 @@ def write_sarif(
     Raises:
         OSError: if the file cannot be written.
     """
-    from mmrs_core.cli.catalogue import catalogue_of
-
     log = sarif_of(faults, catalogue_of(contributions), proposals, subject)
     if file == STANDARD_OUTPUT:
         say_json(log)

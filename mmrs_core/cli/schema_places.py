@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from mmrs_core.errors import UnreadableError
+from mmrs_core.languages.metamodels.export import exported_names, schema_locations
 
 if TYPE_CHECKING:
     from mmrs_core.languages.registry import Registry
@@ -29,8 +30,6 @@ def places_in(directory: Path | None, registry: Registry, file: Path) -> Mapping
     Raises:
         UnreadableError: if not all metamodels were exported to that folder.
     """
-    from mmrs_core.languages.metamodels.export import exported_names, schema_locations
-
     if directory is None:
         return {}
     for name in exported_names(registry).values():

@@ -4,18 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
-from mmrs_core.cli.any_model import Metamodels, is_metamodel, is_mistake
+from mmrs_core.cli.any_model import Metamodels, faults_in, is_metamodel, is_mistake, read_foreign
+from mmrs_core.cli.encoding import value_of
+from mmrs_core.cli.journey import Workshop
 from mmrs_core.cli.metamodel_tree import show_metamodel
 from mmrs_core.cli.output import report, say, say_json, tell
 from mmrs_core.cli.settings import Json, settings_of
-
-if TYPE_CHECKING:
-    from mmrs_core.languages.element import Element
-    from mmrs_core.languages.query.search import Match
+from mmrs_core.cli.tree_words import tree, value_words, words_for
+from mmrs_core.languages.element import Element
+from mmrs_core.languages.query.search import Match, NothingFoundError, find
 
 _USAGE = 2
 
@@ -42,10 +43,6 @@ def show(
     Examples of paths: 'tasks[2].shell', 'team.robots[name=Hawk].home', '//GoTo[speed>3]', '//@tasks.0'; '/1'
     is the second root of a file.
     """
-    from mmrs_core.cli.any_model import faults_in, read_foreign
-    from mmrs_core.cli.journey import Workshop
-    from mmrs_core.languages.query.search import NothingFoundError, find
-
     if is_metamodel(model):
         if path:
             raise typer.BadParameter(f"--path leads into models, and {model} is a metamodel")
@@ -72,7 +69,6 @@ def _say_as_json(file: Path, roots: Sequence[Element], matches: Sequence[Match] 
     if matches is None:
         say_json({"file": file, "roots": roots})
         return
-    from mmrs_core.cli.encoding import value_of
 
     found = [
         {
@@ -86,8 +82,6 @@ def _say_as_json(file: Path, roots: Sequence[Element], matches: Sequence[Match] 
 
 
 def _say(matches: Sequence[Match], depth: int, with_paths: bool) -> None:
-    from mmrs_core.cli.tree_words import tree, value_words, words_for
-    from mmrs_core.languages.element import Element
 
     for match in matches:
         lead = f"{match.path}: " if with_paths else ""

@@ -7,9 +7,23 @@ from typing import Annotated
 
 import typer
 
+from mmrs_core.cli.behaviours import load_behaviour
+from mmrs_core.cli.journey import Workshop
 from mmrs_core.cli.output import say, say_json
 from mmrs_core.cli.parameters import Assume, Behaviour, Context, Robots, behaviour_file, robot_files
+from mmrs_core.cli.protection import refuse_inputs
 from mmrs_core.cli.settings import Json, settings_of
+from mmrs_core.cli.simulation import (
+    Chosen,
+    answers,
+    backends_of,
+    fly,
+    options_of,
+    run_lines,
+    succeeded,
+    write_logs,
+)
+from mmrs_runtime.records.steps import log_name
 
 
 def simulate(
@@ -49,21 +63,6 @@ def simulate(
 
     Example: mmrs simulate field -o field/logs
     """
-    from mmrs_core.cli.behaviours import load_behaviour
-    from mmrs_core.cli.journey import Workshop
-    from mmrs_core.cli.protection import refuse_inputs
-    from mmrs_core.cli.simulation import (
-        Chosen,
-        answers,
-        backends_of,
-        fly,
-        options_of,
-        run_lines,
-        succeeded,
-        write_logs,
-    )
-    from mmrs_runtime.records.steps import log_name
-
     workshop = Workshop(settings_of(call))
     usual, own = backends_of(backend, "simulation")
     conditions, chosen = answers(assume), Chosen(usual, options_of(backend_option), own)

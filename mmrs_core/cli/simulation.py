@@ -16,6 +16,7 @@ from mmrs_core.behaviour.log import read_log
 from mmrs_core.behaviour.program import Program
 from mmrs_core.cli.journey import Workshop
 from mmrs_core.cli.output import progress
+from mmrs_core.cli.simulated_boxes import remove_boxes, write_boxes
 from mmrs_core.contributions.rules import RobotKind
 from mmrs_core.errors import MmrsError
 from mmrs_core.pictures.figures import clock, length
@@ -138,8 +139,6 @@ def write_logs(
         ProtectedError: if the black box of a flight lies there.
         OSError: if the folder cannot be written to.
     """
-    from mmrs_core.cli.simulated_boxes import remove_boxes, write_boxes
-
     names = [log_name(robot.id) for robot in program.robots]
     with new_folders() as make:
         make(folder)

@@ -9,16 +9,21 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from mmrs_core.cli.any_model import Metamodels, is_metamodel
+from mmrs_core.cli.diagnosing import Subject
+from mmrs_core.cli.fixing import agreed, difference, refuse_foreign, repairer_for, show, write
+from mmrs_core.cli.journey import Workshop
 from mmrs_core.cli.metamodel_tree import validate_metamodel
 from mmrs_core.cli.output import counted, report, say, say_json, tell
 from mmrs_core.cli.parameters import Context, Project, Robots, robot_files, without_mission
 from mmrs_core.cli.reports import STANDARD_OUTPUT, Sarif, refuse_two_outputs
+from mmrs_core.cli.sarif import subject_of, write_sarif
 from mmrs_core.cli.settings import Json, settings_of
+from mmrs_core.diagnostics import Diagnostic, Severity, has_errors
 from mmrs_core.errors import UnreadableError
+from mmrs_core.languages.codes import is_refusal
 
 if TYPE_CHECKING:
     from mmrs_core.analysis.fixes.repair import Diagnosis, Proposal, Repair
-    from mmrs_core.diagnostics import Diagnostic
 
 _Fix = Annotated[bool, typer.Option("--fix", help="Fix unambiguous problems after showing a diff.")]
 _Yes = Annotated[bool, typer.Option("--yes", help="With --fix, skip confirmation.")]
@@ -46,10 +51,6 @@ def validate(
 
     Example: mmrs validate field --fix
     """
-    from mmrs_core.cli.diagnosing import Subject
-    from mmrs_core.cli.fixing import agreed, refuse_foreign, repairer_for, show, write
-    from mmrs_core.cli.journey import Workshop
-
     if is_metamodel(project):
         return validate_metamodel(call, project, json)
     if (yes or dry_run) and not fix:
@@ -76,8 +77,6 @@ def validate(
             found = repair.diagnosis
     proposals = tuple(repairer.proposals(found))
     if sarif is not None:
-        from mmrs_core.cli.sarif import subject_of, write_sarif
-
         named = subject_of("validate", project)
         write_sarif(sarif, found.faults, workshop.contributions, proposals, subject=named)
     if json:
@@ -89,7 +88,6 @@ def validate(
 
 
 def _exit_code(found: Diagnosis) -> int:
-    from mmrs_core.languages.codes import is_refusal
 
     if any(map(is_refusal, found.faults)):
         return UnreadableError.exit_code
@@ -97,7 +95,6 @@ def _exit_code(found: Diagnosis) -> int:
 
 
 def _is_valid(found: Diagnosis) -> bool:
-    from mmrs_core.diagnostics import has_errors
 
     return found.complete and not has_errors(found.faults)
 
@@ -111,7 +108,6 @@ def _summary(project: Path, found: Diagnosis, repair: Repair | None, changed: bo
 
 
 def _counts(faults: tuple[Diagnostic, ...]) -> str:
-    from mmrs_core.diagnostics import Severity
 
     counts = [(severity, sum(fault.severity is severity for fault in faults)) for severity in Severity]
     return ", ".join(counted(count, severity.value) for severity, count in counts if count)
@@ -127,7 +123,6 @@ def _tell_of(proposals: tuple[Proposal, ...], project: Path, *, asked: bool) -> 
 def _as_json(
     found: Diagnosis, proposals: tuple[Proposal, ...], repair: Repair | None, changed: bool
 ) -> dict[str, object]:
-    from mmrs_core.cli.fixing import difference
 
     told: dict[str, object] = {
         "valid": _is_valid(found),
