@@ -117,7 +117,7 @@ def eyes(robot: str, folder: Path, channel: str, port: int, setting: Setting) ->
     """Run the three processes of a vehicle's eyes."""
     file = folder / f"{robot}.json"
     file.write_text(to_json(setting.around), encoding="utf-8")
-    words = [sys.executable, "-m", "mmrs_auv.vision"]
+    words = [sys.executable, "-m", "auv_vision"]
     given = ["--sheet", str(folder / robot / "sheet.json"), "--surroundings", str(file)]
     given += ["--memory", f"budget-{os.getpid()}-{robot}", "--channel", channel]
     given += ["--rate", str(setting.rate), "--to", f"127.0.0.1:{port}"]

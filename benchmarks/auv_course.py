@@ -17,7 +17,7 @@ from itertools import pairwise
 from math import dist
 from pathlib import Path
 
-from mmrs_auv.testing import random_start
+from sample_vessels import random_start
 
 from mmrs_core import pipeline
 from mmrs_core.behaviour.log import read_logs

@@ -23,7 +23,7 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "support"))
 
-from mmrs_auv.testing import heavy_sheet, pool_sheet
+from sample_vessels import heavy_sheet, pool_sheet
 from vessel_processes import Boat, until
 
 from auv_vessel.control import failsafe

@@ -22,7 +22,7 @@ from datetime import date
 from itertools import pairwise
 from pathlib import Path
 
-from mmrs_auv.testing import pool_sheet
+from sample_vessels import pool_sheet
 
 from auv_vessel.api import Connection
 from auv_vessel.body import surroundings

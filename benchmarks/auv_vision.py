@@ -114,8 +114,8 @@ def _print_time() -> None:
     """Print what one pair of pictures takes to draw and to look at."""
     from random import Random
 
-    from mmrs_auv.vision.detecting import detect, sought_in
-    from mmrs_auv.vision.renderer import Renderer
+    from auv_vision.detecting import detect, sought_in
+    from auv_vision.renderer import Renderer
 
     random = Random(1)
     scenes = [one for one in (scene(random) for _ in range(200)) if one.camera is FRONT_CAMERA][:60]

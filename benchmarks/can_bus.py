@@ -23,7 +23,7 @@ from importlib.metadata import version
 from statistics import median
 
 import can
-from mmrs_auv.testing import heavy_sheet, pool_sheet
+from sample_vessels import heavy_sheet, pool_sheet
 
 from auv_vessel.api import Craft
 from auv_vessel.body.surroundings import Surroundings

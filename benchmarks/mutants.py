@@ -30,7 +30,7 @@ ENGINE = (
 )
 READER = ("tests/unit/languages", "tests/property/languages")
 VESSEL = tuple(
-    f"plugins/auv/tests/{folder}" for folder in ("control", "movement", "body", "wire", "test_guard.py")
+    f"plugins/auv-vessel/tests/{each}" for each in ("control", "movement", "body", "wire", "test_guard.py")
 )
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from mmrs_auv.testing import pool_sheet
+from sample_vessels import pool_sheet
 
 from auv_vessel.body.surroundings import Surroundings
 from auv_vessel.body.vehicle import Vehicle

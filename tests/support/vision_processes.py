@@ -13,14 +13,14 @@ from pathlib import Path
 from secrets import token_hex
 
 from can_hub import running
-from mmrs_auv.testing import pool_sheet
-from mmrs_auv.vision.cameras import Pose
+from sample_vessels import pool_sheet
 
 from auv_vessel.body.surroundings import BUOY, GATE, PATH, Surroundings, Thing, to_json
 from auv_vessel.eyes import Detections
 from auv_vessel.sheet import to_json as sheet_json
 from auv_vessel.wire.codec import Codec
 from auv_vessel.wire.ports import open_port
+from auv_vision.cameras import Pose
 
 POOL = Surroundings(
     bottom=4.0,
@@ -82,7 +82,7 @@ class Head:
     def start(self, part: str, *words: str) -> subprocess.Popen[str]:
         return subprocess.Popen(
             [
-                sys.executable, "-m", "mmrs_auv.vision", part, "--sheet", str(self._files[0]),
+                sys.executable, "-m", "auv_vision", part, "--sheet", str(self._files[0]),
                 "--surroundings", str(self._files[1]), "--memory", self.memory, "--rate", "5",
                 "--channel", self.channel, "--to", f"127.0.0.1:{self.detections.port}", *words,
             ],

@@ -8,14 +8,14 @@ from math import cos, radians, sin
 from random import Random
 
 import numpy as np
-from mmrs_auv.testing import pool_sheet
-from mmrs_auv.vision.cameras import LEFT, RIGHT, Camera, Pose, cameras_of
-from mmrs_auv.vision.detecting import detect, sought_in
-from mmrs_auv.vision.placing import detections_of
-from mmrs_auv.vision.renderer import Conditions, Renderer, directions, gate_ends, middle_of
-from mmrs_auv.vision.water import POOL, TOLD_APART, hazier
+from sample_vessels import pool_sheet
 
 from auv_vessel.body.surroundings import BUOY, GATE, PATH, Surroundings, Thing
+from auv_vision.cameras import LEFT, RIGHT, Camera, Pose, cameras_of
+from auv_vision.detecting import detect, sought_in
+from auv_vision.placing import detections_of
+from auv_vision.renderer import Conditions, Renderer, directions, gate_ends, middle_of
+from auv_vision.water import POOL, TOLD_APART, hazier
 
 NOISES = (2.0, 4.0, 8.0, 16.0)
 EDGE = 4.0

@@ -8,7 +8,7 @@ from math import dist
 from pathlib import Path
 
 import pytest
-from mmrs_auv.testing import random_start
+from sample_vessels import random_start
 
 from mmrs_core.behaviour.log import read_logs
 from mmrs_core.behaviour.replay import replay

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import Counter
 
 import pytest
-from mmrs_auv.testing import pool_sheet
+from sample_vessels import pool_sheet
 
 from auv_vessel.api import Craft
 from auv_vessel.body.surroundings import Surroundings

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 from c_drives import need_compiler, written
-from mmrs_auv.testing import pool_sheet
+from sample_vessels import pool_sheet
 from vessel_processes import Boat, boat, until
 
 from auv_vessel.control import failsafe

@@ -13,8 +13,8 @@ import pytest
 from can_hub import Raw, running
 from dronecan.transport import Frame as Part
 from dronecan.transport import Transfer, TransferManager
-from mmrs_auv.testing import pool_sheet
 from mmrs_dronecan.transfers import Outgoing
+from sample_vessels import pool_sheet
 
 from auv_vessel.api import Craft
 from auv_vessel.body.surroundings import Surroundings

@@ -9,11 +9,12 @@ from pathlib import Path
 import cv2
 import numpy as np
 import pytest
-from mmrs_auv.testing import pool_sheet
-from mmrs_auv.vision.cameras import Pose, cameras_of
-from mmrs_auv.vision.renderer import Renderer
+from sample_vessels import pool_sheet
 from vessel_processes import until
 from vision_processes import POOL, Head, eyes
+
+from auv_vision.cameras import Pose, cameras_of
+from auv_vision.renderer import Renderer
 
 pytestmark = pytest.mark.real_time("vessels")
 

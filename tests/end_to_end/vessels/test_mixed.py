@@ -78,7 +78,7 @@ def reached(bay: Path, tmp_path: Path) -> Iterator[dict[str, list[str]]]:
             ("frames", ("--channel", berth.channel)),
             ("front", ("--to", f"127.0.0.1:{told}")),
         ):
-            stack.enter_context(running(tmp_path, part, "mmrs_auv.vision", part, *given, *more))
+            stack.enter_context(running(tmp_path, part, "auv_vision", part, *given, *more))
         yield {
             "Gull": ["--connect", f"Gull=udpin:127.0.0.1:{port}@1"],
             "Otter": ["--backend", "Otter=can", "--connect", f"Otter={berth.channel}",

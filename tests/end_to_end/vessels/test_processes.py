@@ -6,7 +6,7 @@ import time
 from pathlib import Path
 
 import pytest
-from mmrs_auv.testing import pool_sheet
+from sample_vessels import pool_sheet
 from vessel_processes import Boat, boat, until
 
 from auv_vessel.control import failsafe

@@ -10,11 +10,11 @@ from pathlib import Path
 import pytest
 from dives import dive, diver, swim
 from dives_by_code import SPEED, dive_by_code, interpreted
+from mmrs_auv.controllers.connected import ConnectedVehicle
 from mmrs_auv.rehearsal import Berth
 from mmrs_auv.sheets import sheet_of
 
 from auv_vessel.body.surroundings import Surroundings
-from auv_vessel.driving.connected import ConnectedVehicle
 from mmrs_core.behaviour.log import read_logs
 from mmrs_core.behaviour.program import Program
 from mmrs_core.behaviour.replay import replay

@@ -64,7 +64,7 @@ def eyes(folder: Path, berth: Berth, port: int) -> Iterator[None]:
     words = ["--sheet", str(folder / "berth/sheet.json"), "--surroundings", str(file)]
     words += ["--memory", f"seeing-{os.getpid()}", "--channel", berth.channel, "--to", f"127.0.0.1:{port}"]
     parts = [
-        subprocess.Popen([sys.executable, "-m", "mmrs_auv.vision", part, *words])
+        subprocess.Popen([sys.executable, "-m", "auv_vision", part, *words])
         for part in ("frames", "front", "bottom")
     ]
     try:

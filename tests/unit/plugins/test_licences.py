@@ -33,7 +33,7 @@ def needed() -> set[tuple[str, str]]:
         for extra, lines in {"": project["dependencies"], **extras}.items():
             names = (Requirement(line).name for line in lines)
             found |= {(name, f"{project['name']}{extra}") for name in names if extra != "[dev]"}
-    return {each for each in found if not each[0].startswith(("mmrs-", "auv-vessel"))}
+    return {each for each in found if not each[0].startswith(("mmrs-", "auv-vessel", "auv-vision"))}
 
 
 def families(text: str) -> set[str]:

@@ -11,6 +11,7 @@ PLUGINS = {
     "mavlink": "",
     "auv-vessel": "",
     "multicopter": "",
+    "auv-vision": "",
     "auv": "[vision]",
     "survey": "",
     "rover": "",
@@ -20,8 +21,7 @@ PLUGINS = {
 OURS = {
     "mmrs-core",
     "mmrs-runtime",
-    "auv-vessel",
-    *(f"mmrs-{name}" for name in PLUGINS if name != "auv-vessel"),
+    *(name if name.startswith("auv-") else f"mmrs-{name}" for name in PLUGINS),
 }
 
 

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from auv_vessel.driving.connected import ConnectedVehicle, Reach
-from auv_vessel.driving.connected import connected as on_its_bus
-from auv_vessel.driving.orders import Waters
 from auv_vessel.eyes import Detections
 from auv_vessel.wire.ports import CHANNEL
 from mmrs_auv.backend.options import Connecting, connecting
 from mmrs_auv.backend.orders import BehaviourOrders
+from mmrs_auv.controllers.connected import ConnectedVehicle, Reach
+from mmrs_auv.controllers.connected import connected as on_its_bus
+from mmrs_auv.controllers.orders import Waters
 from mmrs_auv.sheets import sheet_of
 from mmrs_core.contributions.vehicles import Live, VehicleInput
 from mmrs_core.errors import LinkLostError, UnsupportedError, UsageError

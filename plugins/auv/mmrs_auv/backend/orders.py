@@ -20,8 +20,8 @@ from auv_vessel.decision.duties import (
     Travel,
     Use,
 )
-from auv_vessel.driving.orders import NoWayError, Waters
 from auv_vessel.sheet import Sheet, Vector
+from mmrs_auv.controllers.orders import NoWayError, Waters
 from mmrs_auv.sayable import Bus, mount_of, parameter_of, unturnable
 from mmrs_auv.sheets import action_number
 from mmrs_core.behaviour.program import BEHAVIOUR, DEVICE_ACTION, Action, Heading, Move

@@ -13,8 +13,6 @@ from auv_vessel.body.surroundings import PATH, Surroundings, Thing
 from auv_vessel.body.vehicle import Vehicle
 from auv_vessel.control.actuators import Actuators
 from auv_vessel.control.sensors import Sensors
-from auv_vessel.driving.orders import Waters
-from auv_vessel.driving.vehicle import CanVehicle
 from auv_vessel.eyes import Detections, to_datagram
 from auv_vessel.hosting import Rehearsal
 from auv_vessel.instruments import instruments_of
@@ -23,6 +21,8 @@ from auv_vessel.sheet import Sheet, Vector
 from auv_vessel.wire.codec import Codec
 from mmrs_auv.backend.options import Rehearsing, rehearsing
 from mmrs_auv.backend.orders import BehaviourOrders
+from mmrs_auv.controllers.orders import Waters
+from mmrs_auv.controllers.vehicle import CanVehicle
 from mmrs_auv.sheets import sheet_of
 from mmrs_core.contributions.execution import Fault, Sample
 from mmrs_core.contributions.vehicles import VehicleInput
@@ -132,7 +132,7 @@ class Cameras:
         """
         if find_spec("cv2") is None:
             raise UnsupportedError("option 'objects': cameras need OpenCV; pip install 'mmrs-auv[vision]'")
-        from mmrs_auv.vision.node import Eyes
+        from auv_vision.node import Eyes
 
         self._stage, self._eyes = stage, Eyes(stage.sheet, stage.surroundings, seed)
         self.found = Detections(clock=lambda: stage.rehearsal.now)
@@ -141,7 +141,7 @@ class Cameras:
 
     def look(self) -> None:
         """Take pictures, if it is time to."""
-        from mmrs_auv.vision.cameras import Pose
+        from auv_vision.cameras import Pose
 
         now = self._stage.rehearsal.now
         if now < self._due:

@@ -7,8 +7,8 @@ from pathlib import Path
 import pytest
 from dives import dive, rehearse, swim
 from mmrs_auv.backend.rehearsed import RehearsedRobot
+from mmrs_auv.controllers.vehicle import CanVehicle
 
-from auv_vessel.driving.vehicle import CanVehicle
 from mmrs_core.contributions.execution import Fault
 from mmrs_core.scene import Area, AreaUse
 

@@ -6,14 +6,14 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
-from mmrs_auv.testing import pool_sheet
+from mmrs_auv.controllers.program_orders import ProgramOrders
+from mmrs_auv.controllers.vehicle import CanVehicle
+from sample_vessels import pool_sheet
 from vessel_rig import Rig
 
 from auv_vessel.body.surroundings import Obstacle, Surroundings
-from auv_vessel.controllers.orders import ProgramOrders
 from auv_vessel.decision.duties import FailureError, Stay
 from auv_vessel.decision.helm import Helm
-from auv_vessel.driving.vehicle import CanVehicle
 from auv_vessel.eyes import Detection, Detections, to_datagram
 from auv_vessel.hosting import WireFault
 from mmrs_runtime.controllers.objects import where_expected

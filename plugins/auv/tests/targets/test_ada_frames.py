@@ -35,7 +35,7 @@ from c_drives import told as done_by
 from mmrs_auv.kinds import AUV_KIND
 from mmrs_auv.targets.ada.policies import EVENTS, LASTING, RESPONSES
 from mmrs_auv.targets.places import templates_of
-from mmrs_auv.testing import heavy_sheet, pool_sheet, torpedo_sheet
+from sample_vessels import heavy_sheet, pool_sheet, torpedo_sheet
 from vessel_sheets import sheet
 
 from auv_vessel.decision.helm import COMES_UP

@@ -30,8 +30,8 @@ class CanPython(PythonDriver[RobotContext]):
 
     name = "can-python"
     description = "standalone controllers of underwater vehicles on CAN buses, and one for the whole fleet"
-    module = "auv_vessel.controllers"
-    requires = ("auv-vessel",)
+    module = "mmrs_auv.controllers"
+    requires = ("auv-vessel", "mmrs-auv")
     templates = templates_of("can-python")
     capabilities = CAPABILITIES
     tried_with = "sub"

@@ -1,0 +1,207 @@
+"""One of the three processes that are the eyes of a vehicle.
+
+python -m auv_vision frames --sheet auv.json --surroundings pool.json --channel can0@127.0.0.1:29536
+python -m auv_vision front --sheet auv.json --surroundings pool.json --to 127.0.0.1:29600
+python -m auv_vision bottom --sheet auv.json --surroundings pool.json --to 127.0.0.1:29600
+"""
+
+from __future__ import annotations
+
+import argparse
+import logging
+import sys
+import threading
+import time
+from collections.abc import Callable, Sequence
+from contextlib import ExitStack
+from pathlib import Path
+from urllib.parse import quote
+
+from auv_vessel.body.surroundings import Surroundings
+from auv_vessel.body.surroundings import from_json as surroundings_from
+from auv_vessel.eyes import CAMERAS
+from auv_vessel.refusals import refuse
+from auv_vessel.sheet import Sheet
+from auv_vessel.sheet import from_json as sheet_from
+from auv_vessel.signals import stopped_by_signals
+
+from .cameras import Camera, Pose, cameras_of
+from .ring import Reader, Writer
+
+FRAMES, NONE = "frames", "none"
+EXIT_USAGE, EXIT_GONE = 2, 3
+
+
+class GoneError(Exception):
+    """What a process needs is gone: it is started again from outside."""
+
+
+def main(words: Sequence[str] | None = None) -> int:
+    """Serve until SIGTERM, SIGINT or the end of a file; return the exit status."""
+    given = _parser().parse_args(words)
+    logging.getLogger("can").setLevel(logging.ERROR)
+    stop = stopped_by_signals()
+    try:
+        import cv2
+
+        cv2.setNumThreads(1)
+    except ImportError:
+        print("vision needs OpenCV: install mmrs-auv[vision]", file=sys.stderr)
+        return EXIT_USAGE
+    try:
+        sheet = sheet_from(given.sheet.read_text(encoding="utf-8"))
+        refuse(sheet)
+        around = surroundings_from(given.surroundings.read_text(encoding="utf-8"))
+        _serve(given, sheet, around, stop)
+    except GoneError as error:
+        print(f"{given.part}: {error}", file=sys.stderr)
+        return EXIT_GONE
+    except (OSError, ValueError) as error:
+        print(f"{given.part}: {error}", file=sys.stderr)
+        return EXIT_USAGE
+    finally:
+        if given.figures:
+            given.figures.write_text(f"{time.process_time():.3f}\n", encoding="utf-8")
+    return 0
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("part", choices=(FRAMES, *CAMERAS))
+    parser.add_argument(
+        "--sheet", type=Path, required=True, help="file that says what the vehicle is made of"
+    )
+    parser.add_argument(
+        "--surroundings", type=Path, required=True, help="file that says what things there are to see"
+    )
+    parser.add_argument("--memory", help="name of the shared memory; else that of the vehicle")
+    parser.add_argument("--to", type=_address, default=("127.0.0.1", 29600), help="HOST:PORT of who decides")
+    for camera in CAMERAS:
+        parser.add_argument(
+            f"--{camera}",
+            metavar="SOURCE",
+            help="simulated, none, a film, a camera's number or device, or two as in 0,1; "
+            "if neither is given both are simulated, if one is given the other is none",
+        )
+    parser.add_argument("--rate", type=_rate, default=5.0, help="pairs of each camera in a second")
+    parser.add_argument("--seed", type=int, default=0, help="of simulated pictures' noise")
+    parser.add_argument("--interface", default="socketcand", help="of python-can; none: stay at home")
+    parser.add_argument("--channel", default="can0@127.0.0.1:29536", help="of that interface")
+    parser.add_argument("--figures", type=Path, help="file for seconds of processor time, at the end")
+    return parser
+
+
+def _address(text: str) -> tuple[str, int]:
+    host, _, port = text.rpartition(":")
+    if not host or not port.isdecimal() or len(port) > 5 or not 0 < int(port) < 65536:
+        raise argparse.ArgumentTypeError(f"{text} is not HOST:PORT")
+    return host, int(port)
+
+
+def _rate(text: str) -> float:
+    try:
+        rate = float(text)
+    except ValueError:
+        rate = 0.0
+    if not 0.0 < rate <= 100.0:
+        raise argparse.ArgumentTypeError(f"{text} is not a rate up to 100")
+    return rate
+
+
+def memory_of(robot: str) -> str:
+    """Return the name of the memory of a vehicle's eyes: each has its own."""
+    return f"mmrs-eyes-{quote(robot, safe='')[:200]}"
+
+
+def _serve(given: argparse.Namespace, sheet: Sheet, around: Surroundings, stop: threading.Event) -> None:
+    cameras = dict(zip(CAMERAS, cameras_of(sheet), strict=True))
+    given.memory = given.memory or memory_of(sheet.robot)
+    if given.part == FRAMES:
+        _serve_frames(given, sheet, around, cameras, stop)
+        return
+    from .detecting import sought_in, unseen
+    from .processes import watch
+    from .water import POOL, hazier
+
+    camera, sought = cameras[given.part], sought_in(around)
+    for each in unseen(camera, sought):
+        print(f"{given.part}: {each}", file=sys.stderr)
+    with Reader(f"{given.memory}-{given.part}") as reader:
+        watch(reader, camera, sought, given.to, stop, hazier(POOL, around.haze), sheet.robot)
+
+
+def _serve_frames(
+    given: argparse.Namespace,
+    sheet: Sheet,
+    around: Surroundings,
+    cameras: dict[str, Camera],
+    stop: threading.Event,
+) -> None:
+    from .processes import handle
+    from .renderer import Renderer
+    from .sources import SIMULATED, SourceError, opened
+
+    told = {name: getattr(given, name) for name in CAMERAS}
+    otherwise = SIMULATED if set(told.values()) == {None} else NONE
+    chosen = {name: otherwise if text is None else text for name, text in told.items()}
+    used = {name: text for name, text in chosen.items() if text != NONE}
+    if not used:
+        raise ValueError("no camera is left to take pictures with")
+    with ExitStack() as stack:
+        renderer = Renderer(around, given.seed)
+        sources = {name: opened(text, cameras[name], lambda: renderer) for name, text in used.items()}
+        for source in sources.values():
+            stack.callback(source.close)
+        writers = {
+            name: stack.enter_context(
+                Writer(f"{given.memory}-{name}", cameras[name].width, cameras[name].height)
+            )
+            for name in used
+        }
+        where, clock, lost = _whereabouts(given, sheet, stop, stack)
+        try:
+            handle(sources, cameras, writers, where, clock, stop, given.rate)
+        except SourceError as error:
+            raise GoneError(str(error)) from error
+        if lost:
+            raise GoneError(f"the bus is gone: {lost[0]}")
+
+
+def _whereabouts(
+    given: argparse.Namespace, sheet: Sheet, stop: threading.Event, stack: ExitStack
+) -> tuple[Callable[[], Pose | None], Callable[[], float], list[str]]:
+    """Return who tells the vehicle's pose, who tells its time, and a list for why the bus is gone."""
+    lost: list[str] = []
+    if given.interface == "none":
+        home = Pose(*sheet.home, heading=sheet.heading)
+        return lambda: home, time.time, lost
+    from auv_vessel.wire.codec import Codec
+    from auv_vessel.wire.ports import open_port
+
+    from .hearing import Whereabouts
+
+    heard = Whereabouts(Codec(sheet))
+
+    def tell(text: str) -> None:
+        print(f"{given.part}: {text}", file=sys.stderr, flush=True)
+
+    port = stack.enter_context(open_port(given.interface, given.channel, say=tell))
+
+    def listen() -> None:
+        try:
+            heard.listen(port, stop)
+        except OSError as error:
+            lost.append(str(error))
+            stop.set()
+
+    listener = threading.Thread(target=listen, name="whereabouts", daemon=True)
+    listener.start()
+    stack.callback(listener.join)
+    stack.callback(stop.set)
+    return heard.pose, heard.now, lost
+
+
+if __name__ == "__main__":
+    sys.exit(main())

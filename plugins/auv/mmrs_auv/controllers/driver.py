@@ -1,0 +1,211 @@
+"""The driver of vehicles on CAN buses, for controllers: it reads its options, and makes vehicles."""
+
+from __future__ import annotations
+
+import argparse
+from argparse import ArgumentParser, Namespace
+from collections.abc import Collection, Mapping, Sequence
+from math import inf
+from pathlib import Path
+
+from auv_vessel.api import Craft
+from auv_vessel.eyes import Detections
+from auv_vessel.sheet import Sheet, from_json
+from auv_vessel.wire.ports import CHANNEL
+from mmrs_auv.controllers.connected import Reach, connected
+from mmrs_auv.controllers.dry import DryCraft
+from mmrs_auv.controllers.orders import Orders
+from mmrs_auv.controllers.program_orders import ProgramOrders
+from mmrs_auv.controllers.vehicle import CanVehicle
+from mmrs_runtime.controllers.driver import Driver, Outfit
+from mmrs_runtime.controllers.judgement import Condition, objects_of
+from mmrs_runtime.controllers.objects import Locator, where_expected
+from mmrs_runtime.controllers.running import run_controllers
+from mmrs_runtime.controllers.start import start_of
+from mmrs_runtime.controllers.state import State
+from mmrs_runtime.controllers.words import Robot
+from mmrs_runtime.engine.connecting import Live
+from mmrs_runtime.faults import LINK_LOST, Fault
+from mmrs_runtime.records.blackbox import BlackBox
+
+
+def main(
+    robots: Sequence[Robot],
+    sheets: Mapping[str, Path],
+    conditions: Mapping[str, Condition] | None = None,
+    locators: Mapping[str, Locator] | None = None,
+    arguments: Sequence[str] | None = None,
+) -> int:
+    """Run the programs of robots; return the exit code.
+
+    Args:
+        robots: at least one.
+        sheets: files of the vehicles' data, by robot.
+        conditions: what decides Choices, by identifier.
+        locators: what finds objects, by description.
+        arguments: as on the command line; None: those of this process.
+    """
+    return run_controllers(CanDriver(sheets), robots, conditions, locators, arguments)
+
+
+class CanDriver(Driver):
+    """Reaches vehicles on CAN buses, or makes them up for a dry run."""
+
+    _outfit: Outfit
+    _given: Namespace
+
+    def __init__(self, sheets: Mapping[str, Path]) -> None:
+        """Know the files of the vehicles' data, by robot."""
+        self._sheets = sheets
+        self._channels: Mapping[str, str] = {}
+        self._ports: Mapping[str, int] = {}
+
+    def add_options(self, parser: ArgumentParser) -> None:
+        """Add those of buses, cameras and sonar."""
+        add = parser.add_argument
+        add("--can", action="append", default=[], metavar="[ROBOT=]CHANNEL", help=f"default {CHANNEL}")
+        add("--interface", default="socketcand", help="of python-can")
+        add("--bit-rate", type=int, help="for adapters that have to be told")
+        add("--detections", action="append", default=[], metavar="[ROBOT=]PORT", help=_DETECTIONS)
+        add("--clearance", type=_metres, default=0.0, help="metres ahead within which sonar must see nothing")
+        add("--clock", choices=("real", "bus"), help="bus: time as a simulated vehicle tells it")
+
+    def settle(self, parser: ArgumentParser, robots: Sequence[Robot], given: Namespace) -> Mapping[str, str]:
+        """Keep which robot is on which bus, and who hears its cameras."""
+        ids = [robot.id for robot in robots]
+        self._given = given
+        self._channels = {**dict.fromkeys(ids, CHANNEL), **_by_robot(parser, "--can", ids, given.can)}
+        self._ports = _ports(parser, ids, given.detections)
+        return {robot: robot for robot in ids}
+
+    def sees(self, robot: Robot) -> Collection[str]:
+        """Return the objects that its cameras look for."""
+        if robot.id not in self._ports:
+            return ()
+        return {found for step in robot.steps for found in objects_of(step.movement)}
+
+    def open(self, outfit: Outfit) -> None:
+        """Open nothing: each vehicle has a bus of its own."""
+        self._outfit = outfit
+
+    def connect(self, robot: Robot, live: Live, box: BlackBox) -> CanVehicle:
+        """Return a robot's vehicle, which need not have been heard yet.
+
+        Raises:
+            Fault: there is no such bus, or its cameras' port is taken.
+        """
+        options, given = self._outfit.options, self._given
+        sheet = from_json(self._sheets[robot.id].read_text(encoding="utf-8"))
+        made: list[CanVehicle] = []
+
+        def state() -> State:
+            told = made[0].state(options.clock.now()).told
+            assert told is not None
+            return told
+
+        if options.dry:
+            locators = {**self._outfit.locators, **dict.fromkeys(self.sees(robot), where_expected)}
+            craft = DryCraft(sheet, options.clock.now)
+            made.append(
+                _DryVehicle(robot, sheet, craft, ProgramOrders(robot, sheet, locators, state), live, box)
+            )
+            return made[0]
+        eyes = self._eyes(robot.id)
+        orders = ProgramOrders(
+            robot, sheet, self._outfit.locators, state, None if eyes is None else eyes.place
+        )
+        channel = self._channels[robot.id]
+        reach = Reach(
+            given.interface,
+            channel,
+            given.bit_rate or 0,
+            given.clock or "",
+            options.patience,
+            options.home_tolerance,
+            given.clearance,
+        )
+        start = start_of(robot, "can", "python-can", confirms=True)
+        try:
+            made.append(
+                connected(
+                    robot.id,
+                    sheet,
+                    orders,
+                    reach,
+                    options.clock,
+                    live,
+                    start,
+                    box=box,
+                    eyes=eyes,
+                    rehearsal=self._outfit.rehearsal,
+                    let_go=lambda: self._outfit.rehearsal.forget(robot.id),
+                )
+            )
+        except (OSError, ValueError) as error:
+            raise Fault(LINK_LOST, f"{channel}: {error}") from error
+        return made[0]
+
+    def _eyes(self, robot: str) -> Detections | None:
+        if (port := self._ports.get(robot)) is None:
+            return None
+        try:
+            return self._outfit.stack.enter_context(Detections(port=port, robot=robot))
+        except OSError as error:
+            raise Fault(LINK_LOST, f"--detections {port}: {error.strerror or error}") from error
+
+
+class _DryVehicle(CanVehicle):
+    """A vehicle that is not there; its black box says so."""
+
+    def __init__(
+        self, robot: Robot, sheet: Sheet, craft: Craft, orders: Orders, live: Live, box: BlackBox
+    ) -> None:
+        super().__init__(robot.id, sheet, craft, orders, box=box, say=live.say)
+        self._start = start_of(robot, None, "python-can")
+
+    def prepare(self, now: float) -> bool:
+        """Be ready."""
+        self.note("start", self._start)
+        return False
+
+    def close(self) -> None:
+        """Close the box."""
+        if self._box is not None:
+            self._box.close()
+
+
+_DETECTIONS = "UDP port on which cameras tell where objects are, whatever objects.py says"
+
+
+def _metres(text: str) -> float:
+    try:
+        found = float(text)
+    except ValueError:
+        found = -1.0
+    if not 0.0 <= found < inf:
+        raise argparse.ArgumentTypeError(f"{text}: is no number from 0 on")
+    return found
+
+
+def _by_robot(
+    parser: ArgumentParser, option: str, robots: Sequence[str], texts: Sequence[str]
+) -> dict[str, str]:
+    found = {}
+    for text in texts:
+        robot, sign, value = text.rpartition("=")
+        if sign and robot not in robots:
+            parser.error(f"{option} {text}: there is no robot {robot!r}")
+        if not sign and len(robots) > 1:
+            parser.error(f"{option} {text}: which robot? say ROBOT={text}")
+        found[robot or robots[0]] = value
+    return found
+
+
+def _ports(parser: ArgumentParser, robots: Sequence[str], texts: Sequence[str]) -> Mapping[str, int]:
+    found = _by_robot(parser, "--detections", robots, texts)
+    for text in found.values():
+        if not (text.isascii() and text.isdecimal() and len(text) < 6 and 0 < int(text) < 65_536):
+            parser.error(f"--detections {text}: is no port")
+    if len(set(found.values())) < len(found):
+        parser.error("--detections: each vehicle's cameras need a port of their own")
+    return {robot: int(text) for robot, text in found.items()}
