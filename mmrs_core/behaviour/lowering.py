@@ -15,10 +15,10 @@ def lowered(program: Program) -> words.Program:
     return words.Program(tuple(_robot(robot, program.reserve) for robot in program.robots), program.name)
 
 
-def _robot(robot: RobotProgram, reserve: float) -> words.Robot:
+def _robot(robot: RobotProgram, reserve: float) -> words.ExecutableRobot:
     moves = tuple(_move(robot, index, move) for index, move in enumerate(robot.moves))
     start = robot.moves[robot.start].id
-    return words.Robot(robot.id, moves, start, robot.slots, robot.policies, reserve)
+    return words.ExecutableRobot(robot.id, moves, start, robot.slots, robot.policies, reserve)
 
 
 def _move(robot: RobotProgram, index: int, move: Move) -> words.Move:

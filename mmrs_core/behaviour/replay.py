@@ -9,14 +9,14 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 
 from mmrs_core.behaviour.program import BEHAVIOUR, Move, Program
-from mmrs_runtime.program import Robot, SlotId
+from mmrs_runtime.program import ExecutableRobot, SlotId
 from mmrs_runtime.records.steps import StepRecord, merge
 from mmrs_runtime.semantics import (
+    GlobalState,
     Outcome,
     Phase,
     Point,
-    State,
-    Step,
+    PossibleStep,
     Waiting,
     entry,
     missing,
@@ -80,7 +80,7 @@ class ReplayResult:
 
 @dataclass(slots=True)
 class _Robot:
-    program: Robot
+    program: ExecutableRobot
     point: Point
     began: float = 0.0
     last: StepRecord | None = None
@@ -110,7 +110,7 @@ def replay(program: Program, records: Iterable[StepRecord], *, partial: bool = F
     run = _Replay({robot.id: _Robot(robot, entry(robot, robot.start)) for robot in program.executable.robots})
     if not complaints:
         complaints.extend(_replayed(run, merge(in_file_order)))
-    state = State(tuple(robot.point for robot in run.robots.values()), frozenset(run.active))
+    state = GlobalState(tuple(robot.point for robot in run.robots.values()), frozenset(run.active))
     outcome = _outcome(run, state)
     if outcome is Outcome.INCOMPLETE and not complaints and not partial:
         complaints.extend(_unfinished(run))
@@ -172,7 +172,7 @@ def _too_short(robot: _Robot, record: StepRecord) -> str:
     return f"holds for {held:g} s, expected at least {duration:g} s" if held < duration - _TOLERANCE else ""
 
 
-def _advance(run: _Replay, robot: _Robot, step: Step, record: StepRecord) -> None:
+def _advance(run: _Replay, robot: _Robot, step: PossibleStep, record: StepRecord) -> None:
     if step.label == "begin":
         robot.began = record.time
     if step.label == "fault":
@@ -185,7 +185,7 @@ def _advance(run: _Replay, robot: _Robot, step: Step, record: StepRecord) -> Non
     run.steps += 1
 
 
-def _outcome(run: _Replay, state: State) -> Outcome:
+def _outcome(run: _Replay, state: GlobalState) -> Outcome:
     if any(steps(robot.program, robot.point, state.active) for robot in run.robots.values()):
         return Outcome.INCOMPLETE
     if run.faults:
@@ -218,6 +218,6 @@ def _expected(run: _Replay, robot: _Robot) -> str:
     return f"no step after it has {'finished' if robot.point.phase is Phase.DONE else 'failed'}"
 
 
-def _shown(step: StepRecord | Step) -> str:
+def _shown(step: StepRecord | PossibleStep) -> str:
     parts = (step.label, step.detail, step.slot)
     return " ".join(part for part in parts if part) + f" of '{step.move}'"

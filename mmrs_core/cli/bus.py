@@ -25,8 +25,8 @@ from mmrs_core.cli.settings import Json, settings_of
 from mmrs_core.errors import LinkLostError, UnreadableError, UnsupportedError
 from mmrs_runtime.bus.carriers.over_zenoh import ZenohCarrier
 from mmrs_runtime.bus.gateway.server import Gateway
+from mmrs_runtime.bus.messages import digest
 from mmrs_runtime.bus.program_bus import node_of
-from mmrs_runtime.bus.words import digest
 from mmrs_runtime.screen import unfailing
 
 if TYPE_CHECKING:

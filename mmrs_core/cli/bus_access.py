@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-from mmrs_runtime.bus.words import digest
+from mmrs_runtime.bus.messages import digest
 
 
 @dataclass(frozen=True, slots=True)

@@ -7,6 +7,6 @@ from __future__ import annotations
 
 from mmrs_runtime.engine.clocks import RunClock as Clock
 from mmrs_runtime.vehicle import Condition, Fault, Sample
-from mmrs_runtime.vehicle import State as RobotState
+from mmrs_runtime.vehicle import VehicleState as RobotState
 
 __all__ = ["Clock", "Condition", "Fault", "RobotState", "Sample"]

@@ -14,8 +14,8 @@ from mmrs_core.simulation.conditions import refuse_undecided
 from mmrs_runtime.bus import Incomplete
 from mmrs_runtime.engine import live as engine
 from mmrs_runtime.engine.live import Venture
+from mmrs_runtime.engine.preflight import NotReadyError
 from mmrs_runtime.engine.terms import Ending
-from mmrs_runtime.engine.unready import Unready
 from mmrs_runtime.slots import Slots
 from mmrs_runtime.vehicle import Vehicle
 
@@ -54,7 +54,7 @@ def run_live(venture: Venture) -> Ending:
     """
     try:
         return engine.run_live(venture)
-    except Unready as error:
+    except NotReadyError as error:
         raise (LinkLostError if error.link_lost else MmrsError)(str(error)) from None
     except Incomplete as error:
         raise LinkLostError(str(error)) from error

@@ -14,7 +14,7 @@ from math import isfinite
 from typing import Protocol, TypeAlias
 
 
-class Known(Protocol):
+class Facts(Protocol):
     """The input of standard conditions in all executions; None where unknown."""
 
     @property
@@ -43,7 +43,7 @@ class Known(Protocol):
         ...
 
 
-Standard: TypeAlias = Callable[[Known], bool | None]
+Standard: TypeAlias = Callable[[Facts], bool | None]
 """Whether a condition holds, by what a robot knows; None while that cannot be said yet."""
 
 BATTERY, WIND, DETECTED, FOUND, ANSWER = "battery-below", "wind-above", "detected", "found", "answer"
@@ -94,7 +94,7 @@ def truth(found: object) -> bool:
     raise TypeError(f"{found!r} is neither True nor False")
 
 
-def undecided(known: Known) -> bool | None:
+def undecided(known: Facts) -> bool | None:
     """Decide nothing: placeholder in conditions.py for what decides a choice.
 
     Raises:

@@ -30,7 +30,7 @@ from typing import Any
 from .callers import Callers
 from .orders.calling import network, object_in
 from .orders.ordering import PATTERN
-from .orders.orders import ANSWER, ORDERS, STATUS, Inbox, Order, Receipt
+from .orders.orders import ANSWER, ORDERS, STATUS, Inbox, OrderKind, Receipt
 
 FILE = "control.json"
 ANSWER_SECONDS = 30.0
@@ -168,7 +168,7 @@ class Control:
             yield from self._obeyed(order, robots, seconds)
         yield {"done": True}
 
-    def _obeyed(self, order: Order, robots: list[str], seconds: float) -> Iterator[Mapping[str, object]]:
+    def _obeyed(self, order: OrderKind, robots: list[str], seconds: float) -> Iterator[Mapping[str, object]]:
         answers: queue.SimpleQueue[Receipt] = queue.SimpleQueue()
         for robot in robots:
             self._inboxes[robot].give(order, answers.put)
@@ -198,7 +198,7 @@ class Control:
             raise ValueError("token: is not that of this process")
         return given
 
-    def _understood(self, given: Mapping[str, Any]) -> tuple[Order, list[str], float]:
+    def _understood(self, given: Mapping[str, Any]) -> tuple[OrderKind, list[str], float]:
         robots = given.get("robots", list(self._inboxes))
         if not isinstance(robots, list) or not robots or not all(isinstance(robot, str) for robot in robots):
             raise ValueError("robots: must be a list of names")
@@ -213,7 +213,7 @@ def _written(reply: Mapping[str, object]) -> bytes:
     return json.dumps(reply).encode("ascii") + b"\n"
 
 
-def _line(robot: str, order: Order, confirmed: bool, seconds: float, why: str) -> Mapping[str, object]:
+def _line(robot: str, order: OrderKind, confirmed: bool, seconds: float, why: str) -> Mapping[str, object]:
     return {
         "robot": robot,
         "order": order.name,
@@ -223,17 +223,17 @@ def _line(robot: str, order: Order, confirmed: bool, seconds: float, why: str) -
     }
 
 
-def _order(given: Mapping[str, Any]) -> Order:
+def _order(given: Mapping[str, Any]) -> OrderKind:
     name = given.get("order")
     if not isinstance(name, str) or name not in ORDERS:
         shown = f"{name!r} is" if isinstance(name, str) else "is"
         raise ValueError(f"order: {shown} none of {', '.join(ORDERS)}")
     if name != ANSWER:
-        return Order(name)
+        return OrderKind(name)
     question, answer = given.get("question"), given.get("answer")
     if not isinstance(question, str) or not question or not isinstance(answer, bool):
         raise ValueError("answer: needs a question, and an answer that is true or false")
-    return Order(ANSWER, question, answer)
+    return OrderKind(ANSWER, question, answer)
 
 
 def _seconds(given: object) -> float:

@@ -81,7 +81,7 @@ class Move:
 
 
 @dataclass(frozen=True)
-class Robot:
+class ExecutableRobot:
     """One robot and all that it does.
 
     Attributes:
@@ -123,11 +123,11 @@ class Robot:
 class Program:
     """What all robots of a mission do, in the order in which they step where several are due at once."""
 
-    robots: tuple[Robot, ...]
+    robots: tuple[ExecutableRobot, ...]
     name: str = ""
     fingerprint: str = field(default="", compare=False)
 
     @cached_property
-    def by_id(self) -> Mapping[str, Robot]:
+    def by_id(self) -> Mapping[str, ExecutableRobot]:
         """Return the robots by identifier."""
         return {robot.id: robot for robot in self.robots}

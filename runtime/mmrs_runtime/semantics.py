@@ -18,7 +18,7 @@ from dataclasses import dataclass
 from enum import Enum
 from typing import NamedTuple
 
-from .program import Choose, Notify, Program, Robot, SlotId
+from .program import Choose, ExecutableRobot, Notify, Program, SlotId
 from .records.steps import StepRecord
 
 
@@ -47,7 +47,7 @@ class Point(NamedTuple):
         return self.phase is Phase.DONE or self.phase is Phase.FAILED
 
 
-class Step(NamedTuple):
+class PossibleStep(NamedTuple):
     """A step that a robot may make.
 
     Attributes:
@@ -93,24 +93,24 @@ class Outcome(Enum):
 
 
 @dataclass(frozen=True, slots=True)
-class State:
+class GlobalState:
     """Where all robots are, in the program's order, and which slots are active."""
 
     points: tuple[Point, ...]
     active: frozenset[SlotId] = frozenset()
 
 
-def initial(program: Program) -> State:
+def initial(program: Program) -> GlobalState:
     """Return the state in which every run begins."""
-    return State(tuple(entry(robot, robot.start) for robot in program.robots))
+    return GlobalState(tuple(entry(robot, robot.start) for robot in program.robots))
 
 
-def entry(robot: Robot, move: str) -> Point:
+def entry(robot: ExecutableRobot, move: str) -> Point:
     """Return the first control point of a move."""
     return Point(move, Phase.BEFORE if robot.by_id[move].before else Phase.READY)
 
 
-def steps(robot: Robot, point: Point, active: Set[SlotId]) -> tuple[Step, ...]:
+def steps(robot: ExecutableRobot, point: Point, active: Set[SlotId]) -> tuple[PossibleStep, ...]:
     """Return the steps that the robot may make; two only at a Choice, none if it waits or is final.
 
     A fault may happen at any point and is not among them.
@@ -119,20 +119,22 @@ def steps(robot: Robot, point: Point, active: Set[SlotId]) -> tuple[Step, ...]:
     if phase is Phase.BEFORE or phase is Phase.AFTER:
         return (_action_step(robot, point),)
     if phase is Phase.READY:
-        return (Step(robot.id, "begin", point.move, "", "", Point(point.move, Phase.BUSY)),)
+        return (PossibleStep(robot.id, "begin", point.move, "", "", Point(point.move, Phase.BUSY)),)
     if phase is Phase.BUSY:
-        return (Step(robot.id, "end", point.move, "", "", _after_movement(robot, point.move)),)
+        return (PossibleStep(robot.id, "end", point.move, "", "", _after_movement(robot, point.move)),)
     if phase is Phase.OUT and not missing(robot, point, active):
         return _ways_on(robot, point)
     return ()
 
 
-def fault(robot: Robot, point: Point, which: str) -> Step:
+def fault(robot: ExecutableRobot, point: Point, which: str) -> PossibleStep:
     """Return the step by which a robot that is not at a final point stops for good."""
-    return Step(robot.id, "fault", point.move, which, "", Point(point.move, Phase.FAILED))
+    return PossibleStep(robot.id, "fault", point.move, which, "", Point(point.move, Phase.FAILED))
 
 
-def told_by(record: StepRecord, robot: Robot, point: Point, active: Set[SlotId]) -> Step | None:
+def told_by(
+    record: StepRecord, robot: ExecutableRobot, point: Point, active: Set[SlotId]
+) -> PossibleStep | None:
     """Return the step of a robot from a point that a record belongs to; None: it can make no such step."""
     if record.label == "fault":
         may = not point.is_final and not record.slot and record.move == point.move
@@ -142,12 +144,12 @@ def told_by(record: StepRecord, robot: Robot, point: Point, active: Set[SlotId])
     return next((s for s in possible if (s.label, s.move, s.detail, s.slot) == wanted), None)
 
 
-def missing(robot: Robot, point: Point, active: Set[SlotId]) -> tuple[str, ...]:
+def missing(robot: ExecutableRobot, point: Point, active: Set[SlotId]) -> tuple[str, ...]:
     """Return the names of the slots that hold the robot up at the end of a move; empty elsewhere."""
     return tuple(slot[1] for slot in awaited(robot, point) if slot not in active)
 
 
-def awaited(robot: Robot, point: Point) -> tuple[SlotId, ...]:
+def awaited(robot: ExecutableRobot, point: Point) -> tuple[SlotId, ...]:
     """Return the own slots that must be active before the robot continues; none but at the end of a move."""
     if point.phase is not Phase.OUT:
         return ()
@@ -155,7 +157,7 @@ def awaited(robot: Robot, point: Point) -> tuple[SlotId, ...]:
     return tuple((robot.id, name) for name in then.waits) if then is not None else ()
 
 
-def action_at(robot: Robot, point: Point) -> object | None:
+def action_at(robot: ExecutableRobot, point: Point) -> object | None:
     """Return the action that the robot is about to do; None where it is about to do none."""
     move = robot.by_id[point.move]
     if point.phase is Phase.BEFORE:
@@ -169,29 +171,29 @@ def slot_text(notify: Notify) -> str:
     return ("+" if notify.active else "-") + names
 
 
-def enabled(program: Program, state: State) -> Iterator[Step]:
+def enabled(program: Program, state: GlobalState) -> Iterator[PossibleStep]:
     """Yield every step that some robot may make in that state."""
     for robot, point in zip(program.robots, state.points, strict=True):
         yield from steps(robot, point, state.active)
 
 
-def apply(program: Program, state: State, step: Step) -> State:
+def apply(program: Program, state: GlobalState, step: PossibleStep) -> GlobalState:
     """Return the state after an enabled step."""
     points = tuple(
         step.leads_to if robot.id == step.robot else point
         for robot, point in zip(program.robots, state.points, strict=True)
     )
-    return State(points, frozenset(with_slots(state.active, step)))
+    return GlobalState(points, frozenset(with_slots(state.active, step)))
 
 
-def with_slots(active: Set[SlotId], step: Step) -> Set[SlotId]:
+def with_slots(active: Set[SlotId], step: PossibleStep) -> Set[SlotId]:
     """Return which slots are active after a step."""
     if not step.sets:
         return active
     return active | set(step.sets) if step.active else active - set(step.sets)
 
 
-def waiting(program: Program, state: State) -> tuple[Waiting, ...]:
+def waiting(program: Program, state: GlobalState) -> tuple[Waiting, ...]:
     """Return the robots that wait in that state."""
     return tuple(
         Waiting(robot.id, point.move, lacking)
@@ -200,17 +202,17 @@ def waiting(program: Program, state: State) -> tuple[Waiting, ...]:
     )
 
 
-def is_success(state: State) -> bool:
+def is_success(state: GlobalState) -> bool:
     """Return whether every robot has done all that it should."""
     return all(point.phase is Phase.DONE for point in state.points)
 
 
-def is_deadlock(program: Program, state: State) -> bool:
+def is_deadlock(program: Program, state: GlobalState) -> bool:
     """Return whether no step is possible any more although not every robot has come to its end."""
     return not is_success(state) and next(enabled(program, state), None) is None
 
 
-def _action_step(robot: Robot, point: Point) -> Step:
+def _action_step(robot: ExecutableRobot, point: Point) -> PossibleStep:
     move = robot.by_id[point.move]
     before = point.phase is Phase.BEFORE
     actions = move.before if before else move.after
@@ -222,25 +224,25 @@ def _action_step(robot: Robot, point: Point) -> Step:
     detail = f"{point.phase.value}:{point.action}"
     if isinstance(action, Notify):
         text = slot_text(action)
-        return Step(robot.id, "ntf", move.id, detail, text, leads_to, action.slots, action.active)
-    return Step(robot.id, "act", move.id, detail, "", leads_to)
+        return PossibleStep(robot.id, "ntf", move.id, detail, text, leads_to, action.slots, action.active)
+    return PossibleStep(robot.id, "act", move.id, detail, "", leads_to)
 
 
-def _after_movement(robot: Robot, move: str) -> Point:
+def _after_movement(robot: ExecutableRobot, move: str) -> Point:
     return Point(move, Phase.AFTER) if robot.by_id[move].after else _out(robot, move)
 
 
-def _out(robot: Robot, move: str) -> Point:
+def _out(robot: ExecutableRobot, move: str) -> Point:
     return Point(move, Phase.DONE if robot.by_id[move].then is None else Phase.OUT)
 
 
-def _ways_on(robot: Robot, point: Point) -> tuple[Step, ...]:
+def _ways_on(robot: ExecutableRobot, point: Point) -> tuple[PossibleStep, ...]:
     then = robot.by_id[point.move].then
     if then is None:
         return ()
     if not isinstance(then, Choose):
-        return (Step(robot.id, "take", point.move, then.move, "", entry(robot, then.move)),)
+        return (PossibleStep(robot.id, "take", point.move, then.move, "", entry(robot, then.move)),)
     return tuple(
-        Step(robot.id, "choose", point.move, detail, "", entry(robot, way))
+        PossibleStep(robot.id, "choose", point.move, detail, "", entry(robot, way))
         for detail, way in (("true", then.move), ("false", then.otherwise))
     )

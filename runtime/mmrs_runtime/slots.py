@@ -11,9 +11,9 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 from typing import Protocol
 
-from .bus.words import CommandId, Find, SlotState
+from .bus.messages import CommandId, Find, SlotState
 from .program import Program, SlotId
-from .vehicle import State
+from .vehicle import VehicleState
 
 
 class Delivery(Protocol):
@@ -39,7 +39,7 @@ class Delivery(Protocol):
         """
         ...
 
-    def withdraw(self) -> None:
+    def abort(self) -> None:
         """Give it up: owners that were asked are free again; what was sent cannot be called back."""
         ...
 
@@ -48,7 +48,7 @@ class Slots(Protocol):
     """Carries notifies between robots. Only a slot's owner changes it; waits look at its state.
 
     A slot that is kept for a sender is neither passed nor set by others until that sender has sent
-    or withdrawn its notify, or is lost.
+    or aborted its notify, or is lost.
     """
 
     def prepare(
@@ -99,7 +99,7 @@ class Slots(Protocol):
         ...
 
 
-def with_own(told: Iterable[Find], state: State) -> tuple[Find, ...]:
+def with_own(told: Iterable[Find], state: VehicleState) -> tuple[Find, ...]:
     """Return what those that notified a robot have detected, and then what it has detected itself."""
     found = {find[0]: find for find in told}
     for name in sorted(state.detected):
@@ -216,5 +216,5 @@ class _Sending:
             raise ValueError(f"logical time {lamport}: less than {self.lamport}")
         self._slots.apply(self._sender, self._sets, self._active, lamport, self._finds)
 
-    def withdraw(self) -> None:
+    def abort(self) -> None:
         pass

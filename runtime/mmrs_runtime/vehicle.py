@@ -24,7 +24,7 @@ class LinkLost(Exception):  # noqa: N818  # the word that policies and logs use
 
 
 @dataclass(frozen=True, slots=True)
-class State:
+class VehicleState:
     """What is known of a robot at one time.
 
     Attributes:
@@ -129,7 +129,7 @@ class Vehicle(ABC):
         """
 
     @abstractmethod
-    def state(self, now: float) -> State:
+    def state(self, now: float) -> VehicleState:
         """Return what is known of the robot."""
 
     def look(self, now: float) -> float:
@@ -263,7 +263,7 @@ class Sample:
         return (self.east, self.north, self.up)
 
 
-def _always(state: State) -> bool:
+def _always(state: VehicleState) -> bool:
     return True
 
 
@@ -279,11 +279,11 @@ class Condition:
     """
 
     identifier: str
-    holds: Callable[[State], bool]
-    known: Callable[[State], bool] = field(default=_always)
+    holds: Callable[[VehicleState], bool]
+    known: Callable[[VehicleState], bool] = field(default=_always)
     instant: bool = False
 
-    def asked(self, state: State) -> object:
+    def asked(self, state: VehicleState) -> object:
         """Return whether it holds in a state, as it says; None while it cannot be decided.
 
         Raises:

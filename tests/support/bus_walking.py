@@ -152,7 +152,7 @@ class Walker:
             self._write(step, max(self.lamport + 1, delivery.lamport))
         except BaseException:
             if not isinstance(sys.exception(), Gone):
-                delivery.withdraw()
+                delivery.abort()
             raise
         self.at("logged", self.number)
         delivery.send(self.lamport)
@@ -302,8 +302,8 @@ class GatewayDelivery:
         self.waiting = ("not known yet",)
         self._bus._ask({"do": "send", "number": self._number, "lamport": lamport})
 
-    def withdraw(self):
-        self._bus._ask({"do": "withdraw", "number": self._number})
+    def abort(self):
+        self._bus._ask({"do": "abort", "number": self._number})
 
 
 def _awaited(path: Path, patience: float) -> str:

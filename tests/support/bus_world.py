@@ -142,7 +142,7 @@ class Walker:
             return True
         if delivery.lamport is None:
             if self.chance.random() < 0.02:
-                delivery.withdraw()
+                delivery.abort()
                 self.delivery = None
             return False
         self._write(step, max(self.lamport + 1, delivery.lamport))

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 from mmrs_core.behaviour.program import Program, RobotProgram, SlotId
 from mmrs_core.behaviour.walk import reachable, reachable_moves
-from mmrs_runtime.program import Robot
+from mmrs_runtime.program import ExecutableRobot
 from mmrs_runtime.semantics import Phase, entry, steps
 from mmrs_runtime.semantics import awaited as awaited_at
 
@@ -139,7 +139,9 @@ def _part(network: Network, group: Sequence[int]) -> Network:
     )
 
 
-def _net(robot: RobotProgram, executable: Robot, reached: frozenset[int], awaited: frozenset[SlotId]) -> Net:
+def _net(
+    robot: RobotProgram, executable: ExecutableRobot, reached: frozenset[int], awaited: frozenset[SlotId]
+) -> Net:
     numbers = {move.id: index for index, move in enumerate(executable.moves)}
     full = {move: _node(executable, move, numbers, awaited) for move in reached}
     kept = [move for move in sorted(reached) if move == robot.stop or _matters(full[move])]
@@ -160,7 +162,7 @@ def _net(robot: RobotProgram, executable: Robot, reached: frozenset[int], awaite
     return Net(robot.id, tuple(nodes), number.get(robot.stop))
 
 
-def _node(robot: Robot, index: int, numbers: Mapping[str, int], awaited: frozenset[SlotId]) -> Node:
+def _node(robot: ExecutableRobot, index: int, numbers: Mapping[str, int], awaited: frozenset[SlotId]) -> Node:
     """Return a move as the step rules lead through it."""
     point = entry(robot, robot.moves[index].id)
     sets: list[tuple[frozenset[SlotId], bool]] = []

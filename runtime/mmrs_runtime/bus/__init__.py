@@ -22,19 +22,19 @@ connects programs without Zenoh.
 from .carriers.carrier import Carrier
 from .journal import FileJournal, NoJournal
 from .meeting import PATIENCE, Beginning, Incomplete, begin_together
+from .messages import CommandId, SlotId, SlotState
 from .node import Node
-from .outgoing import Delivery
+from .outgoing import BusDelivery
 from .owner import Owned
 from .owners import Member, Recorded
 from .watching import Unwelcome
-from .words import CommandId, SlotId, SlotState
 
 __all__ = [
     "PATIENCE",
     "Beginning",
+    "BusDelivery",
     "Carrier",
     "CommandId",
-    "Delivery",
     "FileJournal",
     "Incomplete",
     "Member",

@@ -14,7 +14,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
-from .words import Answer, Meet
+from .messages import Answer, Meet
 
 if TYPE_CHECKING:
     from .node import Node
@@ -125,7 +125,7 @@ def _part(calls: Sequence[_Asking]) -> None:
     asking = calls[0]
     for each in calls:
         if not asking.at and each.may_be_listed():
-            each.withdraw()
+            each.abort()
             asking.at = asking.at or each.at
 
 
@@ -192,7 +192,7 @@ class _Asking:
         """Return whether the first robot may know that this one is ready; its answers may all be lost."""
         return self._heard or not self._node.missing([self._first])
 
-    def withdraw(self) -> None:
+    def abort(self) -> None:
         """Announce that the robot waits no longer; where all begin at this very moment, it does, too."""
         for _ in range(FAREWELLS):
             if self._answer_to(replace(self._request, robots=0)) is not None:

@@ -9,11 +9,11 @@ from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 
 from .carriers.carrier import Carrier, NoCarrier
 from .journal import Journal, Keeping, NoJournal
-from .outgoing import FAREWELL_SECONDS, Delivery, Outgoing
+from .messages import Answer, Begin, CommandId, Commit, Find, Meet, SlotId, SlotState, written
+from .outgoing import FAREWELL_SECONDS, BusDelivery, Outgoing
 from .owners import Member, Owners, Recorded
 from .threads import Net, Pacing, Tell, tell_people
 from .watching import OTHERWISE, TWICE, Unwelcome, Watching, refuse_oddities
-from .words import Answer, Begin, CommandId, Commit, Find, Meet, SlotId, SlotState, written
 
 
 class Node:
@@ -158,7 +158,7 @@ class Node:
 
     def prepare(
         self, id: CommandId, slots: tuple[SlotId, ...], active: bool, finds: tuple[Find, ...] = ()
-    ) -> Delivery:
+    ) -> BusDelivery:
         """Ask the owners of slots for setting them; returns at once.
 
         Owners are not asked where no robot ever resets the slots: it is granted then. Where there are robots

@@ -11,15 +11,12 @@ from functools import partial
 from math import isfinite
 
 from .carriers.carrier import Carrier
-from .errands import Errand, Message, Notice
-from .owners import Member, Owners, Recorded
-from .threads import SORE_SECONDS, Net
-from .watching import Watching
-from .words import (
+from .messages import (
     LARGEST,
     LONGEST_NAME,
     MOST_FINDS,
     REACH,
+    Abort,
     Answer,
     Begin,
     CommandId,
@@ -31,10 +28,13 @@ from .words import (
     Request,
     SlotId,
     Unreadable,
-    Withdraw,
     answer_in,
     written,
 )
+from .owners import Member, Owners, Recorded
+from .threads import SORE_SECONDS, Net
+from .transactions import Message, Notice, Transaction
+from .watching import Watching
 
 FINDS_BYTES = 16_384
 """Detections in one message."""
@@ -45,40 +45,40 @@ FAREWELL_SECONDS = 2.0
 TIDINGS_SECONDS = 10.0
 """How long a newcomer is sent the robots that have ended before, until it answers."""
 
-Work = Sequence[tuple[Errand | Notice, Message]]
+Work = Sequence[tuple[Transaction | Notice, Message]]
 """What is to be sent, each with what its answer is for."""
 
 
 @dataclass(frozen=True, slots=True)
-class Delivery:
+class BusDelivery:
     """A notify in progress, as its sender sees it; see `mmrs_runtime.slots.Delivery`."""
 
-    _errand: Errand
+    _transaction: Transaction
     _outgoing: Outgoing
 
     @property
     def lamport(self) -> int | None:
         """Return the least logical time that the notify may have; None until all who are asked answered."""
         with self._outgoing.lock:
-            return self._errand.lamport if self._errand.is_granted else None
+            return self._transaction.lamport if self._transaction.is_granted else None
 
     @property
     def waiting(self) -> tuple[str, ...]:
         """Return the owners that have still to answer or, once it was sent, to acknowledge."""
         with self._outgoing.lock:
-            return self._errand.waiting
+            return self._transaction.waiting
 
     @property
     def is_over(self) -> bool:
         """Return whether nothing is left to be done for it."""
         with self._outgoing.lock:
-            return self._errand.is_over
+            return self._transaction.is_over
 
     @property
     def refusals(self) -> Mapping[str, str]:
         """Return why owners will never do it; empty where all is well."""
         with self._outgoing.lock:
-            return dict(self._errand.refusals)
+            return dict(self._transaction.refusals)
 
     def send(self, lamport: int) -> None:
         """Let every owner apply it, after it was recorded with that logical time.
@@ -86,11 +86,11 @@ class Delivery:
         Raises:
             ValueError: that time was not granted.
         """
-        self._outgoing.send(self._errand, lamport)
+        self._outgoing.send(self._transaction, lamport)
 
-    def withdraw(self) -> None:
+    def abort(self) -> None:
         """Abort it; what was sent continues until all have acknowledged."""
-        self._outgoing.withdraw(self._errand)
+        self._outgoing.abort(self._transaction)
 
 
 class Outgoing:
@@ -138,12 +138,12 @@ class Outgoing:
         self._owners, self._watching, self._carrier, self._net = owners, watching, carrier, net
         self._chance, self._pump, self._settled, self._alone = chance, pump, settled, alone
         self._latched = frozenset[SlotId]().union(*(member.latched for member in members.values()))
-        self._errands: list[Errand | Notice] = []
+        self._transactions: list[Transaction | Notice] = []
         self._farewells: dict[str, Notice] = {}
 
     def prepare(
         self, id: CommandId, slots: tuple[SlotId, ...], active: bool, finds: tuple[Find, ...]
-    ) -> Delivery:
+    ) -> BusDelivery:
         """Ask the owners of slots for setting them; returns at once.
 
         Where there are robots of other processes, run and incarnation are those of this process. Of the
@@ -159,31 +159,33 @@ class Outgoing:
             if not self._alone:
                 id = replace(id, run=self._run, incarnation=self._owners.incarnation)
                 self._take_part(id.sender)
-            errand = Errand(id, parts, active, least, self._chance, reach, fitting(finds), latched=latched)
+            transaction = Transaction(
+                id, parts, active, least, self._chance, reach, fitting(finds), latched=latched
+            )
             for owner in parts:
                 if self._watching.has_ended(owner) and owner not in self._owners:
-                    errand.gone(owner)
-            self._errands.append(errand)
+                    transaction.gone(owner)
+            self._transactions.append(transaction)
         if not latched:
             self._pump()
-        return Delivery(errand, self)
+        return BusDelivery(transaction, self)
 
-    def send(self, errand: Errand, lamport: int) -> None:
+    def send(self, transaction: Transaction, lamport: int) -> None:
         """Send a notify to its owners until all have acknowledged.
 
         Raises:
             ValueError: that logical time was not granted.
         """
         with self.lock:
-            errand.send(lamport, self._now())
+            transaction.send(lamport, self._now())
             self._owners.use(lamport)
         self._pump()
 
-    def withdraw(self, errand: Errand) -> None:
+    def abort(self, transaction: Transaction) -> None:
         """Abort a notify; its owners are informed until they have answered."""
         with self.lock:
-            if (notice := errand.withdraw()) is not None:
-                self._errands.append(notice)
+            if (notice := transaction.abort()) is not None:
+                self._transactions.append(notice)
         self._pump()
 
     def introduce(self, robot: str, recorded: Recorded) -> Notice:
@@ -224,34 +226,34 @@ class Outgoing:
     @property
     def due(self) -> float:
         """Return when there is something to send; inf: never."""
-        return min((errand.due for errand in self._errands), default=float("inf"))
+        return min((transaction.due for transaction in self._transactions), default=float("inf"))
 
     def gone(self, robot: str) -> None:
         """Take note that a robot has ended: it need not answer any more."""
-        for errand in self._errands:
-            errand.gone(robot)
+        for transaction in self._transactions:
+            transaction.gone(robot)
 
     def back(self, robot: str, now: float) -> None:
         """Take note that a robot can be reached: it is asked at once."""
-        for errand in self._errands:
-            errand.back(robot, now)
+        for transaction in self._transactions:
+            transaction.back(robot, now)
 
     def begin(self, now: float) -> Work:
         """Return what is due now, having sent what is for this process."""
-        due = [errand for errand in self._errands if errand.due <= now]
-        work = [(errand, message) for errand in due for message in self._due_of(errand, now)]
-        for errand, message in work:
+        due = [transaction for transaction in self._transactions if transaction.due <= now]
+        work = [(transaction, message) for transaction in due for message in self._due_of(transaction, now)]
+        for transaction, message in work:
             if message.owner in self._owners:
                 answer = self._owners.answer(message.owner, message.request, here=True)
                 if answer is not None:
-                    errand.answered(message.owner, _round(message.request), answer, now)
+                    transaction.answered(message.owner, _round(message.request), answer, now)
         return work
 
     def finish(self, work: Work) -> None:
         """Send the rest; to be called without the lock: carriers may take other locks, or wait."""
-        for errand, message in work:
+        for transaction, message in work:
             if message.owner not in self._owners:
-                taken = partial(self._take, errand, message)
+                taken = partial(self._take, transaction, message)
                 self.ask(message.sender, message.owner, message.request, taken)
             elif isinstance(message.request, Commit | Begin):
                 self.publish(message.owner)
@@ -276,17 +278,17 @@ class Outgoing:
 
     def sweep(self) -> list[str]:
         """Forget what is over; return the robots whose farewells are all acknowledged."""
-        self._errands = [errand for errand in self._errands if not errand.is_over]
+        self._transactions = [transaction for transaction in self._transactions if not transaction.is_over]
         gone = [robot for robot, notice in self._farewells.items() if notice.is_over]
         for robot in gone:
             del self._farewells[robot]
         return gone
 
-    def _take(self, errand: Errand | Notice, message: Message, answer: Answer) -> None:
+    def _take(self, transaction: Transaction | Notice, message: Message, answer: Answer) -> None:
         with self.lock:
             if not self._owners.admission.believes(message.owner, answer):
                 return  # as good as none
-            errand.answered(message.owner, _round(message.request), answer, self._now())
+            transaction.answered(message.owner, _round(message.request), answer, self._now())
             if answer.what == "refused" and isinstance(message.request, Begin):
                 self._net.tell(f"{message.owner!r} refuses {message.sender!r}: {answer.why}")
         self._settled()
@@ -299,14 +301,14 @@ class Outgoing:
 
     def _add(self, sender: str, requests: Mapping[str, Request], seconds: float = float("inf")) -> Notice:
         messages = {to: Message(sender, to, requests[to]) for to in sorted(requests)}
-        self._errands.append(notice := Notice(messages, until=self._now() + seconds))
+        self._transactions.append(notice := Notice(messages, until=self._now() + seconds))
         return notice
 
-    def _due_of(self, errand: Errand | Notice, now: float) -> Iterable[Message]:
-        """Return what an errand has to send now; one that fails is left alone for a while."""
+    def _due_of(self, transaction: Transaction | Notice, now: float) -> Iterable[Message]:
+        """Return what a transaction has to send now; one that fails is left alone for a while."""
         with self._net.under("a notify in progress"):
-            return errand.tick(now)
-        errand.due = now + SORE_SECONDS
+            return transaction.tick(now)
+        transaction.due = now + SORE_SECONDS
         return ()
 
     def _least(self, slots: Iterable[SlotId]) -> int:
@@ -331,4 +333,4 @@ def fitting(finds: Sequence[Find]) -> tuple[Find, ...]:
 
 
 def _round(request: Request) -> int:
-    return request.round if isinstance(request, Prepare | Withdraw) else 0
+    return request.round if isinstance(request, Prepare | Abort) else 0

@@ -18,9 +18,9 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from .journal import Journal, Line
-from .slot import Kept, Latest, Slot, Starts
-from .words import (
+from .messages import (
     REACH,
+    Abort,
     Answer,
     Begin,
     CommandId,
@@ -31,12 +31,12 @@ from .words import (
     Request,
     SlotState,
     Unreadable,
-    Withdraw,
     content_of,
     number_in,
     text_in,
     word_in,
 )
+from .slot import Kept, Latest, Slot, Starts
 
 STRANGE = "not a word of this run and plan"
 
@@ -158,7 +158,7 @@ class Owner:
             self._apply(sent)
         return Answer("applied")
 
-    def withdraw(self, given_up: Withdraw) -> Answer:
+    def abort(self, given_up: Abort) -> Answer:
         """Free what was kept for a command."""
         if why := self._fault(given_up.id, (), True):
             return Answer("refused", why=why)
@@ -302,7 +302,7 @@ class Owner:
             slot.free_older(begun.id)
         self._settle(CommandId(begun.id.run, sender, incarnation, 0))
 
-    def _free(self, given_up: Withdraw) -> None:
+    def _free(self, given_up: Abort) -> None:
         for slot in self._slots.values():
             slot.free(given_up.id, given_up.round)
         self._settle(given_up.id, given_up.round)
@@ -345,7 +345,7 @@ class Owner:
                 self._apply(word)
             case Prepare():
                 self._keep_again(word)
-            case Withdraw():
+            case Abort():
                 self._free(word)
             case Begin():
                 self._apply_recorded(word)

@@ -13,11 +13,9 @@ from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 
 from .journal import Journal
-from .owner import STRANGE, Owned, Owner
-from .threads import Net
-from .watching import Roster, Watching
-from .words import (
+from .messages import (
     REACH,
+    Abort,
     Answer,
     Begin,
     CommandId,
@@ -31,9 +29,11 @@ from .words import (
     SlotId,
     SlotState,
     Unreadable,
-    Withdraw,
     request_in,
 )
+from .owner import STRANGE, Owned, Owner
+from .threads import Net
+from .watching import Roster, Watching
 
 AHEAD = REACH << 12
 """How far the logical time of a word may be ahead of all that this process knows.
@@ -189,8 +189,8 @@ class Owners:
             case Prepare():
                 self._keepers[owner.robot] = owner
                 return owner.prepare(request, self._now(), here=here)
-            case Withdraw():
-                return owner.withdraw(request)
+            case Abort():
+                return owner.abort(request)
             case Begin():
                 answer = owner.begin(request)
                 if answer.what != "refused":

@@ -11,12 +11,12 @@ from ..records.steps import StepRecord, log_name
 from .carriers.carrier import Carrier
 from .journal import FileJournal
 from .meeting import Incomplete, begin_together
+from .messages import CommandId, Find, SlotState
 from .node import Node
-from .outgoing import Delivery
+from .outgoing import BusDelivery
 from .owner import Owned
 from .owners import Member, Recorded
 from .watching import SETTLING_SECONDS
-from .words import CommandId, Find, SlotState
 
 if TYPE_CHECKING:
     from ..slots import Slots
@@ -37,7 +37,7 @@ class ProgramBus:
 
     def prepare(
         self, id: CommandId, slots: tuple[SlotId, ...], active: bool, finds: tuple[Find, ...] = ()
-    ) -> Delivery:
+    ) -> BusDelivery:
         """Ask the owners of slots for setting them; owners of this process have answered at return.
 
         Raises:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
 
-from .words import CommandId, SlotState
+from .messages import CommandId, SlotState
 
 Stamp = tuple[int, str]
 """Logical time and sender of a command: their order is that of the logs."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Iterable
 
-from .words import Answer, Meet
+from .messages import Answer, Meet
 
 LEASE_SECONDS = 1.5
 """How long a robot may be out of reach before slots are no longer kept for it."""

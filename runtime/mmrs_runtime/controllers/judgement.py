@@ -8,7 +8,7 @@ from typing import TypeAlias
 
 from ..conditions import answers_at_once, is_standard, standard, undecided
 from ..vehicle import Condition as Decided
-from ..vehicle import State as Asked
+from ..vehicle import VehicleState as Asked
 from .objects import Locator, not_looked_for
 from .state import State, in_words
 from .words import Choose, GoTo, Object, Robot, Turn

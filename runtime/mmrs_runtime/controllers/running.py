@@ -17,9 +17,9 @@ from ..engine.hearing import hear_orders
 from ..engine.interrupts import stopping
 from ..engine.live import FAILED, INTERRUPTED, LINK, Venture, exit_code, run_live
 from ..engine.orders import Orders
+from ..engine.preflight import NotReadyError
 from ..engine.resuming import over_by, restore
 from ..engine.terms import Ending
-from ..engine.unready import Unready
 from ..faults import LINK_LOST, Fault, reason_of
 from ..injection import Rehearsal
 from ..policies import NOTHING
@@ -120,7 +120,7 @@ def _run(venture: Venture) -> int:
                 else f"{robot!r}: it has come to its end"
             )
         ending = run_live(venture)
-    except Unready as error:
+    except NotReadyError as error:
         for robot, found in error.faults.items():
             say(f"{robot!r}: does not get ready: {found.reason or found.which}")
         return LINK if any(found.which == LINK_LOST for found in error.faults.values()) else FAILED

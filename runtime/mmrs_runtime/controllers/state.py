@@ -59,15 +59,15 @@ def told_of(state: State) -> dict[str, object]:
 
 
 @dataclass(frozen=True, slots=True)
-class Known(vehicle.State):
+class KnownState(vehicle.VehicleState):
     """What the engine knows of a robot; `told`: as its vehicle tells it."""
 
     told: State | None = None
 
 
-def in_words(state: vehicle.State) -> State:
+def in_words(state: vehicle.VehicleState) -> State:
     """Return what is known of a robot in the words of controllers, which its vehicle need not use itself."""
-    if isinstance(state, Known) and state.told is not None:
+    if isinstance(state, KnownState) and state.told is not None:
         return state.told
     east, north, up = state.position
     place, detected = Local(north, east, up), state.detected

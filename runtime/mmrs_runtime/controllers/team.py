@@ -48,6 +48,6 @@ def _told(owner: str, side: Iterable[tuple[str, tuple[str, ...]]]) -> Iterable[t
     return ((sender, (owner, name)) for name, senders in side for sender in senders)
 
 
-def _stranger(name: str, notifies: Sequence[Notify], slots: Sequence[str]) -> runtime.Robot:
+def _stranger(name: str, notifies: Sequence[Notify], slots: Sequence[str]) -> runtime.ExecutableRobot:
     move = Move(ELSEWHERE, before=tuple(notifies))
-    return runtime.Robot(name, (move,), ELSEWHERE, tuple(dict.fromkeys(slots)))
+    return runtime.ExecutableRobot(name, (move,), ELSEWHERE, tuple(dict.fromkeys(slots)))

@@ -202,7 +202,7 @@ class Robot:
         return next(step for step in self.steps if step.move == move)
 
     @cached_property
-    def executable(self) -> runtime.Robot:
+    def executable(self) -> runtime.ExecutableRobot:
         """Return the robot as the engine has it; a movement's order is its step, an action its own."""
         moves = tuple(Move(each.move, each, each.before, each.after, each.then) for each in self.steps)
-        return runtime.Robot(self.id, moves, self.start, self.slots, self.policies, self.reserve)
+        return runtime.ExecutableRobot(self.id, moves, self.start, self.slots, self.policies, self.reserve)

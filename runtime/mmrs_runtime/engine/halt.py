@@ -11,7 +11,7 @@ from ..vehicle import Fault
 OVERTAKING = OVERTAKES | {TAKEN_OVER}
 
 
-class Progress(Enum):
+class HaltProgress(Enum):
     """How far a robot has carried out its response.
 
     Attributes:
@@ -44,7 +44,7 @@ class Halt:
         """Start without a fault."""
         self.fault: Fault | None = None
         self.response = self.before_hold = ""
-        self.progress = Progress.NOTHING_TOLD
+        self.progress = HaltProgress.NOTHING_TOLD
         self.released = False
         self._answered: set[str] = set()
 
@@ -56,12 +56,12 @@ class Halt:
     @property
     def stopping(self) -> bool:
         """Return whether the robot has still to confirm that it has stopped."""
-        return self.progress is Progress.STOPPING
+        return self.progress is HaltProgress.STOPPING
 
     @property
     def is_down(self) -> bool:
         """Return whether it has landed or surfaced, as ordered."""
-        return self.progress in (Progress.DOWN, Progress.AT_REST)
+        return self.progress in (HaltProgress.DOWN, HaltProgress.AT_REST)
 
     def end(self, found: Fault, response: str) -> None:
         """End the program, or break it off, by a fault with that response."""
@@ -93,7 +93,7 @@ class Halt:
 
     def begin(self) -> None:
         """Wait until it has confirmed that it does."""
-        self.progress = Progress.STOPPING
+        self.progress = HaltProgress.STOPPING
 
     def settle(self, *, down: bool, at_rest: bool) -> None:
         """Stop waiting for the confirmation.
@@ -102,6 +102,6 @@ class Halt:
             down: whether it has landed or surfaced, as ordered.
             at_rest: whether it is seen disarmed then.
         """
-        self.progress = Progress.STOPPED
+        self.progress = HaltProgress.STOPPED
         if down:
-            self.progress = Progress.AT_REST if at_rest else Progress.DOWN
+            self.progress = HaltProgress.AT_REST if at_rest else HaltProgress.DOWN

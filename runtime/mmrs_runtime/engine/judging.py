@@ -9,13 +9,13 @@ from collections.abc import Callable, Iterable, Mapping
 from ..conditions import ANSWER_SECONDS, is_standard, standard, truth
 from ..faults import CONDITION_FAILED, FAILURES
 from ..questions import Heard
-from ..vehicle import Condition, Fault, LinkLost, State
+from ..vehicle import Condition, Fault, LinkLost, VehicleState
 
 SLOW_SECONDS = 1.0
 """Real seconds after which the operator learns that a function of theirs has not answered yet."""
 
 
-def decided(condition: Condition, know: Callable[[], State]) -> bool | Fault | None:
+def decided(condition: Condition, know: Callable[[], VehicleState]) -> bool | Fault | None:
     """Return whether a condition holds, or the fault that asking leaves; None: it cannot be known yet.
 
     Raises:
@@ -40,7 +40,9 @@ class Asking:
         heard: the operator's answers that it is asked with.
     """
 
-    def __init__(self, condition: Condition, state: State, heard: Heard, wake: Callable[[], None]) -> None:
+    def __init__(
+        self, condition: Condition, state: VehicleState, heard: Heard, wake: Callable[[], None]
+    ) -> None:
         """Ask; `wake` is called once there is an answer."""
         self.done, self.heard = False, heard
         self.answer: bool | Fault | None = None
@@ -60,7 +62,7 @@ class Asking:
             self.answer, self.done = Fault(CONDITION_FAILED, words), True
         return self.done
 
-    def _ask(self, state: State, wake: Callable[[], None]) -> None:
+    def _ask(self, state: VehicleState, wake: Callable[[], None]) -> None:
         answer = decided(self._condition, lambda: state)
         if not self.done:
             self.answer, self.done = answer, True
@@ -93,5 +95,5 @@ def _standard(identifier: str) -> Condition:
     return Condition(identifier, lambda state: asks(state) is True, known, instant=True)
 
 
-def _always(holds: bool) -> Callable[[State], bool]:
+def _always(holds: bool) -> Callable[[VehicleState], bool]:
     return lambda state: holds

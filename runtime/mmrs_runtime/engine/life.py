@@ -11,19 +11,19 @@ from collections.abc import Generator, Mapping
 from dataclasses import replace
 from typing import TypeAlias
 
-from ..bus.words import CommandId, Find
+from ..bus.messages import CommandId, Find
 from ..conditions import awaiting, question_of
 from ..faults import BATTERY_LOW, DEVICE_SILENT, LINK_LOST, LOG_FAILED, PEER_LOST, reason_of
 from ..policies import COMES_DOWN, CONTINUE, NOTHING
 from ..program import Choose, Notify, SlotId, Then
 from ..records.steps import StepRecord
-from ..semantics import Phase, Step, action_at, awaited, fault, steps
+from ..semantics import Phase, PossibleStep, action_at, awaited, fault, steps
 from ..slots import with_own
-from ..vehicle import Fault, LinkLost, Progress, State
-from .agenda import Until
+from ..vehicle import Fault, LinkLost, Progress, VehicleState
+from .event_queue import Until
 from .judging import Asking, decided
 from .situation import Situation, Stage
-from .waits import Outgoing, silent
+from .waits import NotifyWait, silent
 
 DISK_SECONDS = 5.0
 """Real seconds after which a log that is not on the disk yet counts as one that cannot be written."""
@@ -96,7 +96,7 @@ class Life(Situation):
             yield from self._room()
         self._make(self._next())
 
-    def _next(self) -> Step:
+    def _next(self) -> PossibleStep:
         return steps(self.robot, self.point, frozenset())[0]
 
     def _carry_out(self, order: object, *, through: bool = False) -> Waits:
@@ -118,7 +118,7 @@ class Life(Situation):
         delivery = self._slots.prepare(id, step.sets, step.active, self._finds())
         self.sending = True
         try:
-            self._outgoing = Outgoing()
+            self._outgoing = NotifyWait()
             while delivery.lamport is None:
                 yield from self._await_owners(delivery.waiting)
             yield from self._room()
@@ -126,11 +126,11 @@ class Life(Situation):
             yield from self._kept()
             delivery.send(self.lamport)
             self._run.notified(owner for owner, _ in step.sets)
-            self._outgoing = Outgoing()
+            self._outgoing = NotifyWait()
             while delivery.waiting:
                 yield from self._await_owners(delivery.waiting)
         except BaseException:
-            delivery.withdraw()
+            delivery.abort()
             raise
         finally:
             self.sending = False
@@ -233,7 +233,7 @@ class Life(Situation):
     def _wake(self) -> None:
         self.vehicle.post(Progress())
 
-    def _known(self, heard: Mapping[str, bool]) -> State:
+    def _known(self, heard: Mapping[str, bool]) -> VehicleState:
         state = self.vehicle.state(self.now())
         told = frozenset(name for name, _ in self._slots.finds(self.id))
         return replace(state, answers=heard, found=state.detected | told)
@@ -305,7 +305,7 @@ class Life(Situation):
 
     # Steps, and what robots tell each other with them.
 
-    def _make(self, step: Step, least: int = 0) -> None:
+    def _make(self, step: PossibleStep, least: int = 0) -> None:
         """Make a step, once it is recorded."""
         lamport = max(self.lamport + 1, least)
         now = self.now()

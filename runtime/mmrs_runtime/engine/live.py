@@ -22,11 +22,11 @@ from .connecting import Live, let_go
 from .early import EarlyOrders
 from .life import PACE
 from .orders import Orders
+from .preflight import NotReadyError, note_alone, record
 from .resuming import over_by
 from .run import run
 from .standing import Standing
 from .terms import Attention, Ending, Observer, Syncer, Terms
-from .unready import Unready, note_alone, record
 
 OK, FAILED, LINK, INTERRUPTED = 0, 1, 5, 130
 """Exit codes: all robots are at their ends, or some are not, or a link was lost, or people stopped them."""
@@ -109,7 +109,7 @@ def run_live(venture: Venture) -> Ending:
     stopped, all links are closed, and all orders answered.
 
     Raises:
-        Unready: if a robot does not get ready, and none is in motion without it.
+        NotReadyError: if a robot does not get ready, and none is in motion without it.
         Incomplete: if robots of other processes have not come; see `Venture.meet`.
         Exception: what `Venture.connect`, or `Venture.ready`, raises.
         ValueError: if the steps to resume from are not the program's.
@@ -134,7 +134,7 @@ def run_live(venture: Venture) -> Ending:
         except BaseException as error:
             if early is not None:
                 early.give_up("the run has ended")
-            if isinstance(error, Unready):
+            if isinstance(error, NotReadyError):
                 record(robots, error.faults, venture.fail)
             raise
         venture.ready(robots)
@@ -161,7 +161,7 @@ def run_live(venture: Venture) -> Ending:
             ),
         )
         if robots and set(ending.absent) == set(robots):
-            raise Unready({id: ending.faults[id] for id in ending.absent})
+            raise NotReadyError({id: ending.faults[id] for id in ending.absent})
         return ending
 
 
@@ -226,7 +226,7 @@ def _await_ready(robots: Mapping[str, Vehicle], clock: RealClock, early: EarlyOr
         faults = {id: robot.trouble for id, robot in robots.items() if robot.trouble is not None}
         told_at = min(told_at, now + GATHERING_SECONDS * clock.speedup) if faults else inf
         if faults and (now >= told_at or faults.keys() >= unready):
-            raise Unready(faults)
+            raise NotReadyError(faults)
         unready = {id for id in unready if id in faults or not robots[id].done}
         early.look(unready)
         if unready:
@@ -240,7 +240,7 @@ def _meet(robots: Mapping[str, Vehicle], venture: Venture, early: EarlyOrders) -
             for id, robot in robots.items():
                 robot.look(venture.clock.now())
                 if robot.trouble is not None:
-                    raise Unready({id: robot.trouble})
+                    raise NotReadyError({id: robot.trouble})
             if not early.held:
                 return
             venture.clock.sleep_until(venture.clock.now() + PACE)

@@ -8,7 +8,7 @@ from ..faults import ORDERED, STOPPED
 from ..policies import NOTHING
 from ..vehicle import Fault, LinkLost
 from .clocks import RunClock
-from .halt import Progress
+from .halt import HaltProgress
 from .life import Life
 from .orders import ANSWER, ENDINGS, HOLD, RESUME, RETURN, STOP, Order, Orders
 from .situation import Stage
@@ -274,7 +274,7 @@ class Obedience:
 
 def _taken(robot: Life) -> str:
     """Return that a robot that had landed disarmed is armed now; empty where it is not."""
-    rested = robot.halt.progress is Progress.AT_REST
+    rested = robot.halt.progress is HaltProgress.AT_REST
     return "it is armed: the vehicle is under external control" if rested and not robot.rests else ""
 
 

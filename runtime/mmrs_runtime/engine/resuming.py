@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from ..program import Notify, Program, Robot
+from ..program import ExecutableRobot, Notify, Program
 from ..records.steps import StepRecord, merge
-from ..semantics import Point, Step, entry, told_by
+from ..semantics import Point, PossibleStep, entry, told_by
 from ..slots import LocalSlots
 
 
-def step_of(robot: Robot, point: Point, record: StepRecord) -> Step:
+def step_of(robot: ExecutableRobot, point: Point, record: StepRecord) -> PossibleStep:
     """Return the step from a point that a record belongs to, whatever slots are active.
 
     Raises:
@@ -22,7 +22,7 @@ def step_of(robot: Robot, point: Point, record: StepRecord) -> Step:
     raise ValueError(f"robot '{robot.id}': step {record.seq} of its log is not one of its program's")
 
 
-def point_after(robot: Robot, records: Iterable[StepRecord]) -> Point:
+def point_after(robot: ExecutableRobot, records: Iterable[StepRecord]) -> Point:
     """Return where the steps of a robot lead, which stand among those of others in their order.
 
     Raises:

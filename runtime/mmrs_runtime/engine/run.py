@@ -19,8 +19,8 @@ from ..records.steps import StepRecord
 from ..semantics import Outcome, Phase, Waiting
 from ..slots import Slots
 from ..vehicle import Condition, Fault, Vehicle
-from .agenda import Agenda
 from .clocks import RunClock
+from .event_queue import EventQueue
 from .life import PACE, Life
 from .obedience import Obedience
 from .resuming import over_by
@@ -99,7 +99,7 @@ class Run:
         self._obedience = Obedience(self._lives, terms.orders, clock)
         self.stopping = Stopping(self._lives, clock, self._obedience, self.say)
         self._made, self._stepped = 0, 0.0
-        self._agenda = Agenda(len(self._lives))
+        self._queue = EventQueue(len(self._lives))
         self._resume = [life.go().__next__ for life in self._lives]
         self._restless = len(self._lives)
         self._quiet = [False] * len(self._lives)
@@ -179,7 +179,7 @@ class Run:
         """Wake those of these robots that are here, to look at their slots."""
         for owner in owners:
             if owner in self._numbers:
-                self._agenda.put(self._numbers[owner])
+                self._queue.put(self._numbers[owner])
 
     def dismiss(self, life: Life, *, failed: bool) -> None:
         """Note that a robot makes no further step, and have those look that may wait for it."""
@@ -215,13 +215,13 @@ class Run:
 
     def _settle(self) -> None:
         """Resume every robot that is due now, the program's first one first."""
-        agenda, resume = self._agenda, self._resume
-        while agenda.is_due and not self.is_full:
-            number = agenda.take()
+        queue, resume = self._queue, self._resume
+        while queue.is_due and not self.is_full:
+            number = queue.take()
             try:
-                agenda.put_at(number, resume[number]().deadline)
+                queue.put_at(number, resume[number]().deadline)
             except StopIteration:
-                agenda.put_at(number, inf)
+                queue.put_at(number, inf)
             life = self._lives[number]
             if life.suspended is not (number in self._suspended):
                 self._suspended ^= {number}
@@ -231,25 +231,25 @@ class Run:
             self._restless += -1 if self._quiet[number] else 1
 
     def _wake(self) -> None:
-        self._agenda.advance(self.clock.now())
+        self._queue.advance(self.clock.now())
         for who, event in self.terms.attention.taken() if self.terms.attention is not None else ():
             if who == BUS:
                 self._attend_bus()
             elif who in self._numbers:
                 self._lives[self._numbers[who]].vehicle.hear(event)
-                self._agenda.put(self._numbers[who])
+                self._queue.put(self._numbers[who])
 
     def _attend_bus(self) -> None:
         for number, life in enumerate(self._lives):
             if life.sending or life.point.phase is Phase.OUT or self.slots.trouble(life.id):
-                self._agenda.put(number)
+                self._queue.put(number)
 
     def _next_wake(self) -> float:
         """Return when to look again; inf where nothing is foreseen."""
         looks = min(self._patience_ends(), self._next_look_around())
         if self._is_quiet() and not self.clock.passes_by_itself and not self._is_patient():
             return looks
-        return min(self._agenda.next_time, looks)
+        return min(self._queue.next_time, looks)
 
     def _next_look_around(self) -> float:
         """Return when to look again at robots that have stopped, or have still to be seen to obey."""

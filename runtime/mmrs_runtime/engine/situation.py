@@ -9,15 +9,15 @@ from typing import TYPE_CHECKING
 
 from ..faults import BATTERY_LOW, STOPPED
 from ..policies import Policy, still_low
-from ..program import Move, Robot
+from ..program import ExecutableRobot, Move
 from ..questions import Questions
 from ..records.steps import StepRecord
-from ..semantics import Phase, Step, awaited, entry
+from ..semantics import Phase, PossibleStep, awaited, entry
 from ..vehicle import Fault, Vehicle
 from .answers import LEAST_PEER_SECONDS, Answers
 from .halt import Halt
 from .resuming import step_of
-from .waits import Outgoing, Wait, noted
+from .waits import NotifyWait, Wait, noted
 
 if TYPE_CHECKING:
     from .run import Run
@@ -61,7 +61,7 @@ class Situation:
     """
 
     def __init__(
-        self, robot: Robot, vehicle: Vehicle, run: Run, policies: tuple[Policy, ...], *, live: bool
+        self, robot: ExecutableRobot, vehicle: Vehicle, run: Run, policies: tuple[Policy, ...], *, live: bool
     ) -> None:
         """Start at the beginning of a program; `policies` come after its own."""
         self.id, self.robot, self.vehicle = robot.id, robot, vehicle
@@ -79,7 +79,7 @@ class Situation:
         self._least = LEAST_PEER_SECONDS * self._speedup if live else 0.0
         self._policies = (*robot.policies, *policies)
         self._passed: list[str] = []
-        self._outgoing = Outgoing()
+        self._outgoing = NotifyWait()
         self._pausing, self._held_since = False, 0.0
         self._looked, self._look_at = 0.0, inf
         self._unsure = False
@@ -96,7 +96,7 @@ class Situation:
             self.follow(step_of(self.robot, self.point, record), record.time)
             self.lamport, self.number, self.last = record.lamport, record.seq + 1, record
 
-    def follow(self, step: Step, now: float) -> None:
+    def follow(self, step: PossibleStep, now: float) -> None:
         """Go to the point that a step leads to."""
         if step.label == "end":
             self._passed.append(step.move)

@@ -8,8 +8,8 @@ from math import inf
 from ..faults import BATTERY_LOW, LINK_LOST
 from ..policies import CAME_DOWN_AWAY, COMES_DOWN, NOTHING
 from ..vehicle import Fault, LinkLost
-from .agenda import Until
 from .clocks import RunClock
+from .event_queue import Until
 from .life import PACE, Broken, Life, Waits
 from .obedience import Obedience
 

@@ -110,7 +110,7 @@ class Wait:
         return self._peer_lost_at + answers.patience(found, away=peers.are_away(lost)), found
 
 
-class Outgoing:
+class NotifyWait:
     """A robot's notify in progress, and how long its owners have been silent."""
 
     def __init__(self) -> None:

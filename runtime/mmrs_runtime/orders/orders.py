@@ -36,7 +36,7 @@ ENDINGS = frozenset({RETURN, LAND, STOP})
 
 
 @dataclass(frozen=True, slots=True)
-class Order:
+class OrderKind:
     """Something that a robot is to do.
 
     Attributes:
@@ -74,7 +74,7 @@ class Receipt:
         seconds: real seconds from the order to its confirmation.
     """
 
-    def __init__(self, robot: str, order: Order, answered: Callable[[Receipt], None]) -> None:
+    def __init__(self, robot: str, order: OrderKind, answered: Callable[[Receipt], None]) -> None:
         """Begin to count the seconds; `answered` is called once, by the thread that answers."""
         self.robot = robot
         self.order = order
@@ -143,7 +143,7 @@ class Inbox:
         self._closed = ""
         self._lock = threading.Lock()
 
-    def give(self, order: Order, reply: Callable[[Receipt], None] = lambda receipt: None) -> Receipt:
+    def give(self, order: OrderKind, reply: Callable[[Receipt], None] = lambda receipt: None) -> Receipt:
         """Give the robot an order; `reply` is called when it has obeyed or refused."""
 
         def answered(receipt: Receipt) -> None:

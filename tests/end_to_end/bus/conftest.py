@@ -111,7 +111,7 @@ def _notify(
     while delivery.lamport is None and time.monotonic() < until:
         node.await_change(0.02)
     if delivery.lamport is None:
-        delivery.withdraw()
+        delivery.abort()
         return False
     delivery.send(delivery.lamport)
     while delivery.waiting and time.monotonic() < until:

@@ -10,7 +10,7 @@ import zenoh
 
 from mmrs_runtime.bus.carriers.looking import states_of
 from mmrs_runtime.bus.carriers.sessions import Endpoints
-from mmrs_runtime.bus.words import digest
+from mmrs_runtime.bus.messages import digest
 
 pytestmark = pytest.mark.real_time("buses")
 

@@ -12,8 +12,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from mmrs_runtime.bus import Member, Node, Owned
-from mmrs_runtime.bus.owners import AHEAD, LATE, STRANGE
-from mmrs_runtime.bus.words import (
+from mmrs_runtime.bus.messages import (
+    Abort,
     Answer,
     Begin,
     CommandId,
@@ -23,9 +23,9 @@ from mmrs_runtime.bus.words import (
     Meet,
     Prepare,
     Request,
-    Withdraw,
     written,
 )
+from mmrs_runtime.bus.owners import AHEAD, LATE, STRANGE
 
 RUN, PLAN = "harvest", "4f2a91"
 THIS = f"{RUN} of plan {PLAN}"
@@ -66,7 +66,7 @@ def words(id: CommandId, lamport: int, robot: str = "third") -> list[Request]:
     return [
         Prepare(id, 1, ("go",), False, lamport),
         Commit(id, ("go",), True, lamport),
-        Withdraw(id, 1),
+        Abort(id, 1),
         Begin(id, (("go", True, lamport),)),
         Leave(id, lamport),
         Ended(id, ((robot, lamport),)),

@@ -8,9 +8,9 @@ import pytest
 
 from mmrs_core.testing.small_programs import go, hold, notify, program, robot, use
 from mmrs_runtime.semantics import (
+    GlobalState,
     Phase,
     Point,
-    State,
     apply,
     enabled,
     entry,
@@ -92,7 +92,7 @@ def test_a_choice_may_go_either_way_once_its_wait_is_over():
 
 def test_passing_a_wait_leaves_the_slot_active():
     behaviour = program(robot("r", [hold("h")], waits={"h": ["s"]})).executable
-    state = State((Point("h", Phase.OUT),), frozenset({("r", "s")}))
+    state = GlobalState((Point("h", Phase.OUT),), frozenset({("r", "s")}))
     (step,) = enabled(behaviour, state)
     assert apply(behaviour, state, step).active == {("r", "s")}
 
@@ -103,7 +103,7 @@ def test_a_notify_sets_all_its_slots_at_once(active, left):
         robot("a", [hold("h", after=(notify("a.s", "b.s", active=active),))], slots=("s",)),
         robot("b", [], slots=("s",)),
     ).executable
-    state = State((Point("h", Phase.AFTER), Point("start", Phase.READY)), frozenset({("b", "s")}))
+    state = GlobalState((Point("h", Phase.AFTER), Point("start", Phase.READY)), frozenset({("b", "s")}))
     step = next(iter(enabled(behaviour, state)))
     assert step.slot == ("+" if active else "-") + "a.s b.s"
     assert apply(behaviour, state, step).active == left
@@ -119,7 +119,7 @@ def test_a_fault_ends_a_robot_wherever_it_is():
 
 def test_a_robot_that_waits_for_nobody_is_a_deadlock():
     behaviour = program(robot("r", [hold("h")], waits={"h": ["s"]})).executable
-    state = State((Point("h", Phase.OUT),))
+    state = GlobalState((Point("h", Phase.OUT),))
     assert is_deadlock(behaviour, state)
     (only,) = waiting(behaviour, state)
     assert (only.robot, only.move, only.slots) == ("r", "h", ("s",))
@@ -128,6 +128,6 @@ def test_a_robot_that_waits_for_nobody_is_a_deadlock():
 def test_all_robots_at_their_end_are_a_success():
     behaviour = program(robot("a", []), robot("b", [])).executable
     assert not is_success(initial(behaviour))
-    done = State((Point("stop", Phase.DONE), Point("stop", Phase.DONE)))
+    done = GlobalState((Point("stop", Phase.DONE), Point("stop", Phase.DONE)))
     assert is_success(done)
     assert not is_deadlock(behaviour, done)

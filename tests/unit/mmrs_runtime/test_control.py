@@ -19,7 +19,7 @@ from stalls import Stalls
 from mmrs_runtime.control import CONNECTIONS, Control, Taken
 from mmrs_runtime.orders.calling import CALL_SECONDS, Unreachable, asked_at_once, network
 from mmrs_runtime.orders.ordering import give, main
-from mmrs_runtime.orders.orders import Inbox, Order
+from mmrs_runtime.orders.orders import Inbox, OrderKind
 from mmrs_runtime.questions import Questions
 
 pytestmark = pytest.mark.real_time("parts of flights")
@@ -112,7 +112,7 @@ def test_a_robot_that_refuses_says_why(tmp_path, opened, inboxes, robots, capsys
 
 def test_a_robot_that_has_ended_refuses_what_it_was_told_and_what_comes(tmp_path, opened, inboxes):
     opened(inboxes)
-    receipt = inboxes["alpha"].give(Order("hold"))
+    receipt = inboxes["alpha"].give(OrderKind("hold"))
     inboxes["alpha"].close("its program has ended")
     (reply,) = give(tmp_path, "hold", ["alpha"])
     assert (receipt.confirmed, receipt.why) == (False, "its program has ended")

@@ -7,7 +7,7 @@ from collections import deque
 
 import pytest
 
-from mmrs_runtime.orders.orders import Inbox, Order
+from mmrs_runtime.orders.orders import Inbox, OrderKind
 
 pytestmark = pytest.mark.real_time("parts of flights")
 
@@ -25,7 +25,7 @@ def test_an_order_that_is_given_while_the_inbox_is_being_closed_is_refused():
             super().append(receipt)
 
     inbox._waiting = Meanwhile()
-    receipt = inbox.give(Order("hold"))
+    receipt = inbox.give(OrderKind("hold"))
     closing.join()
     assert (receipt.confirmed, receipt.why) == (False, "its program has ended")
 
@@ -33,5 +33,5 @@ def test_an_order_that_is_given_while_the_inbox_is_being_closed_is_refused():
 def test_an_order_after_the_end_is_refused_and_an_answer_too():
     inbox = Inbox("alpha")
     inbox.close("its program has ended")
-    receipts = [inbox.give(Order("hold")), inbox.give(Order("answer", "is it safe", True))]
+    receipts = [inbox.give(OrderKind("hold")), inbox.give(OrderKind("answer", "is it safe", True))]
     assert [receipt.why for receipt in receipts] == ["its program has ended"] * 2

@@ -14,8 +14,16 @@ from mmrs_core.simulation.mixed import mixed, options_for
 from mmrs_core.simulation.run import simulate
 from mmrs_core.simulation.simulation import SIMULATION
 from mmrs_core.testing.small_programs import ROBOT_TYPE, go, hold, notify, program, robot, robot_type, use
+from mmrs_runtime.bus.messages import (
+    LONGEST,
+    LONGEST_NAME,
+    MOST_FINDS,
+    CommandId,
+    Commit,
+    request_in,
+    written,
+)
 from mmrs_runtime.bus.outgoing import fitting
-from mmrs_runtime.bus.words import LONGEST, LONGEST_NAME, MOST_FINDS, CommandId, Commit, request_in, written
 from mmrs_runtime.engine.clocks import RealClock
 from mmrs_runtime.engine.judging import standard_conditions
 from mmrs_runtime.slots import LocalSlots, with_own

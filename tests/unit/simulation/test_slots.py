@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from mmrs_core.testing.small_programs import program, robot
-from mmrs_runtime.bus.words import CommandId, SlotState
+from mmrs_runtime.bus.messages import CommandId, SlotState
 from mmrs_runtime.slots import LocalSlots
 
 A, B = ("a", "s"), ("b", "s")

@@ -30,7 +30,7 @@ from auv_vessel.movement.abilities import abilities_of
 from auv_vessel.sheet import Sheet, Vector
 from mmrs_auv.controllers.orders import NO_WAY, NoWayError, Orders, notes_in
 from mmrs_runtime.controllers.fixes import FIX_SECONDS, fix
-from mmrs_runtime.controllers.state import Known, told_of
+from mmrs_runtime.controllers.state import KnownState, told_of
 from mmrs_runtime.controllers.state import State as Told
 from mmrs_runtime.controllers.words import Local
 from mmrs_runtime.policies import AFTER, NOTHING, OVERTAKES, patience, response_to
@@ -149,7 +149,7 @@ class CanVehicle(Vehicle):
         if self._helm.watch is not None:
             self._craft.stay()
 
-    def state(self, now: float) -> Known:
+    def state(self, now: float) -> KnownState:
         """Return what the vehicle has told last."""
         self._look(now)
         return self._state(now, self._craft.state())
@@ -291,11 +291,11 @@ class CanVehicle(Vehicle):
             self._place = (known.north, known.east, known.depth)
         self._places.update(self._seen())
 
-    def _state(self, now: float, known: State) -> Known:
+    def _state(self, now: float, known: State) -> KnownState:
         above = self._orders.waters.above
         energy = None if known.charge is None else known.charge * self._sheet.battery
         told = self._told_by(known)
-        return Known(
+        return KnownState(
             now,
             above(self._place),
             told.speed,

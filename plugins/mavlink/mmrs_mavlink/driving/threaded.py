@@ -9,7 +9,7 @@ from math import inf
 from traceback import format_exception
 
 from mmrs_runtime.controllers.fixes import fix
-from mmrs_runtime.controllers.state import Known, told_of
+from mmrs_runtime.controllers.state import KnownState, told_of
 from mmrs_runtime.faults import (
     BATTERY_LOW,
     CRASHED,
@@ -158,7 +158,7 @@ class ThreadedVehicle(Vehicle):
         if self._lost_link.is_due:
             self._begin(Job())
 
-    def state(self, now: float) -> Known:
+    def state(self, now: float) -> KnownState:
         """Return what the vehicle has told last."""
         known = self._with.vehicle.state()
         energy = (
@@ -166,7 +166,7 @@ class ThreadedVehicle(Vehicle):
         )
         place = self._with.position(known.place)
         places = {name: self._with.position(each) for name, each in known.places.items()}
-        return Known(
+        return KnownState(
             now,
             place,
             known.speed,

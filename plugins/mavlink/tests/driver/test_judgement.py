@@ -10,7 +10,7 @@ from mmrs_mavlink.program import Choose
 from mmrs_runtime.conditions import standard
 from mmrs_runtime.controllers import Local
 from mmrs_runtime.controllers.judgement import Judgement
-from mmrs_runtime.vehicle import State
+from mmrs_runtime.vehicle import VehicleState
 
 ASKS = "battery-below:0.3"
 
@@ -48,7 +48,7 @@ def test_standard_conditions_need_no_thread_but_those_that_users_write_do():
 def test_conditions_are_asked_in_the_words_of_controllers_whatever_the_vehicle_tells():
     asked = []
     decides = Judgement({"calm": asked.append}, {}).decides([robot(asks="calm")])
-    plain = State(
+    plain = VehicleState(
         4.0, (1.0, 2.0, 3.0), 0.5, 90.0, None, charge=0.8, found=frozenset({"float"}), answers={"go": True}
     )
     assert decides["calm"].asked(plain) is None

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 import zenoh
 
-from ..words import digest
+from ..messages import digest
 from .doubts import why_not
 from .sessions import Endpoints, closed, configuration, opened, papers_of
 

@@ -19,8 +19,8 @@ from typing import Any
 
 import zenoh
 
+from ..messages import LONGEST, digest
 from ..threads import Net, tell_people
-from ..words import LONGEST, digest
 from .carrier import Answered, Station
 from .doubts import Doubts
 from .renewing import Renewing

@@ -18,9 +18,9 @@ from pathlib import Path
 from typing import IO, Any
 
 from ...callers import Callers
+from ..messages import LARGEST, LONGEST, Unreadable, number_in, object_in, text_in
 from ..node import Node
 from ..owners import Recorded
-from ..words import LARGEST, LONGEST, Unreadable, number_in, object_in, text_in
 from .session import Session
 
 FILE = "gateway.json"

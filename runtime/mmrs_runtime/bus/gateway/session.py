@@ -12,10 +12,7 @@ from select import select
 from typing import IO, Any
 
 from ..meeting import Incomplete, begin_together
-from ..node import Node
-from ..outgoing import Delivery
-from ..threads import Net, tell_people
-from ..words import (
+from ..messages import (
     LONGEST,
     MOST_SLOTS,
     REACH,
@@ -28,6 +25,9 @@ from ..words import (
     object_in,
     text_in,
 )
+from ..node import Node
+from ..outgoing import BusDelivery
+from ..threads import Net, tell_people
 
 WAITING_SECONDS = 1.0
 """How often a program is sent the robots that its notify waits for."""
@@ -75,7 +75,7 @@ class Session:
         connection.setsockopt(socket.SOL_SOCKET, socket.SO_SNDTIMEO, struct.pack("ll", *_parts(patience)))
         self._robot, self._run, self._node, self._connection = robot, run, node, connection
         self._turn = threading.Lock()
-        self._deliveries: dict[int, Delivery] = {}
+        self._deliveries: dict[int, BusDelivery] = {}
         self._latest = -1
         self._told: dict[int, str] = {}
         self._told_waiting = 0.0
@@ -159,13 +159,13 @@ class Session:
         delivery.send(lamport)
         return {"is": "sent", "number": number}
 
-    def _withdraw(self, content: Mapping[str, Any]) -> Mapping[str, object]:
+    def _abort(self, content: Mapping[str, Any]) -> Mapping[str, object]:
         number = number_in(content, "number")
-        self._delivery(number).withdraw()
+        self._delivery(number).abort()
         del self._deliveries[number]
-        return {"is": "withdrawn", "number": number}
+        return {"is": "aborted", "number": number}
 
-    def _delivery(self, number: int) -> Delivery:
+    def _delivery(self, number: int) -> BusDelivery:
         found = self._deliveries.get(number)
         if found is None:
             raise Unreadable(f"number {number}: no such notify is in progress")
@@ -237,7 +237,7 @@ class Session:
                 for number, delivery in tuple(self._deliveries.items()):
                     self._tell_delivery(number, delivery)
 
-    def _tell_delivery(self, number: int, delivery: Delivery) -> None:
+    def _tell_delivery(self, number: int, delivery: BusDelivery) -> None:
         what, more = _progress(delivery)
         now = time.monotonic()
         again = what == "waiting" and now - self._told_waiting >= WAITING_SECONDS
@@ -263,7 +263,7 @@ class Session:
     _ANSWERS: Mapping[str, Callable[[Session, Mapping[str, Any]], Mapping[str, object]]] = {
         "prepare": _prepare,
         "send": _send,
-        "withdraw": _withdraw,
+        "abort": _abort,
         "state": _state,
         "pass": _pass,
         "lost": _lost,
@@ -293,7 +293,7 @@ def _slot(each: object) -> tuple[str, str]:
     return each[0], each[1]
 
 
-def _progress(delivery: Delivery) -> tuple[str, Mapping[str, object]]:
+def _progress(delivery: BusDelivery) -> tuple[str, Mapping[str, object]]:
     """Return how far a notify is, in a word and with what belongs to it."""
     if delivery.refusals:
         return "refused", {"why": "; ".join(delivery.refusals.values())}

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from mmrs_runtime.bus.words import MOST_FINDS
+from mmrs_runtime.bus.messages import MOST_FINDS
 
 pytestmark = pytest.mark.real_time("buses")
 
@@ -80,7 +80,7 @@ def test_of_more_that_was_detected_than_a_notify_carries_the_last_go_with_it(cli
 def test_a_program_is_told_for_whom_its_notify_waits_and_gives_it_up(client):
     client.ask(setting_go(1), "asked")
     assert client.hear("waiting") == {"is": "waiting", "number": 1, "for": ["b"]}
-    client.ask({"do": "withdraw", "number": 1}, "withdrawn")
+    client.ask({"do": "abort", "number": 1}, "aborted")
 
 
 def test_what_makes_no_sense_is_answered_and_the_program_stays(client):

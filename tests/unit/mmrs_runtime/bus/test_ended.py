@@ -8,8 +8,8 @@ import pytest
 from hub import Hub
 
 from mmrs_runtime.bus import Member, Node, Owned
+from mmrs_runtime.bus.messages import CommandId, Ended, written
 from mmrs_runtime.bus.watching import Watching
-from mmrs_runtime.bus.words import CommandId, Ended, written
 
 pytestmark = pytest.mark.real_time("parts of flights")
 

@@ -10,8 +10,8 @@ from stalls import Stalls
 
 from mmrs_runtime.bus import Incomplete, Member, Node, Owned, begin_together
 from mmrs_runtime.bus.carriers.carrier import NoCarrier
+from mmrs_runtime.bus.messages import Meet, request_in, written
 from mmrs_runtime.bus.watching import Roster
-from mmrs_runtime.bus.words import Meet, request_in, written
 
 pytestmark = pytest.mark.real_time("parts of flights")
 

@@ -137,7 +137,7 @@ def test_a_latched_notify_that_was_recorded_and_not_sent_is_sent_when_its_robot_
 def test_a_latched_notify_that_is_given_up_leaves_nothing_to_be_told(start, hub):
     _, a = start("b"), start("a")
     hub.words.clear()
-    notifying(a, "go").withdraw()
+    notifying(a, "go").abort()
     assert hub.words == []
 
 

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from mmrs_runtime.bus.meeting import Beginning
+from mmrs_runtime.bus.messages import CommandId, Meet
 from mmrs_runtime.bus.watching import Roster
-from mmrs_runtime.bus.words import CommandId, Meet
 
 
 def ready(robot: str, robots: int = 2) -> Meet:

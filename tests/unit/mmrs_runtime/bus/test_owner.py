@@ -7,8 +7,8 @@ from dataclasses import replace
 import pytest
 
 from mmrs_runtime.bus.journal import FileJournal
+from mmrs_runtime.bus.messages import REACH, Abort, Begin, CommandId, Commit, Prepare
 from mmrs_runtime.bus.owner import KEPT_SECONDS, Owned, Owner
-from mmrs_runtime.bus.words import REACH, Begin, CommandId, Commit, Prepare, Withdraw
 
 OWNED = Owned("b", ("go", "stay"), {"go": ("a", "c"), "stay": ("a",)}, {"go": ("a", "c")})
 
@@ -60,13 +60,13 @@ def test_a_slot_that_is_kept_for_one_is_neither_granted_to_another_nor_passed(ow
 def test_a_slot_is_free_again_when_the_notify_is_withdrawn(owner):
     owner.commit(commit(1))
     owner.prepare(prepare(2, active=False), 0.0)
-    owner.withdraw(Withdraw(id(2), 1))
+    owner.abort(Abort(id(2), 1))
     assert owner.may_pass(("go",), 99, 0.0)
     assert owner.prepare(prepare(sender="c"), 0.0).what == "granted"
 
 
 def test_a_late_request_for_what_was_withdrawn_keeps_nothing(owner):
-    owner.withdraw(Withdraw(id(1), 1))
+    owner.abort(Abort(id(1), 1))
     assert owner.prepare(prepare(), 0.0).what == "stale"
     assert owner.prepare(prepare(round=2), 0.0).what == "granted"
 
@@ -79,7 +79,7 @@ def test_a_late_request_for_what_was_applied_keeps_nothing(owner):
 
 def test_a_late_withdrawal_frees_no_later_round(owner):
     owner.prepare(prepare(round=2), 0.0)
-    owner.withdraw(Withdraw(id(1), 1))
+    owner.abort(Abort(id(1), 1))
     assert owner.prepare(prepare(sender="c"), 0.0).what == "busy"
 
 
@@ -120,13 +120,13 @@ def test_doubt_ends_when_the_slot_is_set_again(owner):
     assert is_active(owner, KEPT_SECONDS + 1)
 
 
-@pytest.mark.parametrize("end", ["withdrawn", "begun again"])
+@pytest.mark.parametrize("end", ["aborted", "begun again"])
 def test_doubt_ends_when_its_sender_says_that_it_recorded_nothing(owner, end):
     owner.commit(commit(1))
     owner.prepare(prepare(2, active=False), 0.0)
     assert not is_active(owner, KEPT_SECONDS + 1)
-    if end == "withdrawn":
-        owner.withdraw(Withdraw(id(2), 1))
+    if end == "aborted":
+        owner.abort(Abort(id(2), 1))
     else:
         owner.begin(Begin(id(0, incarnation="2"), (("go", True, 1),)))
     assert is_active(owner, KEPT_SECONDS + 1)
@@ -230,7 +230,7 @@ def test_a_restarted_owner_doubts_what_it_had_kept_for_a_reset(owner, journal):
 def test_a_restarted_owner_knows_that_a_reset_was_withdrawn(owner, journal):
     owner.commit(commit(1))
     owner.prepare(prepare(2, active=False), 0.0)
-    owner.withdraw(Withdraw(id(2), 1))
+    owner.abort(Abort(id(2), 1))
     assert is_active(again(journal))
 
 
@@ -271,7 +271,7 @@ DAMAGED = [
     {"started": "x"},
     {"started": 1, "robot": "another", "run": "run"},
     {"do": "leave", "sender": ["a"], "lamport": 1},
-    {"do": "withdraw", "round": None},
+    {"do": "abort", "round": None},
     {"do": "begin", "recorded": [["go", True]]},
     {"do": "begin", "recorded": [["nothing", True, 1]]},
     {"do": "prepare", "slots": ["nothing"], "round": 1, "active": False, "lamport": 1},

@@ -27,7 +27,7 @@ from auv_vessel.wire.catalogue import BEAT_PERIOD
 from auv_vessel.wire.socketcand import LONGEST as LONGEST_WORD
 from mmrs_auv.targets.ada import policies
 from mmrs_runtime.bus.meeting import PATIENCE
-from mmrs_runtime.bus.words import MOST_FINDS
+from mmrs_runtime.bus.messages import MOST_FINDS
 from mmrs_runtime.controllers.ways import ALIGNED, NEAR
 from mmrs_runtime.engine.life import PACE
 

@@ -13,7 +13,7 @@ class Until(NamedTuple):
     deadline: float = inf
 
 
-class Agenda:
+class EventQueue:
     """Numbers that are due now, each once and in their order, and the times at which others will be.
 
     A time that no longer counts stays where it is until it comes, and is passed over then.

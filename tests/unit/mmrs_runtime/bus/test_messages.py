@@ -8,10 +8,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from mmrs_runtime.bus.words import (
+from mmrs_runtime.bus.messages import (
     LARGEST,
     LONGEST,
     MOST_FINDS,
+    Abort,
     Answer,
     Begin,
     CommandId,
@@ -21,7 +22,6 @@ from mmrs_runtime.bus.words import (
     Meet,
     Prepare,
     Unreadable,
-    Withdraw,
     answer_in,
     request_in,
     written,
@@ -36,7 +36,7 @@ FINDS = st.lists(st.tuples(NAMES, st.none() | PLACES), max_size=3).map(tuple)
 REQUESTS = st.one_of(
     st.builds(Prepare, IDS, NUMBERS, SLOTS, st.booleans(), NUMBERS),
     st.builds(Commit, IDS, SLOTS, st.booleans(), NUMBERS, FINDS),
-    st.builds(Withdraw, IDS, NUMBERS),
+    st.builds(Abort, IDS, NUMBERS),
     st.builds(Begin, IDS, st.lists(st.tuples(NAMES, st.booleans(), NUMBERS), max_size=3).map(tuple)),
     st.builds(Leave, IDS, NUMBERS),
     st.builds(Ended, IDS, st.lists(st.tuples(NAMES, NUMBERS), max_size=3).map(tuple)),

@@ -9,7 +9,7 @@ from ..policies import NOTHING
 from ..vehicle import Fault, Vehicle
 
 
-class Unready(Exception):  # noqa: N818  # the word that people read
+class NotReadyError(Exception):  # the word that people read
     """Robots do not get ready; says why of each. Attributes: `faults` by robot."""
 
     def __init__(self, faults: Mapping[str, Fault]) -> None:

@@ -95,7 +95,7 @@ class Commit:
 
 
 @dataclass(frozen=True, slots=True)
-class Withdraw:
+class Abort:
     """Frees what was kept for a command up to a round."""
 
     id: CommandId
@@ -147,7 +147,7 @@ class Meet:
     robots: int
 
 
-Request: TypeAlias = Prepare | Commit | Withdraw | Begin | Leave | Ended | Meet
+Request: TypeAlias = Prepare | Commit | Abort | Begin | Leave | Ended | Meet
 
 
 @dataclass(frozen=True, slots=True)
@@ -372,7 +372,7 @@ def _brief(answer: Answer) -> dict[str, object]:
 _READERS: Mapping[str, Callable[[CommandId, Mapping[str, Any]], Request]] = {
     "prepare": _prepare,
     "commit": _commit,
-    "withdraw": lambda id, content: Withdraw(id, number_in(content, "round")),
+    "abort": lambda id, content: Abort(id, number_in(content, "round")),
     "begin": _begin,
     "leave": lambda id, content: Leave(id, number_in(content, "lamport")),
     "ended": _ended,

@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from enum import Enum
 
-from .words import Answer, CommandId, Commit, Find, Prepare, Request, Withdraw
+from .messages import Abort, Answer, CommandId, Commit, Find, Prepare, Request
 
 ROUND_SECONDS, LONGEST_ROUND = 0.6, 5.0
 """Seconds that owners have to answer before all are asked again, growing with each round: radios are slow."""
@@ -16,7 +16,7 @@ SHORTEST_PAUSE, LONGEST_PAUSE = 0.005, 1.0
 """Seconds before a sender tries again, growing with each try."""
 
 
-class Phase(Enum):
+class TransactionPhase(Enum):
     """How far a notify is."""
 
     ASKING = "asking"
@@ -24,7 +24,7 @@ class Phase(Enum):
     GRANTED = "granted"
     SENDING = "sending"
     DONE = "done"
-    WITHDRAWN = "withdrawn"
+    ABORTED = "aborted"
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,7 +36,7 @@ class Message:
     request: Request
 
 
-class Errand:
+class Transaction:
     """The steps that bring a notify to its owners. Not thread-safe: its holder guards it.
 
     All owners are asked in rounds. A round in which one of them keeps the slot for another sender,
@@ -78,7 +78,7 @@ class Errand:
             latched: whether no robot ever resets any of these slots, so that it is granted at once.
         """
         self.id, self.active = id, active
-        self.phase, self.due, self.lamport = Phase.PAUSING, 0.0, 0
+        self.phase, self.due, self.lamport = TransactionPhase.PAUSING, 0.0, 0
         self.refusals: dict[str, str] = {}
         self._parts, self._clock, self._chance = dict(parts), clock, chance
         self._reach, self._finds = reach, finds
@@ -93,29 +93,29 @@ class Errand:
     @property
     def is_granted(self) -> bool:
         """Return whether its logical time is known, so that it can be recorded."""
-        return self.phase in (Phase.GRANTED, Phase.SENDING, Phase.DONE)
+        return self.phase in (TransactionPhase.GRANTED, TransactionPhase.SENDING, TransactionPhase.DONE)
 
     @property
     def waiting(self) -> tuple[str, ...]:
         """Return the owners that have still to answer or to acknowledge."""
-        if self.phase in (Phase.GRANTED, Phase.DONE, Phase.WITHDRAWN):
+        if self.phase in (TransactionPhase.GRANTED, TransactionPhase.DONE, TransactionPhase.ABORTED):
             return ()
-        return tuple(sorted(self._open - set(self._granted if self.phase is Phase.ASKING else ())))
+        return tuple(sorted(self._open - set(self._granted if self.phase is TransactionPhase.ASKING else ())))
 
     @property
     def is_over(self) -> bool:
         """Return whether nothing is left to do."""
-        return self.phase in (Phase.DONE, Phase.WITHDRAWN)
+        return self.phase in (TransactionPhase.DONE, TransactionPhase.ABORTED)
 
     def tick(self, now: float) -> Iterable[Message]:
         """Return what is to be sent now, if it is due."""
-        if now < self.due or self.is_over or self.phase is Phase.GRANTED:
+        if now < self.due or self.is_over or self.phase is TransactionPhase.GRANTED:
             return ()
-        if self.phase is Phase.SENDING:
+        if self.phase is TransactionPhase.SENDING:
             return self._commits(now)
-        freed = self._free() if self.phase is Phase.ASKING and len(self._parts) > 1 else []
+        freed = self._free() if self.phase is TransactionPhase.ASKING and len(self._parts) > 1 else []
         if self._busy:
-            self.phase, self._busy, self.due = Phase.PAUSING, False, now + self._pause()
+            self.phase, self._busy, self.due = TransactionPhase.PAUSING, False, now + self._pause()
             return freed
         return [*freed, *self._ask(now)]
 
@@ -123,9 +123,9 @@ class Errand:
         """Take an answer to the request of a round; round 0: to what was sent."""
         if answer.what == "refused":
             self.refusals[owner] = answer.why
-        elif self.phase is Phase.SENDING and answer.what == "applied":
+        elif self.phase is TransactionPhase.SENDING and answer.what == "applied":
             self._close(owner)
-        elif self.phase is Phase.ASKING and round == self._round:
+        elif self.phase is TransactionPhase.ASKING and round == self._round:
             if answer.what == "granted":
                 self._granted[owner] = answer.lamport
                 self._settle()
@@ -148,25 +148,25 @@ class Errand:
         Raises:
             ValueError: that time was not granted.
         """
-        if self.phase is not Phase.GRANTED:
+        if self.phase is not TransactionPhase.GRANTED:
             raise ValueError(f"{self.id}: is {self.phase.value}, not granted")
         if not self.lamport <= lamport <= self._most:
             raise ValueError(f"logical time {lamport}: not from {self.lamport} to {self._most}")
         self.lamport, self.due, self._tries = lamport, now, 0
-        self.phase = Phase.SENDING if self._open else Phase.DONE
+        self.phase = TransactionPhase.SENDING if self._open else TransactionPhase.DONE
 
-    def withdraw(self) -> Notice | None:
+    def abort(self) -> Notice | None:
         """Abort it; return what its owners must receive. None: it was sent already, and continues."""
-        if self.phase in (Phase.SENDING, Phase.DONE, Phase.WITHDRAWN):
+        if self.phase in (TransactionPhase.SENDING, TransactionPhase.DONE, TransactionPhase.ABORTED):
             return None
         freed = {message.owner: message for message in self._free()} if self._round else {}
-        self.phase, self.due = Phase.WITHDRAWN, float("inf")
+        self.phase, self.due = TransactionPhase.ABORTED, float("inf")
         return Notice(freed)
 
     def _ask(self, now: float) -> list[Message]:
         self._round += 1
         self._granted = {}
-        self.phase = Phase.ASKING
+        self.phase = TransactionPhase.ASKING
         self.due = now + min(LONGEST_ROUND, ROUND_SECONDS * 1.3**self._tries) + self._pause()
         self._settle()
         floor = max(self._clock(), self._floor)
@@ -183,11 +183,11 @@ class Errand:
         ]
 
     def _free(self) -> list[Message]:
-        return [self._to(owner, Withdraw(self.id, self._round)) for owner in sorted(self._open)]
+        return [self._to(owner, Abort(self.id, self._round)) for owner in sorted(self._open)]
 
     def _settle(self) -> None:
         """Become granted when all have answered with times that one logical time can satisfy."""
-        if self.phase is not Phase.ASKING or self._open - set(self._granted):
+        if self.phase is not TransactionPhase.ASKING or self._open - set(self._granted):
             return
         least = max((self._clock(), *self._granted.values()))
         most = min((time + self._reach for time in self._granted.values()), default=least + self._reach)
@@ -197,13 +197,13 @@ class Errand:
         self._grant(least, most)
 
     def _grant(self, least: int, most: int) -> None:
-        self.lamport, self._most, self.phase, self.due = least, most, Phase.GRANTED, float("inf")
+        self.lamport, self._most, self.phase, self.due = least, most, TransactionPhase.GRANTED, float("inf")
 
     def _close(self, owner: str) -> None:
         self._open.discard(owner)
         self._granted.pop(owner, None)
-        if self.phase is Phase.SENDING and not self._open:
-            self.phase, self.due = Phase.DONE, float("inf")
+        if self.phase is TransactionPhase.SENDING and not self._open:
+            self.phase, self.due = TransactionPhase.DONE, float("inf")
         self._settle()
 
     def _pause(self) -> float:
