@@ -55,9 +55,9 @@ def flights(pattern, speedup):
     for number, drill in enumerate(DRILLS):
         if any(re.search(pattern, name) for name in (drill.name, *(row.title for row in drill.rows))):
             found[f"drill {number}: {drill.name}"] = drill.fly
-    for number, journey in enumerate(JOURNEYS):
-        if re.search(pattern, journey.name):
-            found[f"journey {number}: {journey.name}"] = lambda f, j=journey: [j.fly(f)]
+    for number, stages in enumerate(JOURNEYS):
+        if re.search(pattern, stages.name):
+            found[f"stages {number}: {stages.name}"] = lambda f, j=stages: [j.fly(f)]
     return found
 
 

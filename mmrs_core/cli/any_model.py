@@ -17,7 +17,7 @@ from mmrs_core.languages.places import first_kind
 from mmrs_core.languages.registry import core_registry
 
 if TYPE_CHECKING:
-    from mmrs_core.cli.journey import Workshop
+    from mmrs_core.cli.session import Session
     from mmrs_core.diagnostics import Diagnostic
 
 NOT_INSTALLED = "XMI001"
@@ -35,7 +35,7 @@ Metamodels = Annotated[
 
 
 def read_foreign(
-    workshop: Workshop,
+    session: Session,
     file: Path,
     metamodels: Sequence[Path] | None,
     unsaved: Mapping[Path, bytes] | None = None,
@@ -50,7 +50,7 @@ def read_foreign(
     """
     refuse_metamodel(file)
     given = tuple(metamodels or ())
-    found = read_any(file, workshop.contributions.languages, given, unsaved)
+    found = read_any(file, session.contributions.languages, given, unsaved)
     if unsaved:
         return found
     used = {each.resolve() for each in found.found}
@@ -84,7 +84,7 @@ def _strange(found: ForeignModel) -> frozenset[str]:
     return frozenset(ns_uri for ns_uri in missing if stem_of(ns_uri) not in DISTRIBUTIONS)
 
 
-def is_foreign(workshop: Workshop, file: Path) -> bool:
+def is_foreign(session: Session, file: Path) -> bool:
     """Return whether a file holds a model, and its first element is of no language of MMRS's own.
 
     A model of a dialect is none: it becomes one of MMRS's own while it is read.
@@ -96,7 +96,7 @@ def is_foreign(workshop: Workshop, file: Path) -> bool:
         return False
     refuse_metamodel(file)
     ns_uri, name = first_kind(file)
-    registry = workshop.contributions.languages
+    registry = session.contributions.languages
     if not ns_uri or ns_uri in registry.chains:
         return False
     own = {package.ns_uri for package in core_registry().packages}

@@ -31,7 +31,7 @@ from mmrs_core.pipeline import Place, program_of
 
 if TYPE_CHECKING:
     from mmrs_core.behaviour.program import Program
-    from mmrs_core.cli.journey import Workshop
+    from mmrs_core.cli.session import Session
     from mmrs_core.languages.model import Model
     from mmrs_core.languages.registry import Registry
     from mmrs_core.scene import Area, Part
@@ -71,7 +71,7 @@ class Loaded:
 
 
 def load_behaviour(
-    workshop: Workshop, file: Path, *, context: Path | None = None, robots: Sequence[Path] = ()
+    session: Session, file: Path, *, context: Path | None = None, robots: Sequence[Path] = ()
 ) -> Loaded:
     """Return a valid behaviour with its robot types and its place; print its warnings.
 
@@ -79,14 +79,14 @@ def load_behaviour(
         UnreadableError: if a file is missing or no model at all.
         InvalidModelError: with all diagnostics, if any is an error.
     """
-    files = read_behaviour_files(workshop, file, context=context, robots=robots)
-    program, behaviour = _valid(workshop, files)
+    files = read_behaviour_files(session, file, context=context, robots=robots)
+    program, behaviour = _valid(session, files)
     elements = _elements(behaviour, files.context)
-    return Loaded(program, _place(behaviour, files, elements, workshop), elements)
+    return Loaded(program, _place(behaviour, files, elements, session), elements)
 
 
 def read_behaviour_files(
-    workshop: Workshop,
+    session: Session,
     file: Path,
     *,
     context: Path | None = None,
@@ -106,11 +106,11 @@ def read_behaviour_files(
     """
     place = context if context is not None else context_in(file.parent)
     types = tuple(robots) or robot_files_in(file.parent / "robots")
-    registry = workshop.contributions.languages
+    registry = session.contributions.languages
     files = (file, *([place] if place else []), *types)
     models = _read_all(files, registry, unsaved)
     if not unsaved:
-        workshop.have_read(models, place)
+        session.have_read(models, place)
     return _as_files(file, models, place)
 
 
@@ -146,13 +146,13 @@ def _as_files(file: Path, models: Sequence[Model], place: Path | None = None) ->
     )
 
 
-def faults_of(workshop: Workshop, files: BehaviourFiles) -> tuple[Diagnostic, ...]:
+def faults_of(session: Session, files: BehaviourFiles) -> tuple[Diagnostic, ...]:
     """Return every fault of the files: of reading, of their metamodels, and of the constraints.
 
     Raises:
         InvalidModelError: if the behaviour's file holds no behaviour, or more than one.
     """
-    contributions = workshop.contributions
+    contributions = session.contributions
     faults: list[Diagnostic] = []
     told: list[Diagnostic] = []
     for model in files.models:
@@ -176,7 +176,7 @@ def faults_of(workshop: Workshop, files: BehaviourFiles) -> tuple[Diagnostic, ..
     return in_order(faults)
 
 
-def is_behaviour(workshop: Workshop, path: Path) -> bool:
+def is_behaviour(session: Session, path: Path) -> bool:
     """Return whether a path leads to a file that holds a behaviour.
 
     Raises:
@@ -184,35 +184,35 @@ def is_behaviour(workshop: Workshop, path: Path) -> bool:
     """
     if path.is_dir():
         return False
-    roots = read_model(path, workshop.contributions.languages).roots
+    roots = read_model(path, session.contributions.languages).roots
     return any(isinstance(root, bl.Behaviour) for root in roots)
 
 
-def load_program(workshop: Workshop, file: Path) -> Program:
+def load_program(session: Session, file: Path) -> Program:
     """Return a behaviour by itself, valid by its metamodel and the constraints.
 
     Raises:
         UnreadableError: if the file is missing or no model at all.
         InvalidModelError: with all diagnostics, if any is an error.
     """
-    return _valid(workshop, _as_files(file, [read_model(file, workshop.contributions.languages)]))[0]
+    return _valid(session, _as_files(file, [read_model(file, session.contributions.languages)]))[0]
 
 
-def _valid(workshop: Workshop, files: BehaviourFiles) -> tuple[Program, bl.Behaviour]:
-    faults = faults_of(workshop, files)
+def _valid(session: Session, files: BehaviourFiles) -> tuple[Program, bl.Behaviour]:
+    faults = faults_of(session, files)
     if files.behaviour is None or has_errors(faults):
         raise InvalidModelError(f"{files.file}: the behaviour, or what belongs to it, is not valid", faults)
     report(faults)
-    return program_of(files.behaviour, workshop.contributions), files.behaviour
+    return program_of(files.behaviour, session.contributions), files.behaviour
 
 
 def _place(
-    behaviour: bl.Behaviour, files: BehaviourFiles, elements: tuple[Part, ...], workshop: Workshop
+    behaviour: bl.Behaviour, files: BehaviourFiles, elements: tuple[Part, ...], session: Session
 ) -> Place:
     types = {name: robot_type_of(root) for name, root in files.types.items()}
     if files.context is None:
         return Place(types)
-    barred = barriers(elements, types.values(), workshop.contributions.robot_kinds)
+    barred = barriers(elements, types.values(), session.contributions.robot_kinds)
     areas = (*_areas(behaviour, files.context), *barred)
     return Place(types, areas, environment_of(files.context))
 

@@ -18,9 +18,9 @@ import typer
 from mmrs_core.cli.behaviours import load_program
 from mmrs_core.cli.bus_access import Holder
 from mmrs_core.cli.buses import refuse_endpoints
-from mmrs_core.cli.journey import Workshop
 from mmrs_core.cli.output import counted, say, say_json, tell
 from mmrs_core.cli.parameters import Behaviour, behaviour_file
+from mmrs_core.cli.session import Session
 from mmrs_core.cli.settings import Json, settings_of
 from mmrs_core.errors import LinkLostError, UnreadableError, UnsupportedError
 from mmrs_runtime.bus.carriers.over_zenoh import ZenohCarrier
@@ -176,7 +176,7 @@ def gateway(
     """
     with _needing("eclipse-zenoh"):
         from mmrs_runtime.bus.carriers.sessions import Endpoints
-    program = load_program(Workshop(settings_of(call)), behaviour_file(behaviour))
+    program = load_program(Session(settings_of(call)), behaviour_file(behaviour))
     if robot not in {each.id for each in program.robots}:
         raise typer.BadParameter(f"--robot {robot}: not in the behaviour")
     _refuse_endpoints(listen, connect)

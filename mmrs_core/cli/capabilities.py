@@ -10,20 +10,20 @@ from mmrs_core.cli.tables import table
 from mmrs_core.pipeline import capabilities
 
 if TYPE_CHECKING:
-    from mmrs_core.cli.journey import Workshop
+    from mmrs_core.cli.session import Session
     from mmrs_core.generation.capabilities.judging import Capability
 
 WIDEST = 96
 
 
-def print_capabilities(workshop: Workshop, target: str | None, json: bool) -> int:
+def print_capabilities(session: Session, target: str | None, json: bool) -> int:
     """Print what a target can express, or every target where None is named; return the exit code.
 
     Raises:
         UsageError: there is no such target.
     """
-    contributions = workshop.contributions
-    tables = workshop.stage("capabilities", "trying", lambda: capabilities(target, contributions))
+    contributions = session.contributions
+    tables = session.stage("capabilities", "trying", lambda: capabilities(target, contributions))
     if json:
         say_json({"targets": {name: [_row(each) for each in rows] for name, rows in tables.items()}})
         return 0

@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING
 import typer
 
 from mmrs_core.cli.behaviours import load_behaviour
-from mmrs_core.cli.journey import Workshop, verdicts_of
 from mmrs_core.cli.output import say, say_json
 from mmrs_core.cli.parameters import Behaviour, Context, Robots, behaviour_file, robot_files
 from mmrs_core.cli.reports import STANDARD_OUTPUT, Sarif, refuse_two_outputs
 from mmrs_core.cli.sarif import as_faults, refusals_in, subject_of, write_sarif
+from mmrs_core.cli.session import Session, verdicts_of
 from mmrs_core.cli.settings import Json, settings_of
 from mmrs_core.cli.verdict_words import hint_of, verdict_line, verdict_table
 from mmrs_core.pipeline import refusals
@@ -36,19 +36,19 @@ def check(
 
     Example: mmrs check field/behaviour.xmi --sarif check.sarif
     """
-    workshop = Workshop(settings_of(call))
+    session = Session(settings_of(call))
     file = behaviour_file(behaviour)
     refuse_two_outputs(sarif, json)
     subject = subject_of("check", file)
-    with refusals_in(sarif, workshop, subject):
-        loaded = load_behaviour(workshop, file, context=context, robots=robot_files(robots))
-    verdicts = verdicts_of(workshop, loaded.program, loaded.place)
+    with refusals_in(sarif, session, subject):
+        loaded = load_behaviour(session, file, context=context, robots=robot_files(robots))
+    verdicts = verdicts_of(session, loaded.program, loaded.place)
     against = refusals(verdicts, loaded.program)
     if sarif is not None:
         write_sarif(
             sarif,
-            as_faults(verdicts, against, workshop.contributions.checks),
-            workshop.contributions,
+            as_faults(verdicts, against, session.contributions.checks),
+            session.contributions,
             subject=subject,
         )
     if json:
@@ -60,7 +60,7 @@ def check(
         hinted: set[str] = set()
         for verdict in against:
             say(f"  - {verdict_line(verdict)}")
-            hint = hint_of(verdict, workshop.contributions.checks)
+            hint = hint_of(verdict, session.contributions.checks)
             if hint and (verdict.property + hint) not in hinted:
                 say(f"    hint: {hint}")
             hinted.add(verdict.property + hint)

@@ -21,7 +21,7 @@ from mmrs_core.languages.reading import Reading
 from mmrs_core.languages.writing import to_json, to_xmi
 
 if TYPE_CHECKING:
-    from mmrs_core.cli.journey import Workshop
+    from mmrs_core.cli.session import Session
     from mmrs_core.languages.element import Element
     from mmrs_core.languages.model import Model
     from mmrs_core.languages.registry import Registry
@@ -149,7 +149,7 @@ def is_followed(file: Path, directory: Path) -> bool:
 
 
 def converted_together(
-    workshop: Workshop, targets: dict[Path, Path], metamodels: Sequence[Path], exported: Path | None
+    session: Session, targets: dict[Path, Path], metamodels: Sequence[Path], exported: Path | None
 ) -> tuple[tuple[Converted, ...], tuple[Diagnostic, ...]]:
     """Return models in their new form, which refer to each other where they will be, and what is wrong.
 
@@ -159,7 +159,7 @@ def converted_together(
         ProtectedError: if a target is one of the models, or a file that one refers to.
         UnsupportedError: if one cannot be written.
     """
-    registry = _registry_for(workshop, tuple(targets), metamodels)
+    registry = _registry_for(session, tuple(targets), metamodels)
     base = Path(os.path.commonpath([file.resolve().parent for file in targets]))
     reading = Reading(registry, base)
     drafts = {file: reading.open(file) for file in targets}
@@ -187,10 +187,10 @@ def converted_together(
     return tuple(made), faults
 
 
-def _registry_for(workshop: Workshop, files: Sequence[Path], metamodels: Sequence[Path]) -> Registry:
+def _registry_for(session: Session, files: Sequence[Path], metamodels: Sequence[Path]) -> Registry:
     """Return the metamodels that are installed, and those that were found for some files."""
-    installed = workshop.contributions.languages
-    read = [read_foreign(workshop, file, metamodels) for file in files]
+    installed = session.contributions.languages
+    read = [read_foreign(session, file, metamodels) for file in files]
     for each in read:
         refuse_dialect(each.model)
     found = dict.fromkeys(file for each in read for file in each.found)

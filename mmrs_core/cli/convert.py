@@ -23,11 +23,11 @@ from mmrs_core.cli.conversion import (
     targets_in,
     text_of,
 )
-from mmrs_core.cli.journey import Workshop
 from mmrs_core.cli.output import counted, report, say, say_file, say_json, tell
 from mmrs_core.cli.protection import files_of, refuse_inputs
 from mmrs_core.cli.replacing import replace_files
 from mmrs_core.cli.schema_places import SchemaLocation
+from mmrs_core.cli.session import Session
 from mmrs_core.cli.settings import Json, settings_of
 from mmrs_core.errors import InvalidModelError
 from mmrs_core.languages.element import Unknown
@@ -74,7 +74,7 @@ def convert(
 
     Examples: mmrs convert field/mission.xmi mission.json; mmrs convert field -o field-json
     """
-    asked = _Asked(Workshop(settings_of(call)), to, tuple(metamodel or ()), schema_location, force, json)
+    asked = _Asked(Session(settings_of(call)), to, tuple(metamodel or ()), schema_location, force, json)
     if output is not None:
         return _together(asked, files, output)
     if len(files) > 2:
@@ -86,7 +86,7 @@ def convert(
 class _Asked:
     """What holds for all files."""
 
-    workshop: Workshop
+    session: Session
     to: Form | None
     metamodels: tuple[Path, ...]
     exported: Path | None
@@ -97,7 +97,7 @@ class _Asked:
 def _together(asked: _Asked, given: Sequence[Path], directory: Path) -> int:
 
     targets = targets_in(directory, given, asked.to)
-    made, faults = converted_together(asked.workshop, targets, asked.metamodels, asked.exported)
+    made, faults = converted_together(asked.session, targets, asked.metamodels, asked.exported)
     report(faults)
     refuse_existing(list(targets.values()), asked.force)
     replace_files({each.target: each.text for each in made})
@@ -127,7 +127,7 @@ def _as_json(made: Converted) -> dict[str, object]:
 
 def _alone(asked: _Asked, source: Path, target: Path | None) -> int:
 
-    found = read_foreign(asked.workshop, source, asked.metamodels)
+    found = read_foreign(asked.session, source, asked.metamodels)
     refuse_dialect(found.model)
     faults = tuple(faults_in(found))
     if any(map(is_mistake, faults)):

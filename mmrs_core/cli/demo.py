@@ -8,8 +8,8 @@ from typing import Annotated
 import typer
 
 from mmrs_core.cli.demonstration import demonstrate, manner_of
-from mmrs_core.cli.journey import Journey, Workshop
 from mmrs_core.cli.output import say, say_json
+from mmrs_core.cli.session import Session, Stages
 from mmrs_core.cli.settings import Json, settings_of
 from mmrs_core.errors import UnreadableError
 from mmrs_core.resources import shipped
@@ -39,8 +39,8 @@ def demo(
         return _list_examples(json)
     folder = example_folder(example)
 
-    journey = Journey(Workshop(settings_of(call)), folder)
-    made = demonstrate(journey, folder, out, manner_of(folder), examples().values())
+    stages = Stages(Session(settings_of(call)), folder)
+    made = demonstrate(stages, folder, out, manner_of(folder), examples().values())
     if json:
         say_json(made.summary())
     else:

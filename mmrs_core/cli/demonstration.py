@@ -11,11 +11,11 @@ from pathlib import Path
 from mmrs_core.behaviour.log import read_logs
 from mmrs_core.behaviour.replay import ReplayResult, replay
 from mmrs_core.cli.copying import copy_example, require_copies
-from mmrs_core.cli.journey import Journey
 from mmrs_core.cli.output import counted
 from mmrs_core.cli.plan_words import plan_lines, plan_summary
 from mmrs_core.cli.planned import require_sound, require_writable
 from mmrs_core.cli.preview import picture_of, write_pictures
+from mmrs_core.cli.session import Stages
 from mmrs_core.cli.simulation import Chosen, fly, run_lines, succeeded, write_logs
 from mmrs_core.cli.verdict_words import verdict_table
 from mmrs_core.contributions.targets import GeneratedFile
@@ -80,7 +80,7 @@ class Demonstration:
         backend: what moved the robots.
     """
 
-    journey: Journey
+    stages: Stages
     run: Run
     replayed: ReplayResult
     folder: Path
@@ -99,9 +99,9 @@ class Demonstration:
 
     def lines(self) -> Iterator[str]:
         """Yield about a screenful: plan, safety, run, files."""
-        yield from plan_lines(self.journey.scene, self.journey.plan)
+        yield from plan_lines(self.stages.scene, self.stages.plan)
         yield "checked before anything was written:"
-        yield from verdict_table(self.journey.verdicts)
+        yield from verdict_table(self.stages.verdicts)
         outcome, *details = run_lines(self.run)
         judged = "the logs replay" if self.replayed.accepted else "the logs do not replay"
         backend = "" if self.backend == "simulation" else f" by {self.backend}"
@@ -120,8 +120,8 @@ class Demonstration:
     def summary(self) -> Mapping[str, object]:
         """Return the same as values."""
         return {
-            **plan_summary(self.journey.scene, self.journey.plan),
-            "verdicts": self.journey.verdicts,
+            **plan_summary(self.stages.scene, self.stages.plan),
+            "verdicts": self.stages.verdicts,
             "ending": self.run.ending,
             "replay": self.replayed,
             "left_out": self.left_out,
@@ -130,7 +130,7 @@ class Demonstration:
 
 
 def demonstrate(
-    journey: Journey,
+    stages: Stages,
     example: Path,
     folder: Path,
     manner: Manner = Manner(),
@@ -139,7 +139,7 @@ def demonstrate(
     """Take an example through all stages and leave it with everything that they make in a folder.
 
     Args:
-        journey: of its mission.
+        stages: of its mission.
         example: its folder.
         folder: of what is made; what is there of other examples is replaced.
         manner: how it is shown.
@@ -148,15 +148,15 @@ def demonstrate(
     Raises:
         MmrsError: as the stages raise it; nothing is written before the behaviour is known to be safe.
     """
-    workshop, place = journey.workshop, journey.place
-    program = journey.program
+    session, place = stages.session, stages.place
+    program = stages.program
     behaviour = folder / "behaviour.xmi"
-    require_writable(journey, behaviour, "choose another folder")
+    require_writable(stages, behaviour, "choose another folder")
     require_copies(folder, example, others)
-    require_sound(journey, journey.scene.name or "mission")
+    require_sound(stages, stages.scene.name or "mission")
     with new_folders() as make:
         make(folder)
-        save(journey.transformed[0], behaviour, workshop.contributions)
+        save(stages.transformed[0], behaviour, session.contributions)
     copied = copy_example(example, folder)
     files: list[tuple[str, Path, int]] = [
         ("the mission, its place, and types of robot", folder / "mission.xmi", copied),
@@ -164,7 +164,7 @@ def demonstrate(
     ]
     left_out: dict[str, tuple[str, ...]] = {}
     for target in manner.targets:
-        rendered, left_out[target] = _rendered(journey, target)
+        rendered, left_out[target] = _rendered(stages, target)
         if not rendered:
             continue
         write(rendered, folder / "controllers" / target)
@@ -174,25 +174,25 @@ def demonstrate(
             else ""
         )
         files.append((f"code for {target}{lossy}", folder / "controllers" / target, len(rendered)))
-    run = fly(workshop, program, place, {}, Chosen(manner.backend, manner.options, manner.own))
-    logs = write_logs(run, program, folder / LOGS, place.types, workshop.contributions.robot_kinds)
+    run = fly(session, program, place, {}, Chosen(manner.backend, manner.options, manner.own))
+    logs = write_logs(run, program, folder / LOGS, place.types, session.contributions.robot_kinds)
     files.append(("what each robot did", folder / LOGS, len(logs)))
-    pictures = write_pictures(picture_of(journey), folder)
+    pictures = write_pictures(picture_of(stages), folder)
     files += [("a page to look at", pictures[0], 1), ("the map alone", pictures[1], 1)]
     replayed = replay(program, read_logs([folder / LOGS]))
     backends = " and ".join(dict.fromkeys((manner.backend, *manner.own.values())))
-    return Demonstration(journey, run, replayed, folder, tuple(files), left_out, backends)
+    return Demonstration(stages, run, replayed, folder, tuple(files), left_out, backends)
 
 
-def _rendered(journey: Journey, target: str) -> tuple[tuple[GeneratedFile, ...], tuple[str, ...]]:
+def _rendered(stages: Stages, target: str) -> tuple[tuple[GeneratedFile, ...], tuple[str, ...]]:
     """Return the files of a target, and what had to be left out; no files where nothing is left."""
-    contributions = journey.workshop.contributions
+    contributions = stages.session.contributions
 
     def rendered(lossy: bool) -> tuple[GeneratedFile, ...]:
-        return journey.workshop.stage(
+        return stages.session.stage(
             "render",
             f"generating for {target}",
-            lambda: render(journey.program, journey.place, target, contributions, allow_lossy=lossy),
+            lambda: render(stages.program, stages.place, target, contributions, allow_lossy=lossy),
         )
 
     try:

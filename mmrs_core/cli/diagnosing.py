@@ -11,7 +11,7 @@ from mmrs_core.analysis.constraints import check_constraints
 from mmrs_core.analysis.fixes.repair import Diagnosis
 from mmrs_core.cli.any_model import faults_in, is_foreign, read_foreign
 from mmrs_core.cli.behaviours import faults_of, read_behaviour_files
-from mmrs_core.cli.journey import Workshop
+from mmrs_core.cli.session import Session
 from mmrs_core.diagnostics import Diagnostic, Severity, in_order
 from mmrs_core.errors import InvalidModelError, UnreadableError
 from mmrs_core.languages import behaviour, context, mission, robot
@@ -30,7 +30,7 @@ _FOREIGN, _BEHAVIOUR, _PARTS, _MISSION = "foreign", "behaviour", "parts", "missi
 class Subject:
     """What is examined: a mission with what belongs to it, a behaviour, a part of either, or any model."""
 
-    workshop: Workshop
+    session: Session
     file: Path
     context: Path | None = None
     robots: tuple[Path, ...] = ()
@@ -45,9 +45,9 @@ class Subject:
             found.append(self.diagnose({}))
             return found[0].faults
 
-        self.workshop.stage("check", doing, check)
+        self.session.stage("check", doing, check)
         if (project := found[0].project) is not None:
-            self.workshop.have_read(found[0].models, project.context)
+            self.session.have_read(found[0].models, project.context)
         return found[0]
 
     def diagnose(self, unsaved: Mapping[Path, bytes]) -> Diagnosis:
@@ -74,9 +74,9 @@ class Subject:
     def _sort(self) -> str:
         """Return what the file is; one that cannot be read is what its name says."""
         try:
-            if self.metamodels or is_foreign(self.workshop, self.file):
+            if self.metamodels or is_foreign(self.session, self.file):
                 return _FOREIGN
-            registry = self.workshop.contributions.languages
+            registry = self.session.contributions.languages
             roots = () if self.file.is_dir() else read_model(self.file, registry).roots
         except UnreadableError:
             return {"mission": _MISSION, "behaviour": _BEHAVIOUR}.get(self.file.stem, _FOREIGN)
@@ -87,7 +87,7 @@ class Subject:
 
     def _alone(self, unsaved: Mapping[Path, bytes]) -> Diagnosis:
         """Return the faults of a model by its metamodels only: nobody knows what else belongs to it."""
-        found = read_foreign(self.workshop, self.file, self.metamodels, unsaved)
+        found = read_foreign(self.session, self.file, self.metamodels, unsaved)
         models = (found.model, *found.model.linked)
         breaches = (fault for each in models for fault in check_conformance(each, found.registry))
         faults = (*faults_in(found), *(_as_emf_takes_it(fault) for fault in breaches))
@@ -95,10 +95,10 @@ class Subject:
 
     def _parts(self, unsaved: Mapping[Path, bytes]) -> Diagnosis:
         files = (self.file, *([self.context] if self.context else []), *self.robots)
-        return diagnosed_parts(self.workshop, files, unsaved)
+        return diagnosed_parts(self.session, files, unsaved)
 
     def _mission(self, unsaved: Mapping[Path, bytes]) -> Diagnosis:
-        contributions = self.workshop.contributions
+        contributions = self.session.contributions
         models, faults = read_models(
             self.file, contributions, context=self.context, robots=self.robots, unsaved=unsaved
         )
@@ -111,7 +111,7 @@ class Subject:
     def _files(self, faults: tuple[Diagnostic, ...], unsaved: Mapping[Path, bytes]) -> tuple[Model, ...]:
         """Return the files that faults are in, where there is no mission to hold them together."""
         names = dict.fromkeys(fault.place.file for fault in faults if fault.place.file)
-        registry = self.workshop.contributions.languages
+        registry = self.session.contributions.languages
         found = []
         for name in names:
             with suppress(UnreadableError):  # that is among the faults
@@ -120,24 +120,24 @@ class Subject:
 
     def _behaviour(self, unsaved: Mapping[Path, bytes]) -> Diagnosis:
         files = read_behaviour_files(
-            self.workshop, self.file, context=self.context, robots=self.robots, unsaved=unsaved
+            self.session, self.file, context=self.context, robots=self.robots, unsaved=unsaved
         )
         robots = tuple(files.types.values())
         try:
-            return Diagnosis(True, faults_of(self.workshop, files), files.models, None, robots)
+            return Diagnosis(True, faults_of(self.session, files), files.models, None, robots)
         except InvalidModelError as error:
             if not unsaved:
                 raise
             return Diagnosis(False, error.diagnostics, files.models, None, robots)
 
 
-def diagnosed_parts(workshop: Workshop, files: Iterable[Path], unsaved: Mapping[Path, bytes]) -> Diagnosis:
+def diagnosed_parts(session: Session, files: Iterable[Path], unsaved: Mapping[Path, bytes]) -> Diagnosis:
     """Return the faults of robot types and of a context that no mission holds together.
 
     Args:
         unsaved: texts to be read instead of what files hold, by real path.
     """
-    contributions = workshop.contributions
+    contributions = session.contributions
     registry = contributions.languages
     models = tuple(read_model(file, registry, unsaved=unsaved) for file in files)
     faults = [fault for model in models for fault in model.diagnostics]

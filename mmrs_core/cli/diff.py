@@ -11,9 +11,9 @@ import typer
 
 from mmrs_core.cli.any_model import Metamodels, is_metamodel, is_mistake, read_foreign
 from mmrs_core.cli.diff_words import change_as_json, change_lines, colour_of, summary_line
-from mmrs_core.cli.journey import Workshop
 from mmrs_core.cli.metamodel import diff as between_metamodels
 from mmrs_core.cli.output import report, say, say_json
+from mmrs_core.cli.session import Session
 from mmrs_core.cli.settings import Json, settings_of
 from mmrs_core.errors import UnreadableError
 from mmrs_core.languages.comparison.changes import Change, changes_between
@@ -44,10 +44,10 @@ def diff(
     """
     if is_metamodel(before) or is_metamodel(after):
         return _metamodels(call, before, after, json)
-    workshop = Workshop(settings_of(call))
+    session = Session(settings_of(call))
     found: list[tuple[str, tuple[Change, ...]]] = []
     for name, *files in _pairs(before, after):
-        roots = [_roots(workshop, file, metamodel) for file in files]
+        roots = [_roots(session, file, metamodel) for file in files]
         found.append((name, changes_between(*roots)))
     counts = Counter(change.sort.value for _, changes in found for change in changes)
     if json:
@@ -105,11 +105,11 @@ def _models_in(folder: Path) -> dict[str, Path]:
     return models
 
 
-def _roots(workshop: Workshop, file: Path | None, metamodels: Sequence[Path] | None) -> tuple[Element, ...]:
+def _roots(session: Session, file: Path | None, metamodels: Sequence[Path] | None) -> tuple[Element, ...]:
 
     if file is None:
         return ()
-    model = read_foreign(workshop, file, metamodels).model
+    model = read_foreign(session, file, metamodels).model
     report(model.diagnostics)
     if any(map(is_mistake, model.diagnostics)):
         raise UnreadableError(f"{file}: not compared, since something of it cannot be read")

@@ -9,15 +9,14 @@ from pathlib import Path
 
 import typer
 
-from mmrs_core.behaviour.program import Program
+from mmrs_core.behaviour.program import FEEDBACK, Action, Program
 from mmrs_core.cli.behaviours import Loaded
 from mmrs_core.cli.bus_faults import bus_faults
 from mmrs_core.cli.buses import bus_for
-from mmrs_core.cli.flown_before import end_of, resumed_steps
-from mmrs_core.cli.journey import Workshop
-from mmrs_core.cli.observing import Observer
-from mmrs_core.cli.onlookers import Gallery
+from mmrs_core.cli.observers import ObserverThread
 from mmrs_core.cli.output import say, tell
+from mmrs_core.cli.resuming import end_of, resumed_steps
+from mmrs_core.cli.session import Session
 from mmrs_core.cli.wishes import (
     Wishes,
     check_backends,
@@ -80,7 +79,7 @@ class Result:
             say(f"written: {log}")
 
 
-def carry_out(workshop: Workshop, loaded: Loaded, wishes: Wishes) -> Result:
+def carry_out(session: Session, loaded: Loaded, wishes: Wishes) -> Result:
     """Carry a behaviour out; return what became of it.
 
     Raises:
@@ -90,14 +89,14 @@ def carry_out(workshop: Workshop, loaded: Loaded, wishes: Wishes) -> Result:
         UnsupportedError: if the backend cannot do what the behaviour holds.
     """
     program = loaded.program
-    backend = backend_for(program, workshop.contributions, wishes.backend, wishes.own_backends)
+    backend = backend_for(program, session.contributions, wishes.backend, wishes.own_backends)
     here = robots_of(program, wishes.robots)
     links = links_of(wishes.links, here)
-    check_backends(wishes, links, here, workshop.contributions.vehicles)
+    check_backends(wishes, links, here, session.contributions.vehicles)
     resumed = resumed_steps(program, wishes, here)
     run = resumed[0].run if resumed else wishes.run
     orders, options = Orders(stop_response(wishes.on_stop)), options_of_robots(wishes, here)
-    conditions = conditions_for(program, workshop.contributions, wishes.assume, asks=True)
+    conditions = conditions_for(program, session.contributions, wishes.assume, asks=True)
     with ExitStack() as stack:
         clock = RealClock(wishes.speedup, end_of(resumed, wishes.folder))
         wrap = bus_faults(wishes.options.get("inject", ""), program, wishes.bus.shared, clock, stack)
@@ -105,9 +104,9 @@ def carry_out(workshop: Workshop, loaded: Loaded, wishes: Wishes) -> Result:
         bus = bus_for(program, here, run, wishes.folder, wishes.bus, given, wrap)
         stack.callback(bus.close)
         writer = stack.enter_context(LogWriter(wishes.folder, resumed=wishes.resume))
-        gallery = Gallery(workshop.onlookers)
-        observer = Observer(gallery, writer, program)
-        inputs = inputs_of(program, loaded.place, workshop.contributions, options=options, robots=here)
+        observers = ObserverThread(session.observers)
+        recorder = StepRecorder(observers, writer, program)
+        inputs = inputs_of(program, loaded.place, session.contributions, options=options, robots=here)
         venture = replace(
             venture_for(program, inputs, backend, bus, conditions),
             clock=clock,
@@ -118,18 +117,18 @@ def carry_out(workshop: Workshop, loaded: Loaded, wishes: Wishes) -> Result:
             resumed=resumed,
             patience=wishes.patience,
             meet=begin_all(bus, program.executable, _unbegun(here, resumed), wishes.bus.sync, tell),
-            observe=_telling(observer.observe, program),
+            observe=_telling(recorder.record, program),
             sync=writer.sync,
             say=tell,
         )
 
         def status(robot: str) -> Mapping[str, object]:
-            return {**venture.standing.status(robot), **observer.status(robot)}
+            return {**venture.standing.status(robot), **recorder.status(robot)}
 
         _hear(stack, wishes.folder, run, here, orders, status)
         stack.enter_context(stopping(orders, here, tell))
         stack.enter_context(unfailing())
-        stack.callback(gallery.close)
+        stack.callback(observers.close)
         ending = run_live(venture)
     names = [wishes.folder / log_name(robot) for robot in here]
     return Result(ending, tuple(path for path in names if path.exists()))
@@ -161,3 +160,36 @@ def _telling(observe: Callable[[StepRecord], None], program: Program) -> Callabl
 def _unbegun(robots: tuple[str, ...], resumed: tuple[StepRecord, ...]) -> list[str]:
     begun = {record.robot for record in resumed}
     return [robot for robot in robots if robot not in begun]
+
+
+class StepRecorder:
+    """Logs the steps of this process's robots, and keeps the last feedback of each."""
+
+    def __init__(self, observers: ObserverThread, writer: LogWriter, program: Program) -> None:
+        self._observers, self._writer = observers, writer
+        self._actions = _actions_of(program)
+        self._reported: dict[str, Mapping[str, object]] = {}
+
+    def record(self, record: StepRecord) -> None:
+        """Log a step and pass it to the observers."""
+        self._writer.write(record)
+        action = self._actions.get((record.robot, record.move, record.detail))
+        if record.label == "act" and action is not None and action.is_a(FEEDBACK):
+            self._reported[record.robot] = {"name": action.name, "content": dict(action.parameters)}
+        self._observers.see_step(record)
+
+    def status(self, robot: str) -> Mapping[str, object]:
+        """Return the last feedback of a robot as ``reported``; empty before its first."""
+        reported = self._reported.get(robot)
+        return {} if reported is None else {"reported": reported}
+
+
+def _actions_of(program: Program) -> dict[tuple[str, str, str], Action]:
+    """Return all actions by robot, move, and the detail by which logs identify them."""
+    return {
+        (robot.id, move.id, f"{when}:{index}"): action
+        for robot in program.robots
+        for move in robot.moves
+        for when, actions in (("pre", move.before), ("post", move.after))
+        for index, action in enumerate(actions)
+    }

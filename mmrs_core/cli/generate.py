@@ -12,10 +12,10 @@ import typer
 
 from mmrs_core.cli.behaviours import load_behaviour
 from mmrs_core.cli.capabilities import print_capabilities
-from mmrs_core.cli.journey import Workshop, require_safe, verdicts_of
 from mmrs_core.cli.output import counted, say, say_json
 from mmrs_core.cli.parameters import Context, Robots, behaviour_file, robot_files
 from mmrs_core.cli.protection import refuse_inputs
+from mmrs_core.cli.session import Session, require_safe, verdicts_of
 from mmrs_core.cli.settings import Json, settings_of
 from mmrs_core.cli.tables import table
 from mmrs_core.generation.deployment import fetch
@@ -68,11 +68,11 @@ def generate(
 
     Example: mmrs-gen field --target mavlink-python -o code
     """
-    workshop = Workshop(settings_of(call))
+    session = Session(settings_of(call))
     if list_targets:
-        return _list_targets(workshop, json)
+        return _list_targets(session, json)
     if capabilities:
-        return print_capabilities(workshop, target or (str(behaviour) if behaviour else None), json)
+        return print_capabilities(session, target or (str(behaviour) if behaviour else None), json)
     if behaviour is None or target is None or output is None:
         missing = [
             name
@@ -81,7 +81,7 @@ def generate(
         ]
         raise typer.BadParameter(f"missing: {', '.join(missing)}")
     order = _Order(target, output, context, robot_files(robots), templates, allow_lossy, force, wheels or [])
-    written, manifest, asks = _generate(workshop, behaviour_file(behaviour), order)
+    written, manifest, asks = _generate(session, behaviour_file(behaviour), order)
     if json:
         left_out = {"losses": manifest.losses, "overrides": sorted(manifest.overrides), "asks": asks}
         say_json({"target": target, "files": written, **left_out})
@@ -139,25 +139,25 @@ def _listed(written: tuple[Path, ...], folder: Path) -> list[str]:
 
 
 def _generate(
-    workshop: Workshop, file: Path, order: _Order
+    session: Session, file: Path, order: _Order
 ) -> tuple[tuple[Path, ...], Manifest, tuple[str, ...]]:
 
-    loaded = load_behaviour(workshop, file, context=order.context, robots=order.robots)
+    loaded = load_behaviour(session, file, context=order.context, robots=order.robots)
     program, place = loaded.program, loaded.place
-    require_safe(program, verdicts_of(workshop, program, place), str(file))
-    files = workshop.stage(
+    require_safe(program, verdicts_of(session, program, place), str(file))
+    files = session.stage(
         "render",
         "generating",
         lambda: render(
             program,
             place,
             order.target,
-            workshop.contributions,
+            session.contributions,
             allow_lossy=order.allow_lossy,
             templates=order.templates,
         ),
     )
-    refuse_inputs((order.output / file.path for file in files), workshop.inputs)
+    refuse_inputs((order.output / file.path for file in files), session.inputs)
     written = write(files, order.output, force=order.force)
     if order.platforms:
         fetch(order.output, order.platforms)
@@ -166,8 +166,8 @@ def _generate(
     return written, manifest_in(files[-1].content), asks
 
 
-def _list_targets(workshop: Workshop, json: bool) -> int:
-    targets = sorted(workshop.contributions.targets.values(), key=lambda target: target.name)
+def _list_targets(session: Session, json: bool) -> int:
+    targets = sorted(session.contributions.targets.values(), key=lambda target: target.name)
     if json:
         say_json({"targets": [{"name": each.name, "description": each.description} for each in targets]})
     else:

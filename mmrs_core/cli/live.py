@@ -10,9 +10,9 @@ import typer
 from mmrs_core.cli.behaviours import load_behaviour
 from mmrs_core.cli.buses import BusWishes
 from mmrs_core.cli.flying import carry_out
-from mmrs_core.cli.journey import Workshop
 from mmrs_core.cli.output import say_json
 from mmrs_core.cli.parameters import Assume, Behaviour, Context, Robots, behaviour_file, robot_files
+from mmrs_core.cli.session import Session
 from mmrs_core.cli.settings import Json, settings_of
 from mmrs_core.cli.simulation import answers, backends_of, options_of
 from mmrs_core.cli.wishes import MAVLINK, Wishes
@@ -137,7 +137,7 @@ def run(
 
     Example: mmrs run mission/behaviour.xmi --connect Drone1=udpin:127.0.0.1:14550 --log flight-1
     """
-    workshop = Workshop(settings_of(call))
+    session = Session(settings_of(call))
     usual, own = backends_of(backend, MAVLINK)
     given = dict(options_of(backend_option))
     if signing_key is not None:
@@ -165,8 +165,8 @@ def run(
             sync_patience if sync else None,
         ),
     )
-    loaded = load_behaviour(workshop, behaviour_file(behaviour), context=context, robots=robot_files(robots))
-    result = carry_out(workshop, loaded, wishes)
+    loaded = load_behaviour(session, behaviour_file(behaviour), context=context, robots=robot_files(robots))
+    result = carry_out(session, loaded, wishes)
     if json:
         say_json(result.as_json())
     else:

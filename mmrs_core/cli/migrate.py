@@ -58,18 +58,18 @@ def migrate(
 
     Example: mmrs migrate mission.json context.json Heron.xmi -o orchard
     """
-    from mmrs_core.cli.journey import Workshop
     from mmrs_core.cli.migration import read_sources, write_outputs
     from mmrs_core.cli.migration_verdicts import verdicts_on
     from mmrs_core.cli.migration_words import migration_lines, verdict_lines
+    from mmrs_core.cli.session import Session
     from mmrs_core.diagnostics import in_order
 
-    workshop = Workshop(settings_of(call))
-    migration = read_sources(workshop, files, output, mapping, metamodels or (), types or ())
-    written = write_outputs(workshop, migration, files, output, force=force)
+    session = Session(settings_of(call))
+    migration = read_sources(session, files, output, mapping, metamodels or (), types or ())
+    written = write_outputs(session, migration, files, output, force=force)
     for line in migration_lines(migration, output) if not json else ():
         say(line)
-    verdicts = verdicts_on(written, workshop)
+    verdicts = verdicts_on(written, session)
     faults = in_order(dict.fromkeys(fault for verdict in verdicts for fault in verdict.faults))
     valid = bool(written) and all(verdict.valid for verdict in verdicts)
     unreadable = [source.fault for source in migration.sources] + [each.unreadable for each in verdicts]

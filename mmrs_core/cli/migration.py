@@ -9,8 +9,8 @@ from pathlib import Path
 import typer
 
 from mmrs_core.builtin import FLYAQ
-from mmrs_core.cli.journey import Workshop
 from mmrs_core.cli.protection import ProtectedError, refuse_inputs
+from mmrs_core.cli.session import Session
 from mmrs_core.errors import UnreadableError
 from mmrs_core.languages import robot as robots
 from mmrs_core.languages.dialects import recognised
@@ -27,7 +27,7 @@ from mmrs_core.resources import shipped
 
 
 def read_sources(
-    workshop: Workshop,
+    session: Session,
     files: Sequence[Path],
     project: Path,
     mapping: Path | None,
@@ -40,16 +40,16 @@ def read_sources(
         UnreadableError: if a file or the mapping cannot be read.
         typer.BadParameter: if a robot type's name is not written as OLD=NAME, or OLD occurs nowhere.
     """
-    registry = workshop.contributions.languages
+    registry = session.contributions.languages
     rules = read_mapping(mapping or _mapping_for(files, registry), registry)
     stands_for = _stands_for(types)
-    present = _types_in(project, workshop)
+    present = _types_in(project, session)
 
     def migrating() -> Migration:
         return migrated(files, rules, registry, metamodels=metamodels, types=stands_for, present=present)
 
     try:
-        return workshop.stage("migrate", "migrating", migrating)
+        return session.stage("migrate", "migrating", migrating)
     except UnknownTypeError as fault:
         raise typer.BadParameter(f"--type: {fault}") from None
 
@@ -74,16 +74,16 @@ def _stands_for(given: Sequence[str]) -> dict[str, str]:
     return found
 
 
-def _types_in(project: Path, workshop: Workshop) -> Mapping[str, robots.Robot]:
+def _types_in(project: Path, session: Session) -> Mapping[str, robots.Robot]:
     models = (
-        read_model(file, workshop.contributions.languages) for file in robot_files_in(project / "robots")
+        read_model(file, session.contributions.languages) for file in robot_files_in(project / "robots")
     )
     roots = (root for model in models for root in model.roots if isinstance(root, robots.Robot))
     return {root.name or "": root for root in roots}
 
 
 def write_outputs(
-    workshop: Workshop, migration: Migration, sources: Iterable[Path], project: Path, *, force: bool
+    session: Session, migration: Migration, sources: Iterable[Path], project: Path, *, force: bool
 ) -> tuple[Path, ...]:
     """Write the models into the project's folder; return the files.
 
@@ -91,7 +91,7 @@ def write_outputs(
         ProtectedError: if a file is a source, or stands there with other content and may not be replaced.
         OSError: if the folder cannot be written to.
     """
-    registry = workshop.contributions.languages
+    registry = session.contributions.languages
     contents = {project / each.path: to_xmi((each.element,), registry) for each in migration.outputs}
     refuse_inputs(contents, sources)
     for file, data in contents.items():

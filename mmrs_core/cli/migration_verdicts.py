@@ -9,7 +9,7 @@ from typing import TypeVar
 
 from mmrs_core.analysis.fixes.repair import Diagnosis
 from mmrs_core.cli.diagnosing import Subject, diagnosed_parts
-from mmrs_core.cli.journey import Workshop
+from mmrs_core.cli.session import Session
 from mmrs_core.diagnostics import Diagnostic, has_errors
 from mmrs_core.errors import InvalidModelError, UnreadableError
 from mmrs_core.languages import behaviour, robot
@@ -52,25 +52,25 @@ class Verdict:
         return not (self.unreadable or any(map(is_refusal, self.faults)))
 
 
-def verdicts_on(files: Iterable[Path], workshop: Workshop) -> tuple[Verdict, ...]:
+def verdicts_on(files: Iterable[Path], session: Session) -> tuple[Verdict, ...]:
     """Return what is to be said of the folders that models were written to, and of every behaviour there."""
     folders: dict[Path, list[Path]] = {}
     for file in files:
         folder = file.parent.parent if file.parent.name == _ROBOTS else file.parent
         folders.setdefault(folder, []).append(file)
-    return tuple(verdict for folder, own in folders.items() for verdict in _of_folder(folder, own, workshop))
+    return tuple(verdict for folder, own in folders.items() for verdict in _of_folder(folder, own, session))
 
 
-def _of_folder(folder: Path, files: Sequence[Path], workshop: Workshop) -> Iterator[Verdict]:
+def _of_folder(folder: Path, files: Sequence[Path], session: Session) -> Iterator[Verdict]:
     behaviours = [file for file in files if file.stem == "behaviour"]
     try:
         if model_in(folder, "mission") is not None:
-            yield _judged(Subject(workshop, folder))
+            yield _judged(Subject(session, folder))
         elif len(behaviours) < len(files) or not behaviours:
-            faults = diagnosed_parts(workshop, _with_rest(folder, files), {}).faults
+            faults = diagnosed_parts(session, _with_rest(folder, files), {}).faults
             yield Verdict(folder, not has_errors(faults), faults, alone=True)
         for file in behaviours:
-            yield _judged(Subject(workshop, file))
+            yield _judged(Subject(session, file))
     except UnreadableError as fault:
         yield Verdict(folder, valid=False, unreadable=str(fault))
 

@@ -9,12 +9,12 @@ from typing import Annotated
 
 import typer
 
-from mmrs_core.cli.journey import Journey, Workshop
 from mmrs_core.cli.output import say, say_json
 from mmrs_core.cli.parameters import Context, Project, Robots, Seed, robot_files
 from mmrs_core.cli.plan_words import plan_lines, plan_summary
 from mmrs_core.cli.planned import require_sound, require_writable
 from mmrs_core.cli.schema_places import SchemaLocation, places_in
+from mmrs_core.cli.session import Session, Stages
 from mmrs_core.cli.settings import Json, settings_of
 from mmrs_core.languages.modelset import model_in
 from mmrs_core.pipeline import save
@@ -32,14 +32,14 @@ class Stage(StrEnum):
     VERIFY = "verify"
 
 
-_VALUES: Mapping[Stage, Callable[[Journey], object]] = {
-    Stage.READ: lambda journey: _models(journey),
-    Stage.CHECK: lambda journey: journey.warnings,
-    Stage.GROUND: lambda journey: journey.grounded,
-    Stage.EXPAND: lambda journey: journey.scene,
-    Stage.PLAN: lambda journey: journey.plan,
-    Stage.TRANSFORM: lambda journey: _behaviour(journey),
-    Stage.VERIFY: lambda journey: journey.verdicts,
+_VALUES: Mapping[Stage, Callable[[Stages], object]] = {
+    Stage.READ: lambda stages: _models(stages),
+    Stage.CHECK: lambda stages: stages.warnings,
+    Stage.GROUND: lambda stages: stages.grounded,
+    Stage.EXPAND: lambda stages: stages.scene,
+    Stage.PLAN: lambda stages: stages.plan,
+    Stage.TRANSFORM: lambda stages: _behaviour(stages),
+    Stage.VERIFY: lambda stages: stages.verdicts,
 }
 
 
@@ -69,22 +69,22 @@ def plan(
 
     Example: mmrs plan field
     """
-    workshop = Workshop(settings_of(call))
-    journey = Journey(workshop, project, context=context, robots=robot_files(robots), seed=seed)
+    session = Session(settings_of(call))
+    stages = Stages(session, project, context=context, robots=robot_files(robots), seed=seed)
     if stop_after is not None:
-        say_json({"stage": stop_after.value, "value": _VALUES[stop_after](journey)})
+        say_json({"stage": stop_after.value, "value": _VALUES[stop_after](stages)})
         return 0
     folder = folder_of(project)
     file = output or model_in(folder, "behaviour") or folder / "behaviour.xmi"
-    require_writable(journey, file, "" if force else "--force replaces it")
-    places = places_in(schema_location, workshop.contributions.languages, file)
-    require_sound(journey, str(project))
-    save(journey.transformed[0], file, workshop.contributions, places)
+    require_writable(stages, file, "" if force else "--force replaces it")
+    places = places_in(schema_location, session.contributions.languages, file)
+    require_sound(stages, str(project))
+    save(stages.transformed[0], file, session.contributions, places)
     if json:
-        summary = plan_summary(journey.scene, journey.plan)
-        say_json({"behaviour": file, **summary, "verdicts": journey.verdicts})
+        summary = plan_summary(stages.scene, stages.plan)
+        say_json({"behaviour": file, **summary, "verdicts": stages.verdicts})
     else:
-        for line in plan_lines(journey.scene, journey.plan):
+        for line in plan_lines(stages.scene, stages.plan):
             say(line)
         say(f"written: {file}")
     return 0
@@ -95,11 +95,11 @@ def folder_of(project: Path) -> Path:
     return project if project.is_dir() else project.parent
 
 
-def _models(journey: Journey) -> object:
-    models = journey.models
+def _models(stages: Stages) -> object:
+    models = stages.models
     return {"mission": models.mission, "context": models.context, "robots": models.robots}
 
 
-def _behaviour(journey: Journey) -> object:
-    behaviour, trace = journey.transformed
+def _behaviour(stages: Stages) -> object:
+    behaviour, trace = stages.transformed
     return {"behaviour": behaviour, "trace": trace}

@@ -20,7 +20,7 @@ from mmrs_core.cli.parameters import (
 from mmrs_core.cli.settings import Json, settings_of
 
 if TYPE_CHECKING:
-    from mmrs_core.cli.journey import Journey, Workshop
+    from mmrs_core.cli.session import Session, Stages
     from mmrs_core.pictures.preview.picture import Picture
 
 PAGE = "preview.html"
@@ -59,24 +59,24 @@ def preview(
     Example: mmrs preview field
     """
     from mmrs_core.cli.behaviours import is_behaviour
-    from mmrs_core.cli.journey import Journey, Workshop
     from mmrs_core.cli.plan import folder_of
     from mmrs_core.cli.protection import refuse_inputs
+    from mmrs_core.cli.session import Session, Stages
 
-    workshop = Workshop(settings_of(call))
+    session = Session(settings_of(call))
     types = robot_files(robots)
     if logs:
-        picture = _of_flight(workshop, behaviour_file(project), context, types, assume, logs)
-    elif is_behaviour(workshop, alone := without_mission(project)):
-        picture = _of_behaviour(workshop, alone, context, types, assume)
+        picture = _of_flight(session, behaviour_file(project), context, types, assume, logs)
+    elif is_behaviour(session, alone := without_mission(project)):
+        picture = _of_behaviour(session, alone, context, types, assume)
     elif assume:
         raise typer.BadParameter(
             "--assume goes with a behaviour, or with --logs; a mission is drawn as planned"
         )
     else:
-        picture = picture_of(Journey(workshop, project, context=context, robots=types, seed=seed))
+        picture = picture_of(Stages(session, project, context=context, robots=types, seed=seed))
     folder = output if output is not None else folder_of(project)
-    refuse_inputs((folder / PAGE, folder / MAP), workshop.inputs)
+    refuse_inputs((folder / PAGE, folder / MAP), session.inputs)
     written = write_pictures(picture, folder)
     if json:
         say_json({"files": written})
@@ -86,17 +86,17 @@ def preview(
     return 0
 
 
-def picture_of(journey: Journey) -> Picture:
+def picture_of(stages: Stages) -> Picture:
     """Return the picture of a planned mission, with the moves that carry it out."""
     from mmrs_core.pictures.preview.from_plan import picture_of_plan
     from mmrs_core.pictures.preview.moves import with_moves
 
-    symbols = journey.workshop.contributions.map_symbols
-    return with_moves(picture_of_plan(journey.scene, journey.plan, symbols), journey.program)
+    symbols = stages.session.contributions.map_symbols
+    return with_moves(picture_of_plan(stages.scene, stages.plan, symbols), stages.program)
 
 
 def _of_behaviour(
-    workshop: Workshop,
+    session: Session,
     file: Path,
     context: Path | None,
     robots: tuple[Path, ...],
@@ -107,18 +107,18 @@ def _of_behaviour(
     from mmrs_core.pictures.preview.from_run import Surroundings, picture_of_run
 
     conditions = answers(assume)
-    loaded = load_behaviour(workshop, file, context=context, robots=robots)
+    loaded = load_behaviour(session, file, context=context, robots=robots)
     program, place = loaded.program, loaded.place
-    run = fly(workshop, program, place, conditions)
+    run = fly(session, program, place, conditions)
     around = Surroundings(place.areas or (), loaded.elements, place.types)
-    contributed = workshop.contributions
+    contributed = session.contributions
     return picture_of_run(
         program, run.records, run.tracks, contributed.move_kinds, contributed.map_symbols, around
     )
 
 
 def _of_flight(
-    workshop: Workshop,
+    session: Session,
     file: Path,
     context: Path | None,
     robots: tuple[Path, ...],
@@ -132,15 +132,15 @@ def _of_flight(
     from mmrs_core.pictures.flights.planned import planned_for
     from mmrs_core.pictures.report.making import Given, report_of
 
-    loaded = load_behaviour(workshop, file, context=context, robots=robots)
-    contributed = workshop.contributions
+    loaded = load_behaviour(session, file, context=context, robots=robots)
+    contributed = session.contributions
     flight = read_flight(logs, loaded.program, loaded.place.types, contributed.robot_kinds)
     with progress("simulating the plan"):
         planned = planned_for(loaded.program, loaded.place, contributed, flight, answers(assume))
     given = Given(
         loaded.program, loaded.place, flight, planned, contributed.move_kinds, contributed.robot_kinds
     )
-    return picture_of_flight(workshop, loaded, given, report_of(given), file.parent)
+    return picture_of_flight(session, loaded, given, report_of(given), file.parent)
 
 
 def write_pictures(picture: Picture, folder: Path) -> tuple[Path, ...]:

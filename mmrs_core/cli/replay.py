@@ -14,9 +14,9 @@ from mmrs_core.behaviour.replay import replay as replayed
 from mmrs_core.behaviour.salvage import logs_in, salvage_log
 from mmrs_core.cli.behaviours import load_program
 from mmrs_core.cli.encoding import plain
-from mmrs_core.cli.journey import Workshop
 from mmrs_core.cli.output import counted, say, say_json, tell
 from mmrs_core.cli.parameters import Behaviour, behaviour_file
+from mmrs_core.cli.session import Session
 from mmrs_core.cli.settings import Json, settings_of
 from mmrs_core.cli.tables import table
 from mmrs_core.pictures.figures import clock
@@ -47,8 +47,8 @@ def replay(
 
     Example: mmrs replay field field/logs
     """
-    workshop = Workshop(settings_of(call))
-    program = load_program(workshop, behaviour_file(behaviour))
+    session = Session(settings_of(call))
+    program = load_program(session, behaviour_file(behaviour))
     given = [path for path in logs if not is_part(path)]
     result = replayed(program, read_logs(given, partial=partial), partial=partial)
     flight = read_flight(logs, program, {}) if steps or black_boxes(logs) else None

@@ -13,7 +13,7 @@ from mmrs_core.cli.settings import Json, settings_of
 
 if TYPE_CHECKING:
     from mmrs_core.cli.behaviours import Loaded
-    from mmrs_core.cli.journey import Workshop
+    from mmrs_core.cli.session import Session
     from mmrs_core.pictures.preview.picture import Picture
     from mmrs_core.pictures.report.making import Given
     from mmrs_core.pictures.report.values import Report
@@ -47,16 +47,16 @@ def report(
     Example: mmrs report mission/ mission/logs -o report.html
     """
     from mmrs_core.cli.behaviours import load_behaviour
-    from mmrs_core.cli.journey import Workshop
     from mmrs_core.cli.protection import refuse_inputs
+    from mmrs_core.cli.session import Session
     from mmrs_core.cli.simulation import answers
     from mmrs_core.pictures.flights.gathering import read_flight
     from mmrs_core.pictures.flights.planned import planned_for
     from mmrs_core.pictures.report.making import Given, report_of
 
-    workshop, file = Workshop(settings_of(call)), behaviour_file(behaviour)
-    loaded = load_behaviour(workshop, file, context=context, robots=robot_files(robots))
-    contributed = workshop.contributions
+    session, file = Session(settings_of(call)), behaviour_file(behaviour)
+    loaded = load_behaviour(session, file, context=context, robots=robot_files(robots))
+    contributed = session.contributions
     flight = read_flight(logs, loaded.program, loaded.place.types, contributed.robot_kinds)
     for damage in flight.damages:
         tell(damage)
@@ -67,8 +67,8 @@ def report(
     )
     made = report_of(given)
     path = output if output is not None else _beside(logs[0])
-    refuse_inputs((path,), (*workshop.inputs, *read_files(logs)))
-    _write(path, made, given, picture_of(workshop, loaded, given, made, file.parent))
+    refuse_inputs((path,), (*session.inputs, *read_files(logs)))
+    _write(path, made, given, picture_of(session, loaded, given, made, file.parent))
     if json:
         say_json({"files": [path], "report": made})
     else:
@@ -88,15 +88,15 @@ def _beside(logs: Path) -> Path:
     return (logs if logs.is_dir() else logs.parent) / PAGE
 
 
-def picture_of(workshop: Workshop, loaded: Loaded, given: Given, made: Report, folder: Path) -> Picture:
+def picture_of(session: Session, loaded: Loaded, given: Given, made: Report, folder: Path) -> Picture:
     """Return the picture of a flight, with the tasks of the mission that lies in a folder."""
     from mmrs_core.pictures.preview.from_flight import picture_of_flight
     from mmrs_core.pictures.preview.from_run import Surroundings
     from mmrs_core.pictures.report.asked import with_tasks
 
     around = Surroundings(given.place.areas or (), loaded.elements, given.place.types)
-    picture = picture_of_flight(given.program, given.flight, given.planned, workshop.contributions, around)
-    return with_tasks(picture, made, given.program, workshop.contributions, folder)
+    picture = picture_of_flight(given.program, given.flight, given.planned, session.contributions, around)
+    return with_tasks(picture, made, given.program, session.contributions, folder)
 
 
 def _write(path: Path, made: Report, given: Given, picture: Picture) -> None:

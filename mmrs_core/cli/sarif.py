@@ -22,7 +22,7 @@ from mmrs_core.languages.writing import replace_file
 
 if TYPE_CHECKING:
     from mmrs_core.analysis.fixes.repair import Proposal
-    from mmrs_core.cli.journey import Workshop
+    from mmrs_core.cli.session import Session
     from mmrs_core.contributions.checks import Check, Verdict
     from mmrs_core.contributions.registry import Contributions
 
@@ -136,14 +136,14 @@ def as_faults(
 
 
 @contextmanager
-def refusals_in(file: Path | None, workshop: Workshop, subject: str) -> Iterator[None]:
+def refusals_in(file: Path | None, session: Session, subject: str) -> Iterator[None]:
     """Write the faults of a model that is refused inside into a SARIF file, too."""
     try:
         yield
     except (InvalidModelError, UnreadableError) as error:
         if file is not None:
             faults = refusal(error) if isinstance(error, UnreadableError) else error.diagnostics
-            write_sarif(file, faults, workshop.contributions, subject=subject)
+            write_sarif(file, faults, session.contributions, subject=subject)
         raise
 
 

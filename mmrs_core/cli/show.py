@@ -10,9 +10,9 @@ import typer
 
 from mmrs_core.cli.any_model import Metamodels, faults_in, is_metamodel, is_mistake, read_foreign
 from mmrs_core.cli.encoding import value_of
-from mmrs_core.cli.journey import Workshop
 from mmrs_core.cli.metamodel_tree import show_metamodel
 from mmrs_core.cli.output import report, say, say_json, tell
+from mmrs_core.cli.session import Session
 from mmrs_core.cli.settings import Json, settings_of
 from mmrs_core.cli.tree_words import tree, value_words, words_for
 from mmrs_core.languages.element import Element
@@ -47,7 +47,7 @@ def show(
         if path:
             raise typer.BadParameter(f"--path leads into models, and {model} is a metamodel")
         return show_metamodel(call, model, depth, json)
-    found = read_foreign(Workshop(settings_of(call)), model, metamodel)
+    found = read_foreign(Session(settings_of(call)), model, metamodel)
     faults = tuple(faults_in(found))
     report(faults)
     try:

@@ -8,10 +8,10 @@ from typing import Annotated
 import typer
 
 from mmrs_core.cli.behaviours import load_behaviour
-from mmrs_core.cli.journey import Workshop
 from mmrs_core.cli.output import say, say_json
 from mmrs_core.cli.parameters import Assume, Behaviour, Context, Robots, behaviour_file, robot_files
 from mmrs_core.cli.protection import refuse_inputs
+from mmrs_core.cli.session import Session
 from mmrs_core.cli.settings import Json, settings_of
 from mmrs_core.cli.simulation import (
     Chosen,
@@ -63,14 +63,14 @@ def simulate(
 
     Example: mmrs simulate field -o field/logs
     """
-    workshop = Workshop(settings_of(call))
+    session = Session(settings_of(call))
     usual, own = backends_of(backend, "simulation")
     conditions, chosen = answers(assume), Chosen(usual, options_of(backend_option), own)
-    loaded = load_behaviour(workshop, behaviour_file(behaviour), context=context, robots=robot_files(robots))
+    loaded = load_behaviour(session, behaviour_file(behaviour), context=context, robots=robot_files(robots))
     if output is not None:
-        refuse_inputs((output / log_name(robot.id) for robot in loaded.program.robots), workshop.inputs)
-    run = fly(workshop, loaded.program, loaded.place, conditions, chosen)
-    types, kinds = loaded.place.types, workshop.contributions.robot_kinds
+        refuse_inputs((output / log_name(robot.id) for robot in loaded.program.robots), session.inputs)
+    run = fly(session, loaded.program, loaded.place, conditions, chosen)
+    types, kinds = loaded.place.types, session.contributions.robot_kinds
     logs = write_logs(run, loaded.program, output, types, kinds) if output is not None else ()
     if json:
         say_json({"ending": run.ending, "tracks": run.tracks, "notes": run.notes, "logs": logs})

@@ -14,8 +14,8 @@ import typer
 
 from mmrs_core.behaviour.log import read_log
 from mmrs_core.behaviour.program import Program
-from mmrs_core.cli.journey import Workshop
 from mmrs_core.cli.output import progress
+from mmrs_core.cli.session import Session
 from mmrs_core.cli.simulated_boxes import remove_boxes, write_boxes
 from mmrs_core.contributions.rules import RobotKind
 from mmrs_core.errors import MmrsError
@@ -89,7 +89,7 @@ def options_of(given: Sequence[str] | None) -> Mapping[str, str]:
 
 
 def fly(
-    workshop: Workshop,
+    session: Session,
     program: Program,
     place: Place,
     conditions: Mapping[str, bool],
@@ -108,12 +108,12 @@ def fly(
 
             def observe(record: StepRecord) -> None:
                 show(clock(record.time))
-                workshop.onlookers.see_step(record)
+                session.observers.see_step(record)
 
             return simulate(
                 program,
                 place,
-                workshop.contributions,
+                session.contributions,
                 backend=chosen.backend,
                 own_backends=chosen.own,
                 options=chosen.options,
@@ -121,7 +121,7 @@ def fly(
                 observe=observe,
             )
 
-    return workshop.stage("simulate", "simulating", make)
+    return session.stage("simulate", "simulating", make)
 
 
 def write_logs(

@@ -11,12 +11,12 @@ import typer
 from mmrs_core.cli.any_model import Metamodels, is_metamodel
 from mmrs_core.cli.diagnosing import Subject
 from mmrs_core.cli.fixing import agreed, difference, refuse_foreign, repairer_for, show, write
-from mmrs_core.cli.journey import Workshop
 from mmrs_core.cli.metamodel_tree import validate_metamodel
 from mmrs_core.cli.output import counted, report, say, say_json, tell
 from mmrs_core.cli.parameters import Context, Project, Robots, robot_files, without_mission
 from mmrs_core.cli.reports import STANDARD_OUTPUT, Sarif, refuse_two_outputs
 from mmrs_core.cli.sarif import subject_of, write_sarif
+from mmrs_core.cli.session import Session
 from mmrs_core.cli.settings import Json, settings_of
 from mmrs_core.diagnostics import Diagnostic, Severity, has_errors
 from mmrs_core.errors import UnreadableError
@@ -58,19 +58,17 @@ def validate(
     if metamodel and project.is_dir():
         raise typer.BadParameter(f"--metamodel is for one model: name its file in {project}")
     refuse_two_outputs(sarif, json or fix)
-    workshop = Workshop(settings_of(call))
-    subject = Subject(
-        workshop, without_mission(project), context, robot_files(robots), tuple(metamodel or ())
-    )
+    session = Session(settings_of(call))
+    subject = Subject(session, without_mission(project), context, robot_files(robots), tuple(metamodel or ()))
     found, changed = subject.examined(), False
-    repairer = repairer_for(workshop.contributions, subject.diagnose)
+    repairer = repairer_for(session.contributions, subject.diagnose)
     report(found.faults)
     if fix:
         refuse_foreign(found.models)
     repair = repairer.repair(found) if fix else None
     if repair is not None:
         if not json:
-            show(repair, workshop.contributions.fixes)
+            show(repair, session.contributions.fixes)
         changed = agreed(repair, yes=yes, dry_run=dry_run or (json and not yes))
         if changed:
             write(repair)
@@ -78,7 +76,7 @@ def validate(
     proposals = tuple(repairer.proposals(found))
     if sarif is not None:
         named = subject_of("validate", project)
-        write_sarif(sarif, found.faults, workshop.contributions, proposals, subject=named)
+        write_sarif(sarif, found.faults, session.contributions, proposals, subject=named)
     if json:
         say_json(_as_json(found, proposals, repair, changed))
     elif sarif != STANDARD_OUTPUT:

@@ -93,9 +93,9 @@ def test_robots_come_to_a_declared_end_whatever_happens_to_their_process(drill, 
 
 
 @pytest.mark.thorough
-@pytest.mark.parametrize("journey", JOURNEYS, ids=lambda each: each.name)
-def test_every_journey_of_several_processes_comes_to_a_declared_end(journey, tmp_path):
-    assert journey.fly(tmp_path).problems == []
+@pytest.mark.parametrize("stages", JOURNEYS, ids=lambda each: each.name)
+def test_every_journey_of_several_processes_comes_to_a_declared_end(stages, tmp_path):
+    assert stages.fly(tmp_path).problems == []
 
 
 def rows_of_all():

@@ -9,7 +9,7 @@ from pathlib import Path
 from auv_vessel.sheet import Sheet
 from mmrs_auv.sheets import is_vehicle, sheet_of
 from mmrs_core.cli.behaviours import is_behaviour, load_behaviour
-from mmrs_core.cli.journey import Journey, Workshop
+from mmrs_core.cli.session import Session, Stages
 from mmrs_core.cli.settings import Settings
 from mmrs_core.errors import UnsupportedError
 from mmrs_core.languages.modelset import model_in
@@ -52,17 +52,17 @@ def sheets_in(path: Path) -> Mapping[str, Sheet]:
 
 
 def _members(path: Path) -> Iterator[_Member]:
-    workshop = Workshop(Settings())
+    session = Session(Settings())
     file = model_in(path, "behaviour") if path.is_dir() else path
-    if file is not None and file.is_file() and is_behaviour(workshop, file):
-        loaded = load_behaviour(workshop, file)
+    if file is not None and file.is_file() and is_behaviour(session, file):
+        loaded = load_behaviour(session, file)
         surface = loaded.program.frame.surface
         density = (loaded.place.environment or {}).get("waterDensity")
         for robot in loaded.program.robots:
             kind = loaded.place.types.get(robot.type_name)
             yield _Member(robot.id, kind, robot.home, robot.payload, surface, density)
         return
-    scene = Journey(workshop, path).grounded
+    scene = Stages(session, path).grounded
     density = scene.environment.get("waterDensity")
     for each in scene.robots:
         yield _Member(each.name, each.type, each.home, each.payload, scene.frame.surface, density)

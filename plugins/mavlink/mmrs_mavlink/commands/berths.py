@@ -170,15 +170,15 @@ def berths_of(settings: CliSettings, path: Path) -> list[Berth]:
     """
     from mmrs_core.behaviour.earth import degrees_of
     from mmrs_core.cli.behaviours import is_behaviour, load_behaviour
-    from mmrs_core.cli.journey import Journey, Workshop
+    from mmrs_core.cli.session import Session, Stages
     from mmrs_core.languages.modelset import model_in
     from mmrs_core.mavlink.vehicles import class_of_type, uncarried, vehicle_class
 
-    workshop = Workshop(settings)
+    session = Session(settings)
     found = model_in(path, "behaviour") if path.is_dir() else path
-    kinds = workshop.contributions.robot_kinds
-    if found is not None and found.is_file() and is_behaviour(workshop, found):
-        loaded = load_behaviour(workshop, found)
+    kinds = session.contributions.robot_kinds
+    if found is not None and found.is_file() and is_behaviour(session, found):
+        loaded = load_behaviour(session, found)
         frame = loaded.program.frame
         robots = loaded.program.robots
         types = [loaded.place.types.get(each.type_name) for each in robots]
@@ -187,7 +187,7 @@ def berths_of(settings: CliSettings, path: Path) -> list[Berth]:
             for each, type in zip(robots, types, strict=True)
         ]
     else:
-        scene = Journey(workshop, path).grounded
+        scene = Stages(session, path).grounded
         frame = scene.frame
         crew = [
             (

@@ -11,7 +11,7 @@ from mmrs_core.analysis.fixes import FIXES
 from mmrs_core.analysis.fixes.likeness import meant
 from mmrs_core.analysis.fixes.repair import Repairer, with_edits
 from mmrs_core.cli.diagnosing import Subject
-from mmrs_core.cli.journey import Workshop
+from mmrs_core.cli.session import Session
 from mmrs_core.cli.settings import Settings
 from mmrs_core.contributions.fixes import Edit, Fix, with_value
 
@@ -78,12 +78,12 @@ ELSEWHERE = {"MML072": "shells of tasks are mended as those of areas", "XMI014":
 
 
 @pytest.fixture(scope="module")
-def workshop():
-    return Workshop(Settings())
+def session():
+    return Session(Settings())
 
 
-def subject_of(workshop, folder):
-    return Subject(workshop, folder / "behaviour.xmi" if folder == CLOCK else folder)
+def subject_of(session, folder):
+    return Subject(session, folder / "behaviour.xmi" if folder == CLOCK else folder)
 
 
 def texts(name):
@@ -103,9 +103,9 @@ def texts(name):
     return folder, file, sound, sound.replace(right, wrong, 2 if "root" in name else 1)
 
 
-def repair_of(workshop, folder, unsaved, fixes=None):
-    subject = subject_of(workshop, folder)
-    contributions = workshop.contributions
+def repair_of(session, folder, unsaved, fixes=None):
+    subject = subject_of(session, folder)
+    contributions = session.contributions
     checks = [check.name for check in contributions.checks]
 
     def diagnose(more):
@@ -116,15 +116,15 @@ def repair_of(workshop, folder, unsaved, fixes=None):
     return repairer, diagnose({})
 
 
-def mended(workshop, folder, unsaved, fixes=None):
-    repairer, now = repair_of(workshop, folder, unsaved, fixes)
+def mended(session, folder, unsaved, fixes=None):
+    repairer, now = repair_of(session, folder, unsaved, fixes)
     return repairer.repair(now, unsaved)
 
 
 @pytest.mark.parametrize("name", sorted(SPOILT))
-def test_a_spoilt_text_is_mended_to_what_it_was(workshop, name):
+def test_a_spoilt_text_is_mended_to_what_it_was(session, name):
     folder, file, sound, spoilt = texts(name)
-    repair = mended(workshop, folder, {file: spoilt.encode()})
+    repair = mended(session, folder, {file: spoilt.encode()})
     assert name[:6].strip() in {each.fault.code for each in repair.applied}
     assert repair.texts[file].decode() == sound
     assert not repair.refused
@@ -134,46 +134,46 @@ def test_every_fix_of_the_core_is_tried():
     assert {fix.code for fix in FIXES} == {name.split()[0] for name in SPOILT} | set(ELSEWHERE)
 
 
-def test_a_prefix_is_declared_that_only_one_metamodel_has(workshop):
+def test_a_prefix_is_declared_that_only_one_metamodel_has(session):
     file = (DAM / "mission.xmi").resolve()
     spoilt = file.read_text(encoding="utf-8").replace(' xmlns:survey="urn:mmrs:survey:1.0"', "")
-    repair = mended(workshop, DAM, {file: spoilt.encode()})
+    repair = mended(session, DAM, {file: spoilt.encode()})
     assert b'xmlns:survey="urn:mmrs:survey:1.0"' in repair.texts[file]
     assert repair.diagnosis.complete
     assert [each for each in repair.diagnosis.wrong if each.code == "XMI014"] == []
 
 
-def test_a_fix_that_brings_another_error_is_refused(workshop):
+def test_a_fix_that_brings_another_error_is_refused(session):
     folder, file, _, spoilt = texts("MML005")
 
     def worse(wrong):
         yield with_value(wrong.tag.attribute("reserve"), "nothing")
 
-    repair = mended(workshop, folder, {file: spoilt.encode()}, [Fix("MML005", "spoil it", worse)])
+    repair = mended(session, folder, {file: spoilt.encode()}, [Fix("MML005", "spoil it", worse)])
     assert repair.applied == ()
     assert [each.fault.code for each in repair.refused] == ["MML005"]
     assert repair.texts[file].decode() == spoilt
 
 
-def test_a_fix_that_makes_the_text_unreadable_is_refused(workshop):
+def test_a_fix_that_makes_the_text_unreadable_is_refused(session):
     folder, file, _, spoilt = texts("MML005")
     torn = [Fix("MML005", "tear it", lambda wrong: [Edit(0, len(wrong.markup.data) // 2, "")])]
-    assert mended(workshop, folder, {file: spoilt.encode()}, torn).applied == ()
+    assert mended(session, folder, {file: spoilt.encode()}, torn).applied == ()
 
 
-def test_one_bad_fix_does_not_keep_others_from_being_applied(workshop):
+def test_one_bad_fix_does_not_keep_others_from_being_applied(session):
     folder, file, _, spoilt = texts("MML005")
     twice = spoilt.replace('travelMode="SAFE"', 'travelMode="safe"').encode()
     torn = Fix("MML005", "tear it", lambda wrong: [Edit(0, len(wrong.markup.data) // 2, "")])
     fixes = [torn, next(fix for fix in FIXES if fix.code == "XMI005")]
-    repair = mended(workshop, folder, {file: twice}, fixes)
+    repair = mended(session, folder, {file: twice}, fixes)
     assert [each.fault.code for each in repair.applied] == ["XMI005"]
 
 
-def test_vertices_stay_where_references_count_them(workshop):
+def test_vertices_stay_where_references_count_them(session):
     folder, file, _, spoilt = texts("CTX006")
     referring = spoilt.replace("<!-- stands in the lake -->", "<!-- //@shell.1 -->")
-    repair = mended(workshop, folder, {file: referring.encode()})
+    repair = mended(session, folder, {file: referring.encode()})
     assert "CTX006" not in {each.fault.code for each in repair.applied}
 
 
@@ -200,40 +200,40 @@ def placed(relative, pattern, replacement, count=0):
 
 
 @pytest.mark.parametrize("relative", ["mission.xmi", "context.xmi"])
-def test_two_files_that_disagree_are_both_named_and_neither_is_changed(workshop, relative):
+def test_two_files_that_disagree_are_both_named_and_neither_is_changed(session, relative):
     file, spoilt = placed(relative, PLACE, EXCHANGED)
-    repair = mended(workshop, PARK, {file: spoilt.encode()})
+    repair = mended(session, PARK, {file: spoilt.encode()})
     assert [each.code for each in repair.diagnosis.wrong] == ["CTX008", "MML028"]
     assert {Path(each.place.file).name for each in repair.diagnosis.wrong} == {"context.xmi", "mission.xmi"}
     assert repair.applied == repair.refused == ()
 
 
 @pytest.mark.parametrize("relative", ["mission.xmi", "context.xmi"])
-def test_two_files_that_disagree_are_named_where_exchanged_figures_are_near(workshop, relative):
+def test_two_files_that_disagree_are_named_where_exchanged_figures_are_near(session, relative):
     texts = {}
     for each in ("mission.xmi", "context.xmi"):
         # 13.74 north and 13.35 east: exchanged, some 60 km off
         file, text = placed(each, r'latitude="42\.(\d+)"', r'latitude="13.7\1"')
         texts[file] = (re.sub(PLACE, EXCHANGED, text) if each == relative else text).encode()
-    repair = mended(workshop, PARK, texts)
+    repair = mended(session, PARK, texts)
     assert [each.code for each in repair.diagnosis.wrong[:2]] == ["CTX008", "MML028"]
     assert "latitude and longitude may be exchanged" in repair.diagnosis.wrong[0].hint
     assert repair.applied == repair.refused == ()
 
 
-def test_the_homes_are_mended_where_tasks_and_context_agree(workshop):
+def test_the_homes_are_mended_where_tasks_and_context_agree(session):
     file, spoilt = placed("mission.xmi", f"<home(.*){PLACE}", r'<home\1latitude="\3" longitude="\2"')
-    repair = mended(workshop, PARK, {file: spoilt.encode()})
+    repair = mended(session, PARK, {file: spoilt.encode()})
     assert [each.fault.code for each in repair.applied] == ["MML027"] * 3
     assert repair.texts[file] == file.read_bytes()
     assert repair.diagnosis.wrong == ()
 
 
-def test_one_home_with_two_wrong_signs_is_accused_and_left_as_it_is(workshop):
+def test_one_home_with_two_wrong_signs_is_accused_and_left_as_it_is(session):
     file, spoilt = placed(
         "mission.xmi", '"42.370000" longitude="13.350097"', '"-42.37" longitude="-13.350097"'
     )
-    repair = mended(workshop, PARK, {file: spoilt.encode()})
+    repair = mended(session, PARK, {file: spoilt.encode()})
     assert [(each.code, each.place.path) for each in repair.diagnosis.wrong] == [
         ("MML028", "/team/robots[1]")
     ]
@@ -241,11 +241,11 @@ def test_one_home_with_two_wrong_signs_is_accused_and_left_as_it_is(workshop):
     assert repair.applied == repair.refused == ()
 
 
-def test_a_fix_that_hides_another_fault_is_refused(workshop):
+def test_a_fix_that_hides_another_fault_is_refused(session):
     # in its right place, the second home would link the third, which is 101 km away, with the rest
     file, spoilt = placed("mission.xmi", '"42.370000" longitude="13.350097"', '"13.395" longitude="42.37"')
     spoilt = spoilt.replace('longitude="13.350194"', 'longitude="14.58"')
-    repair = mended(workshop, PARK, {file: spoilt.encode()})
+    repair = mended(session, PARK, {file: spoilt.encode()})
     assert [(each.code, each.place.path) for each in repair.diagnosis.wrong] == [
         ("MML027", "/team/robots[1]"),
         ("MML028", "/team/robots[2]"),
@@ -255,23 +255,23 @@ def test_a_fix_that_hides_another_fault_is_refused(workshop):
     assert [each.objection for each in repair.refused] == [objection]
 
 
-def test_faults_of_other_elements_go_with_the_value_that_they_stem_from(workshop):
+def test_faults_of_other_elements_go_with_the_value_that_they_stem_from(session):
     file = (DAM / "mission.xmi").resolve()
     text = re.sub(f"(<home.*){PLACE}", r'\1latitude="\3" longitude="\2"', file.read_text("utf-8"))
-    repairer, now = repair_of(workshop, DAM, {file: text.encode()})
+    repairer, now = repair_of(session, DAM, {file: text.encode()})
     assert "/tasks[8]" in {each.place.path for each in now.wrong}  # it is placed relative to a home
     assert repairer.repair(now, {file: text.encode()}).texts[file] == file.read_bytes()
 
 
-def test_one_home_with_the_wrong_sign_is_accused_and_not_its_neighbours(workshop):
+def test_one_home_with_the_wrong_sign_is_accused_and_not_its_neighbours(session):
     file, spoilt = placed("mission.xmi", 'longitude="13.350097"', 'longitude="-13.350097"')
-    _repairer, now = repair_of(workshop, PARK, {file: spoilt.encode()})
+    _repairer, now = repair_of(session, PARK, {file: spoilt.encode()})
     assert [(each.code, each.place.path) for each in now.wrong] == [("MML030", "/team/robots[1]")]
 
 
-def test_places_far_apart_are_sound_where_the_mission_says_so(workshop):
+def test_places_far_apart_are_sound_where_the_mission_says_so(session):
     file, spoilt = placed("mission.xmi", 'longitude="13.350097"', 'longitude="17.350097"')
     said = spoilt.replace('reserve="0.25"', 'largestGap="400000" reserve="0.25"')
     for text, codes in ((spoilt, ["MML028"]), (said, [])):
-        _, now = repair_of(workshop, PARK, {file: text.encode()})
+        _, now = repair_of(session, PARK, {file: text.encode()})
         assert [each.code for each in now.wrong] == codes

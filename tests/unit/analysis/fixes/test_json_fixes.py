@@ -10,7 +10,7 @@ import pytest
 from mmrs_core.analysis.fixes import FIXES
 from mmrs_core.analysis.fixes.repair import Repairer
 from mmrs_core.cli.diagnosing import Subject
-from mmrs_core.cli.journey import Workshop
+from mmrs_core.cli.session import Session
 from mmrs_core.cli.settings import Settings
 from mmrs_core.languages.reading import read_model
 from mmrs_core.languages.writing import to_json
@@ -72,15 +72,15 @@ ELSEWHERE = {"MML072": "shells of tasks are mended as those of areas", "XMI014":
 
 
 @pytest.fixture(scope="module")
-def workshop():
-    return Workshop(Settings())
+def session():
+    return Session(Settings())
 
 
 @pytest.fixture(scope="module")
-def projects(workshop, tmp_path_factory):
+def projects(session, tmp_path_factory):
     """Return the folder of the examples in JSON."""
     place = tmp_path_factory.mktemp("examples")
-    registry = workshop.contributions.languages
+    registry = session.contributions.languages
     for folder in (DAM, PARK, CLOCK, POOL):
         for file in folder.rglob("*.xmi"):
             target = place / file.relative_to(EXAMPLES).with_suffix(".json")
@@ -111,10 +111,10 @@ def texts(name, projects):
     return folder, file, sound, sound.replace(right, wrong, 1)
 
 
-def repair_of(workshop, projects, folder, unsaved):
+def repair_of(session, projects, folder, unsaved):
     place = projects / folder.name
-    subject = Subject(workshop, place / BEHAVIOUR if folder == CLOCK else place)
-    contributions = workshop.contributions
+    subject = Subject(session, place / BEHAVIOUR if folder == CLOCK else place)
+    contributions = session.contributions
     checks = [check.name for check in contributions.checks]
 
     def diagnose(more):
@@ -125,9 +125,9 @@ def repair_of(workshop, projects, folder, unsaved):
 
 
 @pytest.mark.parametrize("name", sorted(SPOILT))
-def test_a_spoilt_json_text_is_mended_to_what_it_was(workshop, projects, name):
+def test_a_spoilt_json_text_is_mended_to_what_it_was(session, projects, name):
     folder, file, sound, spoilt = texts(name, projects)
-    repair = repair_of(workshop, projects, folder, {file: spoilt.encode()})
+    repair = repair_of(session, projects, folder, {file: spoilt.encode()})
     assert name.split()[0] in {each.fault.code for each in repair.applied}
     if name == "XMI003":
         assert json.loads(repair.texts[file]) == json.loads(sound)
@@ -140,16 +140,16 @@ def test_every_fix_of_the_core_is_tried_on_json():
     assert {fix.code for fix in FIXES} == {name.split()[0] for name in SPOILT} | set(ELSEWHERE)
 
 
-def test_what_was_mended_is_not_mended_again(workshop, projects):
+def test_what_was_mended_is_not_mended_again(session, projects):
     folder, file, _, spoilt = texts("XMI004", projects)
-    once = repair_of(workshop, projects, folder, {file: spoilt.encode()})
-    again = repair_of(workshop, projects, folder, once.texts)
+    once = repair_of(session, projects, folder, {file: spoilt.encode()})
+    again = repair_of(session, projects, folder, once.texts)
     assert again.applied == ()
     assert again.texts == once.texts
 
 
 @pytest.mark.parametrize("declared", [True, False])
-def test_a_prefix_is_declared_among_the_languages(workshop, projects, declared):
+def test_a_prefix_is_declared_among_the_languages(session, projects, declared):
     file = (projects / DAM.name / MISSION).resolve()
     sound = file.read_text(encoding="utf-8")
     lacking = sound.replace(', "survey": "urn:mmrs:survey:1.0"', "")
@@ -157,15 +157,15 @@ def test_a_prefix_is_declared_among_the_languages(workshop, projects, declared):
     if not declared:
         whole = '  "$languages": {"mission": "urn:mmrs:mission:1.0"},\n'
         lacking = lacking.replace(whole, "").replace('"mission:', '"urn:mmrs:mission:1.0#')
-    repair = repair_of(workshop, projects, DAM, {file: lacking.encode()})
+    repair = repair_of(session, projects, DAM, {file: lacking.encode()})
     assert json.loads(repair.texts[file])["$languages"]["survey"] == "urn:mmrs:survey:1.0"
     assert repair.diagnosis.complete
     assert repair.diagnosis.faults == ()
 
 
-def test_only_what_is_wrong_changes_in_an_unusual_layout(workshop, projects):
+def test_only_what_is_wrong_changes_in_an_unusual_layout(session, projects):
     file = (projects / DAM.name / MISSION).resolve()
     tight = json.dumps(json.loads(file.read_text(encoding="utf-8")), separators=(",", ":"))
     spoilt = "\ufeff" + tight.replace("photoDistance", "photoDistanse") + "\r\n"
-    repair = repair_of(workshop, projects, DAM, {file: spoilt.encode()})
+    repair = repair_of(session, projects, DAM, {file: spoilt.encode()})
     assert repair.texts[file].decode() == spoilt.replace("photoDistanse", "photoDistance")

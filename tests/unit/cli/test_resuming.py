@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 import typer
 
-from mmrs_core.cli.flown_before import resumed_steps
+from mmrs_core.cli.resuming import resumed_steps
 from mmrs_core.cli.wishes import Wishes
 from mmrs_core.testing.programs import two_drones
 from mmrs_runtime.records.log import LogWriter

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, TypeVar
 
 from mmrs_core.cli.failures import RefusedError
 from mmrs_core.cli.interruption import interrupted
-from mmrs_core.cli.onlookers import Onlookers
+from mmrs_core.cli.observers import Observers
 from mmrs_core.cli.output import progress, report, tell
 from mmrs_core.cli.protection import files_of
 from mmrs_core.cli.settings import Settings
@@ -44,7 +44,7 @@ _UNKNOWN = "known to be safe: give what is missing, or name the property in the 
 NO_CONTEXT = "no context: nothing is known of obstacles and forbidden areas"
 
 
-class Workshop:
+class Session:
     """The plug-ins of a command, and the way stages are run with them: shown, and observed."""
 
     def __init__(self, settings: Settings) -> None:
@@ -68,9 +68,9 @@ class Workshop:
         return self._settings.plugins()
 
     @cached_property
-    def onlookers(self) -> Onlookers:
-        """Return those of the plug-ins that observe."""
-        return Onlookers(self.plugins)
+    def observers(self) -> Observers:
+        """Return the observing plug-ins."""
+        return Observers(self.plugins)
 
     @property
     def contributions(self) -> Contributions:
@@ -87,23 +87,23 @@ class Workshop:
             result = make()
         if interrupted():
             raise KeyboardInterrupt
-        self.onlookers.see_stage(name, result)
+        self.observers.see_stage(name, result)
         return result
 
 
-class Journey:
+class Stages:
     """One mission on its way from models to verdicts."""
 
     def __init__(
         self,
-        workshop: Workshop,
+        session: Session,
         mission: Path,
         *,
         context: Path | None = None,
         robots: Sequence[Path] = (),
         seed: int = 0,
     ) -> None:
-        self.workshop = workshop
+        self.session = session
         self._mission = mission
         self._context = context
         self._robots = robots
@@ -112,14 +112,14 @@ class Journey:
     @cached_property
     def _valid(self) -> tuple[ModelSet, tuple[Diagnostic, ...]]:
 
-        models, warnings = self.workshop.stage(
+        models, warnings = self.session.stage(
             "check",
             "checking the models",
             lambda: valid_models(
-                self._mission, self.workshop.contributions, context=self._context, robots=self._robots
+                self._mission, self.session.contributions, context=self._context, robots=self._robots
             ),
         )
-        self.workshop.have_read(models.models, models.context)
+        self.session.have_read(models.models, models.context)
         report(warnings)
         return models, warnings
 
@@ -137,36 +137,36 @@ class Journey:
     def grounded(self) -> Scene:
         """Return the mission in its local frame."""
         models = self.models
-        return self.workshop.stage("ground", "laying out the place", lambda: ground(models))
+        return self.session.stage("ground", "laying out the place", lambda: ground(models))
 
     @cached_property
     def scene(self) -> Scene:
         """Return the scene with the work of every task."""
         scene = self.grounded
-        return self.workshop.stage(
-            "expand", "finding the work of every task", lambda: expand(scene, self.workshop.contributions)
+        return self.session.stage(
+            "expand", "finding the work of every task", lambda: expand(scene, self.session.contributions)
         )
 
     @cached_property
     def plan(self) -> Plan:
         """Return who does what, when and by which way."""
         scene = self.scene
-        return self.workshop.stage("plan", "planning", lambda: plan(scene, seed=self._seed))
+        return self.session.stage("plan", "planning", lambda: plan(scene, seed=self._seed))
 
     @cached_property
     def transformed(self) -> tuple[Behaviour, Trace]:
         """Return the behaviour, and what each of its moves is for."""
         scene, plan = self.scene, self.plan
-        return self.workshop.stage(
+        return self.session.stage(
             "transform",
             "writing the behaviour",
-            lambda: transform(scene, plan, self.workshop.contributions),
+            lambda: transform(scene, plan, self.session.contributions),
         )
 
     @cached_property
     def program(self) -> Program:
         """Return the behaviour as engines use it."""
-        return program_of(self.transformed[0], self.workshop.contributions)
+        return program_of(self.transformed[0], self.session.contributions)
 
     @property
     def place(self) -> Place:
@@ -176,13 +176,13 @@ class Journey:
     @cached_property
     def verdicts(self) -> tuple[Verdict, ...]:
         """Return what is known of the behaviour's safety."""
-        return verdicts_of(self.workshop, self.program, self.place)
+        return verdicts_of(self.session, self.program, self.place)
 
 
-def verdicts_of(workshop: Workshop, program: Program, place: Place) -> tuple[Verdict, ...]:
+def verdicts_of(session: Session, program: Program, place: Place) -> tuple[Verdict, ...]:
     """Return what is known of every property of a behaviour."""
-    return workshop.stage(
-        "verify", "checking the behaviour", lambda: verify(program, place, workshop.contributions)
+    return session.stage(
+        "verify", "checking the behaviour", lambda: verify(program, place, session.contributions)
     )
 
 
