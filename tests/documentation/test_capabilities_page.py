@@ -8,8 +8,8 @@ from capabilities_page import page_of
 from mmrs_auv.targets.ada.target import ADA
 from mmrs_auv.targets.can_c.target import CAN_C
 from mmrs_auv.targets.can_python.target import CAN_PYTHON
-from mmrs_auv.targets.imc.target import IMC
-from mmrs_auv.targets.moos.target import MOOS
+from mmrs_imc.target import IMC
+from mmrs_moos.target import MOOS
 
 from mmrs_core.generation.capabilities.judging import capabilities_of
 from mmrs_core.pipeline import capabilities

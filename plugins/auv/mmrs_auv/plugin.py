@@ -77,14 +77,12 @@ def mmrs_rules() -> tuple[Rule, ...]:
 
 @hookimpl
 def mmrs_targets() -> tuple[Target, ...]:
-    """Contribute what can be generated for underwater vehicles: what runs them, and plans for others'."""
+    """Contribute what can be generated for underwater vehicles."""
     from mmrs_auv.targets.ada.target import ADA
     from mmrs_auv.targets.can_c.target import CAN_C
     from mmrs_auv.targets.can_python.target import CAN_PYTHON
-    from mmrs_auv.targets.imc.target import IMC
-    from mmrs_auv.targets.moos.target import MOOS
 
-    return (ADA, CAN_C, CAN_PYTHON, IMC, MOOS)
+    return (ADA, CAN_C, CAN_PYTHON)
 
 
 @hookimpl

@@ -85,8 +85,6 @@ class TestTargets(TargetConformance):
         "ada": plain("sub"),
         "can-c": plain("sub"),
         "can-python": plain("sub"),
-        "imc": plain("sub"),
-        "moos": plain("sub"),
     }
 
 

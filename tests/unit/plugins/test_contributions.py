@@ -9,8 +9,8 @@ from pathlib import Path
 
 import pytest
 
-DRIVERS = {"auv": ("mmrs-mavlink", "auv-vessel")}
-"""What plug-ins need beside the core: underwater vehicles on CAN buses, or on MAVLink by hand."""
+ON_BOARD = {"auv": ["auv-vessel", "mmrs-runtime"]}
+"""Requirements of plug-ins whose controllers run on board without the core."""
 NAMES = ("auv", "multicopter", "rover", "survey")
 CODE = {"auv": "AUV", "multicopter": "MUL", "rover": "ROV", "survey": "SUR"}
 ROOT = Path(__file__).parents[3]
@@ -62,4 +62,4 @@ def test_a_plugin_is_a_distribution_of_its_own(name):
     (entry,) = [each for each in found.entry_points if each.group == "mmrs.plugins"]
     assert (entry.name, entry.value) == (name, f"mmrs_{name}.plugin")
     needed = [each for each in found.requires or [] if "extra ==" not in each]
-    assert [re.split(r"[>\[]", each)[0] for each in needed] == sorted(["mmrs-core", *DRIVERS.get(name, ())])
+    assert [re.split(r"[>\[]", each)[0] for each in needed] == ON_BOARD.get(name, ["mmrs-core"])

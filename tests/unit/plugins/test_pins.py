@@ -17,6 +17,8 @@ PLUGINS = {
     "rover": "",
     "solar": "",
     "dronecan": "",
+    "imc": "",
+    "moos": "",
 }
 OURS = {
     "mmrs-core",

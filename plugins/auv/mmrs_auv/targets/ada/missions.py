@@ -15,7 +15,6 @@ from mmrs_auv.sayable import mount_of, parameter_of
 from mmrs_auv.sheets import action_number
 from mmrs_auv.targets.ada import policies as answers
 from mmrs_auv.targets.ada.refusals import SORTS, of_action, of_movement
-from mmrs_auv.targets.moves import seconds_of
 from mmrs_core.behaviour.program import (
     DEVICE_ACTION,
     NOTIFY,
@@ -29,6 +28,7 @@ from mmrs_core.behaviour.program import (
 )
 from mmrs_core.behaviour.travel import capability_of, cruise_of
 from mmrs_core.contributions.targets import TracedStep
+from mmrs_core.generation.plan_moves import seconds_of
 from mmrs_core.mavlink.context import VehicleContext
 from mmrs_core.scene import Part, Policy, Position
 from mmrs_runtime.conditions import BATTERY, DETECTED, FOUND, is_standard

@@ -9,9 +9,9 @@ from mmrs_auv.sayable import parameter_of, unturnable
 from mmrs_auv.sheets import action_number
 from mmrs_auv.targets.ada.bus import can_be_said, depth_step_of
 from mmrs_auv.targets.ada.policies import declared, obstacles_to
-from mmrs_auv.targets.moves import MOVES, above_surface
 from mmrs_core.behaviour.program import BEHAVIOUR, DEVICE_ACTION, FEEDBACK, NOTIFY, Action, Move, RobotProgram
 from mmrs_core.contributions.targets import TargetInput
+from mmrs_core.generation.plan_moves import MOVES, above_surface
 from mmrs_core.mavlink.context import VehicleContext, context_of, vehicleless
 from mmrs_core.scene import Name, Policy
 

@@ -18,12 +18,12 @@ from auv_vessel.wire.layout import layout_of
 from mmrs_auv.sheets import is_vehicle, sheet_of
 from mmrs_auv.targets.can_c.bus import codec_of
 from mmrs_auv.targets.can_c.words import block, number
-from mmrs_auv.targets.moves import MOVES
 from mmrs_auv.targets.places import templates_of
 from mmrs_core.behaviour.program import BEHAVIOUR, RobotProgram
 from mmrs_core.contributions.targets import FileSpec, Target, TargetInput, TracedStep
 from mmrs_core.errors import UnsupportedError
 from mmrs_core.generation.escaping import file_stems
+from mmrs_core.generation.plan_moves import MOVES
 from mmrs_core.mavlink.context import vehicleless
 
 SHARED = "drives"

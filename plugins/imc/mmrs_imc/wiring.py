@@ -6,9 +6,9 @@ action sets: parameters and values as in ``Active=true;Range=50``.
 
 from __future__ import annotations
 
-from mmrs_auv.targets.imc.messages import Message
 from mmrs_core.behaviour.program import Action
 from mmrs_core.scene import RobotType
+from mmrs_imc.messages import Message
 
 ENTITY, SETS = "imc.entity", "imc.set."
 

@@ -7,7 +7,8 @@ import pytest
 import shapely
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
-from mmrs_auv.targets.moos.target import MOOS
+from marine_programs import MANY_PROGRAMS, inputs, rendered
+from mmrs_moos.target import MOOS
 from moos_reader import Helm, read, run
 
 from mmrs_core.behaviour.program import Target, Transition
@@ -208,3 +209,21 @@ def test_what_a_helm_cannot_do_is_told_with_its_move(given, dive):
     lost = dive("a", 9.0, 0.0, 5.0, target=Target((9.0, 0.0, -5.0), "a buoy", 1.0))
     with pytest.raises(UnsupportedError, match="move 'a': object 'a buoy'"):
         render(MOOS, given(lost))
+
+
+@MANY_PROGRAMS
+@given(data=st.data())
+def test_every_step_leads_to_one_that_is_there_or_to_the_end(data, given):
+    files = rendered(MOOS, data.draw(inputs(given)))
+    variables, behaviours = read(files["naiad.bhv"].decode())
+    turns = {
+        condition.partition(" = ")[2]
+        for _, each in behaviours
+        for condition in each["condition"]
+        if condition.startswith("MMRS_STEP = ")
+    }
+    flags = [flag.split(" = ", 1) for _, each in behaviours for flag in each.get("endflag", [])]
+    led = {value for name, value in flags if name == "MMRS_STEP"}
+    assert variables["MMRS_STEP"] in turns
+    assert led <= turns
+    assert turns - led <= {variables["MMRS_STEP"]}

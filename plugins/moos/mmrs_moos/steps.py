@@ -6,14 +6,21 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from math import ceil, dist
 
-from mmrs_auv.targets.moos.words import MESSAGE, variables_of, words_of
-from mmrs_auv.targets.moves import DEEPEST, MOVES, above_surface, seconds_of, seconds_of_hold, writable_speed
 from mmrs_core.behaviour.earth import metres
 from mmrs_core.behaviour.program import DEVICE_ACTION, FEEDBACK, Action, Move, SlotId
 from mmrs_core.contributions.targets import TargetInput
+from mmrs_core.generation.plan_moves import (
+    DEEPEST,
+    MOVES,
+    above_surface,
+    seconds_of,
+    seconds_of_hold,
+    writable_speed,
+)
 from mmrs_core.mavlink.context import VehicleContext
 from mmrs_core.scene import Position, RobotType
 from mmrs_core.transformation.kinds import before_target
+from mmrs_moos.words import MESSAGE, variables_of, words_of
 
 POSTS = "moos.post."
 """Property of a device before the name of an action: what is posted, as in ``SONAR=on;RANGE=50``."""

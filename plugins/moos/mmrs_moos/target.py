@@ -9,18 +9,19 @@ tests was written from that manual.
 from __future__ import annotations
 
 from collections.abc import Iterator
+from importlib.resources import files as files_of
+from pathlib import Path
 
-from mmrs_auv.targets.moos.behaviours import behaviours_of
-from mmrs_auv.targets.moos.capabilities import CAPABILITIES
-from mmrs_auv.targets.moos.refusals import nodes_of, refusals
-from mmrs_auv.targets.moos.steps import Step, Variables, course_of, variables_for
-from mmrs_auv.targets.moos.words import text
-from mmrs_auv.targets.places import templates_of
 from mmrs_core.contributions.targets import FileSpec, Target, TargetInput, TracedStep
 from mmrs_core.errors import UnsupportedError
 from mmrs_core.generation.context import require_home
 from mmrs_core.mavlink.context import VehicleContext, context_of
 from mmrs_core.scene import Frame
+from mmrs_moos.behaviours import behaviours_of
+from mmrs_moos.capabilities import CAPABILITIES
+from mmrs_moos.refusals import nodes_of, refusals
+from mmrs_moos.steps import Step, Variables, course_of, variables_for
+from mmrs_moos.words import text
 
 
 def files(input: TargetInput) -> Iterator[FileSpec]:
@@ -76,7 +77,7 @@ def _asks(variables: Variables) -> Iterator[str]:
 MOOS = Target(
     name="moos",
     description="behaviour files (.bhv) for the IvP helm of MOOS-IvP, one of each robot",
-    templates=templates_of("moos"),
+    templates=Path(str(files_of("mmrs_moos"))) / "templates" / "moos",
     files=files,
     refusals=refusals,
     filters={"bhv": text},

@@ -14,7 +14,7 @@ from moos_reader import Helm, read, run
 from auv_vessel.sheet import from_json
 from mmrs_core.testing.conformance.missions import run_command
 
-EXAMPLE = Path(__file__).parents[4] / "examples" / "outfall"
+EXAMPLE = Path(__file__).parents[3] / "examples" / "outfall"
 
 
 @pytest.fixture(scope="module")

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
-from mmrs_auv.targets.moos.steps import Variables, course_of, posts_of, variables_for
-from mmrs_auv.targets.refusing import Wording, of_movement, of_policies, of_policy
 from mmrs_core.behaviour.program import Move, RobotProgram, Transition
 from mmrs_core.contributions.targets import TargetInput
 from mmrs_core.generation.context import homeless
 from mmrs_core.generation.escaping import file_stems
+from mmrs_core.generation.plan_refusals import Wording, of_movement, of_policies, of_policy
 from mmrs_core.mavlink.context import VehicleContext, context_of, vehicleless
+from mmrs_moos.steps import Variables, course_of, posts_of, variables_for
 
 WORDING = Wording(
     turn="which no behaviour of a helm does",

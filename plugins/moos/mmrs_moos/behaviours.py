@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from mmrs_auv.targets.moos.steps import TOLERANCE, Step
-from mmrs_auv.targets.moos.words import DEPLOY, DONE, STEP, text
 from mmrs_core.behaviour.travel import MANNERS
 from mmrs_core.mavlink.context import VehicleContext
+from mmrs_moos.steps import TOLERANCE, Step
+from mmrs_moos.words import DEPLOY, DONE, STEP, text
 
 WEIGHT = 100
 SLIP = 4.0

@@ -5,8 +5,8 @@ from __future__ import annotations
 from math import isfinite
 from struct import Struct
 
-from mmrs_auv.targets.imc.messages import DEFINITIONS, Field, Message, Value
 from mmrs_core.errors import UnsupportedError
+from mmrs_imc.messages import DEFINITIONS, Field, Message, Value
 
 SYNC = 0xFE54
 NOBODY, NO_ENTITY, NO_MESSAGE = 0xFFFF, 0xFF, 0xFFFF

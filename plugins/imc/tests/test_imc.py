@@ -9,9 +9,10 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from imc_reader import FORMS, check_sum, read_packet, smallest
-from mmrs_auv.targets.imc.messages import DEFINITIONS, Message
-from mmrs_auv.targets.imc.packing import crc16, packet, payload
-from mmrs_auv.targets.imc.target import IMC
+from marine_programs import MANY_PROGRAMS, inputs, rendered
+from mmrs_imc.messages import DEFINITIONS, Message
+from mmrs_imc.packing import crc16, packet, payload
+from mmrs_imc.target import IMC
 from pyproj import Geod
 
 from mmrs_core.behaviour.program import Target, Transition
@@ -271,3 +272,17 @@ def test_places_are_as_far_apart_as_they_were_meant_wherever_on_the_earth_that_i
 def test_a_local_behaviour_has_no_plan(given, dive):
     with pytest.raises(UnsupportedError, match="is local"):
         render(IMC, given(dive("a", 9.0, 0.0, 5.0), frame=Frame("EPSG:4326", None, None)), allow_lossy=True)
+
+
+@MANY_PROGRAMS
+@given(data=st.data())
+def test_every_manoeuvre_leads_to_one_that_is_there_or_to_the_end(data, given):
+    files = rendered(IMC, data.draw(inputs(given)))
+    if files is None:
+        return
+    plan = read_packet(files["naiad.imc"])
+    ids = [each["maneuver_id"] for each in plan["maneuvers"]]
+    assert len(set(ids)) == len(ids)
+    assert plan["start_man_id"] == ids[0]
+    assert [each["source_man"] for each in plan["transitions"]] == ids
+    assert {each["dest_man"] for each in plan["transitions"]} <= {*ids, "_done_"}

@@ -4,11 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
-from mmrs_auv.targets.moves import DEEPEST, FASTEST, MOVES, SLOWEST, above_surface
 from mmrs_core.behaviour.program import Move, RobotProgram, Target
-from mmrs_core.mavlink.context import VehicleContext
+from mmrs_core.generation.plan_moves import DEEPEST, FASTEST, MOVES, SLOWEST, above_surface
 from mmrs_core.scene import Policy
+
+if TYPE_CHECKING:
+    from mmrs_core.mavlink.context import VehicleContext
 
 
 @dataclass(frozen=True, slots=True)

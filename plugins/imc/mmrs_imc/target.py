@@ -9,19 +9,20 @@ to a vehicle: what reads them in our tests was written from the published defini
 from __future__ import annotations
 
 from collections.abc import Iterator
+from importlib.resources import files as files_of
+from pathlib import Path
 
-from mmrs_auv.targets.imc.capabilities import CAPABILITIES
-from mmrs_auv.targets.imc.messages import REQUEST, SET, Message, Value
-from mmrs_auv.targets.imc.packing import packet
-from mmrs_auv.targets.imc.plans import Plan, plan_of
-from mmrs_auv.targets.imc.refusals import refusals
-from mmrs_auv.targets.places import templates_of
 from mmrs_core.behaviour.earth import LOCAL
 from mmrs_core.contributions.targets import FileSpec, Target, TargetInput, TracedStep
 from mmrs_core.errors import UnsupportedError
 from mmrs_core.generation.context import require_home
 from mmrs_core.generation.escaping import file_stems
 from mmrs_core.mavlink.context import VehicleContext, context_of
+from mmrs_imc.capabilities import CAPABILITIES
+from mmrs_imc.messages import REQUEST, SET, Message, Value
+from mmrs_imc.packing import packet
+from mmrs_imc.plans import Plan, plan_of
+from mmrs_imc.refusals import refusals
 
 
 def files(input: TargetInput) -> Iterator[FileSpec]:
@@ -68,7 +69,7 @@ def _shown(value: Value) -> object:
 IMC = Target(
     name="imc",
     description="plans for LSTS vehicles: IMC messages PlanSpecification, one of each robot",
-    templates=templates_of("imc"),
+    templates=Path(str(files_of("mmrs_imc"))) / "templates" / "imc",
     files=files,
     refusals=refusals,
     capabilities=CAPABILITIES,

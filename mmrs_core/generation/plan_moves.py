@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Literal, TypeAlias
+from typing import TYPE_CHECKING, Literal, TypeAlias
 
 from mmrs_core.behaviour.earth import metres
 from mmrs_core.behaviour.program import BEHAVIOUR, Action, Move
-from mmrs_core.mavlink.context import VehicleContext
 from mmrs_core.scene import Name, Position, RobotType
+
+if TYPE_CHECKING:
+    from mmrs_core.mavlink.context import VehicleContext
 
 Sort: TypeAlias = Literal["start", "stop", "go", "hold", "turn"]
 

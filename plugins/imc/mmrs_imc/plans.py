@@ -6,7 +6,21 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from math import ceil, dist, radians
 
-from mmrs_auv.targets.imc.messages import (
+from mmrs_core.behaviour.earth import metres
+from mmrs_core.behaviour.program import DEVICE_ACTION, Action, Move
+from mmrs_core.generation.escaping import file_stems
+from mmrs_core.generation.plan_moves import (
+    DEEPEST,
+    MOVES,
+    above_surface,
+    seconds_of,
+    seconds_of_hold,
+    writable_speed,
+)
+from mmrs_core.mavlink.context import VehicleContext
+from mmrs_core.scene import Position
+from mmrs_core.transformation.kinds import before_target
+from mmrs_imc.messages import (
     DEPTH,
     FROM_HERE,
     KEEP_STATION,
@@ -16,21 +30,7 @@ from mmrs_auv.targets.imc.messages import (
     Message,
     Value,
 )
-from mmrs_auv.targets.imc.wiring import set_by
-from mmrs_auv.targets.moves import (
-    DEEPEST,
-    MOVES,
-    above_surface,
-    seconds_of,
-    seconds_of_hold,
-    writable_speed,
-)
-from mmrs_core.behaviour.earth import metres
-from mmrs_core.behaviour.program import DEVICE_ACTION, Action, Move
-from mmrs_core.generation.escaping import file_stems
-from mmrs_core.mavlink.context import VehicleContext
-from mmrs_core.scene import Position
-from mmrs_core.transformation.kinds import before_target
+from mmrs_imc.wiring import set_by
 
 LONGEST_TEXT = 200
 """Letters of a description at most."""

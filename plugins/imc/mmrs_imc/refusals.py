@@ -4,15 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from mmrs_auv.targets.imc.plans import LONGEST, plan_of
-from mmrs_auv.targets.imc.wiring import set_by
-from mmrs_auv.targets.moves import seconds_of_hold
-from mmrs_auv.targets.refusing import Wording, of_movement, of_policies, of_policy
 from mmrs_core.behaviour.earth import LOCAL
 from mmrs_core.behaviour.program import DEVICE_ACTION, Action, Move, RobotProgram, Transition
 from mmrs_core.contributions.targets import TargetInput
 from mmrs_core.generation.context import homeless
+from mmrs_core.generation.plan_moves import seconds_of_hold
+from mmrs_core.generation.plan_refusals import Wording, of_movement, of_policies, of_policy
 from mmrs_core.mavlink.context import VehicleContext, context_of, vehicleless
+from mmrs_imc.plans import LONGEST, plan_of
+from mmrs_imc.wiring import set_by
 
 WORDING = Wording(
     turn="which no manoeuvre of IMC does",

@@ -1,4 +1,0 @@
-"""Contributes nothing: `--drives` names the drives to the actuator controller.
-
-Metadata of installations from before name this module as a plug-in, until they are renewed.
-"""
