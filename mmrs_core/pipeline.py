@@ -353,7 +353,7 @@ def conditions_for(
     Raises:
         UsageError: if no Choice asks for what is assumed.
     """
-    from mmrs_core.simulation.conditions import asked_by, refuse_unasked
+    from mmrs_core.simulation.run import asked_by, refuse_unasked
     from mmrs_runtime.conditions import question_of
     from mmrs_runtime.engine.judging import assumed, standard_conditions
 
@@ -382,7 +382,7 @@ def backend_for(
     """
     if not own:
         return backend_named(usual, contributions)
-    from mmrs_core.simulation.mixed import mixed
+    from mmrs_core.simulation.run import mixed
 
     owned = {robot: backend_named(name, contributions) for robot, name in own.items()}
     return mixed(backend_named(usual, contributions), owned, [robot.id for robot in program.robots])

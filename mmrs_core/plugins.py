@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import pluggy
 
 from mmrs_core import builtin, hookspecs
-from mmrs_core.contributions.blame import guarded
+from mmrs_core.contributions.guard import guarded
 from mmrs_core.contributions.registry import Contributions, called
 from mmrs_core.errors import PluginError
 

@@ -7,14 +7,15 @@ the (robot, slot) pairs that they set, positions are (east, north, up) in metres
 
 from __future__ import annotations
 
+import json
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field, fields, replace
+from dataclasses import dataclass, field, fields, is_dataclass, replace
 from functools import cached_property
+from hashlib import sha256
 
-from mmrs_core.behaviour.fingerprint import fingerprint
 from mmrs_core.diagnostics import Place
 from mmrs_core.scene import Frame, Metaclasses, Name, Policy, Position, TravelMode, Value
-from mmrs_runtime.program import Program as ExecutableProgram
+from mmrs_runtime import program as engine
 from mmrs_runtime.program import SlotId as SlotId
 
 BEHAVIOUR = "urn:mmrs:behaviour:1.0"
@@ -221,17 +222,72 @@ class Program:
         return frozenset(slot for robot in self.robots for slot, active in robot.settings if not active)
 
     @cached_property
-    def executable(self) -> ExecutableProgram:
+    def executable(self) -> engine.Program:
         """Return the behaviour as the engine executes it, with the grounded moves as orders."""
-        from mmrs_core.behaviour.lowering import lowered
-
         return lowered(self)
 
     @cached_property
-    def shared(self) -> ExecutableProgram:
+    def shared(self) -> engine.Program:
         """Return it as the processes that share its robots know it, which must have the same plan."""
         return replace(self.executable, fingerprint=self.fingerprint)
 
     def robot(self, id: str) -> RobotProgram:
         """Return the robot of that identifier."""
         return next(robot for robot in self.robots if robot.id == id)
+
+
+_DIGITS = 16
+
+
+def fingerprint(value: object) -> str:
+    """Return sixteen hexadecimal digits that differ where values do.
+
+    Where they were read from makes no difference.
+    """
+    text = json.dumps(_plain(value), sort_keys=True, separators=(",", ":"))
+    return sha256(text.encode()).hexdigest()[:_DIGITS]
+
+
+def _plain(value: object) -> object:
+    """Return a value as JSON can hold it, without the places of its source."""
+    if is_dataclass(value) and not isinstance(value, type):
+        own = {each.name: getattr(value, each.name) for each in fields(value)}
+        return {name: _plain(part) for name, part in own.items() if not isinstance(part, Place)}
+    if isinstance(value, Mapping):
+        return {str(key): _plain(part) for key, part in value.items()}
+    if isinstance(value, list | tuple):
+        return [_plain(part) for part in value]
+    if value is None or isinstance(value, bool | int | float | str):
+        return value
+    return str(value)
+
+
+def lowered(program: Program) -> engine.Program:
+    """Return what the engine executes, for vehicles that understand grounded moves, as simulated ones do."""
+    return engine.Program(
+        tuple(_lowered_robot(robot, program.reserve) for robot in program.robots), program.name
+    )
+
+
+def _lowered_robot(robot: RobotProgram, reserve: float) -> engine.ExecutableRobot:
+    moves = tuple(_lowered_move(robot, index, move) for index, move in enumerate(robot.moves))
+    start = robot.moves[robot.start].id
+    return engine.ExecutableRobot(robot.id, moves, start, robot.slots, robot.policies, reserve)
+
+
+def _lowered_move(robot: RobotProgram, index: int, move: Move) -> engine.Move:
+    transition = robot.transitions.get(index) if index != robot.stop else None
+    then = None if transition is None else _lowered_transition(robot, transition)
+    before, after = tuple(map(_lowered_action, move.before)), tuple(map(_lowered_action, move.after))
+    return engine.Move(move.id, move, before, after, then)
+
+
+def _lowered_transition(robot: RobotProgram, given: Transition) -> engine.Then | engine.Choose:
+    to = robot.moves[given.to].id
+    if given.condition is None or given.otherwise is None:
+        return engine.Then(to, given.waits, given.fluid, given.policies)
+    return engine.Choose(given.condition, to, robot.moves[given.otherwise].id, given.waits, given.policies)
+
+
+def _lowered_action(action: Action) -> object:
+    return engine.Notify(action.sets, action.active) if action.notifies else action

@@ -5,14 +5,22 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
 
-from mmrs_core.behaviour.notifying import resolve
-from mmrs_core.behaviour.program import Action, Heading, Move, Program, RobotProgram, Target, Transition
+from mmrs_core.behaviour.program import (
+    Action,
+    Heading,
+    Move,
+    Program,
+    RobotProgram,
+    SlotId,
+    Target,
+    Transition,
+)
 from mmrs_core.diagnostics import Diagnostic, Place, in_order
 from mmrs_core.errors import InvalidModelError
 from mmrs_core.grounding.coordinates import ground_of
+from mmrs_core.grounding.features import policies_of
 from mmrs_core.grounding.frame import fault
 from mmrs_core.grounding.parts import part_of
-from mmrs_core.grounding.policies import policies_of
 from mmrs_core.languages import behaviour as bl
 from mmrs_core.languages.element import Element, container_of, metaclass_of, place_of
 from mmrs_core.languages.registry import Registry
@@ -177,7 +185,7 @@ class _Reading:
             return Action(metaclasses, name, parameters=pairs, place=place)
         if isinstance(action, bl.Notify):
             try:
-                sets = resolve(action, self._behaviour)
+                sets = slots_set_by(action, self._behaviour)
             except ValueError as error:
                 self._add(action, str(error))
                 sets = ()
@@ -265,3 +273,35 @@ def _flowing(robot: bl.Robot) -> set[bl.Move | None]:
         if transition.fluid
         for move in (transition.from_, transition.to)
     }
+
+
+def slots_set_by(notify: bl.Notify, behaviour: bl.Behaviour) -> tuple[SlotId, ...]:
+    """Return the (robot, slot) pairs that a notify sets, each once.
+
+    A unicast sets its slot, a multicast its slots in their order, a broadcast the slot of that name
+    in every robot that has one, the sender included, in the order of the robots.
+
+    Raises:
+        ValueError: if it leads to no slot of a robot, or is of a kind that nobody knows.
+    """
+    if isinstance(notify, bl.UnicastNotify):
+        return (_slot_id(notify.slot),)
+    if isinstance(notify, bl.MulticastNotify):
+        if not notify.slots:
+            raise ValueError("notifies no slot")
+        return tuple(dict.fromkeys(_slot_id(slot) for slot in notify.slots))
+    if isinstance(notify, bl.BroadcastNotify):
+        name = _slot_id(notify.slot)[1]
+        return tuple((robot.id, name) for robot in behaviour.robots if _has_slot(robot, name))
+    raise ValueError("is a notify of a kind that nobody knows")
+
+
+def _slot_id(slot: bl.Slot | None) -> SlotId:
+    owner = container_of(slot) if slot is not None else None
+    if slot is None or not isinstance(owner, bl.Robot):
+        raise ValueError("notifies a slot that no robot has")
+    return owner.id, slot.name
+
+
+def _has_slot(robot: bl.Robot, name: str) -> bool:
+    return any(slot.name == name for slot in robot.slots)

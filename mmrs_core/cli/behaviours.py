@@ -12,6 +12,7 @@ from mmrs_core.cli.output import report
 from mmrs_core.contributions.rules import barriers
 from mmrs_core.diagnostics import Diagnostic, has_errors, in_order
 from mmrs_core.errors import InvalidModelError, UnreadableError
+from mmrs_core.grounding.features import children
 from mmrs_core.grounding.scenes import (
     areas_of,
     environment_of,
@@ -19,7 +20,6 @@ from mmrs_core.grounding.scenes import (
     part_of,
     robot_type_of,
 )
-from mmrs_core.grounding.values import children
 from mmrs_core.languages import behaviour as bl
 from mmrs_core.languages import context as contexts
 from mmrs_core.languages import robot as robots_language

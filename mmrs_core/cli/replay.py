@@ -8,10 +8,9 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from mmrs_core.behaviour.box_files import black_boxes, is_part
-from mmrs_core.behaviour.log import read_logs
+from mmrs_core.behaviour.log import logs_in, read_logs, salvage_log
 from mmrs_core.behaviour.replay import ReplayResult
 from mmrs_core.behaviour.replay import replay as replayed
-from mmrs_core.behaviour.salvage import logs_in, salvage_log
 from mmrs_core.cli.behaviours import load_program
 from mmrs_core.cli.encoding import plain
 from mmrs_core.cli.output import counted, say, say_json, tell

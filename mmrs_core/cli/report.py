@@ -79,7 +79,7 @@ def report(
 def read_files(logs: list[Path]) -> tuple[Path, ...]:
     """Return every log and part of a black box that paths lead to."""
     from mmrs_core.behaviour.box_files import black_boxes
-    from mmrs_core.behaviour.salvage import logs_in
+    from mmrs_core.behaviour.log import logs_in
 
     return (*logs_in(logs), *(part for box in black_boxes(logs) for part in box.parts))
 

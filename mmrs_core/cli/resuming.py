@@ -7,10 +7,9 @@ from pathlib import Path
 
 import typer
 
-from mmrs_core.behaviour.log import read_log, read_logs
+from mmrs_core.behaviour.log import read_log, read_logs, salvage_log
 from mmrs_core.behaviour.program import Program
 from mmrs_core.behaviour.replay import replay
-from mmrs_core.behaviour.salvage import salvage_log
 from mmrs_core.cli.output import counted, tell
 from mmrs_core.cli.wishes import Wishes
 from mmrs_core.errors import InvalidModelError

@@ -11,7 +11,7 @@ import typer
 from mmrs_core.behaviour.program import Program
 from mmrs_core.cli.buses import BusWishes
 from mmrs_core.contributions.vehicles import VehicleFactory
-from mmrs_core.simulation.mixed import options_for
+from mmrs_core.simulation.run import options_for
 
 MAVLINK = "mavlink"
 ON_STOP = {"hold": "HOLD", "return": "RETURN", "land": "LAND"}

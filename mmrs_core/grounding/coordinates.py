@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from math import isfinite
 from typing import TYPE_CHECKING
@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mmrs_core.geometry.frames import LocalFrame, known_crs
+from mmrs_core.grounding.features import child, children, number, text
 from mmrs_core.grounding.frame import (
     Reference,
     coordinates_of,
@@ -24,7 +25,6 @@ from mmrs_core.grounding.frame import (
     origin_of,
     reference_in,
 )
-from mmrs_core.grounding.values import child, number, text
 from mmrs_core.languages.element import Element, place_of
 
 if TYPE_CHECKING:
@@ -196,3 +196,25 @@ def _moved(base: Position, coordinate: Element) -> Position | str:
     if x is None or y is None or z is None or not all(isfinite(axis) for axis in (x, y, z)):
         return "has no finite x, y and z"
     return base[0] + x, base[1] + y, base[2] + z
+
+
+_PLACES = ("points", "shell")
+
+
+def heights_of_task(task: Element, ground: Ground) -> tuple[float, ...]:
+    """Return at which heights a task is done, metres above the origin; empty where that is not known.
+
+    Its altitude or depth goes before the heights of its places.
+    """
+    altitude, depth = number(task, "altitude"), number(task, "depth")
+    if altitude is not None:
+        return (altitude,)
+    if depth is not None:
+        return (ground.frame.surface - depth,)
+    return tuple(ground.positions[each][2] for each in _places(task) if each in ground.positions)
+
+
+def _places(task: Element) -> Iterator[Element]:
+    point = child(task, "point")
+    yield from (point,) if point is not None else ()
+    yield from (each for name in _PLACES for each in children(task, name))

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable, Iterator
 from typing import TypeAlias, get_args
 
 from mmrs_core.diagnostics import Diagnostic, Severity
-from mmrs_core.grounding.values import child, children, literal, number, text
+from mmrs_core.grounding.features import child, children, literal, number, text
 from mmrs_core.languages.codes import explained
 from mmrs_core.languages.element import Element, Unknown, descendants, is_kind, label_of, path_of, place_of
 from mmrs_core.scene import AltitudeReference, Frame

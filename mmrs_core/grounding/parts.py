@@ -8,8 +8,8 @@ from math import inf
 from typing import TypeVar
 
 from mmrs_core.grounding.coordinates import Ground
+from mmrs_core.grounding.features import children, number
 from mmrs_core.grounding.frame import MISSION, is_geographic, is_relative
-from mmrs_core.grounding.values import children, number
 from mmrs_core.languages.element import (
     Element,
     containing_feature,

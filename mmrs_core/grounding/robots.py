@@ -5,10 +5,9 @@ from __future__ import annotations
 from math import hypot
 
 from mmrs_core.errors import InvalidModelError
+from mmrs_core.grounding.features import child, children, number, policies_of, text
 from mmrs_core.grounding.frame import fault
 from mmrs_core.grounding.parts import NO_GROUND, part_of
-from mmrs_core.grounding.policies import policies_of
-from mmrs_core.grounding.values import child, children, number, text
 from mmrs_core.languages.element import Element, metaclass_of, place_of
 from mmrs_core.scene import Battery, Capability, Device, DeviceAction, RobotType
 

@@ -8,11 +8,10 @@ from typing import get_args
 from mmrs_core.diagnostics import Diagnostic, in_order
 from mmrs_core.errors import InvalidModelError
 from mmrs_core.grounding.coordinates import Ground, ground_of
+from mmrs_core.grounding.features import child, children, literal, number, policies_of, text, texts, value
 from mmrs_core.grounding.frame import fault
 from mmrs_core.grounding.parts import area_of, names_of, part_of, position_of
-from mmrs_core.grounding.policies import policies_of
 from mmrs_core.grounding.robots import MISSING, robot_type_of
-from mmrs_core.grounding.values import child, children, literal, number, text, texts, value
 from mmrs_core.languages.element import Element, Unknown, descendants, metaclass_of, place_of
 from mmrs_core.languages.metaclass import Enumeration
 from mmrs_core.languages.modelset import ModelSet

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path, PurePosixPath
 
-from mmrs_core.grounding.values import text
+from mmrs_core.grounding.features import text
 from mmrs_core.languages.element import Element, descendants, is_kind, label_of
 from mmrs_core.languages.registry import Registry
 from mmrs_core.languages.writing import to_xmi

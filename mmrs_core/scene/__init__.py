@@ -9,8 +9,7 @@ metaclass without seeing a model.
 
 from typing import TYPE_CHECKING
 
-from mmrs_core.scene.missions import Dependency, Scene, Task
-from mmrs_core.scene.places import Area, AreaUse, Frame
+from mmrs_core.scene.missions import Area, AreaUse, Dependency, Frame, Scene, Task
 from mmrs_core.scene.robots import (
     Battery,
     Capability,

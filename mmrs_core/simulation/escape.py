@@ -5,7 +5,7 @@ from __future__ import annotations
 from functools import cached_property
 from math import dist
 
-from mmrs_core.behaviour.refuges import refuges_of
+from mmrs_core.behaviour.rally_points import refuges_of
 from mmrs_core.contributions.vehicles import VehicleInput
 from mmrs_core.errors import UnreachableError
 from mmrs_core.planning.paths import Space

@@ -10,7 +10,7 @@ from mmrs_core.behaviour.program import Program
 from mmrs_core.contributions.execution import Condition
 from mmrs_core.contributions.vehicles import Live, VehicleFactory, VehicleInput
 from mmrs_core.errors import LinkLostError, MmrsError
-from mmrs_core.simulation.conditions import refuse_undecided
+from mmrs_core.simulation.run import refuse_undecided
 from mmrs_runtime.bus import Incomplete
 from mmrs_runtime.engine import live as engine
 from mmrs_runtime.engine.live import Venture

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Container, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 
 from mmrs_core.behaviour.program import Program
@@ -12,15 +12,15 @@ from mmrs_core.contributions.vehicles import Recorder, VehicleFactory, VehicleIn
 from mmrs_core.contributions.wiring import Wirings
 from mmrs_core.errors import UnsupportedError, UsageError
 from mmrs_core.languages.collector import collector_at_rest
+from mmrs_core.languages.naming import nearest
 from mmrs_core.scene import Area, Name, Policy, RobotType
-from mmrs_core.simulation.conditions import refuse_undecided
-from mmrs_core.simulation.mixed import options_for, refuse_strange
 from mmrs_runtime.engine.clocks import SimulatedClock
 from mmrs_runtime.engine.run import run
 from mmrs_runtime.engine.terms import TO_THE_END, Ending, Terms
 from mmrs_runtime.policies import in_precedence
 from mmrs_runtime.records.steps import StepRecord
 from mmrs_runtime.slots import LocalSlots
+from mmrs_runtime.vehicle import Vehicle
 
 
 @dataclass(frozen=True, slots=True)
@@ -175,3 +175,93 @@ def _type_of(types: Mapping[str, RobotType], robot: str, name: str) -> RobotType
             f"robot '{robot}': type '{name}' is not known", [f"robot '{robot}': type '{name}'"]
         )
     return types[name]
+
+
+def asked_by(program: Program) -> tuple[str, ...]:
+    """Return the identifiers of all conditions that a program asks for, sorted."""
+    asked = {each.condition for robot in program.robots for each in robot.transitions.values()}
+    return tuple(sorted(identifier for identifier in asked if identifier is not None))
+
+
+def refuse_unasked(program: Program, identifiers: Collection[str]) -> None:
+    """Do nothing if a program asks for each of these conditions.
+
+    Raises:
+        UsageError: if it does not; tells what it asks for.
+    """
+    asked = asked_by(program)
+    for identifier in identifiers:
+        if identifier not in asked:
+            known, guess = ", ".join(map(repr, asked)) or "none at all", nearest(identifier, asked)
+            raise UsageError(
+                f"no choice asks for condition {identifier!r}; asked for: {known}{guess and '; ' + guess}"
+            )
+
+
+def refuse_undecided(program: Program, robots: Container[str], conditions: Container[str]) -> None:
+    """Do nothing if each choice of these robots can be decided.
+
+    Raises:
+        UnsupportedError: a condition is unknown; lists all of them.
+    """
+    unknown = [
+        f"robot '{robot.id}', after move '{robot.moves[source].id}': condition '{transition.condition}'"
+        for robot in program.robots
+        if robot.id in robots
+        for source, transition in sorted(robot.transitions.items())
+        if transition.condition is not None and transition.condition not in conditions
+    ]
+    if unknown:
+        raise UnsupportedError(f"{len(unknown)} choices have conditions that nobody decides", unknown)
+
+
+def mixed(
+    usual: VehicleFactory, own: Mapping[str, VehicleFactory], robots: Collection[str]
+) -> VehicleFactory:
+    """Return what makes the usual backend for all robots but those that have their own.
+
+    Raises:
+        UsageError: if one of them is no robot of the program, or simulated time would meet real time.
+    """
+    if strange := sorted(set(own) - set(robots)):
+        raise UsageError(f"backend of '{strange[0]}': no such robot; there are {', '.join(robots)}")
+    used = {each.name: each for each in ([] if set(own) == set(robots) else [usual])}
+    used |= {each.name: each for each in own.values()}
+    if len({each.simulated for each in used.values()}) > 1:
+        words = (f"'{each.name}' {'simulated' if each.simulated else 'real'}" for each in used.values())
+        raise UsageError(f"backends of one run go by one time: {', '.join(words)}")
+
+    def connect(given: VehicleInput) -> Vehicle:
+        factory = own.get(given.robot.id, usual)
+        live = given.live
+        if live is not None:
+            links = {robot: link for robot, link in live.links.items() if own.get(robot, usual) is factory}
+            live = replace(live, links=links)
+        return factory.connect(replace(given, live=live))
+
+    simulated = all(each.simulated for each in used.values())
+    return VehicleFactory(" and ".join(used), "as each robot has it", connect, simulated)
+
+
+def options_for(robot: str, options: Mapping[str, str]) -> dict[str, str]:
+    """Return the options of one robot's backend: those that name it as in ``ROBOT:KEY`` go before others.
+
+    >>> options_for("a", {"seed": "1", "a:seed": "2", "b:noise": "no"})
+    {'seed': '2'}
+    """
+    own = {
+        key.removeprefix(f"{robot}:"): text for key, text in options.items() if key.startswith(f"{robot}:")
+    }
+    return {**{key: text for key, text in options.items() if ":" not in key}, **own}
+
+
+def refuse_strange(options: Mapping[str, str], robots: Collection[str]) -> None:
+    """Do nothing if options name no other robots than these.
+
+    Raises:
+        UsageError: if one does.
+    """
+    for key in options:
+        robot, colon, _ = key.rpartition(":")
+        if colon and robot not in robots:
+            raise UsageError(f"option '{key}': no robot '{robot}'; there are {', '.join(robots)}")

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
+from itertools import pairwise
+from math import dist, inf, isfinite
 
 from mmrs_core.contributions.rules import RobotKind, Rule, barriers, most_specific, robot_kind_of
-from mmrs_core.errors import InfeasibleError
-from mmrs_core.scene import Device, Kinematics, Name, Robot, Scene, Task, Work
-from mmrs_core.transformation.fitness import out_of_reach, unfit
-from mmrs_core.transformation.soundness import work_of
+from mmrs_core.errors import InfeasibleError, MmrsError, PluginError
+from mmrs_core.scene import Device, Kinematics, Name, Part, Robot, Scene, Stroke, Task, Value, Work
 
 CONTROL_TASK = ("urn:mmrs:mission:1.0", "ControlTask")
 
@@ -99,3 +99,87 @@ def _undoable(
             continue
         why = "; ".join(f"{robot.name}: {refusals[task.name, robot.name]}" for robot in scene.robots)
         yield f"task '{task.name}' can be done by no robot ({why})"
+
+
+def unfit(robot: Robot, scene: Scene) -> str | None:
+    """Return why no robot of that type operates in the weather of the scene; None if it does.
+
+    What is not known of the weather or of the robot is no reason.
+    """
+    interval = robot.type.part.attributes.get("operatingTemperature")
+    temperature = scene.environment.get("temperature")
+    if temperature is None or not isinstance(interval, Part):
+        return None
+    lowest = _number(interval.attributes.get("min"), -inf)
+    highest = _number(interval.attributes.get("max"), inf)
+    if lowest <= temperature <= highest:
+        return None
+    return f"operates from {lowest:g} to {highest:g} °C, not at {temperature:g} °C"
+
+
+def out_of_reach(work: Work, robot: Robot) -> str | None:
+    """Return why the radio does not reach all of a work from the robot's home; None if it does."""
+    reach = _number(robot.type.part.attributes.get("communicationRange"), inf)
+    places = (point for stroke in work.strokes for point in stroke.points)
+    farthest = max((dist(place, robot.home) for place in places), default=0.0)
+    if farthest <= reach:
+        return None
+    return f"would be {farthest:.0f} m from home, its radio reaches {reach:g} m"
+
+
+def _number(value: Value, absent: float) -> float:
+    return float(value) if isinstance(value, (int, float)) else absent
+
+
+BEYOND = 1e-6
+"""Metres by which an action may lie beyond a stroke's end, by rounding."""
+
+
+def work_of(rule: Rule, task: Task, robot: Robot, scene: Scene) -> Work:
+    """Return what a rule makes of a task.
+
+    Raises:
+        InfeasibleError: if the rule says that the robot cannot do the task.
+        PluginError: if the rule fails, or returns something that is no sound work; names the rule.
+    """
+    where = f"rule '{rule.name}', task '{task.name}', robot '{robot.name}'"
+    try:
+        work = rule.work(task, robot, scene)
+    except MmrsError:
+        raise
+    except Exception as error:
+        raise PluginError(f"{where}: fails: {error!r}") from error
+    fault = next(_faults(work), None)
+    if fault is not None:
+        raise PluginError(f"{where}: {fault}")
+    return work
+
+
+def _faults(work: object) -> Iterator[str]:
+    if not isinstance(work, Work):
+        yield f"returns {type(work).__name__}, not a Work"
+        return
+    if not work.strokes:
+        yield "returns a work without strokes"
+    for index, stroke in enumerate(work.strokes):
+        yield from (f"stroke {index} {fault}" for fault in _stroke_faults(stroke))
+
+
+def _stroke_faults(stroke: Stroke) -> Iterator[str]:
+    if not stroke.points:
+        yield "has no point"
+    if not all(isfinite(value) for point in stroke.points for value in point):
+        yield "has a point that is not finite"
+        return
+    length = sum(dist(a, b) for a, b in pairwise(stroke.points))
+    places = [action.at for action in stroke.actions]
+    if not all(-BEYOND <= at <= length + BEYOND for at in places):
+        yield f"has an action beyond its {length:g} m"
+    if any(a > b for a, b in pairwise(places)):
+        yield "has actions that are not in order"
+    if not all(0.0 < cut < length for cut in stroke.cuts) or any(a >= b for a, b in pairwise(stroke.cuts)):
+        yield f"has cuts that are not in order, or not within its {length:g} m"
+    if not (isfinite(stroke.hold) and stroke.hold >= 0.0):
+        yield f"holds for {stroke.hold} s"
+    if stroke.speed is not None and not stroke.speed > 0.0:
+        yield f"has a speed of {stroke.speed} m/s"

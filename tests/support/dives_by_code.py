@@ -19,8 +19,8 @@ from mmrs_core.contributions.targets import TargetInput
 from mmrs_core.generation.render import render
 from mmrs_core.generation.writing import write
 from mmrs_core.pipeline import Place, inputs_of
-from mmrs_core.simulation.conditions import asked_by
 from mmrs_core.simulation.live import venture_for
+from mmrs_core.simulation.run import asked_by
 from mmrs_core.transformation.kinds import MOVE_KINDS
 from mmrs_runtime.engine.clocks import RealClock
 from mmrs_runtime.engine.judging import standard_conditions

@@ -10,7 +10,7 @@ from mmrs_core.analysis.constraints.findings import CONTEXT, called, finding
 from mmrs_core.analysis.constraints.sketch import DrawnArea, sketch_of
 from mmrs_core.contributions.constraints import Constraint, Finding
 from mmrs_core.diagnostics import Severity
-from mmrs_core.grounding.values import child, number
+from mmrs_core.grounding.features import child, number
 from mmrs_core.languages.element import Element
 from mmrs_core.languages.modelset import ModelSet
 from mmrs_core.scene import AreaUse

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 from mmrs_core.analysis.constraints.findings import BEHAVIOUR, MISSION, ROBOT, finding
 from mmrs_core.contributions.constraints import Constraint, Finding
-from mmrs_core.grounding.values import text
+from mmrs_core.grounding.features import text
 from mmrs_core.languages.datatypes import DataType
 from mmrs_core.languages.element import Element, Unknown, descendants, is_set, metaclass_of
 from mmrs_core.languages.metaclass import Feature

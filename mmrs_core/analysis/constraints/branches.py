@@ -9,7 +9,7 @@ from mmrs_core.analysis.constraints.findings import MISSION, called, finding, li
 from mmrs_core.analysis.constraints.order import Order
 from mmrs_core.analysis.constraints.sketch import sketch_of
 from mmrs_core.contributions.constraints import Constraint, Finding
-from mmrs_core.grounding.values import child, number, text
+from mmrs_core.grounding.features import child, number, text
 from mmrs_core.languages.element import Element, is_kind, label_of, path_of
 from mmrs_core.languages.modelset import ModelSet
 

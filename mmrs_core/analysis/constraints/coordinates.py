@@ -8,6 +8,7 @@ from math import isfinite
 from mmrs_core.analysis.constraints.findings import BEHAVIOUR, CONTEXT, MISSION, finding
 from mmrs_core.contributions.constraints import Constraint, Finding
 from mmrs_core.geometry.frames import known_crs
+from mmrs_core.grounding.features import child, children, number, text
 from mmrs_core.grounding.frame import (
     circles_among,
     coordinates_of,
@@ -18,7 +19,6 @@ from mmrs_core.grounding.frame import (
     origin_of,
     reference_in,
 )
-from mmrs_core.grounding.values import child, children, number, text
 from mmrs_core.languages.element import Element, path_of, root_of
 from mmrs_core.languages.modelset import ModelSet
 

@@ -8,8 +8,8 @@ from mmrs_core.analysis.constraints.findings import CONTEXT, MISSION, finding
 from mmrs_core.analysis.constraints.sketch import sketch_of
 from mmrs_core.analysis.constraints.spread import BOTH_SIGNS, EAST_SIGN, EXCHANGED, NORTH_SIGN, Rival, Stray
 from mmrs_core.contributions.constraints import Constraint, Finding
+from mmrs_core.grounding.features import number
 from mmrs_core.grounding.frame import is_geographic
-from mmrs_core.grounding.values import number
 from mmrs_core.languages.element import Element, root_of
 from mmrs_core.languages.modelset import ModelSet
 

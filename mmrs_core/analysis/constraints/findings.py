@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from mmrs_core.contributions.constraints import Finding
-from mmrs_core.grounding.values import text
+from mmrs_core.grounding.features import text
 from mmrs_core.languages.element import Element, Unknown, label_of, metaclass_of, path_of
 from mmrs_core.languages.naming import nearest
 

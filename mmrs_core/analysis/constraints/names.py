@@ -14,7 +14,7 @@ from mmrs_core.analysis.constraints.findings import (
 )
 from mmrs_core.contributions.constraints import Constraint, Finding
 from mmrs_core.diagnostics import Severity
-from mmrs_core.grounding.values import children, text
+from mmrs_core.grounding.features import children, text
 from mmrs_core.languages.element import Element, Unknown, descendants
 from mmrs_core.languages.modelset import ModelSet
 from mmrs_core.languages.naming import unreadable

@@ -8,7 +8,7 @@ from functools import cached_property
 from heapq import heappop, heappush
 
 from mmrs_core.analysis.constraints.findings import MISSION
-from mmrs_core.grounding.values import child, children
+from mmrs_core.grounding.features import child, children
 from mmrs_core.languages.element import Element, is_kind
 
 

@@ -14,7 +14,7 @@ from mmrs_core.analysis.constraints.findings import (
     finding,
 )
 from mmrs_core.contributions.constraints import Constraint, Finding
-from mmrs_core.grounding.values import number
+from mmrs_core.grounding.features import number
 from mmrs_core.languages.element import Element
 from mmrs_core.languages.modelset import ModelSet
 from mmrs_core.scene import Name

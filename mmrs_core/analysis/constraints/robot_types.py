@@ -8,7 +8,7 @@ from itertools import pairwise
 from mmrs_core.analysis.constraints.findings import ROBOT, called, finding
 from mmrs_core.contributions.constraints import Constraint, Finding
 from mmrs_core.diagnostics import Severity
-from mmrs_core.grounding.values import child, children, number, text
+from mmrs_core.grounding.features import child, children, number, text
 from mmrs_core.languages.element import Element, container_of
 from mmrs_core.languages.modelset import ModelSet
 

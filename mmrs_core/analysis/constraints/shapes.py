@@ -11,7 +11,7 @@ from mmrs_core.analysis.constraints.findings import CONTEXT, MISSION, finding
 from mmrs_core.analysis.constraints.sketch import polygon_of, sketch_of
 from mmrs_core.contributions.constraints import Constraint, Finding
 from mmrs_core.diagnostics import Severity
-from mmrs_core.grounding.values import children
+from mmrs_core.grounding.features import children
 from mmrs_core.languages.element import Element, path_of
 from mmrs_core.languages.modelset import ModelSet
 from mmrs_core.scene import Ring

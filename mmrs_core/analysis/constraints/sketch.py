@@ -20,9 +20,9 @@ from mmrs_core.analysis.constraints.order import Order
 from mmrs_core.analysis.constraints.spread import Spread, spread_of
 from mmrs_core.analysis.constraints.unread import drawn_once
 from mmrs_core.grounding.coordinates import Ground, ground_of
+from mmrs_core.grounding.features import child, children, number, text
 from mmrs_core.grounding.parts import heights_of, ring_of, use_of
 from mmrs_core.grounding.robots import half_diagonal
-from mmrs_core.grounding.values import child, children, number, text
 from mmrs_core.languages.element import Element
 from mmrs_core.languages.modelset import ModelSet
 from mmrs_core.scene import AreaUse, Position, Ring

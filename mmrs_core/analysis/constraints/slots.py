@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from mmrs_core.analysis.constraints.findings import BEHAVIOUR, called, finding
 from mmrs_core.contributions.constraints import Constraint, Finding
 from mmrs_core.diagnostics import Severity
-from mmrs_core.grounding.values import child, children, text
+from mmrs_core.grounding.features import child, children, text
 from mmrs_core.languages.element import Element, container_of, descendants, is_kind
 from mmrs_core.languages.modelset import ModelSet
 

@@ -15,6 +15,7 @@ from math import cos, radians
 import numpy as np
 from numpy.typing import NDArray
 
+from mmrs_core.grounding.features import child, number
 from mmrs_core.grounding.frame import (
     coordinates_of,
     is_geographic,
@@ -23,7 +24,6 @@ from mmrs_core.grounding.frame import (
     origin_of,
     reference_in,
 )
-from mmrs_core.grounding.values import child, number
 from mmrs_core.languages.element import Element, container_of
 from mmrs_core.languages.modelset import ModelSet
 

@@ -12,7 +12,7 @@ from pathlib import Path
 from mmrs_core.contributions.fixes import Edit, Fix, Wrong, with_name
 from mmrs_core.diagnostics import Diagnostic, Place, Severity
 from mmrs_core.errors import UnreadableError
-from mmrs_core.grounding.values import child, children
+from mmrs_core.grounding.features import child, children
 from mmrs_core.languages.element import Element, Unknown
 from mmrs_core.languages.json_form import is_json
 from mmrs_core.languages.json_form.markup import JsonMarkup

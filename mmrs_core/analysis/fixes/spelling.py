@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable, Iterator
 
 from mmrs_core.analysis.fixes.likeness import meant
 from mmrs_core.contributions.fixes import Edit, Fix, Wrong, renamed, with_attribute, with_name, with_value
-from mmrs_core.grounding.values import children, text
+from mmrs_core.grounding.features import children, text
 from mmrs_core.languages.element import Element, container_of, is_kind, metaclass_of
 from mmrs_core.languages.metaclass import Feature, Metaclass
 from mmrs_core.languages.xmi.markup import Tag

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from mmrs_core.grounding.values import text as text_of
+from mmrs_core.grounding.features import text as text_of
 from mmrs_core.languages.element import Element, metaclass_of
 from mmrs_core.migration.building.converting import number_in, put, scaled
 from mmrs_core.migration.building.drafts import Draft, placed

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from mmrs_core.grounding.values import number
+from mmrs_core.grounding.features import number
 from mmrs_core.languages.element import Element, metaclass_of
 from mmrs_core.languages.registry import Registry
 from mmrs_core.migration.building.drafts import placed

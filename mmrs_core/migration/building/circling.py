@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from itertools import pairwise
 from math import inf, isfinite, pi, sin
 
-from mmrs_core.grounding.values import number
+from mmrs_core.grounding.features import number
 from mmrs_core.languages import behaviour as bl
 from mmrs_core.languages.element import container_of, metaclass_of, root_of
 from mmrs_core.languages.registry import Registry

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
-from mmrs_core.grounding.values import child, children
+from mmrs_core.grounding.features import child, children
 from mmrs_core.languages.element import (
     Element,
     container_of,

@@ -8,7 +8,7 @@ from math import sqrt
 from shlex import quote
 
 from mmrs_core.behaviour.travel import SHARE_OF_LARGEST_SPEED
-from mmrs_core.grounding.values import child, children, number, text
+from mmrs_core.grounding.features import child, children, number, text
 from mmrs_core.languages import behaviour as bl
 from mmrs_core.languages.element import Element
 

@@ -9,8 +9,8 @@ from pathlib import Path
 from types import MappingProxyType
 
 from mmrs_core.behaviour.box_files import BlackBox, black_boxes, is_part
+from mmrs_core.behaviour.log import logs_in, salvage_log
 from mmrs_core.behaviour.program import Program, RobotProgram
-from mmrs_core.behaviour.salvage import logs_in, salvage_log
 from mmrs_core.contributions.rules import RobotKind
 from mmrs_core.errors import InvalidModelError, UnreadableError
 from mmrs_core.pictures.flights.clocks import Readings, Shift, shifts_of

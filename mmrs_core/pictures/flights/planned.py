@@ -14,8 +14,7 @@ from mmrs_core.pictures.flights.answers import choosing_as
 from mmrs_core.pictures.flights.values import Flight, Flown
 from mmrs_core.pipeline import Place, conditions_for
 from mmrs_core.scene import Name, Position
-from mmrs_core.simulation.conditions import refuse_unasked
-from mmrs_core.simulation.run import Run, simulate
+from mmrs_core.simulation.run import Run, refuse_unasked, simulate
 
 BACKEND = "simulation"
 

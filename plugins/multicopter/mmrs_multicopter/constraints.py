@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 from mmrs_core.contributions.constraints import Constraint, Finding
 from mmrs_core.diagnostics import Severity
-from mmrs_core.grounding.values import child, children, number, text
+from mmrs_core.grounding.features import child, children, number, text
 from mmrs_core.languages.element import Element, container_of, is_kind, label_of
 from mmrs_core.languages.modelset import ModelSet
 from mmrs_multicopter.heights import cut_transit, too_high, too_low

@@ -7,9 +7,8 @@ from math import inf
 
 from mmrs_core.analysis.constraints.sketch import sketch_of
 from mmrs_core.contributions.constraints import Finding
-from mmrs_core.grounding.coordinates import Ground
-from mmrs_core.grounding.heights import heights_of_task
-from mmrs_core.grounding.values import child, children, number, text
+from mmrs_core.grounding.coordinates import Ground, heights_of_task
+from mmrs_core.grounding.features import child, children, number, text
 from mmrs_core.languages.element import Element, is_kind, label_of
 from mmrs_core.languages.modelset import ModelSet
 from mmrs_multicopter.kinds import LOWEST_FLIGHT

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 from mmrs_core.contributions.constraints import Constraint, Finding
 from mmrs_core.diagnostics import Severity
-from mmrs_core.grounding.values import child, number, text
+from mmrs_core.grounding.features import child, number, text
 from mmrs_core.languages.element import Element, label_of
 from mmrs_core.languages.modelset import ModelSet
 from mmrs_rover.names import ROVER, TERRAIN

@@ -9,8 +9,8 @@ from shapely import Point
 
 from mmrs_core.analysis.constraints.sketch import DrawnRobot, Sketch, polygon_of, sketch_of
 from mmrs_core.contributions.constraints import Finding
-from mmrs_core.grounding.heights import heights_of_task
-from mmrs_core.grounding.values import children, number
+from mmrs_core.grounding.coordinates import heights_of_task
+from mmrs_core.grounding.features import children, number
 from mmrs_core.languages.element import Element, is_kind, label_of
 from mmrs_core.languages.modelset import ModelSet
 from mmrs_rover.names import ROVER, TERRAIN

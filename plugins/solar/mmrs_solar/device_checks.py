@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from mmrs_core.contributions.constraints import Finding
-from mmrs_core.grounding.values import children, text
+from mmrs_core.grounding.features import children, text
 from mmrs_core.languages.element import Element, is_kind, label_of
 from mmrs_core.languages.modelset import ModelSet
 from mmrs_core.planning.devices import figure

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from math import isfinite
 
 from mmrs_core.contributions.constraints import Finding
-from mmrs_core.grounding.values import child, children, number, text
+from mmrs_core.grounding.features import child, children, number, text
 from mmrs_core.languages.element import Element, label_of
 from mmrs_core.languages.modelset import ModelSet
 from mmrs_solar.camera import HIGHEST_KEY, LOWEST_KEY, PITCH_KEYS, RECORDING_KEYS

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 from mmrs_core.analysis.fixes.figures import as_part
 from mmrs_core.contributions.fixes import Edit, Fix, Wrong, with_value
-from mmrs_core.grounding.values import number
+from mmrs_core.grounding.features import number
 from mmrs_solar.figure_checks import OVERLAPS
 
 

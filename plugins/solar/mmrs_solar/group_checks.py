@@ -8,7 +8,7 @@ from math import atan2, cos, degrees, dist, radians
 
 from mmrs_core.analysis.constraints.sketch import sketch_of
 from mmrs_core.contributions.constraints import Finding
-from mmrs_core.grounding.values import child, children, number
+from mmrs_core.grounding.features import child, children, number
 from mmrs_core.languages.element import Element, is_kind, label_of
 from mmrs_core.languages.modelset import ModelSet
 from mmrs_solar.names import IRRADIANCE, PANEL_GROUP

@@ -10,7 +10,7 @@ from shapely.geometry import Polygon
 
 from mmrs_core.analysis.constraints.sketch import sketch_of
 from mmrs_core.contributions.constraints import Finding
-from mmrs_core.grounding.values import children, number, text
+from mmrs_core.grounding.features import children, number, text
 from mmrs_core.languages.element import Element, is_kind, label_of
 from mmrs_core.languages.modelset import ModelSet
 from mmrs_core.planning.devices import figure

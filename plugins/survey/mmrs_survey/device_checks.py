@@ -7,7 +7,7 @@ from itertools import groupby
 
 from mmrs_core.analysis.constraints.capabilities import undoable
 from mmrs_core.contributions.constraints import Finding
-from mmrs_core.grounding.values import children, number, text
+from mmrs_core.grounding.features import children, number, text
 from mmrs_core.languages.element import Element, container_of, label_of, metaclass_of
 from mmrs_core.languages.modelset import ModelSet
 from mmrs_core.planning.devices import figure

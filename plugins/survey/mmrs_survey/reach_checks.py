@@ -15,7 +15,7 @@ from mmrs_core.analysis.constraints.places import (
 from mmrs_core.analysis.constraints.sketch import sketch_of
 from mmrs_core.contributions.constraints import Finding
 from mmrs_core.errors import InfeasibleError
-from mmrs_core.grounding.values import children, number, value
+from mmrs_core.grounding.features import children, number, value
 from mmrs_core.languages.element import Element, is_kind, label_of
 from mmrs_core.languages.modelset import ModelSet
 from mmrs_core.scene import Position

@@ -30,7 +30,7 @@ from mmrs_core.generation.render import render
 from mmrs_core.generation.writing import write as write_files
 from mmrs_core.languages.reading import read_model
 from mmrs_core.languages.registry import registry_with
-from mmrs_core.simulation.conditions import asked_by
+from mmrs_core.simulation.run import asked_by
 from mmrs_core.testing.programs import feedback, move
 from mmrs_core.testing.small_programs import notify
 from mmrs_core.transformation.kinds import MOVE_KINDS

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from mmrs_core.behaviour.salvage import logs_in, salvage_log
+from mmrs_core.behaviour.log import logs_in, salvage_log
 from mmrs_core.errors import UnreadableError
 from mmrs_runtime.records.steps import StepRecord, to_line
 

@@ -10,8 +10,7 @@ import pytest
 from mmrs_core.behaviour.program import BEHAVIOUR, Move
 from mmrs_core.contributions.vehicles import Live, VehicleFactory, VehicleInput
 from mmrs_core.errors import UnreadableError, UsageError
-from mmrs_core.simulation.mixed import mixed, options_for
-from mmrs_core.simulation.run import simulate
+from mmrs_core.simulation.run import mixed, options_for, simulate
 from mmrs_core.simulation.simulation import SIMULATION
 from mmrs_core.testing.small_programs import ROBOT_TYPE, go, hold, notify, program, robot, robot_type, use
 from mmrs_runtime.bus.messages import (

@@ -6,7 +6,7 @@ import pytest
 
 from mmrs_core.contributions.execution import RobotState
 from mmrs_core.errors import UsageError
-from mmrs_core.simulation.conditions import refuse_unasked
+from mmrs_core.simulation.run import refuse_unasked
 from mmrs_core.testing.small_programs import hold, program, robot
 from mmrs_runtime.engine.judging import standard_conditions
 

@@ -1,7 +1,7 @@
 """Robots are left out of what their radio does not reach and their type does not stand."""
 
 from mmrs_core.scene import Capability, Frame, Part, Robot, RobotType, Scene, Stroke, Work
-from mmrs_core.transformation.fitness import out_of_reach, unfit
+from mmrs_core.transformation.expand import out_of_reach, unfit
 
 
 def robot_with(**attributes):

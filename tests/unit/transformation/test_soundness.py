@@ -7,7 +7,7 @@ import pytest
 from mmrs_core.contributions.rules import Rule
 from mmrs_core.errors import InfeasibleError, PluginError
 from mmrs_core.scene import ActionAt, Capability, Frame, Part, Robot, RobotType, Scene, Stroke, Task, Work
-from mmrs_core.transformation.soundness import work_of
+from mmrs_core.transformation.expand import work_of
 
 KIND = RobotType("t", (), (), 0.5, None, (Capability(0, None, (0, 2)),), (), {}, Part((), {}))
 ROBOT = Robot("r", KIND, (0.0, 0.0, 0.0), True, 0.0, "NORMAL", 0.5)

@@ -9,9 +9,8 @@ from mmrs_auv.kinds import ATMOSPHERE, GRAVITY, SEA_WATER
 from mmrs_auv.names import AUV_MOVEMENT, FOLLOW_PIPELINE_TASK, YO_YO_TASK
 from mmrs_core.analysis.constraints.sketch import sketch_of
 from mmrs_core.contributions.constraints import Finding
-from mmrs_core.grounding.coordinates import Ground
-from mmrs_core.grounding.heights import heights_of_task
-from mmrs_core.grounding.values import child, children, number, text
+from mmrs_core.grounding.coordinates import Ground, heights_of_task
+from mmrs_core.grounding.features import child, children, number, text
 from mmrs_core.languages.element import Element, is_kind, label_of
 from mmrs_core.languages.modelset import ModelSet
 

@@ -8,7 +8,7 @@ from mmrs_auv.names import IN_WATER_SIZE
 from mmrs_auv.tasks.sonar import SONAR_KEYS
 from mmrs_core.contributions.constraints import Constraint, Finding
 from mmrs_core.diagnostics import Severity
-from mmrs_core.grounding.values import children, number, text
+from mmrs_core.grounding.features import children, number, text
 from mmrs_core.languages.element import Element
 from mmrs_core.languages.modelset import ModelSet
 from mmrs_core.languages.naming import nearest

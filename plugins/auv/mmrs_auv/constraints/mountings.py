@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from mmrs_auv.names import AUV_MOVEMENT, MOUNTING
 from mmrs_core.contributions.constraints import Constraint, Finding
 from mmrs_core.diagnostics import Severity
-from mmrs_core.grounding.values import child, children, number, texts
+from mmrs_core.grounding.features import child, children, number, texts
 from mmrs_core.languages.element import Element, label_of
 from mmrs_core.languages.modelset import ModelSet
 

@@ -12,7 +12,7 @@ from mmrs_core.analysis.constraints.sketch import sketch_of
 from mmrs_core.contributions.constraints import Constraint, Finding
 from mmrs_core.diagnostics import Severity
 from mmrs_core.errors import InfeasibleError
-from mmrs_core.grounding.values import child, children, number
+from mmrs_core.grounding.features import child, children, number
 from mmrs_core.languages.element import Element, label_of
 from mmrs_core.languages.modelset import ModelSet
 from mmrs_core.scene import Position

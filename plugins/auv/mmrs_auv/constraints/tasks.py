@@ -10,7 +10,7 @@ from mmrs_auv import names
 from mmrs_auv.tasks.sonar import height_of, swath_at
 from mmrs_core.contributions.constraints import Constraint, Finding
 from mmrs_core.diagnostics import Severity
-from mmrs_core.grounding.values import child, children, number, text, value
+from mmrs_core.grounding.features import child, children, number, text, value
 from mmrs_core.languages.element import Element, is_kind, label_of
 from mmrs_core.languages.modelset import ModelSet
 

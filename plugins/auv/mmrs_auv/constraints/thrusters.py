@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from mmrs_auv.names import AUV_MOVEMENT, VEHICLE
 from mmrs_core.contributions.constraints import Constraint, Finding
 from mmrs_core.diagnostics import Severity
-from mmrs_core.grounding.values import children
+from mmrs_core.grounding.features import children
 from mmrs_core.languages.element import Element, container_of, label_of
 from mmrs_core.languages.modelset import ModelSet
 

@@ -9,7 +9,7 @@ from mmrs_auv.kinds import GRAVITY
 from mmrs_auv.names import AUV_MOVEMENT, IN_WATER_SIZE, THRUSTER, VEHICLE
 from mmrs_core.contributions.constraints import Constraint, Finding
 from mmrs_core.diagnostics import Severity
-from mmrs_core.grounding.values import child, children, number, texts, value
+from mmrs_core.grounding.features import child, children, number, texts, value
 from mmrs_core.languages.element import Element, is_kind, label_of
 from mmrs_core.languages.modelset import ModelSet
 

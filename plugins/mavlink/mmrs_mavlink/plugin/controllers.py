@@ -9,7 +9,7 @@ from typing import Any, ClassVar
 
 from mmrs_core.behaviour.earth import degrees_of, metres
 from mmrs_core.behaviour.program import Action, Heading, Move, RobotProgram
-from mmrs_core.behaviour.refuges import Refuges, refuges_of
+from mmrs_core.behaviour.rally_points import Refuges, refuges_of
 from mmrs_core.behaviour.travel import capability_of, manner_of
 from mmrs_core.contributions.targets import TargetInput
 from mmrs_core.contributions.wiring import Sampled, Unwired, Wired

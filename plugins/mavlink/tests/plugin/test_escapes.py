@@ -8,7 +8,7 @@ import pytest
 from shapely import LineString, Polygon
 
 from mmrs_core import pipeline
-from mmrs_core.behaviour.refuges import refuges_of
+from mmrs_core.behaviour.rally_points import refuges_of
 from mmrs_core.contributions.targets import TargetInput
 from mmrs_core.generation.python.program import robot_view
 from mmrs_core.generation.safety import clearance_of

@@ -8,7 +8,7 @@ from typing import TypeAlias
 
 from mmrs_core.behaviour.earth import degrees_of, metres, sea_level_of
 from mmrs_core.behaviour.program import RobotProgram
-from mmrs_core.behaviour.refuges import refuges_of
+from mmrs_core.behaviour.rally_points import refuges_of
 from mmrs_core.contributions.targets import TargetInput
 from mmrs_core.generation.context import require_home
 from mmrs_core.generation.escaping import file_stems

@@ -8,7 +8,7 @@ from math import dist
 
 import pytest
 
-from mmrs_core.behaviour.refuges import refuges_of
+from mmrs_core.behaviour.rally_points import refuges_of
 from mmrs_core.scene import Area, AreaUse
 from mmrs_core.testing.programs import go_to, program, quad, robot_program
 

@@ -11,6 +11,8 @@ from sys import float_info
 from typing import TypeVar
 
 from mmrs_core.languages.element import Element
+from mmrs_core.scene import Policy
+from mmrs_runtime.policies import EVENTS, RESPONSES
 
 Literal = TypeVar("Literal", bound=str)
 
@@ -61,3 +63,15 @@ def children(element: Element | None, name: str) -> tuple[Element, ...]:
 
 def _items(found: object) -> tuple[object, ...]:
     return tuple(found) if isinstance(found, (list, tuple)) else ()
+
+
+def policies_of(element: Element) -> tuple[Policy, ...]:
+    """Return the policies that a mission, robot type, robot or transition declares."""
+    return tuple(
+        Policy(
+            literal(each, "event", EVENTS, "LINK_LOST"),
+            literal(each, "response", RESPONSES, "HOLD"),
+            number(each, "after"),
+        )
+        for each in children(element, "policies")
+    )
