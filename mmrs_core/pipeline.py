@@ -225,7 +225,7 @@ def render(
     except InternalError as error:
         if provider == CORE_DISTRIBUTION:
             raise
-        raise PluginError(f"{contributions.blamed('targets', chosen)}: {error}") from error
+        raise PluginError(f"{contributions.source_of('targets', chosen)}: {error}") from error
 
 
 def capabilities(target: str | None, contributions: Contributions) -> dict[str, tuple[Capability, ...]]:

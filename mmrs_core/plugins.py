@@ -181,13 +181,13 @@ def _declared(
             raise PluginError(
                 f"plug-in '{name}' of distribution '{distributions[name]}': mmrs_{sort} fails: {error!r}"
             ) from error
-        blamed = f"plug-in '{name}' of distribution '{distributions[name]}'"
+        source = f"plug-in '{name}' of distribution '{distributions[name]}'"
         for item in items:
             if not isinstance(item, kind):
                 raise PluginError(
-                    f"{blamed}: mmrs_{sort} gives a {type(item).__name__}, not a {kind.__name__}"
+                    f"{source}: mmrs_{sort} gives a {type(item).__name__}, not a {kind.__name__}"
                 )
-            yield name, item if name == "core" else guarded(item, f"{blamed}: {called(sort, item)}")
+            yield name, item if name == "core" else guarded(item, f"{source}: {called(sort, item)}")
 
 
 def _kind(sort: str) -> type:

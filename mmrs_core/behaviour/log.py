@@ -79,7 +79,7 @@ def _logs_in(path: Path) -> tuple[Path, ...]:
     return found
 
 
-def salvage_log(path: Path) -> tuple[tuple[StepRecord, ...], tuple[Damage, ...]]:
+def recover_log(path: Path) -> tuple[tuple[StepRecord, ...], tuple[Damage, ...]]:
     """Return the steps in a log that can be read, and what cannot be.
 
     Raises:

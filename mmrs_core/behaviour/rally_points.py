@@ -1,8 +1,8 @@
-"""Where the robots of a behaviour come down in an emergency: each of them elsewhere, if there is room."""
+"""Rally points: where each robot lands or surfaces in an emergency, apart from all others if possible."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from functools import lru_cache
 
@@ -17,59 +17,59 @@ from mmrs_core.scene import Area, AreaUse, Point, RobotType
 
 
 @dataclass(frozen=True, slots=True)
-class Refuges:
-    """Where a robot comes down in an emergency.
+class RallyPoints:
+    """The rally points of one robot.
 
     Attributes:
         points: (east, north) of one in each emergency area that is large enough, metres.
-        shared: what people must know of them; empty where all of them are the robot's own.
+        shared: warning that other robots use the same points; empty where all are the robot's own.
     """
 
     points: tuple[Point, ...] = ()
     shared: str = ""
 
 
-def refuges_of(
+def rally_points_of(
     robot: RobotProgram,
     program: Program,
     types: Mapping[str, RobotType],
     areas: Iterable[Area],
     spare: float = 0.0,
-) -> Refuges:
-    """Return where a robot comes down: each of the fleet at points of its own, far from one another.
+) -> RallyPoints:
+    """Return the rally points of a robot, which differ from those of all other robots of the program.
 
-    They are at least the mission's minimum separation apart, and so far that no two robots touch. Above
-    and below them nothing is in the way, and no robot comes too near to a forbidden area.
+    Any two points are at least the mission's minimum separation apart, and far enough for no two robots
+    to touch. They keep clear of obstacles above and below, and of forbidden areas.
 
     Args:
         robot: of the program.
         program: of the whole fleet.
-        types: of robots, by name, as far as they are known.
-        areas: of the context as drawn, those to keep from as well.
-        spare: metres to the edges of areas beside what must be kept.
+        types: robot types by name, as far as they are known.
+        areas: of the context as drawn, emergency areas and areas to keep clear of.
+        spare: metres to keep from the edges of areas in addition to the clearance.
     """
     clearance = {each.id: _clearance(each, program, types) for each in program.robots}
     widest = max(clearance.values()) + spare
     apart = max(2.0 * widest, program.minimum_separation or 0.0)
-    heeded = [area for area in areas if area.concerns(robot.type_name)]
-    own = [area for area in heeded if area.use is AreaUse.EMERGENCY]
+    concerned = [area for area in areas if area.concerns(robot.type_name)]
+    own = [area for area in concerned if area.use is AreaUse.EMERGENCY]
     number, count = list(clearance).index(robot.id), len(clearance)
     low, high = _heights(program)
-    others = [a for a in heeded if a.use is not AreaUse.EMERGENCY and a.low <= high and a.high >= low]
+    others = [a for a in concerned if a.use is not AreaUse.EMERGENCY and a.low <= high and a.high >= low]
 
     def found_in(area: Area, keep: float, count: int) -> tuple[Point, ...]:
-        barred = [(area.shell, area.safety_distance + keep) for area in others]
-        return refuge_points(area.shell, area.safety_distance + keep, apart, count, barred)
+        barred = tuple((area.shell, area.safety_distance + keep) for area in others)
+        return points_in_area(area.shell, area.safety_distance + keep, apart, count, barred)
 
     found = [found_in(area, widest, count) for area in own]
     if points := tuple(places[number] for places in found if number < len(places)):
-        return Refuges(points)
+        return RallyPoints(points)
     keep = clearance[robot.id] + spare
     alone = {area.name: found_in(area, keep, 1) for area in own}
     names = ", ".join(f"'{name}'" for name, places in alone.items() if places)
-    words = f"in an emergency it may come down where others do: there is no room for all of them in {names}"
+    words = f"in an emergency it may land where others do: there is no room for all robots in {names}"
     shared = words if names and count > 1 else ""
-    return Refuges(tuple(places[0] for places in alone.values() if places), shared)
+    return RallyPoints(tuple(places[0] for places in alone.values() if places), shared)
 
 
 def _clearance(robot: RobotProgram, program: Program, types: Mapping[str, RobotType]) -> float:
@@ -78,7 +78,7 @@ def _clearance(robot: RobotProgram, program: Program, types: Mapping[str, RobotT
 
 
 def _heights(program: Program) -> tuple[float, float]:
-    """Return the lowest and the highest place of the fleet's moves, homes and the origin, metres."""
+    """Return the lowest and the highest altitude of moves, homes and origin, metres."""
     homes = [robot.home for robot in program.robots]
     targets = [move.target.position for robot in program.robots for move in robot.moves if move.target]
     heights = [0.0, *(place[2] for place in (*homes, *targets) if place is not None)]
@@ -95,8 +95,9 @@ _FINENESS = 4.0
 """Candidates along the least distance between two points."""
 
 
-def refuge_points(
-    ring: Sequence[Vertex], keep: float, apart: float, count: int, barred: Sequence[Kept] = ()
+@lru_cache(maxsize=64)
+def points_in_area(
+    ring: tuple[Vertex, ...], keep: float, apart: float, count: int, barred: tuple[Kept, ...] = ()
 ) -> tuple[Vertex, ...]:
     """Return points inside a ring, as far apart as there is room; fewer than `count` where it has none.
 
@@ -107,14 +108,6 @@ def refuge_points(
         count: how many are wanted; the first one does not depend on it.
         barred: what no point may be in, nor nearer to.
     """
-    return _points(tuple(ring), keep, apart, count, tuple(barred))
-
-
-@lru_cache(maxsize=64)
-def _points(
-    ring: tuple[Vertex, ...], keep: float, apart: float, count: int, barred: tuple[Kept, ...]
-) -> tuple[Vertex, ...]:
-    """Return them, once for all robots of a fleet."""
     free = shrink(ring, keep).difference(shapely.union_all([grow(*each) for each in barred]))
     parts = [part for part in _parts(free) if part.area > 0]
     if not parts or count < 1:

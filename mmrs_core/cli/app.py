@@ -163,16 +163,16 @@ def _add_plugin_commands(app: typer.Typer, settings: Settings, called: str | Non
     for command in commands:
         passed = {"allow_extra_args": True, "ignore_unknown_options": True, "help_option_names": []}
         app.command(command.name, help=command.help, context_settings=passed, add_help_option=False)(
-            _runner(command, contributions.blamed("commands", command), settings)
+            _runner(command, contributions.source_of("commands", command), settings)
         )
 
 
-def _runner(command: Command, blamed: str, settings: Settings) -> Callable[[typer.Context], int]:
+def _runner(command: Command, source: str, settings: Settings) -> Callable[[typer.Context], int]:
     def run(context: typer.Context) -> int:
         try:
             entry = _imported(command)
         except Exception as error:
-            raise PluginError(f"{blamed}: {command.entry} cannot be imported: {error!r}") from error
+            raise PluginError(f"{source}: {command.entry} cannot be imported: {error!r}") from error
         try:
             if isinstance(entry, typer.Typer):
                 result = _result_of(entry, command.name, context.args, settings)
@@ -181,7 +181,7 @@ def _runner(command: Command, blamed: str, settings: Settings) -> Callable[[type
         except (MmrsError, OSError, typer.TyperException, typer.Exit, typer.Abort):
             raise  # about what the user gave, in the words of all commands
         except Exception as error:
-            raise PluginError(f"{blamed} fails: {error!r}") from error
+            raise PluginError(f"{source} fails: {error!r}") from error
         return result if isinstance(result, int) else 0
 
     return run

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from mmrs_core.behaviour.box_files import black_boxes, is_part
-from mmrs_core.behaviour.log import logs_in, read_logs, salvage_log
+from mmrs_core.behaviour.log import logs_in, read_logs, recover_log
 from mmrs_core.behaviour.replay import ReplayResult
 from mmrs_core.behaviour.replay import replay as replayed
 from mmrs_core.cli.behaviours import load_program
@@ -56,7 +56,7 @@ def replay(
     else:
         _say(result, flight)
         if partial and flight is None:
-            for damage in (each for path in logs_in(given) for each in salvage_log(path)[1]):
+            for damage in (each for path in logs_in(given) for each in recover_log(path)[1]):
                 tell(str(damage))
         if flight is not None and steps:
             _say_steps(flight, program)

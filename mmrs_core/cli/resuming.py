@@ -7,7 +7,7 @@ from pathlib import Path
 
 import typer
 
-from mmrs_core.behaviour.log import read_log, read_logs, salvage_log
+from mmrs_core.behaviour.log import read_log, read_logs, recover_log
 from mmrs_core.behaviour.program import Program
 from mmrs_core.behaviour.replay import replay
 from mmrs_core.cli.output import counted, tell
@@ -40,7 +40,7 @@ def resumed_steps(program: Program, wishes: Wishes, here: tuple[str, ...]) -> tu
         if plan_of(black_box_path(path)) not in ("", program.fingerprint):
             raise InvalidModelError(f"{path}: was flown by another plan of the mission")
     records = read_logs(found, partial=True)
-    for damage in (each for path in found for each in salvage_log(path)[1]):
+    for damage in (each for path in found for each in recover_log(path)[1]):
         tell(f"{damage}: left out")
     result = replay(program, records, partial=True)
     if not result.accepted and len(here) == len(program.robots):

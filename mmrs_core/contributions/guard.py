@@ -20,11 +20,11 @@ class Guarded:
 
     Attributes:
         function: the plug-in's own.
-        blamed: plug-in, distribution and contribution, for messages.
+        label: plug-in, distribution and contribution, for messages.
     """
 
     function: Callable[..., Any]
-    blamed: str
+    label: str
 
     def __call__(self, *arguments: Any, **named: Any) -> Any:
         """Return what the function returns.
@@ -57,10 +57,10 @@ class Guarded:
             raise self._failure(error) from error
 
     def _failure(self, error: Exception) -> PluginError:
-        return PluginError(f"{self.blamed} fails: {error!r}")
+        return PluginError(f"{self.label} fails: {error!r}")
 
 
-def guarded(descriptor: Descriptor, blamed: str) -> Descriptor:
+def guarded(descriptor: Descriptor, label: str) -> Descriptor:
     """Return a descriptor whose functions blame the plug-in for their failures.
 
     >>> from mmrs_core.contributions.execution import Condition
@@ -73,4 +73,4 @@ def guarded(descriptor: Descriptor, blamed: str) -> Descriptor:
         return descriptor
     held = ((field.name, getattr(descriptor, field.name)) for field in fields(descriptor))
     functions = ((name, value) for name, value in held if callable(value) and not isinstance(value, type))
-    return replace(descriptor, **{name: Guarded(value, blamed) for name, value in functions})
+    return replace(descriptor, **{name: Guarded(value, label) for name, value in functions})

@@ -206,7 +206,7 @@ class Contributions:
         """Return the distribution whose plug-in contributed a descriptor; empty if none did."""
         return self._distributions.get(self._plugin_of(sort, item), "")
 
-    def blamed(self, sort: str, item: object) -> str:
+    def source_of(self, sort: str, item: object) -> str:
         """Return plug-in, distribution and name of a descriptor, for messages about its failures."""
         return f"{self._whose(self._plugin_of(sort, item))}: {called(sort, item)}"
 

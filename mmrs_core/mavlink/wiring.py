@@ -66,8 +66,8 @@ def _wired(each: DeviceWiring, action: Action, device: Device) -> Wiring | None:
     found: object = each.wire(action, device)
     if found is None or _is_wiring(found):
         return found  # type: ignore[return-value]
-    blamed = getattr(each.wire, "blamed", f"wiring '{each.property}'")
-    raise PluginError(f"{blamed}: returns {found!r} for action '{action.name}', which is no wiring")
+    source = getattr(each.wire, "label", f"wiring '{each.property}'")
+    raise PluginError(f"{source}: returns {found!r} for action '{action.name}', which is no wiring")
 
 
 def _is_wiring(found: object) -> bool:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from functools import cached_property
 from math import dist
 
-from mmrs_core.behaviour.rally_points import refuges_of
+from mmrs_core.behaviour.rally_points import rally_points_of
 from mmrs_core.contributions.vehicles import VehicleInput
 from mmrs_core.errors import UnreachableError
 from mmrs_core.planning.paths import Space
@@ -60,7 +60,7 @@ class Escapes:
         if response == "RETURN":
             return (self._home[0], self._home[1], self._height(here))
         if response == "EMERGENCY_AREA":
-            places = [(east, north, self._height(here)) for east, north in self._refuges]
+            places = [(east, north, self._height(here)) for east, north in self._rally_points]
             return min(places, key=lambda place: dist(place, here), default=here)
         return None
 
@@ -73,11 +73,11 @@ class Escapes:
         return path if up == ground else (*path, (east, north, ground))
 
     @cached_property
-    def _refuges(self) -> tuple[tuple[float, float], ...]:
+    def _rally_points(self) -> tuple[tuple[float, float], ...]:
         """Return a point of the robot's own inside every emergency area that is large enough."""
         given, spare = self._given, self._kinematics.turning_radius
         types = {**given.types, given.type.name: given.type}
-        return refuges_of(given.robot, given.program, types, given.areas, spare).points
+        return rally_points_of(given.robot, given.program, types, given.areas, spare).points
 
     @cached_property
     def _space(self) -> Space:

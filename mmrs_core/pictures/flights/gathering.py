@@ -9,7 +9,7 @@ from pathlib import Path
 from types import MappingProxyType
 
 from mmrs_core.behaviour.box_files import BlackBox, black_boxes, is_part
-from mmrs_core.behaviour.log import logs_in, salvage_log
+from mmrs_core.behaviour.log import logs_in, recover_log
 from mmrs_core.behaviour.program import Program, RobotProgram
 from mmrs_core.contributions.rules import RobotKind
 from mmrs_core.errors import InvalidModelError, UnreadableError
@@ -170,7 +170,7 @@ def _is_of(robot: RobotProgram, record: StepRecord) -> bool:
 def _steps(paths: Sequence[Path], damages: list[str]) -> dict[str, list[StepRecord]]:
     steps: dict[str, list[StepRecord]] = {}
     for path in logs_in(paths):
-        records, unread = salvage_log(path)
+        records, unread = recover_log(path)
         damages += _told(unread, len(unread))
         for record in records:
             steps.setdefault(record.robot, []).append(record)

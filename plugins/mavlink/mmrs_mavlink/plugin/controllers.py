@@ -9,7 +9,7 @@ from typing import Any, ClassVar
 
 from mmrs_core.behaviour.earth import degrees_of, metres
 from mmrs_core.behaviour.program import Action, Heading, Move, RobotProgram
-from mmrs_core.behaviour.rally_points import Refuges, refuges_of
+from mmrs_core.behaviour.rally_points import RallyPoints, rally_points_of
 from mmrs_core.behaviour.travel import capability_of, manner_of
 from mmrs_core.contributions.targets import TargetInput
 from mmrs_core.contributions.wiring import Sampled, Unwired, Wired
@@ -39,7 +39,7 @@ class _Protection:
     """What protects a robot beside its program."""
 
     fences: tuple[Fence, ...]
-    refuges: Refuges
+    rally_points: RallyPoints
     escapes: tuple[Escape, ...]
 
     @property
@@ -47,7 +47,7 @@ class _Protection:
         """Return all points that it consists of, seen from above."""
         corners = [vertex for fence in self.fences for vertex in fence.ring]
         ways = [place[:2] for escape in self.escapes for place in escape.places]
-        return [*corners, *self.refuges.points, *ways]
+        return [*corners, *self.rally_points.points, *ways]
 
 
 def _take_off(move: Move, context: VehicleContext, driver: object) -> Call:
@@ -151,9 +151,9 @@ class MavlinkPython(PythonDriver[VehicleContext]):
             "fence",
             tuple(tuple(_ground(each, context) for each in fence.ring) for fence in kept.fences),
         )
-        shared = (kept.refuges.shared,) if kept.refuges.shared else ()
+        shared = (kept.rally_points.shared,) if kept.rally_points.shared else ()
         yield "tight", (*(str(fence) for fence in kept.fences if fence.is_tight), *shared)
-        points = kept.refuges.points
+        points = kept.rally_points.points
         yield "rally", tuple(place_of((*point, _highest(context)), context) for point in points)
         yield "escapes", tuple(_escapes(kept.escapes, context))
         if _escapes_alone(robot, input) and not straight_lines_are_clear(context, input, points):
@@ -224,10 +224,10 @@ def _rehearsal(driver: MavlinkPython, input: TargetInput) -> Iterator[str]:
 
 def _protection(robot: RobotProgram, input: TargetInput) -> _Protection:
     if input.program.frame.is_local:
-        return _Protection((), Refuges(), ())
-    refuges = refuges_of(robot, input.program, input.types, input.areas)
-    escapes = escapes_of(robot, input, refuges.points)
-    return _Protection(fences_of(robot, input, escapes), refuges, escapes)
+        return _Protection((), RallyPoints(), ())
+    rally_points = rally_points_of(robot, input.program, input.types, input.areas)
+    escapes = escapes_of(robot, input, rally_points.points)
+    return _Protection(fences_of(robot, input, escapes), rally_points, escapes)
 
 
 def _escapes(escapes: Iterable[Escape], context: VehicleContext) -> Iterator[tuple[str, object]]:

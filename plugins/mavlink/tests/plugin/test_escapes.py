@@ -8,7 +8,7 @@ import pytest
 from shapely import LineString, Polygon
 
 from mmrs_core import pipeline
-from mmrs_core.behaviour.rally_points import refuges_of
+from mmrs_core.behaviour.rally_points import rally_points_of
 from mmrs_core.contributions.targets import TargetInput
 from mmrs_core.generation.python.program import robot_view
 from mmrs_core.generation.safety import clearance_of
@@ -119,7 +119,7 @@ def test_ways_out_of_the_carbon_dioxide_mission_are_short_and_clear():
     given = carbon_dioxide()
     areas = [area for area in given.areas if area.use is not AreaUse.EMERGENCY]
     for robot in given.program.robots:
-        points = refuges_of(robot, given.program, given.types, given.areas).points
+        points = rally_points_of(robot, given.program, given.types, given.areas).points
         found = escapes_of(robot, given, points)
         assert len(found) > 0.9 * sum(move.target is not None for move in robot.moves)
         own = clearance_of(given.types[robot.type_name], given.program.position_error)

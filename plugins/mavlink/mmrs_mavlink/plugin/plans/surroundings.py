@@ -8,7 +8,7 @@ from typing import TypeAlias
 
 from mmrs_core.behaviour.earth import degrees_of, metres, sea_level_of
 from mmrs_core.behaviour.program import RobotProgram
-from mmrs_core.behaviour.rally_points import refuges_of
+from mmrs_core.behaviour.rally_points import rally_points_of
 from mmrs_core.contributions.targets import TargetInput
 from mmrs_core.generation.context import require_home
 from mmrs_core.generation.escaping import file_stems
@@ -63,7 +63,7 @@ def missions_of(input: TargetInput) -> Iterator[Mission]:
 
 def _mission(context: VehicleContext, input: TargetInput, stem: str, sortie: Sequence[Item]) -> Mission:
     robot = context.robot
-    points = refuges_of(robot, input.program, input.types, input.areas).points
+    points = rally_points_of(robot, input.program, input.types, input.areas).points
     return Mission(
         context,
         stem,
