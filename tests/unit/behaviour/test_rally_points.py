@@ -47,11 +47,11 @@ def test_robots_for_which_there_is_no_room_in_one_area_use_the_others():
     assert (one.shared, two.shared) == ("", "")
 
 
-def test_people_are_told_where_robots_must_share_a_place():
+def test_shared_rally_points_are_reported():
     one, two = rally_points(yard(10.0), robots=2, separation=8.0)
     assert one.points == two.points == ((5.0, 5.0),)
     assert one.shared == ""
-    assert "no room for all of them in 'yard'" in two.shared
+    assert "no room for all robots in 'yard'" in two.shared
 
 
 def beside(use=AreaUse.FORBIDDEN, **heights):
