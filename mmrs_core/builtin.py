@@ -15,18 +15,6 @@ if TYPE_CHECKING:
     from mmrs_core.contributions.rules import MoveKind, RobotKind
     from mmrs_core.contributions.vehicles import VehicleFactory
     from mmrs_core.contributions.wiring import DeviceWiring
-    from mmrs_core.migration.dialect import ForeignDialect
-
-FLYAQ = "flyaq-2015.toml"
-
-
-@hookimpl
-def mmrs_dialects() -> Iterable[ForeignDialect]:
-    """Contribute the models of the platform that these languages come from."""
-    from mmrs_core.migration.dialect import ForeignDialect
-    from mmrs_core.resources import shipped
-
-    return (ForeignDialect("FLYAQ 2015", shipped("migrations") / FLYAQ),)
 
 
 @hookimpl

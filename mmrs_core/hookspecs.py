@@ -25,9 +25,9 @@ if TYPE_CHECKING:
     from mmrs_core.contributions.vehicles import VehicleFactory
     from mmrs_core.contributions.wiring import DeviceWiring
     from mmrs_core.languages.evolution.migration import Migration
+    from mmrs_core.languages.importers import Importer
     from mmrs_core.languages.sources import MetamodelSource
     from mmrs_core.languages.subclasses import ElementClass
-    from mmrs_core.migration.dialect import ForeignDialect
     from mmrs_runtime.records.steps import StepRecord
 
 hookspec = pluggy.HookspecMarker("mmrs")
@@ -53,8 +53,8 @@ def mmrs_migrations() -> Iterable[Migration]:  # type: ignore[empty-body]
 
 
 @hookspec
-def mmrs_dialects() -> Iterable[ForeignDialect]:  # type: ignore[empty-body]
-    """Contribute dialects of other tools, whose models every command takes; one for a name."""
+def mmrs_importers() -> Iterable[Importer]:  # type: ignore[empty-body]
+    """Contribute importers of other tools' models, which every command then accepts; one for a name."""
 
 
 @hookspec

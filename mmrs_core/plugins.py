@@ -26,7 +26,7 @@ _KINDS: Mapping[str, str] = {
     "metamodels": "languages.sources.MetamodelSource",
     "element_classes": "languages.subclasses.ElementClass",
     "migrations": "languages.evolution.migration.Migration",
-    "dialects": "migration.dialect.ForeignDialect",
+    "importers": "languages.importers.Importer",
     "constraints": "contributions.constraints.Constraint",
     "fixes": "contributions.fixes.Fix",
     "rules": "contributions.rules.Rule",
@@ -42,6 +42,7 @@ _KINDS: Mapping[str, str] = {
 }
 """What each sort of contribution is, within this package."""
 _GONE: Mapping[str, str] = {
+    "mmrs_dialects": "implement 'mmrs_importers'",
     "mmrs_backends": "implement 'mmrs_vehicles'",
     "mmrs_codecs": "name what opens drives by '--drives MODULE:FUNCTION' of 'python -m auv_vessel'",
 }
@@ -93,7 +94,7 @@ def load_plugins(
     Args:
         only_core: leave out everything but the core's own contributions.
         extra: plug-in objects beside the installed ones, by name.
-        quiet_migration: do not list what is not just as it was in models of dialects.
+        quiet_migration: do not list what is not just as it was in models of other tools.
 
     Raises:
         PluginError: if a plug-in does not import, misspells a hook or has one that is gone, or two have one

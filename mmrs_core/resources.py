@@ -13,7 +13,7 @@ def shipped(folder: str) -> Path:
     """Return the folder of shipped data with that name.
 
     Args:
-        folder: ``metamodels``, ``codegen_templates``, ``examples`` or ``migrations``.
+        folder: ``metamodels``, ``codegen_templates`` or ``examples``.
 
     Raises:
         InternalError: if neither the wheel nor the checkout has it.

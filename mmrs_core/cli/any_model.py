@@ -10,8 +10,8 @@ import typer
 
 from mmrs_core.cli.output import tell
 from mmrs_core.errors import UnreadableError
-from mmrs_core.languages.dialects import is_of_dialect
 from mmrs_core.languages.foreign import ForeignModel, missing_from, read_any
+from mmrs_core.languages.importers import is_importable
 from mmrs_core.languages.missing import DISTRIBUTIONS, stem_of
 from mmrs_core.languages.places import first_kind
 from mmrs_core.languages.registry import core_registry
@@ -21,7 +21,6 @@ if TYPE_CHECKING:
     from mmrs_core.diagnostics import Diagnostic
 
 NOT_INSTALLED = "XMI001"
-MIGRATE = "'mmrs migrate' makes a project of it"
 
 Metamodels = Annotated[
     list[Path] | None,
@@ -87,7 +86,7 @@ def _strange(found: ForeignModel) -> frozenset[str]:
 def is_foreign(session: Session, file: Path) -> bool:
     """Return whether a file holds a model, and its first element is of no language of MMRS's own.
 
-    A model of a dialect is none: it becomes one of MMRS's own while it is read.
+    A model that is imported is none: it becomes one of MMRS's own while it is read.
 
     Raises:
         UnreadableError: if it is missing or no model at all.
@@ -100,7 +99,7 @@ def is_foreign(session: Session, file: Path) -> bool:
     if not ns_uri or ns_uri in registry.chains:
         return False
     own = {package.ns_uri for package in core_registry().packages}
-    if not registry.has(ns_uri) and is_of_dialect(file, registry):
+    if not registry.has(ns_uri) and is_importable(file, registry):
         return False
     kinds = registry.package(ns_uri).metaclasses if registry.has(ns_uri) else ()
     ancestry = next((kind.ancestry for kind in kinds if kind.name == name), ((ns_uri, name),))

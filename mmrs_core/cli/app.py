@@ -57,9 +57,6 @@ _COMMANDS = (
         "mmrs_core.cli.convert:convert",
     ),
     Command("diff", "Compare two models.", "mmrs_core.cli.diff:diff"),
-    Command(
-        "migrate", "Migrate models of another dialect to an MMRS project.", "mmrs_core.cli.migrate:migrate"
-    ),
 )
 """The help of all together imports none of them: each line is the first of the command's own help."""
 _GROUPS = (

@@ -117,7 +117,7 @@ def read_behaviour_files(
 def _read_all(files: Sequence[Path], registry: Registry, unsaved: Mapping[Path, bytes] | None) -> list[Model]:
     """Return what files hold; whether one or all of them cannot be read, everything is told at once.
 
-    The last ones, which describe robot types, are read first: models of dialects are migrated by these.
+    The last ones, which describe robot types, are read first: models of other tools are imported by these.
     """
     models: list[Model] = []
     refused: list[UnreadableError] = []

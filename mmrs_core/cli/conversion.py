@@ -10,7 +10,7 @@ from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from mmrs_core.cli.any_model import MIGRATE, is_mistake, read_foreign
+from mmrs_core.cli.any_model import is_mistake, read_foreign
 from mmrs_core.cli.protection import ProtectedError, refuse_inputs
 from mmrs_core.cli.schema_places import places_in
 from mmrs_core.diagnostics import Diagnostic, in_order
@@ -113,15 +113,15 @@ def refuse_existing(targets: Sequence[Path], force: bool) -> None:
             raise ProtectedError(f"{target}: exists, and is not replaced; --force replaces it")
 
 
-def refuse_dialect(model: Model) -> None:
-    """Do nothing, unless a model was migrated from that of another tool: then it is not the same any more.
+def refuse_imported(model: Model) -> None:
+    """Do nothing, unless a model was imported from another tool's file: then it is not the same any more.
 
     Raises:
         UnsupportedError: if it was.
     """
-    if model.dialect:
-        ways = f"{MIGRATE}, and --metamodel converts it as it is"
-        raise UnsupportedError(f"{model.file}: a model of {model.dialect}, not converted; {ways}")
+    if model.importer:
+        ways = f"{model.importer.advice}, and --metamodel converts it as it is"
+        raise UnsupportedError(f"{model.file}: a model of {model.importer.name}, not converted; {ways}")
 
 
 def refuse_links_outside(source: Path, target: Path, linked: Sequence[Path]) -> None:
@@ -192,7 +192,7 @@ def _registry_for(session: Session, files: Sequence[Path], metamodels: Sequence[
     installed = session.contributions.languages
     read = [read_foreign(session, file, metamodels) for file in files]
     for each in read:
-        refuse_dialect(each.model)
+        refuse_imported(each.model)
     found = dict.fromkeys(file for each in read for file in each.found)
     return installed.extended(list(gathered(found, installed)))
 

@@ -17,8 +17,8 @@ from mmrs_core.cli.conversion import (
     form_of,
     is_followed,
     other_form,
-    refuse_dialect,
     refuse_existing,
+    refuse_imported,
     refuse_links_outside,
     targets_in,
     text_of,
@@ -128,7 +128,7 @@ def _as_json(made: Converted) -> dict[str, object]:
 def _alone(asked: _Asked, source: Path, target: Path | None) -> int:
 
     found = read_foreign(asked.session, source, asked.metamodels)
-    refuse_dialect(found.model)
+    refuse_imported(found.model)
     faults = tuple(faults_in(found))
     if any(map(is_mistake, faults)):
         raise InvalidModelError(f"{source}: not converted, since something of it would be lost", faults)

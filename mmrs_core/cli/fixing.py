@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING
 import typer
 
 from mmrs_core.analysis.fixes.repair import Change, Diagnose, Proposal, Repair, Repairer
-from mmrs_core.cli.any_model import MIGRATE
 from mmrs_core.cli.output import counted, say, tell
 from mmrs_core.cli.protection import ProtectedError
 from mmrs_core.cli.replacing import replace_files
@@ -42,9 +41,10 @@ def refuse_foreign(models: Iterable[Model]) -> None:
     """
     models = tuple(models)
     refused = [
-        f"{model.file}: a model of {model.dialect}, whose file is not mended; {MIGRATE}, which can be mended"
+        f"{model.file}: a model of {model.importer.name}, whose file is not mended; "
+        f"{model.importer.advice}, which can be mended"
         for model in models
-        if model.dialect
+        if model.importer
     ]
     if refused and len(refused) == len(models):
         raise ProtectedError(refused[0])
@@ -78,7 +78,7 @@ def show(repair: Repair, mendable: Container[str]) -> None:
     for proposal in repair.refused:
         tell(f"{_where(proposal)}: not mended: {proposal.objection} [{proposal.fault.code}]")
     refused = {proposal.fault for proposal in repair.refused}
-    foreign = {str(model.file) for model in repair.diagnosis.models if model.dialect}
+    foreign = {str(model.file) for model in repair.diagnosis.models if model.importer}
     for fault in repair.diagnosis.faults:
         if fault.code in mendable and fault not in refused and fault.place.file not in foreign:
             tell(f"{fault.place}: not mended: no single right answer is seen here [{fault.code}]")

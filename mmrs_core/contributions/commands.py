@@ -18,7 +18,6 @@ CORE_COMMANDS = frozenset(
         "show",
         "convert",
         "diff",
-        "migrate",
         "bus",
         "report",
         "control",

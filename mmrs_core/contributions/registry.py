@@ -21,8 +21,8 @@ if TYPE_CHECKING:
     from mmrs_core.contributions.targets import Target
     from mmrs_core.contributions.vehicles import VehicleFactory
     from mmrs_core.contributions.wiring import DeviceWiring
-    from mmrs_core.languages.dialects import Dialect
     from mmrs_core.languages.evolution.migration import Migration
+    from mmrs_core.languages.importers import Importer
     from mmrs_core.languages.registry import Registry
     from mmrs_core.languages.sources import MetamodelSource
     from mmrs_core.languages.subclasses import ElementClass
@@ -39,7 +39,7 @@ _SHOWN: Mapping[str, Callable[[Any], object]] = {
     "metamodels": lambda source: source.ns_uri,
     "element_classes": lambda given: "#//".join(given.metaclass),
     "migrations": lambda migration: f"{migration.from_uri} to {migration.to_uri}",
-    "dialects": lambda dialect: dialect.name,
+    "importers": lambda importer: importer.name,
     "constraints": lambda constraint: constraint.code,
     "fixes": lambda fix: fix.code,
     "rules": lambda rule: rule.name,
@@ -73,7 +73,7 @@ class Contributions:
     Args:
         declared: the (plug-in, descriptor) pairs of a sort, such as ``rules``, sorted by plug-in.
         distributions: where each plug-in comes from.
-        quiet_migration: do not list what is not just as it was in models of dialects.
+        quiet_migration: do not list what is not just as it was in models of other tools.
     """
 
     def __init__(
@@ -97,7 +97,7 @@ class Contributions:
         """Return the registry of all metamodels, the core's included."""
         from mmrs_core.languages.registry import registry_with  # the help needs plug-ins, but no language
 
-        return registry_with(self.metamodels, self.migrations, self.element_classes, self.dialects)
+        return registry_with(self.metamodels, self.migrations, self.element_classes, self.importers)
 
     @cached_property
     def element_classes(self) -> tuple[ElementClass, ...]:
@@ -117,10 +117,10 @@ class Contributions:
         return found
 
     @cached_property
-    def dialects(self) -> tuple[Dialect, ...]:
-        """Return the dialects of other tools whose models are migrated while they are read."""
-        found: Iterable[Dialect] = self._by("dialects", lambda dialect: dialect.name).values()
-        return tuple(each.quiet() if self._quiet_migration else each for each in found)
+    def importers(self) -> tuple[Importer, ...]:
+        """Return the importers of other tools' models."""
+        found: Iterable[Importer] = self._by("importers", lambda importer: importer.name).values()
+        return tuple(replace(each, notes=each.notes and not self._quiet_migration) for each in found)
 
     @cached_property
     def constraints(self) -> tuple[Constraint, ...]:

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from mmrs_core.errors import UnreadableError
-from mmrs_core.languages.dialects import is_of_dialect
 from mmrs_core.languages.element import Unknown
+from mmrs_core.languages.importers import is_importable
 from mmrs_core.languages.metamodels.gathering import beside, file_at, gathered
 from mmrs_core.languages.model import Model
 from mmrs_core.languages.places import first_kind, stated_places
@@ -75,11 +75,11 @@ def read_any(
 def _root_needs(path: Path, registry: Registry) -> frozenset[str]:
     """Return the language of a first element, unless it is known: what is unknown may not nest as deeply.
 
-    Models of dialects need none, since they are migrated.
+    Models that are imported need none.
     """
     with suppress(UnreadableError):  # reading it says why
         ns_uri, _ = first_kind(path)
-        is_known = not ns_uri or registry.has(ns_uri) or is_of_dialect(path, registry)
+        is_known = not ns_uri or registry.has(ns_uri) or is_importable(path, registry)
         return frozenset(() if is_known else (ns_uri,))
     return frozenset()
 

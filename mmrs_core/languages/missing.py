@@ -22,9 +22,6 @@ DISTRIBUTIONS = MappingProxyType(
 )
 """The distributions that bring our own plug-ins' metamodels, by nsURI without its version."""
 
-FORMER = ("http://www.flyaq.it/", "http://www.flyaql.it/")
-"""How the nsURIs of the languages begin that these come from."""
-
 _KEPT = "the element is kept as it is"
 
 
@@ -49,7 +46,7 @@ def hint_for(ns_uri: str, registry: Registry, kept: str = _KEPT) -> str:
     """Return what to do about a metamodel that a model needs and that is not installed, and what was `kept`.
 
     The hint names another version that is installed, a metamodel of nearly the same name, or the plug-in
-    that brings it, by its distribution where that is known; of a language of FLYAQ, what migrates its models.
+    that brings it, by its distribution where that is known; of another tool's language, how to import it.
     """
     stem = stem_of(ns_uri)
     installed = [package.ns_uri for package in registry.packages]
@@ -57,8 +54,10 @@ def hint_for(ns_uri: str, registry: Registry, kept: str = _KEPT) -> str:
     if others:
         known = " and ".join(others)
         return f"{known} is installed, but no migration leads there from this version; {kept}"
-    if ns_uri.startswith(FORMER):
-        return f"a language of FLYAQ: 'mmrs migrate' turns files that are wholly of it into a project; {kept}"
+    importer = next((each for each in registry.importers if each.covers(ns_uri)), None)
+    if importer is not None:
+        whole = f"a language of {importer.name}: only files entirely of it are imported"
+        return f"{whole}; {importer.advice}; {kept}"
     distribution = DISTRIBUTIONS.get(stem)
     if distribution:
         return f"a plug-in is missing: install {distribution}, which brings {ns_uri}; {kept}"

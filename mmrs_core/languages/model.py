@@ -5,9 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from mmrs_core.diagnostics import Diagnostic
 from mmrs_core.languages.element import Element, descendants
+
+if TYPE_CHECKING:
+    from mmrs_core.languages.importers import Importer
 
 
 @dataclass(frozen=True, slots=True)
@@ -20,8 +24,8 @@ class Model:
         diagnostics: every fault found while reading this file.
         linked: the other files that references led to, in the order in which they were met.
         broken: the features (element, name) that a reported fault left without their value.
-        dialect: the name of the dialect that the file is in, from which it was migrated while it was read;
-            empty for a file in the languages of its elements.
+        importer: what imported the file, which another tool wrote; None for a file in the languages of its
+            elements.
     """
 
     file: Path | str
@@ -29,7 +33,7 @@ class Model:
     diagnostics: tuple[Diagnostic, ...] = ()
     linked: tuple[Model, ...] = ()
     broken: frozenset[tuple[Element, str]] = frozenset()
-    dialect: str = ""
+    importer: Importer | None = None
 
     def elements(self) -> Iterator[Element]:
         """Yield all elements in document order."""

@@ -23,7 +23,7 @@ from mmrs_core.languages.xmi.quick_reader import QuickReader
 
 if TYPE_CHECKING:
     from mmrs_core.diagnostics import Diagnostic
-    from mmrs_core.languages.dialects import Foreign
+    from mmrs_core.languages.importers import ForeignFile
 
 
 class Reading:
@@ -39,7 +39,7 @@ class Reading:
         """Take the metamodels, and the folder that references must not leave (None: no file at all).
 
         Texts that are not saved yet are read instead of what their files, by real path, hold. What was
-        read before is known to models of dialects, which may name robot types.
+        read before is known to importers, whose files may name robot types.
         """
         self._registry = registry
         self._known = tuple(known)
@@ -49,7 +49,7 @@ class Reading:
         self._described: dict[str, Draft] = {}
         self._refused: dict[Path, tuple[str, str, str, int]] = {}
         self._unresolved: list[Draft] = []
-        self._foreign: list[tuple[Draft, Foreign]] = []
+        self._foreign: list[tuple[Draft, ForeignFile]] = []
         self._following = False
 
     def open(self, path: Path) -> Draft:
@@ -85,20 +85,20 @@ class Reading:
         return self._described[ns_uri]
 
     def parse(self, data: bytes, source: Source) -> Draft:
-        """Read the text of a file; errors as in `open`. One of a dialect is empty until `follow`."""
+        """Read the text of a file; errors as in `open`. One that is imported is empty until `follow`."""
         try:
             draft, refusal = self._parsed(data, source), None
         except UnreadableError as error:
             draft, refusal = Draft(source), error
         if all(isinstance(root, Unknown) for root in draft.roots):
-            from mmrs_core.languages.dialects import recognised
+            from mmrs_core.languages.importers import foreign_file
 
-            foreign = recognised(data, source.file, self._registry, stored=source.path is not None)
+            foreign = foreign_file(data, source.file, self._registry, stored=source.path is not None)
             if foreign is not None:
-                draft = Draft(Source(source.file, source.path), dialect=foreign.dialect.name)
+                draft = Draft(Source(source.file, source.path), importer=foreign.importer)
                 self._foreign.append((draft, foreign))
                 if self._following:
-                    self._migrate()  # what refers to it looks into it at once
+                    self._import()  # what refers to it looks into it at once
             elif refusal is not None:
                 raise refusal
         draft.number_roots()
@@ -126,7 +126,7 @@ class Reading:
         """Resolve the references of all files read so far, and of those that they lead to."""
         doubled = []
         self._following = True
-        self._migrate()
+        self._import()
         with collector_at_rest():
             while self._unresolved:
                 draft = self._unresolved.pop(0)
@@ -134,20 +134,19 @@ class Reading:
             for draft, references in doubled:
                 tell_other_ends(draft, references)
 
-    def _migrate(self) -> None:
-        """Fill the files of dialects with what becomes of them, those of one dialect together."""
+    def _import(self) -> None:
+        """Fill the drafts of foreign files, those of one importer together."""
         foreign, self._foreign = self._foreign, []
         waiting = {id(draft) for draft, _ in foreign}
         read = [
             root for draft in self._drafts.values() if id(draft) not in waiting for root in draft.source.roots
         ]
-        for dialect in dict.fromkeys(each.dialect for _, each in foreign):
-            own = [(draft, each) for draft, each in foreign if each.dialect is dialect]
-            files = [each for _, each in own]
-            for (draft, _), made in zip(
-                own, dialect.migrated(files, self._registry, (*self._known, *read)), strict=True
-            ):
-                draft.take(made.roots, made.diagnostics)
+        for importer in dict.fromkeys(each.importer for _, each in foreign):
+            own = [(draft, each.candidate) for draft, each in foreign if each.importer is importer]
+            known = (*self._known, *read)
+            made = importer.convert([each for _, each in own], self._registry, known, importer.notes)
+            for (draft, _), imported in zip(own, made, strict=True):
+                draft.take(imported.roots, imported.diagnostics)
 
     def model(self, draft: Draft) -> Model:
         """Return what a file holds, with the other files read together with it."""
@@ -162,7 +161,7 @@ class Reading:
 
     def _plain(self, draft: Draft) -> Model:
         file = Path(draft.source.file) if draft.source.path else draft.source.file
-        return Model(file, draft.source.roots, _explained(draft), (), frozenset(draft.broken), draft.dialect)
+        return Model(file, draft.source.roots, _explained(draft), (), frozenset(draft.broken), draft.importer)
 
 
 def _explained(draft: Draft) -> tuple[Diagnostic, ...]:
@@ -188,7 +187,7 @@ def read_model(
         registry: the metamodels it may use.
         root: the folder that references to other files must not leave; by default the file's own.
         unsaved: texts to be read instead of what files hold, by real path.
-        known: roots of files read before, such as robot types, that a model of a dialect may name.
+        known: roots of files read before, such as robot types, that an imported model may name.
 
     Raises:
         UnreadableError: if the file is missing, not well-formed, has a DOCTYPE, is too large or too deep.

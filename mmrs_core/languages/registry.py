@@ -24,7 +24,7 @@ from mmrs_core.resources import shipped
 if TYPE_CHECKING:
     from pyecore.ecore import EPackage
 
-    from mmrs_core.languages.dialects import Dialect
+    from mmrs_core.languages.importers import Importer
     from mmrs_core.languages.xmi.shapes import Maker
 
 _ONE_AT_A_TIME = RLock()
@@ -38,7 +38,7 @@ class Registry:
         packages: in the order in which they were given, a package before those inside it.
         migrations: steps from older versions of them.
         classes: the Python subclasses that elements are instances of, by the key of their metaclass.
-        dialects: of other tools, whose models are migrated into them.
+        importers: of other tools' models, which become models of these metamodels.
         makers: functions that readers compiled, for the next file.
     """
 
@@ -47,12 +47,12 @@ class Registry:
         packages: Iterable[Package],
         migrations: Iterable[Migration] = (),
         classes: Iterable[ElementClass] = (),
-        dialects: Iterable[Dialect] = (),
+        importers: Iterable[Importer] = (),
     ) -> None:
         """Take packages that hold each other's types; errors of the classes as in `registry_with`."""
         self.packages = tuple(package for package in packages if package.ns_uri not in BUILT_IN)
         self.migrations = tuple(migrations)
-        self.dialects = tuple(dialects)
+        self.importers = tuple(importers)
         self.makers: dict[tuple[object, ...], Maker | None] = {}
         self._packages = {package.ns_uri: package for package in self.packages}
         self._metaclasses: Mapping[tuple[str, str], Metaclass] = {
@@ -113,7 +113,7 @@ class Registry:
         if not more:
             return self
         packages = (*self.packages, *_assemble(more, self.packages))
-        return Registry(packages, self.migrations, self.classes.values(), self.dialects)
+        return Registry(packages, self.migrations, self.classes.values(), self.importers)
 
     @cached_property
     def chains(self) -> Mapping[str, tuple[Migration, ...]]:
@@ -205,7 +205,7 @@ def registry_with(
     sources: Iterable[MetamodelSource],
     migrations: Iterable[Migration] = (),
     classes: Iterable[ElementClass] = (),
-    dialects: Iterable[Dialect] = (),
+    importers: Iterable[Importer] = (),
 ) -> Registry:
     """Return the core's metamodels together with others, which may build upon each other in any order.
 
@@ -213,7 +213,7 @@ def registry_with(
         sources: the others.
         migrations: from older versions of any of them.
         classes: Python subclasses for elements, one for a metaclass; for whom this registry makes elements.
-        dialects: of other tools.
+        importers: of other tools' models.
 
     Raises:
         PluginError: if a metamodel refers to one that is missing, two have the same nsURI, a class inherits
@@ -223,7 +223,7 @@ def registry_with(
     """
     given = tuple(sources)
     packages = _assembled(given, tuple(_stamp(source.ecore) for source in given))
-    return Registry((*core_registry().packages, *packages), migrations, classes, dialects)
+    return Registry((*core_registry().packages, *packages), migrations, classes, importers)
 
 
 @lru_cache(8)

@@ -68,13 +68,13 @@ def test_every_field_of_what_is_declared_is_told():
         wiring,
     )
     from mmrs_core.languages.evolution.migration import Migration
+    from mmrs_core.languages.importers import Importer
     from mmrs_core.languages.subclasses import ElementClass
-    from mmrs_core.migration.dialect import ForeignDialect
 
     told = {
         "mmrs_element_classes": ElementClass,
         "mmrs_migrations": Migration,
-        "mmrs_dialects": ForeignDialect,
+        "mmrs_importers": Importer,
         "mmrs_constraints": constraints.Constraint,
         "mmrs_fixes": fixes.Fix,
         "mmrs_rules": rules.Rule,

@@ -30,7 +30,7 @@ print(json.dumps({
     "core": mmrs_core.__file__,
     "packages": sorted(package.ns_uri for package in contributions.languages.packages),
     "examples": sorted(folder.name for folder in shipped("examples").iterdir() if folder.is_dir()),
-    "migrations": sorted(file.name for file in shipped("migrations").iterdir()),
+    "importers": [importer.name for importer in contributions.languages.importers],
     "templates": sorted(str(target.templates) for target in contributions.targets.values()),
     "missing": [str(t.templates) for t in contributions.targets.values() if not t.templates.is_dir()],
 }))
@@ -66,7 +66,7 @@ def test_wheels_find_their_metamodels_templates_and_examples(site, tmp_path):
     )
     assert {"urn:mmrs:multicopter:1.0", "urn:mmrs:auv:1.1", "urn:mmrs:survey:1.0"} <= set(found["packages"])
     assert "carbon-dioxide" in found["examples"]
-    assert "flyaq-2015.toml" in found["migrations"]
+    assert "FLYAQ 2015" in found["importers"]
     assert found["templates"]
     assert all(Path(folder).is_relative_to(site) for folder in found["templates"])
     assert found["missing"] == []

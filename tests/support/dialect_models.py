@@ -6,7 +6,7 @@ import json
 from random import Random
 from xml.sax.saxutils import quoteattr
 
-from mmrs_core.migration.sources.structure import Sort, Structure
+from mmrs_flyaq.sources.structure import Sort, Structure
 
 LETTERS = "abcXYZ019 _-äß"
 

@@ -13,6 +13,7 @@ from tempfile import mkdtemp
 
 from checking import given, rover
 from diagnostics_page import Example
+from mmrs_flyaq.importing import importer_of
 
 from mmrs_core.behaviour.log import read_log
 from mmrs_core.behaviour.program import Action, RobotProgram
@@ -30,7 +31,6 @@ from mmrs_core.languages.modelset import read_project
 from mmrs_core.languages.reading import read_model, read_text
 from mmrs_core.languages.registry import MetamodelSource, Registry, core_registry, registry_with
 from mmrs_core.languages.writing import to_xmi
-from mmrs_core.migration.dialect import ForeignDialect
 from mmrs_core.scene import Part
 from mmrs_core.testing.conformance import ConstraintConformance
 from mmrs_core.testing.models import breaches
@@ -249,10 +249,10 @@ def _of_dialect(text: str, folder: Path) -> tuple[Diagnostic, ...]:
         "urn:example:port", "urn:example:gulls"
     )
     (place / "gulls.toml").write_text(gulls, encoding="utf-8")
-    dialects = [ForeignDialect("Port", place / "port.toml"), ForeignDialect("Gulls", place / "gulls.toml")]
+    importers = [importer_of("Port", place / "port.toml"), importer_of("Gulls", place / "gulls.toml")]
     try:
         file = "tug.json" if text.startswith("{") else "tug.xmi"
-        return read_text(text.encode(), file, registry_with([], dialects=dialects)).diagnostics
+        return read_text(text.encode(), file, registry_with([], importers=importers)).diagnostics
     except UnreadableError as error:
         return tuple(replace(each, message=each.message.replace(f"{place}/", "")) for each in refusal(error))
 

@@ -7,6 +7,9 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from fuzzing import Way, sound_texts
+from mmrs_flyaq.migrate import migrate
+from mmrs_flyaq.plugin import FLYAQ_2015
+from mmrs_flyaq.rules.mapping_file import read_mapping
 
 from mmrs_core.analysis.constraints import check_behaviour
 from mmrs_core.analysis.fixes.repair import Diagnosis, Repairer
@@ -20,14 +23,11 @@ from mmrs_core.languages.model import Model
 from mmrs_core.languages.reading import read_text
 from mmrs_core.languages.registry import core_registry
 from mmrs_core.languages.writing import to_json, to_xmi
-from mmrs_core.migration.migrate import migrate
-from mmrs_core.migration.rules.mapping_file import read_mapping
 from mmrs_core.pipeline import check_models, read_models
-from mmrs_core.resources import shipped
 
 PROJECT = Path(__file__).parents[2]
 EXAMPLES = PROJECT / "examples"
-LEGACY = PROJECT / "tests" / "fixtures" / "flyaq"
+LEGACY = PROJECT / "plugins" / "flyaq" / "tests" / "fixtures" / "flyaq"
 UNREADABLE, FAULTS, SOUND = "unreadable", "faults", "no fault"
 
 
@@ -142,7 +142,7 @@ class _Dialects:
         self._folder = folder / "legacy"
         self._folder.mkdir(exist_ok=True)
         self._registry = contributions.languages
-        self._mapping = read_mapping(shipped("migrations") / "flyaq-2015.toml", self._registry)
+        self._mapping = read_mapping(FLYAQ_2015, self._registry)
 
     def read(self, text: bytes, name: str) -> str:
         """Migrate a model of the dialect of 2015."""

@@ -134,8 +134,8 @@ class Repairer:
         found: dict[tuple[str, Place], tuple[Edit, ...]] = {}
         for fault in diagnosis.faults:
             fix, model = self._fixes.get(fault.code), files.get(fault.place.file)
-            if fix is None or model is None or model.dialect:
-                continue  # what a dialect's element became has no text of its own to be mended
+            if fix is None or model is None or model.importer:
+                continue  # what an imported element became has no text of its own to be mended
             file = Path(fault.place.file).resolve()
             if file not in markups:
                 markups[file] = _markup(file, texts or {})

@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from io import TextIOBase
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from pyecore.resources import URI, Resource
 
@@ -21,6 +21,9 @@ from mmrs_core.languages.reading import read_model, read_text
 from mmrs_core.languages.references.hrefs import real_path
 from mmrs_core.languages.registry import Registry
 from mmrs_core.languages.writing import replace_file, to_json, to_xmi
+
+if TYPE_CHECKING:
+    from mmrs_core.languages.importers import Importer
 
 
 def resource_factory(registry: Registry, root: Path | None = None) -> Callable[..., ModelResource]:
@@ -38,7 +41,7 @@ class ModelResource(Resource):  # type: ignore[misc]  # pyecore has no types
 
     Attributes:
         notices: the diagnostics of the last load that are no errors.
-        dialect: of the file, from which it was migrated by the last load; empty for one of ours.
+        importer: what imported the file at the last load; None for a file in our own format.
     """
 
     def __init__(
@@ -48,7 +51,7 @@ class ModelResource(Resource):  # type: ignore[misc]  # pyecore has no types
         self._registry = registry
         self._root = root
         self.notices: tuple[Diagnostic, ...] = ()
-        self.dialect = ""
+        self.importer: Importer | None = None
 
     def load(self, options: Mapping[object, object] | None = None) -> None:
         """Read the file, and those that it refers to into resources of the same set, unless open there.
@@ -78,7 +81,7 @@ class ModelResource(Resource):  # type: ignore[misc]  # pyecore has no types
         for each in files:
             resource = self if each is model else self._beside(str(each.file))
             resource._fill(each.roots, outward.made)
-            resource.dialect = each.dialect
+            resource.importer = each.importer
         self.notices = tuple(faults)
 
     def save(self, output: Any = None, options: Mapping[object, object] | None = None) -> None:
@@ -89,15 +92,15 @@ class ModelResource(Resource):  # type: ignore[misc]  # pyecore has no types
             options: none; the writer has none.
 
         Raises:
-            UnsupportedError: if an object is of a class that the registry does not have, or the file is of a
-                dialect: it stays as it is.
+            UnsupportedError: if an object is of a class that the registry does not have, or the file was
+                imported: it stays as it is.
             ValueError: if a value cannot be written, or a reference leads to an object in no file; options.
             OSError: if the file cannot be written.
         """
         _refuse(options)
         uri = self.uri if output is None else output if isinstance(output, URI) else URI(str(output))
-        if self.dialect and file_of(uri) == file_of(self.uri):
-            message = f"a model of {self.dialect}, which is not replaced; save it as another file"
+        if self.importer and file_of(uri) == file_of(self.uri):
+            message = f"a model of {self.importer.name}, which is not replaced; save it as another file"
             raise UnsupportedError(f"{self.uri.plain}: {message}")
         if self.use_uuid:
             for root in self.contents:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING
 from urllib.parse import unquote
 
 from mmrs_core.diagnostics import Diagnostic, Place, Severity
@@ -14,6 +15,9 @@ from mmrs_core.languages.links import raw
 from mmrs_core.languages.metaclass import Feature, Metaclass
 from mmrs_core.languages.references.names import Names
 from mmrs_core.languages.source import Source
+
+if TYPE_CHECKING:
+    from mmrs_core.languages.importers import Importer
 
 MOST_FAULTS = 10_000
 
@@ -45,7 +49,7 @@ class Draft:
     """A file between its parsing and the resolution of its references.
 
     Attributes:
-        dialect: the name of the dialect that it is in; empty for one in our own form.
+        importer: what imports the file; None for a file in our own format.
     """
 
     source: Source
@@ -58,7 +62,7 @@ class Draft:
     lists: dict[str, list[object]] = field(default_factory=dict)
     names: Names = field(default_factory=Names)
     said_within: dict[str, Unknown] | None = None
-    dialect: str = ""
+    importer: Importer | None = None
     _read_below: list[int] = field(default_factory=list)
 
     def fault(

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import tomllib
 from pathlib import Path
 
 import pytest
@@ -152,10 +151,3 @@ def test_kept_xml_that_is_none_is_refused_with_its_line(zoo, xml):
     text = f'{{"$type": "urn:far#Thing",\n "$xml": "{xml}"}}'
     with pytest.raises(UnreadableError, match=r"^a\.json:1: "):
         read_text(text.encode(), "a.json", zoo)
-
-
-def test_a_language_of_flyaq_leads_to_what_migrates_its_models(zoo):
-    mapping = tomllib.loads((ROOT / "migrations" / "flyaq-2015.toml").read_text(encoding="utf-8"))
-    known = [uri for package in mapping["packages"].values() for uri in package["uris"]]
-    assert len(known) == 12
-    assert [uri for uri in known if "'mmrs migrate'" not in hint_for(uri, zoo)] == []

@@ -308,7 +308,8 @@ def test_a_resource_works_without_a_set(park, everything):
 
 def test_a_model_of_flyaq_opens_as_what_it_becomes_and_its_file_is_not_replaced(contributions, tmp_path):
     file = tmp_path / "round.xmi"
-    before = (EXAMPLES.parent / "tests" / "fixtures" / "flyaq" / "round.xmi").read_bytes()
+    theirs = EXAMPLES.parent / "plugins" / "flyaq" / "tests" / "fixtures" / "flyaq"
+    before = (theirs / "round.xmi").read_bytes()
     file.write_bytes(before)
     resource = resource_set(contributions.languages).get_resource(URI(str(file)))
     assert [robot.id for robot in resource.contents[0].robots] == ["scout", "follower"]
@@ -317,4 +318,4 @@ def test_a_model_of_flyaq_opens_as_what_it_becomes_and_its_file_is_not_replaced(
         resource.save()
     assert file.read_bytes() == before
     resource.save(output=tmp_path / "ours.xmi")
-    assert read_model(tmp_path / "ours.xmi", contributions.languages).dialect == ""
+    assert read_model(tmp_path / "ours.xmi", contributions.languages).importer is None

@@ -23,10 +23,10 @@ from mmrs_core.errors import PluginError
 from mmrs_core.hookspecs import hookimpl
 from mmrs_core.languages import behaviour as bl
 from mmrs_core.languages.evolution.migration import Migration
+from mmrs_core.languages.importers import Candidate, Imported, Importer
 from mmrs_core.languages.reading import read_text
 from mmrs_core.languages.registry import MetamodelSource
 from mmrs_core.languages.subclasses import ElementClass
-from mmrs_core.migration.dialect import ForeignDialect
 from mmrs_core.plugins import language, load_plugins
 from mmrs_runtime.records.steps import StepRecord
 
@@ -103,18 +103,20 @@ def test_hook_mmrs_migrations():
     assert contributions.languages.migrations == (migration,)
 
 
-def test_hook_mmrs_dialects(tmp_path):
-    mapping = tmp_path / "kites.toml"
-    mapping.write_text(
-        '[languages]\nrobot = "urn:mmrs:robot:1.0"\n[packages]\nkite.uris = "urn:toy:kites"\n'
-        '[structure.kite]\nKite = ["line: text"]\n'
-        '[rules.kite.Kite]\nto = "robot:Robot"\nfeatures.line = "name"\n'
-    )
-    contributions = contributions_with("mmrs_dialects", ForeignDialect("Kites", mapping))
-    text = b'<k:Kite xmlns:k="urn:toy:kites" line="red"/>'
-    model = read_text(text, "red.xmi", contributions.languages)
+def test_hook_mmrs_importers():
+    def recognise(data, file, registry, stored):
+        return Candidate(data.decode()) if data.startswith(b"kite ") else None
+
+    def convert(candidates, registry, known, notes):
+        names = (each.content.split()[1] for each in candidates)
+        robots = (registry.create("urn:mmrs:robot:1.0", "Robot", name=name) for name in names)
+        return [Imported((robot,), ()) for robot in robots]
+
+    importer = Importer("Kites", recognise, lambda file, *_: file, convert, covers=lambda ns_uri: False)
+    contributions = contributions_with("mmrs_importers", importer)
+    model = read_text(b"kite red", "red.xmi", contributions.languages)
     assert [(type(root).__name__, root.name) for root in model.roots] == [("Robot", "red")]
-    assert model.dialect == "Kites"
+    assert model.importer == importer
 
 
 def test_hook_mmrs_fixes():
