@@ -1,1 +1,1 @@
-"""Who does what, when, and by which way: pure algorithms over scenes."""
+"""Plans: which robot does what, when and along which route. Pure algorithms over scenes."""

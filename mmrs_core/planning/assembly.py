@@ -1,30 +1,29 @@
-"""From a recorded schedule to a plan: the last ways home, the signals, the figures."""
+"""From a recorded schedule to a plan: the final returns home, signals and figures."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 
-from mmrs_core.planning.crew import Crew, homebound_of
-from mmrs_core.planning.idleness import why_idle
 from mmrs_core.planning.jobs import Job, is_control
-from mmrs_core.planning.left_out import left_out
+from mmrs_core.planning.omissions import omissions_of
 from mmrs_core.planning.schedule import Schedule, signal_name
 from mmrs_core.planning.states import State
+from mmrs_core.planning.team import Team, homebound_of
 from mmrs_core.scene import Await, Branch, Plan, RobotPlan, Scene, Serve, Signal, Step
 from mmrs_core.scene.attributes import number
 
 _NOTES = (
     "the terrain is flat at the origin's height",
-    "times count a stop at the end of every leg, but not turning on the spot towards the next",
+    "times include a stop after every leg, but not turning on the spot towards the next",
     "energy is the power against the wind or current times the time on one charge",
 )
 
 
-def assemble(crew: Crew, jobs: Sequence[Job], schedule: Schedule) -> Plan:
+def assemble(team: Team, jobs: Sequence[Job], schedule: Schedule) -> Plan:
     """Return the plan of a schedule whose states carry all steps."""
     finished = {
-        name: crew.pilots[name].finish(schedule.states[name])
-        for name in crew.pilots
+        name: team.pilots[name].finish(schedule.states[name])
+        for name in team.pilots
         if name in schedule.backs
     }
     steps = {name: state.steps() for name, state in finished.items()}
@@ -32,19 +31,19 @@ def assemble(crew: Crew, jobs: Sequence[Job], schedule: Schedule) -> Plan:
         signal_name(job.name, robot): (job.name, robot) for job in jobs for robot in schedule.ends[job.name]
     }
     steps = _with_signals(steps, signals)
-    spans = _spans(crew.scene, steps, schedule)
+    spans = _spans(team.scene, steps, schedule)
     return Plan(
-        robots=tuple(_robot_plan(crew, name, steps, finished) for name in crew.pilots),
+        robots=tuple(_robot_plan(team, name, steps, finished) for name in team.pilots),
         makespan=max((state.time for state in finished.values()), default=0.0),
         begins={name: begin for name, (begin, _) in spans.items()},
         ends={name: end for name, (_, end) in spans.items()},
-        left_out=left_out(crew.scene, steps),
-        notes=(*_of_no_return(crew, schedule), *_of_calm(crew.scene), *_NOTES),
+        left_out=omissions_of(team.scene, steps),
+        notes=(*_stranded(team, schedule), *_unstated_flow(team.scene), *_NOTES),
     )
 
 
-def _of_calm(scene: Scene) -> Iterator[str]:
-    """Yield which wind or current that robots travel in nobody states."""
+def _unstated_flow(scene: Scene) -> Iterator[str]:
+    """Yield each wind or current that robots travel in and the context does not state."""
     flies = any(each.kinematics is not None and each.kinematics.launches for each in scene.robots)
     dives = any(number(each.type.part, "maxOperatingPressure") is not None for each in scene.robots)
     if flies and "windSpeed" not in scene.environment:
@@ -53,10 +52,10 @@ def _of_calm(scene: Scene) -> Iterator[str]:
         yield "the context states no currentSpeed: this is a plan for still water"
 
 
-def _of_no_return(crew: Crew, schedule: Schedule) -> Iterator[str]:
-    """Yield which robots end where they could not get home from, though a low battery sends them there."""
-    for name in sorted(homebound_of(crew.scene) - crew.homebound):
-        pilot, state = crew.pilots[name], schedule.states[name]
+def _stranded(team: Team, schedule: Schedule) -> Iterator[str]:
+    """Yield each robot that a low battery sends home and that ends too far away to return."""
+    for name in sorted(homebound_of(team.scene) - team.homebound):
+        pilot, state = team.pilots[name], schedule.states[name]
         if state.away and not pilot.affords_home(state, 0.0, state.at):
             yield (
                 f"robot '{name}' ends where its charge does not suffice to go home:"
@@ -65,12 +64,12 @@ def _of_no_return(crew: Crew, schedule: Schedule) -> Iterator[str]:
 
 
 def _robot_plan(
-    crew: Crew, name: str, steps: Mapping[str, tuple[Step, ...]], finished: Mapping[str, State]
+    team: Team, name: str, steps: Mapping[str, tuple[Step, ...]], finished: Mapping[str, State]
 ) -> RobotPlan:
     if name not in finished:
-        return RobotPlan(name, (), idle=why_idle(crew, name))
+        return RobotPlan(name, (), idle=why_idle(team, name))
     end = finished[name]
-    kinematics = crew.pilots[name].kinematics
+    kinematics = team.pilots[name].kinematics
     energy = kinematics.power * kinematics.draw * end.busy if kinematics.power > 0.0 else None
     return RobotPlan(name, steps[name], end.length, end.busy, energy, end.sorties)
 
@@ -78,7 +77,7 @@ def _robot_plan(
 def _with_signals(
     steps: Mapping[str, tuple[Step, ...]], signals: Mapping[str, tuple[str, str]]
 ) -> dict[str, tuple[Step, ...]]:
-    """Have every robot that others wait for give its signals, right after its share has ended."""
+    """Add each signal that another robot waits for, right after the share that gives it."""
     receivers: dict[str, list[str]] = {}
     for robot, mine in steps.items():
         for step in mine:
@@ -136,10 +135,35 @@ def _control_time(
     """Return when a Fork or Join ends: when all before it have."""
     if name in schedule.spans:
         return schedule.spans[name][0]
-    before = [way.before for way in scene.dependencies if way.after == name]
+    before = [edge.before for edge in scene.dependencies if edge.after == name]
     times = [
         _control_time(scene, each, spans, schedule) if is_control(scene.task(each)) else spans[each][1]
         for each in before
         if is_control(scene.task(each)) or each in spans
     ]
     return max(times, default=0.0)
+
+
+def why_idle(team: Team, robot: str) -> str:
+    """Return why no task of the plan is a robot's, task by task; what has one reason is said once."""
+    reasons: dict[str, list[str]] = {}
+    for task in team.scene.tasks:
+        if not is_control(task):
+            reasons.setdefault(_reason(team, task.name, robot), []).append(f"'{task.name}'")
+    return "; ".join(f"{', '.join(tasks)}: {reason}" for reason, tasks in reasons.items())
+
+
+def _reason(team: Team, task: str, robot: str) -> str:
+    """Return why a task is not the robot's."""
+    if robot not in team.able(task):
+        return team.refusals.get((task, robot), "it cannot do the task")
+    if team.sharers(task) == 1 and len(team.able(task)) > 1 and team.whole(task):
+        return "one robot must do all of it, and the mission ends no later with another one"
+    wanted = team.scene.task(task).wanted
+    others = [name for name in team.able(task) if name not in team.sharing_with(task, robot)]
+    apart = (
+        f"; it cannot share it with {', '.join(others)}, whose work is laid out otherwise" if others else ""
+    )
+    if wanted is not None:
+        return f"the task wants {wanted}, and other robots have it{apart}"
+    return f"no plan was found in which it makes the mission end sooner{apart}"

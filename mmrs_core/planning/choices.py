@@ -7,9 +7,9 @@ from dataclasses import replace
 
 from mmrs_core.planning.jobs import Choice
 from mmrs_core.planning.materials import Material
-from mmrs_core.planning.runs import Run
+from mmrs_core.planning.runs import PortionRun
 from mmrs_core.planning.sorties import Pilot
-from mmrs_core.planning.states import Approach, Ready, State
+from mmrs_core.planning.states import ApproachRoute, Ready, State
 from mmrs_core.scene import Branch, Position
 
 MaterialOf = Callable[[str], "Material | None"]
@@ -33,9 +33,9 @@ def carry_out(
     return None if there is None else _branched(pilot, choice, material_of, there, record)
 
 
-def _begin(choice: Choice, material_of: MaterialOf) -> Approach | None:
-    """Return the way to where the longest arm's first task begins; None if some task cannot be done."""
-    best: tuple[float, Approach] | None = None
+def _begin(choice: Choice, material_of: MaterialOf) -> ApproachRoute | None:
+    """Return the route to the first task of the longest arm; None if a task cannot be done."""
+    best: tuple[float, ApproachRoute] | None = None
     for _, items in choice.arms:
         tasks = [task for item in items for task in _tasks(item)]
         materials = [material_of(task) for task in tasks]
@@ -45,7 +45,7 @@ def _begin(choice: Choice, material_of: MaterialOf) -> Approach | None:
         seconds = sum(material.seconds(0, len(material) - 1) for material in known)
         if known and (best is None or seconds > best[0]):
             first = known[0].approach(0)
-            best = (seconds, Approach(first.via[:1], first.speed))
+            best = (seconds, ApproachRoute(first.via[:1], first.speed))
     return None if best is None else best[1]
 
 
@@ -85,7 +85,7 @@ def _arm(
         material = material_of(item)
         if material is None:
             return None
-        run = Run(pilot, material, now, 0, _NOTHING, record=record)
+        run = PortionRun(pilot, material, now, 0, _NOTHING, record=record)
         now = run.state(len(material) - 1) if run.can_do(len(material) - 1) else None
     return now
 
@@ -93,7 +93,7 @@ def _arm(
 def _joined(pilot: Pilot, ends: Sequence[State], place: Position, name: str) -> list[State] | None:
     """Return the arms' ends once all have come to one place; None if one cannot."""
     need = pilot.exit_seconds(place)
-    there = [pilot.reach(end, Approach((place,)), need, _NOTHING, name) for end in ends]
+    there = [pilot.reach(end, ApproachRoute((place,)), need, _NOTHING, name) for end in ends]
     found = [end for end in there if end is not None]
     return found if len(found) == len(ends) else None
 

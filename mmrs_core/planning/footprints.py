@@ -23,14 +23,14 @@ def footprint(lines: Sequence[Swath], width: float, length: float = 0.0) -> Base
     """Return what swaths cover.
 
     Without a `length`, that is the union of rectangles about the legs, as long as the legs and `width`
-    wide; else of rectangles `length` along and `width` across the leg, about each spot. About a single
-    point it is the circle that is covered whichever way the robot faces.
+    wide; with one, of rectangles `length` along and `width` across the leg, about each spot. About a single
+    point it is the circle that is covered whichever direction the robot faces.
     """
     shapes = [_along(line, width) if length <= 0.0 else _about(line, width, length) for line in lines]
     return shapely.union_all(np.concatenate(shapes), grid_size=GRID) if shapes else Polygon()
 
 
-def left_out(
+def uncovered_by(
     pieces: Sequence[Polygon], lines: Sequence[Swath], width: float, length: float = 0.0
 ) -> BaseGeometry:
     """Return what no swath covers of the pieces."""
@@ -39,27 +39,29 @@ def left_out(
 
 
 def _along(line: Swath, width: float) -> NDArray[np.object_]:
-    way = np.diff(line.points, axis=0)
-    return _rectangles((line.points[:-1] + line.points[1:]) / 2, way, np.hypot(way[:, 0], way[:, 1]), width)
+    direction = np.diff(line.points, axis=0)
+    return _rectangles(
+        (line.points[:-1] + line.points[1:]) / 2, direction, np.hypot(direction[:, 0], direction[:, 1]), width
+    )
 
 
 def _about(line: Swath, width: float, length: float) -> NDArray[np.object_]:
     if len(line.points) == 1:
         return np.array([Point(line.points[0]).buffer(min(width, length) / 2)], dtype=object)
-    way = np.diff(line.points, axis=0)
-    far = np.hypot(way[:, 0], way[:, 1])
+    direction = np.diff(line.points, axis=0)
+    far = np.hypot(direction[:, 0], direction[:, 1])
     done = np.concatenate([[0.0], np.cumsum(far)])
     spots = np.array(line.spots)
-    leg = np.clip(np.searchsorted(done, spots - 1e-9) - 1, 0, len(way) - 1)
-    centres = line.points[leg] + way[leg] * ((spots - done[leg]) / far[leg])[:, None]
-    return _rectangles(centres, way[leg], np.full(len(spots), length), width)
+    leg = np.clip(np.searchsorted(done, spots - 1e-9) - 1, 0, len(direction) - 1)
+    centres = line.points[leg] + direction[leg] * ((spots - done[leg]) / far[leg])[:, None]
+    return _rectangles(centres, direction[leg], np.full(len(spots), length), width)
 
 
-def _rectangles(centres: Floats, ways: Floats, lengths: Floats, width: float) -> NDArray[np.object_]:
-    """Return rectangles about centres, along ways; none where there is no way."""
-    far = np.hypot(ways[:, 0], ways[:, 1])
+def _rectangles(centres: Floats, directions: Floats, lengths: Floats, width: float) -> NDArray[np.object_]:
+    """Return rectangles about centres, along directions; none where there is no direction."""
+    far = np.hypot(directions[:, 0], directions[:, 1])
     there = far > 1e-9
-    ahead = ways[there] / far[there, None]
+    ahead = directions[there] / far[there, None]
     aside = np.column_stack([-ahead[:, 1], ahead[:, 0]]) * (width / 2)
     ahead = ahead * (lengths[there, None] / 2)
     middle = centres[there]

@@ -1,7 +1,7 @@
 """The mission's tasks as jobs with an order: control tasks dissolved, choices gathered.
 
 A job is one task that robots may share, or a whole choice: everything between a Fork with conditions
-and the place where its arms meet again, which is one robot's work.
+and the task where its arms meet again, which is one robot's work.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ _CONTROL = ((_MISSION, "ControlTask"), (_MISSION, "Fork"), (_MISSION, "Join"))
 
 @dataclass(frozen=True, slots=True)
 class Choice:
-    """A Fork whose ways out carry conditions.
+    """A Fork whose outgoing dependencies carry conditions.
 
     Attributes:
         name: of the Fork.
@@ -116,13 +116,13 @@ class _Graph:
         self._reach: dict[str, frozenset[str]] = {}
         self._check_circles()
         self._check_conditions()
-        forks = [name for name in self.names if any(way.condition for way in self.out[name])]
+        forks = [name for name in self.names if any(edge.condition for edge in self.out[name])]
         self._members = {fork: self._arm_members(fork) for fork in forks}
         inner = {name for arms in self._members.values() for arm in arms for name in arm}
         self.choices = {fork: self._choice(fork) for fork in forks if fork not in inner}
 
     def _check_circles(self) -> None:
-        before = {name: [way.before for way in self.into[name]] for name in self.names}
+        before = {name: [edge.before for edge in self.into[name]] for name in self.names}
         try:
             TopologicalSorter(before).prepare()
         except CycleError as error:
@@ -131,27 +131,31 @@ class _Graph:
     def _check_conditions(self) -> None:
         reasons = []
         for name in self.names:
-            conditions = [way.condition for way in self.out[name]]
+            conditions = [edge.condition for edge in self.out[name]]
             plain = sum(1 for condition in conditions if condition is None)
             if len(conditions) == plain:
                 continue
             if name not in self.control:
-                reasons.append(f"task '{name}' has a condition on a way out, only a Fork may have one")
+                reasons.append(
+                    f"task '{name}' has a condition on an outgoing dependency: only a Fork may have one"
+                )
             elif plain != 1:
-                reasons.append(f"fork '{name}' has {plain} ways out without a condition, exactly one must be")
+                reasons.append(
+                    f"fork '{name}' has {plain} outgoing dependencies without a condition, expected one"
+                )
         if reasons:
             raise InfeasibleError(reasons[0], reasons)
 
     def _reachable(self, name: str) -> frozenset[str]:
         """Return the task and all that comes after it."""
         if name not in self._reach:
-            after = (self._reachable(way.after) for way in self.out[name])
+            after = (self._reachable(edge.after) for edge in self.out[name])
             self._reach[name] = frozenset({name}).union(*after)
         return self._reach[name]
 
     def _arm_members(self, fork: str) -> list[frozenset[str]]:
-        """Return, by way out, what can be reached by that way only."""
-        reached = [self._reachable(way.after) for way in self.out[fork]]
+        """Return, by outgoing dependency, the tasks that can be reached by that one only."""
+        reached = [self._reachable(edge.after) for edge in self.out[fork]]
         return [
             frozenset(name for name in mine if sum(name in other for other in reached) == 1)
             for mine in reached
@@ -159,8 +163,8 @@ class _Graph:
 
     def _choice(self, fork: str) -> Choice:
         arms = [
-            (way.condition, self._items(members))
-            for way, members in zip(self.out[fork], self._members[fork], strict=True)
+            (edge.condition, self._items(members))
+            for edge, members in zip(self.out[fork], self._members[fork], strict=True)
         ]
         return Choice(fork, tuple(sorted(arms, key=lambda arm: arm[0] is None)))
 
@@ -172,11 +176,11 @@ class _Graph:
         owner = {name: self._outermost(name, inside) for name in self.names if name in members}
         wanted = {
             name: {
-                owner[way.before]
+                owner[edge.before]
                 for task in owner
                 if owner[task] == name
-                for way in self.into[task]
-                if way.before in members and owner[way.before] != name
+                for edge in self.into[task]
+                if edge.before in members and owner[edge.before] != name
             }
             for name in dict.fromkeys(owner.values())
         }
@@ -205,7 +209,7 @@ class _Graph:
     def before(self, job: str, owner: dict[str, str]) -> set[str]:
         """Return the jobs that must have ended before a job begins."""
         found: set[str] = set()
-        pending = [way.before for name, mine in owner.items() if mine == job for way in self.into[name]]
+        pending = [edge.before for name, mine in owner.items() if mine == job for edge in self.into[name]]
         seen: set[str] = set()
         while pending:
             name = pending.pop()
@@ -215,5 +219,5 @@ class _Graph:
             if name in owner:
                 found.add(owner[name])
             else:
-                pending += [way.before for way in self.into[name]]
+                pending += [edge.before for edge in self.into[name]]
         return found

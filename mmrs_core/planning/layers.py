@@ -1,7 +1,7 @@
-"""The quickest way among some grown areas: level legs at a few heights, upright ones between them.
+"""The quickest path among some grown areas: level legs at a few heights, upright ones between them.
 
 A node of the search is a place (start, goal or a corner of an area) at a height (that of start or
-goal, or just above or below an area). A* with the exact time of a free way as its bound.
+goal, or just above or below an area). A* with the exact time of a free path as its bound.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from math import dist, hypot, sqrt
 import numpy as np
 
 from mmrs_core.planning.obstacles import HEIGHT_MARGIN, Flags, Floats, Obstacles
-from mmrs_core.planning.sight import Sight
+from mmrs_core.planning.visibility import Visibility
 from mmrs_core.scene import Position
 
 _ABOVE = 1e-3
@@ -23,9 +23,9 @@ _ABOVE = 1e-3
 
 @dataclass(frozen=True, slots=True)
 class Rates:
-    """Metres per second, level, up and down; a rate that is not positive rules that way out.
+    """Metres per second, level, up and down; a rate that is not positive rules that direction out.
 
-    Ways are chosen by even speed; plans count time with a standstill at both ends of every leg, speeding
+    Paths are chosen by even speed; plans count time with a standstill at both ends of every leg, speeding
     up and slowing down at `acceleration`, metres per second squared, and with `shunting`, the seconds that
     turning takes before a level leg.
     """
@@ -41,7 +41,7 @@ class Rates:
         return replace(self, shunting=0.0)
 
     def upright(self, rise: float) -> float:
-        """Return the seconds of an upright way; inf where it is ruled out."""
+        """Return the seconds of a vertical leg; inf where it is ruled out."""
         if abs(rise) <= 1e-6:
             return 0.0
         rate = self.climb if rise > 0 else self.descent
@@ -58,7 +58,7 @@ class Rates:
         return turning + self._with_stops(dist(start, end), self.leg(start, end))
 
     def rise(self, metres: float) -> float:
-        """Return the seconds of an upright way that begins and ends at a standstill."""
+        """Return the seconds of a vertical leg that begins and ends at a standstill."""
         return self._with_stops(abs(metres), self.upright(metres))
 
     def _with_stops(self, length: float, even: float) -> float:
@@ -76,7 +76,7 @@ class Layers:
     def __init__(
         self,
         obstacles: Obstacles,
-        sight: Sight,
+        visibility: Visibility,
         active: Sequence[int],
         ends: tuple[Position, Position],
         band: tuple[float, float],
@@ -86,13 +86,13 @@ class Layers:
 
         Args:
             obstacles: of the robot.
-            sight: over the same obstacles.
+            visibility: over the same obstacles.
             active: indices of the areas that count.
             ends: start and goal.
             band: heights (lowest, highest) at which the robot may travel.
             rates: of the robot.
         """
-        self._sight, self._active, self._rates = sight, list(active), rates
+        self._visibility, self._active, self._rates = visibility, list(active), rates
         self._ends = ends
         corners = [obstacles.grown[area].corners for area in self._active]
         self._places: Floats = np.concatenate([[ends[0][:2], ends[1][:2]], *corners])
@@ -107,8 +107,8 @@ class Layers:
         inside = [height for height in around if band[0] <= height <= band[1]]
         return sorted({self._ends[0][2], self._ends[1][2], *inside})
 
-    def way(self) -> list[Position] | None:
-        """Return the quickest way from start to goal; None if there is none."""
+    def path(self) -> list[Position] | None:
+        """Return the quickest path between start and goal; None if there is none."""
         count = len(self._heights)
         goal = count + self._heights.index(self._ends[1][2])
         start = self._heights.index(self._ends[0][2])
@@ -155,8 +155,8 @@ class Layers:
                 rise = self._heights[other] - self._heights[level]
                 yield node - level + other, self._rates.upright(rise)
         free = np.flatnonzero(~(self._row(place) & self._blocks[level]).any(axis=1))
-        way = self._places[free] - self._places[place]
-        seconds = np.hypot(way[:, 0], way[:, 1]) / self._rates.cruise
+        offset = self._places[free] - self._places[place]
+        seconds = np.hypot(offset[:, 0], offset[:, 1]) / self._rates.cruise
         for other, each in zip(free.tolist(), seconds.tolist(), strict=True):
             if other != place:
                 yield other * count + level, each
@@ -166,8 +166,8 @@ class Layers:
         row = self._rows.get(place)
         if row is None:
             here = self._place(place)
-            ends = [self._sight.between(here, self._place(end)) for end in (0, 1)]
-            corners = [self._sight.to_corners(here, area) for area in self._active]
+            ends = [self._visibility.between(here, self._place(end)) for end in (0, 1)]
+            corners = [self._visibility.to_corners(here, area) for area in self._active]
             row = self._rows[place] = np.concatenate([ends, *corners])[:, self._active]
         return row
 
@@ -176,11 +176,11 @@ class Layers:
         return east, north
 
     def _open(self, place: int) -> list[bool]:
-        """Return, by gap between neighbouring heights, whether the way up or down a place is clear."""
+        """Return, by gap between neighbouring heights, whether a vertical leg there is clear."""
         column = self._columns.get(place)
         if column is None:
             here = self._place(place)
-            over = self._sight.between(here, here)[self._active]
+            over = self._visibility.between(here, here)[self._active]
             column = self._columns[place] = [
                 not bool(
                     (over & (self._low + HEIGHT_MARGIN < high) & (low < self._high - HEIGHT_MARGIN)).any()

@@ -17,7 +17,7 @@ _ROUNDING = 1e-7
 
 
 @dataclass(frozen=True, slots=True)
-class Leg:
+class LevelLeg:
     """A straight line over a run of cells.
 
     Attributes:
@@ -32,13 +32,13 @@ class Leg:
     corners: tuple[tuple[float, float], ...]
 
 
-def legs_over(chain: Sequence[Cell], width: float) -> list[Leg]:
+def legs_over(chain: Sequence[Cell], width: float) -> list[LevelLeg]:
     """Return the legs over cells that follow each other, from left to right.
 
     A strip about each level leg, as wide as `width`, covers what the cells need. Where a cell is too
     thin and slanted for level legs, a slanted one may leave a little out.
     """
-    legs: list[Leg] = []
+    legs: list[LevelLeg] = []
     run: list[Cell] = []
     window = _ANY
     for cell in (part for whole in chain for part in _level_parts(whole, width)):
@@ -52,7 +52,7 @@ def legs_over(chain: Sequence[Cell], width: float) -> list[Leg]:
     return [*legs, _leg(run, window)] if run else legs
 
 
-def _leg(run: Sequence[Cell], window: tuple[float, float]) -> Leg:
+def _leg(run: Sequence[Cell], window: tuple[float, float]) -> LevelLeg:
     """Return the leg over cells at a height in a window, as near to the middle of their needs as can be."""
     corners = tuple(corner for cell in run for corner in _corners(cell))
     heights = [y for _, y in corners] or [y for cell in run for y in (*cell.room.low, *cell.room.high)]
@@ -63,7 +63,7 @@ def _leg(run: Sequence[Cell], window: tuple[float, float]) -> Leg:
         (cell,) = run
         ends = zip(cell.room.low, cell.room.high, strict=True)
         begin, end = (min(max(middle, low), high) for low, high in ends)
-    return Leg((run[0].left, begin), (run[-1].right, end), tuple(_needs(run)), corners)
+    return LevelLeg((run[0].left, begin), (run[-1].right, end), tuple(_needs(run)), corners)
 
 
 def _corners(cell: Cell) -> Iterator[tuple[float, float]]:

@@ -15,7 +15,7 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from mmrs_core.planning.levels import Leg
+from mmrs_core.planning.levels import LevelLeg
 
 Floats: TypeAlias = NDArray[np.float64]
 Place: TypeAlias = tuple[float, float]
@@ -26,10 +26,10 @@ APART = 0.01
 """Metres: places nearer to each other than this are one."""
 
 _BEND = 1e-9
-"""Metres by which the way over a point is longer than the straight one if it turns there."""
+"""Metres by which the path over a point is longer than the straight one if it turns there."""
 
 _RUN_IN = 0.5
-"""Metres of the way to a single action that give it its direction."""
+"""Metres of the path before a single action that give it its direction."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,7 +38,7 @@ class Swath:
 
     Attributes:
         points: (n, 2), at least one.
-        spots: arc lengths at which an action is due, ascending; empty where the way itself covers.
+        spots: arc lengths at which an action is due, ascending; empty where the path itself covers.
     """
 
     points: Floats
@@ -57,23 +57,23 @@ class Swath:
 
 @dataclass(frozen=True, slots=True)
 class _Stop:
-    """A place on the way, and whether an action is due there."""
+    """A place on the path, and whether an action is due there."""
 
     at: Place
     acts: bool
 
 
-def swath_over(legs: Sequence[Leg], width: float, length: float, clear: Clear) -> Swath | None:
+def swath_over(legs: Sequence[LevelLeg], width: float, length: float, clear: Clear) -> Swath | None:
     """Return the swath that follows legs, each reached upright from the end of the one before.
 
     Args:
         legs: from left to right.
         width: metres that the swath covers across.
-        length: metres that an action covers along; 0: the way itself covers.
+        length: metres that an action covers along; 0: the path itself covers.
         clear: whether a robot may go straight from one place to another.
 
     Returns:
-        None where the way itself would cover, but there is none.
+        None where the path itself would cover, but there is none.
     """
     if length <= 0.0:
         stops = _merged([_Stop(at, acts=False) for leg in legs for at in (leg.begin, leg.end)], clear)
@@ -113,7 +113,7 @@ def _blocks(needs: Sequence[tuple[float, float]], length: float) -> Iterator[tup
         yield begin, end
 
 
-def _stops(leg: Leg, length: float) -> Iterator[_Stop]:
+def _stops(leg: LevelLeg, length: float) -> Iterator[_Stop]:
     """Yield a leg's beginning, the places of its actions, and its end."""
     (left, low), (right, high) = leg.begin, leg.end
     steep = hypot(right - left, high - low) / (right - left)
@@ -130,7 +130,7 @@ def _trimmed(stops: Sequence[_Stop]) -> Sequence[_Stop]:
 
 
 def _merged(stops: Sequence[_Stop], clear: Clear) -> list[_Stop]:
-    """Return the stops without those that are where another is, as far as the way stays clear."""
+    """Return the stops without those that are where another is, as far as the path stays clear."""
     kept = [stops[0]]
     for i, stop in enumerate(stops[1:], 1):
         if dist(kept[-1].at, stop.at) >= APART:
@@ -146,13 +146,13 @@ def _merged(stops: Sequence[_Stop], clear: Clear) -> list[_Stop]:
     return kept
 
 
-def _seen_any_way(legs: Sequence[Leg], spot: Place, radius: float) -> bool:
+def _seen_any_way(legs: Sequence[LevelLeg], spot: Place, radius: float) -> bool:
     """Return whether an action at a spot covers all that the legs need, whichever way the robot faces."""
     return all(dist(spot, corner) <= radius + APART for leg in legs for corner in leg.corners)
 
 
 def _run_in(spot: Place, distance: float, clear: Clear) -> list[_Stop]:
-    """Return where the way to a spot begins so that it runs level; empty where neither side is clear."""
+    """Return where a level path before a spot begins; empty where neither side is clear."""
     x, y = spot
     begins = [(x - distance, y), (x + distance, y)]
     return [_Stop(begin, acts=False) for begin in begins if clear(begin, spot)][:1]

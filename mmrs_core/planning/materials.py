@@ -10,7 +10,7 @@ from math import inf
 from mmrs_core.errors import UnreachableError
 from mmrs_core.planning.pacing import paced
 from mmrs_core.planning.sorties import Pilot
-from mmrs_core.planning.states import Approach
+from mmrs_core.planning.states import ApproachRoute
 from mmrs_core.planning.strokes import (
     approach_speed,
     can_turn,
@@ -40,7 +40,7 @@ class Material:
         portions: strokes of each portion; robots take runs of portions.
         begins, ends: seconds at which each portion begins and ends, see `paced`.
         soonest: likewise, (begin, end) where the robot is as quick as it may be.
-        entry: where whoever does the first portion goes first; None: nowhere.
+        entry: where the robot with the first portion goes first; None: nowhere.
         speeds: by portion: at which the robot goes to it, metres per second; None: its cruise.
         whole: whether one robot must do all of it in one sortie.
     """
@@ -74,11 +74,11 @@ class Material:
         """Return by how many seconds the same may be quicker."""
         return max(0.0, self.seconds(begin, end) - (self.soonest[end][1] - self.soonest[begin][0]))
 
-    def approach(self, index: int) -> Approach:
-        """Return how whoever begins with a portion comes there."""
+    def approach(self, index: int) -> ApproachRoute:
+        """Return the route by which a robot that begins with a portion comes there."""
         if index == 0 and self.entry is not None and self.entry != self.first(0):
-            return Approach((self.entry, self.first(0)), self.speeds[0])
-        return Approach((self.first(index),), self.speeds[index])
+            return ApproachRoute((self.entry, self.first(0)), self.speeds[0])
+        return ApproachRoute((self.first(index),), self.speeds[index])
 
     def only(self, begin: int, end: int) -> Material:
         """Return the material of a run of portions alone."""
@@ -152,7 +152,7 @@ def lay_out(task: str, work: Work, layout: Layout, pilot: Pilot, *, backwards: b
     """Return the material of a work for one robot.
 
     Raises:
-        UnreachableError: a stroke is too near to an area, or no way leads from one to the next.
+        UnreachableError: a stroke is too near to an area, or no route leads from one to the next.
     """
     portions = layout.portions
     if backwards:
@@ -201,7 +201,7 @@ def faults(work: Work, pilot: Pilot) -> Iterator[str]:
     for stroke in work.strokes:
         near = pilot.travel.space.blockers(stroke.points)
         if near:
-            yield f"its way is within the clearance of {near}"
+            yield f"its route is within the clearance of {near}"
             break
     lacking = {
         missing_action(pilot.robot.type, action) for stroke in work.strokes for action in stroke.actions
@@ -265,7 +265,7 @@ def _words(material: Material, index: int) -> str:
 
 
 def shortages(material: Material, pilot: Pilot) -> list[float]:
-    """Return by how many seconds each portion is too long for a sortie of its own; inf: no way there."""
+    """Return by how many seconds each portion is too long for a sortie of its own; inf: no route there."""
     found = []
     for index in range(len(material)):
         try:
@@ -278,8 +278,8 @@ def shortages(material: Material, pilot: Pilot) -> list[float]:
 def _sortie_seconds(material: Material, pilot: Pilot, index: int) -> float:
     """Return the seconds of a sortie for one portion."""
     approach = material.approach(index)
-    ways = [pilot.travel.leave(approach.via[0])]
-    ways += [pilot.travel.hop(one, two) for one, two in pairwise(approach.via)]
-    out = sum(pilot.travel.at_speed(way, approach.speed).seconds for way in ways)
-    back = pilot.way_out(material.last(index)).seconds
+    routes = [pilot.travel.leave(approach.via[0])]
+    routes += [pilot.travel.hop(one, two) for one, two in pairwise(approach.via)]
+    out = sum(pilot.travel.at_speed(route, approach.speed).seconds for route in routes)
+    back = pilot.exit_route(material.last(index)).seconds
     return out + material.seconds(index, index) + back

@@ -9,8 +9,8 @@ from itertools import product
 from typing import TypeAlias
 
 from mmrs_core.errors import UnreachableError
-from mmrs_core.planning.left_out import left_out_of
 from mmrs_core.planning.materials import Layout, Material, lay_out
+from mmrs_core.planning.omissions import amount_left_out
 from mmrs_core.planning.remainders import Remainders, Turn
 from mmrs_core.planning.sharing import CLOSE, Candidate, Sharing, share_out
 from mmrs_core.planning.sorties import Pilot
@@ -24,17 +24,17 @@ _MIXES = 3
 
 
 @dataclass(frozen=True, slots=True)
-class Sort:
+class WorkGroup:
     """Robots with one work.
 
     Attributes:
         work: of the task.
-        team: names of the robots that can do it.
+        robots: names of the robots that can do it.
         layout: of the whole work.
     """
 
     work: Work
-    team: tuple[str, ...]
+    robots: tuple[str, ...]
     layout: Layout
 
 
@@ -51,13 +51,13 @@ class Mixture:
     """The sorts of robots that can share a task.
 
     Attributes:
-        sorts: those whose works leave out most come first; whoever comes last does all that is left.
+        sorts: those whose works leave out most come first; the last does all that is left.
     """
 
     def __init__(
         self,
         task: str,
-        sorts: Sequence[Sort],
+        sorts: Sequence[WorkGroup],
         pilots: Mapping[str, Pilot],
         divide: Callable[[Work, Sequence[str]], Layout],
     ) -> None:
@@ -67,9 +67,9 @@ class Mixture:
             task: its name.
             sorts: whose works are comparable.
             pilots: by name of robot.
-            divide: makes a layout of a part of the work of a team.
+            divide: makes a layout of a part of the work of a group.
         """
-        self.sorts = sorted(sorts, key=lambda each: -left_out_of(each.work))
+        self.sorts = sorted(sorts, key=lambda each: -amount_left_out(each.work))
         self._task, self._pilots, self._divide = task, pilots, divide
         self._remainders: Remainders | None = None
         self._rests: dict[tuple[int, Runs], _Rest] = {}
@@ -89,7 +89,7 @@ class Mixture:
             return _Rest(left, mine.work, mine.layout)
         entry = None if any(first == 0 for _, first, _ in runs) else mine.work.entry
         work = replace(mine.work, strokes=tuple(parts[i] for i in left), entry=entry)
-        return _Rest(left, work, self._divide(work, mine.team) if left else Layout((), can_turn=False))
+        return _Rest(left, work, self._divide(work, mine.robots) if left else Layout((), can_turn=False))
 
     def _turn(self, before: Runs, sort: int, first: int, last: int) -> Turn:
         rest = self.rest(sort, before)
@@ -98,7 +98,7 @@ class Mixture:
         return Turn(sort, frozenset(rest.parts), frozenset(done))
 
     def material(self, robot: str, sort: int, runs: Runs, *, backwards: bool = False) -> Material | None:
-        """Return the material of what runs of others leave for a robot; None if there is no way."""
+        """Return the material of what runs of others leave for a robot; None if it cannot get there."""
         key = (robot, runs, backwards)
         if key not in self._materials:
             rest, made = self.rest(sort, runs), None
@@ -128,7 +128,7 @@ def share_mixed(
         mixture: of the task.
         groups: by sort of the mixture: robots that take part, with their material of the whole task.
         everyone: whether each robot must have a share.
-        record: see `Run`.
+        record: see `PortionRun`.
     """
     some = [(sort, group) for sort, group in enumerate(groups) if group]
     return _Mixing(mixture, everyone, record).best(some, ())

@@ -88,8 +88,8 @@ class Obstacles:
         first, last = self._between_heights(legs[leg], area)
         inside = first < last - 1e-12
         leg, area, first, last = leg[inside], area[inside], first[inside], last[inside]
-        start, way = legs[leg, 0], legs[leg, 1] - legs[leg, 0]
-        parts = np.stack([start + first[:, None] * way, start + last[:, None] * way], axis=1)[:, :, :2]
+        start, offset = legs[leg, 0], legs[leg, 1] - legs[leg, 0]
+        parts = np.stack([start + first[:, None] * offset, start + last[:, None] * offset], axis=1)[:, :, :2]
         shorter = (first > 0.0) | (last < 1.0)
         hit = np.ones(len(leg), dtype=np.bool_)
         hit[shorter] = shapely.intersects(self._blocked[area[shorter]], shapely.linestrings(parts[shorter]))
@@ -170,7 +170,7 @@ def _grown(area: Area, clearance: float) -> Grown:
 
 
 def _corners(shape: Polygon) -> tuple[Floats, Floats, Floats]:
-    """Return the corners at which a short way around a shape may turn, and their neighbours.
+    """Return the corners at which a short offset around a shape may turn, and their neighbours.
 
     These are the ones that stick out; with the shape to the left, its rings turn left there.
     """

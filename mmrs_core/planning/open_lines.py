@@ -44,16 +44,16 @@ def open_line(
 ) -> OpenLine:
     """Return the parts of a line that keep the robot's clearance from every area, and the gaps.
 
-    Parts that areas close in so that no way leads there are gaps, too.
+    Parts that areas close in and make unreachable are gaps, too.
 
     Args:
         robot: for its clearance. scene: for its areas.
         line: to be followed.
-        what: it is, for people.
+        what: name of the line, for messages.
         least: metres that a part is worth going to, where there are gaps.
 
     Raises:
-        NothingLeftError: nothing is left of a line; says what it is too near to, or what closes it in.
+        NothingLeftError: nothing is left of the line; names the areas that are too near or close it in.
     """
     blocked = {
         area.name: stretches
@@ -102,7 +102,7 @@ def open_line(
 def open_lines(
     robot: Robot, scene: Scene, lines: Iterable[tuple[str, Sequence[Position]]], *, least: float = LEAST
 ) -> OpenLine:
-    """Return likewise what is left of the lines of one task, each with what it is.
+    """Return the same for all lines of one task, each with its name.
 
     Raises:
         NothingLeftError: nothing is left of all of them.

@@ -33,8 +33,8 @@ def paced(parts: Sequence[Stroke], pilot: Pilot, *, soonest: bool = False) -> li
     Args:
         parts: in order.
         pilot: of the robot.
-        soonest: whether the robot is as quick as it may be: it does not turn, and goes on without a stop
-            where nothing is done and its ways are fluid. Then the time is no more than any run takes.
+        soonest: whether the robot is as quick as it may be: it does not turn, and does not stop
+            where nothing is done and its routes are fluid. Then the time is no more than any run takes.
     """
     spans: list[tuple[float, float]] = []
     now = 0.0
@@ -73,7 +73,7 @@ def _of_chain(chain: Sequence[Stroke], pilot: Pilot, soonest: bool) -> list[tupl
 
 
 class _Line:
-    """A stroke's stops: arc lengths, seconds at which the robot arrives and goes on.
+    """A stroke's stops: arc lengths, seconds at which the robot arrives and leaves.
 
     Attributes:
         whole: seconds of the whole stroke.

@@ -13,8 +13,7 @@ from mmrs_core.geometry.clearance import EPSILON
 from mmrs_core.geometry.segments import legs_of
 from mmrs_core.planning.layers import Layers, Rates
 from mmrs_core.planning.obstacles import Flags, Obstacles
-from mmrs_core.planning.plane import shortest_way
-from mmrs_core.planning.sight import Sight
+from mmrs_core.planning.visibility import Visibility, shortest_path
 from mmrs_core.scene import Area, Position
 
 _ABOVE = 1e-3
@@ -28,7 +27,7 @@ class Space:
     """The space of one robot, made once and asked often; it remembers what it found out.
 
     A straight leg is the answer where it is clear. Else the robot goes up or down to one height, on
-    the shortest way around all that blocks there, and up or down to the goal; the quickest of several
+    the shortest path around all that blocks there, and up or down to the goal; the quickest of several
     heights is taken. Where no single height will do, a search over several heights follows. At last,
     corners are cut by sloped legs where these are clear and quicker.
     """
@@ -54,7 +53,7 @@ class Space:
         self.floor, self.ceiling = floor, ceiling
         self.rates = rates or Rates(1.0, 1.0, 1.0)
         self._obstacles = Obstacles(tuple(areas), clearance)
-        self._sight = Sight(self._obstacles)
+        self._visibility = Visibility(self._obstacles)
         self._routes: dict[tuple[Position, Position], tuple[Position, ...] | str] = {}
 
     def is_clear(self, polyline: Sequence[Position]) -> bool:
@@ -75,12 +74,12 @@ class Space:
         return sum(self.rates.from_stop_to_stop(one, two) for one, two in pairwise(route))
 
     def route(self, start: Position, goal: Position) -> tuple[Position, ...]:
-        """Return the positions of a quick way from start to goal, both included, at least two.
+        """Return the positions of a quick path from start to goal, both included, at least two.
 
         Floor and ceiling bind the heights in between; start and goal may be anywhere.
 
         Raises:
-            UnreachableError: there is no way; the message names the areas that block it.
+            UnreachableError: there is no path; the message names the areas that block it.
         """
         found = self._routes.get((start, goal))
         if found is None:
@@ -98,11 +97,11 @@ class Space:
         blockers = self._blockers((start, goal))
         if not blockers.any() and self.rates.leg(start, goal) < inf:
             return (start, goal)
-        way = self._at_one_height(start, goal)
-        return self._cut_short(way) if way else self._at_several_heights(start, goal, blockers)
+        path = self._at_one_height(start, goal)
+        return self._cut_short(path) if path else self._at_several_heights(start, goal, blockers)
 
     def _at_one_height(self, start: Position, goal: Position) -> list[Position] | None:
-        """Return the quickest way of the sort up or down, level, up or down; None if there is none."""
+        """Return the quickest path of the sort up or down, level, up or down; None if there is none."""
         level = dist(start[:2], goal[:2]) / self.rates.cruise
         best: list[Position] | None = None
         quickest = inf
@@ -111,17 +110,17 @@ class Space:
                 continue
             longest = (quickest - upright) * self.rates.cruise
             blocks = self._obstacles.blocks_at(height)
-            flat = shortest_way(self._obstacles, self._sight, start[:2], goal[:2], blocks, longest)
+            flat = shortest_path(self._obstacles, self._visibility, start[:2], goal[:2], blocks, longest)
             if flat is not None:
-                way = [start, *((*place, height) for place in flat), goal]
-                way = [here for i, here in enumerate(way) if i == 0 or here != way[i - 1]]
-                if self.seconds(way) < quickest:
-                    best, quickest = way, self.seconds(way)
+                path = [start, *((*place, height) for place in flat), goal]
+                path = [here for i, here in enumerate(path) if i == 0 or here != path[i - 1]]
+                if self.seconds(path) < quickest:
+                    best, quickest = path, self.seconds(path)
         return best
 
     def _heights(self, start: Position, goal: Position) -> list[tuple[float, float]]:
         """Return (seconds up and down, height) for heights worth a try, quickest first."""
-        over = self._sight.between(start[:2], goal[:2])
+        over = self._visibility.between(start[:2], goal[:2])
         around = [
             *(self._obstacles.high[over] + _ABOVE).tolist(),
             *(self._obstacles.low[over] - _ABOVE).tolist(),
@@ -142,42 +141,42 @@ class Space:
     def _at_several_heights(
         self, start: Position, goal: Position, active: Flags
     ) -> tuple[Position, ...] | str:
-        """Return the quickest way that may change its height at corners, or why there is none."""
+        """Return the quickest path that may change its height at corners, or why there is none."""
         band = (self.floor, self.ceiling)
         while True:
             chosen = np.flatnonzero(active).tolist()
-            way = Layers(self._obstacles, self._sight, chosen, (start, goal), band, self.rates).way()
-            if way is None:
+            path = Layers(self._obstacles, self._visibility, chosen, (start, goal), band, self.rates).path()
+            if path is None:
                 return self._no_way(start, goal, active)
-            blockers = self._blockers(way)
+            blockers = self._blockers(path)
             if not (blockers & ~active).any():
-                return self._cut_short(way)
+                return self._cut_short(path)
             active = active | blockers
 
     def _no_way(self, start: Position, goal: Position, active: Flags) -> str:
         names = self._obstacles.names(active)
         between = f"from {_words(start)} to {_words(goal)} between {self.floor:g} m and {self.ceiling:g} m"
-        return f"no way {between} keeps clear of {names}" if names else f"no way {between} up or down"
+        return f"no path {between} keeps clear of {names}" if names else f"no path {between} up or down"
 
-    def _cut_short(self, way: Sequence[Position]) -> tuple[Position, ...]:
-        """Return the quickest way through some of the positions, in order, by clear straight legs."""
-        count = len(way)
+    def _cut_short(self, path: Sequence[Position]) -> tuple[Position, ...]:
+        """Return the quickest path through some of the positions, in order, by clear straight legs."""
+        count = len(path)
         pairs = [(i, j) for i in range(count) for j in range(i + 2, count)]
         if not pairs:
-            return tuple(way)
-        legs = np.array([[way[i], way[j]] for i, j in pairs])
+            return tuple(path)
+        legs = np.array([[path[i], path[j]] for i, j in pairs])
         clear = ~np.logical_or.reduce(self._obstacles.blocking(legs), axis=1)
         steps = {(i, i + 1) for i in range(count - 1)}
         steps |= {pair for pair, free in zip(pairs, clear.tolist(), strict=True) if free}
         best, came = [0.0, *[inf] * (count - 1)], [0] * count
         for i, j in sorted(steps):
-            reached = best[i] + self.rates.leg(way[i], way[j])
+            reached = best[i] + self.rates.leg(path[i], path[j])
             if reached < best[j] - 1e-9:
                 best[j], came[j] = reached, i
         picks = [count - 1]
         while picks[-1]:
             picks.append(came[picks[-1]])
-        return tuple(way[i] for i in reversed(picks))
+        return tuple(path[i] for i in reversed(picks))
 
 
 def _words(position: Position) -> str:

@@ -1,4 +1,4 @@
-"""Places that areas close in at all heights: no way leads into them from outside."""
+"""Pockets: places that areas close in at all altitudes, unreachable from outside."""
 
 from __future__ import annotations
 

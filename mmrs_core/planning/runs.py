@@ -27,11 +27,11 @@ class _Sortie:
     state: State
 
 
-class Run:
+class PortionRun:
     """A robot's run through the portions of a material, made only as far as it is asked about.
 
     The time at which the robot is back home after a portion never falls from portion to portion, since
-    no way home is longer than one over the next portion: so both limits are found by bisection.
+    returning is never longer than over the next portion: so both limits are found by bisection.
     """
 
     def __init__(
@@ -79,7 +79,7 @@ class Run:
         return _largest(first, last, returns) if returns(first) else first - 1
 
     def _extend(self) -> bool:
-        """Go on with one more sortie; return whether there is one."""
+        """Add one more sortie; return whether there is one."""
         if self._stuck or not self._sorties or self._end == len(self.material) - 1:
             return False
         full = self._sorties[-1]

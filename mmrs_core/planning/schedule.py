@@ -8,13 +8,13 @@ from functools import partial
 from math import inf
 
 from mmrs_core.planning.choices import carry_out
-from mmrs_core.planning.crew import Crew
 from mmrs_core.planning.jobs import Job
 from mmrs_core.planning.mixing import mixes, share_mixed
-from mmrs_core.planning.runs import Run
+from mmrs_core.planning.runs import PortionRun
 from mmrs_core.planning.sharing import Candidate, Sharing, share_out
 from mmrs_core.planning.states import Ready, State
-from mmrs_core.planning.turns import Done, Part, States, in_turns, turn_of
+from mmrs_core.planning.team import Team
+from mmrs_core.planning.turns import JobResult, States, TurnShare, in_turns, turn_of
 from mmrs_core.scene import Task
 
 _SOME_SIZES = (1, 2, 3, 5, 8, 13, 21)
@@ -26,13 +26,13 @@ class Decisions:
 
     Attributes:
         order: names of jobs; of those that may begin, the first in this order is scheduled next.
-        teams: by job: how many robots share it, or which ones; missing: as many as help most.
+        groups: by job: how many robots share it, or which ones; missing: as many as help most.
         delays: by robot: seconds after the mission's start before which it does not leave home.
         in_turns: whether a robot leaves home only when all others are back there.
     """
 
     order: tuple[str, ...]
-    teams: Mapping[str, int | tuple[str, ...]] = field(default_factory=dict)
+    groups: Mapping[str, int | tuple[str, ...]] = field(default_factory=dict)
     delays: Mapping[str, float] = field(default_factory=dict)
     in_turns: bool = False
 
@@ -78,26 +78,26 @@ def signal_name(job: str, robot: str) -> str:
 
 
 def schedule(
-    crew: Crew, jobs: Sequence[Job], decisions: Decisions, *, record: bool = False
+    team: Team, jobs: Sequence[Job], decisions: Decisions, *, record: bool = False
 ) -> Schedule | Shortfall:
     """Return the schedule that follows from decisions.
 
     Args:
-        crew: of the scene.
+        team: of the scene.
         jobs: of the scene.
-        decisions: order, teams, delays.
+        decisions: order, groups, delays.
         record: whether the states carry all steps.
     """
-    return _Scheduling(crew, decisions, record).run(jobs)
+    return _Scheduling(team, decisions, record).run(jobs)
 
 
 class _Scheduling:
-    def __init__(self, crew: Crew, decisions: Decisions, record: bool) -> None:
-        self._crew, self._decisions, self._record = crew, decisions, record
-        self._tasks = {task.name: task for task in crew.scene.tasks}
+    def __init__(self, team: Team, decisions: Decisions, record: bool) -> None:
+        self._team, self._decisions, self._record = team, decisions, record
+        self._tasks = {task.name: task for task in team.scene.tasks}
         self._states: States = {
-            name: crew.starts.setdefault((name, delay), pilot.start(delay))
-            for name, pilot in crew.pilots.items()
+            name: team.starts.setdefault((name, delay), pilot.start(delay))
+            for name, pilot in team.pilots.items()
             for delay in (decisions.delays.get(name, 0.0),)
         }
         self._ends: dict[str, Mapping[str, float]] = {}
@@ -113,7 +113,7 @@ class _Scheduling:
             waiting.remove(job)
             if not self._do(job):
                 return Shortfall(job.name, len(waiting) + 1)
-        pilots = self._crew.pilots
+        pilots = self._team.pilots
         backs = {
             name: state.time + (pilots[name].exit_seconds(state.at) if state.away else 0.0)
             for name, state in self._states.items()
@@ -135,26 +135,26 @@ class _Scheduling:
         self._busy |= done.ends.keys()
         return True
 
-    def _remembered(self, job: Job) -> Done | None:
+    def _remembered(self, job: Job) -> JobResult | None:
         """Do a job, or return what became of it in an earlier schedule in which all that matters was alike.
 
-        States stand for themselves in the key: one that is made anew is another one.
+        States stand for themselves in the key: a new one is another one.
         """
         turns = self._decisions.in_turns
-        concerned = self._crew.pilots if turns or job.choice is not None else self._crew.able(job.name)
+        concerned = self._team.pilots if turns or job.choice is not None else self._team.able(job.name)
         states = tuple(self._states[name] for name in concerned)
         before = tuple((*self._ends[name].items(), *self._soonest[name].items()) for name in job.after)
         wanted = tuple(self._tasks[name].wanted for name in job.tasks())
-        key = (job.name, self._decisions.teams.get(job.name), turns, wanted, before, *map(id, states))
-        known = self._crew.done.get(key)
+        key = (job.name, self._decisions.groups.get(job.name), turns, wanted, before, *map(id, states))
+        known = self._team.done.get(key)
         if known is None:
-            known = self._crew.done[key] = (states, self._chosen_or_shared(job))
+            known = self._team.done[key] = (states, self._chosen_or_shared(job))
         return known[1]
 
-    def _chosen_or_shared(self, job: Job) -> Done | None:
+    def _chosen_or_shared(self, job: Job) -> JobResult | None:
         return self._chosen(job) if job.choice is not None else self._shared(job)
 
-    def _shared(self, job: Job) -> Done | None:
+    def _shared(self, job: Job) -> JobResult | None:
         """Share a task out as well as can be."""
         if self._decisions.in_turns:
             tried = [self._in_turns(each) for each in self._sharings(job)]
@@ -165,19 +165,19 @@ class _Scheduling:
                 best = each
         return None if best is None else self._at_once(best)
 
-    def _at_once(self, sharing: Sharing) -> Done:
+    def _at_once(self, sharing: Sharing) -> JobResult:
         after = {share.candidate.pilot.robot.name: share.run.state(share.end) for share in sharing.shares}
         ends = {name: state.time for name, state in after.items()}
         soonest = {name: state.time - state.lead for name, state in after.items()}
         begin = min(share.run.started() for share in sharing.shares)
-        return Done(after, begin, ends, soonest, sharing.back)
+        return JobResult(after, begin, ends, soonest, sharing.back)
 
-    def _in_turns(self, sharing: Sharing) -> Done | None:
+    def _in_turns(self, sharing: Sharing) -> JobResult | None:
         parts = [
-            Part(each.candidate.pilot, each.run.material, each.run.begin, each.end, each.candidate.ready)
+            TurnShare(each.candidate.pilot, each.run.material, each.run.begin, each.end, each.candidate.ready)
             for each in sharing.shares
         ]
-        return in_turns(parts, self._states, self._crew.pilots, record=self._record)
+        return in_turns(parts, self._states, self._team.pilots, record=self._record)
 
     def _ready(self, job: Job, robot: str, earliest: float | None) -> Ready:
         """Return what a robot's share of a job waits for: every other robot's share of those before."""
@@ -191,75 +191,75 @@ class _Scheduling:
         soonest = max((end for _, end in others.values()), default=0.0)
         return Ready(time, tuple(others), earliest, soonest)
 
-    def _chosen(self, job: Job) -> Done | None:
+    def _chosen(self, job: Job) -> JobResult | None:
         """Give a choice to the robot that is back first after its longest arm."""
-        best: Done | None = None
+        best: JobResult | None = None
         for name in self._allowed(job):
             done = self._chosen_by(job, name)
             if done is not None and done.back < (inf if best is None else best.back - 1e-9):
                 best = done
         return best
 
-    def _chosen_by(self, job: Job, name: str) -> Done | None:
-        pilot = self._crew.pilots[name]
+    def _chosen_by(self, job: Job, name: str) -> JobResult | None:
+        pilot = self._team.pilots[name]
         turns = self._decisions.in_turns
-        states = turn_of(name, self._states, self._crew.pilots, job.name) if turns else self._states
+        states = turn_of(name, self._states, self._team.pilots, job.name) if turns else self._states
         if job.choice is None or states is None:
             return None
         ready = self._ready(job, name, self._earliest(job))
-        materials = partial(self._crew.forwards, robot=name)
+        materials = partial(self._team.forwards, robot=name)
         end = carry_out(pilot, job.choice, materials, states[name], ready, record=self._record)
         if end is None:
             return None
         begin = end.trail[1].begin if end.trail is not None else end.time
         back = end.time + pilot.exit_seconds(end.at)
         soonest = {name: end.time - end.lead}
-        return Done({**states, name: end}, begin, {name: end.time}, soonest, back)
+        return JobResult({**states, name: end}, begin, {name: end.time}, soonest, back)
 
     def _earliest(self, job: Job) -> float | None:
         times = [self._tasks[name].earliest for name in job.tasks()]
         return max((time for time in times if time is not None), default=None)
 
     def _allowed(self, job: Job) -> Sequence[str]:
-        team = self._decisions.teams.get(job.name)
-        return team if isinstance(team, tuple) else tuple(self._crew.pilots)
+        group = self._decisions.groups.get(job.name)
+        return group if isinstance(group, tuple) else tuple(self._team.pilots)
 
     def _sharings(self, job: Job) -> Iterator[Sharing]:
-        """Yield the best way to share a task out for each choice of robots."""
+        """Yield the best sharing of a task for each choice of robots."""
         task = self._tasks[job.name]
-        for team in self._crew.teams[job.name]:
-            candidates = self._candidates(job, task, team)
+        for group in self._team.groups[job.name]:
+            candidates = self._candidates(job, task, group)
             for some, everyone in self._choices_of(task, candidates):
                 found = share_out(some, everyone=everyone, record=self._record)
                 if found is not None:
                     yield found
-        for mixture in self._crew.mixtures[job.name]:
-            groups = [self._candidates(job, task, each.team) for each in mixture.sorts]
+        for mixture in self._team.mixtures[job.name]:
+            groups = [self._candidates(job, task, each.robots) for each in mixture.sorts]
             for mixed in self._mixes_of(task, groups):
                 everyone = task.wanted is not None
                 found = share_mixed(mixture, mixed, everyone=everyone, record=self._record)
                 if found is not None:
                     yield found
 
-    def _candidates(self, job: Job, task: Task, team: Sequence[str]) -> list[Candidate]:
-        """Return the robots of a team, those first that are first back from the first portion."""
+    def _candidates(self, job: Job, task: Task, group: Sequence[str]) -> list[Candidate]:
+        """Return the robots of a group, those first that are first back from the first portion."""
         found = []
-        for name in team:
-            forwards = self._crew.forwards(job.name, name)
+        for name in group:
+            forwards = self._team.forwards(job.name, name)
             if forwards is None:
                 continue
-            pilot, state = self._crew.pilots[name], self._states[name]
+            pilot, state = self._team.pilots[name], self._states[name]
             ready = self._ready(job, name, task.earliest)
-            run = Run(pilot, forwards, state, 0, ready, record=False)
-            each = Candidate(pilot, state, ready, forwards, self._crew.backwards(job.name, name))
+            run = PortionRun(pilot, forwards, state, 0, ready, record=False)
+            each = Candidate(pilot, state, ready, forwards, self._team.backwards(job.name, name))
             found.append((run.back(0), each))
         return [each for _, each in sorted(found, key=lambda pair: pair[0])]
 
     def _choices_of(
         self, task: Task, candidates: Sequence[Candidate]
     ) -> Iterator[tuple[Sequence[Candidate], bool]]:
-        """Yield the teams to be tried, and whether each robot in them must have a share."""
-        decided = self._decisions.teams.get(task.name)
+        """Yield the groups to be tried, and whether each robot in them must have a share."""
+        decided = self._decisions.groups.get(task.name)
         if isinstance(decided, tuple):
             chosen = [each for each in candidates if each.pilot.robot.name in decided]
             if chosen and (task.wanted is None or len(chosen) == task.wanted):
@@ -282,7 +282,7 @@ class _Scheduling:
         self, task: Task, groups: Sequence[Sequence[Candidate]]
     ) -> Iterator[Sequence[Sequence[Candidate]]]:
         """Yield, by sort, the robots to be tried together, of two sorts at least."""
-        decided = self._decisions.teams.get(task.name)
+        decided = self._decisions.groups.get(task.name)
         if isinstance(decided, tuple):
             chosen = [[each for each in group if each.pilot.robot.name in decided] for group in groups]
             if sum(map(bool, chosen)) > 1 and task.wanted in (None, sum(map(len, chosen))):

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from math import inf
+from itertools import product
+from math import inf, prod
 from random import Random
 from typing import TypeAlias
 
-from mmrs_core.planning.crew import Crew
 from mmrs_core.planning.jobs import Job
 from mmrs_core.planning.schedule import Decisions, Schedule, Shortfall, schedule
+from mmrs_core.planning.team import Team
 
 Cost: TypeAlias = tuple[float, float, float]
 
@@ -28,85 +29,85 @@ _PATIENCE = 15
 
 
 def find_decisions(
-    crew: Crew, jobs: Sequence[Job], seed: int, *, in_turns: bool = False
+    team: Team, jobs: Sequence[Job], seed: int, *, in_turns: bool = False
 ) -> tuple[Decisions, Schedule | Shortfall]:
     """Return the best decisions found, with their schedule; a shortfall if none led to a schedule.
 
     Args:
-        crew: of the scene.
+        team: of the scene.
         jobs: in an order in which none comes before one that it waits for.
         seed: of the search.
         in_turns: whether a robot leaves home only when all others are back there.
     """
-    order = _first_order(crew, jobs)
+    order = _first_order(team, jobs)
     starts = [
         Decisions(order),
         Decisions(order, {job.name: 1 for job in jobs}),
-        *(Decisions(order, {job.name: (name,) for job in jobs}) for name in _only_ones(crew, jobs)),
+        *(Decisions(order, {job.name: (name,) for job in jobs}) for name in _only_ones(team, jobs)),
     ]
     starts = [replace(each, in_turns=in_turns) for each in starts]
-    tried = [(each, schedule(crew, jobs, each)) for each in starts]
-    best, found = min(tried, key=lambda pair: cost_of(crew, pair[1]))
+    tried = [(each, schedule(team, jobs, each)) for each in starts]
+    best, found = min(tried, key=lambda pair: cost_of(team, pair[1]))
     random, idle = Random(seed), 0
-    steps = min(_STEPS, max(4, _EFFORT // max(1, len(jobs) * len(crew.pilots))))
+    steps = min(_STEPS, max(4, _EFFORT // max(1, len(jobs) * len(team.pilots))))
     for step in range(_STEPS_TO_BEGIN if len(jobs) > 1 else 0):
         if isinstance(found, Schedule) and (idle >= _PATIENCE or step >= steps):
             break
-        other = _varied(crew, jobs, best, random)
-        result = schedule(crew, jobs, other)
-        cost, least = cost_of(crew, result), cost_of(crew, found)
+        other = _varied(team, jobs, best, random)
+        result = schedule(team, jobs, other)
+        cost, least = cost_of(team, result), cost_of(team, found)
         if cost < _slightly_less(least):
             best, found, idle = other, result, 0
             continue
         idle += 1
         if isinstance(found, Shortfall) and cost == least:
             best, found = other, result
-    return _with_better_numbers(crew, jobs, best, found)
+    return _with_better_numbers(team, jobs, best, found)
 
 
 def _with_better_numbers(
-    crew: Crew, jobs: Sequence[Job], best: Decisions, found: Schedule | Shortfall
+    team: Team, jobs: Sequence[Job], best: Decisions, found: Schedule | Shortfall
 ) -> tuple[Decisions, Schedule | Shortfall]:
     """Return decisions in which each task in turn has the number of robots that helps most."""
-    sizes = {job.name: crew.sharers(job.name) for job in jobs if job.tasks() and job.choice is None}
+    sizes = {job.name: team.sharers(job.name) for job in jobs if job.tasks() and job.choice is None}
     tries = [(name, size) for name, most in sizes.items() for size in range(1, most + 1) if most > 1]
-    for name, size in tries if len(tries) * len(jobs) * len(crew.pilots) <= _EFFORT else ():
-        other = replace(best, teams={**best.teams, name: size})
-        result = schedule(crew, jobs, other)
-        if cost_of(crew, result) < _slightly_less(cost_of(crew, found)):
+    for name, size in tries if len(tries) * len(jobs) * len(team.pilots) <= _EFFORT else ():
+        other = replace(best, groups={**best.groups, name: size})
+        result = schedule(team, jobs, other)
+        if cost_of(team, result) < _slightly_less(cost_of(team, found)):
             best, found = other, result
     return best, found
 
 
-def first_cost(crew: Crew, jobs: Sequence[Job]) -> Cost:
+def first_cost(team: Team, jobs: Sequence[Job]) -> Cost:
     """Return the cost of what a search begins with, as a hint of what it may find."""
-    return cost_of(crew, schedule(crew, jobs, Decisions(_first_order(crew, jobs))))
+    return cost_of(team, schedule(team, jobs, Decisions(_first_order(team, jobs))))
 
 
-def _only_ones(crew: Crew, jobs: Sequence[Job]) -> list[str]:
+def _only_ones(team: Team, jobs: Sequence[Job]) -> list[str]:
     """Return robots that could do all jobs, for the plan in which one robot does everything."""
     tasks = [task for job in jobs for task in job.tasks()]
-    wanted = {task.name: task.wanted for task in crew.scene.tasks}
+    wanted = {task.name: task.wanted for task in team.scene.tasks}
     if any((wanted[task] or 1) > 1 for task in tasks):
         return []
-    return [name for name in crew.pilots if all(name in crew.able(task) for task in tasks)][:1]
+    return [name for name in team.pilots if all(name in team.able(task) for task in tasks)][:1]
 
 
-def cost_of(crew: Crew, found: Schedule | Shortfall) -> Cost:
+def cost_of(team: Team, found: Schedule | Shortfall) -> Cost:
     """Return (seconds by which times are broken, makespan, sum of all robots' times); less is better.
 
     A shortfall costs (inf, jobs left, 0).
     """
     if isinstance(found, Shortfall):
         return (inf, float(found.left), 0.0)
-    broken = sum(late for _, late in broken_times(crew, found.spans))
+    broken = sum(late for _, late in broken_times(team, found.spans))
     return (broken, found.makespan, sum(found.backs.values()))
 
 
-def broken_times(crew: Crew, spans: Mapping[str, tuple[float, float]]) -> list[tuple[str, float]]:
+def broken_times(team: Team, spans: Mapping[str, tuple[float, float]]) -> list[tuple[str, float]]:
     """Return (what is broken, by how many seconds) for deadlines and longest durations of tasks."""
     broken = []
-    for task in crew.scene.tasks:
+    for task in team.scene.tasks:
         begin, end = spans.get(task.name, (0.0, 0.0))
         if task.deadline is not None and end > task.deadline + 1e-6:
             late = end - task.deadline
@@ -125,18 +126,18 @@ def _slightly_less(cost: Cost) -> Cost:
     return (cost[0] - 1e-9, cost[1], cost[2]) if 0 < cost[0] < inf else (cost[0], cost[1] - 1e-6, cost[2])
 
 
-def _first_order(crew: Crew, jobs: Sequence[Job]) -> tuple[str, ...]:
+def _first_order(team: Team, jobs: Sequence[Job]) -> tuple[str, ...]:
     """Return the jobs by priority, then by how long what comes after them is, longest first."""
-    tails = _tails(crew, jobs)
-    priority = {task.name: task.priority for task in crew.scene.tasks}
+    tails = _tails(team, jobs)
+    priority = {task.name: task.priority for task in team.scene.tasks}
     ranked = {job.name: max((priority[name] for name in job.tasks()), default=0) for job in jobs}
     names = [job.name for job in jobs]
     return tuple(sorted(names, key=lambda name: (-ranked[name], -tails[name], names.index(name))))
 
 
-def _tails(crew: Crew, jobs: Sequence[Job]) -> Mapping[str, float]:
+def _tails(team: Team, jobs: Sequence[Job]) -> Mapping[str, float]:
     """Return, by job, the seconds of work of the longest chain that begins with it."""
-    tails = {job.name: _seconds(crew, job) for job in jobs}
+    tails = {job.name: _seconds(team, job) for job in jobs}
     own = dict(tails)
     for job in reversed(jobs):
         for before in job.after:
@@ -144,40 +145,81 @@ def _tails(crew: Crew, jobs: Sequence[Job]) -> Mapping[str, float]:
     return tails
 
 
-def _seconds(crew: Crew, job: Job) -> float:
+def _seconds(team: Team, job: Job) -> float:
     """Return the seconds of work of a job for the robots that are slowest at it."""
     total = 0.0
     for task in job.tasks():
-        materials = [crew.forwards(task, robot) for robot in crew.able(task)[:3]]
+        materials = [team.forwards(task, robot) for robot in team.able(task)[:3]]
         total += max((each.seconds(0, len(each) - 1) for each in materials if each is not None), default=0.0)
     return total
 
 
-def _varied(crew: Crew, jobs: Sequence[Job], decisions: Decisions, random: Random) -> Decisions:
+def _varied(team: Team, jobs: Sequence[Job], decisions: Decisions, random: Random) -> Decisions:
     """Return decisions that differ in one place: who does a job, how many do, or when it comes."""
     job = random.choice(list(jobs))
     if random.random() < 0.35 and len(jobs) > 2:
-        return replace(decisions, order=_swapped(crew, decisions.order, random))
+        return replace(decisions, order=_swapped(team, decisions.order, random))
     tasks = job.tasks()
-    able = [name for name in crew.pilots if all(name in crew.able(task) for task in tasks)] if tasks else []
+    able = [name for name in team.pilots if all(name in team.able(task) for task in tasks)] if tasks else []
     if not able:
         return decisions
-    teams = dict(decisions.teams)
-    if random.random() < 0.3 and job.name in teams:
-        del teams[job.name]
+    groups = dict(decisions.groups)
+    if random.random() < 0.3 and job.name in groups:
+        del groups[job.name]
     else:
-        wanted = None if job.choice is not None else crew.scene.task(job.name).wanted
+        wanted = None if job.choice is not None else team.scene.task(job.name).wanted
         size = wanted or min(len(able), random.choice((1, 1, 2, 2, 3, random.randint(1, len(able)))))
-        teams[job.name] = tuple(sorted(random.sample(able, min(size, len(able)))))
-    return replace(decisions, teams=teams)
+        groups[job.name] = tuple(sorted(random.sample(able, min(size, len(able)))))
+    return replace(decisions, groups=groups)
 
 
-def _swapped(crew: Crew, order: tuple[str, ...], random: Random) -> tuple[str, ...]:
+def _swapped(team: Team, order: tuple[str, ...], random: Random) -> tuple[str, ...]:
     """Return the order with two jobs swapped, if neither has priority over the other."""
-    priority = {task.name: task.priority for task in crew.scene.tasks}
+    priority = {task.name: task.priority for task in team.scene.tasks}
     one, two = sorted(random.sample(range(len(order)), 2))
     if priority.get(order[one], 0) != priority.get(order[two], 0):
         return order
     swapped = list(order)
     swapped[one], swapped[two] = swapped[two], swapped[one]
     return tuple(swapped)
+
+
+_MOST_SEARCHES = 192
+"""Searches times jobs times robots, at most, but always some: what is most promising comes first."""
+
+_FEWEST_SEARCHES = 3
+
+
+def robot_counts(team: Team, jobs: Sequence[Job]) -> list[Mapping[str, int]]:
+    """Return what tasks that leave the number of their robots open may want; each is worth a search.
+
+    In a small mission that is every choice of numbers. In one so large that all these searches would
+    take too long, it is what has the best first schedules of one number for one task, or for all.
+    """
+    most = {name: largest for name in _open_tasks(team, jobs) if (largest := team.sharers(name)) > 1}
+    room = max(_FEWEST_SEARCHES, _MOST_SEARCHES // max(1, len(jobs) * len(team.pilots)))
+    if prod(largest + 1 for largest in most.values()) <= room + 1:
+        choices = product(*([(name, count) for count in range(most[name] + 1)] for name in most))
+        asked = [{name: count for name, count in choice if count} for choice in choices]
+        return [each for each in asked if each]
+    ranked = sorted(_uniform_counts(most), key=lambda each: first_cost(team.wanting(each), jobs))
+    return ranked[:room]
+
+
+def _uniform_counts(most: Mapping[str, int]) -> list[Mapping[str, int]]:
+    """Return one number for one task, and for all, as far as they allow."""
+    single = [{name: count} for name, largest in most.items() for count in range(1, largest + 1)]
+    alike = [
+        {name: min(count, largest) for name, largest in most.items()}
+        for count in range(1, max(most.values()) + 1)
+    ]
+    return [*single, *(alike if len(most) > 1 else ())]
+
+
+def _open_tasks(team: Team, jobs: Sequence[Job]) -> list[str]:
+    """Return the names of the tasks whose number of robots is for the planner to choose."""
+    return [
+        job.name
+        for job in jobs
+        if job.choice is None and job.tasks() and team.scene.task(job.name).wanted is None
+    ]

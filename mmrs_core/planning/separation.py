@@ -9,7 +9,7 @@ from math import dist
 import numpy as np
 
 from mmrs_core.errors import InfeasibleError
-from mmrs_core.planning.nearness import Nearness, Track, near_pairs, track_of
+from mmrs_core.planning.proximity import ClosePairs, TimedTrack, near_pairs, track_of
 from mmrs_core.planning.schedule import Decisions
 from mmrs_core.planning.timeline import rides_of
 from mmrs_core.scene import Plan, Position, Scene
@@ -24,7 +24,7 @@ _SPARE = 0.05
 """Seconds that robots are apart in time at one place, since times follow from rounded coordinates."""
 
 _PARTS = 8
-"""Pieces as long as the distance to keep are told apart in so many parts, but none shorter than 0.5 m."""
+"""Pieces as long as the distance to keep are distinguished in so many parts, but none shorter than 0.5 m."""
 
 
 class TooNearError(InfeasibleError):
@@ -32,17 +32,17 @@ class TooNearError(InfeasibleError):
 
     Attributes:
         at_home: whether one of those that come too near first stands at its home.
-        robots: names of those two; empty where nobody is known.
+        robots: names of those two; empty where they are unknown.
     """
 
-    def __init__(self, encounter: Encounter | None, least: float, homes: Mapping[str, Position]) -> None:
-        super().__init__(_words(encounter, least, homes))
-        self.at_home = encounter is not None and encounter.at_home
-        self.robots = frozenset() if encounter is None else frozenset((encounter.first, encounter.second))
+    def __init__(self, conflict: Conflict | None, least: float, homes: Mapping[str, Position]) -> None:
+        super().__init__(_words(conflict, least, homes))
+        self.at_home = conflict is not None and conflict.at_home
+        self.robots = frozenset() if conflict is None else frozenset((conflict.first, conflict.second))
 
 
 @dataclass(frozen=True, slots=True)
-class Encounter:
+class Conflict:
     """Two robots that may come too near to each other: when, to how many metres, and if one is at home."""
 
     first: str
@@ -84,51 +84,51 @@ def separated(scene: Scene, decisions: Decisions, planned: Callable[[Decisions],
         return found
     for _ in range(_ROUNDS):
         tracks = tracks_of(scene, found)
-        encounter = earliest_encounter(tracks, least)
-        if encounter is None:
+        conflict = earliest_conflict(tracks, least)
+        if conflict is None:
             return found
-        better = _resolved(scene, tracks, decisions, planned, encounter, least)
+        better = _resolved(scene, tracks, decisions, planned, conflict, least)
         if better is None:
             break
         decisions, found = better
     homes = {robot.name: robot.home for robot in scene.robots}
-    raise TooNearError(first_encounter(scene, found, least), least, homes)
+    raise TooNearError(first_conflict(scene, found, least), least, homes)
 
 
 def _resolved(
     scene: Scene,
-    tracks: Mapping[str, Track],
+    tracks: Mapping[str, TimedTrack],
     decisions: Decisions,
     planned: Callable[[Decisions], Plan | None],
-    encounter: Encounter,
+    conflict: Conflict,
     least: float,
 ) -> tuple[Decisions, Plan] | None:
-    """Return decisions, with their plan, in which an encounter is gone or comes later; None if none are.
+    """Return decisions, with their plan, in which an conflict is gone or comes later; None if none are.
 
     One of the two robots starts later, by as little as would do if all else stayed; where it waits for
     the other anyway, that changes nothing, and the other one is tried.
     """
-    first, second = tracks[encounter.first], tracks[encounter.second]
+    first, second = tracks[conflict.first], tracks[conflict.second]
     shifts = [
-        (_shift(first, second, least), encounter.second),
-        (_shift(second, first, least), encounter.first),
+        (_shift(first, second, least), conflict.second),
+        (_shift(second, first, least), conflict.first),
     ]
     for shift, name in sorted(shifts):
         delays = {**decisions.delays, name: decisions.delays.get(name, 0.0) + shift}
         later = replace(decisions, delays=delays)
         plan = planned(later) if shift < _LONGEST_DELAY else None
-        left = None if plan is None else first_encounter(scene, plan, least)
-        if plan is not None and (left is None or _is_progress(encounter, left)):
+        left = None if plan is None else first_conflict(scene, plan, least)
+        if plan is not None and (left is None or _is_progress(conflict, left)):
             return later, plan
     return None
 
 
-def _is_progress(before: Encounter, after: Encounter) -> bool:
+def _is_progress(before: Conflict, after: Conflict) -> bool:
     alike = (before.first, before.second) == (after.first, after.second)
     return not alike or after.time > before.time + 0.5
 
 
-def _shift(fixed: Track, late: Track, least: float) -> float:
+def _shift(fixed: TimedTrack, late: TimedTrack, least: float) -> float:
     """Return by how many whole seconds a track must come later to keep apart from another; inf: never."""
     pairs = near_pairs(fixed, late, least, finest=_finest(least))
     begins = pairs.one[:, 0] - pairs.two[:, 1] - _SPARE
@@ -144,40 +144,40 @@ def _finest(least: float) -> float:
     return max(0.5, least / _PARTS)
 
 
-def _words(encounter: Encounter | None, least: float, homes: Mapping[str, Position]) -> str:
-    if encounter is None:
+def _words(conflict: Conflict | None, least: float, homes: Mapping[str, Position]) -> str:
+    if conflict is None:
         return "no plan keeps robots apart"
-    at_home = ", one of them at its home" if encounter.at_home else ""
-    apart = dist(homes[encounter.first], homes[encounter.second])
+    at_home = ", one of them at its home" if conflict.at_home else ""
+    apart = dist(homes[conflict.first], homes[conflict.second])
     near = f" (their homes are {apart:.1f} m apart)" if apart < least else ""
     return (
-        f"robots '{encounter.first}' and '{encounter.second}' come within {encounter.distance:.1f} m"
-        f" after {encounter.time:.0f} s{at_home}{near}, {least:g} m are required:"
-        f" {least - encounter.distance:.1f} m short; starting later does not help"
+        f"robots '{conflict.first}' and '{conflict.second}' come within {conflict.distance:.1f} m"
+        f" after {conflict.time:.0f} s{at_home}{near}, {least:g} m are required:"
+        f" {least - conflict.distance:.1f} m short; starting later does not help"
     )
 
 
-def tracks_of(scene: Scene, plan: Plan) -> dict[str, Track]:
+def tracks_of(scene: Scene, plan: Plan) -> dict[str, TimedTrack]:
     """Return the tracks of all robots, those without work included."""
     robots = {robot.name: robot for robot in scene.robots}
     return {name: track_of(rides, robots[name].home) for name, rides in rides_of(plan, robots).items()}
 
 
-def first_encounter(scene: Scene, plan: Plan, least: float) -> Encounter | None:
-    """Return the earliest encounter nearer than `least` metres; None if there is none."""
-    return earliest_encounter(tracks_of(scene, plan), least)
+def first_conflict(scene: Scene, plan: Plan, least: float) -> Conflict | None:
+    """Return the earliest conflict nearer than `least` metres; None if there is none."""
+    return earliest_conflict(tracks_of(scene, plan), least)
 
 
-def earliest_encounter(tracks: Mapping[str, Track], least: float) -> Encounter | None:
+def earliest_conflict(tracks: Mapping[str, TimedTrack], least: float) -> Conflict | None:
     """Return the same of tracks."""
-    found: Iterable[Encounter | None] = (
+    found: Iterable[Conflict | None] = (
         _met(one, two, near_pairs(tracks[one], tracks[two], least, finest=_finest(least), spare=_SPARE))
         for one, two in _neighbours(tracks, least)
     )
     return min((each for each in found if each is not None), key=lambda each: each.time, default=None)
 
 
-def _neighbours(tracks: Mapping[str, Track], least: float) -> Iterator[tuple[str, str]]:
+def _neighbours(tracks: Mapping[str, TimedTrack], least: float) -> Iterator[tuple[str, str]]:
     """Yield the pairs of tracks whose boxes come within a distance."""
     names = [name for name, track in tracks.items() if len(track.times)]
     boxes = np.array([tracks[name].box() for name in names]).reshape(-1, 2, 3)
@@ -188,14 +188,14 @@ def _neighbours(tracks: Mapping[str, Track], least: float) -> Iterator[tuple[str
             yield name, names[i + 1 + j]
 
 
-def _met(one: str, two: str, pairs: Nearness) -> Encounter | None:
+def _met(one: str, two: str, pairs: ClosePairs) -> Conflict | None:
     if not len(pairs.distance):
         return None
     times = np.maximum(pairs.one[:, 0], pairs.two[:, 0])
     time = max(0.0, float(times.min()))
     soon = times <= time + 1.0
     nearest, at_home = float(pairs.distance[soon].min()), bool(pairs.at_home[soon].any())
-    return Encounter(one, two, time, max(0.0, nearest), at_home)
+    return Conflict(one, two, time, max(0.0, nearest), at_home)
 
 
 def stacked_altitudes(scene: Scene) -> dict[str, float]:

@@ -8,7 +8,7 @@ from itertools import permutations
 from math import dist, inf
 
 from mmrs_core.planning.materials import Material
-from mmrs_core.planning.runs import Run
+from mmrs_core.planning.runs import PortionRun
 from mmrs_core.planning.sorties import Pilot
 from mmrs_core.planning.states import Ready, State
 
@@ -41,7 +41,7 @@ class Share:
     """A run of portions for one robot, begin to end in the run's own direction."""
 
     candidate: Candidate
-    run: Run
+    run: PortionRun
     end: int
 
     @property
@@ -69,7 +69,7 @@ def share_out(
     Args:
         candidates: the robots; all materials have the same portions.
         everyone: whether each robot must have a share.
-        record: see `Run`.
+        record: see `PortionRun`.
     """
     best: Sharing | None = None
     for order in _orders(candidates):
@@ -97,7 +97,7 @@ class _Filling:
 
     def __init__(self, order: Sequence[Candidate], everyone: bool, record: bool) -> None:
         self._order, self._everyone, self._record = order, everyone, record
-        self._runs: dict[tuple[int, int], Run] = {}
+        self._runs: dict[tuple[int, int], PortionRun] = {}
         self._count = len(order[0].forwards)
 
     def best(self, limit: float) -> Sharing | None:
@@ -143,10 +143,10 @@ class _Filling:
                 return Share(self._order[place], run, end)
         return None
 
-    def _run(self, place: int, begin: int) -> Run:
+    def _run(self, place: int, begin: int) -> PortionRun:
         if (place, begin) not in self._runs:
             each = self._order[place]
-            self._runs[place, begin] = Run(
+            self._runs[place, begin] = PortionRun(
                 each.pilot, each.forwards, each.state, begin, each.ready, record=self._record
             )
         return self._runs[place, begin]
@@ -157,5 +157,5 @@ class _Filling:
         if each.backwards is None:
             return share
         begin, end = self._count - 1 - share.end, self._count - 1 - share.run.begin
-        run = Run(each.pilot, each.backwards, each.state, begin, each.ready, record=self._record)
+        run = PortionRun(each.pilot, each.backwards, each.state, begin, each.ready, record=self._record)
         return Share(each, run, end) if run.back(end) < share.back - 1e-6 else share

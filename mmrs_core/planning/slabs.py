@@ -25,7 +25,7 @@ class Band:
     high: Side
 
     def between(self, begin: float, end: float) -> Band:
-        """Return the band between two shares (0 to 1) of the way from its left to its right side."""
+        """Return the band between two shares (0 to 1) of its width."""
         return Band(_part(self.low, begin, end), _part(self.high, begin, end))
 
     def around(self, other: Band) -> Band:

@@ -1,4 +1,4 @@
-"""A robot's way through its plan: a state that grows step by step, within what its batteries allow.
+"""A robot's progress through its plan: a state that grows step by step, within what its batteries allow.
 
 Time on one charge counts as the verifier counts it: for a robot that launches, from launch to recovery,
 waits aloft included; for all others from the mission's start or the last recharge on. Energy is power
@@ -12,22 +12,22 @@ from dataclasses import replace
 from math import inf
 
 from mmrs_core.errors import UnreachableError
-from mmrs_core.planning.states import Approach, Ready, State
+from mmrs_core.planning.states import ApproachRoute, Ready, State
 from mmrs_core.planning.strokes import approach_speed, commanded_speed, length_of, serve_seconds
-from mmrs_core.planning.travel import Travel, Way
+from mmrs_core.planning.travel import Route, Travel
 from mmrs_core.scene import Await, Launch, Position, Recharge, Recover, Serve, Stroke, Transit
 
 _SAME = 1e-9
 
 
 class Pilot:
-    """Moves one robot's state on; every way of doing something is a short function of the state."""
+    """Moves one robot's state on; each action is a short function of the state."""
 
     def __init__(self, travel: Travel, *, homebound: bool = True) -> None:
         """Make it.
 
         Args:
-            travel: ways of the robot.
+            travel: routes of the robot.
             homebound: whether it always keeps enough to go home, even if it may stay where it ends.
         """
         self.travel = travel
@@ -49,14 +49,14 @@ class Pilot:
 
     def exit_seconds(self, position: Position) -> float:
         """Return the seconds that ending the last sortie from a place takes; inf where it cannot end."""
-        return _remembered(self._exits, position, self.way_out)
+        return _remembered(self._exits, position, self.exit_route)
 
     def home_seconds(self, position: Position) -> float:
-        """Return the seconds that the way home from a place takes; inf where there is none."""
+        """Return the seconds that the route home from a place takes; inf where there is none."""
         return _remembered(self._homes, position, self.travel.go_home)
 
-    def way_out(self, position: Position) -> Way:
-        """Return the way on which the last sortie ends from a place: home, or down where that is allowed.
+    def exit_route(self, position: Position) -> Route:
+        """Return the route on which the last sortie ends from a place: home, or down where that is allowed.
 
         Raises:
             UnreachableError: there is neither.
@@ -69,18 +69,20 @@ class Pilot:
             return self.travel.go_home(position)
 
     def affords(self, state: State, seconds: float, end: Position) -> bool:
-        """Return whether so many seconds that end at a place leave enough to end the last sortie there."""
+        """Return whether `seconds` that end at a place leave enough to end the last sortie there."""
         return state.used + seconds + self.exit_seconds(end) <= self.limit + _SAME
 
     def affords_home(self, state: State, seconds: float, end: Position) -> bool:
-        """Return whether so many seconds that end at a place leave enough to go home."""
+        """Return whether `seconds` that end at a place leave enough to return home."""
         return state.used + seconds + self.home_seconds(end) <= self.limit + _SAME
 
-    def reach(self, state: State, approach: Approach, need: float, ready: Ready, task: str) -> State | None:
+    def reach(
+        self, state: State, approach: ApproachRoute, need: float, ready: Ready, task: str
+    ) -> State | None:
         """Return the state in which the robot begins work, as early as can be; None if it cannot.
 
         It goes there and waits, or first goes home for full batteries where it would have too little
-        left, or would wait so long that this is no later.
+        left, or would wait so long that this is as early.
 
         Args:
             state: where it is.
@@ -110,7 +112,7 @@ class Pilot:
             return None
         return self._recharged(home, task) if home.used <= self.limit + _SAME else None
 
-    def _reach_now(self, state: State, approach: Approach, ready: Ready, task: str) -> State | None:
+    def _reach_now(self, state: State, approach: ApproachRoute, ready: Ready, task: str) -> State | None:
         try:
             if not state.away:
                 return self._from_home(state, approach, ready, task)
@@ -118,7 +120,7 @@ class Pilot:
         except UnreachableError:
             return None
 
-    def _from_home(self, state: State, approach: Approach, ready: Ready, task: str) -> State:
+    def _from_home(self, state: State, approach: ApproachRoute, ready: Ready, task: str) -> State:
         """Wait at home for signals and clock, then go; wait for the rest of the clock where work begins."""
         there = self._along(self._wait(state, replace(ready, earliest=None), task), approach, task)
         if ready.earliest is None or there.time - there.lead >= ready.earliest:
@@ -153,7 +155,7 @@ class Pilot:
             trail=(state.trail, step),
         )
 
-    def _along(self, state: State, approach: Approach, task: str) -> State:
+    def _along(self, state: State, approach: ApproachRoute, task: str) -> State:
         first, *rest = approach.via
         if not state.away:
             state = self._leave(state, first, task, approach.speed)
@@ -164,25 +166,25 @@ class Pilot:
         return state
 
     def _leave(self, state: State, goal: Position, task: str, speed: float | None) -> State:
-        way = self.travel.at_speed(self.travel.leave(goal), speed)
+        route = self.travel.at_speed(self.travel.leave(goal), speed)
         trail, time = state.trail, state.time
-        if way.height is not None:
-            climb = way.height - self.robot.home[2]
+        if route.height is not None:
+            climb = route.height - self.robot.home[2]
             up = time + self.kinematics.launch + self.travel.space.rates.rise(climb)
-            trail = (trail, Launch(time, up, task, self.robot.home, way.height))
+            trail = (trail, Launch(time, up, task, self.robot.home, route.height))
             time = up
-        end = state.time + way.seconds
-        if len(way.route) > 1 and way.route[0] != way.route[-1]:
-            trail = (trail, Transit(time, end, task, way.route, speed))
-        return replace(state.after(way, goal, trail), sorties=state.sorties + 1)
+        end = state.time + route.seconds
+        if len(route.points) > 1 and route.points[0] != route.points[-1]:
+            trail = (trail, Transit(time, end, task, route.points, speed))
+        return replace(state.after(route, goal, trail), sorties=state.sorties + 1)
 
-    def _follow(self, state: State, way: Way, task: str, speed: float | None) -> State:
-        way = self.travel.at_speed(way, speed)
-        step = Transit(state.time, state.time + way.seconds, task, way.route, speed)
-        return state.after(way, way.route[-1], (state.trail, step))
+    def _follow(self, state: State, route: Route, task: str, speed: float | None) -> State:
+        route = self.travel.at_speed(route, speed)
+        step = Transit(state.time, state.time + route.seconds, task, route.points, speed)
+        return state.after(route, route.points[-1], (state.trail, step))
 
     def hop(self, state: State, stroke: Stroke, task: str) -> State:
-        """Return the state after the quickest way to the next stroke of a task."""
+        """Return the state after the quickest route to the next stroke of a task."""
         goal = stroke.points[0]
         if state.at == goal:
             return state
@@ -193,8 +195,8 @@ class Pilot:
         goal = stroke.points[0]
         if here == goal:
             return 0.0
-        way = self.travel.at_speed(self.travel.hop(here, goal), self._approach_speed(stroke))
-        return way.seconds - way.lead if soonest else way.seconds
+        route = self.travel.at_speed(self.travel.hop(here, goal), self._approach_speed(stroke))
+        return route.seconds - route.lead if soonest else route.seconds
 
     def _approach_speed(self, stroke: Stroke) -> float | None:
         return approach_speed(stroke, self.kinematics)
@@ -212,7 +214,7 @@ class Pilot:
         """Return the state at home, after recovery.
 
         Raises:
-            UnreachableError: there is no way home.
+            UnreachableError: there is no route home.
         """
         return self._ended(state, self.travel.go_home(state.at), task) if state.away else state
 
@@ -220,38 +222,38 @@ class Pilot:
         """Return the state at the end of the plan: at home, or on the ground where the robot may stay.
 
         Raises:
-            UnreachableError: there is no way home.
+            UnreachableError: there is no route home.
         """
         if not state.away:
             return state
-        way = self.way_out(state.at)
+        route = self.exit_route(state.at)
         if self.homebound and not self.robot.return_home:
-            down = self._way_down(state)
-            way = way if down is None else down
-        return self._ended(state, way, "")
+            down = self._descent(state)
+            route = route if down is None else down
+        return self._ended(state, route, "")
 
-    def _way_down(self, state: State) -> Way | None:
-        """Return the way down to the ground where the robot is; None if it is shut, or takes too long."""
+    def _descent(self, state: State) -> Route | None:
+        """Return the route down to the ground where the robot is; None if it is shut, or takes too long."""
         try:
-            way = self.travel.come_down(state.at)
+            route = self.travel.come_down(state.at)
         except UnreachableError:
             return None
-        return way if state.used + way.seconds <= self.limit + _SAME else None
+        return route if state.used + route.seconds <= self.limit + _SAME else None
 
-    def _ended(self, state: State, way: Way, task: str) -> State:
-        end, trail = state.time + way.seconds, state.trail
+    def _ended(self, state: State, route: Route, task: str) -> State:
+        end, trail = state.time + route.seconds, state.trail
         down = 0.0
-        last = way.route[-1]
+        last = route.points[-1]
         at = last
-        if self.kinematics.launches and way.height is not None:
-            ground = self.robot.home[2] if len(way.route) > 1 else way.height
+        if self.kinematics.launches and route.height is not None:
+            ground = self.robot.home[2] if len(route.points) > 1 else route.height
             down = self.travel.space.rates.rise(ground - last[2]) + self.kinematics.recovery
             at = (last[0], last[1], ground)
-        if len(way.route) > 1 and way.route[0] != last:
-            trail = (trail, Transit(state.time, end - down, task, way.route))
+        if len(route.points) > 1 and route.points[0] != last:
+            trail = (trail, Transit(state.time, end - down, task, route.points))
         if self.kinematics.launches:
             trail = (trail, Recover(end - down, end, task, last, at[2]))
-        return replace(state.after(way, at, trail), away=False)
+        return replace(state.after(route, at, trail), away=False)
 
     def _recharged(self, state: State, task: str) -> State:
         end = state.time + (self.kinematics.recharge or 0.0)
@@ -259,13 +261,13 @@ class Pilot:
 
 
 def _remembered(
-    known: dict[Position, float], position: Position, way_from: Callable[[Position], Way]
+    known: dict[Position, float], position: Position, route_from: Callable[[Position], Route]
 ) -> float:
-    """Return the seconds of the way from a place; inf where there is none."""
+    """Return the seconds of the route from a place; inf where there is none."""
     seconds = known.get(position)
     if seconds is None:
         try:
-            seconds = way_from(position).seconds
+            seconds = route_from(position).seconds
         except UnreachableError:
             seconds = inf
         known[position] = seconds

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from typing import TypeAlias
 
-from mmrs_core.planning.travel import Way
+from mmrs_core.planning.travel import Route
 from mmrs_core.scene import Position, Step
 
 Trail: TypeAlias = "tuple[Trail, Step] | None"
@@ -36,17 +36,17 @@ class State:
     sorties: int = 0
     trail: Trail = None
 
-    def after(self, way: Way, at: Position, trail: Trail) -> State:
-        """Return the state at the end of a way that ends there, with the steps of it."""
+    def after(self, route: Route, at: Position, trail: Trail) -> State:
+        """Return the state at the end of a route that ends there, with the steps of it."""
         return replace(
-            self.later(way.seconds, way.length, at),
+            self.later(route.seconds, route.length, at),
             away=True,
-            lead=self.lead + way.lead,
+            lead=self.lead + route.lead,
             trail=trail,
         )
 
     def later(self, seconds: float, length: float, at: Position) -> State:
-        """Return the state so many seconds and metres later, without steps."""
+        """Return the state `seconds` and `length` metres later, without steps."""
         return replace(
             self,
             time=self.time + seconds,
@@ -84,11 +84,11 @@ class Ready:
 
 
 @dataclass(frozen=True, slots=True)
-class Approach:
+class ApproachRoute:
     """How a robot comes to a piece of work.
 
     Attributes:
-        via: places to go to; all ways but the first one are within the task. The last is where the work
+        via: places to go to; all routes but the first one are within the task. The last is where the work
             begins.
         speed: commanded, metres per second; None: the robot's cruise.
     """

@@ -48,8 +48,8 @@ def swaths_along_x(
         width: of a strip, metres, positive.
         length: of what an action covers along the swath, metres; 0: the swath itself covers.
         closed: where swaths may not go, its edge excepted; None: nowhere.
-        shift: None: strips share evenly what they have to spare; else all are as wide as they can be, and
-            the lowest begins this share (0 to 1) of what there is to spare below the pieces.
+        shift: None: strips share the excess width evenly; a number: all are as wide as they can be, and
+            the lowest begins this share (0 to 1) of the excess below the pieces.
     """
     blocked = Polygon() if closed is None else closed
     core = shapely.buffer(blocked, -_SHAVED)

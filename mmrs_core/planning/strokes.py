@@ -22,7 +22,7 @@ def length_of(points: Iterable[Position]) -> float:
 
 
 def commanded_speed(stroke: Stroke, kinematics: Kinematics) -> float:
-    """Return the metres per second that a robot is told to go on a stroke.
+    """Return the speed commanded on a stroke, metres per second.
 
     That is its cruise slowed down by the stroke's factor, or the largest speed that the stroke allows
     (inf: as fast as can be), within the robot's limits.
@@ -34,9 +34,9 @@ def commanded_speed(stroke: Stroke, kinematics: Kinematics) -> float:
 
 
 def approach_speed(stroke: Stroke, kinematics: Kinematics) -> float | None:
-    """Return the metres per second at which a robot is told to go to a stroke; None: its cruise.
+    """Return the speed commanded on the route to a stroke, metres per second; None: the robot's cruise.
 
-    A stroke of one point has no way of its own: how fast it is done is how fast the robot comes there.
+    A stroke of one point has no length: its speed is that at which the robot comes there.
     """
     limited = stroke.speed is not None or stroke.slow_down is not None
     if len(stroke.points) > 1 or not limited:
@@ -49,7 +49,7 @@ def serve_seconds(stroke: Stroke, robot: Robot, kinematics: Kinematics) -> float
     """Return how long a robot takes for a stroke from its first point, actions, hold and turn included.
 
     It stops at every vertex and wherever something is done. Where the robot must turn on the spot, half
-    a circle is counted; where an object may be anywhere within a tolerance, the way there and back is.
+    a circle is counted; where an object may be anywhere within a tolerance, the search there and back is.
     """
     rates = rates_of(kinematics, commanded_speed(stroke, kinematics))
     moving = sum(rates.from_stop_to_stop(one, two) for one, two in pairwise(stops_of(stroke)))
@@ -103,7 +103,7 @@ def action_seconds(robot_type: RobotType, action: ActionAt) -> float:
 
 
 def missing_action(robot_type: RobotType, action: ActionAt) -> str | None:
-    """Return why a type of robot cannot do an action; None if it can."""
+    """Return why a robot type cannot do an action; None if it can."""
     devices = robot_type.devices
     if action.device:
         if action.device not in devices:
@@ -207,7 +207,7 @@ def joined(parts: Iterable[Stroke]) -> tuple[Stroke, ...]:
 
 
 def continues(one: Stroke, two: Stroke) -> bool:
-    """Return whether one stroke goes on where another one ends, so that both may be one."""
+    """Return whether one stroke continues another, so that both may be one."""
     plain = one.hold == 0.0 and one.object is None
     alike = (one.look, one.speed, one.slow_down, one.reversible) == (
         two.look,

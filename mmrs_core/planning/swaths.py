@@ -1,4 +1,4 @@
-"""Swaths over polygons: which way to sweep, the lines themselves, and the check that they cover."""
+"""Swaths over polygons: the sweep direction, the lines themselves, and the check that they cover."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from shapely.geometry import Polygon
 from shapely.geometry.base import BaseGeometry
 
 from mmrs_core.geometry.polygons import parts
-from mmrs_core.planning.footprints import left_out
+from mmrs_core.planning.footprints import uncovered_by
 from mmrs_core.planning.lines import Swath
 from mmrs_core.planning.strips import swaths_along_x
 from mmrs_core.planning.tours import hop_length, tour
@@ -52,7 +52,7 @@ def swaths(
 
     The footprint of a swath is the union, over its legs, of rectangles as long as the leg and `width`
     wide; with a `length`, the union, over its spots, of rectangles `length` along and `width` across
-    the leg. The way to sweep is the best of promising directions, by the metres of swaths and hops and
+    the leg. The sweep direction is the best of promising ones, by the metres of swaths and hops and
     the numbers of turns and actions.
 
     Args:
@@ -166,7 +166,7 @@ def _repaired(pieces: Sequence[Polygon], lines: list[Swath], reach: _Reach) -> l
     """Add lines through what the lines leave out, until next to nothing is left."""
     area = sum(piece.area for piece in pieces)
     for _ in range(_REPAIRS):
-        rest = parts(left_out(pieces, lines, reach.width, reach.length), smallest=1e-7 * area)
+        rest = parts(uncovered_by(pieces, lines, reach.width, reach.length), smallest=1e-7 * area)
         if sum(piece.area for piece in rest) <= _LEFT_OUT * area:
             return lines
         lines = lines + [line for piece in rest for line in _sweep([piece], reach, _long_side(piece))]

@@ -1,6 +1,6 @@
-"""Where planned robots may be, and when: the ways and stays of their steps, within spans of time.
+"""Where planned robots may be, and when: the paths and stays of their steps, within spans of time.
 
-A robot need not go steadily along a way: it speeds up, slows down, and may be quicker than planned
+A robot need not go steadily along a path: it speeds up, slows down, and may be quicker than planned
 wherever it need not turn, or takes the shorter arm of a choice. All that is certain is when it may
 begin at the earliest, when it has come to the end at the latest, and that it is nowhere faster than
 commanded. Robots on the ground and at home take up their places too, from before the first moment
@@ -34,7 +34,7 @@ from mmrs_core.scene import (
 )
 
 
-class Spot(IntEnum):
+class HomeRelation(IntEnum):
     """Where a ride is, seen from the robot's own home."""
 
     ELSEWHERE = 0
@@ -46,15 +46,15 @@ class Spot(IntEnum):
 
 @dataclass(frozen=True, slots=True)
 class Ride:
-    """A way, or a stay at one place.
+    """A path, or a stay at one place.
 
     Attributes:
         points: at least one; several: straight legs between them.
         early: seconds at which it may begin, -inf where the robot is from the start; late: by which it
-            has ended, inf where it stays for ever.
+            has ended, inf where it stays to the end.
         least: seconds of each leg at even speed, which the robot does not exceed.
-        radius: metres from the way within which the robot may be.
-        spot: whether it is at or over the robot's own home.
+        radius: metres from the path within which the robot may be.
+        relation: whether it is at or over the robot's own home.
     """
 
     points: tuple[Position, ...]
@@ -62,13 +62,13 @@ class Ride:
     late: float
     least: tuple[float, ...] = ()
     radius: float = 0.0
-    spot: Spot = Spot.ELSEWHERE
+    relation: HomeRelation = HomeRelation.ELSEWHERE
 
 
 def rides_of(plan: Plan, robots: Mapping[str, Robot]) -> dict[str, tuple[Ride, ...]]:
     """Return the rides of every robot, all arms of choices included.
 
-    Whatever a robot does last, it then stays where it is for ever; robots without steps stay at home.
+    Whatever a robot does last, it then stays where it is; robots without steps stay at home.
     """
     walks = {
         each.robot: _Walk(robots[each.robot], rates_of_robot(robots[each.robot])) for each in plan.robots
@@ -81,9 +81,9 @@ def rides_of(plan: Plan, robots: Mapping[str, Robot]) -> dict[str, tuple[Ride, .
             while steps and walks[name].may_begin(steps[0], given):
                 walks[name].add(steps.pop(0), given)
         if sum(map(len, left.values())) == before:
-            raise InternalError("robots of a plan wait for each other for ever")
+            raise InternalError("robots of a plan wait for each other")
     for walk in walks.values():
-        walk.stay_for_ever()
+        walk.stay_to_the_end()
     return {name: tuple(walk.rides) for name, walk in walks.items()}
 
 
@@ -95,7 +95,7 @@ def rates_of_robot(robot: Robot) -> Rates:
 
 @dataclass(slots=True)
 class _Walk:
-    """One robot on its way through its steps, as early as it may be.
+    """One robot in its steps, as early as it may be.
 
     Attributes:
         now: seconds; here: where it is; radius: how far from there it may be.
@@ -132,21 +132,21 @@ class _Walk:
         else:
             self._stay(step.end - step.begin, step.end)
 
-    def stay_for_ever(self) -> None:
+    def stay_to_the_end(self) -> None:
         self._stay(0.0, inf)
 
     def _upright(self, step: Launch | Recover) -> None:
         column = self.here, (step.at[0], step.at[1], step.up)
         over_home = all(dist(point[:2], self.robot.home[:2]) <= NEAR for point in column)
-        spot = Spot.COLUMN if over_home else Spot.ELSEWHERE
-        self._ride(column, step.end - step.begin, step.end, spot=spot)
+        relation = HomeRelation.COLUMN if over_home else HomeRelation.ELSEWHERE
+        self._ride(column, step.end - step.begin, step.end, relation=relation)
 
     def _await(self, step: Await, given: Mapping[str, float]) -> None:
         own = self.now + (0.0 if step.until is None else max(0.0, step.until - step.begin))
         self._stay(max([own, *(given[signal] for signal in step.signals)]) - self.now, step.end)
 
     def _branch(self, step: Branch, given: dict[str, float]) -> None:
-        """Take every arm; go on as soon as the quickest one may."""
+        """Take every arm; continue as soon as the quickest one may."""
         begin, ends = (self.now, self.here, self.radius), []
         for _, arm in step.arms:
             self.now, self.here, self.radius = begin
@@ -191,25 +191,27 @@ class _Walk:
         late: float,
         rates: Rates | None = None,
         *,
-        spot: Spot = Spot.ELSEWHERE,
+        relation: HomeRelation = HomeRelation.ELSEWHERE,
     ) -> None:
         least = tuple((rates or self.rates).leg(one, two) for one, two in pairwise(points))
-        self.rides.append(Ride(points, self.now, late, least, self.radius, spot))
+        self.rides.append(Ride(points, self.now, late, least, self.radius, relation))
         self.now, self.here, self.gone = self.now + seconds, points[-1], True
 
     def _stay(self, seconds: float, late: float) -> None:
         """Stay for so long at least; what comes next may begin then, or as late as `late`."""
         if late > self.now:
-            spot = Spot.HOME if dist(self.here, self.robot.home) <= NEAR else Spot.ELSEWHERE
+            relation = (
+                HomeRelation.HOME if dist(self.here, self.robot.home) <= NEAR else HomeRelation.ELSEWHERE
+            )
             early = self.now if self.gone else -inf
-            self.rides.append(Ride((self.here,), early, late, (), self.radius, spot))
+            self.rides.append(Ride((self.here,), early, late, (), self.radius, relation))
         self.now += seconds
 
 
 def _moves_along(legs: Sequence[tuple[Position, Position]]) -> Iterator[tuple[Position, ...]]:
     """Yield the legs of a route, upright and level ones in a row together.
 
-    Kinds of robots may make one move of these, within which nobody knows where the corner is passed.
+    A robot kind may make one move of these, during which the time at the corner is unknown.
     """
     for _, run in groupby(enumerate(legs), key=lambda pair: pair[0] if _slopes(*pair[1]) else -1):
         joined = [leg for _, leg in run]

@@ -35,7 +35,7 @@ def tour(
         begins: (n, 2) first points.
         ends: (n, 2) last points.
         start: (2,) where the tour begins; None: at whichever outer end is best.
-        improve: whether to go on after the nearest-end tour with reversals of parts (2-opt) and moves
+        improve: whether to improve the nearest-end tour by reversals of parts (2-opt) and moves
             of short runs of strokes (or-opt) until neither helps, again from a few tours nearby.
             Deterministic.
     """
@@ -73,7 +73,7 @@ def _corners(first: Plane, last: Plane) -> list[complex]:
 
 
 def _nearest(first: Plane, last: Plane, at: complex) -> tuple[NDArray[np.intp], NDArray[np.bool_]]:
-    """Go on with the stroke that has the nearest end, again and again; O(n²)."""
+    """Append the stroke that has the nearest end, again and again; O(n²)."""
     ends = np.stack([first, last])
     done = np.zeros(ends.shape)
     order = []

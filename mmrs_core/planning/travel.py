@@ -1,4 +1,4 @@
-"""The ways of one robot: from home, between places, and back home, with the seconds they take."""
+"""The routes of one robot: from home, between places, and back home, with the seconds they take."""
 
 from __future__ import annotations
 
@@ -21,18 +21,18 @@ _SQUARE = ((-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0))
 
 
 @dataclass(frozen=True, slots=True)
-class Way:
-    """A way that a robot goes.
+class Route:
+    """A route that a robot goes.
 
     Attributes:
-        route: straight legs, one position or more.
-        seconds: of the whole way, launch or recovery included.
+        points: ends of straight legs, one position or more.
+        seconds: of the whole route, launch or recovery included.
         length: metres, likewise.
         height: to which it launches before, or from which it comes down after; None: neither.
         lead: seconds by which it may be quicker where the robot does not stop at corners.
     """
 
-    route: tuple[Position, ...]
+    points: tuple[Position, ...]
     seconds: float
     length: float
     height: float | None = None
@@ -95,22 +95,22 @@ class Travel:
             robot: with its kinematics.
             space: its space.
             transit_altitude: height at which it goes between home and tasks, where it may and can.
-            fluid: whether it may go on without a stop where nothing is done.
+            fluid: whether it may pass without a stop where nothing is done.
         """
         self.robot, self.space, self.fluid = robot, space, fluid
         self.kinematics = kinematics_of(robot)
         aloft = transit_altitude if self.kinematics.launches else None
         self._altitude = None if aloft is None else self._within(aloft)
-        self._leaving: dict[Position, Way | str] = {}
-        self._returning: dict[Position, Way | str] = {}
-        self._between: dict[tuple[Position, Position], Way | str] = {}
+        self._leaving: dict[Position, Route | str] = {}
+        self._returning: dict[Position, Route | str] = {}
+        self._between: dict[tuple[Position, Position], Route | str] = {}
 
     def _within(self, height: float) -> float:
         lowest = max(self.kinematics.floor, self.robot.home[2])
         return max(lowest, min(height, self.kinematics.ceiling))
 
-    def leave(self, goal: Position) -> Way:
-        """Return the way from home to a place.
+    def leave(self, goal: Position) -> Route:
+        """Return the route from home to a place.
 
         Raises:
             UnreachableError: there is none.
@@ -119,8 +119,8 @@ class Travel:
             self._leaving[goal] = self._outward(goal)
         return _found(self._leaving[goal])
 
-    def go_home(self, start: Position) -> Way:
-        """Return the way from a place to home, down to the ground for robots that launch.
+    def go_home(self, start: Position) -> Route:
+        """Return the route from a place to home, down to the ground for robots that launch.
 
         Raises:
             UnreachableError: there is none.
@@ -129,8 +129,8 @@ class Travel:
             self._returning[start] = self._inward(start)
         return _found(self._returning[start])
 
-    def go(self, start: Position, goal: Position) -> Way:
-        """Return the way between two places.
+    def go(self, start: Position, goal: Position) -> Route:
+        """Return the route between two places.
 
         Raises:
             UnreachableError: there is none.
@@ -139,75 +139,75 @@ class Travel:
             self._between[start, goal] = self._across(start, goal)
         return _found(self._between[start, goal])
 
-    def hop(self, start: Position, goal: Position) -> Way:
-        """Return the quickest way within one task: from its entry to a stroke, or between two strokes.
+    def hop(self, start: Position, goal: Position) -> Route:
+        """Return the quickest route within one task: from its entry to a stroke, or between two strokes.
 
         Raises:
             UnreachableError: there is none.
         """
-        return self._way(self.space.route(start, goal))
+        return self._timed(self.space.route(start, goal))
 
-    def at_speed(self, way: Way, speed: float | None) -> Way:
-        """Return the same way, its route gone at a commanded speed; None: at the robot's cruise."""
+    def at_speed(self, route: Route, speed: float | None) -> Route:
+        """Return the same route, its route gone at a commanded speed; None: at the robot's cruise."""
         if speed is None:
-            return way
+            return route
         rates = rates_of(self.kinematics, speed)
-        seconds = sum(rates.from_stop_to_stop(one, two) for one, two in pairwise(way.route))
-        whole = way.seconds - self.space.seconds(way.route) + seconds
-        return replace(way, seconds=whole, lead=self._lead(way.route, rates))
+        seconds = sum(rates.from_stop_to_stop(one, two) for one, two in pairwise(route.points))
+        whole = route.seconds - self.space.seconds(route.points) + seconds
+        return replace(route, seconds=whole, lead=self._lead(route.points, rates))
 
-    def come_down(self, start: Position) -> Way:
-        """Return the way down to the ground where the robot is; for robots that need not return.
+    def come_down(self, start: Position) -> Route:
+        """Return the route down to the ground where the robot is; for robots that need not return.
 
         Raises:
             UnreachableError: something is below.
         """
         if not self.kinematics.launches:
-            return Way((start,), 0.0, 0.0)
+            return Route((start,), 0.0, 0.0)
         ground = ground_height(start, self.robot.home)
         column = (start, (start[0], start[1], ground))
         below = self.space.blockers(column)
         if below:
             raise UnreachableError(f"the ground below ({start[0]:.1f}, {start[1]:.1f}) is close to {below}")
         seconds = self.space.seconds(column) + self.kinematics.recovery
-        return Way((start,), seconds, length_of(column), ground)
+        return Route((start,), seconds, length_of(column), ground)
 
-    def _way(self, route: tuple[Position, ...]) -> Way:
+    def _timed(self, route: tuple[Position, ...]) -> Route:
         lead = self._lead(route, self.space.rates)
-        return Way(route, self.space.seconds(route), length_of(route), lead=lead)
+        return Route(route, self.space.seconds(route), length_of(route), lead=lead)
 
     def _lead(self, route: tuple[Position, ...], rates: Rates) -> float:
         quickest = rates.leg if self.fluid else rates.straight_on().from_stop_to_stop
         return sum(rates.from_stop_to_stop(*leg) - quickest(*leg) for leg in pairwise(route))
 
-    def _outward(self, goal: Position) -> Way | str:
+    def _outward(self, goal: Position) -> Route | str:
         if not self.kinematics.launches:
             return self._routed(self.robot.home, goal)
-        best: Way | str = ""
+        best: Route | str = ""
         for height in self._launch_heights(goal):
             above, reason = self._above_home(height)
-            way = reason or self._routed(above, goal, level=height)
-            if isinstance(way, str):
-                best = best or way
+            route = reason or self._routed(above, goal, level=height)
+            if isinstance(route, str):
+                best = best or route
                 continue
             climb = height - self.robot.home[2]
-            seconds = self.kinematics.launch + self.space.rates.rise(climb) + way.seconds
-            return Way(way.route, seconds, way.length + climb, height, way.lead)
+            seconds = self.kinematics.launch + self.space.rates.rise(climb) + route.seconds
+            return Route(route.points, seconds, route.length + climb, height, route.lead)
         return best
 
-    def _inward(self, start: Position) -> Way | str:
+    def _inward(self, start: Position) -> Route | str:
         if not self.kinematics.launches:
             return self._routed(start, self.robot.home)
-        best: Way | str = ""
+        best: Route | str = ""
         for height in self._launch_heights(start):
             above, reason = self._above_home(height)
-            way = reason or self._routed(start, above, level=height)
-            if isinstance(way, str):
-                best = best or way
+            route = reason or self._routed(start, above, level=height)
+            if isinstance(route, str):
+                best = best or route
                 continue
             drop = height - self.robot.home[2]
-            seconds = way.seconds + self.space.rates.rise(-drop) + self.kinematics.recovery
-            return Way(way.route, seconds, way.length + drop, height, way.lead)
+            seconds = route.seconds + self.space.rates.rise(-drop) + self.kinematics.recovery
+            return Route(route.points, seconds, route.length + drop, height, route.lead)
         return best
 
     def _launch_heights(self, other: Position) -> list[float]:
@@ -217,23 +217,23 @@ class Travel:
         return list(dict.fromkeys(height for height in (first, *rest) if height < inf))
 
     def _above_home(self, height: float) -> tuple[Position, str]:
-        """Return the place above home, and what blocks the way up to it."""
+        """Return the position above home, and what blocks the climb there."""
         home = self.robot.home
         above = (home[0], home[1], height)
         near = self.space.blockers((home, above))
         return above, f"home of robot '{self.robot.name}' is within the clearance of {near}" if near else ""
 
-    def _across(self, start: Position, goal: Position) -> Way | str:
+    def _across(self, start: Position, goal: Position) -> Route | str:
         return self._routed(start, goal, level=self._altitude)
 
-    def _routed(self, start: Position, goal: Position, level: float | None = None) -> Way | str:
-        """Return the way at a level where that is clear, else the quickest; or why there is none."""
+    def _routed(self, start: Position, goal: Position, level: float | None = None) -> Route | str:
+        """Return the route at a level where that is clear, else the quickest; or why there is none."""
         try:
             if level is not None and self._altitude is not None and start[:2] != goal[:2]:
                 raised = self._raised(start, goal, level)
                 if raised is not None:
-                    return self._way(raised)
-            return self._way(self.space.route(start, goal))
+                    return self._timed(raised)
+            return self._timed(self.space.route(start, goal))
         except UnreachableError as error:
             return str(error)
 
@@ -249,7 +249,7 @@ class Travel:
         return tuple(each for i, each in enumerate(route) if i == 0 or each != route[i - 1])
 
 
-def _found(way: Way | str) -> Way:
-    if isinstance(way, str):
-        raise UnreachableError(way)
-    return way
+def _found(route: Route | str) -> Route:
+    if isinstance(route, str):
+        raise UnreachableError(route)
+    return route

@@ -1,4 +1,4 @@
-"""Lets robots take turns: whoever is to leave home waits until all others are back there."""
+"""Turns: a robot leaves home only when all others are back at theirs."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from mmrs_core.planning.materials import Material
-from mmrs_core.planning.runs import Run
+from mmrs_core.planning.runs import PortionRun
 from mmrs_core.planning.sorties import Pilot
 from mmrs_core.planning.states import Ready, State
 
@@ -18,7 +18,7 @@ States = Mapping[str, State]
 
 
 @dataclass(frozen=True, slots=True)
-class Part:
+class TurnShare:
     """A run of portions for one robot, begin to end, and what it waits for."""
 
     pilot: Pilot
@@ -29,7 +29,7 @@ class Part:
 
 
 @dataclass(frozen=True, slots=True)
-class Done:
+class JobResult:
     """What has become of a job.
 
     Attributes:
@@ -71,8 +71,8 @@ def turn_of(name: str, states: States, pilots: Mapping[str, Pilot], task: str) -
 
 
 def in_turns(
-    parts: Sequence[Part], states: States, pilots: Mapping[str, Pilot], *, record: bool
-) -> Done | None:
+    parts: Sequence[TurnShare], states: States, pilots: Mapping[str, Pilot], *, record: bool
+) -> JobResult | None:
     """Return what has become of parts of a job done one after the other; None if one cannot be done."""
     begins, ends, soonest, back = [], {}, {}, 0.0
     for part in parts:
@@ -80,7 +80,7 @@ def in_turns(
         turn = turn_of(name, states, pilots, part.material.task)
         if turn is None:
             return None
-        run = Run(pilot, part.material, turn[name], part.begin, part.ready, record=record)
+        run = PortionRun(pilot, part.material, turn[name], part.begin, part.ready, record=record)
         if not run.can_do(part.end):
             return None
         end = run.state(part.end)
@@ -88,4 +88,4 @@ def in_turns(
         begins.append(run.started())
         ends[name], soonest[name] = end.time, end.time - end.lead
         back = max(back, run.back(part.end))
-    return Done(states, min(begins), ends, soonest, back)
+    return JobResult(states, min(begins), ends, soonest, back)

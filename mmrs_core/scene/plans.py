@@ -127,7 +127,7 @@ class RobotPlan:
 
 
 @dataclass(frozen=True, slots=True)
-class LeftOut:
+class Omission:
     """What is not done of a task, since robots must keep away from there.
 
     Attributes:
@@ -147,8 +147,8 @@ class LeftOut:
     def __str__(self) -> str:
         """Return it in one line.
 
-        >>> str(LeftOut("road", 4.5, "m", "from 118.0 m along the line, too near to 'mast'", (9.0, 9.0, 0.0)))
-        "task 'road' leaves out 4.5 m from 118.0 m along the line, too near to 'mast'"
+        >>> str(Omission("road", 4.5, "m", "from 118.0 m along it, too near to 'mast'", (9.0, 9.0, 0.0)))
+        "task 'road' leaves out 4.5 m from 118.0 m along it, too near to 'mast'"
         """
         return f"task '{self.task}' leaves out {self.amount:.1f} {self.unit} {self.where}"
 
@@ -170,4 +170,4 @@ class Plan:
     begins: Mapping[str, float]
     ends: Mapping[str, float]
     notes: tuple[str, ...] = ()
-    left_out: tuple[LeftOut, ...] = ()
+    left_out: tuple[Omission, ...] = ()

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from mmrs_core.contributions.rules import Rule
 from mmrs_core.errors import InfeasibleError
-from mmrs_core.planning.places import refuse_blocked, refuse_heights, refuse_unsteady
+from mmrs_core.planning.positions import refuse_blocked, refuse_heights, refuse_unsteady
 from mmrs_core.scene import Look, Part, Robot, Scene, Stroke, Task, Work
 from mmrs_core.scene.attributes import text
 from mmrs_solar.camera import optics_of

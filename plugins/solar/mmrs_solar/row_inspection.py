@@ -11,7 +11,7 @@ from mmrs_core.contributions.rules import Rule
 from mmrs_core.errors import InfeasibleError
 from mmrs_core.geometry.stretches import LEAST
 from mmrs_core.planning.open_lines import open_lines
-from mmrs_core.planning.places import refuse_heights
+from mmrs_core.planning.positions import refuse_heights
 from mmrs_core.scene import Device, Look, Part, Position, Robot, Scene, Stroke, Task, Work
 from mmrs_core.scene.attributes import number, text
 from mmrs_solar.camera import RECORDING_KEYS, figures, optics_of

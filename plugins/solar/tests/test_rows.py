@@ -10,7 +10,7 @@ from mmrs_solar.names import THERMAL_ROW_TASK
 from mmrs_solar.row_inspection import passes_over, row_inspection_work
 
 from mmrs_core.errors import InfeasibleError
-from mmrs_core.planning.places import refuse_blocked
+from mmrs_core.planning.positions import refuse_blocked
 from mmrs_core.testing.scenes import sample_task, square
 
 TILT = radians(30.0)

@@ -8,7 +8,7 @@ from mmrs_core.contributions.rules import Rule
 from mmrs_core.errors import InfeasibleError
 from mmrs_core.planning.coverage import Sweep, work_over
 from mmrs_core.planning.devices import device_for
-from mmrs_core.planning.places import refuse_blocked, refuse_heights
+from mmrs_core.planning.positions import refuse_blocked, refuse_heights
 from mmrs_core.scene import Device, Part, Robot, Scene, Task, Work
 from mmrs_core.scene.attributes import holes, number, position, ring, text
 from mmrs_survey.camera import CAMERA_KEYS, Footprint, footprint_at, footprint_of

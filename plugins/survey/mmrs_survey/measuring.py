@@ -9,7 +9,7 @@ from mmrs_core.errors import InfeasibleError
 from mmrs_core.planning.coverage import Sweep, work_over
 from mmrs_core.planning.devices import device_for
 from mmrs_core.planning.open_lines import open_line
-from mmrs_core.planning.places import refuse_blocked, refuse_heights
+from mmrs_core.planning.positions import refuse_blocked, refuse_heights
 from mmrs_core.scene import ActionAt, Part, Position, Robot, Scene, Stroke, Task, Work
 from mmrs_core.scene.attributes import number, pairs, positions, ring, text
 from mmrs_survey.lines import at_altitude, cuts_between, even_distances, length_of, without_repeats

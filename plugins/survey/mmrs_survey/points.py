@@ -7,7 +7,7 @@ from math import inf
 from mmrs_core.behaviour.program import BEHAVIOUR
 from mmrs_core.contributions.rules import MoveSpec, Rule
 from mmrs_core.planning.devices import carried, device_for
-from mmrs_core.planning.places import refuse_blocked, refuse_heights, refuse_unsteady, stand_off
+from mmrs_core.planning.positions import refuse_blocked, refuse_heights, refuse_unsteady, stand_off
 from mmrs_core.scene import ActionAt, Look, Part, Position, Robot, Scene, Stroke, Task, Work
 from mmrs_core.scene.attributes import number, position, text
 from mmrs_survey.names import APPROACH_TASK, GO_TO_TASK, OBSERVE_TASK

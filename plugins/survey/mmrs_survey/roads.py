@@ -8,7 +8,7 @@ from mmrs_core.contributions.rules import Rule
 from mmrs_core.errors import InfeasibleError
 from mmrs_core.planning.devices import device_for
 from mmrs_core.planning.open_lines import open_lines
-from mmrs_core.planning.places import refuse_blocked, refuse_heights
+from mmrs_core.planning.positions import refuse_blocked, refuse_heights
 from mmrs_core.scene import ActionAt, Part, Position, Robot, Scene, Stroke, Task, Work
 from mmrs_core.scene.attributes import flag, number, position, positions, text
 from mmrs_survey.lines import (

@@ -12,7 +12,7 @@ from mmrs_survey.lines import cuts_between, even_distances, passes
 from mmrs_survey.roads import road_work
 
 from mmrs_core.errors import InfeasibleError
-from mmrs_core.planning.places import refuse_blocked
+from mmrs_core.planning.positions import refuse_blocked
 
 LINE = ((0.0, 0.0, 5.0), (100.0, 0.0, 5.0), (100.0, 80.0, 9.0))
 

@@ -7,9 +7,9 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 from plain_scenes import photo, road, robot, scene, visit, with_kinematics
 
-from mmrs_core.planning.crew import Crew
 from mmrs_core.planning.pacing import paced
 from mmrs_core.planning.strokes import joined, parts_of, serve_seconds, turned
+from mmrs_core.planning.team import Team
 
 places = st.tuples(st.integers(0, 400), st.integers(0, 400), st.sampled_from([20, 30]))
 
@@ -33,7 +33,7 @@ def seconds_of(parts, pilot):
 
 def pilot_with(acceleration):
     each = with_kinematics(robot(), acceleration=acceleration)
-    return Crew(scene([each], {"a": visit((0.0, 9.0, 20.0))})).pilots["r1"]
+    return Team(scene([each], {"a": visit((0.0, 9.0, 20.0))})).pilots["r1"]
 
 
 @given(cut_roads(), st.data(), st.sampled_from([0.5, 3.0, float("inf")]))

@@ -5,7 +5,7 @@ import shapely
 
 from mmrs_core.errors import InfeasibleError
 from mmrs_core.planning.coverage import Sweep, target_of, work_over
-from mmrs_core.planning.left_out import uncovered
+from mmrs_core.planning.omissions import uncovered
 from mmrs_core.scene import Area, AreaUse, Capability, Frame, Part, Robot, RobotType, Scene
 
 SQUARE = ((0.0, 0.0), (100.0, 0.0), (100.0, 100.0), (0.0, 100.0))

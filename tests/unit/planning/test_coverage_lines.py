@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import shapely
 
-from mmrs_core.planning.footprints import left_out
+from mmrs_core.planning.footprints import uncovered_by
 from mmrs_core.planning.levels import legs_over
 from mmrs_core.planning.lines import Swath, spots_over
 from mmrs_core.planning.slabs import Band, Cell
@@ -85,7 +85,7 @@ def test_teeth_with_narrow_gaps_are_crossed_by_straight_swaths():
     lines = swaths([field], 12.0, length=12.0, angle=0.0)
     assert len(lines) == 6
     assert all(len(line.points) == 2 for line in lines)
-    assert left_out([field], lines, 12.0, 12.0).area < 1e-6
+    assert uncovered_by([field], lines, 12.0, 12.0).area < 1e-6
 
 
 def test_a_gap_much_wider_than_a_strip_is_not_crossed():
@@ -111,7 +111,7 @@ def test_a_ragged_edge_takes_few_more_actions_than_its_area(noise, most):
     field = ragged(noise)
     lines = swaths([field], 12.0, length=12.0)
     assert spots(lines) <= most * field.area / 144.0
-    assert left_out([field], lines, 12.0, 12.0).area <= 1e-5 * field.area
+    assert uncovered_by([field], lines, 12.0, 12.0).area <= 1e-5 * field.area
 
 
 def test_a_target_smaller_than_a_centimetre_is_still_visited():

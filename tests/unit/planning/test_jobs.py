@@ -81,5 +81,5 @@ def test_a_condition_elsewhere_than_after_a_fork_is_refused():
 
 
 def test_two_else_arms_are_refused():
-    with pytest.raises(InfeasibleError, match="fork 'f' has 2 ways out without a condition"):
+    with pytest.raises(InfeasibleError, match="fork 'f' has 2 outgoing dependencies without a condition"):
         jobs("abc", [("f", "a", "x"), ("f", "b"), ("f", "c")], "f")

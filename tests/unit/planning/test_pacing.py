@@ -3,9 +3,9 @@ from dataclasses import replace
 import pytest
 from plain_scenes import box, photo, road, robot, scene, visit, with_kinematics
 
-from mmrs_core.planning.crew import Crew
 from mmrs_core.planning.pacing import paced
 from mmrs_core.planning.strokes import parts_of, serve_seconds, turned
+from mmrs_core.planning.team import Team
 
 SLUGGISH = with_kinematics(robot(), acceleration=0.5)
 CUTS = (25.0, 50.0, 75.0)
@@ -13,7 +13,7 @@ CUTS = (25.0, 50.0, 75.0)
 
 def pilot_of(each=SLUGGISH, **features):
     whole = scene([each], {"a": visit((0.0, 9.0, 20.0))}, **features)
-    return Crew(whole).pilots[each.name]
+    return Team(whole).pilots[each.name]
 
 
 def parts(*points, **features):

@@ -18,7 +18,7 @@ from sound_plans import sound, steps_of
 
 from mmrs_core.errors import InfeasibleError
 from mmrs_core.planning.planner import plan
-from mmrs_core.planning.separation import first_encounter
+from mmrs_core.planning.separation import first_conflict
 from mmrs_core.scene import Await, Branch, Launch, Recover, Serve, Signal, Transit
 
 TWO = (robot("r1"), robot("r2", (20.0, 0.0, 0.0)))
@@ -264,7 +264,7 @@ def test_a_fork_without_an_else_arm_is_refused():
     works = {"a": visit((100.0, 0.0, 20.0)), "b": visit((200.0, 0.0, 20.0))}
     after = [("f", "a", "sunny"), ("f", "b", "windy")]
     whole = scene([robot()], works, after=after, controls=(control("f", "Fork"),))
-    with pytest.raises(InfeasibleError, match="fork 'f' has 0 ways out without a condition"):
+    with pytest.raises(InfeasibleError, match="fork 'f' has 0 outgoing dependencies without a condition"):
         plan(whole)
 
 
@@ -278,10 +278,10 @@ def test_robots_that_would_meet_are_kept_apart():
     team = (robot("r1", (0.0, 0.0, 0.0)), robot("r2", (200.0, 0.0, 0.0)))
     works = {"a": {"r1": visit((200.0, 5.0, 20.0))}, "b": {"r2": visit((0.0, 5.0, 20.0))}}
     near = scene(team, works)
-    assert first_encounter(near, plan(near), 20.0) is not None
+    assert first_conflict(near, plan(near), 20.0) is not None
     apart = replace(near, minimum_separation=20.0)
     found = sound(apart)
-    assert first_encounter(apart, found, 20.0) is None
+    assert first_conflict(apart, found, 20.0) is None
 
 
 def test_robots_that_work_at_one_place_take_turns():
@@ -291,7 +291,7 @@ def test_robots_that_work_at_one_place_take_turns():
     }
     whole = scene(TWO, works, minimum_separation=5.0)
     found = sound(whole)
-    assert first_encounter(whole, found, 5.0) is None
+    assert first_conflict(whole, found, 5.0) is None
 
 
 def test_no_tasks_make_an_empty_plan():

@@ -8,16 +8,16 @@ from plain_scenes import CRAWLER, control, road, robot, scene, task, visit
 from plan_replay import complaints
 
 from mmrs_core.errors import InfeasibleError
-from mmrs_core.planning.nearness import legs_apart
 from mmrs_core.planning.planner import plan
-from mmrs_core.planning.separation import distance_to_keep, first_encounter, stacked_altitudes
+from mmrs_core.planning.proximity import legs_apart
+from mmrs_core.planning.separation import distance_to_keep, first_conflict, stacked_altitudes
 from mmrs_core.scene import Policy, Transit
 
 
 def test_robots_at_neighbouring_homes_meet_nobody():
     team = (robot("r1"), robot("r2", (1.0, 0.0, 0.0)))
     whole = scene(team, {"a": visit((100.0, 0.0, 20.0))})
-    assert first_encounter(whole, plan(whole), 5.0) is None
+    assert first_conflict(whole, plan(whole), 5.0) is None
 
 
 def test_an_encounter_is_told_with_time_and_distance():
@@ -27,7 +27,7 @@ def test_an_encounter_is_told_with_time_and_distance():
         "b": {"r2": visit((20.0, 100.0, 20.0), (20.0, -100.0, 20.0))},
     }
     whole = scene(team, works)
-    found = first_encounter(whole, plan(whole), 10.0)
+    found = first_conflict(whole, plan(whole), 10.0)
     assert (found.first, found.second) == ("r1", "r2")
     assert found.distance < 10.0
 
@@ -56,7 +56,7 @@ def test_robots_at_the_planned_distance_are_refused_no_more_than_needed():
         "b": {"r2": visit((100.0, 106.1, 20.0), hold=50.0)},
     }
     near = scene(team, works, minimum_separation=6.0)
-    assert first_encounter(near, plan(near), 6.0) is None
+    assert first_conflict(near, plan(near), 6.0) is None
 
 
 def test_robots_that_wait_for_each_other_aloft_take_turns():
@@ -71,7 +71,7 @@ def test_robots_that_wait_for_each_other_aloft_take_turns():
     whole = scene(team, works, after=[("a", "b"), ("b", "c"), ("c", "d")], minimum_separation=10.0)
     found = plan(whole)
     assert complaints(whole, found) == []
-    assert first_encounter(whole, found, 10.0) is None
+    assert first_conflict(whole, found, 10.0) is None
     assert [each.sorties for each in found.robots] == [2, 2]
 
 
@@ -89,7 +89,7 @@ def test_no_robot_lands_beside_one_that_has_landed():
     whole = scene(team, works, after=[("a", "b")], minimum_separation=3.0, policies=low)
     found = plan(whole)
     assert complaints(whole, found) == []
-    assert first_encounter(whole, found, 3.0) is None
+    assert first_conflict(whole, found, 3.0) is None
     ends = [each.steps[-1].at for each in found.robots]
     assert dist(ends[0][:2], ends[1][:2]) >= 3.0
     assert found.notes[0].startswith("r0, r1 return home unasked, so that robots on the ground keep apart")
@@ -165,7 +165,7 @@ def test_taking_turns_keeps_choices_and_wanted_robots():
     )
     found = plan(whole)
     assert complaints(whole, found) == []
-    assert first_encounter(whole, found, 60.0) is None
+    assert first_conflict(whole, found, 60.0) is None
 
 
 def test_deadlines_that_only_flying_at_once_can_keep_are_refused_with_what_is_short():

@@ -7,7 +7,7 @@ from plain_scenes import CRAWLER, control, photo, road, robot, scene, visit, wit
 
 from mmrs_core.errors import InternalError
 from mmrs_core.planning.planner import plan
-from mmrs_core.planning.timeline import Spot, rides_of
+from mmrs_core.planning.timeline import HomeRelation, rides_of
 from mmrs_core.scene import Await, Look, Policy
 
 SWIFT = with_kinematics(robot(), acceleration=2.0)
@@ -18,7 +18,7 @@ def rides_in(whole, name="r1"):
 
 
 def stays(rides):
-    return [ride for ride in rides if len(ride.points) == 1 and ride.spot is not Spot.HOME]
+    return [ride for ride in rides if len(ride.points) == 1 and ride.relation is not HomeRelation.HOME]
 
 
 def test_a_robot_stands_still_for_actions_and_holds():
@@ -66,7 +66,7 @@ def test_a_wait_for_a_robot_that_may_be_early_may_end_early():
     whole = scene(team, works, after=[("a", "b")])
     found = plan(whole)
     waiting, launch, *_ = rides_of(found, {each.name: each for each in team})["r2"]
-    assert waiting.spot is Spot.HOME
+    assert waiting.relation is HomeRelation.HOME
     assert launch.early == pytest.approx(found.ends["a"] - 2.0)
 
 
@@ -104,7 +104,7 @@ def test_a_robot_stands_at_home_from_before_the_start_until_it_leaves():
     whole = scene(team, works, after=[("a", "b")])
     found = plan(whole)
     waiting, leaving, *_ = rides_of(found, {each.name: each for each in team})["r1"]
-    assert (waiting.points, waiting.early, waiting.spot) == ((rover.home,), -inf, Spot.HOME)
+    assert (waiting.points, waiting.early, waiting.relation) == ((rover.home,), -inf, HomeRelation.HOME)
     assert waiting.late == leaving.early == pytest.approx(found.ends["a"])
 
 
@@ -121,12 +121,12 @@ def test_a_robot_stays_for_ever_where_it_has_landed(returns, end):
     whole = scene([robot(returns=returns)], {"a": visit((300.0, 0.0, 20.0))}, policies=low)
     stay = rides_in(whole)[-1]
     assert (stay.points, stay.late) == ((end,), inf)
-    assert (stay.spot is Spot.HOME) == returns
+    assert (stay.relation is HomeRelation.HOME) == returns
 
 
 def test_only_upright_rides_over_its_own_home_are_in_a_robots_column():
     found = rides_in(scene([robot()], {"a": visit((300.0, 0.0, 20.0))}))
-    column = [ride for ride in found if ride.spot is Spot.COLUMN]
+    column = [ride for ride in found if ride.relation is HomeRelation.COLUMN]
     assert [len(ride.points) for ride in column] == [2, 2]
     assert {point[:2] for ride in column for point in ride.points} == {(0.0, 0.0)}
 
@@ -149,5 +149,5 @@ def test_robots_that_wait_for_nobody_in_the_plan_are_an_error():
     whole = scene([robot()], {"a": visit((9.0, 9.0, 9.0))})
     found = plan(whole)
     waiting = replace(found.robots[0], steps=(Await(0.0, 0.0, "a", ("never",)), *found.robots[0].steps))
-    with pytest.raises(InternalError, match="for ever"):
+    with pytest.raises(InternalError, match="wait for each other"):
         rides_of(replace(found, robots=(waiting,)), {"r1": whole.robots[0]})

@@ -11,7 +11,7 @@ from mmrs_core.behaviour.program import BEHAVIOUR
 from mmrs_core.contributions.rules import MoveSpec, Rule
 from mmrs_core.errors import InfeasibleError
 from mmrs_core.planning.devices import carried, device_for
-from mmrs_core.planning.places import (
+from mmrs_core.planning.positions import (
     bearing_of_homes,
     refuse_blocked,
     refuse_heights,

@@ -10,7 +10,7 @@ from mmrs_auv.tasks.recording import recorded
 from mmrs_core.contributions.rules import Rule
 from mmrs_core.errors import InfeasibleError
 from mmrs_core.planning.open_lines import open_line
-from mmrs_core.planning.places import refuse_heights
+from mmrs_core.planning.positions import refuse_heights
 from mmrs_core.scene import Part, Point, Position, Robot, Scene, Stroke, Task, Work
 from mmrs_core.scene.attributes import flag, number, positions, text
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from mmrs_auv.names import SURFACE_TASK
 from mmrs_core.contributions.rules import Rule
-from mmrs_core.planning.places import refuse_blocked, refuse_heights
+from mmrs_core.planning.positions import refuse_blocked, refuse_heights
 from mmrs_core.scene import Robot, Scene, Stroke, Task, Work
 from mmrs_core.scene.attributes import number, position
 

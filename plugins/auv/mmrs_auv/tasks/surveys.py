@@ -10,7 +10,7 @@ from mmrs_auv.tasks.sonar import swath_of
 from mmrs_core.contributions.rules import Rule
 from mmrs_core.errors import InfeasibleError
 from mmrs_core.planning.coverage import Sweep, work_over
-from mmrs_core.planning.places import refuse_blocked, refuse_heights
+from mmrs_core.planning.positions import refuse_blocked, refuse_heights
 from mmrs_core.scene import Robot, Scene, Task, Work
 from mmrs_core.scene.attributes import holes, number, position, ring
 

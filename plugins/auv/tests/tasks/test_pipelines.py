@@ -8,7 +8,7 @@ from mmrs_auv.names import PIPELINE
 from mmrs_auv.tasks.pipelines import beside, pipeline_work
 
 from mmrs_core.errors import InfeasibleError
-from mmrs_core.planning.places import refuse_blocked
+from mmrs_core.planning.positions import refuse_blocked
 from mmrs_core.scene import Part
 
 LINE = ((10.0, 0.0, -20.0), (60.0, 0.0, -20.0), (60.0, 60.0, -26.0))

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from mmrs_auv.tasks.profiles import yo_yo_work
 
 from mmrs_core.errors import InfeasibleError
-from mmrs_core.planning.places import refuse_blocked
+from mmrs_core.planning.positions import refuse_blocked
 
 BENT = ((10.0, 0.0, 0.0), (60.0, 0.0, 0.0), (60.0, 37.0, 0.0))
 RELAXED = settings(suppress_health_check=[HealthCheck.function_scoped_fixture])

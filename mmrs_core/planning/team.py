@@ -18,13 +18,13 @@ from mmrs_core.planning.materials import (
     layout_of,
     shortages,
 )
-from mmrs_core.planning.mixing import Mixture, Sort
+from mmrs_core.planning.mixing import Mixture, WorkGroup
 from mmrs_core.planning.remainders import comparable
 from mmrs_core.planning.sorties import Pilot
 from mmrs_core.planning.states import State
 from mmrs_core.planning.strokes import length_of
 from mmrs_core.planning.travel import Spaces, Travel, kinematics_of
-from mmrs_core.planning.turns import Done
+from mmrs_core.planning.turns import JobResult
 from mmrs_core.scene import Robot, Scene, Task, Work
 
 _PORTIONS_PER_ROBOT = 60
@@ -39,7 +39,7 @@ Direction = bool
 """Whether a material is laid out backwards."""
 
 
-class Crew:
+class Team:
     """Pilots by robot and materials by task and robot, made once for a scene.
 
     Attributes:
@@ -47,7 +47,7 @@ class Crew:
         fine: whether works are divided as finely as can be.
         homebound: names of the robots that always keep enough to go home.
         pilots: by name of robot, in the scene's order.
-        teams: by name of task: robots that can do it, by sort of work, which cameras with different
+        groups: by name of task: robots that can do it, by sort of work, which cameras with different
             footprints or different clearances make.
         mixtures: by name of task: the sorts that can share it, where there are several.
         refusals: by (task, robot): why the robot cannot do the task.
@@ -85,12 +85,12 @@ class Crew:
             for robot in scene.robots
         }
         self.starts = dict[tuple[str, float], State]()
-        self.done = dict[tuple[object, ...], tuple[tuple[State, ...], Done | None]]()
+        self.done = dict[tuple[object, ...], tuple[tuple[State, ...], JobResult | None]]()
         self._coarsest = _seconds_of_all(scene) / (_PORTIONS_PER_ROBOT * max(1, len(scene.robots)))
         self.refusals: dict[tuple[str, str], str] = dict(scene.refusals)
         self._layouts: dict[tuple[str, str], Layout] = {}
         self._materials: dict[tuple[str, str, Direction], Material | None] = {}
-        self.teams: dict[str, tuple[tuple[str, ...], ...]] = {}
+        self.groups: dict[str, tuple[tuple[str, ...], ...]] = {}
         self.mixtures: dict[str, tuple[Mixture, ...]] = {}
         for task in scene.tasks:
             if not is_control(task):
@@ -98,14 +98,14 @@ class Crew:
 
     def _gather(self, task: Task) -> None:
         """Find out who can do a task, and who can share it."""
-        teams, mixtures = list[tuple[str, ...]](), list[Mixture]()
+        groups, mixtures = list[tuple[str, ...]](), list[Mixture]()
         for family in _families(self._sorts(task)):
-            robots = sum(len(team) for _, team in family)
-            sorts = [self._able(task.name, work, team, robots) for work, team in family]
-            teams += [each.team for each in sorts]
-            if len(able := [each for each in sorts if each.team]) > 1:
+            robots = sum(len(group) for _, group in family)
+            sorts = [self._able(task.name, work, group, robots) for work, group in family]
+            groups += [each.robots for each in sorts]
+            if len(able := [each for each in sorts if each.robots]) > 1:
                 mixtures.append(Mixture(task.name, able, self.pilots, partial(self._layout, robots=robots)))
-        self.teams[task.name], self.mixtures[task.name] = tuple(teams), tuple(mixtures)
+        self.groups[task.name], self.mixtures[task.name] = tuple(groups), tuple(mixtures)
 
     def _sorts(self, task: Task) -> list[tuple[Work, list[str]]]:
         """Return the robots whose work of a task is sound, by work."""
@@ -114,11 +114,11 @@ class Crew:
             work = self._sound_work(task, pilot)
             if work is None:
                 continue
-            team = next((team for other, team in sorts if other is work or other == work), None)
-            if team is None:
+            group = next((group for other, group in sorts if other is work or other == work), None)
+            if group is None:
                 sorts.append((work, [name]))
             else:
-                team.append(name)
+                group.append(name)
         return sorts
 
     def _sound_work(self, task: Task, pilot: Pilot) -> Work | None:
@@ -134,24 +134,24 @@ class Crew:
             return None
         return work
 
-    def _layout(self, work: Work, team: Sequence[str], robots: int) -> Layout:
-        return layout_of(work, self.pilots[team[0]], robots, coarsest=self._coarsest, fine=self.fine)
+    def _layout(self, work: Work, group: Sequence[str], robots: int) -> Layout:
+        return layout_of(work, self.pilots[group[0]], robots, coarsest=self._coarsest, fine=self.fine)
 
-    def _able(self, task: str, work: Work, team: Sequence[str], robots: int) -> Sort:
-        """Lay the work out for each robot of a team; return those that find a way through it."""
-        layout = self._layout(work, team, robots)
+    def _able(self, task: str, work: Work, group: Sequence[str], robots: int) -> WorkGroup:
+        """Lay the work out for each robot of a group; return those that can follow it."""
+        layout = self._layout(work, group, robots)
         able = []
-        for name in team:
+        for name in group:
             self._layouts[task, name] = layout
             try:
                 self._materials[task, name, False] = lay_out(task, work, layout, self.pilots[name])
                 able.append(name)
             except UnreachableError as error:
                 self.refusals[task, name] = str(error)
-        return Sort(work, tuple(able), layout)
+        return WorkGroup(work, tuple(able), layout)
 
-    def asking(self, wanted: Mapping[str, int]) -> Crew:
-        """Return the same crew, materials and all, where tasks want so many robots."""
+    def wanting(self, wanted: Mapping[str, int]) -> Team:
+        """Return the same team, materials and all, where tasks want so many robots."""
         tasks = [replace(task, wanted=wanted.get(task.name, task.wanted)) for task in self.scene.tasks]
         other = copy(self)
         other.scene = replace(self.scene, tasks=tuple(tasks))
@@ -178,7 +178,7 @@ class Crew:
 
     def able(self, task: str) -> tuple[str, ...]:
         """Return all robots that can do a task, in the scene's order."""
-        found = {name for team in self.teams[task] for name in team}
+        found = {name for group in self.groups[task] for name in group}
         return tuple(name for name in self.pilots if name in found)
 
     def sharers(self, task: str) -> int:
@@ -188,10 +188,10 @@ class Crew:
     def circles(self, task: str) -> list[tuple[str, ...]]:
         """Return the robots that can share a task with each other, each in one circle."""
         mixed = [
-            tuple(name for each in mixture.sorts for name in each.team) for mixture in self.mixtures[task]
+            tuple(name for each in mixture.sorts for name in each.robots) for mixture in self.mixtures[task]
         ]
         inside = {name for names in mixed for name in names}
-        found = [*mixed, *(team for team in self.teams[task] if team and team[0] not in inside)]
+        found = [*mixed, *(group for group in self.groups[task] if group and group[0] not in inside)]
         return [tuple(name for name in self.pilots if name in circle) for circle in found]
 
     def whole(self, task: str) -> bool:
@@ -204,7 +204,7 @@ class Crew:
         return next((circle for circle in self.circles(task) if robot in circle), ())
 
     def shortfalls(self) -> Iterator[str]:
-        """Yield what makes tasks impossible whatever the plan: nobody able, or too few."""
+        """Yield what makes tasks impossible whatever the plan: no robot can do it, or too few."""
         for task in self.scene.tasks:
             if is_control(task):
                 continue
@@ -221,8 +221,8 @@ class Crew:
 
     def sorts(self, task: str) -> str:
         """Return which robots can share a task among themselves only; empty where all can."""
-        teams = [" and ".join(circle) for circle in self.circles(task)]
-        apart = ", ".join(teams[:-1]) + f" cannot share it with {teams[-1]}" if len(teams) > 1 else ""
+        groups = [" and ".join(circle) for circle in self.circles(task)]
+        apart = ", ".join(groups[:-1]) + f" cannot share it with {groups[-1]}" if len(groups) > 1 else ""
         return (
             f"{apart}: sensors or clearances differ, so that their work is laid out otherwise"
             if apart
@@ -237,10 +237,10 @@ class Crew:
 
     def too_long(self, task: str) -> bool:
         """Return whether some portion of a task is too long for a sortie of any robot."""
-        return all(self._stuck(task, team) for team in self.teams[task] if team)
+        return all(self._stuck(task, group) for group in self.groups[task] if group)
 
-    def _stuck(self, task: str, team: Sequence[str]) -> bool:
-        known = [(self.forwards(task, name), self.pilots[name]) for name in team]
+    def _stuck(self, task: str, group: Sequence[str]) -> bool:
+        known = [(self.forwards(task, name), self.pilots[name]) for name in group]
         short = [shortages(material, pilot) for material, pilot in known if material is not None]
         return any(min(portion) > 1e-9 for portion in zip(*short, strict=True))
 
@@ -253,7 +253,7 @@ class Crew:
 
 
 def _families(sorts: Sequence[tuple[Work, list[str]]]) -> list[list[tuple[Work, list[str]]]]:
-    """Return works and teams, those together that can share a task."""
+    """Return works and groups, those together that can share a task."""
     families: list[list[tuple[Work, list[str]]]] = []
     for each in sorts:
         kin = (known for known in families if all(comparable(each[0], other) for other, _ in known))
@@ -268,8 +268,8 @@ def _families(sorts: Sequence[tuple[Work, list[str]]]) -> list[list[tuple[Work, 
 def homebound_of(scene: Scene) -> frozenset[str]:
     """Return the names of the robots that must always have enough left to go home.
 
-    These are the robots that return in the end, and those that nobody told to do otherwise when their
-    battery is low: most kinds of robots then return.
+    These are the robots that return in the end, and those whose response to a low battery is to go
+    elsewhere, by default home.
     """
     return frozenset(
         robot.name

@@ -39,7 +39,7 @@ def refuse_unsteady(robot: Robot) -> None:
     """Check that a robot can hold a position.
 
     Raises:
-        InfeasibleError: it cannot; says how slow it can be.
+        InfeasibleError: it cannot; gives its smallest speed.
     """
     if robot.kinematics is not None and robot.kinematics.slowest > 0.0:
         raise InfeasibleError(f"holds no position: its smallest speed is {robot.kinematics.slowest:g} m/s")

@@ -11,20 +11,20 @@ from mmrs_core.geometry.polygons import parts, polygon
 from mmrs_core.planning.coverage import blocks_at
 from mmrs_core.planning.footprints import GRID
 from mmrs_core.planning.pockets import pockets_of
-from mmrs_core.scene import Branch, Coverage, LeftOut, Position, Robot, Scene, Serve, Step, Work
+from mmrs_core.scene import Branch, Coverage, Omission, Position, Robot, Scene, Serve, Step, Work
 
 _LEAST = 0.05
 """Square metres, or metres, under which what is left out is rounding."""
 
 
-def left_out(scene: Scene, steps: Mapping[str, tuple[Step, ...]]) -> tuple[LeftOut, ...]:
+def omissions_of(scene: Scene, steps: Mapping[str, tuple[Step, ...]]) -> tuple[Omission, ...]:
     """Return what robots that go these steps leave out of the tasks that they do.
 
     Where robots of different sorts share a task, that is what the one leaves out that leaves out least:
     its sort does all that others have not done.
     """
     served = {(task, robot) for robot, taken in steps.items() for task in _served(taken)}
-    found = list[LeftOut]()
+    found = list[Omission]()
     for task in scene.tasks:
         works = [
             (robot, scene.works[task.name, robot.name])
@@ -32,12 +32,12 @@ def left_out(scene: Scene, steps: Mapping[str, tuple[Step, ...]]) -> tuple[LeftO
             if (task.name, robot.name) in served
         ]
         if works:
-            robot, work = min(works, key=lambda each: left_out_of(each[1]))
+            robot, work = min(works, key=lambda each: amount_left_out(each[1]))
             found += _of(scene, task.name, robot, work)
     return tuple(found)
 
 
-def left_out_of(work: Work) -> float:
+def amount_left_out(work: Work) -> float:
     """Return how much of its task a work leaves out, square metres or metres."""
     if work.coverage is not None:
         return float(uncovered(work.coverage).area)
@@ -53,12 +53,12 @@ def _served(steps: tuple[Step, ...]) -> Iterator[str]:
                 yield from _served(arm)
 
 
-def _of(scene: Scene, task: str, robot: Robot, work: Work) -> Iterator[LeftOut]:
+def _of(scene: Scene, task: str, robot: Robot, work: Work) -> Iterator[Omission]:
     for gap in work.gaps:
         if gap.length > _LEAST:
             place = f"from {gap.begin:.1f} m along {gap.line}, {_about(gap.at)}"
             why = "closed in by" if gap.closed_in else "too near to"
-            yield LeftOut(task, gap.length, "m", f"{place}, {why} {gap.area}", gap.at)
+            yield Omission(task, gap.length, "m", f"{place}, {why} {gap.area}", gap.at)
     if work.coverage is not None:
         up = work.strokes[0].points[0][2]
         left, pockets = uncovered(work.coverage), pockets_of(robot, scene)
@@ -67,11 +67,11 @@ def _of(scene: Scene, task: str, robot: Robot, work: Work) -> Iterator[LeftOut]:
         )
         for piece in parts(beside, smallest=_LEAST):
             at = _spot(piece, up)
-            yield LeftOut(task, piece.area, "m²", f"{_about(at)}, too near to {_near(scene, robot, at)}", at)
+            yield Omission(task, piece.area, "m²", f"{_about(at)}, too near to {_near(scene, robot, at)}", at)
         for pocket, walls in pockets:
             for piece in parts(shapely.intersection(left, pocket, grid_size=GRID), smallest=_LEAST):
                 at, names = _spot(piece, up), ", ".join(f"'{name}'" for name in walls)
-                yield LeftOut(task, piece.area, "m²", f"{_about(at)}, closed in by {names}", at)
+                yield Omission(task, piece.area, "m²", f"{_about(at)}, closed in by {names}", at)
 
 
 def _spot(piece: shapely.Polygon, up: float) -> Position:

@@ -6,8 +6,8 @@ from math import inf
 import numpy as np
 import pytest
 
-from mmrs_core.planning.nearness import legs_apart, near_pairs, track_of
-from mmrs_core.planning.timeline import Ride, Spot
+from mmrs_core.planning.proximity import legs_apart, near_pairs, track_of
+from mmrs_core.planning.timeline import HomeRelation, Ride
 
 WEST, EAST = (0.0, 0.0, 20.0), (100.0, 0.0, 20.0)
 FAR_HOME = (-1000.0, 0.0, 0.0)
@@ -94,11 +94,11 @@ def test_a_robot_that_goes_nowhere_is_near_nobody():
 
 
 def stands(home, *, early=-inf, late=inf):
-    return Ride((home,), early, late, (), spot=Spot.HOME)
+    return Ride((home,), early, late, (), relation=HomeRelation.HOME)
 
 
 def column(home, early):
-    return replace(ride(home, (home[0], home[1], 20.0), early=early), spot=Spot.COLUMN)
+    return replace(ride(home, (home[0], home[1], 20.0), early=early), relation=HomeRelation.COLUMN)
 
 
 @pytest.mark.parametrize(

@@ -12,7 +12,7 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
-from mmrs_core.planning.timeline import Ride, Spot
+from mmrs_core.planning.timeline import HomeRelation, Ride
 from mmrs_core.scene import Position
 
 Floats: TypeAlias = NDArray[np.float64]
@@ -26,7 +26,7 @@ _ONE_PLACE = 0.15
 
 
 @dataclass(frozen=True, slots=True)
-class Track:
+class TimedTrack:
     """All that a robot may take up: straight pieces, each within a span of time.
 
     Attributes:
@@ -34,7 +34,7 @@ class Track:
         places: (n, 2, 3) ends of each piece, equal for a stay.
         least: (n,) seconds that it takes along the piece at least.
         radii: (n,) metres from the piece within which it may be.
-        spots: (n,) where each piece is, seen from the robot's home (see `Spot`).
+        relations: (n,) where each piece is, seen from the robot's home (see `HomeRelation`).
         home: of the robot.
     """
 
@@ -42,13 +42,13 @@ class Track:
     places: Floats
     least: Floats
     radii: Floats
-    spots: Indices
+    relations: Indices
     home: Position
 
-    def pick(self, pieces: Indices) -> Track:
+    def pick(self, pieces: Indices) -> TimedTrack:
         """Return some pieces only."""
         kept = self.times[pieces], self.places[pieces], self.least[pieces], self.radii[pieces]
-        return Track(*kept, self.spots[pieces], self.home)
+        return TimedTrack(*kept, self.relations[pieces], self.home)
 
     def box(self) -> Floats:
         """Return the lowest and the highest coordinates (2, 3) at which the robot may be."""
@@ -56,24 +56,24 @@ class Track:
         low, high = (self.places - radii).min(axis=(0, 1)), (self.places + radii).max(axis=(0, 1))
         return np.stack([low, high])
 
-    def cut(self, longest: float) -> Track:
-        """Return the same in pieces no longer than so many metres, each within its own span of time."""
+    def cut(self, longest: float) -> TimedTrack:
+        """Return the same in pieces of at most `longest` metres, each within its own span of time."""
         length = np.linalg.norm(self.places[:, 1] - self.places[:, 0], axis=1)
         parts = np.maximum(1, np.ceil(length / longest)).astype(np.intp)
         of = np.repeat(np.arange(len(parts)), parts)
         number = np.arange(len(of)) - np.repeat(np.cumsum(parts) - parts, parts)
         low, high = number / parts[of], (number + 1) / parts[of]
-        start, way = self.places[of, 0], (self.places[:, 1] - self.places[:, 0])[of]
-        ends = [start + share[:, None] * way for share in (low, high)]
+        start, offset = self.places[of, 0], (self.places[:, 1] - self.places[:, 0])[of]
+        ends = [start + share[:, None] * offset for share in (low, high)]
         times = [self.times[of, 0] + self.least[of] * low, self.times[of, 1] - self.least[of] * (1.0 - high)]
         least = self.least[of] / parts[of]
         times_of_each, places = np.stack(times, axis=1), np.stack(ends, axis=1)
-        return Track(times_of_each, places, least, self.radii[of], self.spots[of], self.home)
+        return TimedTrack(times_of_each, places, least, self.radii[of], self.relations[of], self.home)
 
 
-def track_of(rides: Sequence[Ride], home: Position) -> Track:
+def track_of(rides: Sequence[Ride], home: Position) -> TimedTrack:
     """Return the rides of a robot as pieces, one for each leg or stay."""
-    times, places, least, radii, spots = [], [], [], [], []
+    times, places, least, radii, relations = [], [], [], [], []
     for ride in rides:
         points = ride.points if len(ride.points) > 1 else ride.points * 2
         seconds = ride.least or (0.0,)
@@ -83,20 +83,20 @@ def track_of(rides: Sequence[Ride], home: Position) -> Track:
             places.append(leg)
             least.append(each)
             radii.append(ride.radius)
-            spots.append(ride.spot)
+            relations.append(ride.relation)
             before += each
-    return Track(
+    return TimedTrack(
         np.array(times, dtype=np.float64).reshape(-1, 2),
         np.array(places, dtype=np.float64).reshape(-1, 2, 3),
         np.array(least, dtype=np.float64),
         np.array(radii, dtype=np.float64),
-        np.array(spots, dtype=np.intp),
+        np.array(relations, dtype=np.intp),
         home,
     )
 
 
 @dataclass(frozen=True, slots=True)
-class Nearness:
+class ClosePairs:
     """Pairs of pieces of two tracks that are nearer to each other than allowed.
 
     Attributes:
@@ -112,21 +112,21 @@ class Nearness:
 
 
 def near_pairs(
-    one: Track, two: Track, least: float, *, finest: float, spare: float | None = None
-) -> Nearness:
+    one: TimedTrack, two: TimedTrack, least: float, *, finest: float, spare: float | None = None
+) -> ClosePairs:
     """Return the pairs of pieces that come within a distance of each other, in space.
 
     Homes that are nearer to each other are the operator's choice: a robot that stands at such a home is
-    no hindrance to the other one at its own, nor in the column over it, while they are no nearer to each
-    other than their homes are.
+    no hindrance to the other one at its own, nor in the column over it, while their distance is at least
+    that of their homes.
 
     Args:
         one: track of a robot.
         two: of another.
         least: metres to keep.
-        finest: length in metres of the pieces that are told apart.
-        spare: None: whenever the robots are there; else only where their times come within so many
-            seconds of overlapping.
+        finest: length in metres of the pieces that are distinguished.
+        spare: None: whenever the robots are there; a number: only where their times come within
+            that many seconds of overlapping.
     """
     i, j = _pairs(one, two, least)
     counts = ~_excused(one, two, least, i, j)
@@ -142,19 +142,21 @@ def near_pairs(
     apart = legs_apart(first.places[i], second.places[j]) - first.radii[i] - second.radii[j]
     near = apart < least
     i, j = i[near], j[near]
-    at_home = (first.spots[i] == Spot.HOME) | (second.spots[j] == Spot.HOME)
-    return Nearness(first.times[i], second.times[j], apart[near], at_home)
+    at_home = (first.relations[i] == HomeRelation.HOME) | (second.relations[j] == HomeRelation.HOME)
+    return ClosePairs(first.times[i], second.times[j], apart[near], at_home)
 
 
-def _excused(one: Track, two: Track, least: float, i: Indices, j: Indices) -> NDArray[np.bool_]:
+def _excused(one: TimedTrack, two: TimedTrack, least: float, i: Indices, j: Indices) -> NDArray[np.bool_]:
     """Return (n,): which pairs of pieces are one at a home and one at or over a neighbouring home.
 
-    Only those that are no nearer to each other than the homes.
+    Only those at least as far from each other as the homes.
     """
     if dist(one.home, two.home) >= least:
         return np.zeros(len(i), dtype=np.bool_)
-    spots = np.stack([one.spots[i], two.spots[j]])
-    found: NDArray[np.bool_] = (spots.min(axis=0) > Spot.ELSEWHERE) & (spots.max(axis=0) == Spot.HOME)
+    relations = np.stack([one.relations[i], two.relations[j]])
+    found: NDArray[np.bool_] = (relations.min(axis=0) > HomeRelation.ELSEWHERE) & (
+        relations.max(axis=0) == HomeRelation.HOME
+    )
     nearest = max(dist(one.home, two.home) - _SLOPE, _ONE_PLACE)
     found[found] = legs_apart(one.places[i[found]], two.places[j[found]]) >= nearest
     return found
@@ -165,7 +167,7 @@ def _overlap(one: Floats, two: Floats, spare: float) -> NDArray[np.bool_]:
     return found
 
 
-def _pairs(one: Track, two: Track, least: float) -> tuple[Indices, Indices]:
+def _pairs(one: TimedTrack, two: TimedTrack, least: float) -> tuple[Indices, Indices]:
     """Return indices of pieces whose boxes come within a distance."""
     reach = least + max(one.radii.max(initial=0.0) + two.radii.max(initial=0.0), 0.0)
     tree = shapely.STRtree(_boxes(two, 0.0))
@@ -176,7 +178,7 @@ def _pairs(one: Track, two: Track, least: float) -> tuple[Indices, Indices]:
     return i[level], j[level]
 
 
-def _boxes(track: Track, more: float) -> NDArray[np.object_]:
+def _boxes(track: TimedTrack, more: float) -> NDArray[np.object_]:
     low, high = track.places[:, :, :2].min(axis=1) - more, track.places[:, :, :2].max(axis=1) + more
     found: NDArray[np.object_] = shapely.box(low[:, 0], low[:, 1], high[:, 0], high[:, 1])
     return found
@@ -199,10 +201,10 @@ def legs_apart(one: Floats, two: Floats) -> Floats:
 
 
 def _to_leg(points: Floats, legs: Floats) -> Floats:
-    way, gap = legs[:, 1] - legs[:, 0], points - legs[:, 0]
-    length2 = (way**2).sum(axis=1)
-    share = np.clip((gap * way).sum(axis=1) / np.where(length2 > 0.0, length2, 1.0), 0.0, 1.0)
-    found: Floats = np.linalg.norm(gap - share[:, None] * way, axis=1)
+    offset, gap = legs[:, 1] - legs[:, 0], points - legs[:, 0]
+    length2 = (offset**2).sum(axis=1)
+    share = np.clip((gap * offset).sum(axis=1) / np.where(length2 > 0.0, length2, 1.0), 0.0, 1.0)
+    found: Floats = np.linalg.norm(gap - share[:, None] * offset, axis=1)
     return found
 
 
