@@ -26,12 +26,12 @@ from typing import Any
 from pymavlink import mavutil
 
 from mmrs_core.behaviour.program import Program
-from mmrs_core.simulation.live import run_live, venture_for
+from mmrs_core.simulation.live import live_run_for, run_live
 from mmrs_core.simulation.run import inputs_of
 from mmrs_core.testing.programs import move, program, quad, robot_program, take_off
 from mmrs_mavlink.plugin.backend import MAVLINK
 from mmrs_mavlink.sitl import Settings, SimulatedVehicle
-from mmrs_runtime.engine.hearing import hear_orders
+from mmrs_runtime.engine.order_sources import receive_orders
 from mmrs_runtime.engine.orders import LAND, Orders
 from mmrs_runtime.orders.ordering import give
 from mmrs_runtime.slots import LocalSlots
@@ -83,15 +83,15 @@ def hovering() -> Iterator[Path]:
     )
     with tempfile.TemporaryDirectory() as name, SimulatedVehicle(port, Settings(energy=1e6)) as vehicle:
         folder = Path(name)
-        venture = replace(
-            venture_for(made, inputs, MAVLINK, LocalSlots(made.executable), {}),
+        live_run = replace(
+            live_run_for(made, inputs, MAVLINK, LocalSlots(made.executable), {}),
             orders=control,
             folder=folder,
             links={ROBOT: f"udpin:127.0.0.1:{port}"},
             say=lambda words: None,
         )
-        flight = threading.Thread(target=lambda: run_live(venture))
-        with hear_orders(folder, venture.run, (ROBOT,), control, lambda robot: {}):
+        flight = threading.Thread(target=lambda: run_live(live_run))
+        with receive_orders(folder, live_run.run, (ROBOT,), control, lambda robot: {}):
             flight.start()
             while vehicle.autopilot.body.position[2] < HEIGHT - 0.4:
                 time.sleep(0.1)

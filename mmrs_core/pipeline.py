@@ -355,7 +355,7 @@ def conditions_for(
     """
     from mmrs_core.simulation.run import asked_by, refuse_unasked
     from mmrs_runtime.conditions import question_of
-    from mmrs_runtime.engine.judging import assumed, standard_conditions
+    from mmrs_runtime.engine.decisions import assumed, standard_conditions
 
     refuse_unasked(program, assume)
     asked = (each for each in asked_by(program) if asks or not question_of(each))

@@ -213,7 +213,7 @@ def state(
     Example: mmrs bus state survey --connect tcp/10.0.0.2:7447 --robot Drone1
     """
     with _needing("eclipse-zenoh"):
-        from mmrs_runtime.bus.carriers.looking import reasons, states_of
+        from mmrs_runtime.bus.carriers.queries import reasons, states_of
         from mmrs_runtime.bus.carriers.sessions import Endpoints
     _refuse_endpoints(listen, connect)
     endpoints = Endpoints(tuple(listen or ()), tuple(connect or ()), config)

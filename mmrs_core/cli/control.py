@@ -11,10 +11,10 @@ import typer
 from mmrs_core.cli.output import say, say_json
 from mmrs_core.cli.settings import Json
 from mmrs_core.errors import LinkLostError
-from mmrs_runtime.orders.calling import Unreachable
+from mmrs_runtime.orders.channels import Unreachable
 from mmrs_runtime.orders.ordering import give, words
 from mmrs_runtime.orders.orders import ANSWER, ORDERS, STATUS
-from mmrs_runtime.orders.standing import lines_of
+from mmrs_runtime.orders.status_table import lines_of
 
 
 def control(

@@ -27,13 +27,12 @@ from mmrs_core.cli.wishes import (
 )
 from mmrs_core.pictures.figures import clock
 from mmrs_core.pipeline import backend_for, conditions_for, inputs_of
-from mmrs_core.simulation.live import run_live, venture_for
+from mmrs_core.simulation.live import live_run_for, run_live
 from mmrs_runtime.bus.program_bus import begin_all
 from mmrs_runtime.control import Taken
 from mmrs_runtime.engine.clocks import RealClock
-from mmrs_runtime.engine.hearing import Status, hear_orders
-from mmrs_runtime.engine.interrupts import stopping
 from mmrs_runtime.engine.live import exit_code
+from mmrs_runtime.engine.order_sources import Status, receive_orders, stopping
 from mmrs_runtime.engine.orders import Orders
 from mmrs_runtime.engine.terms import Ending
 from mmrs_runtime.records.log import LogWriter
@@ -107,8 +106,8 @@ def carry_out(session: Session, loaded: Loaded, wishes: Wishes) -> Result:
         observers = ObserverThread(session.observers)
         recorder = StepRecorder(observers, writer, program)
         inputs = inputs_of(program, loaded.place, session.contributions, options=options, robots=here)
-        venture = replace(
-            venture_for(program, inputs, backend, bus, conditions),
+        live_run = replace(
+            live_run_for(program, inputs, backend, bus, conditions),
             clock=clock,
             orders=orders,
             run=run,
@@ -123,13 +122,13 @@ def carry_out(session: Session, loaded: Loaded, wishes: Wishes) -> Result:
         )
 
         def status(robot: str) -> Mapping[str, object]:
-            return {**venture.standing.status(robot), **recorder.status(robot)}
+            return {**live_run.status_board.status(robot), **recorder.status(robot)}
 
         _hear(stack, wishes.folder, run, here, orders, status)
         stack.enter_context(stopping(orders, here, tell))
         stack.enter_context(unfailing())
         stack.callback(observers.close)
-        ending = run_live(venture)
+        ending = run_live(live_run)
     names = [wishes.folder / log_name(robot) for robot in here]
     return Result(ending, tuple(path for path in names if path.exists()))
 
@@ -138,7 +137,7 @@ def _hear(
     stack: ExitStack, folder: Path, run: str, robots: tuple[str, ...], orders: Orders, status: Status
 ) -> None:
     try:
-        stack.enter_context(hear_orders(folder, run, robots, orders, status))
+        stack.enter_context(receive_orders(folder, run, robots, orders, status))
     except Taken as error:
         raise typer.BadParameter(f"--log {folder}: {error}") from error
 

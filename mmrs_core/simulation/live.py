@@ -13,26 +13,26 @@ from mmrs_core.errors import LinkLostError, MmrsError
 from mmrs_core.simulation.run import refuse_undecided
 from mmrs_runtime.bus import Incomplete
 from mmrs_runtime.engine import live as engine
-from mmrs_runtime.engine.live import Venture
+from mmrs_runtime.engine.live import LiveRun
 from mmrs_runtime.engine.preflight import NotReadyError
 from mmrs_runtime.engine.terms import Ending
 from mmrs_runtime.slots import Slots
 from mmrs_runtime.vehicle import Vehicle
 
 
-def venture_for(
+def live_run_for(
     program: Program,
     inputs: Mapping[str, VehicleInput],
     backend: VehicleFactory,
     bus: Slots,
     conditions: Mapping[str, Condition],
-) -> Venture:
+) -> LiveRun:
     """Return a run of the robots that have an input, with the vehicles of a backend."""
 
     def connect(id: str, live: Live) -> Vehicle:
         return backend.connect(replace(inputs[id], live=live))
 
-    return Venture(
+    return LiveRun(
         program.executable,
         {id: partial(connect, id) for id in inputs},
         bus,
@@ -42,7 +42,7 @@ def venture_for(
     )
 
 
-def run_live(venture: Venture) -> Ending:
+def run_live(live_run: LiveRun) -> Ending:
     """Carry the programs out; see `mmrs_runtime.engine.live.run_live`.
 
     Raises:
@@ -53,7 +53,7 @@ def run_live(venture: Venture) -> Ending:
         KeyboardInterrupt: if robots are ordered to stop before they are ready.
     """
     try:
-        return engine.run_live(venture)
+        return engine.run_live(live_run)
     except NotReadyError as error:
         raise (LinkLostError if error.link_lost else MmrsError)(str(error)) from None
     except Incomplete as error:

@@ -28,7 +28,7 @@ from pathlib import Path
 from typing import Any
 
 from .callers import Callers
-from .orders.calling import network, object_in
+from .orders.channels import network, object_in
 from .orders.ordering import PATTERN
 from .orders.orders import ANSWER, ORDERS, STATUS, Inbox, OrderKind, Receipt
 

@@ -19,12 +19,12 @@ from mmrs_core.contributions.targets import TargetInput
 from mmrs_core.generation.render import render
 from mmrs_core.generation.writing import write
 from mmrs_core.pipeline import Place, inputs_of
-from mmrs_core.simulation.live import venture_for
+from mmrs_core.simulation.live import live_run_for
 from mmrs_core.simulation.run import asked_by
 from mmrs_core.transformation.kinds import MOVE_KINDS
 from mmrs_runtime.engine.clocks import RealClock
-from mmrs_runtime.engine.judging import standard_conditions
-from mmrs_runtime.engine.live import Venture
+from mmrs_runtime.engine.decisions import standard_conditions
+from mmrs_runtime.engine.live import LiveRun
 from mmrs_runtime.slots import LocalSlots
 
 SPEED = 0.5
@@ -33,9 +33,9 @@ SPEED = 0.5
 
 def interpreted(
     behaviour: Program, berth: Berth, contributions: Contributions, folder: Path, **options: str
-) -> Venture:
+) -> LiveRun:
     """Return a dive by the interpreter that keeps its logs in `logs`."""
-    venture = venture_for(
+    live_run = live_run_for(
         behaviour,
         inputs_of(
             behaviour,
@@ -47,7 +47,7 @@ def interpreted(
         LocalSlots(behaviour.executable),
         standard_conditions(asked_by(behaviour)),
     )
-    return replace(venture, clock=RealClock(SPEED), folder=folder / "logs", links={"naiad": berth.channel})
+    return replace(live_run, clock=RealClock(SPEED), folder=folder / "logs", links={"naiad": berth.channel})
 
 
 def dive_by_code(behaviour: Program, berth: Berth, folder: Path, *words: str) -> None:

@@ -35,7 +35,7 @@ from mmrs_mavlink.sitl.hosting import LONGEST_STEP
 from mmrs_mavlink.steps.watch import Watch
 from mmrs_mavlink.vehicles.mavlink_vehicle import MavlinkVehicle
 from mmrs_runtime.clock import Clock
-from mmrs_runtime.controllers.places import distance
+from mmrs_runtime.controllers.geodesy import distance
 from mmrs_runtime.faults import Fault
 from mmrs_runtime.ports import NOTHING, Port, Received
 

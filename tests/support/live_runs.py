@@ -11,7 +11,7 @@ from mmrs_core.behaviour.program import Move
 from mmrs_core.contributions.execution import Fault, RobotState
 from mmrs_core.contributions.vehicles import VehicleFactory, VehicleInput
 from mmrs_core.errors import MmrsError
-from mmrs_core.simulation.live import run_live, venture_for
+from mmrs_core.simulation.live import live_run_for, run_live
 from mmrs_core.simulation.run import inputs_of
 from mmrs_core.testing.small_programs import ROBOT_TYPE, hold, program, robot, robot_type
 from mmrs_runtime.engine.clocks import RealClock
@@ -163,8 +163,8 @@ class Flight:
                 kept(record)
             self.records.append(record)
 
-        self.venture = replace(
-            venture_for(behaviour, inputs, factory, given.pop("bus"), given.pop("conditions")),
+        self.live_run = replace(
+            live_run_for(behaviour, inputs, factory, given.pop("bus"), given.pop("conditions")),
             clock=RealClock(speedup),
             orders=self.orders,
             say=self.said.append,
@@ -177,7 +177,7 @@ class Flight:
 
     def _go(self):
         try:
-            self.ending = run_live(self.venture)
+            self.ending = run_live(self.live_run)
         except (MmrsError, KeyboardInterrupt) as error:
             self.error = error
 

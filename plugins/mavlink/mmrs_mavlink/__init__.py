@@ -41,9 +41,8 @@ from .program import (
 )
 
 if TYPE_CHECKING:
-    from mmrs_runtime.controllers.judgement import Condition
-    from mmrs_runtime.controllers.objects import Locator, not_looked_for, where_expected
     from mmrs_runtime.controllers.state import State
+    from mmrs_runtime.controllers.user_functions import Condition, Locator, not_looked_for, where_expected
 
     from .driver import main
 
@@ -85,12 +84,12 @@ __all__ = [
 ]
 
 _IN = {
-    "Condition": "mmrs_runtime.controllers.judgement",
-    "Locator": "mmrs_runtime.controllers.objects",
+    "Condition": "mmrs_runtime.controllers.user_functions",
+    "Locator": "mmrs_runtime.controllers.user_functions",
     "State": "mmrs_runtime.controllers.state",
     "main": "mmrs_mavlink.driver",
-    "not_looked_for": "mmrs_runtime.controllers.objects",
-    "where_expected": "mmrs_runtime.controllers.objects",
+    "not_looked_for": "mmrs_runtime.controllers.user_functions",
+    "where_expected": "mmrs_runtime.controllers.user_functions",
 }
 
 

@@ -7,12 +7,11 @@ from collections.abc import Callable, Mapping, Sequence
 from math import inf
 from typing import TYPE_CHECKING
 
-from mmrs_runtime.controllers import words
-from mmrs_runtime.controllers.driver import Driver, Outfit
-from mmrs_runtime.controllers.judgement import Condition
-from mmrs_runtime.controllers.objects import Locator
-from mmrs_runtime.controllers.places import offset
+from mmrs_runtime.controllers import vocabulary as words
+from mmrs_runtime.controllers.driver import Driver, DriverInput
+from mmrs_runtime.controllers.geodesy import offset
 from mmrs_runtime.controllers.running import run_controllers
+from mmrs_runtime.controllers.user_functions import Condition, Locator
 from mmrs_runtime.engine.connecting import Live
 from mmrs_runtime.injection.spec import OF_STATIONS, OF_VEHICLE
 from mmrs_runtime.records.blackbox import BlackBox, black_box_path
@@ -52,7 +51,7 @@ class MavlinkDriver(Driver):
 
     rehearses = (*OF_VEHICLE, *OF_STATIONS)
     _reach: Reach
-    _outfit: Outfit
+    _outfit: DriverInput
 
     def __init__(self) -> None:
         """Speak to nobody yet."""
@@ -69,7 +68,7 @@ class MavlinkDriver(Driver):
         self._reach = reach_of(parser, robots, given)
         return self._reach.urls
 
-    def open(self, outfit: Outfit) -> None:
+    def open(self, outfit: DriverInput) -> None:
         """Open nothing yet: ports are opened with the first vehicle on them."""
         self._outfit = outfit
         if outfit.options.dry:

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from mmrs_runtime.controllers.options import count, positive
-from mmrs_runtime.controllers.words import Robot
+from mmrs_runtime.controllers.vocabulary import Robot
 
 from .links.ports import address_of, split_system
 from .links.retries import ANSWER_SECONDS, ITEM_SECONDS, TRIES, Retries

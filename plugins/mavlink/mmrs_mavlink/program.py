@@ -5,27 +5,27 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import TypeAlias
 
-from mmrs_runtime.controllers import words
-from mmrs_runtime.controllers.words import Choose as Choose
-from mmrs_runtime.controllers.words import Geographic as Geographic
-from mmrs_runtime.controllers.words import GoTo as GoTo
-from mmrs_runtime.controllers.words import Hold as Hold
-from mmrs_runtime.controllers.words import Land as Land
-from mmrs_runtime.controllers.words import Local as Local
-from mmrs_runtime.controllers.words import Look as Look
-from mmrs_runtime.controllers.words import NoEffect as NoEffect
-from mmrs_runtime.controllers.words import Notify as Notify
-from mmrs_runtime.controllers.words import Object as Object
-from mmrs_runtime.controllers.words import Place as Place
-from mmrs_runtime.controllers.words import Policy as Policy
-from mmrs_runtime.controllers.words import Recharge as Recharge
-from mmrs_runtime.controllers.words import Report as Report
-from mmrs_runtime.controllers.words import Skip as Skip
-from mmrs_runtime.controllers.words import Start as Start
-from mmrs_runtime.controllers.words import Step as Step
-from mmrs_runtime.controllers.words import Stop as Stop
-from mmrs_runtime.controllers.words import Then as Then
-from mmrs_runtime.controllers.words import Turn as Turn
+from mmrs_runtime.controllers import vocabulary as words
+from mmrs_runtime.controllers.vocabulary import Choose as Choose
+from mmrs_runtime.controllers.vocabulary import Geographic as Geographic
+from mmrs_runtime.controllers.vocabulary import GoTo as GoTo
+from mmrs_runtime.controllers.vocabulary import Hold as Hold
+from mmrs_runtime.controllers.vocabulary import Land as Land
+from mmrs_runtime.controllers.vocabulary import Local as Local
+from mmrs_runtime.controllers.vocabulary import Look as Look
+from mmrs_runtime.controllers.vocabulary import NoEffect as NoEffect
+from mmrs_runtime.controllers.vocabulary import Notify as Notify
+from mmrs_runtime.controllers.vocabulary import Object as Object
+from mmrs_runtime.controllers.vocabulary import Place as Place
+from mmrs_runtime.controllers.vocabulary import Policy as Policy
+from mmrs_runtime.controllers.vocabulary import Recharge as Recharge
+from mmrs_runtime.controllers.vocabulary import Report as Report
+from mmrs_runtime.controllers.vocabulary import Skip as Skip
+from mmrs_runtime.controllers.vocabulary import Start as Start
+from mmrs_runtime.controllers.vocabulary import Step as Step
+from mmrs_runtime.controllers.vocabulary import Stop as Stop
+from mmrs_runtime.controllers.vocabulary import Then as Then
+from mmrs_runtime.controllers.vocabulary import Turn as Turn
 
 
 @dataclass(frozen=True, slots=True)

@@ -13,15 +13,15 @@ from ..engine.connecting import Live
 from ..injection import Rehearsal
 from ..records.blackbox import BlackBox
 from ..vehicle import Vehicle
-from .objects import Locator
-from .words import Robot
+from .user_functions import Locator
+from .vocabulary import Robot
 
 if TYPE_CHECKING:
     from .options import Options
 
 
 @dataclass(frozen=True, slots=True)
-class Outfit:
+class DriverInput:
     """What drivers make vehicles with, in addition to the robots' programs.
 
     Attributes:
@@ -59,7 +59,7 @@ class Driver(ABC):
         """Return the objects that a robot's vehicle finds, so that no function of the user has to."""
         return ()
 
-    def open(self, outfit: Outfit) -> None:  # noqa: B027
+    def open(self, outfit: DriverInput) -> None:  # noqa: B027
         """Open what vehicles share, before any is connected."""
 
     @abstractmethod

@@ -17,7 +17,7 @@ from ..injection.spec import OF_STATIONS, OF_VEHICLE
 from ..records.blackbox import black_box_path, last_time, plan_of
 from ..records.log import read
 from .driver import Driver
-from .words import Robot
+from .vocabulary import Robot
 
 DRY_SPEEDUP = 500.0
 FIRST_RUN = "run-0"

@@ -3,19 +3,19 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import ExitStack
 from functools import partial
 from itertools import chain
 
+from .. import program as runtime
 from ..bus import Incomplete
 from ..bus.program_bus import ProgramBus, begin_all, shared_bus, strangers_of
 from ..control import Taken
 from ..engine.clocks import RealClock
 from ..engine.connecting import Live
-from ..engine.hearing import hear_orders
-from ..engine.interrupts import stopping
-from ..engine.live import FAILED, INTERRUPTED, LINK, Venture, exit_code, run_live
+from ..engine.live import FAILED, INTERRUPTED, LINK, LiveRun, exit_code, run_live
+from ..engine.order_sources import receive_orders, stopping
 from ..engine.orders import Orders
 from ..engine.preflight import NotReadyError
 from ..engine.resuming import over_by, restore
@@ -23,20 +23,18 @@ from ..engine.terms import Ending
 from ..faults import LINK_LOST, Fault, reason_of
 from ..injection import Rehearsal
 from ..policies import NOTHING
-from ..program import Program
+from ..program import Move, Notify, Program, SlotId
 from ..records.blackbox import BlackBox, black_box_path
 from ..records.log import LogWriter, read
 from ..records.steps import StepRecord
 from ..screen import bear_all_characters, say, unfailing
 from ..slots import LocalSlots
 from ..vehicle import Vehicle
-from .driver import Driver, Outfit
-from .judgement import Condition, Judgement
-from .objects import Locator
+from .box_entries import start_of
+from .driver import Driver, DriverInput
 from .options import Options, options_of, parser_for
-from .start import start_of
-from .team import program_of
-from .words import Robot
+from .user_functions import Condition, Locator, UserFunctions
+from .vocabulary import Robot
 
 
 def run_controllers(
@@ -59,24 +57,24 @@ def run_controllers(
     parser = parser_for(robots, driver)
     options = options_of(parser, robots, driver, arguments)
     seen = {robot.id: driver.sees(robot) for robot in robots}
-    judgement = Judgement(conditions or {}, locators or {}, seen)
-    for fault in judgement.faults(robots):
+    functions = UserFunctions(conditions or {}, locators or {}, seen)
+    for fault in functions.faults(robots):
         parser.error(fault)
     with ExitStack() as stack:
         stack.enter_context(unfailing())
         rehearsal = Rehearsal(options.inject, options.clock, say)
         program, resumed = program_of(robots), _resumed(robots, options)
-        driver.open(Outfit(options, rehearsal, judgement.locators, stack))
+        driver.open(DriverInput(options, rehearsal, functions.locators, stack))
         bus = _slots(parser, program, robots, options, rehearsal, resumed, stack)
         writer = stack.enter_context(_log(parser, options))
         orders = Orders(options.on_stop.upper())
         ids = tuple(robot.id for robot in robots)
         assert isinstance(options.clock.followed, RealClock)
-        venture = Venture(
+        live_run = LiveRun(
             program,
             {robot.id: partial(_connect, driver, options, rehearsal, robot) for robot in robots},
             bus,
-            judgement.decides(robots),
+            functions.decides(robots),
             clock=options.clock.followed,
             orders=orders,
             run=options.run,
@@ -90,9 +88,9 @@ def run_controllers(
         )
         stack.callback(rehearsal.close)
         rehearsal.start()
-        _hear(parser, options, ids, venture, stack)
+        _hear(parser, options, ids, live_run, stack)
         stack.enter_context(stopping(orders, ids, say))
-        return _run(venture)
+        return _run(live_run)
 
 
 def _connect(driver: Driver, options: Options, rehearsal: Rehearsal, robot: Robot, live: Live) -> Vehicle:
@@ -110,16 +108,16 @@ def _connect(driver: Driver, options: Options, rehearsal: Rehearsal, robot: Robo
         raise
 
 
-def _run(venture: Venture) -> int:
+def _run(live_run: LiveRun) -> int:
     """Carry the programs out, and tell people how that ended; return the exit code."""
     try:
-        for robot, why in over_by(venture.program, venture.resumed).items():
+        for robot, why in over_by(live_run.program, live_run.resumed).items():
             say(
                 f"{robot!r}: cannot be resumed: it has ended by {why}"
                 if why
                 else f"{robot!r}: it has come to its end"
             )
-        ending = run_live(venture)
+        ending = run_live(live_run)
     except NotReadyError as error:
         for robot, found in error.faults.items():
             say(f"{robot!r}: does not get ready: {found.reason or found.which}")
@@ -134,7 +132,7 @@ def _run(venture: Venture) -> int:
         return FAILED
     except KeyboardInterrupt:
         return INTERRUPTED
-    _tell(ending, tuple(venture.connect))
+    _tell(ending, tuple(live_run.connect))
     return exit_code(ending)
 
 
@@ -225,15 +223,60 @@ def _hear(
     parser: argparse.ArgumentParser,
     options: Options,
     robots: Sequence[str],
-    venture: Venture,
+    live_run: LiveRun,
     stack: ExitStack,
 ) -> None:
     """Connect the run to orders from other processes."""
     try:
         stack.enter_context(
-            hear_orders(options.log, options.run, robots, venture.orders, venture.standing.status)
+            receive_orders(options.log, options.run, robots, live_run.orders, live_run.status_board.status)
         )
     except Taken as error:
         parser.error(f"--log {options.log}: {error}")
     except OSError as error:
         say(f"{options.log}: no orders can be given while this runs: {error.strerror or error}")
+
+
+ELSEWHERE = "elsewhere"
+"""The one move that is known of a robot that another process runs."""
+
+
+def program_of(robots: Sequence[Robot]) -> runtime.Program:
+    """Return the program of these robots, with those of other processes as far as they are known."""
+    own = {robot.id: robot.executable for robot in robots}
+    names = [*own, *_strangers(robots)]
+    notifies: dict[str, list[Notify]] = {name: [] for name in names}
+    slots: dict[str, list[str]] = {name: [] for name in names}
+    for robot in robots:
+        for told, active in ((robot.senders, True), (robot.resets, False)):
+            for sender, slot in _told(robot.id, told):
+                notifies[sender].append(Notify((slot,), active))
+        for owner, name in robot.volatile:
+            notifies[owner].append(Notify(((owner, name),), active=False))
+        for notify in robot.executable.notifies:
+            for owner, name in notify.slots:
+                slots[owner].append(name)
+    return runtime.Program(
+        tuple(own.get(name) or _stranger(name, notifies[name], slots[name]) for name in names),
+        name=robots[0].mission,
+        fingerprint=robots[0].plan,
+    )
+
+
+def _strangers(robots: Sequence[Robot]) -> list[str]:
+    here = {robot.id for robot in robots}
+    return sorted({each for robot in robots for each in (*robot.fleet, *_contacts(robot))} - here)
+
+
+def _contacts(robot: Robot) -> set[str]:
+    told = {sender for side in (robot.senders, robot.resets) for sender, _ in _told(robot.id, side)}
+    return told | {owner for notify in robot.executable.notifies for owner, _ in notify.slots}
+
+
+def _told(owner: str, side: Iterable[tuple[str, tuple[str, ...]]]) -> Iterable[tuple[str, SlotId]]:
+    return ((sender, (owner, name)) for name, senders in side for sender in senders)
+
+
+def _stranger(name: str, notifies: Sequence[Notify], slots: Sequence[str]) -> runtime.ExecutableRobot:
+    move = Move(ELSEWHERE, before=tuple(notifies))
+    return runtime.ExecutableRobot(name, (move,), ELSEWHERE, tuple(dict.fromkeys(slots)))

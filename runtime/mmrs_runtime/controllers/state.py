@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 from .. import vehicle
 from ..records.blackbox import plain
-from .words import Local, Place
+from .vocabulary import Local, Place
 
 
 @dataclass(frozen=True, slots=True)

@@ -20,8 +20,8 @@ from ..records.steps import StepRecord
 from ..semantics import Phase, PossibleStep, action_at, awaited, fault, steps
 from ..slots import with_own
 from ..vehicle import Fault, LinkLost, Progress, VehicleState
+from .decisions import Asking, decided
 from .event_queue import Until
-from .judging import Asking, decided
 from .situation import Situation, Stage
 from .waits import NotifyWait, silent
 

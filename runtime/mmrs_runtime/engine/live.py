@@ -19,13 +19,12 @@ from ..slots import Slots
 from ..vehicle import Condition, Vehicle
 from .clocks import RealClock
 from .connecting import Live, let_go
-from .early import EarlyOrders
 from .life import PACE
 from .orders import Orders
-from .preflight import NotReadyError, note_alone, record
+from .preflight import EarlyOrders, NotReadyError, note_alone, record
 from .resuming import over_by
 from .run import run
-from .standing import Standing
+from .status import StatusBoard
 from .terms import Attention, Ending, Observer, Syncer, Terms
 
 OK, FAILED, LINK, INTERRUPTED = 0, 1, 5, 130
@@ -36,7 +35,7 @@ GATHERING_SECONDS = 0.5
 
 
 @dataclass(frozen=True, slots=True)
-class Venture:
+class LiveRun:
     """A run in real time, before it begins.
 
     Attributes:
@@ -60,7 +59,7 @@ class Venture:
         observe: called with each step before it has an effect.
         sync: as of `Terms`.
         say: reports events to the operator.
-        standing: status of the robots, for queries.
+        status_board: status of the robots, for queries.
     """
 
     program: Program
@@ -81,7 +80,7 @@ class Venture:
     observe: Observer | None = None
     sync: Syncer | None = None
     say: Callable[[str], None] = print
-    standing: Standing = field(default_factory=Standing)
+    status_board: StatusBoard = field(default_factory=StatusBoard)
 
     def fail(self, robot: str, which: str) -> None:
         """Log that a robot's program has ended before its first step; report it if that fails."""
@@ -100,7 +99,7 @@ class Venture:
             kept(error)
 
 
-def run_live(venture: Venture) -> Ending:
+def run_live(live_run: LiveRun) -> Ending:
     """Run the programs; return how that ended.
 
     No robot begins before all are ready; once some are in motion, as in a run that is resumed, each
@@ -110,54 +109,56 @@ def run_live(venture: Venture) -> Ending:
 
     Raises:
         NotReadyError: if a robot does not get ready, and none is in motion without it.
-        Incomplete: if robots of other processes have not come; see `Venture.meet`.
-        Exception: what `Venture.connect`, or `Venture.ready`, raises.
+        Incomplete: if robots of other processes have not come; see `LiveRun.meet`.
+        Exception: what `LiveRun.connect`, or `LiveRun.ready`, raises.
         ValueError: if the steps to resume from are not the program's.
         KeyboardInterrupt: if robots are ordered to stop before they are ready.
     """
-    attention = Attention(venture.clock)
-    over = over_by(venture.program, venture.resumed)
-    venture = replace(venture, connect={id: each for id, each in venture.connect.items() if id not in over})
+    attention = Attention(live_run.clock)
+    over = over_by(live_run.program, live_run.resumed)
+    live_run = replace(
+        live_run, connect={id: each for id, each in live_run.connect.items() if id not in over}
+    )
     with ExitStack() as stack:
-        stack.callback(venture.orders.close, "the run has ended")
+        stack.callback(live_run.orders.close, "the run has ended")
         robots: dict[str, Vehicle] = {}
-        venture.orders.vehicles = robots
+        live_run.orders.vehicles = robots
         stack.callback(let_go, robots)
-        under_way = any(record.robot in venture.connect for record in venture.resumed)
-        early = None if under_way else EarlyOrders(venture, robots)
-        venture.standing.held = early.held if early is not None else ()
+        under_way = any(record.robot in live_run.connect for record in live_run.resumed)
+        early = None if under_way else EarlyOrders(live_run, robots)
+        live_run.status_board.held = early.held if early is not None else ()
         try:
-            _connect(robots, venture, attention, early)
-            venture.standing.connect(robots)
+            _connect(robots, live_run, attention, early)
+            live_run.status_board.connect(robots)
             if early is not None:
-                _get_ready(robots, venture, early)
+                _get_ready(robots, live_run, early)
         except BaseException as error:
             if early is not None:
                 early.give_up("the run has ended")
             if isinstance(error, NotReadyError):
-                record(robots, error.faults, venture.fail)
+                record(robots, error.faults, live_run.fail)
             raise
-        venture.ready(robots)
+        live_run.ready(robots)
         ending = run(
-            venture.program,
+            live_run.program,
             robots,
-            slots=venture.bus,
-            clock=venture.clock,
-            conditions=venture.conditions,
-            policies=venture.policies,
+            slots=live_run.bus,
+            clock=live_run.clock,
+            conditions=live_run.conditions,
+            policies=live_run.policies,
             terms=Terms(
-                run=venture.run,
+                run=live_run.run,
                 incarnation=uuid.uuid4().hex,
-                observe=venture.observe,
-                sync=venture.sync,
-                resumed=venture.resumed,
+                observe=live_run.observe,
+                sync=live_run.sync,
+                resumed=live_run.resumed,
                 unready=under_way,
-                suspends=venture.suspends,
-                patience=venture.patience,
+                suspends=live_run.suspends,
+                patience=live_run.patience,
                 attention=attention,
-                orders=venture.orders,
-                say=venture.say,
-                standing=venture.standing,
+                orders=live_run.orders,
+                say=live_run.say,
+                status_board=live_run.status_board,
             ),
         )
         if robots and set(ending.absent) == set(robots):
@@ -177,39 +178,39 @@ def exit_code(ending: Ending) -> int:
 
 def _connect(
     robots: dict[str, Vehicle],
-    venture: Venture,
+    live_run: LiveRun,
     attention: Attention,
     early: EarlyOrders | None,
 ) -> None:
     """Connect robots one after the other, and look out for orders to those that are there."""
     shared: dict[str, object] = {}
-    for id, connect in venture.connect.items():
+    for id, connect in live_run.connect.items():
         live = Live(
-            clock=venture.clock,
+            clock=live_run.clock,
             wake=attention.for_robot(id),
-            say=_named(venture.say, id),
-            run=venture.run,
-            folder=venture.folder,
-            links=venture.links,
+            say=_named(live_run.say, id),
+            run=live_run.run,
+            folder=live_run.folder,
+            links=live_run.links,
             shared=shared,
-            announce=venture.say,
-            records=tuple(record for record in venture.resumed if record.robot == id),
+            announce=live_run.say,
+            records=tuple(record for record in live_run.resumed if record.robot == id),
         )
         robots[id] = connect(live)
         if early is not None:
-            early.look(set(venture.connect))
+            early.look(set(live_run.connect))
 
 
 def _named(say: Callable[[str], None], robot: str) -> Callable[[str], None]:
     return lambda words: say(f"'{robot}': {words}")
 
 
-def _get_ready(robots: Mapping[str, Vehicle], venture: Venture, early: EarlyOrders) -> None:
-    clock = venture.clock
+def _get_ready(robots: Mapping[str, Vehicle], live_run: LiveRun, early: EarlyOrders) -> None:
+    clock = live_run.clock
     preparing = {id: robot for id, robot in robots.items() if robot.prepare(clock.now())}
-    venture.orders.called = clock.wake
+    live_run.orders.called = clock.wake
     _await_ready(preparing, clock, early)
-    _meet(robots, venture, early)
+    _meet(robots, live_run, early)
     early.pass_on()
 
 
@@ -233,20 +234,20 @@ def _await_ready(robots: Mapping[str, Vehicle], clock: RealClock, early: EarlyOr
             clock.sleep_until(clock.now() + PACE)
 
 
-def _meet(robots: Mapping[str, Vehicle], venture: Venture, early: EarlyOrders) -> None:
+def _meet(robots: Mapping[str, Vehicle], live_run: LiveRun, early: EarlyOrders) -> None:
     def look() -> None:
         while True:
             early.look(())
             for id, robot in robots.items():
-                robot.look(venture.clock.now())
+                robot.look(live_run.clock.now())
                 if robot.trouble is not None:
                     raise NotReadyError({id: robot.trouble})
             if not early.held:
                 return
-            venture.clock.sleep_until(venture.clock.now() + PACE)
+            live_run.clock.sleep_until(live_run.clock.now() + PACE)
 
     try:
-        met = venture.meet(look)
+        met = live_run.meet(look)
     except Incomplete as error:
         note_alone(robots.values(), str(error))
         raise

@@ -22,7 +22,7 @@ from ..vehicle import Condition, Fault, Vehicle
 from .clocks import RunClock
 from .event_queue import EventQueue
 from .life import PACE, Life
-from .obedience import Obedience
+from .order_handling import OrderHandler
 from .resuming import over_by
 from .stopping import WATCH_PACE, Stopping
 from .terms import BUS, TO_THE_END, Ending, Terms
@@ -96,8 +96,8 @@ class Run:
         self._numbers = {life.id: number for number, life in enumerate(self._lives)}
         self.whole = len(self._lives) + len(self._over) == len(program.robots)
         self.peers = Peers(program, {*self._numbers, *self._over}, slots)
-        self._obedience = Obedience(self._lives, terms.orders, clock)
-        self.stopping = Stopping(self._lives, clock, self._obedience, self.say)
+        self._order_handler = OrderHandler(self._lives, terms.orders, clock)
+        self.stopping = Stopping(self._lives, clock, self._order_handler, self.say)
         self._made, self._stepped = 0, 0.0
         self._queue = EventQueue(len(self._lives))
         self._resume = [life.go().__next__ for life in self._lives]
@@ -107,7 +107,7 @@ class Run:
         self._deadlock: tuple[Waiting, ...] = ()
         self._idle_since: float | None = None
         self._told = ""
-        terms.standing.begin(self._lives)
+        terms.status_board.begin(self._lives)
         if terms.attention is not None:
             attention = terms.attention
             for life in self._lives:
@@ -196,8 +196,8 @@ class Run:
 
     def obey(self) -> None:
         """Pass orders on to robots, and check which are obeyed."""
-        if self.terms.orders.waiting or self._obedience.at_work:
-            self.notified(self._obedience.obey())
+        if self.terms.orders.waiting or self._order_handler.at_work:
+            self.notified(self._order_handler.obey())
 
     def say(self, life: Life, words: str) -> None:
         """Report something about a robot to the operator."""
@@ -255,7 +255,7 @@ class Run:
         """Return when to look again at robots that have stopped, or have still to be seen to obey."""
         if not self.clock.passes_by_itself:
             return inf
-        if self.stopping.busy or self._obedience.busy:
+        if self.stopping.busy or self._order_handler.busy:
             return self.clock.now() + PACE
         return self.clock.now() + WATCH_PACE if self.stopping.watching else inf
 
@@ -325,7 +325,7 @@ class Run:
             self.clock.sleep_until(self.clock.now() + PACE)
             self._wake()
             self._look_after_all()
-        self._obedience.give_up()
+        self._order_handler.give_up()
 
     def _look_after_all(self) -> None:
         for life in self._lives:

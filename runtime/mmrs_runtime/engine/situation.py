@@ -14,8 +14,7 @@ from ..questions import Questions
 from ..records.steps import StepRecord
 from ..semantics import Phase, PossibleStep, awaited, entry
 from ..vehicle import Fault, Vehicle
-from .answers import LEAST_PEER_SECONDS, Answers
-from .halt import Halt
+from .responses import LEAST_PEER_SECONDS, Halt, Responses
 from .resuming import step_of
 from .waits import NotifyWait, Wait, noted
 
@@ -112,12 +111,12 @@ class Situation:
         if places := {name: place for name, place in self._slots.finds(self.id) if place is not None}:
             self.vehicle.learn(places)
 
-    def answers(self) -> Answers:
+    def answers(self) -> Responses:
         """Return what it does about faults here, a wait's own policies first."""
         declared = self._policies
         if self.point.phase is Phase.OUT and self.move.then is not None:
             declared = (*self.move.then.policies, *declared)
-        return Answers(declared, live=self._live, least=self._least)
+        return Responses(declared, live=self._live, least=self._least)
 
     def now(self) -> float:
         """Return the time of the run."""

@@ -11,7 +11,7 @@ from ..vehicle import Fault, LinkLost
 from .clocks import RunClock
 from .event_queue import Until
 from .life import PACE, Broken, Life, Waits
-from .obedience import Obedience
+from .order_handling import OrderHandler
 
 WATCH_PACE = 0.5
 """Seconds between two looks at a stopped robot that must be watched."""
@@ -21,10 +21,14 @@ class Stopping:
     """Has robots stop, and sees to it that they do; in simulated time they are taken at their word."""
 
     def __init__(
-        self, robots: Sequence[Life], clock: RunClock, obedience: Obedience, say: Callable[[Life, str], None]
+        self,
+        robots: Sequence[Life],
+        clock: RunClock,
+        order_handler: OrderHandler,
+        say: Callable[[Life, str], None],
     ) -> None:
         """Watch these robots; orders that stop them receive the outcome."""
-        self._robots, self._clock, self._obedience, self._say = robots, clock, obedience, say
+        self._robots, self._clock, self._order_handler, self._say = robots, clock, order_handler, say
         self._unconfirmed: dict[str, None] = {}
         self._came_down: dict[str, str] = {}
         self._unheard: set[str] = set()
@@ -154,7 +158,7 @@ class Stopping:
             if self._needs_company(robot) and robot.halt.response != NOTHING:
                 self._say(robot, "is watched; interrupt to end")
             self._tell_battery(robot)
-        self._obedience.stopped(robot.id, stopping, trouble)
+        self._order_handler.stopped(robot.id, stopping, trouble)
 
     def _done(self, robot: Life, now: float) -> str:
         """Return in words what a robot has done that has stopped."""

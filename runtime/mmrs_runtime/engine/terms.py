@@ -13,7 +13,7 @@ from ..semantics import Outcome, Waiting
 from ..vehicle import Event, Fault, Progress
 from .clocks import RunClock
 from .orders import Orders
-from .standing import Standing
+from .status import StatusBoard
 
 Observer = Callable[[StepRecord], None]
 Syncer = Callable[[str, Kept], None]
@@ -66,7 +66,7 @@ class Terms:
         attention: through which vehicles and the bus wake the engine; None: they do not.
         orders: orders of operators.
         say: reports events to the operator.
-        standing: status of the robots, for queries.
+        status_board: status of the robots, for queries.
     """
 
     run: str = "run-0"
@@ -82,7 +82,7 @@ class Terms:
     attention: Attention | None = None
     orders: Orders = field(default_factory=Orders)
     say: Callable[[str], None] = lambda words: None
-    standing: Standing = field(default_factory=Standing)
+    status_board: StatusBoard = field(default_factory=StatusBoard)
 
 
 TO_THE_END = Terms()

@@ -9,8 +9,8 @@ from ..faults import PEER_LOST, WAIT_TOO_LONG
 from ..program import Program, SlotId
 from ..slots import Slots
 from ..vehicle import Fault
-from .answers import Answers
-from .judging import Asking
+from .decisions import Asking
+from .responses import Responses
 
 
 class Peers:
@@ -89,17 +89,17 @@ class Wait:
         self._peer_lost_at = None if self._peer_lost_at is None else self._peer_lost_at + seconds
         self.deadline += seconds
 
-    def overdue(self, now: float, answers: Answers, peers: Peers) -> Fault | None:
+    def overdue(self, now: float, answers: Responses, peers: Peers) -> Fault | None:
         """Return the fault by which the wait ends now, if it does."""
         ends = (self._too_long(answers), self._peer_lost(now, answers, peers))
         self.deadline = min(end for end, _ in ends)
         return next((reason for end, reason in ends if end <= now), None)
 
-    def _too_long(self, answers: Answers) -> tuple[float, Fault]:
+    def _too_long(self, answers: Responses) -> tuple[float, Fault]:
         found = Fault(WAIT_TOO_LONG, f"waits for {', '.join(self.lacking) or self.question}")
         return (self.since or 0.0) + answers.patience(found), found
 
-    def _peer_lost(self, now: float, answers: Answers, peers: Peers) -> tuple[float, Fault]:
+    def _peer_lost(self, now: float, answers: Responses, peers: Peers) -> tuple[float, Fault]:
         lost = sorted({robot for name in self.lacking for robot in peers.lost((self._robot, name))})
         found = Fault(PEER_LOST, f"waits for {', '.join(self.lacking)} of {', '.join(lost)}")
         if not lost:

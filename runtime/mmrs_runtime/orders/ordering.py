@@ -10,9 +10,9 @@ from pathlib import Path
 from typing import Any
 
 from ..screen import bear_all_characters
-from .calling import Unreachable, asked_at_once, network, object_in
+from .channels import Unreachable, asked_at_once, network, object_in
 from .orders import ANSWER, ORDERS, STATUS
-from .standing import lines_of
+from .status_table import lines_of
 
 PATTERN = "control*.json"
 USUAL_SECONDS = 10.0

@@ -11,8 +11,8 @@ from ports import free_port
 from mmrs_core.cli.bus_access import Holder
 from mmrs_core.cli.bus_certificates import make_keys
 from mmrs_core.cli.running import run_command
-from mmrs_runtime.bus.carriers import doubts
-from mmrs_runtime.bus.carriers.doubts import Papers, why_not
+from mmrs_runtime.bus.carriers import diagnosis as doubts
+from mmrs_runtime.bus.carriers.diagnosis import Papers, why_not
 from mmrs_runtime.bus.carriers.sessions import Endpoints
 
 pytestmark = pytest.mark.real_time("buses")

@@ -9,7 +9,8 @@ from pathlib import Path
 import pytest
 from ports import free_port
 
-from mmrs_runtime.bus.carriers import looking, over_zenoh, sessions
+from mmrs_runtime.bus.carriers import over_zenoh, sessions
+from mmrs_runtime.bus.carriers import queries as looking
 from mmrs_runtime.bus.carriers.sessions import Endpoints, exposed
 
 pytestmark = pytest.mark.real_time("buses")

@@ -8,7 +8,8 @@ from datetime import UTC, datetime
 import pytest
 
 from mmrs_core.cli.bus_certificates import revoke
-from mmrs_runtime.bus.carriers import over_zenoh, renewing
+from mmrs_runtime.bus.carriers import certificates as renewing
+from mmrs_runtime.bus.carriers import over_zenoh
 from mmrs_runtime.bus.watching import Unwelcome
 
 pytestmark = pytest.mark.real_time("buses")

@@ -8,7 +8,7 @@ import time
 import pytest
 import zenoh
 
-from mmrs_runtime.bus.carriers.looking import states_of
+from mmrs_runtime.bus.carriers.queries import states_of
 from mmrs_runtime.bus.carriers.sessions import Endpoints
 from mmrs_runtime.bus.messages import digest
 

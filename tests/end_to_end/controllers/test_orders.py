@@ -10,7 +10,7 @@ from stalls import Stalls
 
 from mmrs_core.behaviour.program import Transition
 from mmrs_core.testing.programs import LAND, go_to, move, photo, program, robot_program, take_off
-from mmrs_runtime.orders.calling import Unreachable
+from mmrs_runtime.orders.channels import Unreachable
 from mmrs_runtime.orders.ordering import give
 
 pytestmark = pytest.mark.real_time("controllers")

@@ -34,7 +34,7 @@ from mmrs_core.simulation.run import asked_by
 from mmrs_core.testing.programs import feedback, move
 from mmrs_core.testing.small_programs import notify
 from mmrs_core.transformation.kinds import MOVE_KINDS
-from mmrs_runtime.engine.judging import standard_conditions
+from mmrs_runtime.engine.decisions import standard_conditions
 from mmrs_runtime.semantics import Outcome
 
 pytestmark = pytest.mark.real_time("vessels")

@@ -52,9 +52,9 @@ def devices_confirm(folder: Path) -> bool:
 
 @pytest.mark.thorough
 def test_a_dive_is_carried_out_over_the_bus(berth, contributions, tmp_path):
-    venture = interpreted(short_dive(), berth, contributions, tmp_path)
+    live_run = interpreted(short_dive(), berth, contributions, tmp_path)
     with LogWriter(tmp_path / "logs") as writer:
-        ending = run_live(replace(venture, observe=writer.write, sync=writer.sync))
+        ending = run_live(replace(live_run, observe=writer.write, sync=writer.sync))
     assert ending.outcome is Outcome.SUCCESS, ending
     assert replay(short_dive(), read_logs([tmp_path / "logs"])).accepted
     assert len(entries_in(tmp_path / "logs", "fix")) > 10
@@ -74,13 +74,13 @@ def test_a_run_ends_whose_bus_goes_while_its_vehicle_stops(berth, contributions,
 
     monkeypatch.setattr(ConnectedVehicle, "respond", respond_without_a_bus)
     said: list[str] = []
-    venture = interpreted(short_dive(), berth, contributions, tmp_path)
+    live_run = interpreted(short_dive(), berth, contributions, tmp_path)
 
     def observe(step: StepRecord) -> None:
         if (step.label, step.move) == ("begin", "out"):
-            venture.orders.give("stop", ["naiad"])
+            live_run.orders.give("stop", ["naiad"])
 
-    run_live(replace(venture, say=said.append, observe=observe))
+    run_live(replace(live_run, say=said.append, observe=observe))
     assert [line for line in said if line.startswith("'naiad': not known to have stopped (HOLD): LINK_LOST")]
 
 

@@ -103,9 +103,9 @@ def judge(folder: Path) -> None:
 
 def test_the_interpreter_goes_and_chooses_by_what_three_processes_see(seen, contributions, tmp_path):
     berth, port = seen
-    venture = interpreted(looking(), berth, contributions, tmp_path, detections=str(port))
+    live_run = interpreted(looking(), berth, contributions, tmp_path, detections=str(port))
     with LogWriter(tmp_path / "logs") as writer:
-        run_live(replace(venture, observe=writer.write, sync=writer.sync))
+        run_live(replace(live_run, observe=writer.write, sync=writer.sync))
     judge(tmp_path / "logs")
 
 

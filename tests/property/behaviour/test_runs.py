@@ -16,7 +16,7 @@ from mmrs_core.simulation.simulation import SIMULATION
 from mmrs_core.testing.random_programs import CONDITIONS, answers, programs
 from mmrs_core.testing.small_programs import ROBOT_TYPE, robot_type
 from mmrs_core.transformation.kinds import MOVE_KINDS, PLAIN_ROBOT
-from mmrs_runtime.engine.judging import assumed
+from mmrs_runtime.engine.decisions import assumed
 from mmrs_runtime.engine.terms import Terms
 from mmrs_runtime.records.log import LogWriter
 from mmrs_runtime.records.steps import merge

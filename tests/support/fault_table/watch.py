@@ -12,7 +12,7 @@ from stalls import Stalls
 from fault_table.fleet import Fleet
 from fault_table.record import MOMENTS, Answer, Struck, ending, stops_short, story, strayed, struck, talked
 from fault_table.row import Outcome, Row, within
-from mmrs_runtime.orders.calling import Unreachable
+from mmrs_runtime.orders.channels import Unreachable
 from mmrs_runtime.orders.ordering import give
 
 HANDS_OFF_SECONDS = 3.0

@@ -17,7 +17,7 @@ from signals_elsewhere import broken_off
 from stalls import Stalls
 
 from mmrs_runtime.control import CONNECTIONS, Control, Taken
-from mmrs_runtime.orders.calling import CALL_SECONDS, Unreachable, asked_at_once, network
+from mmrs_runtime.orders.channels import CALL_SECONDS, Unreachable, asked_at_once, network
 from mmrs_runtime.orders.ordering import give, main
 from mmrs_runtime.orders.orders import Inbox, OrderKind
 from mmrs_runtime.questions import Questions

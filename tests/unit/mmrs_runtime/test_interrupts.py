@@ -7,7 +7,7 @@ import threading
 
 import pytest
 
-from mmrs_runtime.engine.interrupts import stopping
+from mmrs_runtime.engine.order_sources import stopping
 from mmrs_runtime.engine.orders import Orders
 
 pytestmark = pytest.mark.real_time("parts of flights")

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from mmrs_runtime.orders.standing import lines_of
-from mmrs_runtime.phases import WAITS, WORKS
+from mmrs_runtime.engine.status import WAITS, WORKS
+from mmrs_runtime.orders.status_table import lines_of
 
 PLACE = {"latitude": 42.3503916, "longitude": 13.3908992, "height": 35.02}
 FLIES = {"robot": "Kestrel", "phase": WORKS, "mode": "guided", "armed": True, "speed": 3.31, "place": PLACE}

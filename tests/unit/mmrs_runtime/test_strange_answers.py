@@ -9,7 +9,7 @@ from contextlib import ExitStack, suppress
 
 import pytest
 
-from mmrs_runtime.orders.calling import Unreachable
+from mmrs_runtime.orders.channels import Unreachable
 from mmrs_runtime.orders.ordering import give, main
 
 pytestmark = pytest.mark.real_time("parts of flights")

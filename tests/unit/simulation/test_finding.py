@@ -24,7 +24,7 @@ from mmrs_runtime.bus.messages import (
 )
 from mmrs_runtime.bus.outgoing import fitting
 from mmrs_runtime.engine.clocks import RealClock
-from mmrs_runtime.engine.judging import standard_conditions
+from mmrs_runtime.engine.decisions import standard_conditions
 from mmrs_runtime.slots import LocalSlots, with_own
 
 pytestmark = pytest.mark.real_time("parts of flights")

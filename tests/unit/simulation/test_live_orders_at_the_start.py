@@ -29,7 +29,7 @@ def connected(live, script, **more):
 
 def test_a_robot_that_is_held_before_anything_moves_stays_until_it_may_go_on(live):
     run = connected(live, Script(ready=0.3))
-    standing, order = run.venture.standing, run.orders.give(HOLD, ["a"])
+    standing, order = run.live_run.status_board, run.orders.give(HOLD, ["a"])
     run.wait_for(lambda: standing.status("a")["phase"] == "is held before it begins")
     assert standing.status("b")["phase"] == "waits for its vehicle"
     run.wait_for(lambda: list(order.confirmed) == ["a"])

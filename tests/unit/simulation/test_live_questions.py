@@ -11,7 +11,7 @@ from live_runs import Script, do, walking
 from mmrs_core.contributions.execution import Fault
 from mmrs_core.scene import Policy
 from mmrs_core.testing.small_programs import program, robot
-from mmrs_runtime.engine.judging import standard_conditions
+from mmrs_runtime.engine.decisions import standard_conditions
 from mmrs_runtime.engine.orders import RETURN
 from mmrs_runtime.semantics import Outcome
 
@@ -78,7 +78,7 @@ def test_a_question_nobody_answers_ends_by_the_policy_of_long_waits(live):
 
 def test_people_who_ask_are_told_what_a_robot_does_instead_of_its_program_and_who_has_it(live):
     run, walker = walking(live, stop_RETURN=inf)
-    standing = run.venture.standing
+    standing = run.live_run.status_board
     run.orders.give(RETURN, ["r"])
     run.wait_for(lambda: walker.stops == ["RETURN"])
     told = standing.status("r")
@@ -93,7 +93,7 @@ def test_people_who_ask_are_told_what_a_robot_does_instead_of_its_program_and_wh
 def test_people_who_ask_are_told_how_robots_are_in_the_words_of_controllers(live):
     behaviour = program(robot("r", [do("h"), do("x")], choices={"h": ("answer:go on?", "x", "stop")}))
     run = live(behaviour, Script(ready=0.3), conditions=standard_conditions(["answer:go on?"]))
-    standing = run.venture.standing
+    standing = run.live_run.status_board
     assert standing.status("r")["phase"] == "waits for its vehicle"
     run.wait_for(lambda: "asks" in standing.status("r"))
     status = dict(standing.status("r"))

@@ -75,7 +75,7 @@ def test_a_robot_goes_on_before_another_is_ready(broken_off):
     ready(run, "a")
     run.wait_for_step("a end stop")
     assert run.script.robots["a"].recovered == (("start",), "walk")
-    assert run.venture.standing.status("b")["phase"] == "waits for its vehicle"
+    assert run.live_run.status_board.status("b")["phase"] == "waits for its vehicle"
     ready(run, "b")
     assert run.end().outcome is Outcome.SUCCESS
 
@@ -113,7 +113,7 @@ def test_orders_to_a_robot_that_did_not_come_are_refused(broken_off):
     for order in (before, run.order(LAND, "b"), run.order(RESUME, "b")):
         assert order.refused == {"b": "it did not get ready: REFUSED: says the test"}
     assert run.script.robots["b"].stops == []
-    assert run.venture.standing.status("b")["phase"] == "has ended"
+    assert run.live_run.status_board.status("b")["phase"] == "has ended"
 
 
 def test_the_run_does_not_go_on_where_no_robot_comes(broken_off):

@@ -12,7 +12,7 @@ from live_runs import TWO, WALK, Script, do
 from mmrs_core.behaviour.replay import replay
 from mmrs_core.contributions.execution import Fault
 from mmrs_core.scene import Policy
-from mmrs_core.simulation.live import run_live, venture_for
+from mmrs_core.simulation.live import live_run_for, run_live
 from mmrs_core.simulation.run import inputs_of
 from mmrs_core.testing.small_programs import ROBOT_TYPE, notify, program, robot, robot_type
 from mmrs_runtime.engine.orders import HOLD, LAND, RESUME, RETURN, STOP
@@ -313,6 +313,6 @@ def test_a_log_of_another_behaviour_is_refused(live, kinds):
     run.end()
     other = program(robot("r", [do("swim")]))
     given = inputs_of(other, types={ROBOT_TYPE: robot_type()}, options={}, environment={}, areas=(), **kinds)
-    venture = venture_for(other, given, Script().factory, LocalSlots(other.executable), {})
+    live_run = live_run_for(other, given, Script().factory, LocalSlots(other.executable), {})
     with pytest.raises(ValueError, match="not one of its program's"):
-        run_live(replace(venture, resumed=tuple(run.records)))
+        run_live(replace(live_run, resumed=tuple(run.records)))

@@ -16,7 +16,7 @@ from mmrs_core.scene import Policy
 from mmrs_core.simulation.simulation import SimulatedRobot
 from mmrs_core.testing.small_programs import go, hold, notify, program, robot, robot_type, use
 from mmrs_runtime.engine.clocks import RealClock
-from mmrs_runtime.engine.judging import assumed
+from mmrs_runtime.engine.decisions import assumed
 from mmrs_runtime.engine.terms import Terms
 from mmrs_runtime.semantics import Outcome
 from mmrs_runtime.slots import LocalSlots

@@ -8,7 +8,7 @@ from mmrs_core.contributions.execution import RobotState
 from mmrs_core.errors import UsageError
 from mmrs_core.simulation.run import refuse_unasked
 from mmrs_core.testing.small_programs import hold, program, robot
-from mmrs_runtime.engine.judging import standard_conditions
+from mmrs_runtime.engine.decisions import standard_conditions
 
 
 def state(**known):

@@ -14,7 +14,7 @@ from mmrs_auv.controllers.orders import Waters
 from mmrs_auv.sheets import sheet_of
 from mmrs_core.contributions.vehicles import Live, VehicleInput
 from mmrs_core.errors import LinkLostError, UnsupportedError, UsageError
-from mmrs_runtime.controllers.start import PROCESS
+from mmrs_runtime.controllers.box_entries import PROCESS
 from mmrs_runtime.engine.clocks import FollowingClock, RealClock
 from mmrs_runtime.injection import Rehearsal, injections
 from mmrs_runtime.injection.spec import OF_STATIONS, OF_VEHICLE

@@ -6,9 +6,9 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from mmrs_runtime.conditions import standard, undecided
-from mmrs_runtime.controllers.objects import Locator, not_looked_for, where_expected
 from mmrs_runtime.controllers.state import State
-from mmrs_runtime.controllers.words import (
+from mmrs_runtime.controllers.user_functions import Locator, not_looked_for, where_expected
+from mmrs_runtime.controllers.vocabulary import (
     Choose,
     Geographic,
     GoTo,
@@ -33,7 +33,7 @@ from mmrs_runtime.controllers.words import (
 )
 
 if TYPE_CHECKING:
-    from mmrs_runtime.controllers.judgement import Condition
+    from mmrs_runtime.controllers.user_functions import Condition
 
     from .driver import main
 
@@ -95,7 +95,7 @@ def __getattr__(name: str) -> object:
 
         return main
     if name == "Condition":
-        from mmrs_runtime.controllers.judgement import Condition
+        from mmrs_runtime.controllers.user_functions import Condition
 
         return Condition
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

@@ -17,13 +17,12 @@ from mmrs_auv.controllers.dry import DryCraft
 from mmrs_auv.controllers.orders import Orders
 from mmrs_auv.controllers.program_orders import ProgramOrders
 from mmrs_auv.controllers.vehicle import CanVehicle
-from mmrs_runtime.controllers.driver import Driver, Outfit
-from mmrs_runtime.controllers.judgement import Condition, objects_of
-from mmrs_runtime.controllers.objects import Locator, where_expected
+from mmrs_runtime.controllers.box_entries import start_of
+from mmrs_runtime.controllers.driver import Driver, DriverInput
 from mmrs_runtime.controllers.running import run_controllers
-from mmrs_runtime.controllers.start import start_of
 from mmrs_runtime.controllers.state import State
-from mmrs_runtime.controllers.words import Robot
+from mmrs_runtime.controllers.user_functions import Condition, Locator, objects_of, where_expected
+from mmrs_runtime.controllers.vocabulary import Robot
 from mmrs_runtime.engine.connecting import Live
 from mmrs_runtime.faults import LINK_LOST, Fault
 from mmrs_runtime.records.blackbox import BlackBox
@@ -51,7 +50,7 @@ def main(
 class CanDriver(Driver):
     """Reaches vehicles on CAN buses, or makes them up for a dry run."""
 
-    _outfit: Outfit
+    _outfit: DriverInput
     _given: Namespace
 
     def __init__(self, sheets: Mapping[str, Path]) -> None:
@@ -84,7 +83,7 @@ class CanDriver(Driver):
             return ()
         return {found for step in robot.steps for found in objects_of(step.movement)}
 
-    def open(self, outfit: Outfit) -> None:
+    def open(self, outfit: DriverInput) -> None:
         """Open nothing: each vehicle has a bus of its own."""
         self._outfit = outfit
 

@@ -25,11 +25,11 @@ from auv_vessel.decision.duties import Look as Bearing
 from auv_vessel.movement.abilities import abilities_of
 from auv_vessel.sheet import Sheet, Vector
 from mmrs_auv.controllers.orders import NoWayError, Waters
-from mmrs_runtime.controllers.objects import Finding, Locator
-from mmrs_runtime.controllers.places import distance_to_leg, ends_of
+from mmrs_runtime.controllers.geodesy import distance_to_leg, ends_of
+from mmrs_runtime.controllers.return_paths import steps_back
 from mmrs_runtime.controllers.state import State
-from mmrs_runtime.controllers.ways import steps_back
-from mmrs_runtime.controllers.words import (
+from mmrs_runtime.controllers.user_functions import Finding, Locator
+from mmrs_runtime.controllers.vocabulary import (
     GoTo,
     Hold,
     Land,

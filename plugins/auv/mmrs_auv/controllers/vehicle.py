@@ -29,10 +29,10 @@ from auv_vessel.decision.helm import (
 from auv_vessel.movement.abilities import abilities_of
 from auv_vessel.sheet import Sheet, Vector
 from mmrs_auv.controllers.orders import NO_WAY, NoWayError, Orders, notes_in
-from mmrs_runtime.controllers.fixes import FIX_SECONDS, fix
+from mmrs_runtime.controllers.box_entries import FIX_SECONDS, fix
 from mmrs_runtime.controllers.state import KnownState, told_of
 from mmrs_runtime.controllers.state import State as Told
-from mmrs_runtime.controllers.words import Local
+from mmrs_runtime.controllers.vocabulary import Local
 from mmrs_runtime.policies import AFTER, NOTHING, OVERTAKES, patience, response_to
 from mmrs_runtime.records.blackbox import BlackBox
 from mmrs_runtime.vehicle import Fault, Position, Vehicle

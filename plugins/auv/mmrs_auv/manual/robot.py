@@ -22,7 +22,7 @@ from mmrs_core.mavlink.context import VehicleContext
 from mmrs_core.scene import Position
 from mmrs_mavlink.links.link import Link
 from mmrs_runtime import faults
-from mmrs_runtime.controllers.start import PROCESS
+from mmrs_runtime.controllers.box_entries import PROCESS
 from mmrs_runtime.policies import NOTHING, OVERTAKES, response_to
 from mmrs_runtime.vehicle import Vehicle
 

@@ -16,9 +16,9 @@ from auv_vessel.decision.duties import FailureError, Stay
 from auv_vessel.decision.helm import Helm
 from auv_vessel.eyes import Detection, Detections, to_datagram
 from auv_vessel.hosting import WireFault
-from mmrs_runtime.controllers.objects import where_expected
 from mmrs_runtime.controllers.state import State
-from mmrs_runtime.controllers.words import GoTo, Local, Object, Robot, Start, Step
+from mmrs_runtime.controllers.user_functions import where_expected
+from mmrs_runtime.controllers.vocabulary import GoTo, Local, Object, Robot, Start, Step
 from mmrs_runtime.faults import NO_PROGRESS, OBJECT_NOT_FOUND, OBSTACLE
 from mmrs_runtime.records.blackbox import BlackBox
 from mmrs_runtime.vehicle import Fault

@@ -44,8 +44,8 @@ from auv_vessel.wire.catalogue import EMERGENCIES, REASONS
 from auv_vessel.wire.codec import Codec
 from auv_vessel.wire.frame import Frame
 from mmrs_mavlink.program import Local
-from mmrs_runtime.controllers.ways import way_back
-from mmrs_runtime.engine.answers import Answers
+from mmrs_runtime.controllers.return_paths import way_back
+from mmrs_runtime.engine.responses import Responses
 from mmrs_runtime.faults import LINK_LOST, PEER_LOST
 from mmrs_runtime.policies import OVERTAKES, SURFACE, in_precedence
 from mmrs_runtime.vehicle import Fault
@@ -184,7 +184,7 @@ def test_drives_in_c_stop_by_what_a_decision_centre_in_ada_says(program, release
 
 def test_the_tables_of_a_decision_centre_are_those_of_the_runtime(program):
     """Responses to what no model says anything of are those of the engine, for a vehicle of the kind."""
-    answers = Answers(in_precedence(kind=AUV_KIND.policies), live=True)
+    answers = Responses(in_precedence(kind=AUV_KIND.policies), live=True)
     found = dict(zip(EVENTS, told(program, [f"r {event}" for event in EVENTS]), strict=True))
     assert {event: words.split()[0] for event, words in found.items()} == {
         event: RESPONSES[SURFACE if event in COMES_UP else answers.response(Fault(event))].upper()

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from mmrs_runtime.clock import Clock
-from mmrs_runtime.controllers.objects import Locator
+from mmrs_runtime.controllers.user_functions import Locator
 from mmrs_runtime.records.blackbox import BlackBox
 from mmrs_runtime.records.steps import StepRecord
 from mmrs_runtime.vehicle import Position

@@ -6,8 +6,8 @@ from collections.abc import Callable, Mapping
 from functools import partial
 
 from mmrs_runtime.clock import Clock
-from mmrs_runtime.controllers.objects import Locator, look_at, place_of
-from mmrs_runtime.controllers.places import at_height, ends_of
+from mmrs_runtime.controllers.geodesy import at_height, ends_of
+from mmrs_runtime.controllers.user_functions import Locator, look_at, place_of
 from mmrs_runtime.faults import BATTERY_LOW, DEVICE_SILENT, Fault, Unanswered
 from mmrs_runtime.policies import VALUE_SECONDS, seconds_of
 from mmrs_runtime.screen import words_of

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from math import inf
 
-from mmrs_runtime.controllers.start import start_of
+from mmrs_runtime.controllers.box_entries import start_of
 
 from ..program import Robot
 from ..services.uploads import Uploads

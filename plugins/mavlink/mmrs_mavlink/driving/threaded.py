@@ -8,7 +8,7 @@ from functools import partial
 from math import inf
 from traceback import format_exception
 
-from mmrs_runtime.controllers.fixes import fix
+from mmrs_runtime.controllers.box_entries import fix
 from mmrs_runtime.controllers.state import KnownState, told_of
 from mmrs_runtime.faults import (
     BATTERY_LOW,

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from itertools import pairwise
 
-from mmrs_runtime.controllers.places import at_height, distance_to_leg, ends_of
+from mmrs_runtime.controllers.geodesy import at_height, distance_to_leg, ends_of
 from mmrs_runtime.faults import BATTERY_LOW, Fault, Refused
 from mmrs_runtime.policies import CONTINUE, still_low
 

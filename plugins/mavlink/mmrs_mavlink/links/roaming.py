@@ -9,7 +9,7 @@ from __future__ import annotations
 from math import hypot
 from typing import Any, NamedTuple
 
-from mmrs_runtime.controllers.places import distance
+from mmrs_runtime.controllers.geodesy import distance
 from mmrs_runtime.ports import Address
 
 from ..program import Geographic, Local, Place

@@ -11,7 +11,7 @@ from typing import Any
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from mmrs_runtime.clock import Clock
-from mmrs_runtime.controllers.fixes import FIX_SECONDS, fix
+from mmrs_runtime.controllers.box_entries import FIX_SECONDS, fix
 from mmrs_runtime.controllers.state import State
 from mmrs_runtime.records.blackbox import BlackBox
 

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from math import ceil
 
-from mmrs_runtime.controllers.places import at_height
+from mmrs_runtime.controllers.geodesy import at_height
 
 from ..program import Geographic, GoTo, Object, Place, Robot, Run, TakeOff
 from .items import CHANGE_SPEED, FENCE_VERTEX, LOITER, NO_FRAME, RALLY_POINT, WAYPOINT, Item

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from math import cos, hypot, inf, radians, sqrt
 
-from mmrs_runtime.controllers.places import bearing, distance, offset
+from mmrs_runtime.controllers.geodesy import bearing, distance, offset
+from mmrs_runtime.controllers.return_paths import Track, way_back
 from mmrs_runtime.controllers.state import State
-from mmrs_runtime.controllers.ways import Track, way_back
 from mmrs_runtime.policies import COMES_DOWN
 
 from ..program import Place, Robot

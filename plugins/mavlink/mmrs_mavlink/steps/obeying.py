@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from mmrs_runtime.controllers.ways import Track
+from mmrs_runtime.controllers.return_paths import Track
 from mmrs_runtime.policies import CAME_DOWN_AWAY, HOLD, RETURN
 
 from ..program import Robot

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from mmrs_runtime.controllers.places import at_height, ends_of
+from mmrs_runtime.controllers.geodesy import at_height, ends_of
 
 from ..program import GoTo, Land, Place, Robot, TakeOff
 

@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 
-from mmrs_runtime.controllers.ways import Track, steps_back
+from mmrs_runtime.controllers.return_paths import Track, steps_back
 from mmrs_runtime.faults import LINK_LOST, NO_PROGRESS, REFUSED, Fault
 from mmrs_runtime.policies import COMES_DOWN, ESCAPE, HOLD, LAND, NOTHING, RETURN
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from mmrs_runtime.clock import Clock
-from mmrs_runtime.controllers.ways import Track
+from mmrs_runtime.controllers.return_paths import Track
 from mmrs_runtime.faults import (
     BATTERY_LOW,
     GROUND_LOST,

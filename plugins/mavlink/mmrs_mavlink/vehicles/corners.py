@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from math import acos, degrees, hypot
 
-from mmrs_runtime.controllers.places import distance, ends_of, offset
+from mmrs_runtime.controllers.geodesy import distance, ends_of, offset
 
 from ..program import GoTo, Notify, Object, Place, Step, Then
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from itertools import pairwise
 
-from mmrs_runtime.controllers.places import distance_to_leg
+from mmrs_runtime.controllers.geodesy import distance_to_leg
 from mmrs_runtime.faults import NO_PROGRESS, Fault
 
 from ..links.autopilots import is_px4

@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING
 
 from mmrs_runtime.clock import Clock
-from mmrs_runtime.controllers.places import at_height, bearing, distance
+from mmrs_runtime.controllers.geodesy import at_height, bearing, distance
 from mmrs_runtime.controllers.state import State
 
 from ..program import Geographic, Look, Place

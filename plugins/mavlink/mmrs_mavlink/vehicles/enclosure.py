@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from math import hypot
 
-from mmrs_runtime.controllers.places import distance, offset
+from mmrs_runtime.controllers.geodesy import distance, offset
 from mmrs_runtime.faults import Refused
 
 from ..links.autopilots import is_px4

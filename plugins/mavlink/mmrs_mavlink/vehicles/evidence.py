@@ -13,7 +13,7 @@ from math import cos, hypot, radians
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from mmrs_runtime.controllers.places import distance, offset
+from mmrs_runtime.controllers.geodesy import distance, offset
 
 from ..links.autopilots import is_px4
 from ..links.link import Link

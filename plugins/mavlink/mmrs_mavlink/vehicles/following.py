@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 
-from mmrs_runtime.controllers.places import distance, distance_to_leg
+from mmrs_runtime.controllers.geodesy import distance, distance_to_leg
 from mmrs_runtime.faults import NO_PROGRESS, Fault
 
 from ..program import Place

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from math import hypot
 
-from mmrs_runtime.controllers.places import offset
+from mmrs_runtime.controllers.geodesy import offset
 
 from ..program import Geographic, Place
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from math import hypot
 
-from mmrs_runtime.controllers.places import offset
+from mmrs_runtime.controllers.geodesy import offset
 
 from ..links.link import Message
 from ..links.roaming import Sign, sign_in

@@ -13,7 +13,7 @@ from math import inf
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from mmrs_runtime.controllers.places import at_height
+from mmrs_runtime.controllers.geodesy import at_height
 from mmrs_runtime.controllers.state import State
 from mmrs_runtime.faults import LINK_LOST, Fault, Refused, Unanswered
 

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from mmrs_runtime.controllers.places import distance
+from mmrs_runtime.controllers.geodesy import distance
 from mmrs_runtime.faults import Refused
 
 from ..links.link import Link, Message

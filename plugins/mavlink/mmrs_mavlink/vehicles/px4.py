@@ -19,7 +19,7 @@ from math import nan, radians
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from mmrs_runtime.controllers.places import between, distance
+from mmrs_runtime.controllers.geodesy import between, distance
 from mmrs_runtime.faults import Refused
 
 from ..links.link import Link

@@ -6,7 +6,7 @@ from math import atan2, degrees, hypot, nan, radians
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from mmrs_runtime.controllers.places import bearing, distance, offset
+from mmrs_runtime.controllers.geodesy import bearing, distance, offset
 from mmrs_runtime.faults import NO_PROGRESS, Fault
 
 from ..links.link import Link

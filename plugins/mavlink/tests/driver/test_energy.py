@@ -9,8 +9,8 @@ import pytest
 from mmrs_mavlink.program import Local, Robot
 from mmrs_mavlink.steps.energy import ACCELERATION, TURNING_SECONDS, Reserve, seconds_back
 from mmrs_mavlink.steps.winds import MeanWind
+from mmrs_runtime.controllers.return_paths import way_back
 from mmrs_runtime.controllers.state import State
-from mmrs_runtime.controllers.ways import way_back
 
 HOME = Local(0.0, 0.0, 0.0)
 TRACK = [("up", Local(0.0, 0.0, 10.0)), ("a", Local(300.0, 0.0, 10.0)), ("b", Local(300.0, 100.0, 10.0))]

@@ -10,9 +10,9 @@ import pytest
 from flight_crew import HOME, NORTH
 
 from mmrs_mavlink.program import Geographic, Local, Object
-from mmrs_runtime.controllers import objects
-from mmrs_runtime.controllers.objects import place_of
+from mmrs_runtime.controllers import user_functions as objects
 from mmrs_runtime.controllers.state import State
+from mmrs_runtime.controllers.user_functions import place_of
 from mmrs_runtime.faults import Fault
 
 HERE = State(0.0, HOME, 0.0, 0.0, 1.0)

@@ -40,7 +40,7 @@ def test_a_length_or_time_that_is_none_is_refused(asked, capsys, option, value):
     with pytest.raises(SystemExit) as exit:
         asked(f"{option}={value}")
     assert exit.value.code == 2
-    assert f"argument {option}: {value}: is no" in capsys.readouterr().err
+    assert f"argument {option}: {value}: must be a" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize(
@@ -50,7 +50,7 @@ def test_a_number_that_is_none_is_refused(asked, capsys, option, value):
     with pytest.raises(SystemExit) as exit:
         asked(option, value)
     assert exit.value.code == 2
-    assert f"argument {option}: {value}: is no" in capsys.readouterr().err
+    assert f"argument {option}: {value}: must be a" in capsys.readouterr().err
 
 
 def test_nobody_needs_to_wait_for_a_battery(asked):

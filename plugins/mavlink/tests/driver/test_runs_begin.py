@@ -15,7 +15,7 @@ from mmrs_mavlink.services.uploads import mission_of, uploads_of
 from mmrs_mavlink.vehicles import px4
 from mmrs_mavlink.vehicles.feasibility import check_feasible
 from mmrs_mavlink.vehicles.runs import first_flown, keep_place, speed_before
-from mmrs_runtime.controllers.places import distance
+from mmrs_runtime.controllers.geodesy import distance
 from mmrs_runtime.faults import Refused
 
 WAYS = {

@@ -22,8 +22,8 @@ import zenoh
 from ..messages import LONGEST, digest
 from ..threads import Net, tell_people
 from .carrier import Answered, Station
-from .doubts import Doubts
-from .renewing import Renewing
+from .diagnosis import Doubts
+from .renewal import Renewal
 from .sessions import Endpoints, closed, configuration, exposed, opened, papers_of, speaks_for
 
 ANSWER_SECONDS = 5.0
@@ -72,7 +72,7 @@ class ZenohCarrier:
         self._closing = threading.Lock()
         self._over = threading.Event()
         self._doubts: Doubts | None = None
-        self._renewing: Renewing | None = None
+        self._renewing: Renewal | None = None
 
     def open(self, station: Station) -> None:
         """Open a session, and watch who is there.
@@ -84,7 +84,7 @@ class ZenohCarrier:
         config = configuration(self._endpoints)
         if file is not None and (speaks := speaks_for(file)) is not None:
             self._speaks_for = speaks
-            self._renewing = Renewing(self._endpoints, file, self._rejoin, self._net)
+            self._renewing = Renewal(self._endpoints, file, self._rejoin, self._net)
         if reached := exposed(config):
             self._net.tell(
                 f"without keys it listens at {', '.join(reached)}:"

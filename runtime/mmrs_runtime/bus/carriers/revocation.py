@@ -16,7 +16,7 @@ from hashlib import sha256
 from itertools import count
 from pathlib import Path
 
-from .doubts import Papers
+from .diagnosis import Papers
 
 REVOKED = "revoked.pem"
 """Name of the list, next to the configuration that ``mmrs bus keys`` writes."""

@@ -15,7 +15,7 @@ from typing import Any
 
 import zenoh
 
-from .doubts import Papers
+from .diagnosis import Papers
 from .endpoints import first_fault, is_local
 from .revocation import REVOKED, read_list, valid_name
 

@@ -17,7 +17,7 @@ from mmrs_runtime.bus import CommandId, Node
 from mmrs_runtime.bus.gateway.server import Gateway
 from mmrs_runtime.bus.owner import Owner
 from mmrs_runtime.bus.program_bus import members_of, recorded_of
-from mmrs_runtime.controllers.team import program_of
+from mmrs_runtime.controllers.running import program_of
 from mmrs_runtime.records.steps import StepRecord
 
 pytestmark = pytest.mark.real_time("parts of flights")

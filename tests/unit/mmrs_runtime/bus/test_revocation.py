@@ -14,7 +14,7 @@ from cryptography.hazmat.primitives.serialization import Encoding
 from mmrs_core.cli.bus_access import Holder
 from mmrs_core.cli.bus_certificates import make_keys, revoke
 from mmrs_core.cli.running import run_command
-from mmrs_runtime.bus.carriers.renewing import Renewing
+from mmrs_runtime.bus.carriers.renewal import Renewal
 from mmrs_runtime.bus.carriers.revocation import REVOKED, read_list, serial_of, valid_name
 from mmrs_runtime.bus.carriers.sessions import Endpoints, admitted, configuration, papers_of
 from mmrs_runtime.bus.threads import Net
@@ -163,7 +163,7 @@ class Renewed:
     def __init__(self, keys):
         self.told, self.opened = [], []
         self.fails = False
-        self.renewing = Renewing(endpoints(keys), keys / "a" / "bus.json5", self.renew, Net(self.told.append))
+        self.renewing = Renewal(endpoints(keys), keys / "a" / "bus.json5", self.renew, Net(self.told.append))
 
     def renew(self, config):
         if self.fails:

@@ -12,7 +12,7 @@ from mmrs_core.behaviour.program import RobotProgram
 from mmrs_core.contributions.targets import TargetInput
 from mmrs_core.generation.safety import policies_of
 from mmrs_core.scene import Policy, PolicyResponse
-from mmrs_runtime.engine.answers import Answers
+from mmrs_runtime.engine.responses import Responses
 from mmrs_runtime.faults import (
     BATTERY_LOW,
     CONDITION_FAILED,
@@ -73,7 +73,7 @@ def obstacles_to(policy: Policy) -> str:
 
 def view(policies: Sequence[Policy]) -> Mapping[str, object]:
     """Return what templates see of policies, the first for an event counts: how long, and what then."""
-    answers = Answers([_possible(each) for each in policies], live=True)
+    answers = Responses([_possible(each) for each in policies], live=True)
     waits = ((event, _seconds(event, answers)) for event in LASTING)
     return {
         "bears": [(event, seconds) for event, seconds in waits if isfinite(seconds)],
@@ -83,7 +83,7 @@ def view(policies: Sequence[Policy]) -> Mapping[str, object]:
 
 def undeclared(event: str) -> str:
     """Return what a decision centre does about an event of which no model says anything."""
-    usual = Answers(in_precedence(kind=AUV_KIND.policies), live=True)
+    usual = Responses(in_precedence(kind=AUV_KIND.policies), live=True)
     return RESPONSES[SURFACE if event in COMES_UP else usual.response(Fault(event))]
 
 
@@ -98,7 +98,7 @@ def _possible(policy: Policy) -> Policy:
     return policy if bears or not obstacles_to(policy) else replace(policy, response=OTHERWISE)
 
 
-def _seconds(event: str, answers: Answers) -> float:
+def _seconds(event: str, answers: Responses) -> float:
     """Return for how many seconds an event is borne; inf: for ever.
 
     That a link may be lost is about radio: on a vehicle's own bus, silence counts at last.

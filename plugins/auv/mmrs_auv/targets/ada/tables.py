@@ -28,7 +28,7 @@ from auv_vessel.wire.socketcand import LONGEST as LONGEST_WORD
 from mmrs_auv.targets.ada import policies
 from mmrs_runtime.bus.meeting import PATIENCE
 from mmrs_runtime.bus.messages import MOST_FINDS
-from mmrs_runtime.controllers.ways import ALIGNED, NEAR
+from mmrs_runtime.controllers.return_paths import ALIGNED, NEAR
 from mmrs_runtime.engine.life import PACE
 
 WATCHDOG = 2.0

@@ -33,7 +33,7 @@ from mmrs_mavlink.program import Action, Robot
 from mmrs_mavlink.services.satellites import attended
 from mmrs_mavlink.vehicles.recognition import system_of
 from mmrs_runtime.clock import Clock
-from mmrs_runtime.controllers.objects import Locator, where_expected
+from mmrs_runtime.controllers.user_functions import Locator, where_expected
 from mmrs_runtime.engine.clocks import FollowingClock
 from mmrs_runtime.faults import Fault
 from mmrs_runtime.injection import Rehearsal, injections

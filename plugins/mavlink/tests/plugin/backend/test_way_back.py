@@ -23,7 +23,7 @@ from mmrs_mavlink.plugin.controllers import robot_of
 from mmrs_mavlink.program import Object, Policy
 from mmrs_mavlink.vehicles.dry import DryVehicle
 from mmrs_runtime.clock import Clock
-from mmrs_runtime.controllers.places import distance, offset
+from mmrs_runtime.controllers.geodesy import distance, offset
 from mmrs_runtime.faults import BATTERY_LOW, Fault, Refused
 
 FLUID = {index: Transition(index, index + 1, fluid=True) for index in (3, 4, 5)}

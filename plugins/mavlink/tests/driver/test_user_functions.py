@@ -9,7 +9,7 @@ from flight_crew import robot_of
 from mmrs_mavlink.program import Choose
 from mmrs_runtime.conditions import standard
 from mmrs_runtime.controllers import Local
-from mmrs_runtime.controllers.judgement import Judgement
+from mmrs_runtime.controllers.user_functions import UserFunctions
 from mmrs_runtime.vehicle import VehicleState
 
 ASKS = "battery-below:0.3"
@@ -25,7 +25,7 @@ def robot(id="alpha", fleet=("alpha", "beta"), asks=""):
 
 
 def decides(*names):
-    return Judgement(dict.fromkeys(names, lambda state: True), {})
+    return UserFunctions(dict.fromkeys(names, lambda state: True), {})
 
 
 def test_a_condition_that_no_choice_of_a_whole_fleet_asks_for_is_refused_since_it_may_be_misspelt():
@@ -41,13 +41,13 @@ def test_standard_conditions_need_no_thread_but_those_that_users_write_do():
     low, high = "battery-below:0.3", "battery-below:0.9"
     conditions = {low: standard(low), high: lambda state: True}
     robots = [robot("alpha", asks=low), robot("beta", asks=high)]
-    decides = Judgement(conditions, {}).decides(robots)
+    decides = UserFunctions(conditions, {}).decides(robots)
     assert {name: each.instant for name, each in decides.items()} == {low: True, high: False}
 
 
 def test_conditions_are_asked_in_the_words_of_controllers_whatever_the_vehicle_tells():
     asked = []
-    decides = Judgement({"calm": asked.append}, {}).decides([robot(asks="calm")])
+    decides = UserFunctions({"calm": asked.append}, {}).decides([robot(asks="calm")])
     plain = VehicleState(
         4.0, (1.0, 2.0, 3.0), 0.5, 90.0, None, charge=0.8, found=frozenset({"float"}), answers={"go": True}
     )

@@ -6,14 +6,35 @@ from collections.abc import Collection, Iterable, Mapping
 from typing import TYPE_CHECKING
 
 from ..faults import LINK_LOST
-from ..phases import ENDED, LOST, SUSPENDED, WAITS, WORKS, answering, if_held
+from ..policies import NOTHING
 
 if TYPE_CHECKING:
     from ..vehicle import Vehicle
     from .life import Life
 
 
-class Standing:
+WAITS = "waits for its vehicle"
+HELD_EARLY = "is held before it begins"
+WORKS = "works"
+HELD = "is held"
+RESPONDS = "responds"
+TAKEN = "under external control"
+SUSPENDED = "waits for its battery"
+LOST = "has ended by a lost link"
+ENDED = "has ended"
+
+
+def if_held(phase: str) -> str:
+    """Return the phase of a robot that is held, or is to be, given what it would be at otherwise."""
+    return {WAITS: HELD_EARLY, WORKS: HELD}.get(phase, phase)
+
+
+def answering(response: str) -> dict[str, object]:
+    """Return the status of a robot that carries out a response, as JSON has it."""
+    return {"phase": TAKEN} if response == NOTHING else {"phase": RESPONDS, "response": response}
+
+
+class StatusBoard:
     """Knows how robots are; any thread may ask.
 
     Attributes:

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from itertools import pairwise
 
-from .places import at_height, distance, distance_to_leg, ends_of
-from .words import GoTo, Hold, Land, Object, Place, Robot, Skip, Step, Stop, Then, Turn
+from .geodesy import at_height, distance, distance_to_leg, ends_of
+from .vocabulary import GoTo, Hold, Land, Object, Place, Robot, Skip, Step, Stop, Then, Turn
 
 NEAR = 1.0
 """Metres within which two places of a way are one, and a robot is on a leg."""

@@ -12,7 +12,7 @@ from pyproj import Geod
 from mmrs_mavlink import Geographic
 from mmrs_mavlink.sitl.autopilot import Autopilot
 from mmrs_mavlink.sitl.settings import Settings
-from mmrs_runtime.controllers.places import between, distance
+from mmrs_runtime.controllers.geodesy import between, distance
 
 GEOD = Geod(ellps="WGS84")
 

@@ -6,7 +6,7 @@ import pytest
 from pyproj import Geod
 
 from mmrs_mavlink import Geographic
-from mmrs_runtime.controllers.places import bearing, between, distance
+from mmrs_runtime.controllers.geodesy import bearing, between, distance
 
 
 @pytest.mark.parametrize("latitude", [0.0, 42.37, -33.9, 65.0, 80.0])

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 import zenoh
 
 from ..messages import digest
-from .doubts import why_not
+from .diagnosis import why_not
 from .sessions import Endpoints, closed, configuration, opened, papers_of
 
 

@@ -1,4 +1,4 @@
-"""What the black box of a controller says first: which vehicle, how it is reached, with what software."""
+"""Entries of a controller's black box: its start (vehicle, link, software), and the robot's position."""
 
 from __future__ import annotations
 
@@ -6,7 +6,9 @@ from importlib.metadata import PackageNotFoundError, version
 from platform import python_version
 from uuid import uuid4
 
-from .words import Robot
+from ..records.blackbox import BlackBox
+from .state import State
+from .vocabulary import Place, Robot
 
 PROCESS = uuid4().hex
 """What all robots of this process say, and no other: their times count from the same instant."""
@@ -40,3 +42,20 @@ def _installed(*distributions: str) -> dict[str, str]:
         except PackageNotFoundError:
             continue
     return found
+
+
+FIX_SECONDS = 0.19
+"""Least time between two fixes: five in a second, and a little for uneven sending."""
+
+
+def fix(box: BlackBox, state: State, place: Place | None = None) -> None:
+    """Write where a robot is; `place` where the state's is older."""
+    box.write(
+        "fix",
+        place=place or state.place,
+        speed=round(state.speed, 3),
+        heading=round(state.heading, 2),
+        energy=state.energy,
+        mode=state.mode,
+        armed=state.armed,
+    )

@@ -19,7 +19,7 @@ STOP_SECONDS = 2.0
 """How long the end may take."""
 
 
-class Renewing:
+class Renewal:
     """Looks, in a thread of its own, whether others are to be let in than before."""
 
     def __init__(self, endpoints: Endpoints, file: Path, renew: Callable[[Any], None], net: Net) -> None:

@@ -8,13 +8,13 @@ from ..faults import ORDERED, STOPPED
 from ..policies import NOTHING
 from ..vehicle import Fault, LinkLost
 from .clocks import RunClock
-from .halt import HaltProgress
 from .life import Life
 from .orders import ANSWER, ENDINGS, HOLD, RESUME, RETURN, STOP, Order, Orders
+from .responses import HaltProgress
 from .situation import Stage
 
 
-class Obedience:
+class OrderHandler:
     """Passes orders on to robots."""
 
     def __init__(self, robots: Sequence[Life], orders: Orders, clock: RunClock) -> None:

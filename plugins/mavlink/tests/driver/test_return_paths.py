@@ -7,8 +7,8 @@ from itertools import pairwise
 import pytest
 
 from mmrs_mavlink.program import Choose, GoTo, Land, Local, Robot, Start, Step, Stop, TakeOff, Then
-from mmrs_runtime.controllers.places import distance_to_leg
-from mmrs_runtime.controllers.ways import way_back
+from mmrs_runtime.controllers.geodesy import distance_to_leg
+from mmrs_runtime.controllers.return_paths import way_back
 
 FAR = Local(400.0, 80.0, 10.0)
 HOME, UP = Local(0.0, 0.0, 0.0), Local(0.0, 0.0, 10.0)

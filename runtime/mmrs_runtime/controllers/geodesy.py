@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from math import atan2, cos, degrees, hypot, radians, remainder
 
-from .words import Geographic, Local, Place
+from .vocabulary import Geographic, Local, Place
 
 
 def metres_per_degree(latitude: float) -> tuple[float, float]:

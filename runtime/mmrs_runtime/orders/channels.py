@@ -13,7 +13,7 @@ from typing import Any
 
 from ..clock import SIGNAL_SECONDS
 from .orders import STATUS, is_answer
-from .standing import is_standing
+from .status_table import is_standing
 
 CALL_SECONDS = 5.0
 LONGEST_REPLY = 1 << 20
