@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from mmrs_core.languages import behaviour as bl
     from mmrs_core.languages.modelset import ModelSet
     from mmrs_core.scene import Area, Plan, RobotType, Scene
-    from mmrs_core.simulation.run import Run
+    from mmrs_core.simulation.run import SimulatedRun
     from mmrs_core.transformation.engine import Trace
     from mmrs_runtime.records.steps import StepRecord
 
@@ -157,7 +157,7 @@ def program_of(behaviour: bl.Behaviour, contributions: Contributions) -> Program
 
 def verify(program: Program, place: Place, contributions: Contributions) -> tuple[Verdict, ...]:
     """Return what is known of every property of a behaviour."""
-    from mmrs_core.analysis.verification import verify as verified
+    from mmrs_core.analysis.verdicts import verify as verified
     from mmrs_core.contributions.checks import CheckInput
 
     given = CheckInput(
@@ -173,7 +173,7 @@ def verify(program: Program, place: Place, contributions: Contributions) -> tupl
 
 def refusals(verdicts: Iterable[Verdict], program: Program) -> tuple[Verdict, ...]:
     """Return the verdicts that stand against a behaviour: violations, and unknowns nobody accepted."""
-    from mmrs_core.analysis.verification import refuses
+    from mmrs_core.analysis.verdicts import refuses
 
     return refuses(verdicts, program.accepted_unknowns)
 
@@ -277,7 +277,7 @@ def simulate(
     options: Mapping[str, str] | None = None,
     assume: Mapping[str, bool] | None = None,
     observe: Callable[[StepRecord], None] | None = None,
-) -> Run:
+) -> SimulatedRun:
     """Return the simulated run of a behaviour, in still air and water unless the environment says otherwise.
 
     Args:

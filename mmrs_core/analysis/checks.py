@@ -4,14 +4,12 @@ from __future__ import annotations
 
 from mmrs_core.analysis.clearance import CLEARANCE
 from mmrs_core.analysis.endurance import ENDURANCE, ENERGY, RECHARGE_CHECK
+from mmrs_core.analysis.envelope import ALTITUDE, DEPTH, RANGE, TEMPERATURE, WIND
 from mmrs_core.analysis.equipment import DEVICES, PAYLOAD, SPEED
-from mmrs_core.analysis.heights import ALTITUDE, DEPTH
-from mmrs_core.analysis.range import RANGE
 from mmrs_core.analysis.separation import SEPARATION
 from mmrs_core.analysis.states import STATES
 from mmrs_core.analysis.structure import STRUCTURE
 from mmrs_core.analysis.synchronisation.check import SYNCHRONISATION
-from mmrs_core.analysis.weather import TEMPERATURE, WIND
 from mmrs_core.contributions.checks import Check
 
 CHECKS: tuple[Check, ...] = (

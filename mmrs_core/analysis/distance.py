@@ -19,7 +19,7 @@ Floats: TypeAlias = NDArray[np.float64]
 Flags: TypeAlias = NDArray[np.bool_]
 
 _PAIRS = 100_000
-"""Leg-edge pairs that are looked at in one go; bounds the memory, not the result."""
+"""MovePath-edge pairs that are looked at in one go; bounds the memory, not the result."""
 
 
 def prism_distances(begins: Floats, ends: Floats, shell: Ring, low: float, high: float) -> Floats:

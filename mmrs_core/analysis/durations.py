@@ -14,8 +14,8 @@ from mmrs_core.analysis.figures import (
     seconds_of,
     type_of,
 )
-from mmrs_core.analysis.motion import Leg, Motion
-from mmrs_core.analysis.verdicts import Gap
+from mmrs_core.analysis.motion import Motion, MovePath
+from mmrs_core.analysis.verdicts import UnknownMove
 from mmrs_core.behaviour.program import BEHAVIOUR, Action, Move, RobotProgram, SlotId
 from mmrs_core.behaviour.walk import reachable_moves
 from mmrs_core.contributions.checks import CheckInput
@@ -69,7 +69,7 @@ class Durations:
     """Attributes: the duration of each reachable move of a robot by index; what is not known."""
 
     of: Mapping[int, Duration]
-    gaps: tuple[Gap, ...]
+    gaps: tuple[UnknownMove, ...]
 
 
 def durations_of(input: CheckInput, robot: RobotProgram, motion: Motion) -> Durations:
@@ -78,13 +78,13 @@ def durations_of(input: CheckInput, robot: RobotProgram, motion: Motion) -> Dura
     try:
         kinematics, robot_type = kinematics_of(input, robot), type_of(input, robot)
     except MissingFigureError as missing:
-        gap = Gap(robot.start, str(missing).removeprefix(f"{robot.id}: "))
+        gap = UnknownMove(robot.start, str(missing).removeprefix(f"{robot.id}: "))
         unclear = {index: robot.moves[index] for index in moves}
         return Durations(
             {index: _with_actions(move, _least(move), None) for index, move in unclear.items()}, (gap,)
         )
-    legs: dict[int, list[Leg]] = defaultdict(list)
-    for leg in motion.legs:
+    legs: dict[int, list[MovePath]] = defaultdict(list)
+    for leg in motion.paths:
         legs[leg.move].append(leg)
     gaps = {gap.move: gap for gap in motion.gaps}
     found: dict[int, Duration] = {}
@@ -93,7 +93,7 @@ def durations_of(input: CheckInput, robot: RobotProgram, motion: Motion) -> Dura
         moving = _least(move) if index in gaps else _moving(input, robot, move, legs[index], kinematics)
         found[index] = _with_actions(move, moving, robot_type)
         if index not in gaps and found[index].whole.high == inf:
-            gaps[index] = Gap(index, _why_unbounded(move, robot_type))
+            gaps[index] = UnknownMove(index, _why_unbounded(move, robot_type))
     return Durations(found, tuple(gaps[index] for index in sorted(gaps)))
 
 
@@ -111,7 +111,7 @@ def _why_unbounded(move: Move, robot_type: RobotType) -> str:
 
 
 def _moving(
-    input: CheckInput, robot: RobotProgram, move: Move, legs: Iterable[Leg], kinematics: Kinematics
+    input: CheckInput, robot: RobotProgram, move: Move, legs: Iterable[MovePath], kinematics: Kinematics
 ) -> Span:
     kind = move_kind_of(input, move)
     if kind is None:
@@ -125,7 +125,7 @@ def _moving(
     return Span(min(span.low for span in spans), max(span.high for span in spans))
 
 
-def _spread(leg: Leg, seconds: tuple[float, float], move: Move, kinematics: Kinematics) -> Span:
+def _spread(leg: MovePath, seconds: tuple[float, float], move: Move, kinematics: Kinematics) -> Span:
     """Return the span where the way may be longer or shorter by what is not known of its ends."""
     if leg.radius == 0.0 or len(leg.points) == 1:
         return Span(*seconds)

@@ -14,7 +14,7 @@ from math import inf
 
 import numpy as np
 
-from mmrs_core.analysis.certainty import certain_moves
+from mmrs_core.analysis.dependencies import certain_moves
 from mmrs_core.analysis.distance import Floats, paired_distances
 from mmrs_core.analysis.occupations import Occupation
 from mmrs_core.analysis.order import HappensBefore
@@ -49,7 +49,7 @@ class Encounter:
     anyhow: bool = False
 
 
-class Order:
+class ProvenOrder:
     """What waits for each other prove of a behaviour's occupations."""
 
     def __init__(self, input: CheckInput) -> None:
@@ -91,7 +91,9 @@ def _astray(one: Occupation, other: Occupation) -> float:
     return one.radius + other.radius
 
 
-def certain_encounter(one: Occupation, other: Occupation, needed: float, order: Order) -> Encounter | None:
+def certain_encounter(
+    one: Occupation, other: Occupation, needed: float, order: ProvenOrder
+) -> Encounter | None:
     """Return where one robot certainly comes too near to another that stands; None if that is not proven."""
     if not (one.stands or other.stands):
         return None
@@ -105,7 +107,7 @@ def certain_encounter(one: Occupation, other: Occupation, needed: float, order: 
     return Encounter(one, other, time, nearness, needed, True) if nearness < needed - TOLERANCE else None
 
 
-def _standing(one: Occupation, other: Occupation, order: Order) -> tuple[float, float] | None:
+def _standing(one: Occupation, other: Occupation, order: ProvenOrder) -> tuple[float, float] | None:
     """Return the distance of two robots that certainly stand at one time, and that time."""
     spans = (order.stand_during(one, other), order.stand_during(other, one))
     begin, end = max(span[0] for span in spans), min(span[1] for span in spans)
@@ -114,7 +116,7 @@ def _standing(one: Occupation, other: Occupation, order: Order) -> tuple[float, 
     return apart(one.points, other.points), max(begin, one.begin, other.begin)
 
 
-def _passing(mover: Occupation, stand: Occupation, order: Order) -> tuple[float, float] | None:
+def _passing(mover: Occupation, stand: Occupation, order: ProvenOrder) -> tuple[float, float] | None:
     """Return how near a robot comes on what it passes while another certainly stands, and when at least."""
     begin, end = order.stand_during(stand, mover)
     whole = sum(mover.least)

@@ -19,11 +19,11 @@ from mmrs_core.analysis.figures import (
     kinematics_of,
     type_of,
 )
-from mmrs_core.analysis.motion import Leg, motions
-from mmrs_core.analysis.sorties import RECHARGE, Sorties, Use, sorties_of
+from mmrs_core.analysis.motion import MovePath, motions
+from mmrs_core.analysis.sorties import RECHARGE, ChargeUse, Sorties, sorties_of
 from mmrs_core.analysis.verdicts import (
-    Gap,
     Margin,
+    UnknownMove,
     for_each_robot,
     judged,
     not_checked,
@@ -98,7 +98,7 @@ def _judged_uses(
         yield safe(property, robot, "it never runs on its batteries")
         return
 
-    def margin(use: Use, rate: float, bound: str) -> Margin:
+    def margin(use: ChargeUse, rate: float, bound: str) -> Margin:
         used = rate * use.seconds
         move = robot.moves[use.move]
         words = (
@@ -144,14 +144,14 @@ def _long_enough(robot: RobotProgram, index: int, needed: float) -> Margin:
     return Margin(seconds - needed, index, words)
 
 
-def _gaps_at(input: CheckInput, robot: RobotProgram, moves: list[int]) -> list[Gap]:
+def _gaps_at(input: CheckInput, robot: RobotProgram, moves: list[int]) -> list[UnknownMove]:
     return [gap for gap in motions(input)[robot.id].gaps if gap.move in moves]
 
 
 def _away_from_home(input: CheckInput, robot: RobotProgram, moves: list[int]) -> Iterator[Verdict]:
     home = home_of(robot)
     worst: dict[int, float] = {}
-    for leg in motions(input)[robot.id].legs:
+    for leg in motions(input)[robot.id].paths:
         if leg.move in moves:
             worst[leg.move] = max(worst.get(leg.move, -inf), _away(leg, home))
     for index, away in worst.items():
@@ -160,7 +160,7 @@ def _away_from_home(input: CheckInput, robot: RobotProgram, moves: list[int]) ->
             yield violated(RECHARGE_NAME, robot, words, index)
 
 
-def _away(leg: Leg, home: Position) -> float:
+def _away(leg: MovePath, home: Position) -> float:
     return max(dist(point, home) for point in leg.points) + leg.radius
 
 

@@ -14,7 +14,7 @@ from dataclasses import dataclass, field
 from typing import TypeAlias
 
 from mmrs_core.analysis.figures import move_kind_of
-from mmrs_core.analysis.verdicts import Gap, once
+from mmrs_core.analysis.verdicts import UnknownMove, once
 from mmrs_core.behaviour.program import Move, RobotProgram
 from mmrs_core.contributions.checks import CheckInput
 from mmrs_core.contributions.rules import MoveKind
@@ -37,7 +37,7 @@ Whereabouts: TypeAlias = "Ball | None"
 
 
 @dataclass(frozen=True, slots=True)
-class Leg:
+class MovePath:
     """One way that a move may lead.
 
     Attributes:
@@ -55,8 +55,8 @@ class Leg:
 class Motion:
     """All legs of one robot, in the order of a walk over its moves, and the gaps between them."""
 
-    legs: list[Leg] = field(default_factory=list)
-    gaps: list[Gap] = field(default_factory=list)
+    paths: list[MovePath] = field(default_factory=list)
+    gaps: list[UnknownMove] = field(default_factory=list)
 
 
 def motions(input: CheckInput) -> Mapping[str, Motion]:
@@ -97,20 +97,20 @@ def _pass(
     move = robot.moves[index]
     kind = move_kind_of(input, move)
     if kind is None:
-        motion.gaps.append(Gap(index, f"nobody contributed what a move of kind '{move.kind}' does"))
+        motion.gaps.append(UnknownMove(index, f"nobody contributed what a move of kind '{move.kind}' does"))
         return None
     reason = _unknown_target(move)
     if reason is None and place is None:
         reason = "where it begins is not known"
     if reason is not None or place is None:
-        motion.gaps.append(Gap(index, reason or ""))
+        motion.gaps.append(UnknownMove(index, reason or ""))
         return _known_end(kind, move, robot.home)
     path = kind.path(move, place.centre, robot.home)
     if path is None:
-        motion.gaps.append(Gap(index, "its path is not known"))
+        motion.gaps.append(UnknownMove(index, "its path is not known"))
         return None
     spread = move.target.tolerance or 0.0 if move.target else 0.0
-    motion.legs.append(Leg(index, path, place.radius + spread))
+    motion.paths.append(MovePath(index, path, place.radius + spread))
     return Ball(path[-1], spread + (0.0 if _forgets_begin(move) else place.radius))
 
 
@@ -138,8 +138,8 @@ def _known_end(kind: MoveKind, move: Move, home: Position | None) -> Whereabouts
     return Ball(path[-1], target.tolerance) if path else None
 
 
-def points_of(motion: Motion) -> Iterator[tuple[Leg, Position]]:
+def points_of(motion: Motion) -> Iterator[tuple[MovePath, Position]]:
     """Yield every corner of every leg: extremes of heights and distances lie there."""
-    for leg in motion.legs:
+    for leg in motion.paths:
         for point in leg.points:
             yield leg, point

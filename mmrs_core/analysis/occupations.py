@@ -9,20 +9,87 @@ at its home, and after its Stop for ever.
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from itertools import pairwise
 from math import dist, hypot, inf
 
-from mmrs_core.analysis.columns import Column, column_over
 from mmrs_core.analysis.durations import Span
 from mmrs_core.analysis.figures import kinematics_of
-from mmrs_core.analysis.motion import Leg, motions
+from mmrs_core.analysis.motion import MovePath, motions
 from mmrs_core.analysis.states import GROUNDED, States, states_of
 from mmrs_core.analysis.times import Times, times_of
 from mmrs_core.behaviour.program import Move, RobotProgram
 from mmrs_core.contributions.checks import CheckInput
 from mmrs_core.scene import Kinematics, Position
+
+HOME_SPOT = 0.1
+"""Metres from its home within which a robot stands there, from the axis of its column within which it is
+in it, and from each other within which two homes are one place."""
+
+
+@dataclass(frozen=True, slots=True)
+class Column:
+    """What is straight over a robot's home, up to the transit height.
+
+    Attributes:
+        home: the foot.
+        ceiling: the lowest height at which the robot enters or leaves the column sideways; inf if it
+            never does.
+    """
+
+    home: Position
+    ceiling: float
+
+    def at_foot(self, place: Position) -> bool:
+        """Return whether a robot that stands there stands at its home."""
+        return dist(place, self.home) <= HOME_SPOT
+
+    def contains(self, points: Iterable[Position]) -> bool:
+        """Return whether a path is straight over the home, at whatever height."""
+        return all(self._aside(point) <= HOME_SPOT for point in points)
+
+    def above_ceiling(self, points: tuple[Position, ...]) -> tuple[Position, ...]:
+        """Return the part above the ceiling of a path in the column; empty if there is none.
+
+        At the transit height itself a path is still below.
+        """
+        highest = max(point[2] for point in points)
+        if highest <= self.ceiling:
+            return ()
+        lowest = max(self.ceiling, min(point[2] for point in points))
+        return tuple((points[0][0], points[0][1], height) for height in (lowest, highest))
+
+    def _aside(self, point: Position) -> float:
+        return hypot(point[0] - self.home[0], point[1] - self.home[1])
+
+
+def column_over(home: Position, paths: Iterable[tuple[Position, ...]]) -> Column:
+    """Return the column over a home, up to the lowest height at which one of the paths crosses its side."""
+    column = Column(home, inf)
+    crossings = (
+        _lowest_near_axis(home, a, b)
+        for path in paths
+        for a, b in pairwise(path)
+        if not column.contains((a, b))
+    )
+    return Column(home, min(crossings, default=inf))
+
+
+def _lowest_near_axis(home: Position, a: Position, b: Position) -> float:
+    """Return the least height of a leg within the column; inf if it does not come into it."""
+    east, north = a[0] - home[0], a[1] - home[1]
+    along = (b[0] - a[0], b[1] - a[1])
+    square = along[0] ** 2 + along[1] ** 2
+    if square == 0.0:
+        return min(a[2], b[2]) if hypot(east, north) <= HOME_SPOT else inf
+    middle = -(east * along[0] + north * along[1]) / square
+    aside = HOME_SPOT**2 - (east + middle * along[0]) ** 2 - (north + middle * along[1]) ** 2
+    if aside < 0.0:
+        return inf
+    half = (aside / square) ** 0.5
+    first, last = max(0.0, middle - half), min(1.0, middle + half)
+    return min(a[2] + part * (b[2] - a[2]) for part in (first, last)) if first <= last else inf
 
 
 @dataclass(frozen=True, slots=True)
@@ -98,8 +165,8 @@ def occupations_of(input: CheckInput, robot: RobotProgram) -> Iterator[Occupatio
     """
     kinematics = kinematics_of(input, robot)
     states, times = states_of(input, robot), times_of(input)
-    legs: dict[int, list[Leg]] = defaultdict(list)
-    for leg in motions(input)[robot.id].legs:
+    legs: dict[int, list[MovePath]] = defaultdict(list)
+    for leg in motions(input)[robot.id].paths:
         legs[leg.move].append(leg)
     paths = (leg.points for of_move in legs.values() for leg in of_move)
     column = column_over(robot.home, paths) if robot.home is not None else None
@@ -111,7 +178,7 @@ def occupations_of(input: CheckInput, robot: RobotProgram) -> Iterator[Occupatio
 
 def _occupations(
     robot: RobotProgram,
-    leg: Leg,
+    leg: MovePath,
     times: Times,
     states: States,
     kinematics: Kinematics,
@@ -149,7 +216,7 @@ def _gone(robot: RobotProgram, move: int, times: Times) -> Span:
 
 def _stand(
     robot: RobotProgram,
-    leg: Leg,
+    leg: MovePath,
     times: tuple[Span, Span],
     around: float,
     column: Column | None,
@@ -177,7 +244,7 @@ def _stand(
 
 def _movement(
     robot: RobotProgram,
-    leg: Leg,
+    leg: MovePath,
     times: tuple[Span, Span],
     quickest: float,
     kinematics: Kinematics,

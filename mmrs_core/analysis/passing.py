@@ -45,7 +45,7 @@ def in_sequence(
             return None
         order[move] = len(order)
         move = transition.to if transition is not None else None
-    if motion.gaps or sorted(order) != sorted(leg.move for leg in motion.legs):
+    if motion.gaps or sorted(order) != sorted(leg.move for leg in motion.paths):
         return None
     return sorted((each for each in occupations if each.robot == robot.id), key=lambda each: order[each.move])
 

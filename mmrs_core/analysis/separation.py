@@ -19,10 +19,9 @@ from math import dist, inf
 import numpy as np
 import shapely
 
-from mmrs_core.analysis.columns import HOME_SPOT
 from mmrs_core.analysis.encounters import (
     Encounter,
-    Order,
+    ProvenOrder,
     apart,
     certain_encounter,
     nearest_encounter,
@@ -30,9 +29,9 @@ from mmrs_core.analysis.encounters import (
 )
 from mmrs_core.analysis.figures import MissingFigureError
 from mmrs_core.analysis.motion import motions
-from mmrs_core.analysis.occupations import Occupation, occupations_of
+from mmrs_core.analysis.occupations import HOME_SPOT, Occupation, occupations_of
 from mmrs_core.analysis.passing import in_sequence, must_meet
-from mmrs_core.analysis.verdicts import TOLERANCE, Gap, unknown, unknown_moves
+from mmrs_core.analysis.verdicts import TOLERANCE, UnknownMove, unknown, unknown_moves
 from mmrs_core.behaviour.program import RobotProgram
 from mmrs_core.contributions.checks import Check, CheckInput, Status, Verdict
 
@@ -81,7 +80,7 @@ def _excuses(excused: Mapping[tuple[str, str], float]) -> str:
     )
 
 
-def _gaps(input: CheckInput, robot: RobotProgram) -> Iterator[list[Gap]]:
+def _gaps(input: CheckInput, robot: RobotProgram) -> Iterator[list[UnknownMove]]:
     gaps = motions(input)[robot.id].gaps
     if gaps:
         yield gaps
@@ -91,13 +90,13 @@ def _encounters(
     input: CheckInput, occupations: list[Occupation], needed: float, excused: dict[tuple[str, str], float]
 ) -> Iterator[Encounter]:
     """Yield the encounters; add the robots that are excused, and how near their homes are, to `excused`."""
-    order: Order | None = None
+    order: ProvenOrder | None = None
     for i, j in _near(occupations, needed):
         one, other = occupations[i], occupations[j]
         if _excused(one, other, needed):
             excused[one.robot, other.robot] = _between_homes(one, other)
             continue
-        order = order or Order(input)
+        order = order or ProvenOrder(input)
         if not order.keeps_apart(one, other):
             found = certain_encounter(one, other, needed, order) or nearest_encounter(one, other, needed)
             yield from [found] if found is not None else []

@@ -14,12 +14,12 @@ from dataclasses import dataclass
 from heapq import heapify, heappop, heappush
 from math import inf
 
-from mmrs_core.analysis.certainty import goes_round
+from mmrs_core.analysis.dependencies import goes_round
 from mmrs_core.analysis.durations import Duration
 from mmrs_core.analysis.figures import MissingFigureError
 from mmrs_core.analysis.states import GROUNDED, States, possible_states, states_of
 from mmrs_core.analysis.times import Times, times_of
-from mmrs_core.analysis.verdicts import Gap
+from mmrs_core.analysis.verdicts import UnknownMove
 from mmrs_core.behaviour.program import BEHAVIOUR, RobotProgram, Transition
 from mmrs_core.behaviour.walk import components, successors
 from mmrs_core.contributions.checks import CheckInput
@@ -44,7 +44,7 @@ class Running:
 
 
 @dataclass(frozen=True, slots=True)
-class Use:
+class ChargeUse:
     """Seconds on one charge until a move has ended, and the wait after it is over."""
 
     move: int
@@ -60,9 +60,9 @@ class Sorties:
         least: the least with which any run comes past the move.
     """
 
-    uses: tuple[Use, ...]
-    gaps: tuple[Gap, ...]
-    least: tuple[Use, ...]
+    uses: tuple[ChargeUse, ...]
+    gaps: tuple[UnknownMove, ...]
+    least: tuple[ChargeUse, ...]
 
 
 def sorties_of(input: CheckInput, robot: RobotProgram) -> Sorties:
@@ -74,13 +74,13 @@ def sorties_of(input: CheckInput, robot: RobotProgram) -> Sorties:
     try:
         states = states_of(input, robot)
     except MissingFigureError as missing:
-        gap = Gap(robot.start, str(missing).removeprefix(f"{robot.id}: "))
+        gap = UnknownMove(robot.start, str(missing).removeprefix(f"{robot.id}: "))
         return Sorties((), (gap,), _least_uses(robot, possible_states(input, robot), times))
     uses, gaps = _Walk(robot, states, times).run()
     return Sorties(uses, gaps, _least_uses(robot, states, times))
 
 
-def _least_uses(robot: RobotProgram, states: States, times: Times) -> tuple[Use, ...]:
+def _least_uses(robot: RobotProgram, states: States, times: Times) -> tuple[ChargeUse, ...]:
     """Return the least use at each move that some run comes to: the shortest of all ways from a charge.
 
     Dijkstra's algorithm, from the start and every Recharge at once.
@@ -102,7 +102,7 @@ def _least_uses(robot: RobotProgram, states: States, times: Times) -> tuple[Use,
         found[move] = used
         for way in transition.ways if transition else ():
             heappush(pending, (used, way))
-    return tuple(Use(move, seconds) for move, seconds in found.items())
+    return tuple(ChargeUse(move, seconds) for move, seconds in found.items())
 
 
 def _least_run(duration: Duration, states: States, move: int) -> float:
@@ -122,11 +122,11 @@ class _Walk:
         self.states = states
         self.times = times
         self.durations = times.durations[robot.id]
-        self.gaps: dict[int, Gap] = {}
-        self.uses: list[Use] = []
+        self.gaps: dict[int, UnknownMove] = {}
+        self.uses: list[ChargeUse] = []
         self.arrivals: dict[int, list[Running]] = {robot.start: [Running()]}
 
-    def run(self) -> tuple[tuple[Use, ...], tuple[Gap, ...]]:
+    def run(self) -> tuple[tuple[ChargeUse, ...], tuple[UnknownMove, ...]]:
         graph = successors(self.robot)
         for group in reversed(components(graph)):
             if goes_round(group, graph):
@@ -144,7 +144,9 @@ class _Walk:
         arrived = _merged([each for move in inside for each in self.arrivals.get(move, [])])
         if running:
             names = ", ".join(f"'{self.robot.moves[move].id}'" for move in inside)
-            self.gaps[running[0]] = Gap(running[0], f"nothing bounds how often the loop {names} is made")
+            self.gaps[running[0]] = UnknownMove(
+                running[0], f"nothing bounds how often the loop {names} is made"
+            )
             arrived = Running(inf, inf, 0.0)
         for move in inside:
             self._leave(move, arrived)
@@ -184,7 +186,7 @@ class _Walk:
         release = self.times.latest_release(self.robot, transition.waits)
         if release == inf and running.used < inf:
             slots = ", ".join(self._awaited(slot) for slot in transition.waits)
-            self.gaps[move] = Gap(move, f"nothing bounds how long it then waits for {slots}")
+            self.gaps[move] = UnknownMove(move, f"nothing bounds how long it then waits for {slots}")
             self._note(move, running)
         waited = running.used + max(0.0, release - self.times.earliest_end(self.robot.id, move))
         since = running.since or 0.0
@@ -199,13 +201,13 @@ class _Walk:
 
     def _note(self, move: int, running: Running) -> None:
         if running.used < inf:
-            self.uses.append(Use(move, running.used))
+            self.uses.append(ChargeUse(move, running.used))
         elif not self.gaps:
             self.gaps[move] = self._reason(move)
 
-    def _reason(self, move: int) -> Gap:
+    def _reason(self, move: int) -> UnknownMove:
         known = next(iter(self.durations.gaps), None)
-        return known or Gap(move, "how long it takes is not known")
+        return known or UnknownMove(move, "how long it takes is not known")
 
     def _runs(self, move: int) -> bool:
         return not self.states.only_grounded(move)

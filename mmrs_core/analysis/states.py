@@ -10,7 +10,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 from mmrs_core.analysis.figures import MissingFigureError, kinematics_of, move_kind_of
-from mmrs_core.analysis.verdicts import Gap, for_each_robot, safe, unknown_moves, violated
+from mmrs_core.analysis.verdicts import UnknownMove, for_each_robot, safe, unknown_moves, violated
 from mmrs_core.behaviour.program import RobotProgram
 from mmrs_core.contributions.checks import Check, CheckInput, Verdict
 
@@ -29,7 +29,7 @@ class States:
 
     before: Mapping[int, frozenset[str]]
     after: Mapping[int, frozenset[str]]
-    gaps: tuple[Gap, ...]
+    gaps: tuple[UnknownMove, ...]
 
     def only_grounded(self, move: int) -> bool:
         """Return whether the robot is on the ground all through that move."""
@@ -58,7 +58,7 @@ def possible_states(input: CheckInput, robot: RobotProgram) -> States:
 def _states_from(input: CheckInput, robot: RobotProgram, first: frozenset[str]) -> States:
     before: dict[int, frozenset[str]] = {}
     after: dict[int, frozenset[str]] = {}
-    gaps: dict[int, Gap] = {}
+    gaps: dict[int, UnknownMove] = {}
     pending: deque[tuple[int, frozenset[str]]] = deque([(robot.start, first)])
     while pending:
         index, states = pending.popleft()
@@ -68,7 +68,7 @@ def _states_from(input: CheckInput, robot: RobotProgram, first: frozenset[str]) 
         kind = move_kind_of(input, robot.moves[index])
         if kind is None:
             reason = f"nobody contributed what a move of kind '{robot.moves[index].kind}' does"
-            gaps[index] = Gap(index, reason)
+            gaps[index] = UnknownMove(index, reason)
         leaves = kind.leaves if kind else None
         after[index] = frozenset({leaves}) if leaves else before[index]
         transition = robot.transitions.get(index)

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Collection, Iterable, Iterator
 from dataclasses import dataclass, replace
 from math import isnan
 from typing import TypeVar, cast
 
 from mmrs_core.analysis.figures import MissingFigureError
 from mmrs_core.behaviour.program import RobotProgram
-from mmrs_core.contributions.checks import CheckInput, Status, Verdict
+from mmrs_core.contributions.checks import Check, CheckInput, Status, Verdict
 
 TOLERANCE = 1e-6
 """A margin that is not further below zero than this counts as kept: it is in the noise of rounding."""
@@ -35,7 +35,7 @@ class Margin:
 
 
 @dataclass(frozen=True, slots=True)
-class Gap:
+class UnknownMove:
     """What is not known of a move. Attributes: its index in the robot, and the reason."""
 
     move: int
@@ -65,7 +65,7 @@ def for_each_robot(
 
 
 def judged(
-    property: str, robot: RobotProgram, unit: str, margins: Iterable[Margin], gaps: Iterable[Gap] = ()
+    property: str, robot: RobotProgram, unit: str, margins: Iterable[Margin], gaps: Iterable[UnknownMove] = ()
 ) -> Iterator[Verdict]:
     """Yield what margins and gaps mean for one robot.
 
@@ -113,7 +113,7 @@ def unknown(property: str, robot: RobotProgram, message: str) -> Verdict:
     return Verdict(property, Status.UNKNOWN, robot.id, message=message, place=robot.place)
 
 
-def unknown_moves(property: str, robot: RobotProgram, gaps: Iterable[Gap]) -> Verdict:
+def unknown_moves(property: str, robot: RobotProgram, gaps: Iterable[UnknownMove]) -> Verdict:
     """Return that a property cannot be decided because of some moves; the first one is named."""
     missing = tuple(gaps)
     move = robot.moves[missing[0].move]
@@ -145,3 +145,33 @@ def violated(property: str, robot: RobotProgram, message: str, move: int | None 
 def safe(property: str, robot: RobotProgram, message: str) -> Verdict:
     """Return that a property without a measure is kept."""
     return Verdict(property, Status.SAFE, robot.id, message=f"{robot.id}: {message}", place=robot.place)
+
+
+def verify(input: CheckInput, checks: Iterable[Check]) -> tuple[Verdict, ...]:
+    """Return what every check finds, in the order of the checks.
+
+    A check that finds nothing to say leaves a verdict NOT_CHECKED, so that no property is missing.
+    """
+    found: list[Verdict] = []
+    for check in checks:
+        verdicts = tuple(check.run(input))
+        found.extend(verdicts or (_silent(check),))
+    return tuple(found)
+
+
+def refuses(verdicts: Iterable[Verdict], accepted_unknowns: Collection[str] = ()) -> tuple[Verdict, ...]:
+    """Return the verdicts that forbid to carry out the behaviour.
+
+    These are all violations, and what is unknown of properties that the mission does not accept by
+    name. A violation is never accepted.
+    """
+    return tuple(
+        verdict
+        for verdict in verdicts
+        if verdict.status is Status.VIOLATED
+        or (verdict.status is Status.UNKNOWN and verdict.property not in accepted_unknowns)
+    )
+
+
+def _silent(check: Check) -> Verdict:
+    return Verdict(check.name, Status.NOT_CHECKED, message="nothing in the behaviour has this property")

@@ -25,7 +25,7 @@ NOTIFY: Name = (BEHAVIOUR, "Notify")
 
 
 @dataclass(frozen=True, slots=True)
-class Target:
+class MoveTarget:
     """What a move leads to or a heading points at.
 
     Attributes:
@@ -45,7 +45,7 @@ class Target:
 class Heading:
     """An orientation: a device (empty: the front) points at a target, turned by an angle in degrees."""
 
-    target: Target
+    target: MoveTarget
     device: str = ""
     angle_degrees: float = 0.0
 
@@ -99,7 +99,7 @@ class Move:
     id: str
     metaclasses: Metaclasses
     attributes: Mapping[str, Value] = field(default_factory=dict)
-    target: Target | None = None
+    target: MoveTarget | None = None
     distance: float = 0.0
     heading: Heading | None = None
     speed: float | None = None

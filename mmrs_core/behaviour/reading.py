@@ -9,10 +9,10 @@ from mmrs_core.behaviour.program import (
     Action,
     Heading,
     Move,
+    MoveTarget,
     Program,
     RobotProgram,
     SlotId,
-    Target,
     Transition,
 )
 from mmrs_core.diagnostics import Diagnostic, Place, in_order
@@ -150,14 +150,14 @@ class _Reading:
             return part_of(value, self._ground)
         return value if value is None or isinstance(value, bool | int | float | str) else str(value)
 
-    def _target(self, target: bl.Target) -> Target:
+    def _target(self, target: bl.Target) -> MoveTarget:
         name = target.name or ""
         if isinstance(target, bl.ObjectTarget):
-            return Target(self._position(target.expectedAt), target.description, target.tolerance, name)
+            return MoveTarget(self._position(target.expectedAt), target.description, target.tolerance, name)
         if not isinstance(target, bl.Coordinate):
             self._add(target, "is a target of a kind that nobody knows")
-            return Target(None, name=name)
-        return Target(self._position(target), name=name)
+            return MoveTarget(None, name=name)
+        return MoveTarget(self._position(target), name=name)
 
     def _position(self, coordinate: bl.Coordinate | None) -> Position | None:
         """Return where a coordinate lies; None for none, and for one with a fault."""

@@ -16,7 +16,7 @@ SHARE_OF_LARGEST_SPEED: Mapping[str, float] = {"SAFE": 0.5, "NORMAL": 0.75, "AGG
 
 
 @dataclass(frozen=True, slots=True)
-class Manner:
+class TravelMargins:
     """How carefully robots travel in a travel mode.
 
     Attributes:
@@ -34,10 +34,10 @@ class Manner:
 NEAREST = 0.5
 """Metres at which a place counts as reached, whatever the position error."""
 
-MANNERS: Mapping[str, Manner] = {
-    "SAFE": Manner(NEAREST, 1.0, 4.0),
-    "NORMAL": Manner(NEAREST, 2.0, 2.0),
-    "AGGRESSIVE": Manner(1.0, 2.0, 0.0),
+TRAVEL_MARGINS: Mapping[str, TravelMargins] = {
+    "SAFE": TravelMargins(NEAREST, 1.0, 4.0),
+    "NORMAL": TravelMargins(NEAREST, 2.0, 2.0),
+    "AGGRESSIVE": TravelMargins(1.0, 2.0, 0.0),
 }
 
 
@@ -60,7 +60,7 @@ def speed_of(move: Move, robot: RobotProgram, type: RobotType | None) -> float |
     return cruise_of(robot, type) if move.speed is None else move.speed
 
 
-def manner_of(robot: RobotProgram, position_error: float) -> Manner:
+def travel_margins_of(robot: RobotProgram, position_error: float) -> TravelMargins:
     """Return how carefully a robot travels; it goes no nearer past corners than its clearance covers."""
-    manner = MANNERS[robot.travel_mode]
-    return replace(manner, acceptance=max(NEAREST, min(manner.acceptance, position_error)))
+    margins = TRAVEL_MARGINS[robot.travel_mode]
+    return replace(margins, acceptance=max(NEAREST, min(margins.acceptance, position_error)))

@@ -23,7 +23,7 @@ from mmrs_core.errors import UnreadableError, UnsupportedError
 from mmrs_core.generation.writing import write
 from mmrs_core.pipeline import render, save
 from mmrs_core.resources import new_folders
-from mmrs_core.simulation.run import Run
+from mmrs_core.simulation.run import SimulatedRun
 
 _MOST_REASONS = 3
 TARGETS = ("mavlink-python", "qgc-plan")
@@ -49,7 +49,7 @@ class Manner:
     own: Mapping[str, str] = field(default_factory=dict)
 
 
-def manner_of(folder: Path) -> Manner:
+def travel_margins_of(folder: Path) -> Manner:
     """Return how an example is shown; as usual where it does not say. ``{folder}`` is its own folder.
 
     Raises:
@@ -81,7 +81,7 @@ class Demonstration:
     """
 
     stages: Stages
-    run: Run
+    run: SimulatedRun
     replayed: ReplayResult
     folder: Path
     files: tuple[tuple[str, Path, int], ...]

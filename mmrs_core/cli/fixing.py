@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import typer
 
-from mmrs_core.analysis.fixes.repair import Change, Diagnose, Proposal, Repair, Repairer
+from mmrs_core.analysis.fixes.repair import Diagnose, FileChange, Proposal, Repair, Repairer
 from mmrs_core.cli.output import counted, say, tell
 from mmrs_core.cli.protection import ProtectedError
 from mmrs_core.cli.replacing import replace_files
@@ -52,12 +52,12 @@ def refuse_foreign(models: Iterable[Model]) -> None:
         tell(words)
 
 
-def difference(changes: Iterable[Change]) -> str:
+def difference(changes: Iterable[FileChange]) -> str:
     """Return a unified diff of all changes, as ``patch -p1`` takes it; empty if there are none."""
     return "".join(line for change in changes for line in _lines(change))
 
 
-def _lines(change: Change) -> Iterator[str]:
+def _lines(change: FileChange) -> Iterator[str]:
     before, after = (text.decode("utf-8").splitlines(keepends=True) for text in (change.before, change.after))
     name = change.name.lstrip("/")
     for line in difflib.unified_diff(before, after, f"a/{name}", f"b/{name}"):

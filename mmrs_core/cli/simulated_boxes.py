@@ -16,7 +16,7 @@ from mmrs_core.pictures.flights.fixes import zero_of
 from mmrs_core.pictures.flights.gathering import SIMULATION
 from mmrs_core.resources import named
 from mmrs_core.scene import Name, RobotType
-from mmrs_core.simulation.run import Run
+from mmrs_core.simulation.run import SimulatedRun
 from mmrs_runtime.records.blackbox import black_box_path
 from mmrs_runtime.records.steps import log_name
 
@@ -47,7 +47,7 @@ def remove_boxes(folder: Path) -> None:
 
 
 def write_boxes(
-    run: Run,
+    run: SimulatedRun,
     program: Program,
     types: Mapping[str, RobotType],
     folder: Path,

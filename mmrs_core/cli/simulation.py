@@ -23,7 +23,7 @@ from mmrs_core.pictures.figures import clock, length
 from mmrs_core.pipeline import Place, simulate
 from mmrs_core.resources import new_folders
 from mmrs_core.scene import Name, RobotType
-from mmrs_core.simulation.run import Run
+from mmrs_core.simulation.run import SimulatedRun
 from mmrs_runtime.records.log import LogWriter
 from mmrs_runtime.records.steps import SUFFIX, StepRecord, log_name
 from mmrs_runtime.semantics import Outcome
@@ -94,7 +94,7 @@ def fly(
     place: Place,
     conditions: Mapping[str, bool],
     chosen: Chosen = Chosen(),
-) -> Run:
+) -> SimulatedRun:
     """Return the simulated run of a behaviour.
 
     Raises:
@@ -103,7 +103,7 @@ def fly(
         UnsupportedError: if it does not know what the behaviour holds.
     """
 
-    def make() -> Run:
+    def make() -> SimulatedRun:
         with progress("simulating") as show:
 
             def observe(record: StepRecord) -> None:
@@ -125,7 +125,7 @@ def fly(
 
 
 def write_logs(
-    run: Run,
+    run: SimulatedRun,
     program: Program,
     folder: Path,
     types: Mapping[str, RobotType] | None = None,
@@ -178,7 +178,7 @@ def _is_log(path: Path) -> bool:
         return False
 
 
-def run_lines(run: Run) -> Iterator[str]:
+def run_lines(run: SimulatedRun) -> Iterator[str]:
     """Yield how a run went: the outcome, each robot's way, faults and waits."""
     ending = run.ending
     yield f"{ending.outcome.value} after {clock(ending.time)}, {ending.steps} steps"
@@ -201,6 +201,6 @@ def _energy_left(full: float | None, left: float | None) -> str:
     return f", {100 * left / full:.0f} % of the energy left"
 
 
-def succeeded(run: Run) -> bool:
+def succeeded(run: SimulatedRun) -> bool:
     """Return whether every robot came to its end."""
     return run.ending.outcome is Outcome.SUCCESS

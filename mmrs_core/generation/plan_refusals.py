@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from mmrs_core.behaviour.program import Move, RobotProgram, Target
+from mmrs_core.behaviour.program import Move, MoveTarget, RobotProgram
 from mmrs_core.generation.plan_moves import DEEPEST, FASTEST, MOVES, SLOWEST, above_surface
 from mmrs_core.scene import Policy
 
@@ -64,7 +64,7 @@ def _of_speed(speed: float | None) -> Iterator[str]:
         yield f"its speed of {speed:g} m/s is not from {SLOWEST:g} to {FASTEST:g}"
 
 
-def _of_target(target: Target, context: VehicleContext, wording: Wording) -> Iterator[str]:
+def _of_target(target: MoveTarget, context: VehicleContext, wording: Wording) -> Iterator[str]:
     if target.description is not None:
         yield f"object '{target.description}', {wording.object}"
     if target.position is not None and not context.vehicle.flies:

@@ -115,7 +115,7 @@ def reference_in(context: Element | None) -> Reference:
     return reference
 
 
-def circles_among(coordinates: Iterable[Element], reference: Reference) -> Iterator[tuple[Element, ...]]:
+def cycles_among(coordinates: Iterable[Element], reference: Reference) -> Iterator[tuple[Element, ...]]:
     """Yield every circle of relative coordinates that count from each other, once; linear in their number."""
     done: set[Element] = set()
     for coordinate in coordinates:

@@ -13,7 +13,7 @@ from math import inf
 from mmrs_core.contributions.execution import Fault
 from mmrs_core.scene import Kinematics, Policy, Position
 from mmrs_core.simulation.escape import Escapes
-from mmrs_core.simulation.legs import Flow, Leg, response_stretches
+from mmrs_core.simulation.legs import Flow, TimedLeg, response_stretches
 from mmrs_runtime.policies import response_to
 
 SLACK = 1e-6
@@ -25,7 +25,7 @@ ROUNDING = 5e-7
 _STAYING = ("HOLD", "CONTINUE", "STOP_THRUST")
 
 
-class Battery:
+class SimulatedBattery:
     """All batteries of a robot together.
 
     Attributes:
@@ -48,7 +48,7 @@ class Battery:
         left = max(0.0, charge - self._extra)
         return left * self._kinematics.power if self._kinematics.power > 0.0 else None
 
-    def fault(self, leg: Leg, now: float, flow: Flow) -> Fault | None:
+    def fault(self, leg: TimedLeg, now: float, flow: Flow) -> Fault | None:
         """Return whether they are empty, or so low that what is left just suffices for the response."""
         if leg.rate <= 0.0 or leg.charge == inf:
             return None
@@ -59,7 +59,7 @@ class Battery:
             return Fault("BATTERY_LOW", f"enough for {left:.0f} s")
         return None
 
-    def events(self, leg: Leg, now: float, flow: Flow) -> Iterator[float]:
+    def events(self, leg: TimedLeg, now: float, flow: Flow) -> Iterator[float]:
         """Yield when in this leg they get low, and when they are empty."""
         if leg.rate <= 0.0 or leg.charge == inf:
             return
@@ -76,14 +76,14 @@ class Battery:
             early, late = (middle, late) if to_spare(middle) > 0.0 else (early, middle)
         yield late
 
-    def _to_spare_in(self, leg: Leg, flow: Flow) -> Callable[[float], float]:
+    def _to_spare_in(self, leg: TimedLeg, flow: Flow) -> Callable[[float], float]:
         """Return what gives `_to_spare` at any time of a leg, at little cost where the robot stays."""
         if leg.start != leg.finish:
             return lambda time: self._to_spare(leg, time, flow)
         needs = self._needs(leg.start, False, flow)
         return lambda time: leg.charge_at(time) - needs
 
-    def _to_spare(self, leg: Leg, time: float, flow: Flow) -> float:
+    def _to_spare(self, leg: TimedLeg, time: float, flow: Flow) -> float:
         """Return the seconds left beyond what the response takes; inf where it takes none."""
         if self._response in _STAYING:
             return inf

@@ -22,7 +22,7 @@ Flow: TypeAlias = tuple[float, float]
 STILL: Flow = (0.0, 0.0)
 
 
-class Leg(NamedTuple):
+class TimedLeg(NamedTuple):
     """A stretch of time in which a robot goes straight and evenly, or stays where it is.
 
     Attributes:
@@ -75,7 +75,7 @@ class Leg(NamedTuple):
         left = self.charge - self.rate * (time - self.begin) if time > self.begin else self.charge
         return left if left > 0.0 else 0.0
 
-    def until(self, time: float) -> Leg:
+    def until(self, time: float) -> TimedLeg:
         """Return the part of the leg before that time."""
         return self._replace(
             end=max(self.begin, time),

@@ -24,7 +24,7 @@ from mmrs_runtime.vehicle import Vehicle
 
 
 @dataclass(frozen=True, slots=True)
-class Run:
+class SimulatedRun:
     """What happened in a run.
 
     Attributes:
@@ -52,7 +52,7 @@ def simulate(
     environment: Mapping[str, float] | None = None,
     areas: tuple[Area, ...] = (),
     terms: Terms = TO_THE_END,
-) -> Run:
+) -> SimulatedRun:
     """Return the simulated run of a behaviour; the same input gives the same run.
 
     Args:
@@ -103,7 +103,7 @@ def simulate(
         )
     told = {id: robot for id, robot in connected.items() if isinstance(robot, Recorder)}
     notes = tuple(f"robot '{id}', {note}" for id, robot in told.items() for note in robot.notes)
-    return Run(tuple(made), ending, _Tracks(told), notes)
+    return SimulatedRun(tuple(made), ending, _Tracks(told), notes)
 
 
 class _Tracks(Mapping[str, tuple[Sample, ...]]):

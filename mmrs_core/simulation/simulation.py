@@ -22,14 +22,14 @@ from mmrs_core.contributions.rules import MoveKind
 from mmrs_core.contributions.vehicles import VehicleFactory, VehicleInput
 from mmrs_core.errors import InternalError, UnreadableError, UsageError
 from mmrs_core.scene import Position
-from mmrs_core.simulation.battery import SLACK, Battery
+from mmrs_core.simulation.battery import SLACK, SimulatedBattery
 from mmrs_core.simulation.escape import Escapes
 from mmrs_core.simulation.known import kinematics_of, move_kinds_of
 from mmrs_core.simulation.legs import (
     STILL,
     Flow,
-    Leg,
     Stretch,
+    TimedLeg,
     bearing,
     cost,
     current,
@@ -74,7 +74,7 @@ class SimulatedRobot(Vehicle):
         self._kinematics, self._kinds = kinematics_of(given), move_kinds_of(given)
         policies = in_precedence(given.robot.policies, given.policies)
         self._escapes = Escapes(given, self._kinematics, self._robot.home)
-        self._battery = Battery(self._kinematics, self._escapes, policies)
+        self._battery = SimulatedBattery(self._kinematics, self._escapes, policies)
         self.notes: list[str] = []
         self._wind, self._current = wind(given.environment), current(given.environment)
         self._grounded, self._stopped, self._halted, self._rolling = True, False, False, False
@@ -82,7 +82,7 @@ class SimulatedRobot(Vehicle):
         self._move: Move | None = None
         self._fault: Fault | None = None
         home = self._robot.home
-        self._legs = [Leg(0.0, 0.0, home, home, (0.0, 0.0), self._battery.capacity, 0.0)]
+        self._legs = [TimedLeg(0.0, 0.0, home, home, (0.0, 0.0), self._battery.capacity, 0.0)]
         self._first = 0
 
     def do(self, order: object, now: float, *, through: bool = False) -> None:
@@ -258,7 +258,7 @@ class SimulatedRobot(Vehicle):
             rate = 0.0 if free or self._costs_nothing() else each.rate
             charge = last.charge_at(last.end if last.end < inf else begin)
             end = begin + each.seconds
-            self._legs.append(Leg(begin, end, each.start, each.finish, (first, goal), charge, rate))
+            self._legs.append(TimedLeg(begin, end, each.start, each.finish, (first, goal), charge, rate))
             begin = end
 
     def _stay(self, now: float, seconds: float) -> None:
@@ -276,7 +276,7 @@ class SimulatedRobot(Vehicle):
         if move.is_a(RECHARGE):
             last = self._legs[-1]
             full, faces = self._battery.capacity, (last.headings[1], last.headings[1])
-            self._legs.append(Leg(last.end, last.end, last.finish, last.finish, faces, full, 0.0))
+            self._legs.append(TimedLeg(last.end, last.end, last.finish, last.finish, faces, full, 0.0))
 
     def _catch_up(self, now: float) -> None:
         """End what is going on at this time, or fill the time since it ended; what was wrong is over."""
@@ -296,7 +296,7 @@ class SimulatedRobot(Vehicle):
             return last
         return max(0, bisect_right(self._legs, now, lo=min(self._first, last), key=_BEGIN) - 1)
 
-    def _leg(self, now: float) -> Leg:
+    def _leg(self, now: float) -> TimedLeg:
         return self._legs[self._leg_index(now)]
 
     def _aim(self, look: Heading | None, position: Position) -> float | None:

@@ -10,9 +10,9 @@ from mmrs_core.behaviour.program import (
     Action,
     Heading,
     Move,
+    MoveTarget,
     Program,
     RobotProgram,
-    Target,
     Transition,
 )
 from mmrs_core.contributions.targets import TargetInput
@@ -68,7 +68,7 @@ def go_to(
 ) -> Move:
     """Return a multicopter's GoTo a coordinate."""
     made = move(id, "GoTo", uri=MULTICOPTER, task=task, trajectory=trajectory)
-    return replace(made, target=Target(position), speed=speed, heading=heading)
+    return replace(made, target=MoveTarget(position), speed=speed, heading=heading)
 
 
 def photo(device: str = "camera", action: str = "takePhoto") -> Action:
@@ -138,7 +138,7 @@ def two_drones() -> Program:
                 before=(feedback("arrived", ("at", "b1")),),
             ),
             move("wait", "HoldPosition", task="look", duration=5.0),
-            replace(move("turn", "HeadTo"), heading=Heading(Target((0.0, 0.0, 0.0)))),
+            replace(move("turn", "HeadTo"), heading=Heading(MoveTarget((0.0, 0.0, 0.0)))),
             go_to("back", (60.0, 0.0, 15.0)),
             LAND,
         ],

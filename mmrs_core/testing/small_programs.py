@@ -8,10 +8,10 @@ from mmrs_core.behaviour.program import (
     BEHAVIOUR,
     Action,
     Move,
+    MoveTarget,
     Program,
     RobotProgram,
     SlotId,
-    Target,
     Transition,
 )
 from mmrs_core.scene import (
@@ -32,7 +32,7 @@ MOVE = (BEHAVIOUR, "Move")
 
 def go(id: str, to: Position, **more: object) -> Move:
     """Return a GoTo; keywords are those of `Move`."""
-    return Move(id, ((BEHAVIOUR, "GoTo"), MOVE), target=Target(to), **more)  # type: ignore[arg-type]
+    return Move(id, ((BEHAVIOUR, "GoTo"), MOVE), target=MoveTarget(to), **more)  # type: ignore[arg-type]
 
 
 def hold(id: str, seconds: float = 1.0, **more: object) -> Move:

@@ -19,25 +19,25 @@ class UseDevice:
 
 
 @dataclass(frozen=True, slots=True)
-class Report:
+class SendFeedback:
     """A feedback to the control station to be made."""
 
     payload: tuple[tuple[str, str], ...]
 
 
 @dataclass(frozen=True, slots=True)
-class Give:
+class SendSignal:
     """A notification to be made: the slot named after the signal, in each of these robots."""
 
     signal: str
     receivers: tuple[str, ...]
 
 
-Deed: TypeAlias = UseDevice | Report | Give
+Deed: TypeAlias = UseDevice | SendFeedback | SendSignal
 
 
 @dataclass(slots=True)
-class Node:
+class DraftMove:
     """A move to be made, with what is done before and after it."""
 
     spec: MoveSpec
@@ -48,7 +48,7 @@ class Node:
 
 
 @dataclass(slots=True)
-class Edge:
+class DraftTransition:
     """A transition to be made; `condition` and `otherwise` make it a Choice."""
 
     source: int
@@ -59,11 +59,11 @@ class Edge:
 
 
 @dataclass(frozen=True, slots=True)
-class End:
+class OpenEnd:
     """Where the chain goes on: after a move, or at one way out of a Choice."""
 
     source: int
-    choice: Edge | None = None
+    choice: DraftTransition | None = None
     holds: bool = True
 
 
@@ -76,18 +76,18 @@ class Chain:
     """
 
     def __init__(self) -> None:
-        self.nodes = [Node(MoveSpec((BEHAVIOUR, "Start")), "", "launch")]
-        self.edges: list[Edge] = []
-        self._ends: tuple[End, ...] = (End(0),)
+        self.nodes = [DraftMove(MoveSpec((BEHAVIOUR, "Start")), "", "launch")]
+        self.edges: list[DraftTransition] = []
+        self._ends: tuple[OpenEnd, ...] = (OpenEnd(0),)
         self._waits: tuple[str, ...] = ()
 
-    def add(self, spec: MoveSpec, task: str, rule: str) -> Node:
+    def add(self, spec: MoveSpec, task: str, rule: str) -> DraftMove:
         """Add a move after every open end; it is then the only open end."""
-        node, index = Node(spec, task, rule), len(self.nodes)
+        node, index = DraftMove(spec, task, rule), len(self.nodes)
         self.nodes.append(node)
         for end in self._ends:
             self._connect(end, index)
-        self._ends, self._waits = (End(index),), ()
+        self._ends, self._waits = (OpenEnd(index),), ()
         return node
 
     def wait(self, signals: tuple[str, ...]) -> None:
@@ -99,7 +99,7 @@ class Chain:
         """Return whether the next move has to wait, or follows several moves."""
         return bool(self._waits) or len(self._ends) > 1 or self._ends[0].choice is not None
 
-    def last(self, task: str, rule: str) -> Node:
+    def last(self, task: str, rule: str) -> DraftMove:
         """Return the last move, after which something can be done at once.
 
         Where the next move has to wait, that is a stop on the spot, added here.
@@ -108,33 +108,33 @@ class Chain:
             return self.pause(task, rule)
         return self.nodes[self._ends[0].source]
 
-    def pause(self, task: str, rule: str, seconds: float = 0.0) -> Node:
+    def pause(self, task: str, rule: str, seconds: float = 0.0) -> DraftMove:
         """Add a stop on the spot for so many seconds."""
         return self.add(MoveSpec((BEHAVIOUR, "HoldPosition"), {"duration": seconds}), task, rule)
 
-    def branch(self, condition: str) -> tuple[End, End]:
-        """End the chain with a Choice; return its two ways out, to be given to `resume`."""
+    def branch(self, condition: str) -> tuple[OpenEnd, OpenEnd]:
+        """OpenEnd the chain with a Choice; return its two ways out, to be given to `resume`."""
         if len(self._ends) > 1 or self._ends[0].choice is not None:
             self.pause("", "choice")
-        edge = Edge(self._ends[0].source, waits=self._waits, condition=condition)
+        edge = DraftTransition(self._ends[0].source, waits=self._waits, condition=condition)
         self.edges.append(edge)
         self._waits = ()
-        return End(edge.source, edge), End(edge.source, edge, holds=False)
+        return OpenEnd(edge.source, edge), OpenEnd(edge.source, edge, holds=False)
 
-    def resume(self, *ends: End) -> None:
+    def resume(self, *ends: OpenEnd) -> None:
         """Go on at these open ends."""
         self._ends = ends
 
     @property
-    def ends(self) -> tuple[End, ...]:
+    def ends(self) -> tuple[OpenEnd, ...]:
         """Return the open ends; a pending wait is made a stop on the spot first."""
         if self._waits:
             self.pause("", "wait")
         return self._ends
 
-    def _connect(self, end: End, index: int) -> None:
+    def _connect(self, end: OpenEnd, index: int) -> None:
         if end.choice is None:
-            self.edges.append(Edge(end.source, index, self._waits))
+            self.edges.append(DraftTransition(end.source, index, self._waits))
         elif self._waits:
             raise ValueError("a way out of a choice cannot wait; add a stop on the spot first")
         elif end.holds:

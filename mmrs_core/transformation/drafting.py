@@ -27,7 +27,7 @@ from mmrs_core.scene import (
     Stroke,
     Transit,
 )
-from mmrs_core.transformation.chain import Chain, End, Give, Report, UseDevice
+from mmrs_core.transformation.chain import Chain, OpenEnd, SendFeedback, SendSignal, UseDevice
 
 
 def draft(plan: RobotPlan, robot: Robot, kind: RobotKind, rules: Mapping[str, Rule]) -> Chain:
@@ -75,7 +75,7 @@ class _Drafting:
         for spec in specs:
             self._add(spec, step.task, step.rule)
         if step.last:
-            done = Report((("task", step.task), ("state", "done")))
+            done = SendFeedback((("task", step.task), ("state", "done")))
             self.chain.last(step.task, step.rule).after.append(done)
 
     @add.register
@@ -86,7 +86,7 @@ class _Drafting:
 
     @add.register
     def _(self, step: Signal) -> None:
-        self.chain.last(step.task, "notify").after.append(Give(step.signal, step.receivers))
+        self.chain.last(step.task, "notify").after.append(SendSignal(step.signal, step.receivers))
 
     @add.register
     def _(self, step: Recover) -> None:
@@ -101,7 +101,7 @@ class _Drafting:
 
     @add.register
     def _(self, step: Branch) -> None:
-        ends: list[End] = []
+        ends: list[OpenEnd] = []
         for condition, steps in step.arms:
             if condition is not None:
                 holds, fails = self.chain.branch(condition)

@@ -28,7 +28,15 @@ from mmrs_core.scene import (
     Signal,
     Step,
 )
-from mmrs_core.transformation.chain import Chain, Deed, Edge, Give, Node, Report, UseDevice
+from mmrs_core.transformation.chain import (
+    Chain,
+    Deed,
+    DraftMove,
+    DraftTransition,
+    SendFeedback,
+    SendSignal,
+    UseDevice,
+)
 from mmrs_core.transformation.drafting import draft
 from mmrs_core.transformation.fluid import Corners
 
@@ -119,7 +127,7 @@ class _Assembly:
             policies=[_policy(policy) for policy in _policies(robot, self._scene)],
         )
 
-    def _move(self, node: Node, index: int) -> bl.Move:
+    def _move(self, node: DraftMove, index: int) -> bl.Move:
         spec = node.spec
         features: dict[str, object] = dict(spec.attributes)
         if spec.target is not None:
@@ -163,11 +171,11 @@ class _Assembly:
             return bl.DeviceAction(
                 actionName=deed.action, deviceId=deed.device, parameters=_pairs(deed.parameters)
             )
-        if isinstance(deed, Report):
+        if isinstance(deed, SendFeedback):
             return bl.Feedback(payload=_pairs(deed.payload))
         return self._notify(deed)
 
-    def _notify(self, give: Give) -> bl.Notify:
+    def _notify(self, give: SendSignal) -> bl.Notify:
         slots = [self._slots[receiver][give.signal] for receiver in give.receivers]
         if len(slots) == 1:
             return bl.UnicastNotify(slot=slots[0])
@@ -176,7 +184,7 @@ class _Assembly:
         return bl.MulticastNotify(slots=slots)
 
     def _transition(
-        self, edge: Edge, robot: Robot, moves: list[bl.Move], corners: Corners
+        self, edge: DraftTransition, robot: Robot, moves: list[bl.Move], corners: Corners
     ) -> bl.MoveTransition:
         assert edge.to is not None
         waits = [self._slots[robot.name][signal] for signal in edge.waits]

@@ -9,7 +9,7 @@ import shapely
 
 from mmrs_core.contributions.rules import MoveSpec
 from mmrs_core.scene import Position, Robot, Scene
-from mmrs_core.transformation.chain import Chain, Edge
+from mmrs_core.transformation.chain import Chain, DraftTransition
 
 LEAST_CUT = 2.0
 """Metres by which a corner may be cut at least: autopilots count a place as passed within a radius, and may
@@ -35,7 +35,7 @@ class Corners:
         self._timed = scene.minimum_separation is not None
         self._before = {way: edge.source for edge in chain.edges for way in (edge.to, edge.otherwise)}
 
-    def may_flow(self, edge: Edge) -> bool:
+    def may_flow(self, edge: DraftTransition) -> bool:
         """Return whether the transition along that edge may be fluid."""
         if self._timed or edge.to is None or edge.waits or edge.condition is not None:
             return False

@@ -12,7 +12,7 @@ from mmrs_auv.kinds import AUV_KIND
 from mmrs_auv.plugin import mmrs_metamodels
 
 from mmrs_core.behaviour.log import read_logs
-from mmrs_core.behaviour.program import Move, Program, Target
+from mmrs_core.behaviour.program import Move, MoveTarget, Program
 from mmrs_core.behaviour.replay import replay
 from mmrs_core.contributions.execution import Condition
 from mmrs_core.contributions.vehicles import VehicleInput
@@ -20,7 +20,7 @@ from mmrs_core.grounding.scenes import robot_type_of
 from mmrs_core.languages.reading import read_model
 from mmrs_core.languages.registry import registry_with
 from mmrs_core.scene import Area, Frame, RobotType
-from mmrs_core.simulation.run import Run, simulate
+from mmrs_core.simulation.run import SimulatedRun, simulate
 from mmrs_core.testing.programs import move, program, robot_program
 from mmrs_core.transformation.kinds import MOVE_KINDS
 from mmrs_runtime.records.log import LogWriter
@@ -37,7 +37,7 @@ def diver() -> RobotType:
 
 def swim(id: str, east: float, north: float, depth: float, **changes: object) -> Move:
     """Return a GoTo to a place in the pool."""
-    made = replace(move(id, "GoTo"), target=Target((east, north, -depth)), speed=0.5)
+    made = replace(move(id, "GoTo"), target=MoveTarget((east, north, -depth)), speed=0.5)
     return replace(made, **changes)  # type: ignore[arg-type]
 
 
@@ -51,7 +51,7 @@ def dive(*moves: Move, **options: object) -> Program:
 class Rehearsed:
     """A run, whether its logs are what the behaviour says, and the robots that made it."""
 
-    run: Run
+    run: SimulatedRun
     accepted: bool
     robots: Mapping[str, RehearsedRobot]
 
@@ -68,7 +68,7 @@ def rehearse(
     areas: tuple[Area, ...] = (),
     **options: str,
 ) -> Rehearsed:
-    """Run a behaviour with simulated vehicles; `before` may meddle with them."""
+    """SimulatedRun a behaviour with simulated vehicles; `before` may meddle with them."""
     robots: dict[str, RehearsedRobot] = {}
     kind = diver()
 

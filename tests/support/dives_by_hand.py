@@ -11,7 +11,7 @@ from mmrs_auv.names import AUV_MOVEMENT
 from patience import until
 from ports import free_port
 
-from mmrs_core.behaviour.program import BEHAVIOUR, Heading, Target
+from mmrs_core.behaviour.program import BEHAVIOUR, Heading, MoveTarget
 from mmrs_core.contributions.vehicles import Live, VehicleInput
 from mmrs_core.scene import Capability, Device, DeviceAction, Frame, Part, RobotType
 from mmrs_core.testing.programs import move, program, robot_program
@@ -37,13 +37,13 @@ DIVER = RobotType(
 
 def dive(id, east, north, depth, **changes):
     """Return a move to a place so deep."""
-    return replace(move(id, "GoTo"), **{"target": Target((east, north, -depth)), "speed": 0.8, **changes})
+    return replace(move(id, "GoTo"), **{"target": MoveTarget((east, north, -depth)), "speed": 0.8, **changes})
 
 
 MOVES = (
     dive("out", 6.0, 0.0, 2.0),
     move("stay", "HoldPosition", duration=3.0),
-    replace(move("look", "HeadTo"), heading=Heading(Target((6.0, 50.0, -2.0)))),
+    replace(move("look", "HeadTo"), heading=Heading(MoveTarget((6.0, 50.0, -2.0)))),
     dive("up", 6.0, 4.0, 0.0),
 )
 

@@ -10,7 +10,7 @@ from hypothesis import HealthCheck, settings
 from hypothesis import strategies as st
 from mmrs_auv.names import AUV_MOVEMENT
 
-from mmrs_core.behaviour.program import BEHAVIOUR, Action, Heading, Move, RobotProgram, Target, Transition
+from mmrs_core.behaviour.program import BEHAVIOUR, Action, Heading, Move, MoveTarget, RobotProgram, Transition
 from mmrs_core.contributions.targets import TargetInput
 from mmrs_core.errors import UnsupportedError
 from mmrs_core.generation.render import render
@@ -58,7 +58,7 @@ def dive() -> Callable[..., Move]:
 
     def make(id: str, east: float, north: float, depth: float, **changes: object) -> Move:
         made = move(id, "GoTo")
-        place = Target((east, north, SEA.surface - depth))
+        place = MoveTarget((east, north, SEA.surface - depth))
         return replace(made, **{"target": place, "speed": 1.0, **changes})  # type: ignore[arg-type]
 
     return make
@@ -99,7 +99,7 @@ def moves(draw):
     )
     made = []
     for name in names:
-        place = Target(draw(st.tuples(*[st.floats(-50.0, 50.0)] * 2, st.floats(-9.0, -2.0))))
+        place = MoveTarget(draw(st.tuples(*[st.floats(-50.0, 50.0)] * 2, st.floats(-9.0, -2.0))))
         went = replace(
             move(name, "GoTo"), target=place, distance=draw(st.sampled_from([0.0, 3.0])), speed=1.0
         )

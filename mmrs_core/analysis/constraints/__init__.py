@@ -5,20 +5,18 @@ from __future__ import annotations
 from mmrs_core.analysis.constraints import (
     approaches,
     areas,
-    blanks,
     branches,
     capabilities,
+    clearances,
     coordinates,
     dependencies,
     distances,
     equipment,
     moves,
     names,
-    places,
     ranges,
     robot_types,
     shapes,
-    slots,
 )
 from mmrs_core.analysis.constraints.checking import check_behaviour, check_constraints, check_planned
 from mmrs_core.contributions.constraints import Constraint
@@ -27,7 +25,6 @@ __all__ = ["CONSTRAINTS", "check_behaviour", "check_constraints", "check_planned
 
 _THEMES = (
     names,
-    blanks,
     ranges,
     coordinates,
     distances,
@@ -35,11 +32,10 @@ _THEMES = (
     branches,
     capabilities,
     shapes,
-    places,
+    clearances,
     areas,
     robot_types,
     moves,
-    slots,
     approaches,
     equipment,
 )

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from mmrs_core.analysis.constraints.findings import MISSION, called, finding, listed
-from mmrs_core.analysis.constraints.order import Order
+from mmrs_core.analysis.constraints.order import TaskOrder
 from mmrs_core.analysis.constraints.sketch import sketch_of
 from mmrs_core.contributions.constraints import Constraint, Finding
 from mmrs_core.grounding.features import child, number, text
@@ -22,11 +22,11 @@ class _Arm:
     tasks: frozenset[Element]
 
 
-def _is_choice(fork: Element, order: Order) -> bool:
+def _is_choice(fork: Element, order: TaskOrder) -> bool:
     return any(text(way, "condition") for way in order.ways.get(fork, ()))
 
 
-def _arms(fork: Element, join: Element, order: Order) -> tuple[_Arm, ...]:
+def _arms(fork: Element, join: Element, order: TaskOrder) -> tuple[_Arm, ...]:
     heads = ((way, child(way, "to")) for way in order.ways[fork])
     return tuple(_Arm(way, frozenset(order.beyond([head], join))) for way, head in heads if head is not None)
 

@@ -10,8 +10,8 @@ from mmrs_core.contributions.constraints import Constraint, Finding
 from mmrs_core.geometry.frames import known_crs
 from mmrs_core.grounding.features import child, children, number, text
 from mmrs_core.grounding.frame import (
-    circles_among,
     coordinates_of,
+    cycles_among,
     frame_of,
     is_geographic,
     is_relative,
@@ -64,7 +64,7 @@ def _without_base(model: Element, origin: Element | None, root: Element) -> Iter
 
 def _circles(model: Element, models: ModelSet) -> Iterator[Finding]:
     coordinates = [*coordinates_of(model), *coordinates_of(models.context)]
-    for circle in circles_among(coordinates, reference_in(models.context)):
+    for circle in cycles_among(coordinates, reference_in(models.context)):
         way = " → ".join(path_of(each) for each in (*circle, circle[0]))
         yield finding(circle[0], f"counts from itself: {way}")
 

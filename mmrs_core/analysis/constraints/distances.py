@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 
 from mmrs_core.analysis.constraints.findings import CONTEXT, MISSION, finding
+from mmrs_core.analysis.constraints.outliers import BOTH_SIGNS, EAST_SIGN, EXCHANGED, NORTH_SIGN, Rival, Stray
 from mmrs_core.analysis.constraints.sketch import sketch_of
-from mmrs_core.analysis.constraints.spread import BOTH_SIGNS, EAST_SIGN, EXCHANGED, NORTH_SIGN, Rival, Stray
 from mmrs_core.contributions.constraints import Constraint, Finding
 from mmrs_core.grounding.features import number
 from mmrs_core.grounding.frame import is_geographic
@@ -20,7 +20,7 @@ def _misread(reading: str, words: str) -> Callable[[Element, ModelSet], Iterator
     """Return what finds elements that one other reading of their figures puts among all others."""
 
     def check(mission: Element, models: ModelSet) -> Iterator[Finding]:
-        for stray in sketch_of(models).spread.strays:
+        for stray in sketch_of(models).outliers.strays:
             if stray.reading == reading:
                 yield finding(stray.element, f"{_apart(stray)}; {words}")
 
@@ -40,16 +40,16 @@ def _kilometres(metres: float) -> str:
 
 
 def _astray(mission: Element, models: ModelSet) -> Iterator[Finding]:
-    spread = sketch_of(models).spread
-    for stray in spread.strays:
+    outliers = sketch_of(models).outliers
+    for stray in outliers.strays:
         if stray.reading not in _READ:
             both = "; with the other signs, it lies among them" if stray.reading == BOTH_SIGNS else ""
             yield finding(stray.element, f"{_apart(stray)}{both}")
-    yield from (_rivalry(each) for each in spread.rivals if not _is_context(each))
+    yield from (_rivalry(each) for each in outliers.rivals if not _is_context(each))
 
 
 def _elsewhere(context: Element, models: ModelSet) -> Iterator[Finding]:
-    yield from (_rivalry(each) for each in sketch_of(models).spread.rivals if _is_context(each))
+    yield from (_rivalry(each) for each in sketch_of(models).outliers.rivals if _is_context(each))
 
 
 def _is_context(rival: Rival) -> bool:

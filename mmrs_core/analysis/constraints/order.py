@@ -12,7 +12,7 @@ from mmrs_core.grounding.features import child, children
 from mmrs_core.languages.element import Element, is_kind
 
 
-class Order:
+class TaskOrder:
     """The graph of a mission's tasks; dependencies on tasks of nobody are left out.
 
     Attributes:

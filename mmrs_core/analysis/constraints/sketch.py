@@ -16,8 +16,8 @@ from math import hypot
 import shapely
 from shapely.geometry import Polygon
 
-from mmrs_core.analysis.constraints.order import Order
-from mmrs_core.analysis.constraints.spread import Spread, spread_of
+from mmrs_core.analysis.constraints.order import TaskOrder
+from mmrs_core.analysis.constraints.outliers import Outliers, outliers_of
 from mmrs_core.analysis.constraints.unread import drawn_once
 from mmrs_core.grounding.coordinates import Ground, ground_of
 from mmrs_core.grounding.features import child, children, number, text
@@ -85,14 +85,14 @@ class Sketch:
         return ground_of(self._models.behaviour, self._models.context)
 
     @drawn_once
-    def order(self) -> Order:
+    def order(self) -> TaskOrder:
         """What tasks wait for."""
-        return Order(self._models.mission)
+        return TaskOrder(self._models.mission)
 
     @drawn_once
-    def spread(self) -> Spread:
+    def outliers(self) -> Outliers:
         """What lies apart from everything else."""
-        return spread_of(self._models)
+        return outliers_of(self._models)
 
     @drawn_once
     def areas(self) -> tuple[DrawnArea, ...]:

@@ -17,19 +17,19 @@ Value = TypeVar("Value")
 
 
 @dataclass(slots=True)
-class Reading:
+class ReadNote:
     """Whether what was read since it began has been a feature whose value could not be read from its file."""
 
     is_unfounded: bool = False
 
 
-_reading: ContextVar[Reading | None] = ContextVar("reading", default=None)
+_reading: ContextVar[ReadNote | None] = ContextVar("reading", default=None)
 
 
 @contextmanager
-def noting() -> Iterator[Reading]:
+def noting() -> Iterator[ReadNote]:
     """Note whether watched features are read; an outer note knows nothing of it."""
-    reading = Reading()
+    reading = ReadNote()
     token = _reading.set(reading)
     try:
         yield reading
@@ -125,7 +125,7 @@ class drawn_once(Generic[Owner, Value]):  # noqa: N801  # it is used as `cached_
         if name not in owner.__dict__:
             with noting() as reading:
                 owner.__dict__[name] = self._make(owner), reading
-        found: tuple[Value, Reading] = owner.__dict__[name]
+        found: tuple[Value, ReadNote] = owner.__dict__[name]
         if found[1].is_unfounded:
             _note()
         return found[0]

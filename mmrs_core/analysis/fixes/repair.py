@@ -69,7 +69,7 @@ class Proposal:
 
 
 @dataclass(frozen=True, slots=True)
-class Change:
+class FileChange:
     """What a file holds, and what it is to hold; ``name`` is what the user calls it."""
 
     name: str
@@ -90,7 +90,7 @@ class Repair:
         diagnosis: what is left.
     """
 
-    changes: tuple[Change, ...]
+    changes: tuple[FileChange, ...]
     texts: Mapping[Path, bytes]
     applied: tuple[Proposal, ...]
     refused: tuple[Proposal, ...]
@@ -339,10 +339,10 @@ def _on_lines(faults: Iterable[Diagnostic], lines: Container[tuple[str, int]]) -
     return sum(_is_reading(each) and (each.place.file, each.place.line) in lines for each in faults)
 
 
-def _changes(texts: Mapping[Path, bytes], diagnosis: Diagnosis) -> Iterator[Change]:
+def _changes(texts: Mapping[Path, bytes], diagnosis: Diagnosis) -> Iterator[FileChange]:
     files = (model.file for model in diagnosis.models if isinstance(model.file, Path))
     names = {file.resolve(): str(file) for file in files}
     for file, after in sorted(texts.items()):
         before = read_bytes(file)
         if before != after:
-            yield Change(names.get(file, str(file)), file, before, after)
+            yield FileChange(names.get(file, str(file)), file, before, after)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 
-from mmrs_core.analysis.fixes.likeness import meant
+from mmrs_core.analysis.fixes.spelling import meant
 from mmrs_core.contributions.fixes import Edit, Fix, Wrong, with_attribute, with_value
 from mmrs_core.languages.datatypes import DataType
 from mmrs_core.languages.element import metaclass_of

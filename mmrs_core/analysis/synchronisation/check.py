@@ -8,7 +8,7 @@ from itertools import pairwise
 
 from mmrs_core.analysis.synchronisation.exploration import find_stuck
 from mmrs_core.analysis.synchronisation.fixpoint import Fixpoint, may_fixpoint, must_fixpoint
-from mmrs_core.analysis.synchronisation.network import Network, Node, groups_of, network_of
+from mmrs_core.analysis.synchronisation.network import NetNode, Network, groups_of, network_of
 from mmrs_core.analysis.synchronisation.search import (
     LIMIT,
     LimitExceededError,
@@ -126,7 +126,7 @@ def _trapped(program: Program, network: Network, trap: Trap) -> Iterator[Verdict
     yield from _stuck_verdicts(program, network, trap.stuck, f" if {', '.join(choices)}" if choices else "")
 
 
-def _head(node: Node, way: int) -> int:
+def _head(node: NetNode, way: int) -> int:
     return node.heads[node.ways.index(way)]
 
 

@@ -24,7 +24,7 @@ LIMIT = 50_000
 
 
 @dataclass(frozen=True, slots=True)
-class Spot:
+class NetPosition:
     """Where a robot is: at a node, in a group of slots that it sets, of which some are left."""
 
     node: int
@@ -32,7 +32,7 @@ class Spot:
     left: frozenset[SlotId]
 
 
-State: TypeAlias = "tuple[tuple[Spot, ...], frozenset[SlotId]]"
+State: TypeAlias = "tuple[tuple[NetPosition, ...], frozenset[SlotId]]"
 
 
 def find_stuck(network: Network, *, limit: int = LIMIT) -> tuple[Stuck, ...] | None:
@@ -82,8 +82,8 @@ def _enough(network: Network, state: State) -> Iterable[int]:
 
 
 def _moves(
-    network: Network, net: Net, spot: Spot, active: frozenset[SlotId]
-) -> Iterator[tuple[Spot, frozenset[SlotId]]]:
+    network: Network, net: Net, spot: NetPosition, active: frozenset[SlotId]
+) -> Iterator[tuple[NetPosition, frozenset[SlotId]]]:
     node = net.nodes[spot.node]
     if spot.left:
         value = node.sets[spot.group][1]
@@ -94,17 +94,17 @@ def _moves(
             yield _enter(net, way), active
 
 
-def _enter(net: Net, node: int) -> Spot:
+def _enter(net: Net, node: int) -> NetPosition:
     sets = net.nodes[node].sets
-    return Spot(node, 0, sets[0][0] if sets else frozenset())
+    return NetPosition(node, 0, sets[0][0] if sets else frozenset())
 
 
-def _without(net: Net, spot: Spot, slot: SlotId) -> Spot:
+def _without(net: Net, spot: NetPosition, slot: SlotId) -> NetPosition:
     left = spot.left - {slot}
     sets = net.nodes[spot.node].sets
     if left or spot.group + 1 == len(sets):
         return replace(spot, left=left)
-    return Spot(spot.node, spot.group + 1, sets[spot.group + 1][0])
+    return NetPosition(spot.node, spot.group + 1, sets[spot.group + 1][0])
 
 
 def _stuck(network: Network, state: State) -> tuple[Stuck, ...]:

@@ -19,7 +19,7 @@ from mmrs_runtime.semantics import awaited as awaited_at
 
 
 @dataclass(frozen=True, slots=True)
-class Node:
+class NetNode:
     """A move that synchronisation depends on, with the transition that leaves it.
 
     Attributes:
@@ -47,7 +47,7 @@ class Net:
     """The nodes of one robot that can be reached; the first is where it begins, `stop` where it ends."""
 
     robot: str
-    nodes: tuple[Node, ...]
+    nodes: tuple[NetNode, ...]
     stop: int | None
 
     @property
@@ -149,7 +149,7 @@ def _net(
     first = _next_kept(robot.start, full, kept_moves)
     order = [first, *(move for move in kept if move != first)]
     number = {move: index for index, move in enumerate(order)}
-    nodes: list[Node] = []
+    nodes: list[NetNode] = []
     for move in order:
         node = full[move]
         nexts = {_next_kept(head, full, kept_moves): head for head in reversed(node.ways)}
@@ -158,11 +158,13 @@ def _net(
                 number[way] = len(order)
                 order.append(way)
         ways = tuple(number[way] for way in nexts)
-        nodes.append(Node(move, node.sets, node.waits, ways, tuple(nexts.values())))
+        nodes.append(NetNode(move, node.sets, node.waits, ways, tuple(nexts.values())))
     return Net(robot.id, tuple(nodes), number.get(robot.stop))
 
 
-def _node(robot: ExecutableRobot, index: int, numbers: Mapping[str, int], awaited: frozenset[SlotId]) -> Node:
+def _node(
+    robot: ExecutableRobot, index: int, numbers: Mapping[str, int], awaited: frozenset[SlotId]
+) -> NetNode:
     """Return a move as the step rules lead through it."""
     point = entry(robot, robot.moves[index].id)
     sets: list[tuple[frozenset[SlotId], bool]] = []
@@ -173,14 +175,14 @@ def _node(robot: ExecutableRobot, index: int, numbers: Mapping[str, int], awaite
         point = step.leads_to
     waits = frozenset(awaited_at(robot, point))
     ways = (numbers[step.leads_to.move] for step in steps(robot, point, waits))
-    return Node(index, tuple(sets), waits, tuple(dict.fromkeys(ways)))
+    return NetNode(index, tuple(sets), waits, tuple(dict.fromkeys(ways)))
 
 
-def _matters(node: Node) -> bool:
+def _matters(node: NetNode) -> bool:
     return bool(node.sets or node.waits or len(node.ways) != 1)
 
 
-def _next_kept(move: int, full: Mapping[int, Node], kept: frozenset[int]) -> int:
+def _next_kept(move: int, full: Mapping[int, NetNode], kept: frozenset[int]) -> int:
     """Return the first move from here on that matters; one of the loop itself where none ever does."""
     passed: set[int] = set()
     while move not in kept and move not in passed:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import replace
 
-from mmrs_core.behaviour.program import Program, Target
+from mmrs_core.behaviour.program import MoveTarget, Program
 from mmrs_core.contributions.targets import TargetInput
 from mmrs_core.generation.capabilities.probes import (
     BETA,
@@ -91,15 +91,15 @@ def of_places() -> Iterator[Probe]:
         "Context.emergencyAreas": Area("meadow", AreaUse.EMERGENCY, MEADOW),
     }.items():
         yield Probe("place", element, replace(base, areas=(area,)), base)
-    yield Probe("place", "GeoCoordinate", with_move(base, "a", target=Target(THERE)), base)
+    yield Probe("place", "GeoCoordinate", with_move(base, "a", target=MoveTarget(THERE)), base)
     local = _with(base, frame=LOCAL)
-    moved = with_move(local, "a", target=Target(THERE))
+    moved = with_move(local, "a", target=MoveTarget(THERE))
     yield Probe("place", "RelativeCoordinate of an origin without degrees", moved, local)
     for element, target in {
-        "Target.name": Target(HERE, name="gate"),
-        "ObjectTarget.description": Target(None, "a buoy", None),
-        "ObjectTarget.expectedAt": Target(THERE, "a buoy", None),
-        "ObjectTarget.tolerance": Target(THERE, "a buoy", 2.0),
+        "Target.name": MoveTarget(HERE, name="gate"),
+        "ObjectTarget.description": MoveTarget(None, "a buoy", None),
+        "ObjectTarget.expectedAt": MoveTarget(THERE, "a buoy", None),
+        "ObjectTarget.tolerance": MoveTarget(THERE, "a buoy", 2.0),
     }.items():
         yield Probe("place", element, with_move(base, "a", target=target), base)
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from dataclasses import replace
 
-from mmrs_core.behaviour.program import BEHAVIOUR, Heading, Move, Target, Transition
+from mmrs_core.behaviour.program import BEHAVIOUR, Heading, Move, MoveTarget, Transition
 from mmrs_core.contributions.targets import TargetInput
 from mmrs_core.generation.capabilities.probes import (
     ALPHA,
@@ -27,7 +27,7 @@ from mmrs_core.generation.capabilities.probes import (
 )
 from mmrs_core.scene import Metaclasses
 
-AHEAD = Heading(Target((0.0, 90.0, 0.0)), "device")
+AHEAD = Heading(MoveTarget((0.0, 90.0, 0.0)), "device")
 ASIDE = replace(AHEAD, angle_degrees=90.0)
 UNHEARD_OF: Metaclasses = (("urn:mmrs:nowhere:1.0", "Somersault"), MOVE)
 ON_THE_WAY = (TAKE_OFF, go_to("a"), go_to("b", THERE), LAND)
@@ -39,8 +39,8 @@ def of_moves() -> Iterator[Probe]:
     base, two = plain(), given(robot(ALPHA, ON_THE_WAY))
     yield Probe("move", "Start, Stop", given(robot(ALPHA, ())), base)
     yield Probe("move", "multicopter GoTo", given(robot(ALPHA, ON_THE_WAY)), base)
-    yield Probe("move", "GoTo", *_inserted(move("m", "GoTo"), target=Target(THERE), speed=2.0))
-    yield Probe("move", "GoTo.target", with_move(base, "a", target=Target(THERE)), base)
+    yield Probe("move", "GoTo", *_inserted(move("m", "GoTo"), target=MoveTarget(THERE), speed=2.0))
+    yield Probe("move", "GoTo.target", with_move(base, "a", target=MoveTarget(THERE)), base)
     yield Probe("move", "GoTo.distance", with_move(base, "a", distance=4.0), base)
     yield Probe("move", "GoTo.speed", with_move(base, "a", speed=3.0), base)
     yield Probe("move", "GoTo.speed absent", with_move(base, "a", speed=None), base)
@@ -96,7 +96,7 @@ def of_headings() -> Iterator[Probe]:
     front = replace(AHEAD, device="")
     base = plain()
     yield Probe("heading", "Heading.deviceId absent: the front", with_move(base, "a", heading=front), base)
-    found = Heading(Target((0.0, 90.0, 0.0), "a buoy", 2.0))
+    found = Heading(MoveTarget((0.0, 90.0, 0.0), "a buoy", 2.0))
     yield Probe("heading", "Heading.target: an object", with_move(base, "a", heading=found), base)
 
 

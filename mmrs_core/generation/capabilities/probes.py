@@ -9,9 +9,9 @@ from mmrs_core.behaviour.program import (
     BEHAVIOUR,
     Action,
     Move,
+    MoveTarget,
     Program,
     RobotProgram,
-    Target,
     Transition,
 )
 from mmrs_core.contributions.targets import TargetInput
@@ -62,7 +62,7 @@ def move(id: str, kind: str, uri: str = BEHAVIOUR, *more: tuple[str, str], **att
 def go_to(id: str, position: Position = HERE, **attributes: Value) -> Move:
     """Return a multicopter's GoTo with a speed."""
     made = move(id, "GoTo", MULTICOPTER, (BEHAVIOUR, "GoTo"), **attributes)
-    return replace(made, target=Target(position), speed=5.0)
+    return replace(made, target=MoveTarget(position), speed=5.0)
 
 
 def action(kind: str, *more: str, name: str = "", device: str = "") -> Action:
@@ -91,8 +91,8 @@ def robot(id: str, moves: tuple[Move, ...], **transitions: Transition) -> RobotP
 TAKE_OFF = move("up", "TakeOff", MULTICOPTER, altitude=20.0)
 LAND = move("down", "Land", MULTICOPTER)
 FLIGHT = (TAKE_OFF, go_to("a"), LAND)
-DRIVE = (replace(move("a", "GoTo"), target=Target((0.0, 30.0, 0.0)), speed=1.0),)
-DIVE = (replace(move("a", "GoTo"), target=Target((0.0, 30.0, -5.0)), speed=1.0),)
+DRIVE = (replace(move("a", "GoTo"), target=MoveTarget((0.0, 30.0, 0.0)), speed=1.0),)
+DIVE = (replace(move("a", "GoTo"), target=MoveTarget((0.0, 30.0, -5.0)), speed=1.0),)
 
 KINDS: dict[str, tuple[Metaclasses, Metaclasses, tuple[Move, ...]]] = {
     "copter": (((MULTICOPTER, "Drone"), (ROBOT, "Robot")), ((ROBOT, "MovementCapability"),), FLIGHT),

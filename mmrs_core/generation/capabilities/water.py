@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from mmrs_core.behaviour.program import BEHAVIOUR, Move, RobotProgram, Target
+from mmrs_core.behaviour.program import BEHAVIOUR, Move, MoveTarget, RobotProgram
 from mmrs_core.contributions.targets import TargetInput
 from mmrs_core.generation.capabilities.probes import KINDS, MULTICOPTER, Probe, kind_of, move
 from mmrs_core.scene import Position
@@ -47,7 +47,7 @@ def _swum(made: Move) -> Move:
     return replace(made, metaclasses=made.metaclasses[1:], attributes={}, target=_below(made.target))
 
 
-def _below(target: Target | None) -> Target | None:
+def _below(target: MoveTarget | None) -> MoveTarget | None:
     if target is None or target.position is None:
         return target
     east, north, up = target.position

@@ -15,7 +15,7 @@ from mmrs_core.behaviour.program import (
     Action,
     Heading,
     Move,
-    Target,
+    MoveTarget,
 )
 from mmrs_core.contributions.rules import most_specific
 from mmrs_core.contributions.wiring import Unwired
@@ -168,7 +168,7 @@ def _turn(move: Move, context: RobotContext, driver: Driver) -> Call:
     return Call("Turn", (look,)) if look else Call("Skip", tuple(driver.unseen(move.heading, context))[:1])
 
 
-def _target(target: Target, context: RobotContext) -> Call:
+def _target(target: MoveTarget, context: RobotContext) -> Call:
     place = None if target.position is None else place_of(target.position, context)
     if target.description is None:
         if place is None:

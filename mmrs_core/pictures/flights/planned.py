@@ -14,7 +14,7 @@ from mmrs_core.pictures.flights.answers import choosing_as
 from mmrs_core.pictures.flights.values import Flight, Flown
 from mmrs_core.pipeline import Place, conditions_for
 from mmrs_core.scene import Name, Position
-from mmrs_core.simulation.run import Run, refuse_unasked, simulate
+from mmrs_core.simulation.run import SimulatedRun, refuse_unasked, simulate
 
 BACKEND = "simulation"
 
@@ -28,7 +28,7 @@ class Planned:
         notes: what was taken for granted, or why there is no run, for people.
     """
 
-    run: Run | None
+    run: SimulatedRun | None
     notes: tuple[str, ...] = ()
 
 
@@ -86,7 +86,7 @@ def planned_for(
     return Planned(_later(run, begun), (*notes, *run.notes))
 
 
-def _later(run: Run, seconds: float) -> Run:
+def _later(run: SimulatedRun, seconds: float) -> SimulatedRun:
     """Return a run that begins so much later: when the flight does, whose vehicles had to get ready."""
     if seconds <= 0:
         return run

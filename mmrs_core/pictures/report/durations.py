@@ -8,7 +8,7 @@ from mmrs_core.behaviour.program import Program, RobotProgram, SlotId
 from mmrs_core.pictures.flights.values import Flight
 from mmrs_core.pictures.report.values import MoveReport, WaitReport
 from mmrs_core.pictures.report.visits import Visit, visits_of
-from mmrs_core.simulation.run import Run
+from mmrs_core.simulation.run import SimulatedRun
 from mmrs_runtime.records.steps import StepRecord
 
 SHORTEST_WAIT = 1.0
@@ -16,18 +16,18 @@ SHORTEST_WAIT = 1.0
 _ENDS = frozenset({"Start", "Stop"})
 
 
-def move_reports(program: Program, flight: Flight, plan: Run | None) -> tuple[MoveReport, ...]:
+def move_reports(program: Program, flight: Flight, plan: SimulatedRun | None) -> tuple[MoveReport, ...]:
     """Return every visit of a move that takes time, by robot, with the time of the visit in the plan."""
     return tuple(report for robot in program.robots for report in _moves(robot, flight, plan))
 
 
-def wait_reports(program: Program, flight: Flight, plan: Run | None) -> tuple[WaitReport, ...]:
+def wait_reports(program: Program, flight: Flight, plan: SimulatedRun | None) -> tuple[WaitReport, ...]:
     """Return every wait of a second or more, by robot."""
     setters = _setters(program, flight)
     return tuple(wait for robot in program.robots for wait in _waits(robot, flight, plan, setters))
 
 
-def _moves(robot: RobotProgram, flight: Flight, plan: Run | None) -> Iterator[MoveReport]:
+def _moves(robot: RobotProgram, flight: Flight, plan: SimulatedRun | None) -> Iterator[MoveReport]:
     moves = {move.id: move for move in robot.moves}
     for visit, planned in _side_by_side(robot, flight, plan):
         move = moves[visit.move]
@@ -46,7 +46,7 @@ def _moves(robot: RobotProgram, flight: Flight, plan: Run | None) -> Iterator[Mo
 
 
 def _side_by_side(
-    robot: RobotProgram, flight: Flight, plan: Run | None
+    robot: RobotProgram, flight: Flight, plan: SimulatedRun | None
 ) -> Iterator[tuple[Visit, Visit | None]]:
     """Yield each visit of a move with the visit of the plan that is as many-th of the move."""
     ahead: dict[str, list[Visit]] = {}
@@ -60,7 +60,7 @@ def _side_by_side(
 def _waits(
     robot: RobotProgram,
     flight: Flight,
-    plan: Run | None,
+    plan: SimulatedRun | None,
     setters: Mapping[SlotId, Sequence[tuple[float, str]]],
 ) -> Iterator[WaitReport]:
     index = {move.id: i for i, move in enumerate(robot.moves)}

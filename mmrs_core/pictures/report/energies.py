@@ -7,13 +7,13 @@ import numpy as np
 from mmrs_core.geometry.frames import Floats
 from mmrs_core.pictures.flights.values import Flown
 from mmrs_core.pictures.report.values import EnergyReport
-from mmrs_core.simulation.run import Run
+from mmrs_core.simulation.run import SimulatedRun
 
 _CHARGED = 0.05
 """Part of a battery by which a level rises when it was charged or changed, and not only read otherwise."""
 
 
-def energy_of(flown: Flown, plan: Run | None, reserve: float) -> EnergyReport:
+def energy_of(flown: Flown, plan: SimulatedRun | None, reserve: float) -> EnergyReport:
     """Return what is known of one robot's energy, as flown and as planned."""
     levels = flown.track.energies
     known = np.isfinite(levels)
@@ -33,7 +33,7 @@ def energy_of(flown: Flown, plan: Run | None, reserve: float) -> EnergyReport:
     )
 
 
-def planned_levels(plan: Run | None, robot: str) -> tuple[Floats, float | None]:
+def planned_levels(plan: SimulatedRun | None, robot: str) -> tuple[Floats, float | None]:
     """Return the parts that are left in the plan, and joules when full; empty and None where not known."""
     track = plan.tracks.get(robot, ()) if plan is not None else ()
     full = track[0].energy if track else None

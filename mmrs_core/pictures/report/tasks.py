@@ -13,7 +13,7 @@ from mmrs_core.pictures.flights.planned import PlannedLeg
 from mmrs_core.pictures.flights.values import Flight, Track
 from mmrs_core.pictures.report.values import Status, TaskReport
 from mmrs_core.pictures.report.visits import Visit, visits_of
-from mmrs_core.simulation.run import Run
+from mmrs_core.simulation.run import SimulatedRun
 from mmrs_runtime.records.steps import StepRecord
 
 ASIDE = frozenset({"launch", "transit", "recover", "wait", "recharge", "choice", "notify"})
@@ -41,7 +41,7 @@ def serves(move: Move) -> bool:
 
 
 def task_reports(
-    program: Program, flight: Flight, plan: Run | None, legs: Mapping[str, Sequence[PlannedLeg]]
+    program: Program, flight: Flight, plan: SimulatedRun | None, legs: Mapping[str, Sequence[PlannedLeg]]
 ) -> tuple[TaskReport, ...]:
     """Return every task that moves serve, in their order.
 
@@ -70,7 +70,7 @@ def task_reports(
     return tuple(_report(name, work) for name, work in works.items())
 
 
-def _of(plan: Run, robot: str) -> Iterator[StepRecord]:
+def _of(plan: SimulatedRun, robot: str) -> Iterator[StepRecord]:
     return (record for record in plan.records if record.robot == robot)
 
 

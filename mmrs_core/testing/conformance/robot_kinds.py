@@ -13,7 +13,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from mmrs_core.behaviour.program import Move, Target
+from mmrs_core.behaviour.program import Move, MoveTarget
 from mmrs_core.contributions.registry import Contributions
 from mmrs_core.contributions.rules import MoveSpec, RobotKind, most_specific
 from mmrs_core.errors import InfeasibleError
@@ -146,7 +146,7 @@ def _passed(
         metaclasses = known.languages.metaclass(*spec.metaclass).ancestry
         kind = most_specific(metaclasses, known.move_kinds)
         assert kind is not None, f"no kind of move for {spec.metaclass[1]}"
-        target = Target(spec.target) if spec.target is not None else None
+        target = MoveTarget(spec.target) if spec.target is not None else None
         move = Move("m", metaclasses, spec.attributes, target=target, distance=spec.distance)
         path = known.move_kinds[kind].path(move, passed[-1], home)
         assert path is not None

@@ -15,7 +15,7 @@ from mmrs_imc.packing import crc16, packet, payload
 from mmrs_imc.target import IMC
 from pyproj import Geod
 
-from mmrs_core.behaviour.program import Target, Transition
+from mmrs_core.behaviour.program import MoveTarget, Transition
 from mmrs_core.errors import UnsupportedError
 from mmrs_core.generation.render import render
 from mmrs_core.scene import Frame
@@ -227,14 +227,17 @@ def test_a_plan_that_no_packet_holds_is_refused(given, dive):
 @pytest.mark.parametrize(
     ("changes", "why"),
     [
-        ({"target": Target((9.0, 0.0, 5.0))}, "leads 7 m above the surface"),
-        ({"target": Target((9.0, 0.0, -5.0), "a buoy", 1.0)}, "object 'a buoy', which a plan cannot have"),
-        ({"target": Target((9.0, 0.0, -12_000.0))}, "leads 11998 m below the surface, and no sea is"),
-        ({"target": Target((9.0, 0.0, -1e39))}, "leads 1e[+]39 m below the surface, and no sea is"),
+        ({"target": MoveTarget((9.0, 0.0, 5.0))}, "leads 7 m above the surface"),
+        (
+            {"target": MoveTarget((9.0, 0.0, -5.0), "a buoy", 1.0)},
+            "object 'a buoy', which a plan cannot have",
+        ),
+        ({"target": MoveTarget((9.0, 0.0, -12_000.0))}, "leads 11998 m below the surface, and no sea is"),
+        ({"target": MoveTarget((9.0, 0.0, -1e39))}, "leads 1e[+]39 m below the surface, and no sea is"),
         ({"speed": 0.0}, "its speed of 0 m/s is not from 0.01 to 100"),
         ({"speed": 4e-4}, "its speed of 0 m/s is not from 0.01 to 100"),
         ({"speed": 1e39}, "its speed of 1e[+]39 m/s is not from 0.01 to 100"),
-        ({"target": Target((70_000.0, 0.0, -7.0))}, "takes 70,000 s, of 65,475 at most"),
+        ({"target": MoveTarget((70_000.0, 0.0, -7.0))}, "takes 70,000 s, of 65,475 at most"),
     ],
 )
 def test_what_plans_cannot_express_is_told_with_its_move(given, dive, changes, why):
@@ -248,7 +251,9 @@ def test_an_action_that_takes_longer_than_manoeuvres_may_is_refused(given, dive,
         render(IMC, given(moved, type=swimmer(70_000.0, **SONAR)))
 
 
-@pytest.mark.parametrize("changes", [{"speed": 1e39}, {"speed": 0.0}, {"target": Target((9.0, 0.0, -1e39))}])
+@pytest.mark.parametrize(
+    "changes", [{"speed": 1e39}, {"speed": 0.0}, {"target": MoveTarget((9.0, 0.0, -1e39))}]
+)
 def test_with_losses_what_no_plan_holds_is_as_near_to_it_as_a_plan_can(given, dive, changes):
     (goto,) = maneuvers(plan(given(dive("a", 9.0, 0.0, 5.0, **changes)), lossy=True))
     assert 0.0 < goto["speed"] <= 100.0

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from mmrs_core.behaviour.travel import MANNERS
+from mmrs_core.behaviour.travel import TRAVEL_MARGINS
 from mmrs_core.mavlink.context import VehicleContext
 from mmrs_moos.steps import TOLERANCE, Step
 from mmrs_moos.words import DEPLOY, DONE, STEP, text
@@ -30,7 +30,7 @@ def behaviours_of(step: Step, context: VehicleContext) -> Iterator[Behaviour]:
     """
     turn = [("condition", f"{DEPLOY} = true"), ("condition", f"{STEP} = {step.id}")]
     place = f"{text(step.place[0])},{text(step.place[1])}"
-    radius = MANNERS[context.robot.travel_mode].radius
+    radius = TRAVEL_MARGINS[context.robot.travel_mode].radius
     if step.speed is not None:
         settles = f"{step.id}_settles"
         yield Behaviour(

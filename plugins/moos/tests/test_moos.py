@@ -11,7 +11,7 @@ from marine_programs import MANY_PROGRAMS, inputs, rendered
 from mmrs_moos.target import MOOS
 from moos_reader import Helm, read, run
 
-from mmrs_core.behaviour.program import Target, Transition
+from mmrs_core.behaviour.program import MoveTarget, Transition
 from mmrs_core.errors import UnsupportedError
 from mmrs_core.generation.render import render
 from mmrs_core.scene import Frame
@@ -76,7 +76,7 @@ def test_a_hold_of_next_to_nothing_still_ends(given, dive):
     ("changes", "why"),
     [
         ({"speed": 1e-4}, "its speed of 0 m/s is not from 0.01 to 100"),
-        ({"target": Target((9.0, 0.0, -20_000.0))}, "no sea is deeper than 11,000 m"),
+        ({"target": MoveTarget((9.0, 0.0, -20_000.0))}, "no sea is deeper than 11,000 m"),
     ],
 )
 def test_speeds_and_depths_that_mean_nothing_are_refused(given, dive, changes, why):
@@ -206,7 +206,7 @@ def test_a_local_behaviour_is_expressed(given, dive):
 
 
 def test_what_a_helm_cannot_do_is_told_with_its_move(given, dive):
-    lost = dive("a", 9.0, 0.0, 5.0, target=Target((9.0, 0.0, -5.0), "a buoy", 1.0))
+    lost = dive("a", 9.0, 0.0, 5.0, target=MoveTarget((9.0, 0.0, -5.0), "a buoy", 1.0))
     with pytest.raises(UnsupportedError, match="move 'a': object 'a buoy'"):
         render(MOOS, given(lost))
 

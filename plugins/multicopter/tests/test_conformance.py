@@ -5,7 +5,7 @@ from dataclasses import replace
 from mmrs_multicopter import plugin
 from mmrs_multicopter.names import DRONE, GO_TO, LAND, TAKE_OFF
 
-from mmrs_core.behaviour.program import Move, Target
+from mmrs_core.behaviour.program import Move, MoveTarget
 from mmrs_core.scene import Battery
 from mmrs_core.testing.conformance import (
     MetamodelConformance,
@@ -32,7 +32,7 @@ MOVES = {
     "TakeOff": Move("up", (TAKE_OFF,), {"altitude": 30.0}),
     "Land": Move("down", (LAND,)),
     "GoTo": Move(
-        "go", (GO_TO,), {"trajectory": "VERTICAL_FIRST"}, target=Target((70.0, -40.0, 25.0)), distance=2.0
+        "go", (GO_TO,), {"trajectory": "VERTICAL_FIRST"}, target=MoveTarget((70.0, -40.0, 25.0)), distance=2.0
     ),
 }
 

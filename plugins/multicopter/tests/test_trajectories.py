@@ -9,14 +9,14 @@ from hypothesis import strategies as st
 from mmrs_multicopter.names import GO_TO
 from mmrs_multicopter.trajectories import path, travel
 
-from mmrs_core.behaviour.program import Move, Target
+from mmrs_core.behaviour.program import Move, MoveTarget
 
 METRES = st.integers(-500, 500).map(float)
 POSITIONS = st.tuples(METRES, METRES, METRES)
 
 
 def go_to(target, trajectory="DIRECT", distance=0.0):
-    return Move("m", (GO_TO,), {"trajectory": trajectory}, target=Target(target), distance=distance)
+    return Move("m", (GO_TO,), {"trajectory": trajectory}, target=MoveTarget(target), distance=distance)
 
 
 def trajectories(route):
@@ -85,10 +85,10 @@ def test_a_distance_ends_the_way_that_far_from_the_target_and_never_nearer(
 
 
 def test_an_object_without_a_place_has_no_known_path():
-    move = Move("m", (GO_TO,), {"trajectory": "DIRECT"}, target=Target(None, "buoy"))
+    move = Move("m", (GO_TO,), {"trajectory": "DIRECT"}, target=MoveTarget(None, "buoy"))
     assert path(move, (0.0, 0.0, 1.0), None) is None
 
 
 def test_a_trajectory_that_is_not_given_is_direct():
-    move = Move("m", (GO_TO,), target=Target((3.0, 4.0, 9.0)))
+    move = Move("m", (GO_TO,), target=MoveTarget((3.0, 4.0, 9.0)))
     assert path(move, (0.0, 0.0, 1.0), None) == ((0.0, 0.0, 1.0), (3.0, 4.0, 9.0))

@@ -7,11 +7,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 from mmrs_rover.kinds import ROVER_KIND, kinematics
 
-from mmrs_core.behaviour.program import BEHAVIOUR, Move, Target
+from mmrs_core.behaviour.program import BEHAVIOUR, Move, MoveTarget
 from mmrs_core.errors import InfeasibleError
 from mmrs_core.transformation.kinds import path_seconds
 
-TO_TEN = Move("m", ((BEHAVIOUR, "GoTo"),), {}, target=Target((11.0, 1.0, 2.0)))
+TO_TEN = Move("m", ((BEHAVIOUR, "GoTo"),), {}, target=MoveTarget((11.0, 1.0, 2.0)))
 
 
 def test_a_rover_stays_on_the_level_of_its_home(rover, field):

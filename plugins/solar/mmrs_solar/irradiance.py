@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from math import isfinite
 
-from mmrs_core.analysis.verdicts import Gap, Margin, for_each_robot, judged
+from mmrs_core.analysis.verdicts import Margin, UnknownMove, for_each_robot, judged
 from mmrs_core.behaviour.program import RobotProgram
 from mmrs_core.contributions.checks import Check, CheckInput, Verdict
 from mmrs_solar.names import IRRADIANCE
@@ -18,9 +18,11 @@ def _judge(given: CheckInput, robot: RobotProgram) -> Iterator[Verdict]:
     sunlight = given.environment.get("irradiance")
     for move, needed in _needs(robot):
         if needed is None:
-            gaps.append(Gap(move, f"its {IRRADIANCE} is no number"))
+            gaps.append(UnknownMove(move, f"its {IRRADIANCE} is no number"))
         elif sunlight is None:
-            gaps.append(Gap(move, f"images need {needed:g} W/m², the environment states no irradiance"))
+            gaps.append(
+                UnknownMove(move, f"images need {needed:g} W/m², the environment states no irradiance")
+            )
         else:
             words = f"images need {needed:g} W/m², the irradiance is {sunlight:g} W/m²"
             margins.append(Margin(sunlight - needed, move, words))

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 
 from mmrs_core.analysis.constraints.blocked import BlockedLine, blocked_line
-from mmrs_core.analysis.constraints.places import (
+from mmrs_core.analysis.constraints.clearances import (
     covered,
     partly_covered,
     positions_of,

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from mmrs_core import builtin
-from mmrs_core.behaviour.program import Heading, Target
+from mmrs_core.behaviour.program import Heading, MoveTarget
 from mmrs_core.scene import Device, DeviceAction
 from mmrs_core.testing.conformance import (
     DeviceWiringConformance,
@@ -18,7 +18,7 @@ from mmrs_core.testing.programs import (
 )
 from mmrs_core.testing.scenes import sample_robot
 
-PLACE = Target((70.0, -40.0, 25.0))
+PLACE = MoveTarget((70.0, -40.0, 25.0))
 
 
 MOVES = {

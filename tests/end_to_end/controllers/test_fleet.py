@@ -5,7 +5,7 @@ from dataclasses import replace
 import pytest
 from ports import free_endpoint
 
-from mmrs_core.behaviour.program import Target, Transition
+from mmrs_core.behaviour.program import MoveTarget, Transition
 from mmrs_core.scene import Device, DeviceAction, Frame
 from mmrs_core.testing.programs import (
     LAND,
@@ -187,7 +187,7 @@ def test_a_wrong_command_line_is_a_usage_error(controllers, arguments, complaint
 
 def buoy(tolerance: float):
     goes = replace(
-        go_to("a", (0.0, 20.0, 10.0)), target=Target((0.0, 20.0, 10.0), "a buoy", tolerance), distance=4.0
+        go_to("a", (0.0, 20.0, 10.0)), target=MoveTarget((0.0, 20.0, 10.0), "a buoy", tolerance), distance=4.0
     )
     return program(robot_program("alpha", [take_off("up", 10.0), goes, LAND]))
 

@@ -15,7 +15,7 @@ from mmrs_core.cli.demo import example_folder
 from mmrs_core.cli.simulation import write_logs
 from mmrs_core.contributions.checks import Status
 from mmrs_core.pipeline import simulate
-from mmrs_core.simulation.run import Run
+from mmrs_core.simulation.run import SimulatedRun
 from mmrs_runtime.semantics import Outcome
 
 pytestmark = pytest.mark.together("examples")
@@ -30,7 +30,7 @@ NEAR = 2.5
 class Search:
     """A run, what was chosen, and how near the vehicle came to a place at most."""
 
-    run: Run
+    run: SimulatedRun
     accepted: bool
 
     @property

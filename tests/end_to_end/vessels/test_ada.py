@@ -22,7 +22,7 @@ from waiting_pair import waiting_pair
 
 from auv_vessel.eyes import Detection
 from mmrs_core.behaviour.log import read_logs
-from mmrs_core.behaviour.program import BEHAVIOUR, Action, Heading, Move, Program, Target, Transition
+from mmrs_core.behaviour.program import BEHAVIOUR, Action, Heading, Move, MoveTarget, Program, Transition
 from mmrs_core.behaviour.reading import program_of
 from mmrs_core.behaviour.replay import replay
 from mmrs_core.contributions.targets import TargetInput
@@ -55,11 +55,11 @@ def feedback_move(name: str) -> Move:
 
 def everything():
     """Return a behaviour with all kinds of moves and actions, whose choice all decide alike."""
-    turn = replace(move('turn "x"\n', "HeadTo"), heading=Heading(Target((0.0, 10.0, -1.0))))
+    turn = replace(move('turn "x"\n', "HeadTo"), heading=Heading(MoveTarget((0.0, 10.0, -1.0))))
     there = swim("there", 0.5, 0.5, 0.7, after=(notify(("naiad", "go")), feedback("there")))
     hold = move("hold", "HoldPosition", duration=1.0)
     looking = swim(
-        "looking", 0.3, 0.2, 0.9, before=(PHOTO,), heading=Heading(Target((5.0, 5.0, -1.0)), "", 30.0)
+        "looking", 0.3, 0.2, 0.9, before=(PHOTO,), heading=Heading(MoveTarget((5.0, 5.0, -1.0)), "", 30.0)
     )
     short = swim("é", -0.5, 0.0, 0.8, after=(PHOTO,), task="home", distance=0.5, speed=0.3)
     return dive(
@@ -105,7 +105,7 @@ def some_moves(random: Random) -> list[Move]:
     for number in range(random.randint(2, 4)):
         north, east = (round(random.uniform(-1.0, 1.0), 3) for _ in range(2))
         depth = round(random.uniform(0.5, 1.2), 3)
-        look = Heading(Target((20.0 * north, 20.0 * east, -1.0)), "", random.choice([0.0, 90.0]))
+        look = Heading(MoveTarget((20.0 * north, 20.0 * east, -1.0)), "", random.choice([0.0, 90.0]))
         name = f"{random.choice(['end', 'é', 'a b'])}{number}"
         kind = random.choice(["goes", "goes", "looks", "short", "holds", "turns"])
         gone = swim(name, east, north, depth, task=random.choice(["", "t", "T"]))
@@ -191,7 +191,7 @@ def same_goal(goal: Said, wanted: Said) -> str:
 
 def buoy(tolerance: float) -> Move:
     """Return an approach to a buoy, which the vehicle then faces."""
-    target = Target((1.5, 0.0, -1.0), "a buoy", tolerance)
+    target = MoveTarget((1.5, 0.0, -1.0), "a buoy", tolerance)
     return swim("near", 0.0, 0.0, 0.0, target=target, heading=Heading(target), distance=0.5)
 
 

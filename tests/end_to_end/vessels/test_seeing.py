@@ -22,7 +22,7 @@ from ports import free_port
 
 from auv_vessel.body.surroundings import BUOY, Surroundings, Thing, to_json
 from mmrs_core.behaviour.log import read_logs
-from mmrs_core.behaviour.program import Heading, Move, Program, Target, Transition
+from mmrs_core.behaviour.program import Heading, Move, MoveTarget, Program, Transition
 from mmrs_core.behaviour.replay import replay
 from mmrs_core.simulation.live import run_live
 from mmrs_core.testing.programs import feedback, move
@@ -43,7 +43,7 @@ STAND_OFF = 1.5
 
 def looking() -> Program:
     """Return a dive to a buoy that is not quite where it is expected, and to what is chosen there."""
-    target = Target((4.0, 0.0, -1.5), "red buoy", 1.5)
+    target = MoveTarget((4.0, 0.0, -1.5), "red buoy", 1.5)
     near = swim("near", 0.0, 0.0, 0.0, target=target, heading=Heading(target), distance=STAND_OFF)
     ways = {
         1: Transition(1, 2, condition="detected:red buoy", otherwise=4),

@@ -7,8 +7,8 @@ import pytest
 from checking import given, kind, land, recharge, rover, square, strange, take_off
 
 from mmrs_core.analysis.checks import CHECKS
-from mmrs_core.analysis.verification import verify
-from mmrs_core.behaviour.program import Target
+from mmrs_core.analysis.verdicts import verify
+from mmrs_core.behaviour.program import MoveTarget
 from mmrs_core.scene import Part
 from mmrs_core.testing.small_programs import go, hold, notify, robot, use
 
@@ -56,7 +56,7 @@ def broken():
         hold("long", 2000.0),
         recharge("charge", 10.0),
     ]
-    lost = replace(go("to the boat", (0.0, 0.0, 0.0)), target=Target(None, "boat", None))
+    lost = replace(go("to the boat", (0.0, 0.0, 0.0)), target=MoveTarget(None, "boat", None))
     b = [take_off("up", 10.0), lost, land("down"), strange("dig")]
     c = [hold("fork"), hold("tell", after=(notify("a.go"),)), go("under", (0.0, 0.0, -30.0))]
     return (

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from mmrs_core.behaviour.program import Target, Transition
+from mmrs_core.behaviour.program import MoveTarget, Transition
 from mmrs_core.errors import UnsupportedError
 from mmrs_core.generation.render import render
 from mmrs_core.scene import Frame
@@ -32,7 +32,7 @@ BY_NAME = {target.name: target for target in TARGETS}
 def choosing():
     """Return a robot that chooses, goes to an object, and holds in a local frame."""
     buoy = replace(
-        go_to("seek", (4.0, 6.0, 5.0)), target=Target((4.0, 6.0, 5.0), "a buoy", 1.5), distance=1.0
+        go_to("seek", (4.0, 6.0, 5.0)), target=MoveTarget((4.0, 6.0, 5.0), "a buoy", 1.5), distance=1.0
     )
     robot = robot_program(
         "Triton 1",

@@ -6,7 +6,7 @@ from math import sqrt
 import pytest
 from checking import finding, findings, given, kind, land, rover, square, strange, take_off
 
-from mmrs_core.behaviour.program import Target
+from mmrs_core.behaviour.program import MoveTarget
 from mmrs_core.contributions.checks import Status
 from mmrs_core.scene import Area, AreaUse, Part
 from mmrs_core.testing.small_programs import go, hold, robot
@@ -118,14 +118,14 @@ def test_a_leg_begins_wherever_an_arm_of_a_choice_may_have_ended():
 
 
 def test_an_object_is_as_far_as_its_tolerance_from_its_place():
-    near = Target((20.0, 0.0, 0.0), "buoy", 3.0)
+    near = MoveTarget((20.0, 0.0, 0.0), "buoy", 3.0)
     moves = [to_object(go("to buoy", (0.0, 0.0, 0.0)), near)]
     verdict = past(*moves, area=square(at=(20.0, 6.0)))
     assert verdict.margin == pytest.approx(5.0 - 3.0 - 0.5)
 
 
 def test_what_is_not_known_of_an_object_is_carried_into_the_next_leg_until_a_known_target():
-    near = Target((20.0, 0.0, 0.0), "buoy", 3.0)
+    near = MoveTarget((20.0, 0.0, 0.0), "buoy", 3.0)
     moves = [
         to_object(go("to buoy", (0.0, 0.0, 0.0)), near),
         go("aside", (20.0, -40.0, 0.0)),
@@ -139,7 +139,7 @@ def test_what_is_not_known_of_an_object_is_carried_into_the_next_leg_until_a_kno
 
 
 def test_an_object_without_a_place_is_unknown_and_says_so():
-    lost = to_object(go("to buoy", (0.0, 0.0, 0.0)), Target(None, "buoy", None))
+    lost = to_object(go("to buoy", (0.0, 0.0, 0.0)), MoveTarget(None, "buoy", None))
     verdict = past(lost, go("home", (0.0, 0.0, 0.0)), area=square(at=(0.0, 30.0)))
     assert (verdict.status, verdict.move) == (Status.UNKNOWN, "to buoy")
     assert verdict.message == (
@@ -148,7 +148,7 @@ def test_an_object_without_a_place_is_unknown_and_says_so():
 
 
 def test_an_object_without_a_tolerance_is_unknown():
-    vague = to_object(go("to buoy", (0.0, 0.0, 0.0)), Target((5.0, 0.0, 0.0), "buoy", None))
+    vague = to_object(go("to buoy", (0.0, 0.0, 0.0)), MoveTarget((5.0, 0.0, 0.0), "buoy", None))
     verdict = past(vague, area=square(at=(0.0, 30.0)))
     assert verdict.status is Status.UNKNOWN
     assert "how far the object 'buoy' may be from its place" in verdict.message

@@ -6,7 +6,7 @@ import pytest
 
 from mmrs_core import pipeline
 from mmrs_core.analysis.checks import CHECKS
-from mmrs_core.analysis.verification import refuses, verify
+from mmrs_core.analysis.verdicts import refuses, verify
 from mmrs_core.contributions.checks import CheckInput, Status
 from mmrs_core.resources import shipped
 from mmrs_core.scene import AreaUse

@@ -6,9 +6,9 @@ from math import inf
 import pytest
 from checking import finding, findings, given, kind, land, recharge, rover, take_off, uneven
 
-from mmrs_core.analysis.certainty import certain_moves
+from mmrs_core.analysis.dependencies import certain_moves
 from mmrs_core.analysis.times import times_of
-from mmrs_core.behaviour.program import Target
+from mmrs_core.behaviour.program import MoveTarget
 from mmrs_core.contributions.checks import Status
 from mmrs_core.scene import Battery
 from mmrs_core.testing.small_programs import go, hold, notify, robot, use
@@ -187,7 +187,7 @@ def test_what_was_used_before_a_recharge_is_not_certain_of_the_next_sortie():
 
 
 def test_a_hold_where_nobody_knows_takes_its_time():
-    lost = replace(go("g", (0.0, 0.0, 0.0)), target=Target(None, "buoy", None))
+    lost = replace(go("g", (0.0, 0.0, 0.0)), target=MoveTarget(None, "buoy", None))
     for property in ("endurance", "energy"):
         verdict = findings(property, given(robot("a", [lost, hold("h", 801.0)])))[0]
         assert (verdict.status, verdict.move) == (Status.VIOLATED, "h")
@@ -207,7 +207,7 @@ def test_a_robot_without_a_home_may_rest_on_the_ground():
 
 
 def test_an_object_may_be_further_than_it_is_expected():
-    to_buoy = replace(go("m1", (100.0, 0.0, 0.0)), target=Target((100.0, 0.0, 0.0), "buoy", 6.0))
+    to_buoy = replace(go("m1", (100.0, 0.0, 0.0)), target=MoveTarget((100.0, 0.0, 0.0), "buoy", 6.0))
     assert seconds(robot("a", [to_buoy])) == 53.0
 
 

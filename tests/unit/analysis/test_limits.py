@@ -5,8 +5,8 @@ from dataclasses import replace
 import pytest
 from checking import FLYER, finding, findings, given, kind, land, rover, square, strange, take_off
 
-from mmrs_core.analysis.heights import ATMOSPHERE, GRAVITY
-from mmrs_core.behaviour.program import Heading, Target
+from mmrs_core.analysis.envelope import ATMOSPHERE, GRAVITY
+from mmrs_core.behaviour.program import Heading, MoveTarget
 from mmrs_core.contributions.checks import Status
 from mmrs_core.scene import DeviceAction, Part
 from mmrs_core.testing.small_programs import go, hold, robot, use
@@ -175,7 +175,7 @@ def test_parameters_that_the_action_accepts_are_safe():
 
 
 def test_a_heading_needs_its_device():
-    looking = replace(AWAY, heading=Heading(Target((0.0, 0.0, 0.0)), "lamp"))
+    looking = replace(AWAY, heading=Heading(MoveTarget((0.0, 0.0, 0.0)), "lamp"))
     verdict = finding("devices", given(robot("a", [looking]), type=rover(devices=CAMERA)))
     assert verdict.message == "a: GoTo 'away' points device 'lamp', which 'rover' does not have"
 

@@ -6,8 +6,7 @@ import pytest
 from checking import given, kind, rover, square, strange
 
 from mmrs_core.analysis.checks import CHECKS
-from mmrs_core.analysis.verdicts import Margin, judged
-from mmrs_core.analysis.verification import refuses, verify
+from mmrs_core.analysis.verdicts import Margin, judged, refuses, verify
 from mmrs_core.contributions.checks import Check, Status, Verdict
 from mmrs_core.testing.small_programs import go, robot
 

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from mmrs_core.analysis.fixes.repair import Change, Diagnosis, Repair
+from mmrs_core.analysis.fixes.repair import Diagnosis, FileChange, Repair
 from mmrs_core.cli import run
 from mmrs_core.cli.fixing import write
 from mmrs_core.errors import UnreadableError
@@ -26,7 +26,7 @@ def project(tmp_path, monkeypatch):
 
 
 def repair_of(*files):
-    changes = tuple(Change(file.name, file, file.read_bytes(), b"new") for file in files)
+    changes = tuple(FileChange(file.name, file, file.read_bytes(), b"new") for file in files)
     return Repair(changes, {}, (), (), Diagnosis(True, ()))
 
 

@@ -10,7 +10,7 @@ import pytest
 from mmrs_core.scene import Kinematics
 from mmrs_core.simulation.legs import (
     CLIMBING,
-    Leg,
+    TimedLeg,
     bearing,
     cost,
     current,
@@ -138,7 +138,7 @@ def test_turns_go_the_shorter_way_round(first, last, by):
 
 
 def test_a_leg_knows_where_the_robot_is_and_what_is_left_at_any_time():
-    leg = Leg(10.0, 30.0, HERE, EAST, (350.0, 10.0), charge=15.0, rate=0.5)
+    leg = TimedLeg(10.0, 30.0, HERE, EAST, (350.0, 10.0), charge=15.0, rate=0.5)
     assert leg.position(20.0) == (50.0, 0.0, 0.0)
     assert leg.heading(20.0) == pytest.approx(0.0)
     assert leg.charge_at(20.0) == 10.0

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import pytest
 
-from mmrs_core.behaviour.program import Action, Heading, Move, Target
+from mmrs_core.behaviour.program import Action, Heading, Move, MoveTarget
 from mmrs_core.contributions.execution import Fault
 from mmrs_core.contributions.vehicles import VehicleInput
 from mmrs_core.errors import UnsupportedError, UsageError
@@ -75,7 +75,7 @@ def test_a_robot_begins_at_its_home(fly):
 
 
 def test_a_turn_takes_the_angle_over_the_turn_rate(fly):
-    look = Heading(Target((0.0, -9.0, 0.0)))
+    look = Heading(MoveTarget((0.0, -9.0, 0.0)))
     head = Move("turn", ((BEHAVIOUR, "HeadTo"), MOVE), heading=look)
     run = fly(program(robot("r", [head])))
     assert times(run, "turn") == (0.0, 2.0)
@@ -304,7 +304,7 @@ def test_a_planned_return_that_does_not_suffice_is_cut_short(fly, acceleration, 
 
 
 def test_an_object_whose_place_nobody_knows_is_found_where_the_robot_is_and_a_note_says_so(fly):
-    wreck = Move("g", ((BEHAVIOUR, "GoTo"), MOVE), target=Target(None, "wreck", None))
+    wreck = Move("g", ((BEHAVIOUR, "GoTo"), MOVE), target=MoveTarget(None, "wreck", None))
     run = fly(program(robot("r", [go("near", (30, 0, 0)), wreck])))
     assert run.ending.outcome is Outcome.SUCCESS
     assert last(run).east == 30.0
@@ -371,7 +371,7 @@ def test_state_lies_between_the_ends_of_a_leg_and_faces_its_way(kinds):
 
 
 def test_a_robot_faces_what_its_heading_points_at_turned_by_the_angle(kinds):
-    look = Heading(Target((30.0, 50.0, 0.0)), angle_degrees=90.0)
+    look = Heading(MoveTarget((30.0, 50.0, 0.0)), angle_degrees=90.0)
     move = go("g", (30, 0, 0), heading=look)
     moved = SimulatedRobot(given(program(robot("r", [move])), kinds))
     moved.do(move, 0.0)

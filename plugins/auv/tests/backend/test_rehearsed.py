@@ -13,7 +13,7 @@ from mmrs_auv.backend.rehearsed import RehearsedRobot
 
 from auv_vessel.body.surroundings import BUOY, Surroundings, Thing, to_json
 from auv_vessel.movement import movement, progress
-from mmrs_core.behaviour.program import Action, Heading, Move, Target, Transition
+from mmrs_core.behaviour.program import Action, Heading, Move, MoveTarget, Transition
 from mmrs_core.contributions.execution import Condition
 from mmrs_core.errors import UnsupportedError
 from mmrs_core.scene import Area, AreaUse, Device, Policy, RobotType
@@ -50,7 +50,7 @@ def test_a_thruster_that_fails_is_told(tmp_path: Path, monkeypatch: pytest.Monke
 
 
 def test_every_move_and_action_is_carried_out(tmp_path: Path) -> None:
-    look = Heading(Target((5.0, 0.0, -1.5)), angle_degrees=90.0)
+    look = Heading(MoveTarget((5.0, 0.0, -1.5)), angle_degrees=90.0)
     out = swim("out", 3.0, 2.0, 1.5, after=(SAMPLE, feedback("there", ("depth", "1.5"))))
     stay = move("stay", "HoldPosition", duration=5.0)
     turn = replace(move("turn", "HeadTo"), heading=look)
@@ -69,7 +69,7 @@ def test_every_move_and_action_is_carried_out(tmp_path: Path) -> None:
 
 
 def test_a_turn_points_where_it_is_to(tmp_path: Path) -> None:
-    look = Heading(Target((10.0, 0.0, -0.5)))
+    look = Heading(MoveTarget((10.0, 0.0, -0.5)))
     found = rehearse(dive(replace(move("turn", "HeadTo"), heading=look)), tmp_path, noise="no")
     assert found.robots["naiad"].stage.vehicle.truth.heading == pytest.approx(90.0, abs=6.0)
 
@@ -82,7 +82,7 @@ def with_a_sonar(properties: dict[str, str]) -> RobotType:
 def test_a_turn_points_a_device_that_looks_aside(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     kind = with_a_sonar({"mount.yaw": "-90"})
     monkeypatch.setattr(dives, "diver", lambda: kind)
-    look = Heading(Target((10.0, 0.0, -0.5)), "sonar")
+    look = Heading(MoveTarget((10.0, 0.0, -0.5)), "sonar")
     found = rehearse(dive(replace(move("turn", "HeadTo"), heading=look)), tmp_path, noise="no")
     assert found.robots["naiad"].stage.vehicle.truth.heading == pytest.approx(180.0, abs=6.0)
 
@@ -99,7 +99,7 @@ def test_what_cannot_point_there_is_refused(
 ) -> None:
     kind = with_a_sonar(properties)
     monkeypatch.setattr(dives, "diver", lambda: kind)
-    look = Heading(Target((10.0, 0.0, -0.5)), "sonar")
+    look = Heading(MoveTarget((10.0, 0.0, -0.5)), "sonar")
     with pytest.raises(UnsupportedError) as error:
         rehearse(dive(replace(move("turn", "HeadTo"), heading=look)), tmp_path)
     assert f"move 'turn': {why}" in error.value.elements
@@ -244,7 +244,7 @@ def buoy_at(folder: Path, east: float) -> str:
 
 
 def test_objects_are_gone_to_where_they_are_seen(tmp_path: Path) -> None:
-    target = Target((6.0, 0.0, -1.5), BUOY_NAME, 2.0)
+    target = MoveTarget((6.0, 0.0, -1.5), BUOY_NAME, 2.0)
     go = replace(swim("buoy", 0.0, 0.0, 0.0), target=target, distance=1.0)
     found = rehearse(dive(go), tmp_path / "a", objects="seen", surroundings=buoy_at(tmp_path, 7.2))
     assert found.run.ending.outcome is Outcome.SUCCESS
@@ -256,7 +256,9 @@ def sought_among(tmp_path: Path, *easts: float, **options: str) -> Rehearsed:
     file = tmp_path / "pool.json"
     things = tuple(Thing(BUOY, BUOY_NAME, 0.3, east, 1.5, colour="red", size=0.3) for east in easts)
     file.write_text(to_json(Surroundings(bottom=4.0, things=things)))
-    go = replace(swim("buoy", 0.0, 0.0, 0.0), target=Target((7.0, 0.0, -1.5), BUOY_NAME, 2.0), distance=1.0)
+    go = replace(
+        swim("buoy", 0.0, 0.0, 0.0), target=MoveTarget((7.0, 0.0, -1.5), BUOY_NAME, 2.0), distance=1.0
+    )
     return rehearse(dive(go), tmp_path / "logs", surroundings=str(file), heading="90", **options)
 
 
@@ -287,7 +289,7 @@ def test_a_vehicle_that_sees_only_what_is_too_far_away_says_so_and_comes_up(tmp_
 
 def test_objects_are_found_in_pictures(tmp_path: Path) -> None:
     pytest.importorskip("cv2")
-    target = Target((5.0, 0.0, -1.5), BUOY_NAME, 1.5)
+    target = MoveTarget((5.0, 0.0, -1.5), BUOY_NAME, 1.5)
     go = replace(swim("buoy", 0.0, 0.0, 0.0), target=target, distance=1.0)
     around = buoy_at(tmp_path, 5.8)
     found = rehearse(dive(go), tmp_path / "a", objects="cameras", surroundings=around, heading="90")
@@ -399,7 +401,7 @@ def test_what_cannot_be_done_is_refused(tmp_path: Path) -> None:
         rehearse(dive(), tmp_path, current="north")
     with pytest.raises(UnsupportedError):
         rehearse(dive(take_off("up", 3.0)), tmp_path)
-    nowhere = replace(swim("x", 0.0, 0.0, 1.0), target=Target(None, "wreck", None))
+    nowhere = replace(swim("x", 0.0, 0.0, 1.0), target=MoveTarget(None, "wreck", None))
     with pytest.raises(UnsupportedError) as refused:
         rehearse(dive(nowhere), tmp_path)
     assert "'x'" in str(refused.value.elements)

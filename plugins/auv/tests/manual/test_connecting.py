@@ -11,7 +11,7 @@ from mmrs_auv.manual import ARDUSUB_MANUAL
 from patience import until
 from ports import free_port
 
-from mmrs_core.behaviour.program import Target
+from mmrs_core.behaviour.program import MoveTarget
 from mmrs_core.contributions.vehicles import Live
 from mmrs_core.errors import UnsupportedError
 from mmrs_core.testing.programs import move
@@ -96,7 +96,7 @@ def test_who_is_told_to_end_while_it_gets_ready_arms_nothing():
     ("moves", "why"),
     [
         ((dive("a", 5.0, 0.0, -1.0),), "leads 1 m above the surface"),
-        ((dive("a", 5.0, 0.0, 1.0, target=Target((5.0, 0.0, -1.0), "a buoy", 1.0)),), "object 'a buoy'"),
+        ((dive("a", 5.0, 0.0, 1.0, target=MoveTarget((5.0, 0.0, -1.0), "a buoy", 1.0)),), "object 'a buoy'"),
         ((move("a", "Recharge", duration=60.0),), "Recharge is not known to this backend"),
     ],
 )

@@ -17,7 +17,7 @@ from mmrs_auv.targets.ada.bus import catalogue
 from mmrs_auv.targets.ada.refusals import refusals
 from mmrs_auv.targets.ada.target import ADA
 
-from mmrs_core.behaviour.program import BEHAVIOUR, Action, Heading, Target, Transition
+from mmrs_core.behaviour.program import BEHAVIOUR, Action, Heading, MoveTarget, Transition
 from mmrs_core.contributions.targets import TargetInput
 from mmrs_core.errors import UnsupportedError
 from mmrs_core.generation.render import render
@@ -206,7 +206,7 @@ def test_places_and_parameters_that_no_message_holds_are_refused():
         (swim("a", 1.0, 2.0, 1.0, speed=float("nan")), "speed is nan"),
         (swim("a", 1.0, float("inf"), 1.0), "target is inf"),
         (
-            swim("a", 1.0, 2.0, 1.0, heading=Heading(Target((1.0, 2.0, 3.0)), "", float("nan"))),
+            swim("a", 1.0, 2.0, 1.0, heading=Heading(MoveTarget((1.0, 2.0, 3.0)), "", float("nan"))),
             "angle is nan",
         ),
         (move("a", "HoldPosition", duration=float("inf")), "duration is inf"),
@@ -250,7 +250,7 @@ def test_a_device_that_looks_aside_is_pointed_by_turning_the_vehicle():
     type = diver()
     camera = replace(type.devices["front-camera"], properties={"mount.yaw": "90"})
     type = replace(type, devices={**type.devices, "front-camera": camera})
-    aside = swim("a", 1.0, 2.0, 1.0, heading=Heading(Target((1.0, 9.0, -1.0)), "front-camera", 10.0))
+    aside = swim("a", 1.0, 2.0, 1.0, heading=Heading(MoveTarget((1.0, 9.0, -1.0)), "front-camera", 10.0))
     assert "Made.Angle := 100.0;" in mission_of(dive(aside), type)
 
 

@@ -16,7 +16,7 @@ from ports import free_endpoint
 
 from auv_vessel.sheet import from_json
 from mmrs_core.behaviour.log import read_logs
-from mmrs_core.behaviour.program import Program, Target, Transition
+from mmrs_core.behaviour.program import MoveTarget, Program, Transition
 from mmrs_core.behaviour.replay import replay
 from mmrs_core.contributions.targets import TargetInput
 from mmrs_core.errors import UnsupportedError
@@ -253,7 +253,7 @@ def test_objects_that_no_camera_looks_for_are_asked_for(tmp_path: Path) -> None:
 
 
 def to_buoy() -> Program:
-    seeks = replace(swim("a", 1.0, 2.0, 1.0), target=Target((1.0, 2.0, -1.0), "red buoy", 3.0))
+    seeks = replace(swim("a", 1.0, 2.0, 1.0), target=MoveTarget((1.0, 2.0, -1.0), "red buoy", 3.0))
     return dive(seeks)
 
 

@@ -10,7 +10,7 @@ from typing import Any, ClassVar
 from mmrs_core.behaviour.earth import degrees_of, metres
 from mmrs_core.behaviour.program import Action, Heading, Move, RobotProgram
 from mmrs_core.behaviour.rally_points import RallyPoints, rally_points_of
-from mmrs_core.behaviour.travel import capability_of, manner_of
+from mmrs_core.behaviour.travel import capability_of, travel_margins_of
 from mmrs_core.contributions.targets import TargetInput
 from mmrs_core.contributions.wiring import Sampled, Unwired, Wired
 from mmrs_core.generation.context import require_home
@@ -142,9 +142,9 @@ class MavlinkPython(PythonDriver[VehicleContext]):
             context.degrees.find([*kept.vertices, *(home[:2] for _, home in homes)])
         yield "neighbours", tuple((name, place_of(home, context)) for name, home in homes)
         yield from _endurance(context)
-        manner = manner_of(robot, input.program.position_error)
+        margins = travel_margins_of(robot, input.program.position_error)
         names = ("acceptance", "radius", "margin")
-        how = tuple((name, getattr(manner, name)) for name in names)
+        how = tuple((name, getattr(margins, name)) for name in names)
         yield "travel", Call("Travel", (robot.travel_mode,), how)
         yield "runs", tuple(_run(run, robot) for run in runs_of(context))
         yield (

@@ -10,7 +10,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from mmrs_core.behaviour.program import Heading, Target, Transition
+from mmrs_core.behaviour.program import Heading, MoveTarget, Transition
 from mmrs_core.contributions.wiring import DeviceWiring, Wired
 from mmrs_core.errors import UnsupportedError
 from mmrs_core.generation.render import render
@@ -228,7 +228,9 @@ def test_a_response_to_a_lost_link_that_the_vehicle_cannot_give_by_itself_is_ref
 
 
 def test_an_object_is_looked_for_by_the_users_own_function():
-    goes = replace(go_to("a", (0.0, 9.0, 5.0)), target=Target((0.0, 9.0, 5.0), "a buoy", 2.0), distance=3.0)
+    goes = replace(
+        go_to("a", (0.0, 9.0, 5.0)), target=MoveTarget((0.0, 9.0, 5.0), "a buoy", 2.0), distance=3.0
+    )
     files = generated(program(robot_program("alpha", [take_off("up", 5.0), goes, LAND])))
     source = files["robot_alpha.py"].decode()
     assert 'GoTo(Object("a buoy", Geographic(42.370081, 13.35, 5.0), 2.0), speed=5.0, distance=3.0)' in source
@@ -260,7 +262,7 @@ def test_what_is_lost_is_a_step_without_effect():
 
 
 def test_a_device_on_the_robots_side_turns_the_robot():
-    looks = go_to("a", (0.0, 9.0, 5.0), heading=Heading(Target((5.0, 5.0, 0.0)), "side", 90.0))
+    looks = go_to("a", (0.0, 9.0, 5.0), heading=Heading(MoveTarget((5.0, 5.0, 0.0)), "side", 90.0))
     side = Device("side", {"look": DeviceAction("look", 1.0)}, {"mount.yaw": "270"})
     made = program(robot_program("alpha", [take_off("up", 5.0), looks, LAND]))
     source = generated(made, types=[replace(quad(), devices={"side": side})])["robot_alpha.py"].decode()
@@ -274,7 +276,7 @@ def crawler(**properties):
     return replace(quad(), metaclasses=robot, devices={"camera": camera})
 
 
-LOOK = Heading(Target((5.0, 5.0, 0.0)), "camera")
+LOOK = Heading(MoveTarget((5.0, 5.0, 0.0)), "camera")
 DRIVE = go_to("a", (0.0, 9.0, 0.0), heading=LOOK)
 TURN = replace(move("b", "HeadTo"), heading=LOOK)
 

@@ -8,7 +8,7 @@ from dataclasses import replace
 import pytest
 from pymavlink import mavutil, mavwp
 
-from mmrs_core.behaviour.program import Target
+from mmrs_core.behaviour.program import MoveTarget
 from mmrs_core.errors import UnsupportedError
 from mmrs_core.generation.render import render
 from mmrs_core.scene import Frame
@@ -32,7 +32,7 @@ def second_version_of_the_protocol(monkeypatch):
 
 
 def dive(id, east, north, depth):
-    return replace(move(id, "GoTo"), target=Target((east, north, LAKE.surface - depth)), speed=1.0)
+    return replace(move(id, "GoTo"), target=MoveTarget((east, north, LAKE.surface - depth)), speed=1.0)
 
 
 def given(*moves, frame=LAKE):

@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import pytest
 
-from mmrs_core.behaviour.program import Heading, Target, Transition
+from mmrs_core.behaviour.program import Heading, MoveTarget, Transition
 from mmrs_core.errors import UnsupportedError
 from mmrs_core.generation.render import render
 from mmrs_core.geometry.frames import LocalFrame
@@ -103,14 +103,14 @@ def test_an_ardupilot_which_cuts_off_fractions_stays_for_the_next_whole_second()
 
 
 def test_a_heading_is_a_region_of_interest_until_it_ends():
-    looks = go_to("a", (0.0, 30.0, 20.0), heading=Heading(Target((5.0, 5.0, 0.0)), "camera"))
+    looks = go_to("a", (0.0, 30.0, 20.0), heading=Heading(MoveTarget((5.0, 5.0, 0.0)), "camera"))
     plan = plans(take_off("up", 20.0), looks, go_to("b", (0.0, 0.0, 20.0)), LAND)["alpha.plan"]
     assert [command for command, _ in items(plan)] == [22, 178, 195, 16, 197, 16, 21]
 
 
 @pytest.mark.parametrize(("properties", "looks"), [({"mavlink.gimbal": "1"}, [195, 195]), ({}, [])])
 def test_a_ground_vehicle_looks_by_its_gimbal_or_not_at_all(properties, looks):
-    heading = Heading(Target((5.0, 5.0, 0.0)), "camera")
+    heading = Heading(MoveTarget((5.0, 5.0, 0.0)), "camera")
     moves = [
         go_to("a", (0.0, 30.0, 0.0), heading=heading),
         replace(move("b", "HeadTo"), heading=heading),
@@ -291,12 +291,12 @@ def test_a_local_behaviour_is_refused_whatever_is_allowed():
 
 
 def test_an_object_target_is_refused():
-    goes = replace(go_to("a", (0.0, 9.0, 20.0)), target=Target((0.0, 9.0, 20.0), "a buoy", 2.0))
+    goes = replace(go_to("a", (0.0, 9.0, 20.0)), target=MoveTarget((0.0, 9.0, 20.0), "a buoy", 2.0))
     (fault,) = refused(take_off("up", 20.0), goes, LAND)
     assert "object 'a buoy'" in fault
 
 
-AHEAD = Heading(Target((0.0, 90.0, 0.0)), "camera")
+AHEAD = Heading(MoveTarget((0.0, 90.0, 0.0)), "camera")
 
 
 def looking(*moves, **properties):

@@ -9,7 +9,7 @@ from math import isnan
 import pytest
 from pymavlink import mavwp
 
-from mmrs_core.behaviour.program import Heading, Target
+from mmrs_core.behaviour.program import Heading, MoveTarget
 from mmrs_core.errors import UnsupportedError
 from mmrs_core.generation.render import render
 from mmrs_core.scene import Device, DeviceAction
@@ -29,7 +29,7 @@ from mmrs_mavlink.plugin.plans.wpl import WPL
 
 PX4 = {"mavlink.autopilot": "px4"}
 UP, LAND = take_off("up", 20.0), move("down", "Land", uri=MULTICOPTER)
-AHEAD = Heading(Target((0.0, 90.0, 0.0)), "camera")
+AHEAD = Heading(MoveTarget((0.0, 90.0, 0.0)), "camera")
 HERE = go_to("a", (0.0, 30.0, 25.0))
 
 

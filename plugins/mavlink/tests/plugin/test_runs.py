@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import pytest
 
-from mmrs_core.behaviour.program import Heading, Target, Transition
+from mmrs_core.behaviour.program import Heading, MoveTarget, Transition
 from mmrs_core.mavlink.context import context_of
 from mmrs_core.scene import Frame
 from mmrs_core.testing.programs import L_AQUILA, go_to, photo, program, robot_program, target_input
@@ -59,11 +59,11 @@ def test_an_action_inside_ends_a_run():
 @pytest.mark.parametrize(
     "changed",
     [
-        {"heading": Heading(Target((0.0, 0.0, 0.0)))},
+        {"heading": Heading(MoveTarget((0.0, 0.0, 0.0)))},
         {"distance": 2.0},
         {"attributes": {"trajectory": "VERTICAL_FIRST"}},
-        {"target": Target((30.0, 0.0, 20.0), "a buoy", 1.0)},
-        {"target": Target(None, "a buoy", None)},
+        {"target": MoveTarget((30.0, 0.0, 20.0), "a buoy", 1.0)},
+        {"target": MoveTarget(None, "a buoy", None)},
     ],
     ids=lambda changed: next(iter(changed)),
 )

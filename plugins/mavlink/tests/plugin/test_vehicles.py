@@ -4,9 +4,9 @@ from dataclasses import replace
 
 import pytest
 
-from mmrs_core.analysis.corners import RADIUS
+from mmrs_core.analysis.clearance import RADIUS
 from mmrs_core.behaviour.earth import degrees_of, metres, sea_level_of
-from mmrs_core.behaviour.travel import MANNERS, manner_of, speed_of
+from mmrs_core.behaviour.travel import TRAVEL_MARGINS, speed_of, travel_margins_of
 from mmrs_core.errors import UnsupportedError
 from mmrs_core.mavlink.context import context_of
 from mmrs_core.mavlink.vehicles import COPTER, ROVER, SUB, vehicle_class
@@ -115,12 +115,12 @@ def test_a_length_is_never_minus_zero():
 )
 def test_a_place_counts_as_reached_as_near_as_mode_and_position_error_allow(mode, error, acceptance):
     robot = replace(robot_program("alpha", []), travel_mode=mode)
-    assert manner_of(robot, error).acceptance == acceptance
+    assert travel_margins_of(robot, error).acceptance == acceptance
 
 
 def test_no_travel_mode_has_vehicles_cut_corners_farther_than_plans_and_checks_allow_for():
     """Vehicles go by within their radius, which is never made larger than this."""
-    most = max(manner.radius for manner in MANNERS.values())
+    most = max(margins.radius for margins in TRAVEL_MARGINS.values())
     assert most <= LEAST_CUT
     assert most <= RADIUS
 

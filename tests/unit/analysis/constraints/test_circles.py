@@ -7,7 +7,7 @@ from itertools import pairwise
 from hypothesis import given
 from hypothesis import strategies as st
 
-from mmrs_core.analysis.constraints.circles import circles_in
+from mmrs_core.analysis.constraints.dependencies import cycles_in
 from mmrs_core.analysis.constraints.sketch import remembering, sketch_of
 
 GRAPHS = st.lists(st.sets(st.integers(0, 7)), min_size=8, max_size=8).map(
@@ -27,7 +27,7 @@ def leads_to_itself(node, after):
 
 @given(GRAPHS)
 def test_circles_are_closed_ways_that_share_no_node(after):
-    circles = list(circles_in(after))
+    circles = list(cycles_in(after))
     nodes = [node for circle in circles for node in circle]
     assert len(nodes) == len(set(nodes))
     assert all(b in after[a] for circle in circles for a, b in pairwise((*circle, circle[0])))
@@ -36,7 +36,7 @@ def test_circles_are_closed_ways_that_share_no_node(after):
 
 @given(GRAPHS)
 def test_without_the_circles_nothing_waits_for_itself(after):
-    gone = {node for circle in circles_in(after) for node in circle}
+    gone = {node for circle in cycles_in(after) for node in circle}
     left = {
         node: [each for each in ways if each not in gone and each != node]
         for node, ways in after.items()
@@ -46,12 +46,12 @@ def test_without_the_circles_nothing_waits_for_itself(after):
 
 
 def test_a_circle_begins_with_the_first_of_its_nodes_and_is_a_shortest():
-    assert list(circles_in({"a": ["b"], "b": ["c", "d"], "c": ["a"], "d": ["c"]})) == [("a", "b", "c")]
+    assert list(cycles_in({"a": ["b"], "b": ["c", "d"], "c": ["a"], "d": ["c"]})) == [("a", "b", "c")]
 
 
 def test_a_long_way_is_followed_without_recursion():
     after = {node: [(node + 1) % 5000] for node in range(5000)}
-    assert [len(circle) for circle in circles_in(after)] == [5000]
+    assert [len(circle) for circle in cycles_in(after)] == [5000]
 
 
 def test_the_order_of_tasks_is_found_once_while_models_are_checked(models):

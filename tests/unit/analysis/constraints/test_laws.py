@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from mmrs_core.analysis.constraints import CONSTRAINTS
 from mmrs_core.analysis.constraints.sketch import Sketch
 from mmrs_core.geometry.segments import legs_of, prism_distance
-from mmrs_core.grounding.frame import circles_among
+from mmrs_core.grounding.frame import cycles_among
 from mmrs_core.languages import context, mission
 from mmrs_core.languages.modelset import ModelSet
 
@@ -129,7 +129,7 @@ def test_circles_among_coordinates_are_all_found_once(references):
             current = references[current]
         return current == start
 
-    found = list(circles_among(made, lambda each: each.reference))
+    found = list(cycles_among(made, lambda each: each.reference))
     members = [each for circle in found for each in circle]
     assert len(members) == len(set(members))
     assert {made.index(each) for each in members} == {n for n in range(8) if on_circle(n)}

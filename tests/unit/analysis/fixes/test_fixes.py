@@ -8,8 +8,8 @@ from pathlib import Path
 import pytest
 
 from mmrs_core.analysis.fixes import FIXES
-from mmrs_core.analysis.fixes.likeness import meant
 from mmrs_core.analysis.fixes.repair import Repairer, with_edits
+from mmrs_core.analysis.fixes.spelling import meant
 from mmrs_core.cli.diagnosing import Subject
 from mmrs_core.cli.session import Session
 from mmrs_core.cli.settings import Settings

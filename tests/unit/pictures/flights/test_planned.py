@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from mmrs_core.behaviour.program import Target
+from mmrs_core.behaviour.program import MoveTarget
 from mmrs_core.pictures.flights.planned import legs_of
 from mmrs_core.pictures.flights.values import NOWHERE, Flown, Track
 from mmrs_core.testing.programs import go_to, robot_program, take_off
@@ -48,7 +48,7 @@ def test_a_move_that_was_broken_off_lasts_as_long_as_anything_is_known(legs):
 
 
 def test_after_an_object_a_way_begins_where_the_robot_was(legs):
-    search = replace(EAST, target=Target((10.0, 0.0, 5.0), "red tent", 30.0))
+    search = replace(EAST, target=MoveTarget((10.0, 0.0, 5.0), "red tent", 30.0))
     times, places = np.array([0.0, 20.0]), np.array([[0.0, 0.0, 5.0], [33.0, 7.0, 5.0]])
     track = Track(times, places, np.full(2, np.nan), np.zeros(2, dtype=bool))
     found = legs([UP, search, NORTH], (0.0, "up"), (10.0, "east"), (20.0, "north"), track=track)
@@ -57,5 +57,5 @@ def test_after_an_object_a_way_begins_where_the_robot_was(legs):
 
 
 def test_without_a_place_nobody_knows_the_way_after_an_object(legs):
-    search = replace(EAST, target=Target(None, "red tent", None))
+    search = replace(EAST, target=MoveTarget(None, "red tent", None))
     assert [leg.way for leg in legs([UP, search, NORTH], (10.0, "east"), (20.0, "north"))] == [(), ()]

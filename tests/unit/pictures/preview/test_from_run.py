@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import pytest
 
-from mmrs_core.behaviour.program import BEHAVIOUR, Action, Move, Program, RobotProgram, Target, Transition
+from mmrs_core.behaviour.program import BEHAVIOUR, Action, Move, MoveTarget, Program, RobotProgram, Transition
 from mmrs_core.contributions.execution import Sample
 from mmrs_core.contributions.rules import MoveKind
 from mmrs_core.contributions.symbols import MapSymbol
@@ -44,7 +44,7 @@ A = robot(
     (
         move("start", START),
         move("up", UP),
-        move("there", GO, target=Target((10.0, 0.0, 5.0)), task="photo", after=(SNAP, TELL)),
+        move("there", GO, target=MoveTarget((10.0, 0.0, 5.0)), task="photo", after=(SNAP, TELL)),
         move("stop", STOP),
     ),
     {},

@@ -2,14 +2,14 @@
 
 from dataclasses import replace
 
-from mmrs_core.behaviour.program import BEHAVIOUR, Move, Program, RobotProgram, Target
+from mmrs_core.behaviour.program import BEHAVIOUR, Move, MoveTarget, Program, RobotProgram
 from mmrs_core.pictures.preview.moves import with_moves
 from mmrs_core.pictures.preview.picture import Leg
 from mmrs_core.scene import Frame
 
 
 def move(id, rule, task="", position=None):
-    target = Target(position) if position else None
+    target = MoveTarget(position) if position else None
     return Move(id, ((BEHAVIOUR, "GoTo"),), target=target, task=task, rule=rule)
 
 

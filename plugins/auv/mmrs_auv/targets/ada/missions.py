@@ -20,10 +20,10 @@ from mmrs_core.behaviour.program import (
     NOTIFY,
     Action,
     Move,
+    MoveTarget,
     Program,
     RobotProgram,
     SlotId,
-    Target,
     Transition,
 )
 from mmrs_core.behaviour.travel import capability_of, cruise_of
@@ -144,7 +144,7 @@ class Mission:
         if sort in ("hold", "charge"):
             yield "Seconds", _duration(move)
 
-    def _object(self, move: Move, target: Target) -> Iterator[tuple[str, object]]:
+    def _object(self, move: Move, target: MoveTarget) -> Iterator[tuple[str, object]]:
         """Yield what is told of the object that a move leads to."""
         if target.description is None:
             return

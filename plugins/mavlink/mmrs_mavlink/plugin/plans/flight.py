@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 from math import atan2, ceil, degrees, dist
 
 from mmrs_core.behaviour.program import BEHAVIOUR, DEVICE_ACTION, Action, Move
-from mmrs_core.behaviour.travel import MANNERS
+from mmrs_core.behaviour.travel import TRAVEL_MARGINS
 from mmrs_core.contributions.wiring import Wired
 from mmrs_core.generation.python.moves import mount_of, number_of
 from mmrs_core.mavlink.context import VehicleContext
@@ -172,7 +172,7 @@ class Flight:
     def _turn(self, move: Move, angle: float) -> None:
         """Turn on the spot; a PX4 does so only at a place that it goes to."""
         if self._px4:
-            radius = MANNERS[self._context.robot.travel_mode].radius
+            radius = TRAVEL_MARGINS[self._context.robot.travel_mode].radius
             self._add(cmd.WAYPOINT, move, CORNER_SECONDS, radius, 0.0, angle, here=True)
         else:
             self._add(cmd.CONDITION_YAW, move, angle)

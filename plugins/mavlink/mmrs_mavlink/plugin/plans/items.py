@@ -8,7 +8,7 @@ from math import nan
 
 from mmrs_core.behaviour.earth import degrees_of
 from mmrs_core.behaviour.program import Move
-from mmrs_core.behaviour.travel import MANNERS
+from mmrs_core.behaviour.travel import TRAVEL_MARGINS
 from mmrs_core.contributions.targets import TracedStep
 from mmrs_core.mavlink.context import VehicleContext
 from mmrs_core.mavlink.vehicles import PX4, autopilot_of
@@ -96,5 +96,5 @@ def _as_px4_has_it(item: Item, filled: list[float], context: VehicleContext) -> 
     if item.command in HEADED and before <= HEADING:
         filled[HEADING - before] = nan
     if item.command == WAYPOINT and before <= RADIUS:
-        filled[RADIUS - before] = MANNERS[context.robot.travel_mode].radius
+        filled[RADIUS - before] = TRAVEL_MARGINS[context.robot.travel_mode].radius
     return filled

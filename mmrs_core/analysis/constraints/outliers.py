@@ -88,14 +88,14 @@ class Rival:
 
 
 @dataclass(frozen=True, slots=True)
-class Spread:
+class Outliers:
     """What lies apart: single elements where the rest agrees, or groups where it does not."""
 
     strays: tuple[Stray, ...] = ()
     rivals: tuple[Rival, ...] = ()
 
 
-def spread_of(models: ModelSet) -> Spread:
+def outliers_of(models: ModelSet) -> Outliers:
     """Return what lies apart; at least the mission's ``largestGap`` from everything else.
 
     Where the mission does not say, figures that look exchanged are found from `NEAR` on.
@@ -107,12 +107,12 @@ def spread_of(models: ModelSet) -> Spread:
     readable = np.array([is_geographic(each) for each in placed], bool)
     said = number(models.mission, "largestGap")
     gap = WIDEST if said is None or said <= 0.0 else said
-    found = _Places(owners, degrees, readable, gap).spread()
+    found = _Places(owners, degrees, readable, gap).outliers()
     if said is not None or found.strays or found.rivals:
         return found
-    fine = _Places(owners, degrees, readable, NEAR).spread()
+    fine = _Places(owners, degrees, readable, NEAR).outliers()
     rivals = fine.rivals if any(each.exchanged for each in fine.rivals) else ()
-    return Spread(tuple(each for each in fine.strays if each.reading == EXCHANGED), rivals)
+    return Outliers(tuple(each for each in fine.strays if each.reading == EXCHANGED), rivals)
 
 
 def _whereabouts(models: ModelSet) -> dict[Element, tuple[float, float]]:
@@ -185,14 +185,14 @@ class _Places:
         self._points = points_of(degrees)
         self._clusters = _clusters(self._points, gap)
 
-    def spread(self) -> Spread:
+    def outliers(self) -> Outliers:
         """Return what lies apart."""
         if not self._clusters.any():
-            return Spread()
+            return Outliers()
         candidates = self._candidates()
         if len(candidates) == 1:
-            return Spread(tuple(self._strays(candidates)))
-        return Spread(tuple(self._strays(candidates)), tuple(self._rivals(candidates)))
+            return Outliers(tuple(self._strays(candidates)))
+        return Outliers(tuple(self._strays(candidates)), tuple(self._rivals(candidates)))
 
     def _of(self, owner: Owner) -> _Whole:
         return self._clusters[owner.first : owner.first + len(owner.coordinates)]
