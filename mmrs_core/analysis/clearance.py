@@ -60,10 +60,10 @@ def _judge(input: CheckInput, robot: RobotProgram) -> Iterator[Verdict]:
 
 def _kept(input: CheckInput, robot: RobotProgram, areas: list[Area], own: float) -> Iterator[Verdict]:
     """Yield how the robot keeps its distances if its ways must stay `own` metres off beside the areas'."""
-    motion = motions(input)[robot.id]
+    motion, error = motions(input)[robot.id], input.program.position_error
     segments = _segments(motion, cuts(input, robot, motion))
     margins = list(_margins(segments, areas, own)) if segments.moves else []
-    yield from judged(NAME, robot, "m", (_described(robot, margin) for margin in margins), motion.gaps)
+    yield from judged(NAME, robot, "m", (_described(robot, margin, error) for margin in margins), motion.gaps)
 
 
 def _segments(motion: Motion, cuts: Iterable[Cut]) -> _Segments:
@@ -125,13 +125,13 @@ def _least_margins(segments: _Segments, area: Area, own: float) -> Floats:
     return distances - segments.spread - (area.safety_distance + own)
 
 
-def _described(robot: RobotProgram, approach: _Approach) -> Margin:
+def _described(robot: RobotProgram, approach: _Approach, error: float) -> Margin:
     move = robot.moves[approach.move]
     message = (
         f"{move.kind} '{move.id}' keeps {approach.kept:.2f} m from '{approach.area.name}',"
         f" {approach.required:.2f} m are required"
     )
-    return Margin(approach.kept - approach.required, approach.move, message, approach.area.name)
+    return Margin(approach.kept - approach.required, approach.move, message, approach.area.name, error)
 
 
 CLEARANCE = Check(

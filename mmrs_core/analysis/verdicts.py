@@ -26,12 +26,14 @@ class Margin:
         move: index in the robot; None where the limit is not one of moves.
         message: what was measured there and what is allowed; without the robot.
         area: name of the area that the limit belongs to; may be empty.
+        error: the part of the limit that allows for position errors, metres.
     """
 
     value: float
     move: int | None
     message: str
     area: str = ""
+    error: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -105,6 +107,7 @@ def of_margin(property: str, status: Status, robot: RobotProgram, unit: str, mar
         area=margin.area,
         message=f"{robot.id}: {margin.message}",
         place=move.place if move else robot.place,
+        error=margin.error,
     )
 
 

@@ -130,7 +130,7 @@ def _of_flight(
     from mmrs_core.cli.simulation import answers
     from mmrs_core.pictures.flights.gathering import read_flight
     from mmrs_core.pictures.flights.planned import planned_for
-    from mmrs_core.pictures.report.making import Given, report_of
+    from mmrs_core.pictures.report.assembly import Given, report_of
 
     loaded = load_behaviour(session, file, context=context, robots=robots)
     contributed = session.contributions
@@ -146,9 +146,9 @@ def _of_flight(
 def write_pictures(picture: Picture, folder: Path) -> tuple[Path, ...]:
     """Write the page and the map into a folder, which is made where it is missing; return both paths."""
     from mmrs_core.cli.replacing import replace_files
-    from mmrs_core.pictures.preview.map_drawing import map_markup
+    from mmrs_core.pictures.preview.map import map_of
     from mmrs_core.pictures.preview.page import page
 
-    contents = {folder / PAGE: page(picture), folder / MAP: map_markup(picture, legend=True) + "\n"}
+    contents = {folder / PAGE: page(picture), folder / MAP: map_of(picture, standalone=True) + "\n"}
     replace_files({path: content.encode() for path, content in contents.items()})
     return tuple(contents)

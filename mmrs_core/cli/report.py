@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from mmrs_core.cli.behaviours import Loaded
     from mmrs_core.cli.session import Session
     from mmrs_core.pictures.preview.picture import Picture
-    from mmrs_core.pictures.report.making import Given
+    from mmrs_core.pictures.report.assembly import Given
     from mmrs_core.pictures.report.values import Report
 
 PAGE = "report.html"
@@ -52,7 +52,7 @@ def report(
     from mmrs_core.cli.simulation import answers
     from mmrs_core.pictures.flights.gathering import read_flight
     from mmrs_core.pictures.flights.planned import planned_for
-    from mmrs_core.pictures.report.making import Given, report_of
+    from mmrs_core.pictures.report.assembly import Given, report_of
 
     session, file = Session(settings_of(call)), behaviour_file(behaviour)
     loaded = load_behaviour(session, file, context=context, robots=robot_files(robots))

@@ -24,23 +24,46 @@ def verdict_line(verdict: Verdict) -> str:
 
     A message names robot, move and area itself; without one, they are told here.
     """
-    margin = "" if verdict.margin is None else f"margin {quantity(verdict.margin, verdict.unit)}"
+    margin = _margin(verdict, "margin")
     told = [verdict.message] if verdict.message else [verdict.robot, verdict.move, verdict.area]
     found = ", ".join(filter(None, (verdict.status.value, *told, margin)))
     return f"{verdict.property}: {found}{f'; {verdict.caveat}' if verdict.caveat else ''}"
 
 
+def _margin(verdict: Verdict, name: str) -> str:
+    """Return a margin in words; empty where there is none.
+
+    A distance that is kept exactly is at its limit, and the part of the limit for position errors is named.
+    """
+    if verdict.margin is None:
+        return ""
+    if not verdict.at_limit:
+        return f"{name} {quantity(verdict.margin, verdict.unit)}"
+    errors = f"; {verdict.error:g} m of it is for position errors" if verdict.error else ""
+    return f"at the limit{errors}"
+
+
 def verdict_table(verdicts: Iterable[Verdict]) -> Iterator[str]:
     """Yield a line for each property, the least margin with it; in full what is not safe or has a caveat."""
-    by_property: dict[str, list[Verdict]] = {}
-    for verdict in verdicts:
-        by_property.setdefault(verdict.property, []).append(verdict)
+    by_property = _by_property(verdicts)
     width = max((len(name) for name in by_property), default=0)
     for name, found in by_property.items():
         yield f"  {name:<{width}}  {_summary(found)}"
         yield from (
             f"    - {verdict_line(each)}" for each in found if each.status in _SPELT_OUT or each.caveat
         )
+
+
+def verdict_rows(verdicts: Iterable[Verdict]) -> tuple[tuple[str, str], ...]:
+    """Return what was found of each property: (property, words)."""
+    return tuple((name, _summary(found)) for name, found in _by_property(verdicts).items())
+
+
+def _by_property(verdicts: Iterable[Verdict]) -> dict[str, list[Verdict]]:
+    by_property: dict[str, list[Verdict]] = {}
+    for verdict in verdicts:
+        by_property.setdefault(verdict.property, []).append(verdict)
+    return by_property
 
 
 _SPELT_OUT = (Status.VIOLATED, Status.UNKNOWN)
@@ -57,6 +80,6 @@ def _summary(found: Sequence[Verdict]) -> str:
     margins = [(each.margin, each) for each in found if each.margin is not None and each.status is worst]
     if not margins:
         return str(worst.value)
-    margin, least = min(margins, key=lambda pair: pair[0])
+    _, least = min(margins, key=lambda pair: pair[0])
     who = f" ({least.robot}{f', near {least.area}' if least.area else ''})" if least.robot else ""
-    return f"{worst.value}, least margin {quantity(margin, least.unit)}{who}"
+    return f"{worst.value}, {_margin(least, 'least margin')}{who}"

@@ -24,6 +24,10 @@ class Status(Enum):
     NOT_CHECKED = "not checked"
 
 
+AT_LIMIT = 0.01
+"""Metres: a distance that is kept by less than this is called at the limit."""
+
+
 @dataclass(frozen=True, slots=True)
 class Verdict:
     """What is known of one property of one robot, or of all of them together.
@@ -37,6 +41,7 @@ class Verdict:
         message: what was found, for people; for unknown: what is missing.
         place: where that move, or else the robot, stands in the user's files.
         caveat: what a safe verdict excuses or leaves out, so that it is always shown.
+        error: the part of a required distance that allows for position errors, metres.
     """
 
     property: str
@@ -49,6 +54,13 @@ class Verdict:
     message: str = ""
     place: Place = Place()
     caveat: str = ""
+    error: float = 0.0
+
+    @property
+    def at_limit(self) -> bool:
+        """Return whether a distance is kept, by less than `AT_LIMIT`."""
+        near = self.unit == "m" and self.margin is not None and self.margin < AT_LIMIT
+        return near and self.status is Status.SAFE
 
 
 @dataclass(frozen=True, slots=True)

@@ -6,7 +6,7 @@ from math import dist, hypot, inf, sqrt
 import numpy as np
 import shapely
 
-from mmrs_core.pictures.preview.footprints import footprints
+from mmrs_core.pictures.preview.from_plan import footprints
 from mmrs_core.scene import Await, Branch, Launch, Recharge, Recover, Serve, Signal, Transit
 
 NEAR = 1e-6

@@ -1,14 +1,16 @@
-"""Draws a language: its classes, what they inherit from and what they hold, as SVG."""
+"""Draws a language as SVG: its classes with their features, inheritance and containment."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
+from markupsafe import Markup
+
 from mmrs_core.languages.metaclass import Feature, Metaclass, Package
+from mmrs_core.pictures.documents import number, render, style_sheets
 from mmrs_core.pictures.pages.layout import Box, Placed, layout
-from mmrs_core.pictures.preview.markup import element, number, style_sheet, text
 
 _ROW = 17.0
 _TITLE = 24.0
@@ -28,27 +30,40 @@ class _Link:
     feature: Feature | None = None
 
 
-def diagram(package: Package) -> str:
+def diagram(package: Package) -> Markup:
     """Return a class diagram of a language, left to right, as one ``svg`` element.
 
-    Classes of other languages are drawn in grey where classes of this one inherit from them.
+    Superclasses in other languages are drawn in grey.
     """
     classes = {metaclass.key: metaclass for metaclass in (*package.metaclasses, *_foreign(package))}
     links = list(_links(package, classes))
-    boxes = [_box(metaclass, package) for metaclass in classes.values()]
-    placed = layout(boxes, [("#".join(link.start), "#".join(link.end)) for link in links])
-    lines = (_line(i, link, placed, classes, package) for i, link in enumerate(links))
-    drawn = (_class(metaclass, placed, package) for metaclass in classes.values())
-    width, height = placed.width + 2 * _MARGIN, placed.height + 2 * _MARGIN
-    view = {"viewBox": f"0 0 {number(width)} {number(height)}", "width": width, "height": height}
-    return element(
-        "svg",
-        {"xmlns": "http://www.w3.org/2000/svg", "class": "diagram", "role": "img", **view},
-        element("title", None, text(f"classes of {package.name}")),
-        element("style", None, style_sheet("diagram.css", "mmrs_core.pictures.pages")),
-        _defs(),
-        element("rect", {"class": "sheet", "width": width, "height": height}),
-        element("g", {"transform": f"translate({number(_MARGIN)} {number(_MARGIN)})"}, lines, drawn),
+    boxes = {key: _box(metaclass, package) for key, metaclass in classes.items()}
+    placed = layout(tuple(boxes.values()), [(boxes[link.start].name, boxes[link.end].name) for link in links])
+    return render(
+        "diagram.svg",
+        name=package.name,
+        sheet=style_sheets("diagram", standalone=True),
+        margin=_MARGIN,
+        title_height=_TITLE,
+        row_height=_ROW,
+        width=placed.width + 2 * _MARGIN,
+        height=placed.height + 2 * _MARGIN,
+        lines=[
+            ("contains" if link.feature is not None else "inherits", _line(i, link, placed, classes, boxes))
+            for i, link in enumerate(links)
+            if link.start != link.end
+        ],
+        classes=[
+            (
+                _kind(each, package),
+                _title(each, package),
+                _rows(each, package),
+                box,
+                *placed.corners[box.name],
+                each.documentation,
+            )
+            for each, box in ((each, boxes[key]) for key, each in classes.items())
+        ],
     )
 
 
@@ -67,7 +82,7 @@ def multiplicity(feature: Feature) -> str:
 
 
 def type_name(feature: Feature, package: Package) -> str:
-    """Return the name of a feature's type, with its language where that is another one."""
+    """Return the name of a feature's type, with its language if that is another one."""
     found = feature.type
     name = found.name
     if name.startswith("E") and not isinstance(found, Metaclass):
@@ -94,7 +109,7 @@ def _foreign(package: Package) -> Iterator[Metaclass]:
     yield from found.values()
 
 
-def _links(package: Package, classes: dict[ClassKey, Metaclass]) -> Iterator[_Link]:
+def _links(package: Package, classes: Mapping[ClassKey, Metaclass]) -> Iterator[_Link]:
     for metaclass in package.metaclasses:
         for parent in metaclass.supertypes:
             yield _Link(parent.key, metaclass.key)
@@ -125,45 +140,28 @@ def _box(metaclass: Metaclass, package: Package) -> Box:
     return Box("#".join(metaclass.key), width, _TITLE + len(rows) * _ROW + (6 if rows else 0))
 
 
-def _class(metaclass: Metaclass, placed: Placed, package: Package) -> str:
-    box = _box(metaclass, package)
-    x, y = placed.corners[box.name]
-    foreign = metaclass.ns_uri != package.ns_uri
-    kind = "class" + (" foreign" if foreign else "") + (" abstract" if metaclass.abstract else "")
-    frame = {"x": x, "y": y, "width": box.width, "height": box.height, "rx": 3}
-    title = {"class": "title", "x": x + box.width / 2, "y": y + 16, "text_anchor": "middle"}
-    rows = _rows(metaclass, package)
-    rule = element("line", {"x1": x, "x2": x + box.width, "y1": y + _TITLE, "y2": y + _TITLE}) if rows else ""
-    return element(
-        "g",
-        {"class": kind},
-        element("title", None, text(metaclass.documentation)) if metaclass.documentation else "",
-        element("rect", frame),
-        element("text", title, text(_title(metaclass, package))),
-        rule,
-        (
-            element("text", {"x": x + 9, "y": y + _TITLE + 15 + i * _ROW}, text(row))
-            for i, row in enumerate(rows)
-        ),
-    )
+def _kind(metaclass: Metaclass, package: Package) -> str:
+    """Return the classes of a metaclass in the style sheet."""
+    foreign = " foreign" if metaclass.ns_uri != package.ns_uri else ""
+    return f"class{foreign}{' abstract' if metaclass.abstract else ''}"
 
 
 def _line(
-    index: int, link: _Link, placed: Placed, classes: dict[ClassKey, Metaclass], package: Package
+    index: int,
+    link: _Link,
+    placed: Placed,
+    classes: Mapping[ClassKey, Metaclass],
+    boxes: Mapping[ClassKey, Box],
 ) -> str:
-    start, end = classes[link.start], classes[link.end]
-    if link.start == link.end:
-        return ""
-    box, target = _box(start, package), _box(end, package)
+    """Return the data of a path from one class to the other."""
+    box, target = boxes[link.start], boxes[link.end]
     x, y = placed.corners[box.name]
     to_x, to_y = placed.corners[target.name]
     row = _TITLE / 2
     if link.feature is not None:
-        row = _TITLE + 11 + own_features(start).index(link.feature) * _ROW
+        row = _TITLE + 11 + own_features(classes[link.start]).index(link.feature) * _ROW
     points = [(placed.rights[box.name], y + row), *placed.ways.get(index, ()), (to_x, to_y + _TITLE / 2)]
-    kind = "contains" if link.feature is not None else "inherits"
-    way = f"M{number(x + box.width)} {number(y + row)}H{number(points[0][0])}{_curve(points)}"
-    return element("path", {"class": kind, "d": way, "marker-start": f"url(#{kind})"})
+    return f"M{number(x + box.width)} {number(y + row)}H{number(points[0][0])}{_curve(points)}"
 
 
 def _curve(points: Sequence[tuple[float, float]]) -> str:
@@ -174,12 +172,3 @@ def _curve(points: Sequence[tuple[float, float]]) -> str:
             f"C{number(x1 + bend)} {number(y1)} {number(x2 - bend)} {number(y2)} {number(x2)} {number(y2)}"
         )
     return "".join(drawn)
-
-
-def _defs() -> str:
-    triangle = element("path", {"class": "head", "d": "M1 6L13 1V11Z"})
-    diamond = element("path", {"class": "diamond", "d": "M1 5L8 1L15 5L8 9Z"})
-    common = {"orient": "auto", "markerUnits": "userSpaceOnUse"}
-    inherits = {"id": "inherits", "markerWidth": 14, "markerHeight": 12, "refX": 1, "refY": 6, **common}
-    contains = {"id": "contains", "markerWidth": 16, "markerHeight": 10, "refX": 1, "refY": 5, **common}
-    return element("defs", None, element("marker", inherits, triangle), element("marker", contains, diamond))

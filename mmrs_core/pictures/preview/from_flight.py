@@ -104,7 +104,7 @@ class _Shown:
         flown = self._flown
         legs = sorted((*self._legs(), *self._between_moves()), key=lambda leg: leg.begin)
         way = sum(dist(a, b) for piece in pieces(self._track) for a, b in pairwise(piece.tolist()))
-        known = (("way", length(way)),) if len(self._track.times) else (("way", "not known"),)
+        known = (("distance", length(way)),) if len(self._track.times) else (("distance", "unknown"),)
         return replace(
             plan,
             legs=tuple(legs),

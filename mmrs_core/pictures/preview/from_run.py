@@ -13,9 +13,8 @@ from mmrs_core.contributions.execution import Sample
 from mmrs_core.contributions.rules import MoveKind, most_specific
 from mmrs_core.contributions.symbols import MapSymbol
 from mmrs_core.pictures.figures import clock, length
+from mmrs_core.pictures.preview.features import elements_of, origin_of, symbol_of_robot, zones_of
 from mmrs_core.pictures.preview.picture import Bar, Handover, Leg, Picture, RobotPicture
-from mmrs_core.pictures.preview.places import origin_of, symbol_of_robot, zones_of
-from mmrs_core.pictures.preview.things import things_of
 from mmrs_core.scene import Area, Name, Part, Position, RobotType
 from mmrs_runtime.records.steps import StepRecord
 
@@ -76,7 +75,7 @@ def picture_of_run(
         origin=origin_of(program.frame),
         robots=robots,
         zones=zones_of(surroundings.areas, clearances),
-        things=things_of(surroundings.elements, symbols),
+        elements=elements_of(surroundings.elements, symbols),
         handovers=tuple(handovers_of(program, by_robot)),
         makespan=max((steps[-1].time for steps in by_robot.values() if steps), default=0.0),
     )
@@ -99,7 +98,7 @@ def _robot(
         legs=tuple(_legs(moves, records, way, kinds)),
         bars=tuple(bars_of_records(moves, records, kinds)),
         heights=tuple((sample.time, sample.up) for sample in track),
-        summary=(("moves", str(len(robot.moves))), ("way", length(flown)), ("time", clock(end))),
+        summary=(("moves", str(len(robot.moves))), ("distance", length(flown)), ("time", clock(end))),
     )
 
 

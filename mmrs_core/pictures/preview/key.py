@@ -1,35 +1,90 @@
-"""Explains the signs of a map on a page."""
+"""Lists the signs of a map with their meanings, for its key on a page and its legend as a picture."""
 
 from __future__ import annotations
 
-from mmrs_core.pictures.preview.markup import element, text
-from mmrs_core.pictures.preview.picture import Picture
-from mmrs_core.pictures.preview.signs import sign, symbols_in
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import NamedTuple
 
-_FLOWN_KEY = (
+from mmrs_core.contributions.symbols import MapSymbol
+from mmrs_core.pictures.palette import Style, style_of
+from mmrs_core.pictures.preview.labels import shortened, width_of
+from mmrs_core.pictures.preview.picture import Picture
+
+_ROW = 24.0
+_SAMPLE = 34.0
+_GAP = 22.0
+_MARGIN = 18.0
+_SIGNS = (
+    ("work", "thick line: task"),
+    ("transit", "thin line: transit"),
+    ("action", "dot: device action"),
+    ("stay", "ring: stays here"),
+    ("home", "home"),
+    ("forbidden", "forbidden area"),
+    ("obstacle", "obstacle"),
+    ("kept", "clearance"),
+    ("emergency", "emergency area"),
+)
+_FLOWN_SIGNS = (
     ("planned", "pale: as planned"),
-    ("response", "dotted: not in the plan"),
+    ("response", "dotted: off-plan"),
     ("photo", "photo"),
     ("missing", "photo not confirmed"),
     ("fault", "fault"),
 )
 
 
-def key_markup(picture: Picture) -> str:
-    """Return the list of signs with what they mean."""
-    rows = (
-        ("work", "thick line: doing a task"),
-        ("transit", "thin line: on the way"),
-        ("action", "dot: device action"),
-        ("stay", "ring: stays here"),
-        ("home", "home"),
-        ("forbidden", "forbidden area"),
-        ("obstacle", "obstacle"),
-        ("kept", "kept clear"),
-        ("emergency", "emergency area"),
-        *(_FLOWN_KEY if picture.flown else ()),
+class Entry(NamedTuple):
+    """A sign and its meaning: `sample` names what the template draws, which may need a style or symbol."""
+
+    sample: str
+    words: str
+    style: Style | None = None
+    symbol: MapSymbol | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Legend:
+    """Entries placed beneath a map: (x, y, entry), in pixels from its upper edge."""
+
+    height: float
+    entries: tuple[tuple[float, float, Entry], ...]
+
+
+def key_of(picture: Picture) -> tuple[Entry, ...]:
+    """Return the signs of a map and the symbols that it shows; robots are listed elsewhere on a page."""
+    signs = (*_SIGNS, *(_FLOWN_SIGNS if picture.flown else ()))
+    problems = [Entry("problem", "problem, by its number")] if picture.problems else []
+    symbols = (Entry("badge", shortened(each.label), symbol=each) for each in symbols_in(picture))
+    return (*(Entry(sample, words) for sample, words in signs), *problems, *symbols)
+
+
+def legend_of(picture: Picture, width: float) -> Legend:
+    """Return the legend of a picture that stands alone: robots, signs and symbols, in rows that wide."""
+    robots = (
+        Entry("robot", shortened(robot.name), style_of(index)) for index, robot in enumerate(picture.robots)
     )
-    signs = (element("li", None, sign(symbol), text(symbol.label)) for symbol in symbols_in(picture))
-    return element(
-        "ul", {"class": "key"}, (f'<li><i class="{name}"></i>{words}</li>' for name, words in rows), signs
-    )
+    placed: list[tuple[float, float, Entry]] = []
+    x, row = _MARGIN, 0
+    for entry in (*robots, *key_of(picture)):
+        needed = _SAMPLE + 8 + width_of(entry.words) + _GAP
+        if x > _MARGIN and x + needed > width:
+            x, row = _MARGIN, row + 1
+        placed.append((x, _MARGIN / 2 + (row + 0.5) * _ROW, entry))
+        x += needed
+    return Legend(_MARGIN + _ROW * (row + 1), tuple(placed))
+
+
+def symbols_in(picture: Picture) -> tuple[MapSymbol, ...]:
+    """Return the symbols of the tasks and elements that have a position, each once, tasks' first."""
+    return tuple(dict.fromkeys(_symbols(picture)))
+
+
+def _symbols(picture: Picture) -> Iterator[MapSymbol]:
+    for task in picture.tasks:
+        if task.rings or task.line or task.point is not None:
+            yield task.symbol
+    for element in picture.elements:
+        if element.points:
+            yield element.symbol

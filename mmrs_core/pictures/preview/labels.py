@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from itertools import pairwise
 from math import dist, hypot, inf
 
@@ -11,7 +11,6 @@ from shapely import box
 from shapely.geometry import Point as ShapelyPoint
 from shapely.geometry import Polygon
 
-from mmrs_core.pictures.preview.markup import element, number, text, title
 from mmrs_core.scene import Point
 
 FONT = 12.0
@@ -28,7 +27,7 @@ _CROSSING = 1.5
 _OUTSIDE = 30.0
 _FARTHER = 3.0
 _APART = 14.0
-"""Pixels between words and what they name from which on a line joins them."""
+"""Distance in pixels between words and what they name beyond which a line joins them."""
 
 
 def shortened(words: str, longest: int = _LONGEST) -> str:
@@ -45,6 +44,31 @@ Box = tuple[float, float, float, float]
 """Left, top, right, bottom in pixels."""
 
 
+@dataclass(frozen=True, slots=True)
+class Label:
+    """Words and what they name.
+
+    Attributes:
+        words: shortened when they are placed.
+        around: what they name.
+        kind: class in the style sheet.
+        colour: name in the palette; empty: the style sheet's.
+        tip: for the pointer; may be empty.
+        icon: what stands before them, and its colour.
+        at: where they are placed: the middle of their base line.
+        leader: a line that joins them to what they name, if they are placed far from it.
+    """
+
+    words: str
+    around: Box
+    kind: str
+    colour: str = ""
+    tip: str = ""
+    icon: tuple[str, str] = ("", "")
+    at: Point = (0.0, 0.0)
+    leader: tuple[Point, Point] | None = None
+
+
 @dataclass(slots=True)
 class Labels:
     """Words placed so far, within a picture of that size in pixels."""
@@ -54,7 +78,7 @@ class Labels:
     _taken: list[Box] = field(default_factory=list)
     _lines: list[Point] = field(default_factory=list)
     _areas: list[Polygon] = field(default_factory=list)
-    _markup: list[str] = field(default_factory=list)
+    placed: list[Label] = field(default_factory=list)
 
     def keep_off(self, box: Box) -> None:
         """Keep later words off a box."""
@@ -67,53 +91,28 @@ class Labels:
             self._lines += [(x1 + (x2 - x1) * i / count, y1 + (y2 - y1) * i / count) for i in range(count)]
 
     def lay_out(self, outline: Sequence[Point]) -> None:
-        """Keep later words off an area, but those of what lies in it: elsewhere they would name it, too."""
+        """Keep later words off an area, except those that name something inside of it."""
         area = Polygon(outline) if len(outline) > 2 else Polygon()
         if area.is_valid and not area.is_empty:
             self._areas.append(area)
 
-    def put(
-        self,
-        words: str,
-        around: Box,
-        kind: str,
-        *,
-        colour: str | None = None,
-        tip: str = "",
-        icon: tuple[str, str] = ("", ""),
-    ) -> None:
-        """Place words on what they name if it is large enough, else beside it: where they cover least.
-
-        Args:
-            words: cut with an ellipsis where they are too long.
-            around: what they name.
-            kind: class of the style.
-            colour: of the words; None: the style's.
-            tip: shown when the pointer rests on them.
-            icon: what stands before them, and its colour.
-        """
-        shown = shortened(words)
-        before = f"{icon[0]}\u00a0" if icon[0] else ""
-        half = width_of(before + shown) / 2
-        places = [(rank, self._inside(place, half)) for rank, place in _places(around, half)]
-        others = self._others(around)
-        _, (x, y) = min((self._cost(rank, place, half, others), place) for rank, place in places)
-        self._taken.append(_box((x, y), half + _GAP))
-        self._markup += _leader(around, _box((x, y), half))
-        attributes = {"class": f"label {kind}", "x": x, "y": y, "fill": colour, "text_anchor": "middle"}
-        sign = element("tspan", {"class": "icon", "fill": icon[1]}, text(before)) if before else ""
-        self._markup.append(element("text", attributes, sign, text(shown), title(tip) if tip else ""))
-
-    def markup(self) -> str:
-        """Return all of them."""
-        return "".join(self._markup)
+    def put(self, label: Label) -> None:
+        """Place words on what they name if it is large enough, else next to it: where they cover least."""
+        shown = shortened(label.words)
+        half = width_of(f"{label.icon[0]} {shown}" if label.icon[0] else shown) / 2
+        places = [(rank, self._inside(place, half)) for rank, place in _places(label.around, half)]
+        others = self._others(label.around)
+        _, at = min((self._cost(rank, place, half, others), place) for rank, place in places)
+        self._taken.append(_box(at, half + _GAP))
+        leader = _leader(label.around, _box(at, half))
+        self.placed.append(replace(label, words=shown, at=at, leader=leader))
 
     def _inside(self, place: Point, half: float) -> Point:
         x = min(max(place[0], half + 4), max(self.width - half - 4, half + 4))
         return x, min(max(place[1], FONT + 2), max(self.height - 5, FONT + 2))
 
     def _others(self, around: Box) -> list[Polygon]:
-        """Return the areas in which something does not lie that is to be named."""
+        """Return the areas that do not contain what is to be named."""
         middle = ShapelyPoint((around[0] + around[2]) / 2, (around[1] + around[3]) / 2)
         return [area for area in self._areas if not area.covers(middle)]
 
@@ -129,14 +128,12 @@ class Labels:
         return _COVERING * covered + _MISLEADING * misleading + _CROSSING * crossed + rank
 
 
-def _leader(named: Box, words: Box) -> Iterator[str]:
-    """Yield a line from words to what they name where these are so far apart that nobody would guess it."""
+def _leader(named: Box, words: Box) -> tuple[Point, Point] | None:
+    """Return a line from words to what they name; None where they are close to it."""
     x, y = (named[0] + named[2]) / 2, (named[1] + named[3]) / 2
     start = min(max(x, words[0]), words[2]), min(max(y, words[1]), words[3])
     end = min(max(start[0], named[0]), named[2]), min(max(start[1], named[1]), named[3])
-    if dist(start, end) > _APART:
-        line = "L".join(f"{number(x)} {number(y)}" for x, y in (start, end))
-        yield element("path", {"class": "leader", "d": f"M{line}"})
+    return (start, end) if dist(start, end) > _APART else None
 
 
 def _box(place: Point, half: float) -> Box:
@@ -149,7 +146,7 @@ def around(at: Point, reach: float, above: float = 0.0) -> Box:
 
 
 def _places(around: Box, half: float) -> Iterator[tuple[float, Point]]:
-    """Yield (rank, place) for words: on what they name, then beside it, ever farther away."""
+    """Yield (rank, place) for words: on what they name, then next to it, farther and farther away."""
     left, top, right, bottom = around
     x, y = (left + right) / 2, (top + bottom) / 2
     room = right - left > 2 * half and bottom - top > 2 * FONT

@@ -1,4 +1,4 @@
-"""What a preview shows, apart from how: plain values in the local frame, metres and seconds."""
+"""What a preview shows: plain values in the local frame, metres and seconds."""
 
 from __future__ import annotations
 
@@ -8,10 +8,20 @@ from math import inf
 from typing import TypeAlias
 
 from mmrs_core.contributions.symbols import MapSymbol
+from mmrs_core.pictures.figures import clock, length
 from mmrs_core.scene import AreaUse, Point, Position, Ring
 
 Details: TypeAlias = tuple[tuple[str, str], ...]
-"""What else to tell of something: (what, how much), in words."""
+"""Further facts: (name, value)."""
+
+_LEGS = {
+    "launch": "take-off",
+    "transit": "transit",
+    "work": "work",
+    "hold": "hold",
+    "recover": "landing",
+    "response": "off-plan response",
+}
 
 
 @dataclass(frozen=True, slots=True)
@@ -23,10 +33,10 @@ class Leg:
         points: (east, north, up), at least one; where it stays, only one.
         covered: the ground that it covers, as rings that all turn the same way.
         actions: where device actions are done.
-        note: more to say about it, one line; may be empty.
-        moves: which moves of the behaviour it is; empty where that is not known.
-        aside: whether it is on a way of a choice that is not the longest of its ways.
-        times: when it was at each of the points; empty: it travels at an even pace.
+        note: one line; may be empty.
+        moves: the moves of the behaviour that it is; empty where they are unknown.
+        aside: whether it is on a branch of a choice that is not the longest.
+        times: when it was at each of the points; empty: it travels at a constant speed.
     """
 
     kind: str
@@ -46,6 +56,14 @@ class Leg:
         """Return whether the robot stays where it is."""
         return len(set(self.points)) < 2
 
+    def tip(self, robot: str) -> str:
+        """Return what a robot's leg is: what for, when, at what altitude."""
+        ups = [point[2] for point in self.points]
+        level = length(ups[0]) if max(ups) - min(ups) < 0.05 else f"{length(ups[0])} to {length(ups[-1])}"
+        what = f"{_LEGS[self.kind]} for {self.task}" if self.task else _LEGS[self.kind]
+        parts = (what, f"{clock(self.begin)} to {clock(self.end)}", f"up {level}", self.moves, self.note)
+        return f"{robot}: " + ", ".join(part for part in parts if part)
+
 
 @dataclass(frozen=True, slots=True)
 class Bar:
@@ -60,12 +78,12 @@ class Bar:
 
 @dataclass(frozen=True, slots=True)
 class Arm:
-    """One of the ways that a robot may choose.
+    """One branch of a choice.
 
     Attributes:
         words: when it is taken, such as ``if windy`` or ``otherwise``.
-        level: how many choices it is inside of, beside its own.
-        longest: whether none of the other ways takes longer; one of each choice's ways is.
+        level: how many choices enclose its own.
+        longest: whether no other branch takes longer; true for one branch of each choice.
     """
 
     words: str
@@ -78,7 +96,7 @@ class Arm:
 
 @dataclass(frozen=True, slots=True)
 class Mark:
-    """Something that happened at a place: a ``photo``, a ``missing`` one, or a ``fault``, in words."""
+    """Something that happened at a position: a ``photo``, a ``missing`` one, or a ``fault``."""
 
     kind: str
     at: Position
@@ -91,14 +109,14 @@ class RobotPicture:
 
     Attributes:
         bars: what it does when; a choice is one bar.
-        heights: (time, up), ascending in time: its altitude profile; of a choice, the longest way's.
-        floor, ceiling: heights that it keeps between; infinite where it has none.
-        summary: (what, how much) for the table beneath the picture.
-        arms: the ways of its choices, in the order in which they are tested; inner ones after their outer.
-        symbol: of its kind, if anybody contributed one.
-        planned: where a robot that has flown should have: straight legs.
+        heights: (time, up), ascending in time: its altitude profile; of a choice, the longest branch's.
+        floor, ceiling: its limits; infinite where it has none.
+        summary: for the table beneath the picture.
+        arms: the branches of its choices, in the order in which they are tested; inner after outer ones.
+        symbol: of its kind, if a plug-in provides one.
+        planned: the planned path of a robot that has flown: straight legs.
         planned_heights: as `heights`, of the plan of a robot that has flown.
-        marks: what happened on the way.
+        marks: events along its track.
     """
 
     name: str
@@ -125,7 +143,7 @@ class Zone:
         shell: as drawn, (east, north).
         kept: its outline once grown (or, an emergency area, shrunk) by the clearance, as rings.
         clearance: metres that it was grown by.
-        types: of the robots that it bars; None: of all.
+        types: robot types that it applies to; None: all.
     """
 
     name: str
@@ -143,7 +161,7 @@ class TaskPicture:
     """A task on the map and in time.
 
     Attributes:
-        symbol: how such a task looks, and what people call it.
+        symbol: how such a task looks, and what it is called.
         rings: outlines of an area, the shell first; empty for other tasks.
         line: of a task along a line; empty for other tasks. point: of a task at a point.
         begin, end: seconds; None where it is not planned.
@@ -160,15 +178,23 @@ class TaskPicture:
     details: Details = ()
     part: float = 1.0
 
+    @property
+    def tip(self) -> str:
+        """Return what the task is, and when."""
+        times = (
+            "" if self.begin is None or self.end is None else f", {clock(self.begin)} to {clock(self.end)}"
+        )
+        return f"{self.name}: {self.symbol.label}{_listed(self.details)}{times}"
+
 
 @dataclass(frozen=True, slots=True)
-class Thing:
-    """Something at the place that robots need not keep away from: a context element of a plug-in.
+class ElementPicture:
+    """A context element that a plug-in provides, or an element inside of one.
 
     Attributes:
-        name: empty for something without one that is part of another thing.
+        name: empty for an inner element without one.
         outlines: not closed. lines: polylines. marks: single points. All (east, north), metres.
-        inner: whether it is part of another thing.
+        inner: whether another element contains it.
     """
 
     name: str
@@ -181,16 +207,43 @@ class Thing:
 
     @property
     def points(self) -> tuple[Point, ...]:
-        """Return all points that it has; none where it has no place."""
+        """Return all its points; none where it has no position."""
         return tuple(chain(self.marks, *self.outlines, *self.lines))
+
+    @property
+    def tip(self) -> str:
+        """Return what the element is."""
+        called = f"{self.name}: " if self.name else ""
+        return f"{called}{self.symbol.label}{_listed(self.details)}"
+
+
+@dataclass(frozen=True, slots=True)
+class Problem:
+    """Something that keeps a mission from being valid or planned.
+
+    Attributes:
+        number: on the map and in the list, from 1.
+        severity: ``error`` or ``warning``.
+        message: with its code, if it has one.
+        source: file and line; may be empty.
+        hint: how to fix it; may be empty.
+        at: where the element concerned lies, (east, north); None where it has no position.
+    """
+
+    number: int
+    severity: str
+    message: str
+    source: str = ""
+    hint: str = ""
+    at: Point | None = None
 
 
 @dataclass(frozen=True, slots=True)
 class Handover:
-    """One robot telling another that it may go on; times in seconds.
+    """One robot releasing another; times in seconds.
 
     Attributes:
-        since, released: from when to when the receiver waits; equal if it never has to.
+        since, released: from when to when the receiver waits; equal if it does not.
         note: which task has ended; may be empty.
     """
 
@@ -207,10 +260,11 @@ class Picture:
     """A whole mission.
 
     Attributes:
-        origin: where (0, 0) lies, for people.
+        origin: where (0, 0) lies.
         makespan: seconds until the last robot has finished.
-        notes: assumptions that people must know.
+        notes: assumptions behind it.
         flown: whether it shows what happened, and not a plan or a simulation.
+        problems: why the mission is not valid, or has no plan; then there are no paths.
     """
 
     title: str
@@ -218,12 +272,13 @@ class Picture:
     robots: tuple[RobotPicture, ...]
     zones: tuple[Zone, ...] = ()
     tasks: tuple[TaskPicture, ...] = ()
-    things: tuple[Thing, ...] = ()
+    elements: tuple[ElementPicture, ...] = ()
     handovers: tuple[Handover, ...] = ()
     makespan: float = 0.0
     notes: tuple[str, ...] = ()
     surface: float | None = None
     flown: bool = False
+    problems: tuple[Problem, ...] = ()
 
     @property
     def shown(self) -> float:
@@ -231,3 +286,7 @@ class Picture:
         planned = (time for robot in self.robots for time, _ in robot.planned_heights[-1:])
         arms = (arm.end for robot in self.robots for arm in robot.arms)
         return max((self.makespan, *planned, *arms))
+
+
+def _listed(details: Details) -> str:
+    return "".join(f", {name} {value}" for name, value in details)

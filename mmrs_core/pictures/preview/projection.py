@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from itertools import chain
 from math import floor, log10
 
-from mmrs_core.pictures.preview.markup import number
+from mmrs_core.pictures.documents import number
 from mmrs_core.pictures.preview.picture import Picture
 from mmrs_core.scene import Point, Position
 
@@ -53,12 +53,16 @@ class Projection:
         placed = (self.place(point) for point in points)
         return "L".join(f"{number(x)} {number(y)}" for x, y in placed)
 
+    def lines(self, lines: Iterable[Iterable[Point | Position]]) -> str:
+        """Return polylines as the data of one SVG path."""
+        return " ".join(f"M{self.line(line)}" for line in lines)
+
     def closed(self, rings: Iterable[Iterable[Point]]) -> str:
         """Return closed rings as the data of one SVG path."""
         return " ".join(f"M{self.line(ring)}Z" for ring in rings)
 
     def bar_length(self) -> float:
-        """Return a round number of metres that makes a handsome scale bar.
+        """Return a round number of metres for a scale bar.
 
         >>> Projection(0, 0, 500, 400, 2).bar_length()
         100.0
@@ -69,17 +73,18 @@ class Projection:
 
 
 def projection_of(picture: Picture) -> Projection:
-    """Return a projection that shows all robots and tasks, and zones and things as far as they are near.
+    """Return a projection that shows all robots and tasks, and zones and elements as far as they are near.
 
-    All maps are equally wide; a place that is higher than a page, or too flat, is shown with more ground.
+    All maps are equally wide; very high or flat ones show more ground around.
     """
-    points = list(_points(picture)) or [(0.0, 0.0)]
+    points = list(_points(picture)) or [p for zone in picture.zones for p in zone.shell] or [(0.0, 0.0)]
     west, east = _span(p[0] for p in points)
     south, north = _span(p[1] for p in points)
     reach = _REACH * max(east - west, north - south)
+    shapes = (*(zone.shell for zone in picture.zones), *(each.points for each in picture.elements))
     near = [
         (_clip(p[0], west - reach, east + reach), _clip(p[1], south - reach, north + reach))
-        for shape in (*(zone.shell for zone in picture.zones), *(thing.points for thing in picture.things))
+        for shape in shapes
         for p in shape
         if _touches(shape, west - reach, south - reach, east + reach, north + reach)
     ]
@@ -101,6 +106,7 @@ def _points(picture: Picture) -> Iterable[Point]:
         yield from chain(task.line, *task.rings)
         if task.point is not None:
             yield task.point
+    yield from (problem.at for problem in picture.problems if problem.at is not None)
 
 
 def _span(values: Iterable[float]) -> tuple[float, float]:

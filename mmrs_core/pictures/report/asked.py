@@ -10,8 +10,8 @@ from mmrs_core.contributions.registry import Contributions
 from mmrs_core.diagnostics import has_errors
 from mmrs_core.errors import MmrsError
 from mmrs_core.languages.modelset import model_in
+from mmrs_core.pictures.preview.features import task_pictures
 from mmrs_core.pictures.preview.picture import Picture
-from mmrs_core.pictures.preview.places import task_pictures
 from mmrs_core.pictures.report.values import Report, Status
 from mmrs_core.pipeline import check_models, ground, read_models
 from mmrs_core.scene import Scene

@@ -1,28 +1,31 @@
-"""What people must know of a flight: faults, decisions, orders, and what vehicles warned of."""
+"""The events of a flight: faults, decisions, commands and vehicle warnings; and what robots measured."""
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterator, Mapping
 
 from mmrs_core.pictures.figures import quantity
 from mmrs_core.pictures.flights.fixes import Zero
 from mmrs_core.pictures.flights.places import Place
 from mmrs_core.pictures.flights.values import Flown
-from mmrs_core.pictures.report.privacy import without_secrets
 from mmrs_core.pictures.report.values import Event, Reading
 from mmrs_core.scene import Position
 from mmrs_runtime.policies import NOTHING
 from mmrs_runtime.records.entries import Entry, number_of
 
 MOST_TEXTS = 50
-"""How many warnings of one vehicle are told."""
+"""Warnings of one vehicle that a report lists."""
 BY_PEOPLE = frozenset({"ORDERED", "STOPPED", "TAKEN_OVER"})
-"""Ends of programs, among the faults of logs, that people wanted."""
+"""Ends of programs, among the faults of logs, that operators caused."""
 _WARNINGS = frozenset({"EMERGENCY", "ALERT", "CRITICAL", "ERROR", "WARNING"})
+_PATH = re.compile(r"(?<![\w./:])(?:~|\.{1,2})?/[^\s/'\":]+/[^\s'\":]*")
+_DRIVE = re.compile(r"\b[A-Za-z]:\\[^\s'\":]*")
+_SECRET = re.compile(r"(?<!\w)[0-9a-fA-F]{32,}+(?!\w)|(?<![\w+/-])[A-Za-z0-9+/_-]{40,}+={0,2}")
 
 
 def events_of(flown: Flown) -> tuple[Event, ...]:
-    """Return everything that people must know of one robot, by time."""
+    """Return the events of one robot, by time."""
     return tuple(sorted(_events(flown), key=lambda event: event.time))
 
 
@@ -50,25 +53,25 @@ def _events(flown: Flown) -> Iterator[Event]:
     for entry in flown.of_kind("order"):
         yield Event(flown.robot, entry.time, "order", _ordered(entry), _confirmed(entry))
     for entry in flown.of_kind("injected"):
-        state = f"on purpose: {_words(entry, 'state')}" if entry.content.get("state") else "on purpose"
+        state = f"injected: {_words(entry, 'state')}" if entry.content.get("state") else "injected"
         yield Event(flown.robot, entry.time, "injected", injected_by(entry), state)
     texts = [entry for entry in flown.of_kind("text") if str(entry.content.get("severity")) in _WARNINGS]
     for entry in texts[:MOST_TEXTS]:
         yield Event(flown.robot, entry.time, "text", _words(entry, "text"), _words(entry, "severity").lower())
     if len(texts) > MOST_TEXTS:
         more = f"{len(texts) - MOST_TEXTS} more warnings of the vehicle"
-        yield Event(flown.robot, texts[MOST_TEXTS].time, "text", more, "left out here")
+        yield Event(flown.robot, texts[MOST_TEXTS].time, "text", more, "omitted here")
 
 
 def injected_by(entry: Entry) -> str:
-    """Return which fault was made on purpose."""
+    """Return which fault was injected."""
     return _words(entry, "fault") or _words(entry, "name") or "a fault"
 
 
 def _decided(entry: Entry) -> str:
     why, response = _words(entry, "why"), _words(entry, "response")
     if response == NOTHING:
-        return why or "nothing is done"
+        return why or "no response"
     return f"{why}; response: {response}" if why else f"response: {response}"
 
 
@@ -96,10 +99,23 @@ def _words(entry: Entry, name: str) -> str:
 
 def _content(content: object) -> str:
     if isinstance(content, Mapping):
-        return without_secrets(", ".join(f"{name} {_told(value)}" for name, value in content.items()))
-    return without_secrets(_told(content))
+        return without_secrets(", ".join(f"{name} {_value(value)}" for name, value in content.items()))
+    return without_secrets(_value(content))
 
 
-def _told(value: object) -> str:
+def _value(value: object) -> str:
     number = number_of(value)
-    return "not known" if value is None else f"{number:g}" if number is not None else str(value)
+    return "unknown" if value is None else f"{number:g}" if number is not None else str(value)
+
+
+def without_secrets(words: str) -> str:
+    """Return words without folders of the machine, and without what looks like a key or token.
+
+    >>> without_secrets("/home/ann/logs/a.jsonl: cannot be written")
+    'a.jsonl: cannot be written'
+    >>> without_secrets("key " + "0f" * 32)
+    'key …'
+    """
+    for path in (_PATH, _DRIVE):
+        words = path.sub(lambda found: re.split(r"[/\\]", found[0])[-1] or "…", words)
+    return _SECRET.sub("…", words)

@@ -6,139 +6,152 @@ from collections.abc import Iterator, Sequence
 from datetime import datetime
 
 import numpy as np
+from markupsafe import Markup
 
+from mmrs_core.pictures.documents import render, style_sheets
 from mmrs_core.pictures.figures import clock
 from mmrs_core.pictures.flights.planned import PlannedLeg
-from mmrs_core.pictures.preview.key import key_markup
-from mmrs_core.pictures.preview.map_drawing import map_markup
-from mmrs_core.pictures.preview.markup import element, style_sheet, text
-from mmrs_core.pictures.preview.palette import style_of
+from mmrs_core.pictures.palette import style_of, variables
+from mmrs_core.pictures.preview.key import key_of
+from mmrs_core.pictures.preview.map import map_of
 from mmrs_core.pictures.preview.picture import Picture
-from mmrs_core.pictures.preview.profile import BARS_OF_FLIGHTS, profile_markup
-from mmrs_core.pictures.preview.timeline import KEY_OF_FLIGHTS, timeline_markup
-from mmrs_core.pictures.report import measures, sections
-from mmrs_core.pictures.report.charts import battery_chart, off_way_chart
+from mmrs_core.pictures.preview.profile import BARS_OF_FLIGHTS, profile_of
+from mmrs_core.pictures.preview.timeline import KEY_OF_FLIGHTS, timeline_of
+from mmrs_core.pictures.report import tables
+from mmrs_core.pictures.report.assembly import Given
+from mmrs_core.pictures.report.charts import battery_chart, cross_track_chart
 from mmrs_core.pictures.report.deviations import deviations_over_time
 from mmrs_core.pictures.report.energies import planned_levels
-from mmrs_core.pictures.report.making import Given
-from mmrs_core.pictures.report.summary import tiles, verdict
-from mmrs_core.pictures.report.tables import section
-from mmrs_core.pictures.report.values import Report
-from mmrs_core.pictures.report.words import metres
+from mmrs_core.pictures.report.tables import Section
+from mmrs_core.pictures.report.values import Report, Status
+from mmrs_core.pictures.report.wording import metres, nearness, percent, spoken
+from mmrs_runtime.policies import EVENTS
 
-_POLICY = "default-src 'none'; style-src 'unsafe-inline'"
-_NO_MAP = "Where it was is not known; pale: where it should have been."
+_NO_TRACK = "Its track is unknown; pale: its planned path."
 
 
 def page(report: Report, given: Given, picture: Picture) -> str:
     """Return a whole HTML document; nothing in it refers to another file."""
-    title = f"{report.title or 'mission'}: report"
-    head = (
-        '<meta charset="utf-8">',
-        f'<meta http-equiv="Content-Security-Policy" content="{text(_POLICY)}">',
-        '<meta name="viewport" content="width=device-width, initial-scale=1">',
-        '<meta name="color-scheme" content="light dark">',
-        element("title", None, text(title)),
-        element("style", None, _style()),
+    document = render(
+        "report.html",
+        title=report.title or "mission",
+        style=Markup(variables()) + style_sheets("page", "map", "charts", "report"),
+        lead=f"{_when(report.begun)}; run {report.run or 'without a name'}. Origin: {picture.origin}.",
+        simulated=report.simulated,
+        injected=report.injected,
+        verdict=verdict(report),
+        figures=list(figures(report)),
+        map=map_of(picture),
+        key=key_of(picture),
+        tasks=tables.tasks(report),
+        sections=[section for section in _sections(report, given, picture) if not section.empty],
+        foot=_foot(report),
     )
-    body = (_head(report, picture), *_sections(report, given, picture), _foot(report))
-    markup = element("head", None, head) + element("body", {"class": "report"}, body)
-    return f'<!doctype html>\n<html lang="en">{markup}</html>\n'
-
-
-def _style() -> str:
-    own = style_sheet("report.css", "mmrs_core.pictures.report")
-    return style_sheet("page.css") + own + style_sheet("dark.css")
-
-
-def _head(report: Report, picture: Picture) -> str:
-    lead = f"{_when(report.begun)}; run {report.run or 'without a name'}. Origin: {picture.origin}."
-    simulated = element("p", {"class": "verdict none"}, "Simulated: no vehicle has flown this.")
-    return element(
-        "header",
-        None,
-        element("h1", None, text(report.title or "mission")),
-        element("p", None, f"<bdi>{text(lead)}</bdi>"),
-        simulated if report.simulated else "",
-        _injected(report),
-        verdict(report),
-        tiles(report),
-    )
-
-
-def _injected(report: Report) -> str:
-    if not report.injected:
-        return ""
-    words = f"A rehearsal: these faults were made on purpose: {', '.join(report.injected)}."
-    return element("p", {"class": "verdict none"}, text(words))
+    return str(document)
 
 
 def _when(begun: str) -> str:
     try:
         return datetime.fromisoformat(begun).strftime("%-d %B %Y, %H:%M:%S UTC")
     except ValueError:
-        return "Date and time of day not known"
+        return "Date and time of day unknown"
 
 
-def _sections(report: Report, given: Given, picture: Picture) -> Iterator[str]:
-    yield sections.tasks(report)
-    yield section("Map", _map(picture), key_markup(picture))
-    yield sections.robots(report)
-    yield sections.events(report)
-    shown = _wide(timeline_markup(picture))
-    yield section("Who did what, and who waited for whom", shown, note=KEY_OF_FLIGHTS)
-    yield section("Heights above the origin", _wide(profile_markup(picture)), note=BARS_OF_FLIGHTS)
-    yield measures.deviations(report)
-    yield measures.approaches(report)
-    yield measures.separations(report)
-    yield measures.energies(report)
-    yield sections.waits(report)
+def _sections(report: Report, given: Given, picture: Picture) -> Iterator[Section]:
+    """Yield the sections beneath the map."""
+    yield tables.robots(report)
+    yield tables.events(report)
+    yield Section("Timeline and waits", note=KEY_OF_FLIGHTS, drawings=(("", timeline_of(picture)),))
+    yield Section("Altitude above origin", note=BARS_OF_FLIGHTS, drawings=(("", profile_of(picture)),))
+    yield tables.deviations(report)
+    yield tables.approaches(report)
+    yield tables.separations(report)
+    yield tables.energies(report)
+    yield tables.waits(report)
     legs = given.legs()
     for index, robot in enumerate(picture.robots):
-        yield _robot(index, robot.name, report, given, picture, legs[robot.name])
-    yield measures.photos(report)
-    yield measures.readings(report)
-    yield measures.links(report)
-    yield sections.moves(report)
-    yield sections.unknown(report)
+        yield _robot(index, robot.name, given, picture, legs[robot.name])
+    yield tables.photos(report)
+    yield tables.readings(report)
+    yield tables.links(report)
+    yield tables.moves(report)
+    yield tables.unknown(report)
 
 
-def _robot(
-    index: int, name: str, report: Report, given: Given, picture: Picture, legs: Sequence[PlannedLeg]
-) -> str:
+def _robot(index: int, name: str, given: Given, picture: Picture, legs: Sequence[PlannedLeg]) -> Section:
     flown, colour = given.flight.robots[name], style_of(index).colour
     pieces = deviations_over_time(flown, legs)
-    levels, _ = planned_levels(given.planned.run, name)
-    samples = given.planned.run.tracks.get(name, ()) if given.planned.run is not None else ()
-    planned = np.array([sample.time for sample in samples if sample.energy is not None])
-    charts = [_chart("Metres sideways from the planned way", off_way_chart(pieces, picture.shown, colour))]
-    if np.isfinite(flown.track.energies).any():
-        line = (planned[: len(levels)], levels)
-        battery = flown.track.times, flown.track.energies
-        drawn = battery_chart(battery, line, given.program.reserve, picture.shown, colour)
-        charts.append(_chart("Battery; dashed grey: as planned; red: the reserve", drawn))
-    else:
-        charts.append(element("p", {"class": "soft"}, "Its battery was not told."))
-    words = "" if len(flown.track.times) else _NO_MAP
-    return section(name, _map(picture, index), *(charts if pieces else charts[1:]), note=words)
+    drawings = [("", map_of(picture, only=index))]
+    if pieces:
+        drawings.append(("Cross-track error in metres", cross_track_chart(pieces, picture.shown, colour)))
+    battery = bool(np.isfinite(flown.track.energies).any())
+    if battery:
+        levels, _ = planned_levels(given.planned.run, name)
+        samples = given.planned.run.tracks.get(name, ()) if given.planned.run is not None else ()
+        planned = np.array([sample.time for sample in samples if sample.energy is not None])
+        lines = (flown.track.times, flown.track.energies), (planned[: len(levels)], levels)
+        drawn = battery_chart(*lines, given.program.reserve, picture.shown, colour)
+        drawings.append(("Battery; dashed grey: as planned; red: the reserve", drawn))
+    note = "" if len(flown.track.times) else _NO_TRACK
+    return Section(name, note=note, words="" if battery else "No battery data.", drawings=tuple(drawings))
 
 
-def _chart(words: str, drawn: str) -> str:
-    return element("figure", None, element("figcaption", None, text(words)), _wide(drawn))
+def verdict(report: Report) -> tuple[str, str]:
+    """Return one sentence on how it went, and its colour: ``good``, ``fair`` or ``bad``."""
+    asked = [task for task in report.tasks if task.status is not Status.NOT_CHOSEN]
+    done = sum(task.status is Status.DONE for task in asked)
+    ended = sum(robot.ended_early for robot in report.robots)
+    near = any(each.too_near for each in (*report.approaches, *report.separations))
+    success = report.outcome == "success"
+    whole = "all robots completed their programs" if success else ""
+    tasks = f"{done} of {len(asked)} tasks done" if asked else whole
+    early = f"{ended} robot{'s' * (ended != 1)} ended early" if ended else ""
+    close = "a required distance was not kept" if near else ""
+    empty = any(e.lowest is not None and e.lowest < e.reserve - 0.005 for e in report.energies)
+    low = "a battery fell below the reserve" if empty else ""
+    strange = "the logs do not match this behaviour" if report.complaints else ""
+    unfinished = "not all programs were completed" if not success and not ended else ""
+    words = "; ".join(each for each in (tasks, early, unfinished, close, low, strange) if each)
+    if near or strange or (asked and not done):
+        return words, "bad"
+    words = words or "how it ended is unknown"
+    return words, "good" if done == len(asked) and success and not empty else "fair"
 
 
-def _wide(drawn: str) -> str:
-    return element("div", {"class": "wide"}, drawn)
+def figures(report: Report) -> Iterator[tuple[str, str]]:
+    """Yield the figures that matter first: (name, value)."""
+    yield "time", clock(report.duration)
+    tracks = [robot.way for robot in report.robots if robot.way is not None]
+    yield "total distance", metres(sum(tracks)) if len(tracks) == len(report.robots) else "unknown"
+    if report.deviations:
+        worst = max(report.deviations, key=lambda each: each.sideways.largest)
+        yield "maximum cross-track error", f"{metres(worst.sideways.largest)} ({worst.robot})"
+    judged = [each for each in report.approaches if each.required is not None]
+    if judged:
+        nearest = min(judged, key=lambda each: each.kept - (each.required or 0.0))
+        distance = f"{nearest.kept:.2f} m of {nearest.required:.2f} m"
+        value = f"{distance}, {nearness(nearest)} ({nearest.robot}, {nearest.area})"
+        yield "closest approach (required clearance)", value
+    lowest = [(each.lowest, each.robot) for each in report.energies if each.lowest is not None]
+    if lowest:
+        part, robot = min(lowest)
+        yield "lowest battery level", f"{percent(part)} ({robot})"
+    if report.photos and not report.simulated:
+        taken = sum(photo.state == "taken" for photo in report.photos)
+        yield "photos confirmed", f"{taken} of {len(report.photos)}"
+    yield "faults", _faults(report)
 
 
-def _map(picture: Picture, only: int | None = None) -> str:
-    return element("div", {"class": "sheet"}, map_markup(picture, only=only))
+def _faults(report: Report) -> str:
+    """Return how many faults there were, and which: those that ended programs, or were responded to."""
+    ended = [(e.robot, e.what.partition(":")[0]) for e in report.events if e.kind == "fault"]
+    decided = [(e.robot, e.what) for e in report.events if e.kind == "decision" and e.what in EVENTS]
+    faults = [*ended, *(each for each in decided if each not in ended)]
+    names = dict.fromkeys(spoken(name) for _, name in faults)
+    return f"{len(faults)} ({', '.join(names)})" if faults else "none"
 
 
 def _foot(report: Report) -> str:
-    ways = [robot.way for robot in report.robots if robot.way is not None]
-    all_ways = f" All robots travelled {metres(sum(ways))}." if len(ways) == len(report.robots) else ""
-    words = (
-        f"Times are minutes and seconds since the run began, which took {clock(report.duration)}.{all_ways}"
-    )
-    return element("footer", None, element("p", None, text(words)))
+    tracks = [robot.way for robot in report.robots if robot.way is not None]
+    total = f" Total distance: {metres(sum(tracks))}." if len(tracks) == len(report.robots) else ""
+    return f"Times are minutes and seconds since the run began; it took {clock(report.duration)}.{total}"

@@ -1,7 +1,4 @@
-"""What a report tells, apart from how: plain values; metres, seconds, parts from 0 to 1.
-
-None stands for what is not known throughout.
-"""
+"""What a report contains: plain values; metres, seconds, fractions from 0 to 1. None stands for unknown."""
 
 from __future__ import annotations
 
@@ -12,11 +9,11 @@ from enum import Enum
 from mmrs_core.pictures.flights.places import Place
 
 MILLIMETRE = 1e-3
-"""Metres that figures may be wrong by."""
+"""Rounding error of distances, metres."""
 
 
 class Status(Enum):
-    """How far a task came."""
+    """How much of a task was done."""
 
     DONE = "done"
     PART = "partly done"
@@ -26,7 +23,7 @@ class Status(Enum):
 
 @dataclass(frozen=True, slots=True)
 class TaskReport:
-    """What was asked and what was achieved.
+    """A task: what was asked and what was achieved.
 
     Attributes:
         part: of the planned work, 0 to 1.
@@ -53,10 +50,10 @@ class Spread:
 
 @dataclass(frozen=True, slots=True)
 class Deviation:
-    """How far a robot was from where it should have been.
+    """How far a robot was off its planned path.
 
     Attributes:
-        fixes: how many count. sideways, upwards: metres from the nearest point of the planned way.
+        fixes: how many count. sideways, upwards: metres from the nearest point of the planned path.
         where, time, move: of the largest deviation sideways. high_time, high_move: of that upwards.
     """
 
@@ -101,7 +98,7 @@ class WaitReport:
 
 @dataclass(frozen=True, slots=True)
 class EnergyReport:
-    """What a robot used of its batteries, as parts of full ones, all sorties together.
+    """What a robot used of its batteries, as fractions of a full one, all sorties together.
 
     Attributes:
         lowest: the least that was left, and when. end: what is left. capacity: joules when full.
@@ -123,7 +120,7 @@ class Nearness:
     """How near a robot came to something, and how near it might have.
 
     Attributes:
-        kept: metres. required: None where nothing was asked for, or nobody knows.
+        kept: metres. required: None where nothing is required, or it is unknown.
         error: the part of `required` that allows for position errors, metres.
         where, time: of the robot when it was nearest.
     """
@@ -136,7 +133,7 @@ class Nearness:
 
     @property
     def too_near(self) -> bool:
-        """Return whether it was nearer than it might have been even with the position error used up."""
+        """Return whether it was nearer than the required distance without the position error."""
         return self.required is not None and self.kept < self.required - self.error - MILLIMETRE
 
     @property
@@ -189,10 +186,10 @@ class Reading:
 
 @dataclass(frozen=True, slots=True)
 class Event:
-    """Something that people must know: ``fault``, ``decision``, ``order``, ``injected`` or ``text``.
+    """Something to know: ``fault``, ``decision``, ``order``, ``injected`` or ``text``.
 
     Attributes:
-        what: it was. why: and what was done about it.
+        what: what happened. why: its cause, and the response.
     """
 
     robot: str
@@ -204,13 +201,13 @@ class Event:
 
 @dataclass(frozen=True, slots=True)
 class LinkReport:
-    """How well a robot could be heard.
+    """The quality of the link to a robot.
 
     Attributes:
         vehicle: what it was. by: sort of link, such as ``udp``; no address.
-        fixes: how often it told where it was. gaps, longest, silent: stretches without a fix, seconds.
-        dropped: frames by why they were dropped.
-        commands, repeated, refused: how many were given, had to be said again, were not accepted.
+        fixes: how many positions it reported. gaps, longest, silent: stretches without a fix, seconds.
+        dropped: frames by cause.
+        commands, repeated, refused: how many were sent, had to be repeated, were not accepted.
         slowest: seconds until the slowest answer.
     """
 
@@ -258,10 +255,10 @@ class Report:
     """All of it.
 
     Attributes:
-        begun: date and time of day, ISO 8601; empty where not known.
-        outcome: of the run, by the replayer. complaints: why the logs are no run of the behaviour.
-        injected: faults that were made on purpose.
-        unknown: what is not known, or was taken for granted, for people.
+        begun: date and time of day, ISO 8601; empty where unknown.
+        outcome: of the run, by the replayer. complaints: why the logs do not match the behaviour.
+        injected: faults that were injected.
+        unknown: what is unknown or was assumed, in words.
     """
 
     title: str

@@ -6,8 +6,7 @@ import pytest
 from lxml import etree
 
 from mmrs_core.pictures.preview.from_plan import picture_of_plan
-from mmrs_core.pictures.preview.map_drawing import map_markup
-from mmrs_core.pictures.preview.map_ways import leg_tip
+from mmrs_core.pictures.preview.map import map_of
 from mmrs_core.pictures.preview.moves import with_moves
 from mmrs_core.pictures.preview.page import page
 from mmrs_core.scene import Branch, Serve
@@ -46,10 +45,10 @@ def test_every_stay_is_marked_and_told(example, picture_of):
         for leg in robot.legs
         if leg.kind == "work" and len({point[:2] for point in leg.points}) == 1
     ]
-    root = etree.fromstring(map_markup(picture).encode())
+    root = etree.fromstring(map_of(picture).encode())
     marks = [e.findtext("{*}title") for e in root.iter() if e.get("class") == "stay"]
     told = [line for mark in marks for line in mark.splitlines()]
-    assert sorted(told) == sorted(leg_tip(name, leg) for name, leg in stays)
+    assert sorted(told) == sorted(leg.tip(name) for name, leg in stays)
 
 
 def test_every_way_of_a_choice_is_told(taken, picture_of):
@@ -68,8 +67,8 @@ def test_every_task_is_drawn_as_a_plugin_says(example, picture_of, contributions
 
 def test_the_landmark_of_the_dam_is_on_the_map_and_on_the_page(taken, picture_of):
     picture = picture_of(taken("mixed-team"))
-    (gauge,) = picture.things
+    (gauge,) = picture.elements
     assert (gauge.name, gauge.symbol.label, len(gauge.marks)) == ("spillway gauge", "landmark", 1)
     told = "landmark, description staff gauge on the left wall of the spillway"
-    assert f"<title>spillway gauge: {told}</title>" in map_markup(picture)
+    assert f"<title>spillway gauge: {told}</title>" in map_of(picture)
     assert "landmark</li>" in page(picture)

@@ -15,7 +15,7 @@ from mmrs_core.languages.reading import read_model
 from mmrs_core.languages.registry import Registry
 from mmrs_core.languages.writing import to_xmi
 from mmrs_core.pictures.preview.from_plan import picture_of_plan
-from mmrs_core.pictures.preview.map_drawing import map_markup
+from mmrs_core.pictures.preview.map import map_of
 
 pytestmark = pytest.mark.together("examples")
 
@@ -127,9 +127,9 @@ def test_sunlight_that_nobody_knows_stands_against_the_behaviour_unless_accepted
 
 def test_every_row_of_panels_is_drawn(park, contributions):
     picture = picture_of_plan(park.scene, park.plan, contributions.map_symbols)
-    drawn = {thing.name: (thing.symbol.label, len(thing.outlines)) for thing in picture.things}
+    drawn = {thing.name: (thing.symbol.label, len(thing.outlines)) for thing in picture.elements}
     assert drawn == {"south field": ("panel group", 8), "east field": ("panel group", 5)}
-    assert etree.fromstring(map_markup(picture).encode()) is not None
+    assert etree.fromstring(map_of(picture).encode()) is not None
 
 
 def test_without_the_plugin_its_elements_are_named_and_survive(folder_of, contributions):

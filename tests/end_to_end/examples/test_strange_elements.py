@@ -12,7 +12,7 @@ from mmrs_core.contributions.symbols import MapSymbol
 from mmrs_core.hookspecs import hookimpl
 from mmrs_core.languages.registry import MetamodelSource
 from mmrs_core.pictures.preview.from_plan import picture_of_plan
-from mmrs_core.pictures.preview.map_drawing import map_markup
+from mmrs_core.pictures.preview.map import map_of
 from mmrs_core.plugins import load_plugins
 
 pytestmark = pytest.mark.together("examples")
@@ -78,7 +78,7 @@ def markup(stranger, folder_of, tmp_path):
     models, _ = pipeline.valid_models(project, stranger)
     scene = pipeline.expand(pipeline.ground(models), stranger)
     plan = pipeline.plan(scene)
-    return map_markup(picture_of_plan(scene, plan, stranger.map_symbols), legend=True)
+    return map_of(picture_of_plan(scene, plan, stranger.map_symbols), standalone=True)
 
 
 def test_a_stranger_s_element_is_drawn_with_its_outline_colour_icon_and_label(markup):

@@ -71,7 +71,7 @@ def test_a_flight_is_told_as_it_went(told):
     report = told()
     assert (report["outcome"], report["complaints"], report["simulated"]) == ("success", [], False)
     assert report["begun"].endswith("Z")
-    assert {robot["ending"] for robot in report["robots"]} == {"to its end"}
+    assert {robot["ending"] for robot in report["robots"]} == {"completed"}
     assert [link["by"] for link in report["links"]] == ["udp", "udp"]
 
 
@@ -120,7 +120,7 @@ def test_after_a_power_loss_the_rest_is_used(told, project):
     report = told()
     assert report["complaints"] == []
     left = next(robot for robot in report["robots"] if robot["robot"] == "left")
-    assert left["ending"] == "log ends before the program does"
+    assert left["ending"] == "log ends before the program"
     assert left["way"] > 1.0
     assert any(each.startswith("left.blackbox.ndjson:") for each in report["unknown"])
     assert any(each.startswith("left.jsonl:") for each in report["unknown"])

@@ -79,7 +79,7 @@ def test_a_run_as_planned_is_told_as_such(mmrs, project):
     assert code == 0
     assert (told["outcome"], told["complaints"], told["simulated"]) == ("success", [], True)
     assert all(each["sideways"]["largest"] < 0.02 for each in told["deviations"])
-    assert {robot["ending"] for robot in told["robots"]} == {"to its end"}
+    assert {robot["ending"] for robot in told["robots"]} == {"completed"}
 
 
 def test_the_same_logs_make_the_same_page(page):
@@ -112,8 +112,8 @@ def test_logs_without_black_boxes_are_reported_with_what_they_tell(page, project
     for box in (project / "logs").glob("*.ndjson"):
         box.unlink()
     text = Page(page()).text
-    assert "left: there is no black box with places; where it was is not known" in text
-    assert "Planned against flown" not in text
+    assert "left: no black box with positions: its track is unknown" in text
+    assert "Planned vs. flown" not in text
 
 
 def test_a_missing_log_is_said_and_not_held_against_the_others(mmrs, project):
@@ -122,7 +122,7 @@ def test_a_missing_log_is_said_and_not_held_against_the_others(mmrs, project):
     told = json.loads(out)["report"]
     assert code == 0
     assert told["complaints"] == []
-    assert "left: there is no log; what it did is not known" in told["unknown"]
+    assert "left: no log: what it did is unknown" in told["unknown"]
     assert any("cannot be judged" in each for each in told["unknown"])
 
 
@@ -163,7 +163,7 @@ def test_without_types_and_place_the_report_says_what_is_missing(mmrs, project, 
     assert code == 0, err
     unknown = json.loads(out)["report"]["unknown"]
     assert any("times and energy as planned are not known" in each for each in unknown)
-    assert any("no context was given" in each for each in unknown)
+    assert any("no context: " in each for each in unknown)
 
 
 def test_a_report_replaces_no_log(mmrs, project):

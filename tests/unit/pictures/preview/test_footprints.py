@@ -3,7 +3,7 @@
 import pytest
 from shapely.geometry import Polygon
 
-from mmrs_core.pictures.preview.footprints import along, footprints
+from mmrs_core.pictures.preview.from_plan import along, footprints
 from mmrs_core.scene import ActionAt, Coverage, Stroke
 
 SHELL = ((0.0, 0.0), (1.0, 0.0), (1.0, 1.0))

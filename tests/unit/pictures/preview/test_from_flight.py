@@ -8,7 +8,7 @@ from flights_by_hand import flight_as, track_of
 from mmrs_core.pictures.flights.planned import Planned
 from mmrs_core.pictures.preview.from_flight import picture_of_flight
 from mmrs_core.pictures.preview.from_run import Surroundings
-from mmrs_core.pictures.preview.map_drawing import map_markup
+from mmrs_core.pictures.preview.map import map_of
 from mmrs_core.pictures.preview.page import page
 from mmrs_runtime.records.entries import Entry
 from mmrs_runtime.records.steps import StepRecord
@@ -41,7 +41,7 @@ def test_what_was_planned_lies_beneath(shown):
     assert len(alpha.planned) == 7
     assert alpha.planned_heights[-1][1] == pytest.approx(0.0)
     assert [arm.words for arm in alpha.arms] == ["as planned"]
-    assert map_markup(shown()).count('class="planned"') == 2
+    assert map_of(shown()).count('class="planned"') == 2
 
 
 def test_a_gap_is_not_drawn(shown):
@@ -92,7 +92,7 @@ def test_a_robot_of_which_nobody_knows_where_it_was_is_said_to_be_one(shown):
     picture = shown(beta={"track": track_of([])})
     assert picture.robots[1].legs == ()
     assert "beta: where it was is not known, there is no black box of it" in picture.notes
-    assert ("way", "not known") in picture.robots[1].summary
+    assert ("distance", "unknown") in picture.robots[1].summary
 
 
 def test_a_photo_that_nobody_confirmed_is_marked(shown):
@@ -101,7 +101,7 @@ def test_a_photo_that_nobody_confirmed_is_marked(shown):
 
 def test_a_map_of_one_robot_keeps_its_style(shown):
     picture = shown()
-    only = map_markup(picture, only=1)
+    only = map_of(picture, only=1)
     assert 'data-robot="1"' in only
     assert 'data-robot="0"' not in only
     assert ">alpha<" not in only
@@ -110,7 +110,7 @@ def test_a_map_of_one_robot_keeps_its_style(shown):
 def test_the_page_has_the_times_of_the_ways(shown):
     text = page(shown())
     assert '"times"' in text
-    assert "ways as planned" in text
+    assert "planned paths" in text
 
 
 def test_a_fault_is_marked_where_it_was_answered_although_the_program_went_on(shown, run):

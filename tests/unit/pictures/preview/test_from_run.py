@@ -112,7 +112,7 @@ def test_robots_and_things_have_their_symbols():
     around = Surroundings((), (tree,), {"quad": quad})
     shown = picture_of_run(program, RECORDS, TRACKS, KINDS, {drone.metaclass: drone}, around)
     assert shown.robots[0].symbol == drone
-    assert [(thing.name, thing.symbol.label) for thing in shown.things] == [("oak", "old tree")]
+    assert [(thing.name, thing.symbol.label) for thing in shown.elements] == [("oak", "old tree")]
 
 
 def test_actions_are_where_the_robot_was(shown):

@@ -45,5 +45,5 @@ def test_the_map_zooms_and_layers_go_off_and_time_moves(in_browser, picture):
     view = [float(part) for part in re.search(r'class="map"[^>]*viewBox="([^"]+)"', dom).group(1).split()]
     assert 0 < view[2] < 1000
     assert re.search(r'class="layer labels off"', dom)
-    assert dom.count('class="robot off"') == 2
+    assert dom.count('class="robot off"') == 3
     assert ">0:31</output>" in dom

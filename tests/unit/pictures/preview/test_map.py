@@ -5,18 +5,19 @@ from dataclasses import replace
 from lxml import etree
 from shapely.geometry import Point, Polygon
 
-from mmrs_core.pictures.preview.labels import Labels, around, width_of
-from mmrs_core.pictures.preview.map_drawing import map_markup
+from mmrs_core.pictures.preview.labels import Label, Labels, around, width_of
+from mmrs_core.pictures.preview.map import map_of
 from mmrs_core.pictures.preview.picture import Leg, Picture, Zone
 from mmrs_core.pictures.preview.projection import projection_of
 from mmrs_core.scene import AreaUse
 
 SVG = "{http://www.w3.org/2000/svg}"
+A_NAME = Label("a name", around((200.0, 200.0), 5.0), "name")
 HOSTILE = "</title><script>alert('x')</script>]]>&\"\x07\u202e"
 
 
 def parsed(picture, **options):
-    return etree.fromstring(map_markup(picture, **options).encode())
+    return etree.fromstring(map_of(picture, **options).encode())
 
 
 def with_class(root, kind):
@@ -67,7 +68,7 @@ def test_a_leg_says_who_what_and_when(picture):
 
 def test_hostile_names_stay_words(picture_named):
     picture = picture_named(Alba=HOSTILE, field=HOSTILE, tower=HOSTILE, mission=HOSTILE)
-    root = parsed(picture, legend=True)
+    root = parsed(picture, standalone=True)
     assert not list(root.iter(f"{SVG}script"))
     words = "".join(root.itertext())
     assert "<script>alert('x')</script>" in words
@@ -75,7 +76,7 @@ def test_hostile_names_stay_words(picture_named):
 
 
 def test_the_legend_names_every_robot(picture):
-    root = parsed(picture, legend=True)
+    root = parsed(picture, standalone=True)
     words = "".join(with_class(root, "legend")[0].itertext())
     assert "Alba" in words
     assert "Brezza" in words
@@ -96,9 +97,8 @@ def test_far_away_areas_do_not_shrink_the_map(picture):
 def test_words_do_not_cover_each_other():
     labels = Labels(400.0)
     for _ in range(4):
-        labels.put("a name", around((200.0, 200.0), 5.0), "name")
-    words = etree.fromstring(f"<g>{labels.markup()}</g>").findall("text")
-    at = [(float(e.get("x")), float(e.get("y"))) for e in words]
+        labels.put(A_NAME)
+    at = [label.at for label in labels.placed]
     assert len(at) == 4
     wide = width_of("a name")
     pairs = [(a, b) for i, a in enumerate(at) for b in at[i + 1 :]]
@@ -115,7 +115,7 @@ def test_an_obstacle_that_robots_pass_over_is_drawn_lightly(picture):
 
 
 def test_nothing_in_the_map_comes_from_elsewhere(picture):
-    markup = map_markup(picture)
+    markup = map_of(picture)
     without_namespace = markup.replace('xmlns="http://www.w3.org/2000/svg"', "")
     assert "http" not in without_namespace
     assert "@import" not in without_namespace
@@ -151,23 +151,22 @@ def test_every_map_is_equally_wide_and_no_higher_than_a_page(picture):
 def test_words_are_placed_off_a_line_where_there_is_room():
     labels = Labels(400.0, 400.0)
     labels.avoid([(0.0, 186.0), (400.0, 186.0)])
-    labels.put("a name", around((200.0, 200.0), 5.0), "name")
-    y = float(etree.fromstring(labels.markup()).get("y"))
+    labels.put(A_NAME)
+    _, y = labels.placed[0].at
     assert not y - 12 < 186.0 < y + 3
 
 
 def box_around(labels):
     """Return what the only words cover, and the line that joins them to what they name, if any."""
-    markup = etree.fromstring(f"<g>{labels.markup()}</g>")
-    (words,) = markup.findall("text")
-    x, y, half = float(words.get("x")), float(words.get("y")), width_of("a name") / 2
-    return Polygon.from_bounds(x - half, y - 12, x + half, y + 3), markup.find("path")
+    (label,) = labels.placed
+    (x, y), half = label.at, width_of("a name") / 2
+    return Polygon.from_bounds(x - half, y - 12, x + half, y + 3), label.leader
 
 
 def test_words_do_not_stand_on_something_else_than_they_name():
     labels, beside = Labels(400.0, 400.0), [(150.0, 150.0), (250.0, 150.0), (250.0, 193.0), (150.0, 193.0)]
     labels.lay_out(beside)
-    labels.put("a name", around((200.0, 200.0), 5.0), "name")
+    labels.put(A_NAME)
     covered, _ = box_around(labels)
     assert not covered.intersects(Polygon(beside))
 
@@ -175,7 +174,7 @@ def test_words_do_not_stand_on_something_else_than_they_name():
 def test_words_may_stand_on_the_area_in_which_lies_what_they_name():
     labels, field = Labels(400.0, 400.0), [(100.0, 100.0), (300.0, 100.0), (300.0, 300.0), (100.0, 300.0)]
     labels.lay_out(field)
-    labels.put("a name", around((200.0, 200.0), 5.0), "name")
+    labels.put(A_NAME)
     covered, leader = box_around(labels)
     assert Polygon(field).covers(covered)
     assert leader is None
@@ -184,18 +183,17 @@ def test_words_may_stand_on_the_area_in_which_lies_what_they_name():
 def test_words_far_from_what_they_name_are_joined_to_it_by_a_line():
     labels = Labels(400.0, 400.0)
     labels.keep_off((120.0, 170.0, 280.0, 230.0))
-    labels.put("a name", around((200.0, 200.0), 5.0), "name")
+    labels.put(A_NAME)
     covered, leader = box_around(labels)
-    (x1, y1), (x2, y2) = (map(float, end.split()) for end in leader.get("d")[1:].split("L"))
-    assert covered.distance(Point(x1, y1)) < 0.1
-    assert Point(200.0, 200.0).distance(Point(x2, y2)) < 10.0
+    start, end = map(Point, leader)
+    assert covered.distance(start) < 0.1
+    assert Point(200.0, 200.0).distance(end) < 10.0
 
 
 def test_words_are_placed_on_what_is_large_enough_for_them():
     labels = Labels(1000.0, 1000.0)
-    labels.put("a name", (300.0, 300.0, 600.0, 500.0), "name")
-    at = etree.fromstring(labels.markup())
-    assert (float(at.get("x")), float(at.get("y"))) == (450.0, 404.0)
+    labels.put(Label("a name", (300.0, 300.0, 600.0, 500.0), "name"))
+    assert labels.placed[0].at == (450.0, 404.0)
 
 
 def test_tasks_at_one_point_stand_side_by_side(picture):

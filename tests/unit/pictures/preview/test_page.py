@@ -41,7 +41,7 @@ def test_the_page_refers_to_nothing_outside(picture):
 
 
 def test_the_page_forbids_the_browser_to_fetch(picture):
-    assert "default-src &#x27;none&#x27;" in page(picture)
+    assert "default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'" in page(picture)
 
 
 def test_hostile_names_add_no_script(picture, picture_named):

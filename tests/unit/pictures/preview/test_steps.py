@@ -3,12 +3,11 @@
 import pytest
 from lxml import etree
 
-from mmrs_core.pictures.preview.from_plan import picture_of_plan
-from mmrs_core.pictures.preview.map_drawing import map_markup
+from mmrs_core.pictures.preview.from_plan import arms_of, picture_of_plan
+from mmrs_core.pictures.preview.map import map_of
 from mmrs_core.pictures.preview.page import page
-from mmrs_core.pictures.preview.profile import profile_markup
-from mmrs_core.pictures.preview.steps import arms_of
-from mmrs_core.pictures.preview.timeline import timeline_markup
+from mmrs_core.pictures.preview.profile import profile_of
+from mmrs_core.pictures.preview.timeline import timeline_of
 from mmrs_core.scene import ActionAt, Branch, Plan, RobotPlan, Serve, Stroke, Transit
 
 HERE, THERE, LOW = (50.0, 30.0, 20.0), (80.0, 50.0, 30.0), (20.0, 30.0, 5.0)
@@ -64,7 +63,7 @@ def test_inner_choices_follow_the_way_that_they_are_on():
 
 
 def test_the_timeline_names_every_way_beneath_its_robot(chooser):
-    markup = timeline_markup(chooser)
+    markup = timeline_of(chooser)
     names = ["".join(name.xpath("text()")) for name in with_class(markup, "arm-name")]
     assert names == ["if windy", "otherwise"]
     assert len(with_class(markup, "choice")) == 1
@@ -74,7 +73,7 @@ def test_the_timeline_names_every_way_beneath_its_robot(chooser):
 
 
 def test_a_bar_of_a_way_tells_when_it_is_done(chooser):
-    tips = [tip(bar) for bar in with_class(timeline_markup(chooser), "work")]
+    tips = [tip(bar) for bar in with_class(timeline_of(chooser), "work")]
     assert "Alba, if windy, works for dip, 0:12 to 0:13" in tips
 
 
@@ -86,8 +85,8 @@ def test_heights_follow_the_longest_way_and_never_go_back_in_time(chooser):
 
 
 def test_heights_on_other_ways_are_drawn_too(chooser):
-    tips = [tip(line) for line in with_class(profile_markup(chooser), "aside")]
-    assert tips == ["height of Alba, if windy"] * 2
+    tips = [tip(line) for line in with_class(profile_of(chooser), "aside")]
+    assert tips == ["altitude of Alba, if windy"]
 
 
 def test_the_table_names_the_tasks_of_every_way(chooser):
@@ -95,7 +94,7 @@ def test_the_table_names_the_tasks_of_every_way(chooser):
 
 
 def test_a_place_at_which_a_robot_stays_has_a_mark_that_tells_why(chooser):
-    stays = with_class(map_markup(chooser), "stay")
+    stays = with_class(map_of(chooser), "stay")
     assert [tip(stay) for stay in stays] == [
         "Alba: work for dip, 0:12 to 0:13, up 5.0 m, if windy",
         "Alba: work for look, 0:15 to 0:45, up 30.0 m, otherwise, holds for 0:30",
@@ -108,7 +107,7 @@ def test_stays_at_one_place_share_a_mark(scene):
         serve(2.0, 9.0, "look", HERE, 7.0),
     )
     plan = Plan((RobotPlan("Alba", steps),), 9.0, {}, {})
-    (stay,) = with_class(map_markup(picture_of_plan(scene, plan, {})), "stay")
+    (stay,) = with_class(map_of(picture_of_plan(scene, plan, {})), "stay")
     first, second = tip(stay).splitlines()
     assert first.endswith("StartVideo")
     assert second.endswith("holds for 0:07")

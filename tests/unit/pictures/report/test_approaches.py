@@ -7,7 +7,7 @@ import pytest
 from shapely.geometry import LineString, Polygon
 
 from mmrs_core.pictures.flights.places import Places
-from mmrs_core.pictures.report.approaches import approaches_of
+from mmrs_core.pictures.report.distances import approaches_of
 from mmrs_core.scene import Area, AreaUse, Frame
 
 SQUARE = ((10.0, 10.0), (20.0, 10.0), (20.0, 20.0), (10.0, 20.0))

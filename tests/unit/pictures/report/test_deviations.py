@@ -14,7 +14,7 @@ from shapely.geometry import LineString, Point
 from mmrs_core.pictures.flights.nearest import along, nearest
 from mmrs_core.pictures.flights.places import Places
 from mmrs_core.pictures.flights.planned import PlannedLeg
-from mmrs_core.pictures.report.charts import off_way_chart
+from mmrs_core.pictures.report.charts import cross_track_chart
 from mmrs_core.pictures.report.deviations import deviation_of
 from mmrs_core.scene import Frame
 from mmrs_core.testing.programs import go_to, move
@@ -114,5 +114,5 @@ def test_parts_of_a_way_are_told():
 
 def test_the_scale_of_a_chart_is_told_as_it_is():
     pieces = [(np.array([0.0, 10.0]), np.array([0.1, 0.38]))]
-    told = re.findall(r">([\d.]+) m<", off_way_chart(pieces, 10.0, "#000"))
+    told = re.findall(r">([\d.]+) m<", cross_track_chart(pieces, 10.0, "#000"))
     assert told == ["0", "0.25", "0.5"]

@@ -10,11 +10,10 @@ import pytest
 from mmrs_core.pictures.flights.fixes import zero_of
 from mmrs_core.pictures.flights.photos import shots_of
 from mmrs_core.pictures.flights.places import Places
-from mmrs_core.pictures.report.durations import move_reports, wait_reports
+from mmrs_core.pictures.report.assembly import link_of
 from mmrs_core.pictures.report.energies import energy_of, used
-from mmrs_core.pictures.report.events import MOST_TEXTS, events_of, readings_of
-from mmrs_core.pictures.report.links import link_of
-from mmrs_core.pictures.report.privacy import without_secrets
+from mmrs_core.pictures.report.events import MOST_TEXTS, events_of, readings_of, without_secrets
+from mmrs_core.pictures.report.visits import move_reports, wait_reports
 from mmrs_core.scene import Frame
 
 PLACES = Places(Frame("EPSG:4326", None, None))
@@ -99,7 +98,7 @@ def test_a_wait_that_nobody_ended_lasts_as_long_as_anything_is_known(behaviour, 
     beta = as_run().robots["beta"].records
     stuck = beta[: next(i for i, r in enumerate(beta) if r.label == "take" and r.move == "b1")]
     (wait,) = wait_reports(behaviour, as_run(alpha={"records": ()}, beta={"records": stuck}), run)
-    assert (wait.until, wait.setters) == (None, ("nobody",))
+    assert (wait.until, wait.setters) == (None, ("unknown",))
     assert wait.since + wait.seconds == pytest.approx(as_run().robots["beta"].track.times[-1])
 
 
@@ -205,7 +204,7 @@ def test_a_fault_counts_once_and_a_pilot_is_none(make, logged):
 def test_a_fault_that_was_made_on_purpose_says_so(make):
     entry = make.entry(1.0, "injected", fault="gps-lost", state="begins")
     (event,) = events_of(make.flown("alpha", entries=(entry,)))
-    assert (event.kind, event.what, event.why) == ("injected", "gps-lost", "on purpose: begins")
+    assert (event.kind, event.what, event.why) == ("injected", "gps-lost", "injected: begins")
 
 
 @pytest.mark.parametrize("end", ["ORDERED", "STOPPED", "TAKEN_OVER"])

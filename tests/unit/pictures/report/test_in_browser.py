@@ -7,7 +7,7 @@ import pytest
 from mmrs_core.pictures.flights.planned import Planned
 from mmrs_core.pictures.preview.from_flight import picture_of_flight
 from mmrs_core.pictures.preview.from_run import Surroundings
-from mmrs_core.pictures.report.making import Given, report_of
+from mmrs_core.pictures.report.assembly import Given, report_of
 from mmrs_core.pictures.report.page import page
 
 pytestmark = pytest.mark.peer

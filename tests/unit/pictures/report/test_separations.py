@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from mmrs_core.pictures.flights.places import Places
 from mmrs_core.pictures.flights.planned import PlannedLeg
 from mmrs_core.pictures.flights.values import Flown, Track
-from mmrs_core.pictures.report.separations import separations_of, under_way
+from mmrs_core.pictures.report.distances import in_motion, separations_of
 from mmrs_core.scene import Frame
 from mmrs_core.testing.programs import move
 
@@ -61,7 +61,7 @@ def test_robots_that_stand_at_home_are_not_told(make):
     assert told(*tracks, moving=()) == []
 
 
-def test_a_robot_is_under_way_from_its_first_way_to_its_last_and_not_while_it_charges(make):
+def test_a_robot_is_in_motion_from_its_first_way_to_its_last_and_not_while_it_charges(make):
     way = ((0.0, 0.0, 0.0), (9.0, 0.0, 0.0))
     legs = [
         PlannedLeg(move("start", "Start"), 0.0, 3.0, True, way[:1]),
@@ -70,8 +70,8 @@ def test_a_robot_is_under_way_from_its_first_way_to_its_last_and_not_while_it_ch
         PlannedLeg(move("b", "GoTo"), 22.0, 30.0, True, way),
     ]
     flown = Flown("alpha", make.records("alpha", (0.0, "begin", "start"), (31.0, "end", "stop")))
-    assert under_way(flown, legs) == ((5.0, 12.0), (20.0, 30.0))
-    assert under_way(flown, legs[:1]) == ()
+    assert in_motion(flown, legs) == ((5.0, 12.0), (20.0, 30.0))
+    assert in_motion(flown, legs[:1]) == ()
 
 
 pace = st.floats(-9.0, 9.0)

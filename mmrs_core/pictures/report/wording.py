@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import re
 
+from mmrs_core.contributions.checks import AT_LIMIT
 from mmrs_core.pictures.figures import clock, energy, length
 from mmrs_core.pictures.flights.places import Place
+from mmrs_core.pictures.report.values import Nearness
 from mmrs_runtime.policies import EVENTS, RESPONSES
 
-UNKNOWN = "not known"
+UNKNOWN = "unknown"
 _CODES = frozenset((*EVENTS, *RESPONSES, "ORDERED", "REFUSED", "STOPPED", "CRASHED"))
 _CODE = re.compile(r"(?<![\w'])[A-Z]+(?:_[A-Z]+)*(?![\w'])")
 
@@ -17,7 +19,7 @@ def seconds(value: float | None) -> str:
     """Return a duration.
 
     >>> seconds(3.25), seconds(75.0), seconds(None)
-    ('3.2 s', '1:15', 'not known')
+    ('3.2 s', '1:15', 'unknown')
     """
     if value is None:
         return UNKNOWN
@@ -39,7 +41,7 @@ def metres(value: float | None) -> str:
     """Return a distance as exact as it is measured.
 
     >>> metres(0.034), metres(12.34), metres(None)
-    ('0.03 m', '12.3 m', 'not known')
+    ('0.03 m', '12.3 m', 'unknown')
     """
     if value is None:
         return UNKNOWN
@@ -50,7 +52,7 @@ def percent(part: float | None) -> str:
     """Return a part of something.
 
     >>> percent(0.256), percent(0.9999), percent(0.0001), percent(None)
-    ('26 %', '99.9 %', '0.1 %', 'not known')
+    ('26 %', '99.9 %', '0.1 %', 'unknown')
     """
     if part is None:
         return UNKNOWN
@@ -63,11 +65,29 @@ def level(part: float | None, capacity: float | None = None) -> str:
     """Return a part of a battery, with the energy where it is known how much a full one holds.
 
     >>> level(0.25, 360_000.0), level(0.25), level(None)
-    ('25 % (25.0 Wh)', '25 %', 'not known')
+    ('25 % (25.0 Wh)', '25 %', 'unknown')
     """
     if part is None or capacity is None:
         return UNKNOWN if part is None else f"{100 * part:.0f} %"
     return f"{100 * part:.0f} % ({energy(part * capacity)})"
+
+
+def nearness(approach: Nearness) -> str:
+    """Return how near something came, compared with what was required.
+
+    At the limit is what is within a centimetre of it; the part of the limit that allows for errors is
+    named, because it is what is left to use up.
+    """
+    errors = f" {approach.error:g} m of it" if approach.error else ""
+    if approach.required is None:
+        return UNKNOWN
+    if approach.too_near:
+        return "too close"
+    if approach.within_error:
+        return f"within the{f' {approach.error:g} m' if errors else ''} position error"
+    if approach.kept - approach.required < AT_LIMIT:
+        return f"at the limit;{errors} is for position errors" if errors else "at the limit"
+    return "kept"
 
 
 def place(where: Place | None) -> str:
@@ -85,10 +105,10 @@ def place(where: Place | None) -> str:
 
 
 def spoken(words: str) -> str:
-    """Return words with the names of events and responses as people write them; GPS stays GPS.
+    """Return words with the names of events and responses in small letters; GPS stays GPS.
 
-    >>> spoken("no GPS fix; by itself it has gone into mode land; response: EMERGENCY_AREA")
-    'no GPS fix; by itself it has gone into mode land; response: emergency area'
+    >>> spoken("no GPS fix; failsafe switched it to LAND; response: EMERGENCY_AREA")
+    'no GPS fix; failsafe switched it to land; response: emergency area'
     """
     return _CODE.sub(lambda found: _plain(found[0]), words)
 
@@ -101,7 +121,7 @@ def span(times: tuple[float, float | None] | None) -> str:
     """Return from when to when.
 
     >>> span((0.0, 65.0)), span((5.0, None)), span(None)
-    ('0:00 to 1:05', 'from 0:05', 'not known')
+    ('0:00 to 1:05', 'from 0:05', 'unknown')
     """
     if times is None:
         return UNKNOWN

@@ -1,7 +1,8 @@
-"""Puts a report together."""
+"""Makes the report of a flight from its logs, its black boxes and its plan."""
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from itertools import pairwise
@@ -19,19 +20,27 @@ from mmrs_core.pictures.flights.places import Places
 from mmrs_core.pictures.flights.planned import Planned, PlannedLeg, legs_of
 from mmrs_core.pictures.flights.thinning import pieces
 from mmrs_core.pictures.flights.values import Flight, Flown
-from mmrs_core.pictures.report.approaches import approaches_of
 from mmrs_core.pictures.report.deviations import deviation_of
-from mmrs_core.pictures.report.durations import move_reports, wait_reports
+from mmrs_core.pictures.report.distances import approaches_of, in_motion, separations_of
 from mmrs_core.pictures.report.energies import energy_of
-from mmrs_core.pictures.report.events import events_of, injected_by, readings_of
-from mmrs_core.pictures.report.links import link_of
-from mmrs_core.pictures.report.privacy import without_secrets
-from mmrs_core.pictures.report.separations import separations_of, under_way
+from mmrs_core.pictures.report.events import events_of, injected_by, readings_of, without_secrets
 from mmrs_core.pictures.report.tasks import task_reports
-from mmrs_core.pictures.report.values import Approach, PhotoReport, Report, RobotReport, Separation
+from mmrs_core.pictures.report.values import (
+    Approach,
+    LinkReport,
+    PhotoReport,
+    Report,
+    RobotReport,
+    Separation,
+)
+from mmrs_core.pictures.report.visits import move_reports, wait_reports
 from mmrs_core.pipeline import Place as Surroundings
 from mmrs_core.scene import Name
+from mmrs_runtime.records.entries import number_of
 from mmrs_runtime.semantics import Outcome
+
+_SORT = re.compile(r"(udp|tcp|serial|simulation|can)", re.IGNORECASE)
+_ACCEPTED = frozenset({"ACCEPTED", "IN_PROGRESS"})
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,7 +59,7 @@ class Given:
     robot_kinds: Mapping[Name, RobotKind] = field(default_factory=dict)
 
     def legs(self) -> dict[str, tuple[PlannedLeg, ...]]:
-        """Return the moves that each robot began, with the ways that they should have gone."""
+        """Return the moves that each robot began, with their planned paths."""
         return {
             robot.id: legs_of(robot, flown, self.kinds)
             for robot in self.program.robots
@@ -59,7 +68,7 @@ class Given:
 
 
 def report_of(given: Given) -> Report:
-    """Return everything that people should know of a flight."""
+    """Return the report of a flight."""
     program, flight, plan = given.program, given.flight, given.planned.run
     legs, places = given.legs(), Places(program.frame)
     records = [record for flown in flight.robots.values() for record in flown.records]
@@ -122,19 +131,19 @@ def _robot(robot: RobotProgram, given: Given, judged: ReplayResult) -> RobotRepo
 
 def _ending(robot: RobotProgram, flown: Flown, judged: ReplayResult) -> str:
     if not flown.records:
-        return f"not begun: {flown.given_up[-1].content.get('what')}" if flown.given_up else "no log"
+        return f"not started: {flown.given_up[-1].content.get('what')}" if flown.given_up else "no log"
     last = flown.records[-1]
     if last.label == "fault":
         return last.detail.partition(":")[0]
     if last.move == robot.moves[robot.stop].id and last.label == "end":
-        return "to its end"
+        return "completed"
     if flown.given_up and flown.given_up[-1].time >= last.time:
         return str(flown.given_up[-1].content.get("what"))
     left = [each for each in flown.of_kind("decision") if each.time >= last.time]
     if left and left[-1].content.get("response") in AWAY:
         return f"suspended: {without_secrets(str(left[-1].content.get('what')))}"
     waits = next((each.slots for each in judged.waiting if each.robot == robot.id), ())
-    return f"waiting for {', '.join(waits)}" if waits else "log ends before the program does"
+    return f"waiting for {', '.join(waits)}" if waits else "log ends before the program"
 
 
 def _length(flown: Flown) -> float:
@@ -155,9 +164,9 @@ def _separations(
 ) -> Iterator[Separation]:
     program = given.program
     apart, flown = program.minimum_separation, given.flight.robots
-    ways = [(flown[robot.id], under_way(flown[robot.id], legs[robot.id])) for robot in program.robots]
+    moving = [(flown[robot.id], in_motion(flown[robot.id], legs[robot.id])) for robot in program.robots]
     errors = 2 * program.position_error
-    yield from separations_of(ways, None if apart is None else apart + errors, places.of, errors)
+    yield from separations_of(moving, None if apart is None else apart + errors, places.of, errors)
 
 
 def _photos(given: Given, places: Places) -> Iterator[PhotoReport]:
@@ -170,14 +179,49 @@ def _photos(given: Given, places: Places) -> Iterator[PhotoReport]:
 def _unknown(given: Given) -> Iterator[str]:
     for robot, flown in given.flight.robots.items():
         if not flown.records and not flown.given_up:
-            yield f"{robot}: there is no log; what it did is not known"
+            yield f"{robot}: no log: what it did is unknown"
         if not len(flown.track.times):
-            yield f"{robot}: there is no black box with places; where it was is not known"
+            yield f"{robot}: no black box with positions: its track is unknown"
         elif not np.isfinite(flown.track.energies).any():
-            yield f"{robot}: its battery was not told; what it used is not known"
+            yield f"{robot}: no battery data: what it used is unknown"
     if not given.flight.whole:
-        yield "logs are missing or damaged: whether this is a run of the behaviour cannot be judged"
+        yield "logs are missing or damaged: whether they match the behaviour cannot be judged"
     if given.place.areas is None:
-        yield "no context was given: distances to forbidden areas and obstacles are not known"
+        yield "no context: distances to forbidden areas and obstacles are unknown"
     yield from given.flight.damages
     yield from given.planned.notes
+
+
+def link_of(flown: Flown) -> LinkReport | None:
+    """Return the quality of the link to a robot; None where there is no black box of it."""
+    if not len(flown.track.times) and not flown.entries:
+        return None
+    commands = flown.of_kind("command")
+    tries = [number_of(entry.content.get("tries")) or 1.0 for entry in commands]
+    seconds = [found for entry in commands if (found := number_of(entry.content.get("seconds"))) is not None]
+    gaps = [until - since for since, until in flown.track.gaps]
+    starts = flown.of_kind("start")
+    start = starts[0].content if starts else {}
+    words = [str(start[name]) for name in ("vehicle", "firmware") if start.get(name)]
+    return LinkReport(
+        flown.robot,
+        ", ".join(words),
+        _sort(start.get("link")),
+        len(flown.track.times),
+        len(gaps),
+        max(gaps, default=0.0),
+        sum(gaps),
+        dict(flown.counted),
+        len(commands),
+        sum(each > 1 for each in tries),
+        sum(str(entry.content.get("result", "")) not in _ACCEPTED for entry in commands),
+        max(seconds, default=None),
+    )
+
+
+def _sort(link: object) -> str:
+    """Return the kind of a link, without any address or path."""
+    if not isinstance(link, str) or not link:
+        return ""
+    found = _SORT.match(link)
+    return found[0].lower() if found else "serial"

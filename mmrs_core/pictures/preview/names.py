@@ -1,49 +1,77 @@
-"""Writes the names on the map."""
+"""Places the names of robots, tasks, areas and context elements on the map."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Iterator, Sequence
 from itertools import chain
+from math import dist
 
 import shapely
 from shapely.geometry import LineString, Polygon
 from shapely.geometry.base import BaseGeometry
 
 from mmrs_core.pictures.figures import heights
-from mmrs_core.pictures.preview.labels import Box, Labels, around
-from mmrs_core.pictures.preview.map_furniture import furniture_places
-from mmrs_core.pictures.preview.map_places import BADGE, STEM, badge_places, task_tip, thing_tip
-from mmrs_core.pictures.preview.map_ways import STAY, STAYING
-from mmrs_core.pictures.preview.palette import style_of
+from mmrs_core.pictures.palette import style_of
+from mmrs_core.pictures.preview.labels import Box, Label, Labels, around
 from mmrs_core.pictures.preview.picture import Picture, RobotPicture, TaskPicture, Zone
 from mmrs_core.pictures.preview.projection import Projection
 from mmrs_core.scene import AreaUse, Point, Position, Ring
 
+BADGE = 8.5
+"""Radius of a badge, pixels."""
+STEM = 20.0
+"""How far above an element's position its badge stands, pixels."""
+STAYING = ("work", "hold")
+"""The kinds of legs whose stays are marked."""
+STAY = 5.5
+"""Radius of the mark of a stay, pixels."""
+PIN = 9.0
+"""Radius of the number of a problem, pixels."""
 _FEW = 20
 _HOME = 9.0
 """Half the width of the mark of a home, pixels."""
 
 
-def words(picture: Picture, projection: Projection, first: int = 0) -> str:
-    """Return the names of robots, tasks, areas and things, none over another where there is room.
+def badge_places(tasks: Iterable[TaskPicture], projection: Projection) -> dict[str, Point]:
+    """Return the pixels of the badges of tasks at points, by task: side by side where they share a point."""
+    taken: list[Point] = []
+    places: dict[str, Point] = {}
+    for task in tasks:
+        if task.point is not None and not (task.rings or task.line):
+            x, y = projection.place(task.point)
+            while any(dist((x, y), other) < BADGE for other in taken):
+                x += 2 * BADGE + 1
+            taken.append((x, y))
+            places[task.name] = (x, y)
+    return places
+
+
+def names_on(picture: Picture, projection: Projection, first: int = 0) -> list[Label]:
+    """Return the names of a map, placed so that none covers another where there is room.
 
     Args:
         first: index of the first robot, for its style.
     """
     labels = Labels(projection.width, projection.height)
-    for box in chain(furniture_places(projection), _marks(picture, projection)):
+    for box in chain(_furniture(projection), _marks(picture, projection)):
         labels.keep_off(box)
     for line in _lines(picture):
         labels.avoid([projection.place(point) for point in line])
     for outline in _outlines(picture):
         labels.lay_out([projection.place(point) for point in outline])
-    kinds = (_of_tasks, _of_things, _of_zones)
+    kinds = (_of_tasks, _of_elements, _of_zones)
     names = chain.from_iterable(of_kind(picture, projection) for of_kind in kinds)
     smallest_first = sorted(names, key=lambda name: _area(name.around))
     for name in chain(_of_robots(picture, projection, first), smallest_first):
-        labels.put(name.words, name.around, name.kind, colour=name.colour, tip=name.tip, icon=name.icon)
-    return labels.markup()
+        labels.put(name)
+    return labels.placed
+
+
+def _furniture(projection: Projection) -> tuple[Box, Box]:
+    """Return what scale bar and north arrow cover."""
+    width = projection.bar_length() * projection.scale
+    bottom = projection.height
+    return (10.0, bottom - 42, 26.0 + width, bottom), (projection.width - 44, 6.0, projection.width - 8, 62.0)
 
 
 def _area(box: Box) -> float:
@@ -59,26 +87,29 @@ def _marks(picture: Picture, projection: Projection) -> Iterator[Box]:
         yield from (around(projection.place(at), STAY) for at in stays)
     for at in badge_places(picture.tasks, projection).values():
         yield around(at, BADGE)
-    for thing in picture.things:
-        yield from (around(projection.place(mark), BADGE, STEM) for mark in thing.marks)
+    for element in picture.elements:
+        yield from (around(projection.place(mark), BADGE, STEM) for mark in element.marks)
+    for problem in picture.problems:
+        if problem.at is not None:
+            yield around(projection.place(problem.at), PIN)
 
 
 def _lines(picture: Picture) -> Iterator[Sequence[Point | Position]]:
-    """Yield what names should not hide: ways and borders."""
+    """Yield what names should not hide: paths and borders."""
     if picture.flown:
         yield from (way for robot in picture.robots for way in robot.planned or _flown(robot))
     else:
         yield from (leg.points for robot in picture.robots for leg in robot.legs)
     yield from ((*zone.shell, zone.shell[0]) for zone in picture.zones if zone.shell)
-    for thing in picture.things:
-        yield from (*thing.lines, *((*ring, ring[0]) for ring in thing.outlines))
+    for element in picture.elements:
+        yield from (*element.lines, *((*ring, ring[0]) for ring in element.outlines))
 
 
 def _outlines(picture: Picture) -> Iterator[Ring]:
-    """Yield what names of other things would be taken to name."""
+    """Yield areas that a name inside of them would be taken to name."""
     yield from (zone.shell for zone in picture.zones if zone.types is None)
     yield from (ring for task in picture.tasks for ring in task.rings[:1])
-    yield from (ring for thing in picture.things if not thing.inner for ring in thing.outlines)
+    yield from (ring for element in picture.elements if not element.inner for ring in element.outlines)
 
 
 def _flown(robot: RobotPicture) -> Iterator[Sequence[Position]]:
@@ -86,32 +117,20 @@ def _flown(robot: RobotPicture) -> Iterator[Sequence[Position]]:
     yield from (leg.points[:: max(len(leg.points) // _FEW, 1)] for leg in robot.legs)
 
 
-@dataclass(frozen=True, slots=True)
-class _Name:
-    """What to write, beside what, how."""
-
-    words: str
-    around: Box
-    kind: str
-    colour: str | None = None
-    tip: str = ""
-    icon: tuple[str, str] = ("", "")
-
-
-def _of_robots(picture: Picture, projection: Projection, first: int) -> Iterator[_Name]:
+def _of_robots(picture: Picture, projection: Projection, first: int) -> Iterator[Label]:
     for index, robot in enumerate(picture.robots, start=first):
         x, y = projection.place(robot.home)
-        yield _Name(robot.name, (x - _HOME, y - _HOME, x + _HOME, y + _HOME), "name", style_of(index).colour)
+        yield Label(robot.name, (x - _HOME, y - _HOME, x + _HOME, y + _HOME), "name", style_of(index).colour)
 
 
-def _of_tasks(picture: Picture, projection: Projection) -> Iterator[_Name]:
+def _of_tasks(picture: Picture, projection: Projection) -> Iterator[Label]:
     places = badge_places(picture.tasks, projection)
     for task in picture.tasks:
         shape, icon = _shape(task), (task.symbol.icon, task.symbol.colour)
         if task.name in places:
-            yield _Name(task.name, around(places[task.name], BADGE), "of-task", tip=task_tip(task))
+            yield Label(task.name, around(places[task.name], BADGE), "of-task", tip=task.tip)
         elif shape is not None:
-            yield _Name(task.name, _box(shape, projection), "of-task", tip=task_tip(task), icon=icon)
+            yield Label(task.name, _box(shape, projection), "of-task", tip=task.tip, icon=icon)
 
 
 def _shape(task: TaskPicture) -> BaseGeometry | None:
@@ -122,32 +141,32 @@ def _shape(task: TaskPicture) -> BaseGeometry | None:
     return None
 
 
-def _of_things(picture: Picture, projection: Projection) -> Iterator[_Name]:
+def _of_elements(picture: Picture, projection: Projection) -> Iterator[Label]:
     shown = _shown(projection)
-    for thing in picture.things:
+    for element in picture.elements:
         shapes = (
-            *map(shapely.Point, thing.marks),
-            *map(_polygon, thing.outlines),
-            *(shapely.Point(line[len(line) // 2]) for line in thing.lines),
+            *map(shapely.Point, element.marks),
+            *map(_polygon, element.outlines),
+            *(shapely.Point(line[len(line) // 2]) for line in element.lines),
         )
-        if shapes and not thing.inner and shown.intersects(shapes[0]):
-            icon = ("" if thing.marks else thing.symbol.icon, thing.symbol.colour)
+        if shapes and not element.inner and shown.intersects(shapes[0]):
+            icon = ("" if element.marks else element.symbol.icon, element.symbol.colour)
             box = (
-                around(projection.place(thing.marks[0]), BADGE, STEM)
-                if thing.marks
+                around(projection.place(element.marks[0]), BADGE, STEM)
+                if element.marks
                 else _box(shapes[0], projection)
             )
-            yield _Name(thing.name, box, "of-thing", tip=thing_tip(thing), icon=icon)
+            yield Label(element.name, box, "of-element", tip=element.tip, icon=icon)
 
 
-def _of_zones(picture: Picture, projection: Projection) -> Iterator[_Name]:
+def _of_zones(picture: Picture, projection: Projection) -> Iterator[Label]:
     shown = _shown(projection)
-    # What bars some types only is a thing at the place, and named as such.
+    # What bars some types only is a context element, and named as such.
     for zone in (zone for zone in picture.zones if zone.types is None):
         seen = shapely.intersection(Polygon(zone.shell), shown)
         if not seen.is_empty:
             box = _box(_polygon(zone.shell), projection)
-            yield _Name(_zone_words(zone), box, f"of-{zone.use.value}")
+            yield Label(_zone_words(zone), box, f"of-{zone.use.value}")
 
 
 def _zone_words(zone: Zone) -> str:

@@ -141,7 +141,7 @@
     cursors.forEach((line) => { line.setAttribute("x1", x); line.setAttribute("x2", x); });
     now.textContent = clock(time);
   };
-  slider.addEventListener("input", () => moveTo(Number(slider.value)));
+  if (slider) slider.addEventListener("input", () => moveTo(Number(slider.value)));
   document.querySelectorAll("svg.chart").forEach((chart) => chart.addEventListener("click", (event) => {
     const point = new DOMPoint(event.clientX, event.clientY).matrixTransform(chart.getScreenCTM().inverse());
     const part = (point.x - data.axis.left) / (data.axis.right - data.axis.left);
@@ -160,12 +160,12 @@
     if (time < data.axis.end) requestAnimationFrame(step);
     else { last = null; play.textContent = "▶"; }
   };
-  play.addEventListener("click", () => {
+  if (play) play.addEventListener("click", () => {
     if (last !== null) { last = null; play.textContent = "▶"; return; }
     if (Number(slider.value) >= data.axis.end) slider.value = 0;
     play.textContent = "❚❚";
     last = performance.now();
     requestAnimationFrame(step);
   });
-  moveTo(0);
+  if (slider) moveTo(0);
 })();

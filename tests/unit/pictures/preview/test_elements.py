@@ -6,10 +6,10 @@ import pytest
 from lxml import etree
 
 from mmrs_core.contributions.symbols import MapSymbol
-from mmrs_core.pictures.preview.map_drawing import map_markup
+from mmrs_core.pictures.preview.features import elements_of
+from mmrs_core.pictures.preview.map import map_of
 from mmrs_core.pictures.preview.page import page
 from mmrs_core.pictures.preview.projection import projection_of
-from mmrs_core.pictures.preview.things import things_of
 from mmrs_core.scene import Part
 
 SOLAR, RING = "urn:test:solar:1.0", ("urn:mmrs:mission:1.0", "Ring")
@@ -25,12 +25,12 @@ def part(kind, **attributes):
 
 
 def of(*parts, symbols=()):
-    return things_of(parts, {symbol.metaclass: symbol for symbol in (OF_GROUP, *symbols)})
+    return elements_of(parts, {symbol.metaclass: symbol for symbol in (OF_GROUP, *symbols)})
 
 
 def test_a_coordinate_is_a_mark():
-    (thing,) = of(part(GROUP, name="a", position=(3.0, 4.0, 5.0)))
-    assert (thing.name, thing.marks, thing.outlines, thing.lines) == ("a", ((3.0, 4.0),), (), ())
+    (each,) = of(part(GROUP, name="a", position=(3.0, 4.0, 5.0)))
+    assert (each.name, each.marks, each.outlines, each.lines) == ("a", ((3.0, 4.0),), (), ())
 
 
 def test_a_shell_is_an_outline():
@@ -54,7 +54,7 @@ def test_what_it_contains_looks_as_its_own_metaclass_says():
     panels = tuple(part(PANEL, position=point) for point in SHELL)
     group, *inner = of(part(GROUP, shell=SHELL, panels=panels), symbols=[OF_PANEL])
     assert not group.inner
-    assert [(thing.symbol, thing.inner) for thing in inner] == [(OF_PANEL, True)] * 3
+    assert [(each.symbol, each.inner) for each in inner] == [(OF_PANEL, True)] * 3
 
 
 def test_what_it_contains_looks_like_itself_where_nobody_says_otherwise():
@@ -62,73 +62,75 @@ def test_what_it_contains_looks_like_itself_where_nobody_says_otherwise():
     assert (inner.symbol, inner.marks) == (OF_GROUP, (FLAT[1],))
 
 
-def test_contained_values_without_a_place_are_no_things():
+def test_contained_values_without_a_place_are_no_elements():
     assert len(of(part(GROUP, shell=SHELL, properties=(Part(((SOLAR, "Pair"),), {"key": "a"}),)))) == 1
 
 
 def test_an_element_without_a_place_is_still_told_of():
-    (thing,) = of(part(GROUP, name="spare"))
-    assert (thing.name, thing.points) == ("spare", ())
+    (each,) = of(part(GROUP, name="spare"))
+    assert (each.name, each.points) == ("spare", ())
 
 
 def test_an_element_without_a_name_is_called_by_its_place_in_the_list():
-    assert [thing.name for thing in of(part(GROUP), part(GROUP, name=""))] == ["elements[0]", "elements[1]"]
+    assert [each.name for each in of(part(GROUP), part(GROUP, name=""))] == ["elements[0]", "elements[1]"]
 
 
 def test_the_fields_of_its_symbol_are_told():
-    (thing,) = of(part(GROUP, rows=12, tracking=True, tilts=(10.0, 12.5), place=(1.0, 2.0, 3.0), owner="me"))
-    assert thing.details == (("rows", "12"), ("tracking", "yes"), ("tilts", "10, 12.5"))
+    (each,) = of(part(GROUP, rows=12, tracking=True, tilts=(10.0, 12.5), place=(1.0, 2.0, 3.0), owner="me"))
+    assert each.details == (("rows", "12"), ("tracking", "yes"), ("tilts", "10, 12.5"))
 
 
 @pytest.fixture
-def with_things(picture):
+def with_elements(picture):
     """Return a function: the picture with these elements."""
-    return lambda *parts: replace(picture, things=of(*parts))
+    return lambda *parts: replace(picture, elements=of(*parts))
 
 
 def shown(picture, kind, **options):
-    root = etree.fromstring(map_markup(picture, **options).encode())
+    root = etree.fromstring(map_of(picture, **options).encode())
     return [e for e in root.iter() if isinstance(e.tag, str) and kind in e.get("class", "").split()]
 
 
-def test_a_thing_is_drawn_in_its_colour_with_its_icon(with_things):
-    picture = with_things(part(GROUP, name="west", shell=SHELL), part(GROUP, name="mast", at=SHELL[1]))
-    (outline,) = shown(picture, "thing")
+def test_an_element_is_drawn_in_its_colour_with_its_icon(with_elements):
+    picture = with_elements(part(GROUP, name="west", shell=SHELL), part(GROUP, name="mast", at=SHELL[1]))
+    (outline,) = shown(picture, "element")
     assert (outline.get("stroke"), outline.get("fill")) == ("#123456", "#123456")
     assert [icon.text for icon in shown(picture, "icon") if icon.get("fill") == "#123456"] == ["P", "P\u00a0"]
 
 
-def test_a_thing_tells_what_it_is(with_things):
-    words = map_markup(with_things(part(GROUP, name="west", shell=SHELL, rows=12)))
+def test_an_element_tells_what_it_is(with_elements):
+    words = map_of(with_elements(part(GROUP, name="west", shell=SHELL, rows=12)))
     assert "<title>west: panel group, rows 12</title>" in words
 
 
-def test_the_key_and_the_legend_name_its_kind(with_things):
-    picture = with_things(part(GROUP, name="west", shell=SHELL))
+def test_the_key_and_the_legend_name_its_kind(with_elements):
+    picture = with_elements(part(GROUP, name="west", shell=SHELL))
     assert "panel group</li>" in page(picture)
-    assert "panel group" in "".join(shown(picture, "legend", legend=True)[0].itertext())
+    assert "panel group" in "".join(shown(picture, "legend", standalone=True)[0].itertext())
 
 
-def test_the_page_lists_things_and_says_which_have_no_place(with_things):
-    words = page(with_things(part(GROUP, name="west", shell=SHELL, rows=12), part(GROUP, name="spare")))
+def test_the_page_lists_elements_and_those_without_a_position(with_elements):
+    words = page(with_elements(part(GROUP, name="west", shell=SHELL, rows=12), part(GROUP, name="spare")))
     assert "<td><bdi>west</bdi></td><td><bdi>panel group</bdi></td><td><bdi>rows: 12</bdi></td>" in words
-    assert "<td><bdi>spare</bdi></td><td><bdi>panel group</bdi></td><td><bdi>without a place</bdi>" in words
+    assert (
+        "<td><bdi>spare</bdi></td><td><bdi>panel group</bdi></td><td><bdi>without a position</bdi>" in words
+    )
 
 
 def test_hostile_words_of_a_plugin_stay_words(picture):
     bait = '</title><script>alert(1)</script>"'
     hostile = MapSymbol(GROUP, bait, "#123456", "<b", ("note",))
-    things = things_of([part(GROUP, name=bait, shell=SHELL, note=bait)], {GROUP: hostile})
-    markup = map_markup(replace(picture, things=things), legend=True)
+    elements = elements_of([part(GROUP, name=bait, shell=SHELL, note=bait)], {GROUP: hostile})
+    markup = map_of(replace(picture, elements=elements), standalone=True)
     assert "<script>" not in markup
     assert etree.fromstring(markup.encode()) is not None
-    assert page(replace(picture, things=things)).count("<script>") == page(picture).count("<script>")
+    assert page(replace(picture, elements=elements)).count("<script>") == page(picture).count("<script>")
 
 
-def test_a_thing_nearby_widens_the_map_and_one_far_away_does_not(picture):
+def test_an_element_nearby_widens_the_map_and_one_far_away_does_not(picture):
     def extent(*positions):
-        things = of(*(part(GROUP, position=position) for position in positions))
-        shown = projection_of(replace(picture, things=things))
+        elements = of(*(part(GROUP, position=position) for position in positions))
+        shown = projection_of(replace(picture, elements=elements))
         return shown.west, shown.east
 
     assert extent((200.0, 20.0, 0.0))[1] > extent()[1]
@@ -141,6 +143,6 @@ def test_an_outline_that_figures_make_is_drawn_beside_the_coordinates():
         return (((-half, -half), (half, -half), (half, half), (-half, half)),)
 
     symbol = MapSymbol(GROUP, "panel group", "#123456", "", outlines=square)
-    (thing,) = things_of([part(GROUP, position=(0.0, 0.0, 0.0), radius=2.0)], {GROUP: symbol})
-    assert thing.outlines == (((-2.0, -2.0), (2.0, -2.0), (2.0, 2.0), (-2.0, 2.0)),)
-    assert thing.marks == ((0.0, 0.0),)
+    (each,) = elements_of([part(GROUP, position=(0.0, 0.0, 0.0), radius=2.0)], {GROUP: symbol})
+    assert each.outlines == (((-2.0, -2.0), (2.0, -2.0), (2.0, 2.0), (-2.0, 2.0)),)
+    assert each.marks == ((0.0, 0.0),)
