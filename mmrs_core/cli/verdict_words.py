@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 
-from mmrs_core.contributions.checks import Check, Status, Verdict
+from mmrs_core.contributions.checks import Check, Status, Verdict, is_at_limit
 from mmrs_core.pictures.figures import quantity
 
 _RANK = {Status.VIOLATED: 0, Status.UNKNOWN: 1, Status.NOT_CHECKED: 2, Status.SAFE: 3}
@@ -37,7 +37,7 @@ def _margin(verdict: Verdict, name: str) -> str:
     """
     if verdict.margin is None:
         return ""
-    if not verdict.at_limit:
+    if not is_at_limit(verdict):
         return f"{name} {quantity(verdict.margin, verdict.unit)}"
     errors = f"; {verdict.error:g} m of it is for position errors" if verdict.error else ""
     return f"at the limit{errors}"

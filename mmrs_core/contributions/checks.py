@@ -56,11 +56,11 @@ class Verdict:
     caveat: str = ""
     error: float = 0.0
 
-    @property
-    def at_limit(self) -> bool:
-        """Return whether a distance is kept, by less than `AT_LIMIT`."""
-        near = self.unit == "m" and self.margin is not None and self.margin < AT_LIMIT
-        return near and self.status is Status.SAFE
+
+def is_at_limit(verdict: Verdict) -> bool:
+    """Return whether a distance is kept, by less than `AT_LIMIT`."""
+    near = verdict.unit == "m" and verdict.margin is not None and verdict.margin < AT_LIMIT
+    return near and verdict.status is Status.SAFE
 
 
 @dataclass(frozen=True, slots=True)
