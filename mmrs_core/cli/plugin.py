@@ -14,8 +14,8 @@ import typer
 from mmrs_core.cli.output import counted, say, say_json, tell
 from mmrs_core.cli.settings import Json, Settings, settings_of
 from mmrs_core.errors import PluginError, UnreadableError
+from mmrs_core.generation.scaffolding.files import PARTS, write_plugin
 from mmrs_core.generation.scaffolding.names import plugin_names
-from mmrs_core.generation.scaffolding.write import write_plugin
 from mmrs_core.plugins import GROUP
 
 app = typer.Typer(
@@ -55,8 +55,8 @@ def list_plugins(call: typer.Context, json: Json = False) -> int:
     return 1 if conflict else 0
 
 
-class TaskSort(StrEnum):
-    """What a new plug-in's task is about."""
+class TaskGeometry(StrEnum):
+    """The geometry of a new plug-in's task."""
 
     POLYGON = "polygon"
     LINE = "line"
@@ -67,22 +67,39 @@ class TaskSort(StrEnum):
 def new_plugin(
     call: typer.Context,
     name: Annotated[
-        str, typer.Argument(metavar="NAME", help="In small letters, digits and hyphens, such as roof-wash.")
+        str,
+        typer.Argument(
+            metavar="NAME", help="Name in lower-case letters, digits and hyphens, e.g. roof-wash."
+        ),
     ],
-    task: Annotated[TaskSort, typer.Option("--task", help="What its task is about.")] = TaskSort.POLYGON,
+    contents: Annotated[
+        str,
+        typer.Option(
+            "--with",
+            metavar="PART,...",
+            help="Contributions to begin with: any of task, robot, target, check, vehicle.",
+        ),
+    ] = "task",
+    task: Annotated[
+        TaskGeometry, typer.Option("--task", help="Geometry of the task.")
+    ] = TaskGeometry.POLYGON,
     output: Annotated[
         Path | None,
-        typer.Option("-o", "--output", metavar="DIR", help="Its folder, new or empty; else mmrs-NAME."),
+        typer.Option(
+            "-o", "--output", metavar="DIR", help="Output folder, new or empty. Default: mmrs-NAME."
+        ),
     ] = None,
     json: Json = False,
 ) -> int:
-    """Write a plug-in with a task of its own.
+    """Create a plug-in with a new task type.
 
-    It has metamodel, rule, constraint, symbol, example and tests. Needs pyecoregen, which pip install
-    "mmrs-core[extend]" brings.
+    With --with, also a robot kind, a code generation target, a check of behaviours or a simulated vehicle.
+    The plug-in installs and passes its tests, which subclass the conformance classes of mmrs_core.testing.
+    Requires pyecoregen: pip install "mmrs-core[extend]".
 
-    Example: mmrs plugin new roof-wash --task polygon
+    Example: mmrs plugin new roof-wash --task polygon --with task,check
     """
+    parts = _parts(contents)
     known = settings_of(call).plugins().contributions
     taken = {each.plugin for each in known.catalogue()}
     taken |= {part for source in known.metamodels for part in source.ns_uri.split(":")}
@@ -92,15 +109,29 @@ def new_plugin(
     except ValueError as fault:
         raise typer.BadParameter(str(fault)) from fault
     folder = output or Path(names.distribution)
-    written = write_plugin(names, task.value, folder, known.metamodels)
+    written = write_plugin(names, parts, task.value, folder, known.metamodels)
     if json:
         say_json({"plugin": names.name, "distribution": names.distribution, "files": written})
         return 0
     say(f"{names.distribution}: {counted(len(written), 'file')} written to {folder}")
     say("Next:")
-    for command in (f"cd {quote(str(folder))}", 'pip install -e ".[test]"', "pytest", "mmrs plan example"):
+    plan = ("mmrs plan example",) if "task" in parts else ()
+    for command in (f"cd {quote(str(folder))}", 'pip install -e ".[test]"', "pytest", *plan):
         say(f"  {command}")
     return 0
+
+
+def _parts(contents: str) -> tuple[str, ...]:
+    """Return the parts of ``--with``, in the order of `PARTS`.
+
+    Raises:
+        typer.BadParameter: if one is unknown.
+    """
+    named = [each.strip() for each in contents.split(",")]
+    for each in named:
+        if each not in PARTS:
+            raise typer.BadParameter(f"--with {each}: unknown; there are {', '.join(PARTS)}")
+    return tuple(part for part in PARTS if part in named)
 
 
 _Found = dict[str, tuple[str, str, dict[str, list[str]]]]

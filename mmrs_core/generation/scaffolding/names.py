@@ -1,4 +1,4 @@
-"""What the parts of a new plug-in are called, all from its one name."""
+"""The names of the parts of a new plug-in, all derived from its own name."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from mmrs_core.languages.registry import CORE_LANGUAGES
 
 LONGEST = 30
 RESERVED = frozenset((*CORE_LANGUAGES, "core", "mmrs", "ecore", "xmi", "xml", "xmlns", "xsi"))
-"""Names that belong to the core, or that files use for something else."""
+"""Names of the core, and names with a meaning in files."""
 
 _NAME = re.compile(r"[a-z][a-z0-9]*(-[a-z0-9]+)*")
 
@@ -24,16 +24,17 @@ class PluginNames:
 
     Attributes:
         name: of the entry point, kebab-case.
-        distribution: what pip calls it.
-        package: what Python imports.
+        distribution: as pip installs it.
+        package: as Python imports it.
         language: name of its metamodel, and the prefix in files.
         ns_uri: of its metamodel.
-        stub: the module with the types of its metamodel.
+        stub: the module with the type stubs of its metamodel.
         task: the metaclass of its task.
-        rule: what the task's rule is called.
+        robot: the metaclass of its robot type.
+        rule: name of the task's rule.
         code: of its first constraint.
-        words: what people call the task.
-        icon: what stands for it on a map.
+        words: the name in words.
+        icon: of its map symbols.
     """
 
     name: str
@@ -43,6 +44,7 @@ class PluginNames:
     ns_uri: str
     stub: str
     task: str
+    robot: str
     rule: str
     code: str
     words: str
@@ -50,7 +52,7 @@ class PluginNames:
 
     @property
     def title(self) -> str:
-        """What people call the plug-in, at the beginning of a sentence."""
+        """Return the name in words, as it begins a sentence."""
         return self.words[0].upper() + self.words[1:]
 
 
@@ -59,11 +61,11 @@ def plugin_names(name: str, taken: Collection[str] = (), codes: Collection[str] 
 
     Args:
         name: in small ASCII letters, digits and hyphens.
-        taken: names of plug-ins, metamodels and rules that are there already.
-        codes: of constraints that are there already.
+        taken: names of installed plug-ins, metamodels and rules.
+        codes: of installed constraints.
 
     Raises:
-        ValueError: if it is no such name, too long, has too few letters, or is taken.
+        ValueError: if the name is malformed, too long, has fewer than two letters, or is taken.
 
     >>> names = plugin_names("roof-wash")
     >>> names.distribution, names.package, names.task, names.code
@@ -72,6 +74,7 @@ def plugin_names(name: str, taken: Collection[str] = (), codes: Collection[str] 
     _refuse(name, taken)
     language = name.replace("-", "_")
     parts = name.split("-")
+    pascal = "".join(part[0].upper() + part[1:] for part in parts)
     return PluginNames(
         name=name,
         distribution=f"mmrs-{name}",
@@ -79,7 +82,8 @@ def plugin_names(name: str, taken: Collection[str] = (), codes: Collection[str] 
         language=language,
         ns_uri=f"urn:mmrs:{name}:1.0",
         stub=python_name(language, sys.stdlib_module_names),
-        task="".join(part[0].upper() + part[1:] for part in parts) + "Task",
+        task=f"{pascal}Task",
+        robot=f"{pascal}Robot",
         rule=language,
         code=f"{_code(name, codes)}001",
         words=" ".join(parts),
@@ -95,13 +99,13 @@ def _refuse(name: str, taken: Collection[str]) -> None:
             f"{name!r}: expected a name in small letters, digits and hyphens, such as {example!r}"
         )
     if len(name) > LONGEST:
-        raise ValueError(f"{name!r}: has {len(name)} characters, at most {LONGEST} make good names of files")
+        raise ValueError(f"{name!r}: has {len(name)} characters, at most {LONGEST} are allowed")
     if name in RESERVED:
-        raise ValueError(f"{name!r}: is a name of the core's own")
+        raise ValueError(f"{name!r}: is reserved for the core")
     if name in taken or name.replace("-", "_") in taken:
-        raise ValueError(f"{name!r}: a plug-in, a language or a rule of that name is installed")
+        raise ValueError(f"{name!r}: a plug-in, metamodel or rule of that name is installed")
     if len(_letters(name)) < 2:
-        raise ValueError(f"{name!r}: needs two letters or more, its constraints are numbered by them")
+        raise ValueError(f"{name!r}: needs at least two letters, which begin the codes of its constraints")
 
 
 def _letters(name: str) -> str:
@@ -109,7 +113,7 @@ def _letters(name: str) -> str:
 
 
 def _code(name: str, codes: Collection[str]) -> str:
-    """Return what the codes of constraints begin with: three letters, or more where others have these."""
+    """Return the prefix of constraint codes: three letters, or more where others use these."""
     letters = _letters(name)
     used = {code[:-3] for code in (*codes, *CODES)}
     candidates = [letters[:count] for count in range(3, len(letters) + 1)] or [letters]

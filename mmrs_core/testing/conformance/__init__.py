@@ -7,9 +7,11 @@ asks for as attributes, and pytest runs all its laws. Needs pytest and hypothesi
 import pytest
 
 _MODULES = (
+    "checks",
     "constraints",
     "declared",
     "device_wirings",
+    "fixes",
     "metamodels",
     "missions",
     "move_kinds",
@@ -21,8 +23,10 @@ _MODULES = (
 )
 pytest.register_assert_rewrite(*(f"{__name__}.{module}" for module in _MODULES))
 
+from mmrs_core.testing.conformance.checks import CheckCase, CheckConformance  # noqa: E402
 from mmrs_core.testing.conformance.constraints import Case, ConstraintConformance  # noqa: E402
 from mmrs_core.testing.conformance.device_wirings import DeviceWiringConformance  # noqa: E402
+from mmrs_core.testing.conformance.fixes import FixCase, FixConformance  # noqa: E402
 from mmrs_core.testing.conformance.metamodels import MetamodelConformance  # noqa: E402
 from mmrs_core.testing.conformance.missions import MissionConformance  # noqa: E402
 from mmrs_core.testing.conformance.move_kinds import MoveKindConformance  # noqa: E402
@@ -34,8 +38,12 @@ from mmrs_core.testing.conformance.vehicles import VehicleConformance  # noqa: E
 
 __all__ = [
     "Case",
+    "CheckCase",
+    "CheckConformance",
     "ConstraintConformance",
     "DeviceWiringConformance",
+    "FixCase",
+    "FixConformance",
     "MetamodelConformance",
     "MissionConformance",
     "MoveKindConformance",

@@ -19,17 +19,19 @@ def declared(plugin: object, sort: str) -> tuple[Any, ...]:
     return tuple(hook()) if hook is not None else ()
 
 
-SORTS = (
-    "rule",
-    "constraint",
-    "robot_kind",
-    "move_kind",
-    "device_action",
-    "target",
-    "vehicle",
-    "map_symbol",
-)
-"""What tests may have as arguments: once for each that a plug-in declares."""
+SORTS = {
+    "rule": "rules",
+    "constraint": "constraints",
+    "fix": "fixes",
+    "robot_kind": "robot_kinds",
+    "move_kind": "move_kinds",
+    "check": "checks",
+    "device_action": "device_actions",
+    "target": "targets",
+    "vehicle": "vehicles",
+    "map_symbol": "map_symbols",
+}
+"""Arguments of tests, which run once for each contribution that the plug-in's hook of that name returns."""
 
 
 class Conformance:
@@ -65,10 +67,10 @@ class Conformance:
 
     def pytest_generate_tests(self, metafunc: pytest.Metafunc) -> None:
         """Run a test once for each descriptor of the sort that one of its arguments is named after."""
-        for sort in SORTS:
-            if sort in metafunc.fixturenames:
-                items = declared(self.plugin, f"{sort}s")
-                metafunc.parametrize(sort, items, ids=[_label(item) for item in items])
+        for argument, sort in SORTS.items():
+            if argument in metafunc.fixturenames:
+                items = declared(self.plugin, sort)
+                metafunc.parametrize(argument, items, ids=[_label(item) for item in items])
 
 
 def _label(item: Any) -> str:

@@ -69,15 +69,23 @@ class MissionConformance:
         assert "<svg" in page.read_text(encoding="utf-8")
 
 
-def run_command(*arguments: object) -> str:
-    """Return what ``mmrs`` prints; pytest fails where it does not end well."""
+def run_mmrs(*arguments: object) -> subprocess.CompletedProcess[str]:
+    """Return how ``mmrs`` ends, and what it prints."""
     command = [sys.executable, "-m", "mmrs_core", *map(str, arguments)]
-    run = subprocess.run(command, capture_output=True, text=True, check=False, timeout=LONGEST_RUN)
+    return subprocess.run(command, capture_output=True, text=True, check=False, timeout=LONGEST_RUN)
+
+
+def run_command(*arguments: object) -> str:
+    """Return what ``mmrs`` prints; the test fails if its exit code is not 0."""
+    run = run_mmrs(*arguments)
     if run.returncode != 0:
-        pytest.fail(f"mmrs {' '.join(command[3:])} ends with {run.returncode}:\n{run.stdout}{run.stderr}")
+        words = " ".join(map(str, arguments))
+        pytest.fail(f"mmrs {words}: exit code {run.returncode}\n{run.stdout}{run.stderr}")
     return run.stdout
 
 
-def run_json(*arguments: object) -> Any:
-    """Return the object that ``mmrs … --json`` prints."""
+def run_json(*arguments: object, any_code: bool = False) -> Any:
+    """Return the object that ``mmrs … --json`` prints; the test fails if its exit code is not 0."""
+    if any_code:
+        return json.loads(run_mmrs(*arguments, "--json").stdout)
     return json.loads(run_command(*arguments, "--json"))

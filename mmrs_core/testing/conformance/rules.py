@@ -33,11 +33,13 @@ class RuleConformance(Conformance):
             must be able to do it where nothing is in the way.
         robot: that does them; with whatever devices they need.
         elements: of the context, that the tasks refer to.
+        areas: of the context, such as obstacles that the rule itself reads.
     """
 
     tasks: ClassVar[Mapping[str, Mapping[str, Value]]]
     robot: ClassVar[Robot] = sample_robot()
     elements: ClassVar[tuple[Part, ...]] = ()
+    areas: ClassVar[tuple[Area, ...]] = ()
 
     def test_every_rule_has_a_task(self) -> None:
         """No rule goes untested, and no task is left over."""
@@ -128,7 +130,7 @@ class RuleConformance(Conformance):
         return sample_task(rule.metaclass, **self.tasks[rule.name])
 
     def _scene(self, *areas: Area) -> Scene:
-        return sample_scene(self.robot, areas=areas, elements=self.elements)
+        return sample_scene(self.robot, areas=(*self.areas, *areas), elements=self.elements)
 
     def _work(self, rule: Rule) -> Work:
         return rule.work(self._task(rule), self.robot, self._scene())
@@ -153,7 +155,7 @@ class RuleConformance(Conformance):
     def _try(self, rule: Rule, task: Task, robot: Robot) -> Work | None:
         """Return the work; None where it is refused."""
         try:
-            return rule.work(task, robot, sample_scene(robot, elements=self.elements))
+            return rule.work(task, robot, sample_scene(robot, areas=self.areas, elements=self.elements))
         except InfeasibleError:
             return None
 

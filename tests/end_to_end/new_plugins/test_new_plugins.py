@@ -13,7 +13,11 @@ import pytest
 pytestmark = pytest.mark.long
 
 KINDS = {"polygon": "class", "line": "import", "point": "while-typing"}
-"""A plug-in for each kind of task, by names that are hard on Python."""
+"""A plug-in for each geometry of tasks, by names that are hard on Python."""
+WHOLE = "a-very-long-name-of-thirty-chs"
+"""A plug-in with every part."""
+PARTS = {"robot": "kite-train", "target": "kite-code", "check": "kite-check", "vehicle": "kite-wing"}
+"""A plug-in for each part alone."""
 
 
 def run(*command, cwd, site=None, code=0):
@@ -42,47 +46,59 @@ def mmrs(*arguments, cwd, site=None, code=0):
 
 @pytest.fixture(scope="module")
 def place(tmp_path_factory):
-    """A folder with a new plug-in for each kind of task."""
+    """A folder with new plug-ins: one for each geometry, one for each part, and one with all parts."""
     made = tmp_path_factory.mktemp("plugins")
     for kind in KINDS:
         mmrs("plugin", "new", KINDS[kind], "--task", kind, cwd=made)
+    for part, name in PARTS.items():
+        mmrs("plugin", "new", name, "--with", part, cwd=made)
+    mmrs("plugin", "new", WHOLE, "--with", "task,robot,target,check,vehicle", cwd=made)
     return made
 
 
 @pytest.fixture(scope="module")
 def site(place):
-    """A folder with all three installed, beside what is installed anyway."""
+    """A folder with all of them installed, beside the installed distributions."""
     made = place / "site"
     options = ("--quiet", "--no-deps", "--no-build-isolation", "--no-index", "--disable-pip-version-check")
-    folders = [place / f"mmrs-{KINDS[kind]}" for kind in KINDS]
+    folders = [place / f"mmrs-{name}" for name in (*KINDS.values(), *PARTS.values(), WHOLE)]
     run(sys.executable, "-m", "pip", "install", *options, "--target", made, *folders, cwd=place)
     return made
 
 
-def its_tests_pass(kind, place, site):
-    folder = place / f"mmrs-{KINDS[kind]}"
+def its_tests_pass(name, place, site):
     options = ("-q", "-W", "error", "-p", "no:cacheprovider")
-    said = run(sys.executable, "-m", "pytest", *options, cwd=folder, site=site)
+    said = run(sys.executable, "-m", "pytest", *options, cwd=place / f"mmrs-{name}", site=site)
     assert " passed" in said
     assert "skipped" not in said
 
 
-def test_a_new_plugin_passes_its_tests(place, site):
-    its_tests_pass("polygon", place, site)
+def test_a_new_plugin_with_every_part_passes_its_tests(place, site):
+    its_tests_pass(WHOLE, place, site)
 
 
 @pytest.mark.thorough
-@pytest.mark.parametrize("kind", KINDS)
-def test_new_plugins_of_every_kind_pass_their_tests(kind, place, site):
-    its_tests_pass(kind, place, site)
+@pytest.mark.parametrize("name", [*KINDS.values(), *PARTS.values()])
+def test_new_plugins_of_every_part_pass_their_tests(name, place, site):
+    its_tests_pass(name, place, site)
 
 
 def test_new_plugins_are_listed_with_what_they_contribute(place, site):
     listed = json.loads(mmrs("plugin", "list", "--json", cwd=place, site=site))["plugins"]
-    for kind in KINDS:
-        distribution, version, sorts = listed[KINDS[kind]]
-        assert (distribution, version) == (f"mmrs-{KINDS[kind]}", "0.1.0")
-        assert set(sorts) == {"metamodels", "constraints", "rules", "map_symbols"}
+    task, robot = {"constraints", "fixes", "rules"}, {"robot_kinds"}
+    model, others = {"metamodels", "map_symbols"}, {"checks", "targets", "vehicles"}
+    expected = {name: task | model for name in KINDS.values()} | {WHOLE: task | robot | model | others}
+    expected |= {PARTS["robot"]: robot | model} | {
+        PARTS[part]: {f"{part}s"} for part in PARTS if part != "robot"
+    }
+    for name, sorts in expected.items():
+        assert listed[name][:2] == [f"mmrs-{name}", "0.1.0"]
+        assert set(listed[name][2]) == sorts
+
+
+def test_a_part_that_does_not_exist_is_refused(tmp_path):
+    mmrs("plugin", "new", "roof-wash", "--with", "task,engine", cwd=tmp_path, code=2)
+    assert list(tmp_path.iterdir()) == []
 
 
 @pytest.mark.parametrize("kind", KINDS)
@@ -124,13 +140,12 @@ def test_all_three_serve_one_mission_together(place, site, tmp_path):
     assert [kind for kind in KINDS if f'rule="{snake(kind)}"' not in planned] == []
 
 
-@pytest.mark.parametrize("kind", KINDS)
-def test_new_plugins_are_formatted_and_typed_as_strictly_as_the_core(kind, place):
-    folder = place / f"mmrs-{KINDS[kind]}"
-    tool = (sys.executable, "-m")
+@pytest.mark.parametrize("name", [*KINDS.values(), *PARTS.values(), WHOLE])
+def test_new_plugins_are_formatted_and_typed_as_strictly_as_the_core(name, place):
+    folder, tool = place / f"mmrs-{name}", (sys.executable, "-m")
     run(*tool, "ruff", "check", "--no-cache", ".", cwd=folder)
     run(*tool, "ruff", "format", "--no-cache", "--check", ".", cwd=folder)
-    run(*tool, "mypy", "--cache-dir", place / "mypy", f"mmrs_{snake(kind)}", cwd=folder)
+    run(*tool, "mypy", "--cache-dir", place / "mypy", f"mmrs_{name.replace('-', '_')}", cwd=folder)
 
 
 def test_the_readme_of_a_new_plugin_shows_the_task_of_its_example(place):

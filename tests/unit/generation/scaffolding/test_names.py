@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from mmrs_core.generation.scaffolding.files import TASK_KINDS, plain, plugin_files
+from mmrs_core.generation.scaffolding.files import GEOMETRIES, PARTS, plain, plugin_files
 from mmrs_core.generation.scaffolding.names import plugin_names
 
 NAMES = st.from_regex(r"[a-z][a-z0-9]{1,6}(-[a-z0-9]{1,5}){0,2}", fullmatch=True)
@@ -27,8 +27,8 @@ def test_a_refused_name_comes_with_one_that_will_do(name, hint):
     ("name", "reason"),
     [
         ("a" * 31, "31 characters"),
-        ("mission", "the core's own"),
-        ("xmlns", "the core's own"),
+        ("mission", "reserved for the core"),
+        ("xmlns", "reserved for the core"),
         ("kites", "is installed"),
         ("kite-line", "is installed"),
         ("x9", "two letters"),
@@ -52,13 +52,13 @@ def test_every_name_makes_names_that_python_takes(name):
         names = plugin_names(name)
     except ValueError:
         return
-    for each in (names.package, names.language, names.stub, names.task, names.rule):
+    for each in (names.package, names.language, names.stub, names.task, names.robot, names.rule):
         assert each.isidentifier()
     assert not keyword.iskeyword(names.stub)
     assert not keyword.iskeyword(names.task)
 
 
-@pytest.mark.parametrize("kind", TASK_KINDS)
+@pytest.mark.parametrize("kind", GEOMETRIES)
 @settings(deadline=None, max_examples=40)
 @given(NAMES)
 def test_every_name_fits_into_every_file(kind, name):
@@ -66,7 +66,7 @@ def test_every_name_fits_into_every_file(kind, name):
         names = plugin_names(name)
     except ValueError:
         return
-    files = plugin_files(names, kind)
+    files = plugin_files(names, PARTS, kind)
     for path, content in files.items():
         if path.endswith(".py"):
             compile(content, path, "exec")
