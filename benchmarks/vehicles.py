@@ -104,7 +104,7 @@ def ports(given: argparse.Namespace) -> list[int]:
 
 def be_vehicles(given: argparse.Namespace) -> None:
     from mmrs_mavlink.sitl import Host, Settings, SimulatedVehicle
-    from mmrs_mavlink.sitl.commands import obey
+    from mmrs_mavlink.sitl.commands import execute
     from mmrs_mavlink.sitl.items import Item
     from mmrs_mavlink.sitl.simulation import advance
 
@@ -118,7 +118,7 @@ def be_vehicles(given: argparse.Namespace) -> None:
         pilot.stores[0] = [items[0], *items, Item(2, 177, (1.0, -1.0, 0.0, 0.0), 0, 0, 0.0)]
         advance(pilot, 3.0)
         for command, params in ((176, (1, 4)), (400, (1,)), (22, (0, 0, 0, 0, 0, 0, 20))):
-            assert obey(pilot, command, (*params, *[0.0] * 7)[:7]) == 0
+            assert execute(pilot, command, (*params, *[0.0] * 7)[:7]) == 0
         advance(pilot, 15.0)
         assert pilot.set_mode(pilot.numbers["auto"]) == 0
         vehicles.append(vehicle)

@@ -30,25 +30,22 @@ def typed_lines() -> queue.SimpleQueue[str]:
 
 
 def addressed(text: str, names: Sequence[str]) -> tuple[tuple[str, ...], str, tuple[str, ...]]:
-    """Return whom a line concerns, and its other words: ``ROBOT WORD [WORD…]``, or ``all`` for every robot.
+    """Return the robots that a line addresses, and its other words: ``ROBOT WORD [WORD…]``, or ``all``.
+
+    A name can contain spaces; of several that fit, the longest is meant.
 
     Args:
-        text: of the line.
-        names: of the robots there are.
+        text: the line.
+        names: of all robots.
 
     Raises:
-        ValueError: it names no robot, or says nothing of it.
+        ValueError: it names no robot, or nothing else.
     """
-    robot = _named_first(text, [*names, EVERYBODY])
+    fitting = [name for name in (*names, EVERYBODY) if f"{text.strip()} ".startswith(f"{name} ")]
+    robot = max(fitting, key=len, default=None)
     words = text.split() if robot is None else [robot, *text.strip().removeprefix(robot).split()]
     if len(words) < 2:
-        raise ValueError(f"{text.strip()}: is neither ROBOT FAULT [VALUE…] nor ROBOT mend FAULT")
+        raise ValueError(f"{text.strip()}: neither ROBOT FAULT [VALUE…] nor ROBOT mend FAULT")
     if robot is None:
-        raise ValueError(f"{words[0]}: no such robot; there are {', '.join(names)}, and all")
+        raise ValueError(f"{words[0]}: unknown robot; known are {', '.join(names)}, and all")
     return tuple(name for name in names if robot in (name, EVERYBODY)), words[1], tuple(words[2:])
-
-
-def _named_first(text: str, names: Sequence[str]) -> str | None:
-    """Return the name that a line begins with, the longest where several fit: names may have blanks."""
-    fitting = [name for name in names if f"{text.strip()} ".startswith(f"{name} ")]
-    return max(fitting, key=len, default=None)

@@ -20,7 +20,7 @@ from mmrs_core.behaviour.program import BEHAVIOUR, DEVICE_ACTION, Action, Headin
 from mmrs_core.contributions.execution import Fault, RobotState, Sample
 from mmrs_core.contributions.rules import MoveKind
 from mmrs_core.contributions.vehicles import VehicleFactory, VehicleInput
-from mmrs_core.errors import InternalError, UnreadableError, UsageError
+from mmrs_core.errors import InternalError, UsageError
 from mmrs_core.scene import Position
 from mmrs_core.simulation.battery import SLACK, SimulatedBattery
 from mmrs_core.simulation.escape import Escapes
@@ -38,8 +38,9 @@ from mmrs_core.simulation.legs import (
     turn,
     wind,
 )
+from mmrs_core.simulation.surroundings import sights_in
 from mmrs_runtime.policies import in_precedence
-from mmrs_runtime.sights import Sight, seen, sights_in
+from mmrs_runtime.sights import seen
 from mmrs_runtime.vehicle import Vehicle
 
 RECHARGE = (BEHAVIOUR, "Recharge")
@@ -68,7 +69,8 @@ class SimulatedRobot(Vehicle):
             raise UsageError(
                 f"option '{option}': the simulation has none of that name: it has no links, disk or clock"
             )
-        self._sights = _sights(given.options.get(SURROUNDINGS))
+        surroundings = given.options.get(SURROUNDINGS)
+        self._sights = () if surroundings is None else sights_in(Path(surroundings))
         self._places: dict[str, Position] = {}
         self._given, self._robot = given, robot_of(given.robot, given.type, given.program.position_error)
         self._kinematics, self._kinds = kinematics_of(given), move_kinds_of(given)
@@ -335,15 +337,6 @@ class SimulatedRobot(Vehicle):
             if self._legs[index].empty_at < self._legs[index].end:
                 self._legs[index:] = [self._legs[index].until(self._legs[index].empty_at)]
                 return
-
-
-def _sights(path: str | None) -> tuple[Sight, ...]:
-    try:
-        return sights_in(Path(path)) if path is not None else ()
-    except OSError as error:
-        raise UnreadableError(f"{path}: {error.strerror or error}") from error
-    except ValueError as error:
-        raise UnreadableError(str(error)) from error
 
 
 SIMULATION = VehicleFactory(

@@ -23,13 +23,13 @@ from mavsdk.plugins.mission_raw_server import MissionRawServer
 from mavsdk.plugins.param_server import ParamServer
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from mmrs_mavlink.sitl.commands import complaint, obey
+from mmrs_mavlink.sitl.commands import arming_refusal, execute
 from mmrs_mavlink.sitl.hosting import Host
 from mmrs_mavlink.sitl.items import Item
 from mmrs_mavlink.sitl.settings import Settings
 from mmrs_mavlink.sitl.streams import Streams
+from mmrs_mavlink.sitl.summary import summary_of
 from mmrs_mavlink.sitl.vehicle import SimulatedVehicle
-from mmrs_mavlink.sitl.words import deeds_of
 
 ARM, TAKE_OFF, JUMP, INTERVAL, REQUEST = 400, 22, 224, 511, 512
 COMMANDS = {ARM, TAKE_OFF, INTERVAL, REQUEST}
@@ -47,7 +47,7 @@ class MavsdkVehicle(SimulatedVehicle):
         self._outgoing: deque = deque()
         self._height, self._passed, self._told_item = 0.0, 0, 0
         self._armable: bool | None = None
-        self.streams.tell = self._tell
+        self.streams.send = self._tell
         self._ground = mavlink.MAVLink(None, *GROUND)
         self._spoken = mavlink.MAVLink(None)
         self._spoken.robust_parsing = True
@@ -83,8 +83,8 @@ class MavsdkVehicle(SimulatedVehicle):
             self.by_mavsdk[kind] = self.by_mavsdk.get(kind, 0) + 1
             self._outgoing.append(message)
 
-    def hear(self) -> None:
-        super().hear()
+    def receive(self) -> None:
+        super().receive()
         self._send_on()
 
     def _send_on(self) -> None:
@@ -102,7 +102,7 @@ class MavsdkVehicle(SimulatedVehicle):
         if kind == "COMMAND_LONG" and message.command == TAKE_OFF:
             self._height = message.param7
         if kind == "COMMAND_LONG" and message.command == INTERVAL:
-            self._interval((message.param1, message.param2))
+            self.streams.set_interval(message.param1, message.param2)
         if not (mission or command or kind in PARAMETERS):
             super()._take(message)
         else:
@@ -117,18 +117,18 @@ class MavsdkVehicle(SimulatedVehicle):
         self.mavsdk.pass_received_raw_bytes(message.pack(self._ground))
         self._ground.seq = (self._ground.seq + 1) % 256
 
-    def go_on(self, real_seconds: float) -> None:
+    def advance(self, real_seconds: float) -> None:
         pilot = self.autopilot
         with self.lock:
             while self._events:
                 what, *values = self._events.popleft()
                 getattr(self, f"_on_{what}")(*values)
-            fit = not complaint(pilot)
+            fit = not arming_refusal(pilot)
             if fit != self._armable:
                 self._armable = fit
                 self._actions.set_armable(fit, fit)
         self._send_on()
-        super().go_on(real_seconds)
+        super().advance(real_seconds)
         for _ in pilot.visited[self._passed :]:
             self._flown.set_current_item_complete()
         self._passed = len(pilot.visited)
@@ -153,15 +153,15 @@ class MavsdkVehicle(SimulatedVehicle):
         ]
 
     def _on_arm(self, arm: bool, force: bool) -> None:
-        obey(self.autopilot, ARM, (float(arm), 21_196.0 if force else 0.0, 0.0, 0.0, 0.0, 0.0, 0.0))
+        execute(self.autopilot, ARM, (float(arm), 21_196.0 if force else 0.0, 0.0, 0.0, 0.0, 0.0, 0.0))
 
     def _on_rise(self) -> None:
-        obey(self.autopilot, TAKE_OFF, (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, self._height))
+        execute(self.autopilot, TAKE_OFF, (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, self._height))
 
     def _tell(self, name: str) -> None:
         tell = _TELLS.get(name)
         if tell is None:
-            Streams.tell(self.streams, name)
+            Streams.send(self.streams, name)
         elif self.autopilot.uptime >= self.autopilot.settings.ready:
             tell(self, self._telemetry)
 
@@ -235,7 +235,7 @@ def main(vehicles: str, speedup: str) -> None:
     sys.stdin.read()
     host.stop()
     for robot, vehicle in made.items():
-        deeds = deeds_of(vehicle)
+        deeds = summary_of(vehicle)
         tell(robot=robot, deeds=deeds, track=vehicle.autopilot.track, by_mavsdk=vehicle.by_mavsdk)
 
 

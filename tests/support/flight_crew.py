@@ -185,7 +185,7 @@ def manned(robot: Robot | None = None, **settings: object) -> Iterator[Manned]:
     with ExitStack() as stack:
         port = free_port()
         simulated = stack.enter_context(SimulatedVehicle(port, Settings(**settings), speedup=SPEEDUP))
-        simulated.autopilot.patience /= 2.0
+        simulated.autopilot.link_timeout /= 2.0
         ears = Ears(open_port(f"udpin:127.0.0.1:{port}"))
         link = Link(Radio(ears, clock), clock, simulated.autopilot.settings.system)
         stack.callback(link.close)

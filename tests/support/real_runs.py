@@ -7,7 +7,7 @@ from math import dist
 from fault_table.fleet import wait_for
 from fault_table.project import Pad
 
-from mmrs_mavlink.sitl.commands import obey
+from mmrs_mavlink.sitl.commands import execute
 from mmrs_runtime.orders.ordering import give
 
 PATIENCE = 60.0
@@ -64,6 +64,6 @@ def fly_by_hand(vehicle):
         pilot = vehicle.autopilot
         pilot.set_mode(pilot.numbers["guided"])
         pilot.arm()
-        obey(pilot, TAKE_OFF, (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 15.0))
+        execute(pilot, TAKE_OFF, (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 15.0))
     assert wait_for(lambda: vehicle.autopilot.body.position[2] > 10.0, PATIENCE)
-    vehicle.faults.take_stick("loiter")
+    vehicle.faults.begin("stick", "loiter")

@@ -18,9 +18,9 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from mmrs_mavlink.links.retries import Retries
 from mmrs_mavlink.sitl.items import Item
-from mmrs_mavlink.sitl.old_frames import packed
-from mmrs_mavlink.sitl.px4_transfers import Px4MissionProtocol
-from mmrs_mavlink.sitl.transfers import MissionProtocol
+from mmrs_mavlink.sitl.px4_transfers import Px4Transfers
+from mmrs_mavlink.sitl.radio import packed
+from mmrs_mavlink.sitl.transfers import ArduPilotTransfers
 
 TICK = 0.05
 """Seconds between two looks of the vehicle at what it waits for."""
@@ -72,9 +72,9 @@ class VirtualLink:
         self._beat = heartbeat(autopilot=PX4 if firmware == "px4" else ARDUPILOT)
         say = lambda severity, text: self.said.append(text)  # noqa: E731
         self.vehicle = (
-            Px4MissionProtocol(self.stores, self._answer, say)
+            Px4Transfers(self.stores, self._answer, say)
             if firmware == "px4"
-            else MissionProtocol(self.stores, self._answer, say, old=old)
+            else ArduPilotTransfers(self.stores, self._answer, say, old=old)
         )
         self._flying: list[tuple[float, int, bytes, bool]] = []
         self._order = 0
@@ -133,7 +133,7 @@ class VirtualLink:
         frame = self._flying[0][0] if self._flying else until
         self.clock.time = max(self.clock.time, min(frame, self._look, until))
         if self._look <= self.clock.time:
-            self.vehicle.go_on(self.clock.time, 0.0)
+            self.vehicle.advance(self.clock.time, 0.0)
             self._look = self.clock.time + TICK
         while self._flying and self._flying[0][0] <= self.clock.time:
             _, _, data, outwards = heapq.heappop(self._flying)

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from mmrs_mavlink.commands.schedule import Planned, Schedule, order, planned
+from mmrs_mavlink.commands.rehearsal import inject
+from mmrs_mavlink.commands.schedule import Schedule, ScheduledFault, scheduled
 from mmrs_mavlink.sitl import Settings, SimulatedVehicle
 
 
@@ -18,74 +19,73 @@ def vehicle():
 @pytest.mark.parametrize(
     ("text", "fault"),
     [
-        ("gps-lost", Planned("", "gps-lost", ())),
-        ("all:gps-lost@5", Planned("", "gps-lost", (), 5.0)),
-        ("Drone1:gps-lost@60+20", Planned("Drone1", "gps-lost", (), 60.0, 20.0)),
-        ("battery=0.2@7.5", Planned("", "battery", ("0.2",), 7.5)),
-        ("A:obstacle=3,90@1+2", Planned("A", "obstacle", ("3", "90"), 1.0, 2.0)),
-        ("west: A@1:gps-lost@5", Planned("west: A@1", "gps-lost", (), 5.0)),
-        ("A:refuse-arming=PreArm: x", Planned("A", "refuse-arming", ("PreArm: x",))),
+        ("gps-lost", ScheduledFault("", "gps-lost", ())),
+        ("all:gps-lost@5", ScheduledFault("", "gps-lost", (), 5.0)),
+        ("Drone1:gps-lost@60+20", ScheduledFault("Drone1", "gps-lost", (), 60.0, 20.0)),
+        ("battery=0.2@7.5", ScheduledFault("", "battery", ("0.2",), 7.5)),
+        ("A:obstacle=3,90@1+2", ScheduledFault("A", "obstacle", ("3", "90"), 1.0, 2.0)),
+        ("west: A@1:gps-lost@5", ScheduledFault("west: A@1", "gps-lost", (), 5.0)),
+        ("A:refuse-arming=PreArm: x", ScheduledFault("A", "refuse-arming", ("PreArm: x",))),
     ],
 )
 def test_a_fault_says_whom_what_when_and_for_how_long(text, fault):
-    assert planned(text) == fault
-    assert planned(str(fault)) == fault
+    assert scheduled(text) == fault
 
 
 @pytest.mark.parametrize(
     ("text", "complaint"),
     [
-        ("gps", "there are gps-lost"),
-        ("gps-lost@soon", "is not"),
-        ("gps-lost@", "is not"),
-        ("restart@5+2", "happens once"),
-        ("", "is not"),
+        ("gps", "known are gps-lost"),
+        ("gps-lost@soon", "not "),
+        ("gps-lost@", "not "),
+        ("restart@5+2", "one-shot"),
+        ("", "not "),
     ],
 )
 def test_what_is_no_fault_is_refused(text, complaint):
     with pytest.raises(ValueError, match=complaint):
-        planned(text)
+        scheduled(text)
 
 
 def test_time_counts_from_the_first_arming(vehicle):
-    schedule = Schedule(vehicle, [planned("gps-lost@10+5")])
+    schedule = Schedule(vehicle, [scheduled("gps-lost@10+5")])
     happened = []
     for second in range(40):
         vehicle.autopilot.time = float(second)
         vehicle.autopilot.armed = second >= 12
-        happened += [(second, event) for event in schedule.go_on()]
+        happened += [(second, event) for event in schedule.advance()]
     assert happened == [(22, "gps-lost begins"), (27, "gps-lost ends")]
     assert vehicle.autopilot.located
 
 
 def test_a_line_makes_and_mends_faults(vehicle):
-    assert order("Drone1 obstacle 4 90", [("Drone1", vehicle)]) == ("Drone1",)
+    assert inject("Drone1 obstacle 4 90", [("Drone1", vehicle)]) == ("Drone1",)
     assert vehicle.autopilot.obstacle == (4.0, 90.0)
-    assert order("all mend obstacle", [("Drone1", vehicle)]) == ("Drone1",)
+    assert inject("all mend obstacle", [("Drone1", vehicle)]) == ("Drone1",)
     assert vehicle.autopilot.obstacle is None
 
 
 @pytest.mark.parametrize("line", ["Quad 1 battery 0.1", "  Quad 1   battery 0.1 "])
 def test_a_line_may_name_a_robot_whose_name_has_blanks(vehicle, line):
     vehicles = [(name, vehicle) for name in ("Quad", "Quad 12", "Quad 1")]
-    assert order(line, vehicles) == ("Quad 1",)
+    assert inject(line, vehicles) == ("Quad 1",)
     assert vehicle.autopilot.energy == pytest.approx(0.1)
 
 
 @pytest.mark.parametrize(
     ("line", "complaint"),
     [
-        ("Drone2 gps-lost", "no such robot"),
-        ("gps-lost", "is neither"),
-        ("Drone1", "is neither"),
-        ("Drone1 gps", "no such fault"),
+        ("Drone2 gps-lost", "unknown robot"),
+        ("gps-lost", "neither ROBOT"),
+        ("Drone1", "neither ROBOT"),
+        ("Drone1 gps", "unknown fault"),
     ],
 )
 def test_a_line_that_says_nothing_is_refused(vehicle, line, complaint):
     with pytest.raises(ValueError, match=complaint):
-        order(line, [("Drone1", vehicle)])
+        inject(line, [("Drone1", vehicle)])
 
 
 def test_a_long_fault_is_refused_before_it_is_read():
     with pytest.raises(ValueError, match="longer than 1000 characters"):
-        planned("a:" * 10_000 + "!")
+        scheduled("a:" * 10_000 + "!")

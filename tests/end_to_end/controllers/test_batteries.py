@@ -34,7 +34,7 @@ def run_and_empty(made, vehicle, links):
             assert process.poll() is None
             time.sleep(0.01)
         time.sleep(0.3)
-        vehicle.faults.set_battery(0.0)
+        vehicle.faults.begin("battery", 0.0)
         _, said = process.communicate(timeout=60)
     return process.returncode, said
 

@@ -31,7 +31,7 @@ def chosen(controllers, hangar):
     def flown(condition, battery=1.0, **settings):
         made = controllers(choosing(condition))
         vehicles, links = hangar(made.program, recharge=0.0, **settings)
-        vehicles["alpha"].faults.set_battery(battery)
+        vehicles["alpha"].faults.begin("battery", battery)
         code, said = made.run("fleet.py", *links)
         assert code == 0, said
         assert made.replayed().complaints == ()

@@ -20,7 +20,7 @@ from mmrs_core.testing.programs import (
     robot_program,
     take_off,
 )
-from mmrs_mavlink.sitl.commands import obey
+from mmrs_mavlink.sitl.commands import execute
 from mmrs_runtime.orders.ordering import give
 
 pytestmark = pytest.mark.real_time("controllers")
@@ -93,7 +93,7 @@ def test_a_lost_link_ends_the_program_and_the_vehicle_answers_by_itself(controll
     vehicles, links = hangar(made.program)
     with made.start("fleet.py", *links) as process:
         until(at_work(vehicles["alpha"]))
-        vehicles["alpha"].mute()
+        vehicles["alpha"].faults.begin("link-down")
         _, said = process.communicate(timeout=60)
     assert process.returncode == 5, said
     assert vehicles["alpha"].autopilot.parameters["FS_GCS_ENABLE"] == 5.0
@@ -106,9 +106,9 @@ def test_a_short_silence_of_the_link_changes_nothing(controllers, hangar):
     vehicles, links = hangar(made.program)
     with made.start("fleet.py", *links) as process:
         until(at_work(vehicles["alpha"]))
-        vehicles["alpha"].mute()
+        vehicles["alpha"].faults.begin("link-down")
         time.sleep(0.5)
-        vehicles["alpha"].unmute()
+        vehicles["alpha"].faults.end("link-down")
         _, said = process.communicate(timeout=60)
     assert process.returncode == 0, said
 
@@ -130,7 +130,7 @@ def test_a_pilot_who_takes_over_is_left_alone(controllers, hangar):
     vehicles, links = hangar(made.program)
     with made.start("fleet.py", *links) as process:
         until(at_work(vehicles["alpha"]))
-        vehicles["alpha"].faults.take_stick("loiter")
+        vehicles["alpha"].faults.begin("stick", "loiter")
         assert any("hands off" in line for line in process.stderr)
         heard = len(vehicles["alpha"].received)
         time.sleep(0.5)
@@ -168,7 +168,7 @@ def test_a_robot_that_holds_is_watched_until_its_link_is_lost(controllers, hanga
     vehicles, links = hangar(made.program, silent=frozenset({2000}))
     with made.start("fleet.py", *links, *SOON) as process:
         until(lambda: vehicles["alpha"].autopilot.mode == BRAKE)
-        vehicles["alpha"].mute()
+        vehicles["alpha"].faults.begin("link-down")
         _, said = process.communicate(timeout=60)
     assert process.returncode == 5, said
     assert "not known to have stopped (HOLD): LINK_LOST: the vehicle has been silent" in said
@@ -179,7 +179,7 @@ def test_a_robot_that_holds_is_left_to_whoever_takes_over(controllers, hangar):
     vehicles, links = hangar(made.program, silent=frozenset({2000}))
     with made.start("fleet.py", *links, *SOON) as process:
         assert any("has done HOLD" in line for line in process.stderr)
-        vehicles["alpha"].faults.take_stick("loiter")
+        vehicles["alpha"].faults.begin("stick", "loiter")
         assert any("hands off" in line for line in process.stderr)
         interrupt_twice(process)
         _, said = process.communicate(timeout=60)
@@ -236,7 +236,7 @@ def test_a_robot_whose_peer_fails_responds_to_it(controllers, hangar):
     vehicles, links = hangar(made.program)
     with made.start("fleet.py", *links) as process:
         until(lambda: vehicles["alpha"].autopilot.body.position[0] > 5.0)
-        vehicles["alpha"].faults.take_stick("loiter")
+        vehicles["alpha"].faults.begin("stick", "loiter")
         assert any("'beta': has done LAND" in line for line in process.stderr)
         interrupt_twice(process)
         process.communicate(timeout=60)
@@ -307,7 +307,7 @@ def test_a_pilot_who_takes_over_because_of_a_fault_keeps_the_vehicle(
         until(at_work(vehicles["alpha"]))
         vehicles["alpha"].faults.begin(fault)
         time.sleep(0.1)
-        vehicles["alpha"].faults.take_stick(mode)
+        vehicles["alpha"].faults.begin("stick", mode)
         changes = len(vehicles["alpha"].autopilot.modes)
         assert any("hands off" in line for line in process.stderr)
         time.sleep(1.0)
@@ -327,7 +327,7 @@ def test_a_vehicle_that_somebody_else_has_is_told_nothing(controllers, hangar, a
         foreign.set_mode(foreign.numbers["guided"])
         foreign.arm()
         if airborne:
-            obey(foreign, 22, (*[0.0] * 6, 20.0))
+            execute(foreign, 22, (*[0.0] * 6, 20.0))
     if airborne:
         until(lambda: foreign.body.position[2] > 15.0)
     parameters = dict(foreign.parameters)
@@ -358,7 +358,7 @@ def test_a_battery_that_was_not_changed_is_not_flown_with(controllers, hangar):
     vehicles, links = hangar(made.program, recharge=1e9)
     with made.start("fleet.py", *links, "--battery-patience", "60") as process:
         until(at_work(vehicles["alpha"]))
-        vehicles["alpha"].faults.set_battery(0.15)
+        vehicles["alpha"].faults.begin("battery", 0.15)
         assert any("came home for its battery" in line for line in process.stderr)
         (told,) = give(made.logs, "resume", ["alpha"])
         process.send_signal(signal.SIGINT)

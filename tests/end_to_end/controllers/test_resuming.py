@@ -67,7 +67,7 @@ def empty(made, vehicle, links, move: str) -> str:
     with made.start("fleet.py", *links) as process:
         made.await_step(move)
         time.sleep(0.15)
-        vehicle.faults.set_battery(0.19)
+        vehicle.faults.begin("battery", 0.19)
         _, said = process.communicate(timeout=60)
     assert process.returncode == 1, said
     assert "came home for its battery" in said
@@ -94,7 +94,7 @@ def test_a_coverage_is_complete_after_a_change_of_batteries(controllers, hangar,
     assert max(map(abs, alpha.autopilot.body.position)) < AT_HOME
     assert not all(covered(alpha))
     before = len(alpha.autopilot.track)
-    alpha.faults.set_battery(1.0)
+    alpha.faults.begin("battery", 1.0)
     code, said = made.run("fleet.py", *links, "--resume")
     assert code == 0, said
     assert all(covered(alpha))
@@ -115,9 +115,9 @@ def test_a_battery_that_is_changed_while_others_work_needs_no_second_start(contr
     with made.start("fleet.py", *links) as process:
         made.await_step("t2")
         time.sleep(0.15)
-        vehicles["alpha"].faults.set_battery(0.19)
+        vehicles["alpha"].faults.begin("battery", 0.19)
         assert any("came home for its battery" in line for line in process.stderr)
-        vehicles["alpha"].faults.set_battery(1.0)
+        vehicles["alpha"].faults.begin("battery", 1.0)
         until(lambda: resumed(made))
         _, said = process.communicate(timeout=60)
     assert process.returncode == 0, said
@@ -131,10 +131,10 @@ def test_a_restarted_vehicle_with_a_new_battery_is_set_up_again(controllers, han
     vehicles, links = hangar(made.program)
     with made.start("fleet.py", *links, "--battery-patience", "60") as process:
         made.await_step("t1")
-        vehicles["alpha"].faults.set_battery(0.19)
+        vehicles["alpha"].faults.begin("battery", 0.19)
         assert any("came home for its battery" in line for line in process.stderr)
-        vehicles["alpha"].faults.restart()
-        vehicles["alpha"].faults.set_battery(1.0)
+        vehicles["alpha"].faults.begin("restart")
+        vehicles["alpha"].faults.begin("battery", 1.0)
         time.sleep(1.0)
         until(lambda: resumed(made))
         _, said = process.communicate(timeout=60)
@@ -246,7 +246,7 @@ def test_a_process_that_is_killed_as_its_robot_comes_home_for_its_battery_brings
     with made.start("fleet.py", *links) as process:
         made.await_step(move)
         time.sleep(0.3)
-        alpha.faults.set_battery(0.15)
+        alpha.faults.begin("battery", 0.15)
         assert any("response: RETURN" in line for line in process.stderr)
         time.sleep(0.3)
         process.send_signal(signal.SIGKILL)
@@ -257,7 +257,7 @@ def test_a_process_that_is_killed_as_its_robot_comes_home_for_its_battery_brings
     assert "came home for its battery" in said
     assert not alpha.autopilot.armed
     assert max(map(abs, alpha.autopilot.body.position)) < AT_HOME
-    alpha.faults.set_battery(1.0)
+    alpha.faults.begin("battery", 1.0)
     code, said = made.run("fleet.py", *links, "--resume")
     assert code == 0, said
     assert all(covered(alpha))

@@ -46,17 +46,17 @@ def test_a_vehicle_that_is_silent_during_an_upload_is_waited_for_as_the_policy_s
     """Three and a half seconds of silence are more than all tries take."""
     fleet, vehicle = fly(("LINK_LOST", "HOLD", 60.0))
     assert wait_for(lambda: uploading(vehicle), PATIENCE), fleet.process.said
-    vehicle.mute()
+    vehicle.faults.begin("link-down")
     time.sleep(3.5)
     assert fleet.process.running(), fleet.process.said
-    vehicle.unmute()
+    vehicle.faults.end("link-down")
     assert wait_for(lambda: vehicle.autopilot.airborne, PATIENCE), fleet.process.said
 
 
 def test_a_vehicle_that_stays_silent_during_an_upload_is_lost_when_the_policy_says(fly):
     fleet, vehicle = fly(("LINK_LOST", "HOLD", 25.0))
     assert wait_for(lambda: uploading(vehicle), PATIENCE), fleet.process.said
-    vehicle.mute()
+    vehicle.faults.begin("link-down")
     begun = time.monotonic()
     assert fleet.process.end(PATIENCE) == 5, fleet.process.said
     assert time.monotonic() - begun > 24.0 / SPEEDUP
@@ -108,11 +108,11 @@ def test_a_vehicle_that_does_nothing_about_its_link_is_told_the_response_once_it
     assert wait_for(lambda: any(step["move"] == "stay" for step in fleet.steps("a")), PATIENCE)
     with vehicle.lock:
         vehicle.autopilot.parameters["FS_GCS_ENABLE"] = 0.0
-    vehicle.faults.fall_dumb()
+    vehicle.faults.begin("dumb")
     assert wait_for(lambda: any("LINK_LOST" in line for line in fleet.process.said), PATIENCE)
     time.sleep(10.0 / SPEEDUP)
     assert vehicle.autopilot.mode_name == "guided"
-    vehicle.faults.speak()
+    vehicle.faults.end("dumb")
     assert fleet.process.end(PATIENCE) == 5, fleet.process.said
     assert not vehicle.autopilot.armed, fleet.process.said
     assert vehicle.autopilot.mode_name == "land"

@@ -8,7 +8,7 @@ from fault_table.project import Pad
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from mmrs_mavlink.sitl.items import MISSION, RALLY
-from mmrs_mavlink.sitl.transfers import MissionProtocol
+from mmrs_mavlink.sitl.transfers import ArduPilotTransfers
 
 pytestmark = pytest.mark.real_time("faults")
 
@@ -21,13 +21,13 @@ SLOW = 0.15
 def refusals(monkeypatch):
     """Return the results of all that vehicles answer by, but that they accept something."""
     results = []
-    answer = MissionProtocol._answer
+    acknowledge = ArduPilotTransfers._acknowledge
 
-    def noted(protocol, message, result):
+    def noted(transfers, peer, result, kind):
         results.append(result)
-        answer(protocol, message, result)
+        acknowledge(transfers, peer, result, kind)
 
-    monkeypatch.setattr(MissionProtocol, "_answer", noted)
+    monkeypatch.setattr(ArduPilotTransfers, "_acknowledge", noted)
     return results
 
 

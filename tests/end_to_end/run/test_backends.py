@@ -102,14 +102,14 @@ def test_a_robot_without_a_take_off_is_watched_after_it_was_charged():
         driven.do("out", "back", "charge")
         driven.begin("far")
         until(lambda: driven.state.position[0] > 20.0)
-        driven.vehicle.faults.meet_obstacle(3.0, 0.0)
+        driven.vehicle.faults.begin("obstacle", 3.0, 0.0)
         until(lambda: driven.fault == "OBSTACLE")
 
 
 def test_a_battery_that_does_not_get_full_is_borne_and_the_robot_watched_on():
     with rover(Policy("BATTERY_LOW", "CONTINUE"), Policy("OBSTACLE", "HOLD")) as driven:
         driven.do("out", "back")
-        driven.vehicle.faults.set_battery(0.5)
+        driven.vehicle.faults.begin("battery", 0.5)
         driven.begin("charge")
         until(lambda: driven.fault == "BATTERY_LOW")
         assert driven.backend.bear(driven.clock.now())
@@ -117,7 +117,7 @@ def test_a_battery_that_does_not_get_full_is_borne_and_the_robot_watched_on():
         driven.begin("far")
         until(lambda: driven.state.position[0] > 20.0)
         assert not driven.fault
-        driven.vehicle.faults.take_stick("manual")
+        driven.vehicle.faults.begin("stick", "manual")
         until(lambda: driven.fault == "TAKEN_OVER")
 
 
@@ -145,7 +145,7 @@ PATIENT = Policy("LINK_LOST", "RETURN", 60.0)
 def start_anew(driven):
     """Have its autopilot start anew once it is old enough for that to be seen."""
     until(lambda: driven.vehicle.autopilot.uptime > 1.5 * SPEEDUP)
-    driven.vehicle.faults.restart()
+    driven.vehicle.faults.begin("restart")
 
 
 def test_a_vehicle_that_starts_anew_before_it_sets_out_is_set_up_again_where_the_robot_carries_on():

@@ -54,8 +54,8 @@ def perched(fleet):
 
 def change_battery(vehicle) -> None:
     """Switch the vehicle off, and on with a full battery."""
-    vehicle.faults.set_battery(1.0)
-    vehicle.faults.restart()
+    vehicle.faults.begin("battery", 1.0)
+    vehicle.faults.begin("restart")
 
 
 def ended_well(fleet) -> bool:
@@ -78,7 +78,7 @@ def test_a_new_battery_where_the_program_landed_is_flown_on_with(flown):
     change_battery(vehicle)
     assert wait_for(lambda: vehicle.autopilot.body.position[1] > BEYOND, PATIENCE), process.said
     assert vehicle.autopilot.home[:2] == pytest.approx((LATITUDE, LONGITUDE), abs=1e-5)
-    vehicle.faults.set_battery(0.15)
+    vehicle.faults.begin("battery", 0.15)
     came = "came down for its battery where its sortie began, away from home; change it"
     assert wait_for(lambda: any(came in line for line in process.said), PATIENCE), process.said
     change_battery(vehicle)

@@ -58,7 +58,7 @@ def test_a_vehicle_that_hears_nothing_confirms_nothing(fleet):
     flown = fleet(Pad("a"))
     process = flown.start()
     vehicle = begun(flown, "a", "out")
-    vehicle.faults.cut_link()
+    vehicle.faults.begin("link-down")
     assert not ordered(flown, "return", seconds=1.0)["confirmed"]
     assert process.end(PATIENCE) == 5, process.said
 
@@ -68,10 +68,10 @@ def test_a_robot_whose_link_comes_back_is_heard_again_and_lands_where_it_is_told
     flown = fleet(Pad("a", policies=(("LINK_LOST", "RETURN", 5.0),)), speedup=8.0)
     process = flown.start()
     vehicle = begun(flown, "a", "tour 1")
-    vehicle.faults.cut_link()
+    vehicle.faults.begin("link-down")
     assert wait_for(lambda: any(s["detail"] == "LINK_LOST" for s in flown.steps("a")), PATIENCE)
     assert ordered(flown, "land")["why"] == "its link is lost"
-    vehicle.faults.mend_link()
+    vehicle.faults.end("link-down")
     assert wait_for(lambda: any("is heard again" in line for line in process.said), PATIENCE)
     assert ordered(flown, "hold")["confirmed"]
     assert vehicle.autopilot.mode == HOLDING
@@ -82,12 +82,12 @@ def test_a_robot_whose_link_comes_back_is_heard_again_and_lands_where_it_is_told
 
 def test_a_hold_before_the_vehicles_speak_keeps_them_on_the_ground(fleet):
     flown = fleet(Pad("a"))
-    flown.vehicles["a"].faults.cut_link()
+    flown.vehicles["a"].faults.begin("link-down")
     process = flown.start()
     assert wait_for(lambda: any("waits for a vehicle" in line for line in process.said), PATIENCE)
     assert not ordered(flown, "hold", seconds=0.5)["confirmed"]
     assert ordered(flown, "status")["phase"] == "is held before it begins"
-    flown.vehicles["a"].faults.mend_link()
+    flown.vehicles["a"].faults.end("link-down")
     assert ordered(flown, "hold")["confirmed"]
     time.sleep(1.0)
     assert not flown.vehicles["a"].autopilot.armed

@@ -39,7 +39,7 @@ def broken_off(flown, **moves):
         begun(flown, robot, move)
     killed.signal(signal.SIGKILL)
     killed.end(PATIENCE)
-    flown.vehicles["b"].faults.cut_link()
+    flown.vehicles["b"].faults.begin("link-down")
 
 
 @pytest.mark.thorough
@@ -47,7 +47,7 @@ def test_a_battery_that_was_not_changed_is_not_flown_with_by_a_new_process_eithe
     flown = fleet(Pad("a", policies=(("BATTERY_LOW", "RETURN", None),)))
     process = flown.start()
     vehicle = begun(flown, "a", "tour 1")
-    vehicle.faults.set_battery(0.15)
+    vehicle.faults.begin("battery", 0.15)
     assert process.end(PATIENCE) == 1, process.said
     assert any("came home for its battery" in line for line in process.said), process.said
     take_offs = sum(number == TAKE_OFF for _, number, _ in vehicle.autopilot.history)
@@ -84,7 +84,7 @@ def test_a_robot_in_the_air_obeys_before_another_is_heard_that_then_goes_on_too(
     assert landing["confirmed"]
     assert landing["seconds"] < 1.0
     assert wait_for(lambda: not vehicle.armed, PATIENCE)
-    flown.vehicles["b"].faults.mend_link()
+    flown.vehicles["b"].faults.end("link-down")
     assert resumed.end(PATIENCE) == 130, resumed.said
     assert flown.steps("b")[-1]["move"] == "stop"
     assert judged(flown) is Outcome.FAILED
@@ -113,7 +113,7 @@ def test_a_robot_whose_run_is_killed_on_its_way_home_for_its_battery_comes_home_
     flown = fleet(Pad("a", policies=low, stay=2.0), Pad("b", stay=2.0), speedup=UNHURRIED)
     killed = flown.start()
     vehicle = begun(flown, "a", "tour 3")
-    vehicle.faults.set_battery(0.15)
+    vehicle.faults.begin("battery", 0.15)
     assert wait_for(lambda: any("BATTERY_LOW" in line for line in killed.said), PATIENCE)
     killed.signal(signal.SIGKILL)
     killed.end(PATIENCE)
@@ -130,13 +130,13 @@ def test_a_changed_battery_lets_a_run_go_on_where_it_stopped(fleet):
     flown = fleet(Pad("a", stay=2.0, policies=(("BATTERY_LOW", "RETURN", None),)))
     first = flown.start()
     vehicle = begun(flown, "a", "tour 1")
-    vehicle.faults.set_battery(0.15)
+    vehicle.faults.begin("battery", 0.15)
     assert first.end(PATIENCE) == 1, first.said
     assert not any("internal error" in line for line in first.said)
     assert "fault" not in {step["label"] for step in flown.steps("a")}
     assert not vehicle.autopilot.armed
     assert vehicle.autopilot.body.position == pytest.approx((0.0, 0.0, 0.0), abs=AT_HOME)
-    vehicle.faults.set_battery(1.0)
+    vehicle.faults.begin("battery", 1.0)
     before = len(vehicle.autopilot.track)
     second = flown.start("--resume")
     assert second.end(PATIENCE) == 0, second.said

@@ -158,7 +158,7 @@ def test_what_makes_no_sense_is_wrong_usage(fleet, told, words, why):
 
 def test_a_vehicle_that_is_not_there_is_told_with_its_link(fleet):
     flown = fleet(Pad("a"))
-    flown.vehicles["a"].faults.cut_link()
+    flown.vehicles["a"].faults.begin("link-down")
     assert flown.start("--backend-option", "patience=1").end(PATIENCE) == 5
     assert "no vehicle at udpin" in flown.process.said[-1]
 

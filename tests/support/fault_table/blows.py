@@ -189,7 +189,7 @@ def _piloted(order: str, event: str) -> Row:
         "pilot's stick, then Ctrl-C for the others",
         AT,
         ("LINK_LOST", order, 5.0),
-        lambda vehicle: vehicle.faults.take_stick("loiter"),
+        lambda vehicle: vehicle.faults.begin("stick", "loiter"),
         event,
         "holds",
         within=None,

@@ -58,13 +58,13 @@ def new_battery(folder: Path, response: str, moment: str) -> Outcome:
         first = fleet.start()
         _reached(fleet, "r0", moment)
         since = struck(vehicle)
-        vehicle.faults.set_battery(0.15)
+        vehicle.faults.begin("battery", 0.15)
         code = first.end(30.0)
         outcome.answered, outcome.rested = answered(vehicle, since), vehicle.autopilot.time - since.time
         outcome.happened = story(vehicle, since)
         if code != 1:
             outcome.problems.append(f"the exit code for a battery that is low is {code}, not 1")
-        vehicle.faults.set_battery(1.0)
+        vehicle.faults.begin("battery", 1.0)
         vehicle.autopilot.body.position = (0.0, 0.0, 0.0)  # somebody carries it home
         again = struck(vehicle)
         second = fleet.start("--resume")

@@ -10,31 +10,31 @@ PHOTO = 2000
 
 
 def cut_link(vehicle: SimulatedVehicle) -> None:
-    vehicle.faults.cut_link()
+    vehicle.faults.begin("link-down")
 
 
 def mend_link(vehicle: SimulatedVehicle) -> None:
-    vehicle.faults.mend_link()
+    vehicle.faults.end("link-down")
 
 
 def fall_dumb(vehicle: SimulatedVehicle) -> None:
-    vehicle.faults.fall_dumb()
+    vehicle.faults.begin("dumb")
 
 
 def speak(vehicle: SimulatedVehicle) -> None:
-    vehicle.faults.speak()
+    vehicle.faults.end("dumb")
 
 
 def stick(vehicle: SimulatedVehicle) -> None:
-    vehicle.faults.take_stick("loiter")
+    vehicle.faults.begin("stick", "loiter")
 
 
 def by_hand(vehicle: SimulatedVehicle) -> None:
-    vehicle.faults.take_stick("alt_hold")
+    vehicle.faults.begin("stick", "alt_hold")
 
 
 def battery(vehicle: SimulatedVehicle) -> None:
-    vehicle.faults.set_battery(0.15)
+    vehicle.faults.begin("battery", 0.15)
 
 
 def stick_and_battery(vehicle: SimulatedVehicle) -> None:
@@ -44,7 +44,7 @@ def stick_and_battery(vehicle: SimulatedVehicle) -> None:
 
 def barely(vehicle: SimulatedVehicle) -> None:
     """Leave a little more than the reserve, but not what the way back takes beside it."""
-    vehicle.faults.set_battery(0.215)
+    vehicle.faults.begin("battery", 0.215)
 
 
 def critical(vehicle: SimulatedVehicle) -> None:
@@ -58,33 +58,33 @@ def critical(vehicle: SimulatedVehicle) -> None:
 
 
 def mute_camera(vehicle: SimulatedVehicle) -> None:
-    vehicle.faults.silence(PHOTO)
+    vehicle.faults.begin("silent", PHOTO)
 
 
 def satellites(vehicle: SimulatedVehicle) -> None:
-    vehicle.faults.lose_position()
+    vehicle.faults.begin("gps-lost")
 
 
 def shift(vehicle: SimulatedVehicle) -> None:
     """Have it take itself to be 40 m north-east of where it is."""
-    vehicle.faults.shift_position(40.0, 45.0)
+    vehicle.faults.begin("position-shift", 40.0, 45.0)
 
 
 def obstacle(vehicle: SimulatedVehicle) -> None:
-    vehicle.faults.meet_obstacle(2.0)
+    vehicle.faults.begin("obstacle", 2.0)
 
 
 def breach(vehicle: SimulatedVehicle) -> None:
-    vehicle.faults.breach_fence()
+    vehicle.faults.begin("breach")
 
 
 def reset(vehicle: SimulatedVehicle) -> None:
-    vehicle.faults.restart(armed=True)
+    vehicle.faults.begin("restart", "armed")
 
 
 def reboot(vehicle: SimulatedVehicle) -> None:
-    vehicle.faults.restart()
+    vehicle.faults.begin("restart")
 
 
 def vehicle_clock(vehicle: SimulatedVehicle) -> None:
-    vehicle.faults.jump_clock(3600.0)
+    vehicle.faults.begin("clock-jump", 3600.0)

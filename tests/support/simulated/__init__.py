@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from mmrs_mavlink.sitl.autopilot import Autopilot
-from mmrs_mavlink.sitl.commands import obey
+from mmrs_mavlink.sitl.commands import execute
 from mmrs_mavlink.sitl.items import Item
 from mmrs_mavlink.sitl.settings import Settings
 from mmrs_mavlink.sitl.simulation import advance
@@ -29,7 +29,7 @@ class Bench:
 
     def command(self, number: int, *params: float) -> int:
         """Return the MAV_RESULT of a command."""
-        return obey(self.pilot, number, (*params, *[0.0] * 7)[:7])
+        return execute(self.pilot, number, (*params, *[0.0] * 7)[:7])
 
     def mode(self, name: str) -> int:
         return self.pilot.set_mode(self.pilot.numbers[name])
@@ -44,7 +44,7 @@ class Bench:
             if test():
                 return True
             if heard:
-                self.pilot.heard = self.pilot.time
+                self.pilot.last_heartbeat = self.pilot.time
             advance(self.pilot, TICK)
         return test()
 

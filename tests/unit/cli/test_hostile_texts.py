@@ -9,10 +9,10 @@ from mmrs_core.behaviour.log import read_log
 from mmrs_core.cli import run
 from mmrs_core.errors import InvalidModelError, UnreadableError, UsageError
 from mmrs_core.generation.manifest import read_manifest
+from mmrs_core.simulation.surroundings import sights_in
 from mmrs_mavlink.links.ports import address_of, split_system
 from mmrs_mavlink.plugin.backend.options import link_options
 from mmrs_runtime.injection.spec import injections
-from mmrs_runtime.sights import sights_in
 
 LONG, DEEP = "9" * 5000, "[" * 200_000
 
@@ -56,5 +56,5 @@ def test_files_that_nest_too_deeply_are_refused(tmp_path):
     file.write_text(DEEP)
     with pytest.raises(UnreadableError, match="is no manifest"):
         read_manifest(file)
-    with pytest.raises(ValueError, match="no surroundings"):
+    with pytest.raises(UnreadableError, match="no surroundings"):
         sights_in(file)

@@ -50,7 +50,7 @@ def test_a_vehicle_that_hears_no_sticks_any_more_stops():
 def test_who_takes_the_stick_has_the_vehicle():
     with sub() as driven:
         driven.set_out()
-        driven.vehicle.faults.take_stick("manual")
+        driven.vehicle.faults.begin("stick", "manual")
         until(lambda: driven.fault is not None)
         assert driven.fault.which == "TAKEN_OVER"
         driven.stop("NOTHING")
@@ -61,7 +61,7 @@ def test_who_takes_the_stick_has_the_vehicle():
 def test_a_link_that_is_lost_is_told():
     with sub() as driven:
         driven.begin("out")
-        driven.vehicle.mute()
+        driven.vehicle.faults.begin("link-down")
         until(lambda: driven.fault is not None)
         assert driven.fault.which == "LINK_LOST"
 
@@ -78,14 +78,14 @@ def test_a_stall_of_this_program_is_no_silence_of_the_vehicle():
 def test_a_vehicle_that_is_not_heard_stays_and_goes_on_when_it_is_heard_again_if_policies_bear_that():
     with sub() as driven:
         driven.set_out()
-        driven.vehicle.faults.fall_dumb()
+        driven.vehicle.faults.begin("dumb")
         until(lambda: driven.fault)
         assert driven.backend.bear(driven.clock.now())
         assert driven.fault is None
         east = driven.truth[0]
         driven.pass_by(5.0)
         assert driven.truth[0] == pytest.approx(east, abs=0.2)
-        driven.vehicle.faults.speak()
+        driven.vehicle.faults.end("dumb")
         until(lambda: driven.backend.reachable(driven.clock.now()))
         driven.finish()
         assert driven.truth[0] == pytest.approx(6.0, abs=1.5)
@@ -94,7 +94,7 @@ def test_a_vehicle_that_is_not_heard_stays_and_goes_on_when_it_is_heard_again_if
 def test_a_battery_that_gets_low_is_told_and_it_comes_up_by_itself():
     with sub() as driven:
         driven.go_down()
-        driven.vehicle.faults.set_battery(0.15)
+        driven.vehicle.faults.begin("battery", 0.15)
         until(lambda: driven.fault)
         assert driven.fault.which == "BATTERY_LOW"
         driven.stop("SURFACE")
@@ -118,7 +118,7 @@ def test_water_inside_brings_it_up():
 def test_what_a_policy_bears_for_a_while_is_told_after_that():
     with sub(policies=(Policy("BATTERY_LOW", "SURFACE", 20.0),)) as driven:
         driven.go_down()
-        driven.vehicle.faults.set_battery(0.15)
+        driven.vehicle.faults.begin("battery", 0.15)
         begun = driven.clock.now()
         until(lambda: driven.fault)
         assert driven.clock.now() - begun >= 19.0
@@ -128,7 +128,7 @@ def test_a_low_battery_overtakes_a_vehicle_that_holds_until_it_is_answered():
     with sub() as driven:
         driven.go_down()
         driven.stop("HOLD")
-        driven.vehicle.faults.set_battery(0.15)
+        driven.vehicle.faults.begin("battery", 0.15)
         until(lambda: driven.fault)
         assert driven.fault.which == "BATTERY_LOW"
         driven.stop("SURFACE")
@@ -140,7 +140,7 @@ def test_an_autopilot_that_begins_anew_is_told_and_not_taken_for_a_pilot():
     with sub() as driven:
         driven.begin("out")
         driven.pass_by(15.0)
-        driven.vehicle.faults.restart()
+        driven.vehicle.faults.begin("restart")
         until(lambda: driven.fault and driven.fault.which == "VEHICLE_RESTARTED")
         driven.stop("SURFACE")
         assert "its motors are off" in driven.undone
@@ -151,7 +151,7 @@ def test_a_device_that_does_not_answer_is_told_while_the_vehicle_is_steered_on()
     with sub() as driven:
         driven.begin("out")
         driven.finish()
-        driven.vehicle.faults.silence(mavlink.MAV_CMD_DO_SET_RELAY)
+        driven.vehicle.faults.begin("silent", mavlink.MAV_CMD_DO_SET_RELAY)
         driven.backend.do(Action(DEVICE_ACTION, "on", "lamp"), driven.clock.now())
         until(lambda: driven.fault)
         assert driven.fault.which == "DEVICE_SILENT"

@@ -1,18 +1,15 @@
-"""``mmrs sitl``: simulated vehicles to rehearse on."""
+"""``mmrs sitl``: simulated MAVLink vehicles."""
 
 from __future__ import annotations
 
+import shlex
 from pathlib import Path
-from shlex import quote
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
 from mmrs_core.cli.output import say, say_json
 from mmrs_core.cli.settings import Json, settings_of
-
-if TYPE_CHECKING:
-    from mmrs_runtime.sights import Sight
 
 _Texts = list[str] | None
 FIRST_PORT, PORT_STEP = 14_550, 10
@@ -149,13 +146,14 @@ def sitl(
 
     Example: mmrs sitl examples/carbon-dioxide --speedup 5 --fault 'Alba:gps-lost@60+20'
     """
-    from mmrs_mavlink.commands.berths import Berths, berths_of, plain_berths
+    from mmrs_core.simulation.surroundings import sights_in
+    from mmrs_mavlink.commands.fleet import Fleet, members_of, plain_members
     from mmrs_mavlink.commands.rehearsal import Rehearsal, fault_list
 
     if fault == ["list"]:
         fault_list()
         return 0
-    berths = Berths(
+    fleet = Fleet(
         port=port,
         step=step,
         host=host,
@@ -170,40 +168,28 @@ def sitl(
         energy=energy,
         recharge=recharge,
         parameters=tuple(parameter or ()),
-        sights=_sights(surroundings),
+        sights=sights_in(surroundings) if surroundings is not None else (),
     )
-    if behaviour is not None:
+    if behaviour is None:
+        members = plain_members(count, home, kind)
+    else:
         _refuse_beside(call, behaviour, ("count", "home", "kind"))
-    settings = settings_of(call)
-    given = berths_of(settings, behaviour) if behaviour is not None else plain_berths(count, home, kind)
-    rehearsal = Rehearsal(berths.vehicles(given), fault or [])
-    if not json:
-        say(" ".join(map(quote, berths.arguments(given))))
-    code = rehearsal.run(seconds, quiet=json)
+        members = members_of(settings_of(call), behaviour)
+    rehearsal = Rehearsal(fleet.vehicles(members), fault or [])
+    arguments = fleet.arguments(members)
+    code = rehearsal.run(seconds, started=lambda: None if json else say(shlex.join(arguments)), quiet=json)
     if json:
-        say_json({"vehicles": rehearsal.deeds(), "connect": berths.arguments(given)})
+        say_json({"vehicles": rehearsal.summaries(), "connect": arguments})
     return code
 
 
-def _sights(path: Path | None) -> tuple[Sight, ...]:
-    from mmrs_core.errors import UnreadableError
-    from mmrs_runtime.sights import sights_in
-
-    try:
-        return sights_in(path) if path is not None else ()
-    except OSError as error:
-        raise UnreadableError(f"{path}: {error.strerror}") from error
-    except ValueError as error:
-        raise UnreadableError(str(error)) from error
-
-
 def _refuse_beside(call: typer.Context, behaviour: Path, names: tuple[str, ...]) -> None:
-    """Refuse options of vehicles without a model.
+    """Refuse the options of vehicles without a model.
 
     Raises:
-        typer.BadParameter: if there are any.
+        typer.BadParameter: one was given.
     """
     for name in names:
         source = call.get_parameter_source(name)
         if source is not None and source.name != "DEFAULT":
-            raise typer.BadParameter(f"--{name}: '{behaviour}' says it of its robots")
+            raise typer.BadParameter(f"--{name}: not allowed with '{behaviour}', whose robots define it")

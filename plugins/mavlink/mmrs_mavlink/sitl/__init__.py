@@ -1,7 +1,7 @@
-"""A simulated vehicle that speaks MAVLink like ArduPilot: for trying controllers without hardware.
+"""Simulated MAVLink vehicles, for testing controllers without hardware.
 
-Run one with ``python -m mmrs_mavlink.sitl --help``, or many in a test with `SimulatedVehicle`.
-It knows no aerodynamics: it accelerates, flies straight lines, climbs, turns, and lands.
+Start one with ``python -m mmrs_mavlink.sitl``, or several in a test with `SimulatedVehicle`. A vehicle is a
+point mass without aerodynamics: it accelerates, flies straight legs, climbs, turns and lands.
 """
 
 from mmrs_mavlink.sitl.faults import FAULTS, Faults

@@ -1,16 +1,15 @@
-"""What the simulated vehicle knows and is; no wires, and no clock of its own.
+"""State of a simulated autopilot, its modes and its home; it has no link and no clock of its own.
 
-Its habits are those measured on ArduPilot, the unpleasant ones included: it is not ready at first,
-refuses uploads in its first second, takes a mission without a take-off and then never leaves the
-ground, and disarms when it stands about.
+It behaves as ArduPilot was measured to: it is not ready at first, refuses uploads in the first second after
+boot, accepts a mission without a take-off and then never leaves the ground, and disarms when it idles there.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterable
+from dataclasses import dataclass
 from functools import lru_cache
-from math import atan2, cos, degrees, radians, remainder, sin, sqrt
-from typing import TYPE_CHECKING
+from math import atan2, cos, degrees, hypot, radians, remainder, sin, sqrt
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
@@ -21,62 +20,71 @@ from mmrs_mavlink.sitl.camera import Camera
 from mmrs_mavlink.sitl.gusts import Gusts
 from mmrs_mavlink.sitl.items import FENCE, MISSION, MOVING, RALLY, Item
 from mmrs_mavlink.sitl.modes import BLIND, first_mode, numbers
-from mmrs_mavlink.sitl.px4_missions import is_feasible
 from mmrs_mavlink.sitl.settings import PX4, Settings
-
-if TYPE_CHECKING:
-    from mmrs_mavlink.sitl.px4_failsafes import Failsafe
-    from mmrs_mavlink.sitl.sticks import Sticks
+from mmrs_mavlink.sitl.sticks import Sticks
 
 EQUATOR, SQUARED_ECCENTRICITY = 6_378_137.0, 6.694_379_990_14e-3
-"""Of the ellipsoid of WGS 84: metres, and its flatness."""
+"""Of the WGS 84 ellipsoid: metres, and none."""
 
 NEAR_GROUND = 0.05
 
 SPEEDS = (("WP_SPD", 1.0), ("WPNAV_SPEED", 0.01), ("WP_SPEED", 1.0), ("MPC_XY_CRUISE", 1.0))
-"""Parameters for its usual speed, with their units: the first is that of copters from 4.7 on."""
+"""Parameters of the default speed, with their units in m/s; the first is that of copters from 4.7 on."""
+
 CHANGE_SPEED = int(mavlink.MAV_CMD_DO_CHANGE_SPEED)
 
 STREAM_SECONDS, STREAM_GAP, STREAM_LEAST = 1.0, 0.5, 2
-"""PX4 takes set-points that have come for a second, with at most half a second in between."""
+"""PX4 accepts set-points that have come for a second, with gaps of at most half a second."""
+
+
+@dataclass(frozen=True, slots=True)
+class Failsafe:
+    """An active failsafe of a PX4.
+
+    Attributes:
+        mode: number of the mode that it has entered; None: it has entered none.
+        then: modes of which it enters the first possible one after its hold; empty: it does not hold.
+        until: end of the hold, seconds.
+    """
+
+    mode: int | None = None
+    then: tuple[str, ...] = ()
+    until: float = 0.0
 
 
 class Autopilot:
-    """A vehicle; what it does in its modes is in `pilots`, what it obeys in `commands`.
+    """The state of a vehicle; `control` moves it, `commands` executes its commands.
 
     Attributes:
-        body, battery, camera: what it is made of.
-        time: seconds since the simulation began. booted: when it was last switched on.
-        history: (seconds, command, parameters) of every command that it carried out, and of every
-            mission item that it executed.
-        visited: (seconds, item) of every mission item that it has left behind.
-        track: (seconds, north, east, up) of where it was while armed, ten times a second.
-        modes: (seconds, number) of every change of the mode, whoever changed it.
-        texts: (severity, text) of what it has to say, oldest first; who sends them takes them off.
-        said: (seconds, severity, text) of all that it ever said.
-        parameters: by name. stores: items by mission type.
-        item: number of the mission item that it is at; its first is 1. held: seconds at its place.
-        finished: whether the mission is behind. loops: how often each jump was made.
-        pending: number of the item that is still to be told as reached; None: there is none.
-        returning: where it goes back to, and by which places.
-        located: whether it has a position. unfit: why it does not let itself be armed.
-        obstacle: metres and degrees clockwise from its nose. breached: whether it is out of its fence.
-        silent: commands that it does not answer. clock_error: seconds by which its time of day is wrong.
-        patience: seconds that it waits at least for what comes by its link, whatever parameters say.
-        beats_now: whether a heartbeat is due because the mode has changed.
-        failed: since when each thing is wrong that it watches, or that it has answered that.
-        failsafe: what a PX4 does because of that; None: nothing.
-        fence_due: when it looks at its fence again. told_out: whether somebody says that it is out of it.
-        reboots: whether it is to be switched off and on.
-        home: latitude, longitude and metres above the sea. settled: whether somebody has told it its home.
-        heard: when the ground station that it knows was last heard; None: never.
-        steered: when the last set-points came, oldest first.
-        aimed: whether one was heeded since it went into its mode, or took off.
-        sticks: of the pilot, where somebody has moved them.
+        time: seconds since the simulation began. booted: time of the last boot.
+        history: (seconds, command, parameters) of every executed command and mission item.
+        visited: (seconds, item) of every completed mission item.
+        track: (seconds, north, east, up) while armed, ten times a second.
+        modes: (seconds, number) of every mode change.
+        texts: (severity, text) of STATUSTEXTs to be sent. said: (seconds, severity, text) of all of them.
+        stores: items by mission type.
+        item: current mission item. held: seconds at its position. finished: whether the mission is over.
+        jumps_made: number of jumps by DO_JUMP item.
+        pending: mission item whose completion is not yet reported; None: none.
+        return_path: positions on the way to the return point. breadcrumbs: positions for SmartRTL.
+        located: whether it has a position. arming_fault: failed pre-arm check; empty: none.
+        obstacle: metres, and degrees clockwise from its nose.
+        breached: whether it is outside its fence. forced_breach: whether an injected fault says so.
+        silent: commands that it does not answer.
+        clock_error: error of its time of day, seconds.
+        link_timeout: shortest timeout of its link, seconds, whatever its parameters say.
+        heartbeat_due: whether a mode change is to be reported at once.
+        failed: time at which each failure was detected or answered.
+        failsafe: of a PX4; None: none is active.
+        fence_due: time of the next fence check.
+        rebooting: whether it reboots in the next step.
+        home: latitude, longitude, metres above mean sea level. home_set: whether a command has set it.
+        last_heartbeat: time of the last heartbeat of its ground station; None: none received.
+        setpoints: times of the last set-points, oldest first. aimed: whether it has followed one in its mode.
     """
 
     def __init__(self, settings: Settings) -> None:
-        """Stand at home, switched on."""
+        """Stand at home after boot."""
         self.settings = settings
         self.body = Body(wind=wind_of(*settings.wind))
         self.gusts = Gusts(*settings.gusts, seed=f"{settings.seed} {settings.system}")
@@ -86,57 +94,57 @@ class Autopilot:
         self.stores: dict[int, list[Item]] = {MISSION: [], FENCE: [], RALLY: []}
         self.time = self.booted = 0.0
         self.numbers = numbers(settings)
-        self.mode = self.numbers[first_mode(settings)]
         self.mode_name = first_mode(settings)
+        self.mode = self.numbers[self.mode_name]
         self.history: list[tuple[float, int, tuple[float, ...]]] = []
         self.visited: list[tuple[float, int]] = []
         self.track: list[tuple[float, float, float, float]] = []
         self.modes: list[tuple[float, int]] = []
         self.said: list[tuple[float, int, str]] = []
-        self.located, self.unfit = True, ""
+        self.located, self.arming_fault = True, ""
         self.obstacle: tuple[float, float] | None = None
-        self.breached, self.breaches = False, 0
-        self.told_out, self.reboots = False, False
+        self.breached, self.breaches, self.forced_breach = False, 0, False
         self.fence_due = 0.0
+        self.rebooting = False
         self.silent = settings.silent
         self.clock_error = 0.0
-        self.patience = 0.0
-        self._forget()
+        self.link_timeout = 0.0
+        self._clear_memory()
 
-    def _forget(self) -> None:
-        """Begin with an empty memory; what is on disk is elsewhere."""
+    def _clear_memory(self) -> None:
         self.armed = False
         self.texts: list[tuple[int, str]] = []
         self.item, self.held, self.finished = 0, 0.0, False
-        self.loops: dict[int, int] = {}
+        self.jumps_made: dict[int, int] = {}
         self.pending: int | None = None
         self.roi: Vector | None = None
-        self.returning: list[Vector] = []
-        self.crumbs: list[Vector] = [(0.0, 0.0, 0.0)]
-        self.heard: float | None = None
-        self.steered: list[float] = []
+        self.return_path: list[Vector] = []
+        self.breadcrumbs: list[Vector] = [(0.0, 0.0, 0.0)]
+        self.last_heartbeat: float | None = None
+        self.setpoints: list[float] = []
         self.aimed = False
         self.sticks: Sticks | None = None
         self.grounded_since = self.time
         self.home = self._here()
-        self.settled = False
-        self.beats_now = False
+        self.home_set = False
+        self.heartbeat_due = False
         self.failed: dict[str, float] = {}
         self.failsafe: Failsafe | None = None
         self.body.target = self.body.onward = self.body.origin = self.body.wanted_heading = None
 
     @property
-    def energy(self) -> float:
-        """Return the part of the battery that is left, 0 to 1."""
-        return self.battery.level
+    def px4(self) -> bool:
+        """Return whether its firmware is PX4."""
+        return self.settings.firmware == PX4
 
-    @energy.setter
-    def energy(self, level: float) -> None:
-        self.battery.change(level)
+    @property
+    def energy(self) -> float:
+        """Return the remaining fraction of the battery, 0 to 1."""
+        return self.battery.level
 
     @property
     def uptime(self) -> float:
-        """Return the seconds since it was switched on."""
+        """Return the seconds since boot."""
         return self.time - self.booted
 
     @property
@@ -145,20 +153,25 @@ class Autopilot:
         return self.booted > 0.0 and self.uptime < self.settings.boot
 
     @property
+    def initialised(self) -> bool:
+        """Return whether it has had the time since boot that its position estimate needs."""
+        return self.uptime >= self.settings.ready
+
+    @property
     def ready(self) -> bool:
-        """Return whether it knows where it is and may be armed."""
-        return self.uptime >= self.settings.ready and self.located and not self.unfit
+        """Return whether it has a position and can be armed."""
+        return self.initialised and self.located and not self.arming_fault
 
     @property
     def first_item(self) -> int:
-        """Return the number of the first item of missions: ArduPilot keeps home before it."""
-        return 0 if self.settings.firmware == PX4 else 1
+        """Return the number of a mission's first item: item 0 is home on ArduPilot."""
+        return 0 if self.px4 else 1
 
     @property
-    def told_item(self) -> int:
-        """Return the item that it tells: ArduPilot that which it flies to, not what it does on the way."""
+    def current_item(self) -> int:
+        """Return the item that it reports: ArduPilot that which it flies to, not one executed on the way."""
         items = self.stores[MISSION]
-        if self.settings.firmware == PX4 or not self.first_item <= self.item < len(items):
+        if self.px4 or not self.first_item <= self.item < len(items):
             return self.item
         ahead = (seq for seq in range(self.item, len(items)) if items[seq].is_flown)
         behind = (seq for seq in range(self.item, 0, -1) if items[seq].is_flown)
@@ -166,20 +179,44 @@ class Autopilot:
 
     @property
     def flies(self) -> bool:
-        """Return whether it is of a kind that takes off and lands."""
+        """Return whether its kind takes off and lands."""
         return self.settings.kind == "copter"
 
     @property
     def airborne(self) -> bool:
-        """Return whether it is off the ground; what does not fly never is."""
+        """Return whether it flies above the ground."""
         return self.flies and self.body.position[2] > NEAR_GROUND
 
+    @property
+    def has_mission(self) -> bool:
+        """Return whether it has a mission; a PX4's first item must be within MIS_DIST_1WP of home.
+
+        As PX4's ``FeasibilityChecker.cpp`` has it.
+        """
+        items = self.stores[MISSION]
+        if not self.px4 or self.parameters["MIS_DIST_1WP"] <= 0.0:
+            return len(items) > self.first_item
+        first = next((item for item in items if item.command in MOVING and (item.x or item.y)), None)
+        if first is None:
+            return bool(items)
+        home, place = self.local(*self.home[:2], 0.0), self.place_of(first)
+        return hypot(place[0] - home[0], place[1] - home[1]) < self.parameters["MIS_DIST_1WP"]
+
+    @property
+    def is_steered(self) -> bool:
+        """Return whether set-points come as often and as long as a PX4 requires."""
+        return (
+            len(self.setpoints) > STREAM_LEAST
+            and self.time - self.setpoints[0] >= STREAM_SECONDS
+            and self.time - self.setpoints[-1] <= max(STREAM_GAP, self.link_timeout)
+        )
+
     def degrees(self) -> tuple[float, float]:
-        """Return latitude and longitude."""
+        """Return its latitude and longitude."""
         return self.degrees_at(self.body.position)
 
     def degrees_at(self, place: Vector) -> tuple[float, float]:
-        """Return latitude and longitude of a place."""
+        """Return the latitude and longitude of a position."""
         north, east, _ = place
         of_latitude, of_longitude = metres_per_degree(self.settings.latitude)
         longitude = remainder(self.settings.longitude + east / of_longitude, 360.0)
@@ -192,11 +229,11 @@ class Autopilot:
         return (north, remainder(longitude - self.settings.longitude, 360.0) * of_longitude, up)
 
     def above_ground(self, height: float, *, above_sea: bool) -> float:
-        """Return a height that counts from the sea, or else from home, in metres above the ground."""
+        """Return an altitude above mean sea level, or else above home, in metres above the ground."""
         return height + (0.0 if above_sea else self.home[2]) - self.settings.altitude
 
     def place_of(self, item: Item) -> Vector:
-        """Return where an item is; one without a place, or without coordinates, is here or above here."""
+        """Return the position of an item; without coordinates, that of the vehicle at the item's altitude."""
         up = self.above_ground(item.z, above_sea=item.above_sea)
         if not (item.x or item.y):
             return (*self.body.position[:2], up)
@@ -209,93 +246,83 @@ class Autopilot:
             return int(mavlink.MAV_RESULT_FAILED)
         if number != self.mode:
             self.modes.append((self.time, number))
-            self.beats_now = True
-            self._take_up_mission(name)
+            self.heartbeat_due = True
+            self._resume_mission(name)
         self.mode, self.mode_name = number, name
         self.body.target = self.body.onward = self.body.origin = None
         self.body.speed = self._entry_speed(name)
         self.body.adrift = self.aimed = False
-        self.held, self.returning = 0.0, []
+        self.held, self.return_path = 0.0, []
         return int(mavlink.MAV_RESULT_ACCEPTED)
 
     def enter(self, *names: str) -> None:
-        """Go into the first of these modes that it has and may go into."""
+        """Enter the first of these modes that it has and may enter."""
         for name in names:
             if name in self.numbers and self.set_mode(self.numbers[name]) == mavlink.MAV_RESULT_ACCEPTED:
                 return
 
     def say(self, severity: int, text: str) -> None:
-        """Have something to say to the ground."""
+        """Send a STATUSTEXT."""
         self.texts.append((int(severity), text))
         self.said.append((self.time, int(severity), text))
 
-    def note(self, number: int, params: Iterable[float]) -> None:
-        """Write into the history that something was carried out, and let the camera have it, too."""
+    def record(self, number: int, params: Iterable[float]) -> None:
+        """Record an executed command, and pass it to the camera."""
         values = tuple(params)
         self.history.append((self.time, number, values))
-        self.camera.obey(number, values, self.body)
+        self.camera.execute(number, values, self.body)
 
     def arm(self) -> None:
-        """Start the motors; home is here from now on, unless somebody has told it another."""
+        """Arm; home becomes the present position unless a command has set it."""
         self.armed = True
         self.grounded_since = self.time
-        self.crumbs = [self.body.position]
-        if not (self.airborne or self.settled):
+        self.breadcrumbs = [self.body.position]
+        if not (self.airborne or self.home_set):
             self.home = self._here()
         self.say(mavlink.MAV_SEVERITY_INFO, "Arming motors")
 
     def _here(self) -> tuple[float, float, float]:
-        """Return where home is if it is here; that of a submarine is at the surface above it."""
+        """Return the present position as a home; that of a submarine is at the surface above it."""
         height = 0.0 if self.settings.kind == "sub" else self.body.position[2]
         return (*self.degrees(), self.settings.altitude + height)
 
     def disarm(self) -> None:
-        """Stop the motors; the mission begins at its first item again."""
+        """Disarm; the mission restarts at its first item."""
         if self.armed:
             self.say(mavlink.MAV_SEVERITY_INFO, "Disarming motors")
         self.armed, self.item, self.finished = False, 0, False
         self.body.rest_at(self.body.position[2])
 
     def restart(self, armed: bool = False) -> None:
-        """Lose what is in memory and begin anew; what was uploaded and set is on disk."""
-        was_armed, home = self.armed, self.home
+        """Reboot, and keep uploads and parameters only; `armed`: stay armed, as after a watchdog reset."""
+        stays_armed, home = self.armed and armed, self.home
         self.booted = self.time
-        self._forget()
-        self.armed = was_armed and armed
+        self._clear_memory()
+        self.armed = stays_armed
         self.home = home if self.armed else self.home
-        self.breached = self.told_out = self.reboots = False
+        self.breached = self.forced_breach = self.rebooting = False
         self.mode_name = first_mode(self.settings)
         self.mode = self.numbers[self.mode_name]
         self.modes.append((self.time, self.mode))
 
-    def take_stick(self, mode: str) -> None:
-        """Have the pilot change the mode.
+    def usual_speed(self) -> float:
+        """Return the default speed, metres per second."""
+        for name, unit in SPEEDS:
+            if name in self.parameters:
+                return self.parameters[name] * unit
+        return self.body.speed
 
-        Raises:
-            ValueError: there is no such mode.
-        """
-        if mode not in self.numbers:
-            raise ValueError(f"{mode}: no such mode; this vehicle has {', '.join(self.numbers)}")
-        self.set_mode(self.numbers[mode])
-
-    def _take_up_mission(self, mode: str) -> None:
-        """Begin the mission anew where it is over, or where it shall not go on at the item it is at."""
+    def _resume_mission(self, mode: str) -> None:
+        """Restart the mission if it is over, or if MIS_RESTART says so."""
         if mode == "auto" and (self.finished or self.parameters.get("MIS_RESTART") == 1):
             self.item, self.finished = self.first_item, False
-            self.loops.clear()
+            self.jumps_made.clear()
 
     def _entry_speed(self, mode: str) -> float:
-        """Return the speed at which it begins a mode: of missions a PX4 keeps what items have said before."""
-        said = [item.params[1] for item in self.stores[MISSION][: self.item] if item.command == CHANGE_SPEED]
-        keeps = said and mode == "auto" and self.settings.firmware == PX4
-        return said[-1] if keeps else self.usual_speed()
-
-    def usual_speed(self) -> float:
-        """Return the metres per second at which it goes unless it is told another speed."""
-        for name, part in SPEEDS:
-            if name in self.parameters:
-                return self.parameters[name] * part
-        return self.body.speed
+        """Return the speed on entry into a mode: a PX4 keeps that set by completed mission items."""
+        passed = self.stores[MISSION][: self.item] if mode == "auto" and self.px4 else []
+        speeds = [item.params[1] for item in passed if item.command == CHANGE_SPEED]
+        return speeds[-1] if speeds else self.usual_speed()
 
     def _may_enter(self, name: str) -> bool:
         blind = name in BLIND or (self.settings.kind == "rover" and name == "brake")
@@ -303,32 +330,23 @@ class Autopilot:
             self.say(mavlink.MAV_SEVERITY_WARNING, f"Mode change to {name.upper()} failed: requires position")
             return False
         if name == "auto":
-            return is_feasible(self) if self.settings.firmware == PX4 else self._has_a_mission()
-        if self.settings.firmware == PX4 and name == "guided":
-            return self.is_steered()
-        return True
+            return self.has_mission and not self._misses_takeoff()
+        return self.is_steered if self.px4 and name == "guided" else True
 
-    def is_steered(self) -> bool:
-        """Return whether set-points have come for a second, more than two a second, until now."""
-        return (
-            len(self.steered) > STREAM_LEAST
-            and self.time - self.steered[0] >= STREAM_SECONDS
-            and self.time - self.steered[-1] <= max(STREAM_GAP, self.patience)
-        )
-
-    def _has_a_mission(self) -> bool:
-        items = self.stores[MISSION]
-        moves = [item.command for item in items[1:] if item.command in MOVING]
-        climbs = moves[:1] == [mavlink.MAV_CMD_NAV_TAKEOFF]
-        if self.armed and self.flies and not self.airborne and not climbs:
-            self.say(mavlink.MAV_SEVERITY_CRITICAL, "Auto: Missing Takeoff Cmd")
+    def _misses_takeoff(self) -> bool:
+        """Return whether an ArduCopter on the ground has a mission that does not begin with a take-off."""
+        if self.px4 or not self.armed or not self.flies or self.airborne:
             return False
-        return len(items) > self.first_item
+        moves = [item.command for item in self.stores[MISSION][1:] if item.command in MOVING]
+        if moves[:1] == [mavlink.MAV_CMD_NAV_TAKEOFF]:
+            return False
+        self.say(mavlink.MAV_SEVERITY_CRITICAL, "Auto: Missing Takeoff Cmd")
+        return True
 
 
 @lru_cache(maxsize=1024)
 def metres_per_degree(latitude: float) -> tuple[float, float]:
-    """Return the length of a degree of latitude and of one of longitude, on the ellipsoid of WGS 84."""
+    """Return the length of a degree of latitude and of longitude on the WGS 84 ellipsoid."""
     flat = 1.0 - SQUARED_ECCENTRICITY * sin(radians(latitude)) ** 2
     meridian = EQUATOR * (1.0 - SQUARED_ECCENTRICITY) / flat**1.5
     parallel = EQUATOR / sqrt(flat) * cos(radians(latitude))
@@ -336,6 +354,6 @@ def metres_per_degree(latitude: float) -> tuple[float, float]:
 
 
 def bearing(here: Vector, there: Vector) -> float | None:
-    """Return degrees clockwise from north; None where both are at one place."""
+    """Return degrees clockwise from north; None within a metre."""
     north, east = there[0] - here[0], there[1] - here[1]
     return degrees(atan2(east, north)) % 360.0 if abs(north) + abs(east) > 1.0 else None

@@ -1,4 +1,4 @@
-"""How the simulated vehicle moves: a point with limited speed, acceleration and turn rate, in the wind."""
+"""Motion of a simulated vehicle: a point with limited speed, acceleration and turn rate, in the wind."""
 
 from __future__ import annotations
 
@@ -11,20 +11,22 @@ STEP = 0.05
 """Longest step of integration, seconds."""
 
 CUT = 1.73
-"""Metres from a corner at which the parabola of its turn would go by; in finite steps it is 1.67.
+"""Metres from a corner to the apex of the turning parabola; 1.67 in finite steps.
 
-ArduCopter 4.7-dev in simulation was measured to go by at 1.65 to 1.69 m.
+ArduCopter 4.7-dev in simulation was measured to pass at 1.65 to 1.69 m.
 """
 
 STRAIGHT = 0.05
-"""Sine of half a turn below which a corner is none."""
+"""Sine of half a turn below which two legs count as straight."""
 
 PASSING = 0.3
+"""Metres from a target at which the turn to the next leg begins at the latest."""
+
 TURNING = 0.7
-"""Metres per second sideways above which it still turns."""
+"""Lateral speed, metres per second, above which the vehicle is still turning."""
 
 BACK_RATE, BACK_PACE = 0.4, 0.6
-"""How a vehicle comes back to its leg: part of its distance a second, and metres a second at most."""
+"""Correction of the cross-track error: fraction of it per second, and metres per second at most."""
 
 STILL: Vector = (0.0, 0.0, 0.0)
 
@@ -34,19 +36,18 @@ class Body:
     """A point in metres north, east and up of home, with a heading in degrees.
 
     Attributes:
-        position: where it takes itself to be. error: metres north and east by which that is wrong.
-        target: where it goes; None: it comes to a halt.
-        onward: where it goes from there without a stop; None: it stops there.
-        origin: where its leg begins, to which it keeps; None: it goes straight to its target.
-        post: where it came to a halt in gusts, and stays.
-        corner_pace: metres per second at which it turns from the leg before.
-        cut: metres from a corner at which it goes by.
-        speed: commanded, metres per second over ground; climb, descent: limits of the vertical speed.
+        position: estimated position. error: metres north and east by which the estimate is wrong.
+        target: destination; None: it brakes.
+        onward: destination after the target, which it passes without a stop; None: it stops at the target.
+        origin: start of the leg that it tracks; None: it heads straight for its target.
+        post: position that it holds in gusts.
+        corner_pace: metres per second in the turn from the previous leg.
+        cut: metres from a corner at which it passes.
+        speed: commanded ground speed, metres per second; climb, descent: limits of the vertical speed.
         wind: mean velocity of the air, metres per second north, east and up.
-        gust: what the air is faster than that, and push: what it carries the vehicle, although that
-            keeps to its way.
-        airspeed: the fastest that it is in the air.
-        adrift: whether nothing holds it against the wind.
+        gust: velocity of the air relative to that; push: displacement by gusts, metres per second.
+        airspeed: greatest air speed.
+        adrift: whether it drifts with the wind.
     """
 
     position: Vector = STILL
@@ -72,7 +73,7 @@ class Body:
     error: tuple[float, float] = (0.0, 0.0)
 
     def advance(self, seconds: float) -> None:
-        """Move for a while."""
+        """Move for that long."""
         while seconds > 0.0:
             step = min(seconds, STEP)
             seconds -= step
@@ -82,52 +83,52 @@ class Body:
 
     @property
     def place(self) -> Vector:
-        """Return where it really is."""
+        """Return the true position."""
         north, east, up = self.position
         return (north - self.error[0], east - self.error[1], up)
 
-    def mistake(self, north: float, east: float) -> None:
-        """Take itself to be so many metres from where it really is."""
-        (really_north, really_east, up), self.error = self.place, (north, east)
-        self.position = (really_north + north, really_east + east, up)
+    def shift_estimate(self, north: float, east: float) -> None:
+        """Set the error of the position estimate, in metres."""
+        (true_north, true_east, up), self.error = self.place, (north, east)
+        self.position = (true_north + north, true_east + east, up)
 
     def distance_to(self, place: Vector) -> float:
-        """Return the metres to a place."""
+        """Return the distance to a place."""
         return hypot(*plus(place, self.position, -1.0))
 
     @property
     def motion(self) -> Vector:
-        """Return the present velocity over ground, gusts included, metres per second."""
+        """Return the ground velocity, gusts included."""
         return plus(self.velocity, self.push, 1.0)
 
     @property
     def air(self) -> Vector:
-        """Return the present velocity of the air, metres per second."""
+        """Return the velocity of the air."""
         return plus(self.wind, self.gust, 1.0)
 
     @property
     def pace(self) -> float:
-        """Return the present speed over ground in metres per second."""
+        """Return the ground speed."""
         return hypot(*self.motion)
 
     @property
     def air_pace(self) -> float:
-        """Return the present horizontal speed in the air, metres per second."""
+        """Return the horizontal air speed."""
         air = self.air
         return hypot(self.velocity[0] - air[0], self.velocity[1] - air[1])
 
     def rest_at(self, up: float) -> None:
-        """Stand still at a height."""
+        """Stop at a height."""
         self.position = (self.position[0], self.position[1], up)
         self.velocity = self.push = STILL
         self.target = self.onward = self.origin = None
 
-    def leave(self) -> None:
-        """Begin the leg that leads on from the target."""
+    def start_next_leg(self) -> None:
+        """Track the leg from the present target to the next."""
         self.origin, self.corner_pace = self.target, self._corner()[0]
 
-    def goes_by(self) -> bool:
-        """Return whether it is where it begins to turn to the place after its target."""
+    def passes_target(self) -> bool:
+        """Return whether it is near enough to its target to turn to the next."""
         if self.target is None:
             return False
         _, before = self._corner()
@@ -135,26 +136,26 @@ class Body:
 
     def _wanted_velocity(self) -> Vector:
         if self.target is None:
-            return self._at_its_post()
+            return self._holding()
         self.post = None
-        way = plus(self.target, self.position, -1.0)
-        left = hypot(*way)
+        path = plus(self.target, self.position, -1.0)
+        left = hypot(*path)
         if left < 1e-3:
             return STILL
         corner, before = self._corner()
         pace = sqrt(corner * corner + 2.0 * 0.8 * self.acceleration * max(0.0, left - before))
-        pace = min(self._fastest(way), pace if corner else min(pace, left / STEP))
+        pace = min(self._fastest(path), pace if corner else min(pace, left / STEP))
         if self.origin is not None and left > before:
             return self._along_the_leg(self.origin, self.target, pace)
-        return plus(STILL, way, pace / left)
+        return plus(STILL, path, pace / left)
 
-    def _fastest(self, way: Vector) -> float:
-        """Return the metres per second at which it may go that way, up or down no faster than it may."""
-        limit = self.climb if way[2] > 0 else self.descent
-        return min(self.speed, limit * hypot(*way) / abs(way[2])) if way[2] else self.speed
+    def _fastest(self, path: Vector) -> float:
+        """Return the greatest speed along a path within the limits of the vertical speed."""
+        limit = self.climb if path[2] > 0 else self.descent
+        return min(self.speed, limit * hypot(*path) / abs(path[2])) if path[2] else self.speed
 
-    def _at_its_post(self) -> Vector:
-        """Return a velocity that brings it to a halt and, once there, back from where gusts carry it."""
+    def _holding(self) -> Vector:
+        """Return a velocity that stops it, then returns it to where it stopped when gusts displace it."""
         if self.push == STILL or hypot(*self.velocity) > BACK_PACE:
             self.post = None
             return STILL
@@ -163,7 +164,7 @@ class Body:
         return plus(STILL, back, min(BACK_RATE, BACK_PACE / max(hypot(*back), 1e-6)))
 
     def _along_the_leg(self, origin: Vector, target: Vector, pace: float) -> Vector:
-        """Return a velocity that is parallel to the leg, and a little towards it."""
+        """Return a velocity along the leg that also corrects the cross-track error."""
         leg, done = plus(target, origin, -1.0), plus(self.position, origin, -1.0)
         square = sum(part * part for part in leg)
         if square < 1e-6:
@@ -174,30 +175,29 @@ class Body:
         if self._turns(leg, square):
             pace = min(pace, self.corner_pace)
         if along > 1.0:
-            # It has gone past its target, and comes back to it.
-            pace = -pace
+            pace = -pace  # it has overshot
         return plus(plus(STILL, leg, pace / sqrt(square)), aside, back)
 
     def _turns(self, leg: Vector, square: float) -> bool:
-        """Return whether it still moves sideways from the leg before."""
+        """Return whether it still moves laterally from the previous leg."""
         part = sum(a * b for a, b in zip(leg, self.velocity, strict=True)) / square
         return hypot(*plus(self.velocity, leg, -part)) > TURNING
 
     def _corner(self) -> tuple[float, float]:
-        """Return the speed at which the corner at the target is taken, and the metres before it.
+        """Return the speed in the corner at the target, and the distance before it at which the turn begins.
 
         A constant acceleration from one leg to the next makes a parabola: it begins v² s / a before
-        the corner and goes by at v² s² / 2a, with s the sine of half the turn.
+        the corner and passes it at v² s² / 2a, with s the sine of half the turn.
         """
         if self.onward is None or self.target is None:
             return 0.0, 0.0
-        way, leg = plus(self.target, self.position, -1.0), plus(self.onward, self.target, -1.0)
-        left, length = hypot(*way), hypot(*leg)
+        path, leg = plus(self.target, self.position, -1.0), plus(self.onward, self.target, -1.0)
+        left, length = hypot(*path), hypot(*leg)
         if left < 1e-6 or length < 1e-6:
             return 0.0, 0.0
-        cosine = sum(a * b for a, b in zip(way, leg, strict=True)) / (left * length)
+        cosine = sum(a * b for a, b in zip(path, leg, strict=True)) / (left * length)
         half = sqrt(max(0.0, (1.0 - cosine) / 2.0))
-        fastest = min(self._fastest(way), self._fastest(leg))
+        fastest = min(self._fastest(path), self._fastest(leg))
         if half < STRAIGHT:
             return fastest, 0.0
         pace = min(fastest, sqrt(2.0 * self.acceleration * self.cut) / half)
@@ -205,7 +205,7 @@ class Body:
         return pace, pace * pace * half / self.acceleration
 
     def _in_the_wind(self, wanted: Vector) -> Vector:
-        """Return what of a wanted velocity over ground is left with so much wind."""
+        """Return the ground velocity that the air speed allows in this wind."""
         air = self.air
         if self.adrift:
             return (air[0], air[1], wanted[2])
@@ -225,7 +225,7 @@ class Body:
         return (air[0] + north * part, air[1] + east * part, wanted[2])
 
     def _accelerate(self, wanted: Vector, step: float) -> None:
-        """Come nearer to a velocity; on a leg in all directions alike, also where that climbs."""
+        """Approach a velocity; on a leg in all directions alike, so that a climb stays on the leg."""
         north, east, up = plus(wanted, self.velocity, -1.0)
         limit = self.acceleration * step
         level, upwards = (min(1.0, limit / size) if size else 1.0 for size in (hypot(north, east), abs(up)))
@@ -242,10 +242,10 @@ class Body:
 
 
 def wind_of(speed: float, comes_from: float) -> Vector:
-    """Return the velocity of the air, given where the wind comes from in degrees."""
+    """Return the velocity of the air from a wind speed and the direction it comes from, in degrees."""
     return (-speed * cos(radians(comes_from)), -speed * sin(radians(comes_from)), 0.0)
 
 
 def plus(a: Vector, b: Vector, factor: float) -> Vector:
-    """Return a vector and so many times another."""
+    """Return a + factor b."""
     return (a[0] + b[0] * factor, a[1] + b[1] * factor, a[2] + b[2] * factor)

@@ -1,4 +1,4 @@
-"""The simulated vehicle's camera: photos on command, and every so many metres."""
+"""The camera of a simulated vehicle: photos on command, and at distance intervals."""
 
 from __future__ import annotations
 
@@ -23,40 +23,38 @@ class Camera:
     """A camera.
 
     Attributes:
-        works: whether it takes photos at all.
-        photos: all that were taken, oldest first.
-        untold: how many of them are still to be told.
+        works: whether it takes photos.
+        photos: all photos, oldest first. unsent: how many of them are not yet reported.
     """
 
     def __init__(self) -> None:
-        """Wait for the first command."""
         self.works = True
         self.photos: list[Photo] = []
-        self.untold = 0
-        self._every = 0.0
+        self.unsent = 0
+        self._interval = 0.0
         self._last: Vector | None = None
 
-    def obey(self, number: int, params: tuple[float, ...], body: Body) -> None:
-        """Do what a command says, if it is for cameras."""
+    def execute(self, number: int, params: tuple[float, ...], body: Body) -> None:
+        """Execute a command, if it is one for cameras."""
         once = number == mavlink.MAV_CMD_DO_DIGICAM_CONTROL and params[4:5] == (1.0,)
         if once or number == mavlink.MAV_CMD_IMAGE_START_CAPTURE:
             self._take(body)
         elif number == mavlink.MAV_CMD_DO_SET_CAM_TRIGG_DIST:
-            self._every, self._last = params[0], None
+            self._interval, self._last = params[0], None
             if params[2:3] == (1.0,):
                 self._take(body)
 
     def move(self, body: Body) -> None:
-        """Take a photo where the last one is far enough away."""
-        if self._every <= 0.0:
+        """Take a photo if the last one is an interval away."""
+        if self._interval <= 0.0:
             return
         if self._last is None:
             self._last = body.position
-        if dist(self._last, body.position) >= self._every:
+        if dist(self._last, body.position) >= self._interval:
             self._take(body)
 
     def _take(self, body: Body) -> None:
         self._last = body.position
         if self.works:
             self.photos.append(Photo(len(self.photos) + 1, body.position, body.heading))
-            self.untold += 1
+            self.unsent += 1

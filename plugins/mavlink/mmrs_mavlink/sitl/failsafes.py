@@ -1,4 +1,4 @@
-"""What the vehicle watches by itself, and what its parameters make it do."""
+"""Failsafes of a simulated ArduPilot, as its parameters configure them."""
 
 from __future__ import annotations
 
@@ -6,20 +6,18 @@ from collections.abc import Mapping
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from mmrs_mavlink.sitl import px4_failsafes
 from mmrs_mavlink.sitl.autopilot import Autopilot
-from mmrs_mavlink.sitl.fences import fence_of, watch_fence
+from mmrs_mavlink.sitl.fences import inside_zones, watch_fence
 from mmrs_mavlink.sitl.modes import BLIND
-from mmrs_mavlink.sitl.settings import PX4
 
-CRITICAL = mavlink.MAV_SEVERITY_CRITICAL
-WARNING = mavlink.MAV_SEVERITY_WARNING
+CRITICAL, WARNING = mavlink.MAV_SEVERITY_CRITICAL, mavlink.MAV_SEVERITY_WARNING
 EKF_SECONDS = 1.0
 DISARM = "disarm"
 
 Answers = Mapping[int, tuple[str, ...]]
+"""Modes of which the first possible one is entered, by the value of a parameter."""
 
-ON_SILENCE: Mapping[str, Answers] = {
+ON_LINK_LOSS: Mapping[str, Answers] = {
     "copter": {
         1: ("return", "land"),
         2: ("return", "land"),
@@ -31,7 +29,7 @@ ON_SILENCE: Mapping[str, Answers] = {
     },
     "sub": {1: (), 2: (DISARM,), 3: ("alt_hold",), 4: ("surface",)},
 }
-ON_ROVERS_LOSS: Answers = {
+ROVER_ACTIONS: Answers = {
     1: ("return", "brake"),
     2: ("brake",),
     3: ("smart_return", "return", "brake"),
@@ -40,17 +38,9 @@ ON_ROVERS_LOSS: Answers = {
     6: ("loiter", "brake"),
 }
 ON_BATTERY: Mapping[str, Answers] = {
-    "copter": {
-        1: ("land",),
-        2: ("return", "land"),
-        3: ("smart_return", "return", "land"),
-        4: ("smart_return", "land"),
-        5: (DISARM,),
-        6: ("return", "land"),
-        7: ("brake", "land"),
-    },
+    "copter": {**ON_LINK_LOSS["copter"], 1: ("land",), 5: (DISARM,)},
     "sub": {2: (DISARM,), 3: ("surface",)},
-    "rover": ON_ROVERS_LOSS,
+    "rover": ROVER_ACTIONS,
 }
 ON_BREACH: Mapping[str, Answers] = {
     "copter": {
@@ -61,26 +51,25 @@ ON_BREACH: Mapping[str, Answers] = {
         5: ("smart_return", "land"),
     },
     "sub": {},
-    "rover": ON_ROVERS_LOSS,
+    "rover": ROVER_ACTIONS,
 }
-"""A submarine only says that its fence is broken (``ArduSub/fence.cpp``)."""
+"""A submarine only reports a breach (``ArduSub/fence.cpp``)."""
 
-ON_IN_MISSIONS = 2
-"""Of a copter's FS_OPTIONS: missions go on although the ground is not heard."""
+CONTINUE_IN_AUTO = 2
+"""Bit of a copter's FS_OPTIONS: a mission continues without a ground station."""
 
 
 def watch(pilot: Autopilot, seconds: float) -> None:
-    """Look for what is wrong, and answer it once."""
-    if pilot.settings.firmware == PX4:
-        px4_failsafes.watch(pilot, seconds)
-        return
+    """Detect failures, and answer each once."""
     _watch_position(pilot, seconds)
-    watch_fence(pilot, "FENCE_ENABLE", outside_fence, breach)
+    watch_fence(pilot, "FENCE_ENABLE", outside_fence, _answer_breach)
     if not pilot.armed:
         pilot.failed.pop("gcs", None)
         return
     _watch_link(pilot)
-    _watch_battery(pilot)
+    if pilot.settings.tells_battery:
+        _watch_battery(pilot, "CRT", "critical")
+        _watch_battery(pilot, "LOW", "low")
 
 
 def _watch_position(pilot: Autopilot, seconds: float) -> None:
@@ -94,86 +83,66 @@ def _watch_position(pilot: Autopilot, seconds: float) -> None:
     pilot.failed["ekf"] = pilot.time
     action = pilot.parameters["FS_EKF_ACTION"]
     if action:
-        names = ("alt_hold",) if action == 2.0 else ("land", "surface", "brake", "manual")
-        pilot.enter(*names)
+        pilot.enter(*(("alt_hold",) if action == 2.0 else ("land", "surface", "brake", "manual")))
         pilot.say(CRITICAL, f"EKF Failsafe: changed to {pilot.mode_name.upper()} Mode")
 
 
 def _watch_link(pilot: Autopilot) -> None:
-    if pilot.heard is None:
+    if pilot.last_heartbeat is None:
         return
     limit = pilot.parameters["FS_GCS_TIMEOUT"] + pilot.parameters.get("FS_TIMEOUT", 0.0)
-    if pilot.time - pilot.heard < max(limit, pilot.patience):
+    if pilot.time - pilot.last_heartbeat < max(limit, pilot.link_timeout):
         if pilot.failed.pop("gcs", None) is not None and pilot.settings.kind != "sub":
             pilot.say(WARNING, "GCS Failsafe Cleared")
         return
-    enabled = pilot.parameters["FS_GCS_ENABLE"]
+    enabled = int(pilot.parameters["FS_GCS_ENABLE"])
     if not enabled or "gcs" in pilot.failed:
         return
     pilot.failed["gcs"] = pilot.time
+    in_auto = pilot.mode_name == "auto"
     if pilot.settings.kind == "sub":
         pilot.say(WARNING, f"MYGCS: {pilot.parameters['SYSID_MYGCS']:.0f}, heartbeat lost")
-    elif _goes_on(pilot):
+    elif pilot.flies and in_auto and int(pilot.parameters["FS_OPTIONS"]) & CONTINUE_IN_AUTO:
         pilot.say(WARNING, "GCS Failsafe - Continuing Auto Mode")
         return
     else:
         pilot.say(WARNING, "GCS Failsafe")
-    _answer(pilot, _on_silence(pilot, int(enabled)))
+    if pilot.settings.kind != "rover":
+        _answer(pilot, ON_LINK_LOSS[pilot.settings.kind].get(enabled, ()))
+    elif not (enabled == 2 and in_auto):
+        _answer(pilot, ROVER_ACTIONS.get(int(pilot.parameters["FS_ACTION"]), ()))
 
 
-def _goes_on(pilot: Autopilot) -> bool:
-    """Return whether a copter is to go on with its mission although it hears no ground."""
-    exempt = int(pilot.parameters["FS_OPTIONS"]) & ON_IN_MISSIONS
-    return bool(pilot.flies and exempt and pilot.mode_name == "auto")
-
-
-def _on_silence(pilot: Autopilot, enabled: int) -> tuple[str, ...]:
-    if pilot.settings.kind == "rover":
-        if enabled == 2 and pilot.mode_name == "auto":
-            return ()
-        return ON_ROVERS_LOSS.get(int(pilot.parameters["FS_ACTION"]), ())
-    return ON_SILENCE[pilot.settings.kind].get(enabled, ())
-
-
-def _watch_battery(pilot: Autopilot) -> None:
-    if not pilot.settings.tells_battery:
+def _watch_battery(pilot: Autopilot, level: str, word: str) -> None:
+    volts, reserve = pilot.parameters[f"BATT_{level}_VOLT"], pilot.parameters[f"BATT_{level}_MAH"]
+    left = pilot.parameters["BATT_CAPACITY"] - pilot.battery.used
+    if not (pilot.battery.voltage < volts or left < reserve):
+        pilot.failed.pop(f"{level} since", None)
         return
-    for name, action in (("CRT", "BATT_FS_CRT_ACT"), ("LOW", "BATT_FS_LOW_ACT")):
-        volts, reserve = pilot.parameters[f"BATT_{name}_VOLT"], pilot.parameters[f"BATT_{name}_MAH"]
-        left = pilot.parameters["BATT_CAPACITY"] - pilot.battery.used
-        if not (pilot.battery.voltage < volts or left < reserve):
-            pilot.failed.pop(f"{name} since", None)
-            continue
-        since = pilot.failed.setdefault(f"{name} since", pilot.time)
-        if pilot.time - since >= pilot.parameters["BATT_LOW_TIMER"] and name not in pilot.failed:
-            pilot.failed[name] = pilot.time
-            word = "low" if name == "LOW" else "critical"
-            used = f"{pilot.battery.voltage:.2f}V used {pilot.battery.used:.0f} mAh"
-            pilot.say(CRITICAL, f"Battery 1 is {word} {used}")
-            _answer(pilot, ON_BATTERY[pilot.settings.kind].get(int(pilot.parameters[action]), ()))
-
-
-def breach(pilot: Autopilot) -> None:
-    """Be out of the fence, say so, and do what FENCE_ACTION, or a PX4's GF_ACTION, says."""
-    if pilot.settings.firmware == PX4:
-        px4_failsafes.breach(pilot)
+    since = pilot.failed.setdefault(f"{level} since", pilot.time)
+    if pilot.time - since < pilot.parameters["BATT_LOW_TIMER"] or level in pilot.failed:
         return
-    pilot.breached = True
-    pilot.breaches += 1
-    pilot.say(mavlink.MAV_SEVERITY_NOTICE, "Polygon fence breached")
-    if pilot.armed and pilot.parameters["FENCE_ENABLE"]:
-        _answer(pilot, ON_BREACH[pilot.settings.kind].get(int(pilot.parameters["FENCE_ACTION"]), ()))
+    pilot.failed[level] = pilot.time
+    used = f"{pilot.battery.voltage:.2f}V used {pilot.battery.used:.0f} mAh"
+    pilot.say(CRITICAL, f"Battery 1 is {word} {used}")
+    _answer(pilot, ON_BATTERY[pilot.settings.kind].get(int(pilot.parameters[f"BATT_FS_{level}_ACT"]), ()))
 
 
 def outside_fence(pilot: Autopilot) -> bool:
-    """Return whether it is where its fence does not let it be, by what FENCE_TYPE heeds."""
-    heeded = int(pilot.parameters["FENCE_TYPE"])
+    """Return whether a vehicle is outside the parts of its fence that FENCE_TYPE enables."""
+    enabled = int(pilot.parameters["FENCE_TYPE"])
     north, east, up = pilot.body.position
-    if heeded & 1 and pilot.flies and up > pilot.parameters["FENCE_ALT_MAX"]:
+    if enabled & 1 and pilot.flies and up > pilot.parameters["FENCE_ALT_MAX"]:
         return True
-    if heeded & 2 and (north**2 + east**2) ** 0.5 > pilot.parameters["FENCE_RADIUS"]:
+    if enabled & 2 and (north**2 + east**2) ** 0.5 > pilot.parameters["FENCE_RADIUS"]:
         return True
-    return bool(heeded & 4) and not all(zone.allows((north, east)) for zone in fence_of(pilot))
+    return bool(enabled & 4) and not inside_zones(pilot)
+
+
+def _answer_breach(pilot: Autopilot) -> None:
+    pilot.say(mavlink.MAV_SEVERITY_NOTICE, "Polygon fence breached")
+    if pilot.armed and pilot.parameters["FENCE_ENABLE"]:
+        _answer(pilot, ON_BREACH[pilot.settings.kind].get(int(pilot.parameters["FENCE_ACTION"]), ()))
 
 
 def _answer(pilot: Autopilot, names: tuple[str, ...]) -> None:

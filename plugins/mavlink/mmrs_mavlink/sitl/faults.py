@@ -1,286 +1,218 @@
-"""Faults on demand: what goes wrong with a simulated vehicle, when somebody says so."""
+"""Faults that can be injected into a simulated vehicle."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from contextlib import AbstractContextManager
+from dataclasses import dataclass
 from inspect import signature
 from math import cos, isfinite, nan, radians, sin
 
 from mmrs_mavlink.sitl.autopilot import Autopilot
 from mmrs_mavlink.sitl.body import wind_of
-from mmrs_mavlink.sitl.failsafes import breach
 
 
 class Faults:
-    """Makes things go wrong; each method may be called from any thread and has done so on return.
+    """The faults of one vehicle; methods may be called from any thread, and have taken effect on return.
 
     Attributes:
-        link_down: whether nothing comes through, either way. ground_down: the same, to a ground station.
-        dumb: whether nothing comes through of what it sends, while it hears everything.
-        answer_delay: seconds by which every answer to an upload is late.
+        link_down: whether the link to the controller is cut. ground_down: that to the ground station.
+        send_down: whether nothing that it sends arrives.
+        answer_delay: delay of every answer to an upload, seconds.
+        watched: whether it has a radio to a ground station.
     """
 
     def __init__(
-        self, autopilot: Autopilot, lock: AbstractContextManager[object], *, watched: bool = False
+        self, pilot: Autopilot, lock: AbstractContextManager[object], *, watched: bool = False
     ) -> None:
-        """Work on an autopilot whose simulation holds `lock` while it goes on.
-
-        Args:
-            autopilot: of the vehicle.
-            lock: held for every change.
-            watched: whether the vehicle has a radio of its own to a ground station.
-        """
-        self.link_down = self.ground_down = self.dumb = False
-        self._watched = watched
+        """Create without a fault; `lock` is held while the time of the autopilot advances."""
+        self.link_down = self.ground_down = self.send_down = False
         self.answer_delay = 0.0
-        self._autopilot = autopilot
+        self.watched = watched
+        self.pilot = pilot
         self._lock = lock
 
-    def lose_position(self) -> None:
-        """Have it no longer know where it is: no GPS, and an estimate without a position."""
-        with self._lock:
-            self._autopilot.located = False
-
-    def find_position(self) -> None:
-        """Give it its position back."""
-        with self._lock:
-            self._autopilot.located = True
-
-    def shift_position(self, metres: float, bearing: float = 0.0) -> None:
-        """Have it take itself to be elsewhere from now on, so far off in degrees clockwise from north."""
-        with self._lock:
-            angle = radians(bearing)
-            self._autopilot.body.mistake(metres * cos(angle), metres * sin(angle))
-
-    def restart(self, armed: bool = False) -> None:
-        """Reboot it: it is silent for a while, its boot time is zero, and its memory is what is on disk.
-
-        Args:
-            armed: whether its motors go on, as after a watchdog's reset; else it falls.
-        """
-        with self._lock:
-            self._autopilot.restart(armed)
-
-    def take_stick(self, mode: str = "loiter") -> None:
-        """Have the pilot change the mode, by one of its names.
-
-        Raises:
-            ValueError: the vehicle has no such mode.
-        """
-        with self._lock:
-            self._autopilot.take_stick(mode)
-
-    def meet_obstacle(self, distance: float = 3.0, bearing: float = 0.0) -> None:
-        """Have it report an obstacle, metres away, in degrees clockwise from where it looks."""
-        _refuse_below("metres", distance)
-        with self._lock:
-            self._autopilot.obstacle = (distance, bearing)
-
-    def clear_obstacle(self) -> None:
-        """Take the obstacle away."""
-        with self._lock:
-            self._autopilot.obstacle = None
-
-    def breach_fence(self) -> None:
-        """Have it report that it has left its fence, and do what FENCE_ACTION says."""
-        with self._lock:
-            self._autopilot.told_out = True
-            breach(self._autopilot)
-
-    def mend_fence(self) -> None:
-        """Have it be inside its fence again."""
-        with self._lock:
-            self._autopilot.told_out = False
-            self._autopilot.breached = False
-
-    def set_battery(self, level: float) -> None:
-        """Have a battery of which so much is left, 0 to 1: an old one, or a fresh one after a change.
-
-        Raises:
-            ValueError: it is not from 0 to 1.
-        """
-        if not 0.0 <= level <= 1.0:
-            raise ValueError(f"{level:g} is not from 0 to 1")
-        with self._lock:
-            self._autopilot.energy = level
-
-    def silence(self, *commands: int) -> None:
-        """Have it answer these commands no more; without any, answer all again."""
-        with self._lock:
-            self._autopilot.silent = frozenset(commands)
-
-    def cut_link(self) -> None:
-        """Let nothing through, either way; the vehicle goes on."""
-        self.link_down = True
-
-    def mend_link(self) -> None:
-        """Let everything through again."""
-        self.link_down = False
-
-    def fall_dumb(self) -> None:
-        """Let nothing through of what the vehicle sends; it hears everything."""
-        self.dumb = True
-
-    def speak(self) -> None:
-        """Let through again what it sends."""
-        self.dumb = False
-
-    def cut_ground(self) -> None:
-        """Let nothing through to and from the ground station that looks on.
-
-        Raises:
-            ValueError: there is none.
-        """
-        if not self._watched:
-            raise ValueError("the vehicle has no radio to a ground station")
-        self.ground_down = True
-
-    def mend_ground(self) -> None:
-        """Let everything through to and from that ground station again."""
-        self.ground_down = False
-
-    def jump_clock(self, seconds: float) -> None:
-        """Have its time of day jump; the time since it booted goes on as it did."""
-        with self._lock:
-            self._autopilot.clock_error += seconds
-
-    def refuse_arming(self, reason: str = "Compass not calibrated") -> None:
-        """Have its own checks fail for a reason; an empty one lets them pass again."""
-        with self._lock:
-            self._autopilot.unfit = reason
-
-    def slow_uploads(self, seconds: float = 3.0) -> None:
-        """Answer every message of an upload so much later."""
-        _refuse_below("seconds", seconds)
-        self.answer_delay = seconds
-
-    def break_camera(self) -> None:
-        """Have its camera take no more photos, and tell none."""
-        with self._lock:
-            self._autopilot.camera.works = False
-
-    def mend_camera(self) -> None:
-        """Have its camera work again."""
-        with self._lock:
-            self._autopilot.camera.works = True
-
-    def change_wind(self, speed: float, comes_from: float) -> None:
-        """Have the wind blow otherwise: metres per second, and degrees where it comes from."""
-        _refuse_below("metres per second", speed)
-        with self._lock:
-            self._autopilot.body.wind = wind_of(speed, comes_from)
-
-    def begin(self, name: str, *values: str) -> None:
-        """Begin a fault by its name in `FAULTS`, with its values as texts.
+    def begin(self, name: str, *values: str | float) -> None:
+        """Inject a fault by its name in `FAULTS`.
 
         Raises:
             ValueError: there is no such fault, or it does not take these values.
         """
-        _do(FAULTS, self, name, values)
+        begin = _fault(name).begin
+        try:
+            arguments = _converted(begin, [str(value) for value in values])
+            with self._lock:
+                begin(self, *arguments)
+        except ValueError as error:
+            raise ValueError(f"{' '.join((name, *map(str, values)))}: {error}") from error
 
     def end(self, name: str) -> None:
-        """End a fault by its name; those that cannot end are left as they are.
+        """Clear a fault; a one-shot fault is left as it is.
 
         Raises:
             ValueError: there is no such fault.
         """
-        if name not in FAULTS:
-            raise ValueError(_unknown(name))
-        if name in ENDS:
-            ENDS[name](self)
+        fault = _fault(name)
+        if fault.cleared_by is not None:
+            with self._lock:
+                fault.begin(self, **fault.cleared_by)
 
 
-def _finite(text: str) -> float:
+@dataclass(frozen=True, slots=True)
+class Fault:
+    """A fault.
+
+    Attributes:
+        begin: injects it; its positional parameters after the first are the values of the fault.
+        cleared_by: arguments with which `begin` clears it; None: it is one-shot.
+    """
+
+    begin: Callable[..., None]
+    cleared_by: Mapping[str, object] | None = None
+
+
+def _lose_position(faults: Faults, *, lost: bool = True) -> None:
+    faults.pilot.located = not lost
+
+
+def _shift_position(faults: Faults, metres: float = 40.0, bearing: float = 0.0) -> None:
+    angle = radians(bearing)
+    faults.pilot.body.shift_estimate(metres * cos(angle), metres * sin(angle))
+
+
+def _restart(faults: Faults, armed: str = "") -> None:
+    if armed not in ("", "armed"):
+        raise ValueError(f"'{armed}' is not armed")
+    faults.pilot.restart(armed == "armed")
+
+
+def _change_mode(faults: Faults, mode: str = "loiter") -> None:
+    numbers = faults.pilot.numbers
+    if mode not in numbers:
+        raise ValueError(f"{mode}: unknown mode; this vehicle has {', '.join(numbers)}")
+    faults.pilot.set_mode(numbers[mode])
+
+
+def _meet_obstacle(faults: Faults, metres: float = 3.0, bearing: float = 0.0, *, gone: bool = False) -> None:
+    faults.pilot.obstacle = None if gone else (_not_negative(metres), bearing)
+
+
+def _breach_fence(faults: Faults, *, outside: bool = True) -> None:
+    faults.pilot.forced_breach = outside
+
+
+def _change_battery(faults: Faults, level: float) -> None:
+    if not 0.0 <= level <= 1.0:
+        raise ValueError(f"{level:g} is not from 0 to 1")
+    faults.pilot.battery.change(level)
+
+
+def _ignore_commands(faults: Faults, *commands: int) -> None:
+    faults.pilot.silent = frozenset(commands)
+
+
+def _cut_link(faults: Faults, *, down: bool = True) -> None:
+    faults.link_down = down
+
+
+def _stop_sending(faults: Faults, *, down: bool = True) -> None:
+    faults.send_down = down
+
+
+def _cut_ground(faults: Faults, *, down: bool = True) -> None:
+    if not faults.watched:
+        raise ValueError("the vehicle has no radio to a ground station")
+    faults.ground_down = down
+
+
+def _jump_clock(faults: Faults, seconds: float = 3600.0) -> None:
+    faults.pilot.clock_error += seconds
+
+
+def _refuse_arming(faults: Faults, *words: str, passes: bool = False) -> None:
+    faults.pilot.arming_fault = "" if passes else " ".join(words) or "Compass not calibrated"
+
+
+def _slow_uploads(faults: Faults, seconds: float = 3.0) -> None:
+    faults.answer_delay = _not_negative(seconds)
+
+
+def _break_camera(faults: Faults, *, works: bool = False) -> None:
+    faults.pilot.camera.works = works
+
+
+def _change_wind(faults: Faults, speed: float, bearing: float = 0.0) -> None:
+    faults.pilot.body.wind = wind_of(_not_negative(speed), bearing)
+
+
+FAULTS: Mapping[str, Fault] = {
+    "gps-lost": Fault(_lose_position, {"lost": False}),
+    "position-shift": Fault(_shift_position, {"metres": 0.0}),
+    "restart": Fault(_restart),
+    "stick": Fault(_change_mode),
+    "obstacle": Fault(_meet_obstacle, {"gone": True}),
+    "breach": Fault(_breach_fence, {"outside": False}),
+    "battery": Fault(_change_battery),
+    "silent": Fault(_ignore_commands, {}),
+    "link-down": Fault(_cut_link, {"down": False}),
+    "dumb": Fault(_stop_sending, {"down": False}),
+    "ground-down": Fault(_cut_ground, {"down": False}),
+    "clock-jump": Fault(_jump_clock),
+    "refuse-arming": Fault(_refuse_arming, {"passes": True}),
+    "slow-upload": Fault(_slow_uploads, {"seconds": 0.0}),
+    "camera-dead": Fault(_break_camera, {"works": True}),
+    "wind": Fault(_change_wind, {"speed": 0.0}),
+}
+"""All faults, by name."""
+
+
+def _fault(name: str) -> Fault:
+    if name not in FAULTS:
+        raise ValueError(f"{name}: unknown fault; known are {', '.join(FAULTS)}")
+    return FAULTS[name]
+
+
+def _converted(begin: Callable[..., None], values: list[str]) -> list[object]:
+    """Return the values of a fault in the types of its parameters.
+
+    Raises:
+        ValueError: there are too few or too many, or one is not of its type.
+    """
+    wanted = signature(begin)
+    try:
+        bound = wanted.bind(None, *values).arguments
+    except TypeError:
+        named = [each for each in wanted.parameters.values() if each.kind is not each.KEYWORD_ONLY][1:]
+        usage = [each.name + ("" if each.default is each.empty else " (optional)") for each in named]
+        raise ValueError(f"takes {' and '.join(usage) or 'no value'}") from None
+    found: list[object] = []
+    for name, given in list(bound.items())[1:]:
+        convert = _CONVERSIONS[wanted.parameters[name].annotation]
+        found += map(convert, [given] if isinstance(given, str) else given)
+    return found
+
+
+def _number(text: str) -> float:
     try:
         number = float(text)
     except ValueError:
         number = nan
     if not isfinite(number):
-        raise ValueError(f"'{text}' is no finite number")
+        raise ValueError(f"'{text}' is not a finite number")
     return number
 
 
 def _command(text: str) -> int:
     if not text.isdecimal() or len(text) > 9:
-        raise ValueError(f"'{text}' is no number of a command")
+        raise ValueError(f"'{text}' is not the number of a command")
     return int(text)
 
 
-def _armed(how: str) -> bool:
-    if how not in ("", "armed"):
-        raise ValueError(f"'{how}' is not armed")
-    return how == "armed"
-
-
-def _refuse_below(unit: str, number: float) -> None:
+def _not_negative(number: float) -> float:
     if number < 0.0:
-        raise ValueError(f"{number:g} {unit} are less than none")
+        raise ValueError(f"{number:g} is negative")
+    return number
 
 
-Act = Callable[..., None]
-
-FAULTS: Mapping[str, Act] = {
-    "gps-lost": Faults.lose_position,
-    "position-shift": lambda faults, metres="40", bearing="0": faults.shift_position(
-        _finite(metres), _finite(bearing)
-    ),
-    "restart": lambda faults, armed="": faults.restart(_armed(armed)),
-    "stick": Faults.take_stick,
-    "obstacle": lambda faults, metres="3", bearing="0": faults.meet_obstacle(
-        _finite(metres), _finite(bearing)
-    ),
-    "breach": Faults.breach_fence,
-    "battery": lambda faults, level: faults.set_battery(_finite(level)),
-    "silent": lambda faults, *commands: faults.silence(*map(_command, commands)),
-    "link-down": Faults.cut_link,
-    "dumb": Faults.fall_dumb,
-    "ground-down": Faults.cut_ground,
-    "clock-jump": lambda faults, seconds="3600": faults.jump_clock(_finite(seconds)),
-    "refuse-arming": lambda faults, *words: faults.refuse_arming(" ".join(words) or "Compass not calibrated"),
-    "slow-upload": lambda faults, seconds="3": faults.slow_uploads(_finite(seconds)),
-    "camera-dead": Faults.break_camera,
-    "wind": lambda faults, speed, bearing="0": faults.change_wind(_finite(speed), _finite(bearing)),
-}
-"""What can go wrong, by name, and how it begins."""
-
-ENDS: Mapping[str, Act] = {
-    "gps-lost": Faults.find_position,
-    "position-shift": lambda faults: faults.shift_position(0.0),
-    "obstacle": Faults.clear_obstacle,
-    "breach": Faults.mend_fence,
-    "silent": Faults.silence,
-    "link-down": Faults.mend_link,
-    "dumb": Faults.speak,
-    "ground-down": Faults.mend_ground,
-    "refuse-arming": lambda faults: faults.refuse_arming(""),
-    "slow-upload": lambda faults: faults.slow_uploads(0.0),
-    "camera-dead": Faults.mend_camera,
-    "wind": lambda faults: faults.change_wind(0.0, 0.0),
-}
-"""How faults end, by name; the others happen once."""
-
-
-def _do(acts: Mapping[str, Act], faults: Faults, name: str, values: tuple[str, ...]) -> None:
-    if name not in acts:
-        raise ValueError(_unknown(name))
-    act = acts[name]
-    try:
-        signature(act).bind(faults, *values)
-    except TypeError:
-        raise ValueError(f"{' '.join((name, *values))}: {name} takes {_values(act)}") from None
-    try:
-        act(faults, *values)
-    except ValueError as error:
-        raise ValueError(f"{' '.join((name, *values))}: {error}") from error
-
-
-def _values(act: Act) -> str:
-    """Return the values that a fault takes, for people."""
-    wanted = list(signature(act).parameters.values())[1:]
-    shown = [each.name if each.default is each.empty else f"{each.name} (may be left out)" for each in wanted]
-    return " and ".join(shown) or "no value"
-
-
-def _unknown(name: str) -> str:
-    return f"{name}: no such fault; there are {', '.join(FAULTS)}"
+_CONVERSIONS: Mapping[str, Callable[[str], object]] = {"str": str, "float": _number, "int": _command}
+"""By annotation of a parameter."""

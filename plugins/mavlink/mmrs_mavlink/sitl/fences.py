@@ -1,114 +1,93 @@
-"""Fences as the vehicle keeps them: polygons and circles to stay in or out of."""
+"""Fences of a simulated vehicle: polygons and circles to stay in or out of."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from math import hypot
-from typing import TYPE_CHECKING, Protocol
+from math import dist
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
+from mmrs_mavlink.sitl.autopilot import Autopilot
 from mmrs_mavlink.sitl.items import FENCE
 
-if TYPE_CHECKING:
-    from mmrs_mavlink.sitl.autopilot import Autopilot
-
 FENCE_SECONDS = 1.0
-"""How long it is from one look at the fence to the next."""
+"""Time between two checks of the fence."""
 
 Point = tuple[float, float]
 
-POLYGONS = {
-    int(mavlink.MAV_CMD_NAV_FENCE_POLYGON_VERTEX_INCLUSION): True,
-    int(mavlink.MAV_CMD_NAV_FENCE_POLYGON_VERTEX_EXCLUSION): False,
+INCLUSIONS = {
+    int(mavlink.MAV_CMD_NAV_FENCE_POLYGON_VERTEX_INCLUSION),
+    int(mavlink.MAV_CMD_NAV_FENCE_CIRCLE_INCLUSION),
 }
 CIRCLES = {
-    int(mavlink.MAV_CMD_NAV_FENCE_CIRCLE_INCLUSION): True,
-    int(mavlink.MAV_CMD_NAV_FENCE_CIRCLE_EXCLUSION): False,
+    int(mavlink.MAV_CMD_NAV_FENCE_CIRCLE_INCLUSION),
+    int(mavlink.MAV_CMD_NAV_FENCE_CIRCLE_EXCLUSION),
 }
-
-
-class Vertex(Protocol):
-    """An item of a fence, with where it is in metres north and east."""
-
-    @property
-    def command(self) -> int:
-        """Return its MAV_CMD."""
-        ...
-
-    @property
-    def params(self) -> tuple[float, float, float, float]:
-        """Return how many corners the polygon has, or the radius of the circle, first."""
-        ...
 
 
 @dataclass(frozen=True, slots=True)
 class Zone:
-    """A polygon, or, with one point, a circle; `inside`: where one must be."""
+    """A polygon or, with one point, a circle; `inside`: whether to stay inside it."""
 
     points: tuple[Point, ...]
     radius: float
     inside: bool
 
     def allows(self, place: Point) -> bool:
-        """Return whether a place is on the right side."""
-        return self._holds(place) == self.inside
-
-    def _holds(self, place: Point) -> bool:
+        """Return whether a position is on the permitted side."""
         if len(self.points) == 1:
-            return hypot(place[0] - self.points[0][0], place[1] - self.points[0][1]) <= self.radius
-        crossings = sum(_crosses(place, a, b) for a, b in _edges(self.points))
-        return crossings % 2 == 1
+            return (dist(place, self.points[0]) <= self.radius) == self.inside
+        edges = zip(self.points, (*self.points[1:], self.points[0]), strict=True)
+        return (sum(_crosses(place, a, b) for a, b in edges) % 2 == 1) == self.inside
 
 
-def fence_of(pilot: Autopilot) -> tuple[Zone, ...]:
-    """Return the zones of the fence that a vehicle has."""
-    return zones_of([(item, pilot.place_of(item)[:2]) for item in pilot.stores[FENCE]])
+def inside_zones(pilot: Autopilot) -> bool:
+    """Return whether the zones of its fence permit a vehicle's position."""
+    place = pilot.body.position[:2]
+    return all(zone.allows(place) for zone in _zones(pilot))
 
 
 def watch_fence(
-    pilot: Autopilot, switch: str, outside: Callable[[Autopilot], bool], breach: Callable[[Autopilot], None]
+    pilot: Autopilot, switch: str, outside: Callable[[Autopilot], bool], answer: Callable[[Autopilot], None]
 ) -> None:
-    """Look from time to time whether a vehicle is out of its fence, and let it be so once if it is armed.
+    """Check the fence at intervals, and answer a breach once.
 
     Args:
         pilot: of the vehicle.
-        switch: parameter without which there is no fence.
-        outside: says whether it is out of it.
-        breach: makes it be out of it.
+        switch: parameter that enables the fence.
+        outside: returns whether it is outside the fence.
+        answer: reports a breach and takes the configured action.
     """
-    if pilot.time < pilot.fence_due:
+    if pilot.time < pilot.fence_due and not pilot.forced_breach:
         return
     pilot.fence_due = pilot.time + FENCE_SECONDS
-    is_out = bool(pilot.parameters[switch]) and pilot.located and outside(pilot)
-    if is_out and not pilot.breached and pilot.armed:
-        breach(pilot)
-    elif not is_out and not pilot.told_out:
+    forced = pilot.forced_breach
+    is_out = forced or (bool(pilot.parameters[switch]) and pilot.located and outside(pilot))
+    if is_out and not pilot.breached and (pilot.armed or forced):
+        pilot.breached = True
+        pilot.breaches += 1
+        answer(pilot)
+    elif not is_out:
         pilot.breached = False
 
 
-def zones_of(items: Sequence[tuple[Vertex, Point]]) -> tuple[Zone, ...]:
-    """Return the zones of a fence, from its items and where they are."""
+def _zones(pilot: Autopilot) -> Sequence[Zone]:
     zones: list[Zone] = []
     corners: list[Point] = []
-    for item, point in items:
+    for item in pilot.stores[FENCE]:
+        inside = item.command in INCLUSIONS
+        corners.append(pilot.place_of(item)[:2])
         if item.command in CIRCLES:
-            zones.append(Zone((point,), item.params[0], CIRCLES[item.command]))
-        elif item.command in POLYGONS:
-            corners.append(point)
-            if len(corners) >= item.params[0]:
-                zones.append(Zone(tuple(corners), 0.0, POLYGONS[item.command]))
-                corners = []
-    return tuple(zones)
-
-
-def _edges(points: Sequence[Point]) -> Iterator[tuple[Point, Point]]:
-    return zip(points, (*points[1:], points[0]), strict=True)
+            zones.append(Zone((corners.pop(),), item.params[0], inside))
+        elif len(corners) >= item.params[0]:
+            zones.append(Zone(tuple(corners), 0.0, inside))
+            corners = []
+    return zones
 
 
 def _crosses(place: Point, a: Point, b: Point) -> bool:
-    """Return whether a ray to the east from a place crosses an edge."""
+    """Return whether a ray to the east from a position crosses an edge."""
     if (a[0] > place[0]) == (b[0] > place[0]):
         return False
     return place[1] < a[1] + (place[0] - a[0]) / (b[0] - a[0]) * (b[1] - a[1])

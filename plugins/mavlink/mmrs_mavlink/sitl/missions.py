@@ -1,4 +1,4 @@
-"""Flies a mission, item by item, with ArduPilot's habits."""
+"""Execution of a mission, item by item, as ArduPilot was measured to do it."""
 
 from __future__ import annotations
 
@@ -6,23 +6,29 @@ from collections.abc import Mapping
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from mmrs_mavlink.sitl.autopilot import Autopilot, bearing
-from mmrs_mavlink.sitl.body import CUT
+from mmrs_mavlink.sitl.autopilot import CHANGE_SPEED, Autopilot, bearing
+from mmrs_mavlink.sitl.body import CUT, Vector
 from mmrs_mavlink.sitl.items import MISSION, MOVING, Item
 
 CLOSE = 0.2
 MEASURED_RADIUS = 2.0
-"""Metres for which it was measured how corners are cut; with another, it is taken to be in proportion."""
+"""Waypoint radius, metres, at which corners were measured; with another the cut is assumed proportional."""
+
+RADII = (("WP_RADIUS_M", 1.0), ("WPNAV_RADIUS", 0.01), ("WP_RADIUS", 1.0), ("NAV_ACC_RAD", 1.0))
+"""Parameters of the waypoint radius, with their units in metres."""
 
 TURN_SECONDS = 10.0
-"""A circle of LOITER_TURNS takes so long: it is flown on the spot."""
+"""Duration of a circle of LOITER_TURNS, which is flown on the spot."""
 
-UNTOLD = frozenset({203, 206, 2000, 2001, 2500, 2501})
-"""Items for cameras, which are carried out in their order and never told as reached."""
+UNREPORTED = frozenset({203, 206, 2000, 2001, 2500, 2501})
+"""Camera items, which are executed in order but never reported as reached."""
+
+STOPPING = frozenset({20, 21, 22, 93, 112, 177})
+"""Items before which the vehicle stops."""
 
 
 def fly_mission(pilot: Autopilot, seconds: float) -> str:
-    """Work on the mission for a while; return ``land`` or ``return`` where an item asks for that."""
+    """Execute the mission for that long; return ``land`` or ``return`` if an item requires that mode."""
     items = pilot.stores[MISSION]
     pilot.item = max(pilot.first_item, pilot.item)
     while not pilot.finished and pilot.item < len(items):
@@ -31,28 +37,30 @@ def fly_mission(pilot: Autopilot, seconds: float) -> str:
             return "return"
         if item.command == mavlink.MAV_CMD_NAV_LAND and _arrives_to_land(pilot, item):
             return "land"
-        if not _perform(pilot, item, seconds):
-            return ""
-        if not _leave(pilot, item):
+        if not _execute(pilot, item, seconds) or not _complete(pilot, item):
             return ""
     return ""
 
 
 def jump(pilot: Autopilot, number: int) -> None:
-    """Go on with another item."""
+    """Continue with another item."""
     pilot.item, pilot.held, pilot.finished = number, 0.0, False
-    pilot.returning = []
+    pilot.return_path = []
 
 
-def _leave(pilot: Autopilot, item: Item) -> bool:
-    """Go on to the next item; return whether there is one."""
+def _complete(pilot: Autopilot, item: Item) -> bool:
+    """Continue with the next item; return whether there is one."""
     pilot.visited.append((pilot.time, pilot.item))
-    if item.command not in UNTOLD:
+    if item.command not in UNREPORTED:
         pilot.pending = pilot.item
-    if item.command == mavlink.MAV_CMD_DO_JUMP and _jumps(pilot, item):
-        return True
+    if item.command == mavlink.MAV_CMD_DO_JUMP:
+        made = pilot.jumps_made.get(pilot.item, 0)
+        if not 0 <= item.params[1] <= made:
+            pilot.jumps_made[pilot.item] = made + 1
+            jump(pilot, int(item.params[0]))
+            return True
     if item.command in MOVING:
-        pilot.body.leave()
+        pilot.body.start_next_leg()
     if pilot.item + 1 >= len(pilot.stores[MISSION]):
         pilot.finished = True
         pilot.body.target = pilot.body.onward = pilot.body.origin = None
@@ -61,23 +69,14 @@ def _leave(pilot: Autopilot, item: Item) -> bool:
     return True
 
 
-def _jumps(pilot: Autopilot, item: Item) -> bool:
-    times = pilot.loops.get(pilot.item, 0)
-    if 0 <= item.params[1] <= times:
-        return False
-    pilot.loops[pilot.item] = times + 1
-    jump(pilot, int(item.params[0]))
-    return True
-
-
-def _perform(pilot: Autopilot, item: Item, seconds: float) -> bool:
-    """Work on an item for a while; return whether it is done."""
+def _execute(pilot: Autopilot, item: Item, seconds: float) -> bool:
+    """Execute an item for that long; return whether it is completed."""
     if item.command in MOVING:
         return _go(pilot, item, seconds)
     if item.command in (mavlink.MAV_CMD_NAV_DELAY, mavlink.MAV_CMD_CONDITION_DELAY):
         pilot.held += seconds
         return pilot.held >= item.params[0]
-    if item.command == mavlink.MAV_CMD_DO_CHANGE_SPEED:
+    if item.command == CHANGE_SPEED:
         pilot.body.speed = item.params[1]
     elif item.command == mavlink.MAV_CMD_CONDITION_YAW:
         pilot.body.wanted_heading = item.params[0]
@@ -87,7 +86,7 @@ def _perform(pilot: Autopilot, item: Item, seconds: float) -> bool:
         pilot.roi = None
     elif item.command == mavlink.MAV_CMD_DO_FENCE_ENABLE:
         pilot.parameters["FENCE_ENABLE"] = item.params[0]
-    pilot.note(item.command, (*item.params, item.x, item.y, item.z))
+    pilot.record(item.command, (*item.params, item.x, item.y, item.z))
     return True
 
 
@@ -104,7 +103,7 @@ def _go(pilot: Autopilot, item: Item, seconds: float) -> bool:
     if wanted is not None:
         body.wanted_heading = wanted
     if body.onward is not None:
-        return body.goes_by()
+        return body.passes_target()
     if body.distance_to(place) > CLOSE and not pilot.held:
         return False
     pilot.held += seconds
@@ -112,29 +111,18 @@ def _go(pilot: Autopilot, item: Item, seconds: float) -> bool:
 
 
 def _radius(values: Mapping[str, float]) -> float:
-    """Return the metres from a place at which it counts as passed, as parameters have it."""
-    for name, metres in (
-        ("WP_RADIUS_M", 1.0),
-        ("WPNAV_RADIUS", 0.01),
-        ("WP_RADIUS", 1.0),
-        ("NAV_ACC_RAD", 1.0),
-    ):
-        if name in values:
-            return values[name] * metres
-    return MEASURED_RADIUS
+    return next((values[name] * unit for name, unit in RADII if name in values), MEASURED_RADIUS)
 
 
-def _onward(pilot: Autopilot, item: Item) -> tuple[float, float, float] | None:
-    """Return where it goes after an item at which it does not stop; None where it stops."""
+def _onward(pilot: Autopilot, item: Item) -> Vector | None:
+    """Return the position after an item at which it does not stop; None if it stops."""
     if item.command not in (mavlink.MAV_CMD_NAV_WAYPOINT, 82) or item.params[0] >= 1.0:
         return None
     for following in pilot.stores[MISSION][pilot.item + 1 :]:
-        if following.command in (mavlink.MAV_CMD_NAV_LAND, mavlink.MAV_CMD_NAV_TAKEOFF):
+        if following.command in STOPPING:
             return None
         if following.command in MOVING and (following.x or following.y):
             return pilot.place_of(following)
-        if following.command in (20, 93, 112, 177):
-            return None
     return None
 
 
@@ -146,7 +134,7 @@ def _hold_of(item: Item) -> float:
 
 
 def _arrives_to_land(pilot: Autopilot, item: Item) -> bool:
-    """Fly above the place of a landing; return whether it is there."""
+    """Fly above the position of a landing; return whether it is there."""
     if not (item.x or item.y) or pilot.held:
         return True
     place = pilot.place_of(item)

@@ -1,4 +1,4 @@
-"""Modes by name, and the numbers that each firmware has for them."""
+"""Flight modes by name, and the numbers that each firmware has for them."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from mmrs_mavlink.sitl.settings import PX4, Settings
 
 
 def _px4(main: int, sub: int = 0) -> int:
-    """Return PX4's custom mode: its third byte is the main mode, its fourth the sub-mode."""
+    """Return PX4's custom mode: the main mode in its third byte, the sub-mode in its fourth."""
     return main << 16 | sub << 24
 
 
@@ -49,22 +49,22 @@ MODES: Mapping[str, Mapping[str, int]] = {
         "guided": _px4(6),
     },
 }
-"""By kind of ArduPilot vehicle, and for PX4; what PX4 calls offboard is guided here, its hold is loiter."""
+"""By kind of ArduPilot vehicle, and for PX4: ``guided`` is its OFFBOARD, ``loiter`` its Hold."""
 
 BLIND = frozenset({"stabilize", "alt_hold", "manual", "land", "surface"})
 """Modes that need no position."""
 
 MANUAL = frozenset({"stabilize", "alt_hold", "manual"})
-"""Modes in which the wind carries what flies away."""
+"""Modes in which a flying vehicle drifts with the wind."""
 
 
 def numbers(settings: Settings) -> Mapping[str, int]:
-    """Return the modes that a vehicle has."""
+    """Return the modes of a vehicle, by name."""
     return MODES[PX4 if settings.firmware == PX4 else settings.kind]
 
 
 def first_mode(settings: Settings) -> str:
-    """Return the mode in which a vehicle wakes up."""
+    """Return the mode of a vehicle after boot."""
     if settings.firmware == PX4:
         return "loiter"
     return "manual" if settings.kind == "rover" else "stabilize"

@@ -1,17 +1,23 @@
-"""Parameters of the simulated vehicle, as they are after a reset.
+"""Parameters of a simulated vehicle, and its side of the parameter protocol.
 
-ArduPilot's names and values are those of its versions 4.3 to 4.6; where they are whole numbers there,
-they are here. PX4's are from its parameter reference.
+The defaults are those that vehicles act on or that ground software reads: ArduPilot's from its versions 4.3
+to 4.6, integers where they are integers there, and PX4's from its parameter reference.
 """
 
 from __future__ import annotations
 
 import struct
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
+from typing import Any
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from mmrs_mavlink.sitl.settings import PX4, Settings
+
+Message = Any
+
+AT_ONCE = 10
+"""Parameters of a list that are sent in one step."""
 
 _COMMON: Mapping[str, float] = {
     "SYSID_THISMAV": 1,
@@ -38,37 +44,23 @@ _COMMON: Mapping[str, float] = {
     "RALLY_INCL_HOME": 1,
     "MIS_TOTAL": 0,
     "MIS_RESTART": 0,
-    "ARMING_CHECK": 1,
     "SIM_GPS1_ENABLE": 1,
 }
 _COPTER: Mapping[str, float] = {
     "FS_THR_ENABLE": 1,
     "FS_OPTIONS": 16,
     "FS_EKF_ACTION": 1,
-    "FS_EKF_THRESH": 0.8,
     "DISARM_DELAY": 10,
     "AUTO_OPTIONS": 0,
     "RTL_ALT": 1500,
-    "RTL_ALT_FINAL": 0,
-    "RTL_LOIT_TIME": 5000,
-    "RTL_SPEED": 0,
     "LAND_SPEED": 50,
-    "LAND_SPEED_HIGH": 0,
     "WPNAV_SPEED": 500.0,
-    "WPNAV_SPEED_UP": 250.0,
-    "WPNAV_SPEED_DN": 150.0,
     "WPNAV_RADIUS": 200.0,
-    "WPNAV_ACCEL": 250.0,
-    "PILOT_TKOFF_ALT": 0.0,
-    "GUID_TIMEOUT": 3.0,
     "AVOID_ENABLE": 3,
     "AVOID_MARGIN": 2.0,
-    "AVOID_BEHAVE": 0,
     "OA_TYPE": 0,
     "OA_MARGIN_MAX": 5.0,
     "FLTMODE_GCSBLOCK": 0,
-    "PRX1_TYPE": 0,
-    "CAM1_TYPE": 1,
 }
 _ROVER: Mapping[str, float] = {
     "FS_ACTION": 2,
@@ -77,11 +69,8 @@ _ROVER: Mapping[str, float] = {
     "RALLY_LIMIT_KM": 0.5,
     "FS_THR_ENABLE": 1,
     "FS_EKF_ACTION": 1,
-    "FS_EKF_THRESH": 0.8,
-    "CRUISE_SPEED": 2.0,
     "WP_SPEED": 2.0,
     "WP_RADIUS": 2.0,
-    "RTL_SPEED": 0.0,
     "AVOID_ENABLE": 0,
     "AVOID_MARGIN": 2.0,
     "OA_TYPE": 0,
@@ -91,9 +80,7 @@ _SUB: Mapping[str, float] = {
     "FS_GCS_ENABLE": 1,
     "FS_GCS_TIMEOUT": 3.0,
     "FS_EKF_ACTION": 0,
-    "FS_EKF_THRESH": 0.8,
     "FS_LEAK_ENABLE": 1,
-    "SURFACE_DEPTH": -10.0,
     "WPNAV_SPEED": 50.0,
     "WPNAV_RADIUS": 200.0,
 }
@@ -114,28 +101,22 @@ _PX4: Mapping[str, float] = {
     "COM_OBL_RC_ACT": 0,
     "COM_FAIL_ACT_T": 5.0,
     "COM_TAKEOFF_ACT": 0,
-    "COM_RCL_EXCEPT": 0,
-    "COM_RC_IN_MODE": 1,
     "COM_DISARM_PRFLT": 10.0,
     "COM_DISARM_LAND": 2.0,
     "COM_OBS_AVOID": 0,
     "COM_POS_FS_DELAY": 1,
     "NAV_ACC_RAD": 2.0,
-    "MIS_TAKEOFF_ALT": 2.5,
     "MIS_DIST_1WP": 900.0,
     "RTL_RETURN_ALT": 15.0,
     "RTL_TYPE": 0,
     "MPC_XY_CRUISE": 5.0,
-    "MPC_XY_VEL_MAX": 12.0,
-    "MPC_Z_V_AUTO_UP": 3.0,
-    "MPC_Z_V_AUTO_DN": 1.5,
     "MPC_LAND_SPEED": 0.7,
 }
 _BY_KIND: Mapping[str, Mapping[str, float]] = {"copter": _COPTER, "rover": _ROVER, "sub": _SUB}
 
 
 def defaults(settings: Settings) -> dict[str, float]:
-    """Return the parameters of a vehicle that nobody has set up, but for what its settings say."""
+    """Return the parameters of a vehicle: the defaults, and those of its settings."""
     found = dict(_PX4) if settings.firmware == PX4 else {**_COMMON, **_BY_KIND[settings.kind]}
     own = {
         "SYSID_THISMAV": settings.system,
@@ -151,7 +132,7 @@ def defaults(settings: Settings) -> dict[str, float]:
 def encoded(name: str, value: float, firmware: str) -> tuple[float, int]:
     """Return a parameter as PARAM_VALUE carries it, and its MAV_PARAM_TYPE.
 
-    ArduPilot tells every number as a float; PX4 puts the bytes of whole numbers in the place of one.
+    ArduPilot sends every number as a float; PX4 puts the bytes of an integer in the place of one.
     """
     if not _is_whole(name, firmware):
         return value, int(mavlink.MAV_PARAM_TYPE_REAL32)
@@ -162,10 +143,7 @@ def encoded(name: str, value: float, firmware: str) -> tuple[float, int]:
 
 
 def decoded(name: str, value: float, kind: int, firmware: str) -> float:
-    """Return the parameter that PARAM_SET asks for.
-
-    ArduPilot keeps of whole numbers the whole part only.
-    """
+    """Return the value that a PARAM_SET sets; ArduPilot truncates that of an integer."""
     if not _is_whole(name, firmware):
         return value
     if firmware == PX4 and kind == mavlink.MAV_PARAM_TYPE_INT32:
@@ -176,3 +154,50 @@ def decoded(name: str, value: float, kind: int, firmware: str) -> float:
 def _is_whole(name: str, firmware: str) -> bool:
     tables = (_PX4,) if firmware == PX4 else (_COMMON, _COPTER, _ROVER, _SUB)
     return any(isinstance(table.get(name), int) for table in tables)
+
+
+class ParameterService:
+    """Sets and sends parameters; a request for an unknown one is not answered.
+
+    Attributes:
+        changed: called with the name of each parameter that is set, before the answer.
+    """
+
+    def __init__(self, values: dict[str, float], firmware: str, send: Callable[[Message], None]) -> None:
+        self.changed: Callable[[str], None] = lambda name: None
+        self._values, self._firmware = values, firmware
+        self._send = send
+        self._listed: list[str] = []
+
+    def begin(self) -> None:
+        """Forget all requests, as after a boot."""
+        self._listed.clear()
+
+    def take(self, message: Message) -> None:
+        """Answer a message of the protocol, and ignore others."""
+        kind = message.get_type()
+        if kind == "PARAM_REQUEST_LIST":
+            self._listed = list(self._values)
+        elif kind == "PARAM_REQUEST_READ":
+            names = list(self._values)
+            found = 0 <= message.param_index < len(names)
+            self._answer(names[message.param_index] if found else message.param_id)
+        elif kind == "PARAM_SET" and message.param_id in self._values:
+            name = str(message.param_id)
+            self._values[name] = decoded(name, message.param_value, message.param_type, self._firmware)
+            self.changed(name)
+            self._answer(name)
+
+    def advance(self) -> None:
+        """Send the next parameters of a requested list."""
+        for name in self._listed[:AT_ONCE]:
+            self._answer(name)
+        del self._listed[:AT_ONCE]
+
+    def _answer(self, name: str) -> None:
+        if name in self._values:
+            value, kind = encoded(name, self._values[name], self._firmware)
+            index = list(self._values).index(name)
+            self._send(
+                mavlink.MAVLink_param_value_message(name.encode(), value, kind, len(self._values), index)
+            )

@@ -1,4 +1,4 @@
-"""The simulated vehicle's radio: MAVLink over UDP, with what gets lost and what comes late."""
+"""Radios of a simulated vehicle: MAVLink over UDP with packet loss, latency and routing."""
 
 from __future__ import annotations
 
@@ -9,23 +9,25 @@ import time
 from collections.abc import Callable, Iterator
 from typing import Any
 
+from pymavlink.dialects.v10 import ardupilotmega as old
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
-
-from mmrs_mavlink.sitl.old_frames import packed
 
 Message = Any
 
 LARGEST = 65_535
 SIGNATURE_EPOCH = 1_420_070_400
 COMPONENT = 1
+BROADCAST = 0
+NEVER_ROUTED = frozenset({"RADIO", "RADIO_STATUS"})
+"""Messages of a radio about itself."""
 
 
 class Radio:
-    """Speaks to one address, and hears what comes back.
+    """Sends to one address, and receives from it.
 
     Attributes:
-        down: returns whether nothing comes through at the moment. dumb: the same, of what it sends.
-        sent, heard: how many messages.
+        down: returns whether the link is cut. silent: returns whether it sends nothing.
+        sent, received: number of messages.
     """
 
     def __init__(
@@ -39,24 +41,24 @@ class Radio:
         seed: int = 0,
         old: bool = False,
     ) -> None:
-        """Be ready to speak.
+        """Open a socket.
 
         Args:
-            address: host and UDP port of the ground station; names are looked up once.
-            system: MAVLink system that speaks.
-            key: to sign with and to expect signatures of; empty: no signatures.
-            loss: part of all datagrams that are lost, either way.
-            delay: real seconds that a datagram takes, either way.
+            address: host and UDP port of the ground station; a name is resolved once.
+            system: MAVLink system of the vehicle.
+            key: signing key; empty: unsigned.
+            loss: fraction of packets lost, in each direction.
+            delay: latency in real seconds, in each direction.
             seed: of the losses.
-            old: whether it speaks MAVLink 1, for good.
+            old: whether it sends MAVLink 1 only.
 
         Raises:
-            ValueError: the host has no address.
+            ValueError: the host cannot be resolved.
         """
         self.down: Callable[[], bool] = lambda: False
-        self.dumb: Callable[[], bool] = lambda: False
-        self.sent = self.heard = 0
-        self._address = _found(address)
+        self.silent: Callable[[], bool] = lambda: False
+        self.sent = self.received = 0
+        self._address = _resolved(address)
         self._loss, self._delay = loss, delay
         self._random = random.Random(seed * 1009 + system)
         self._socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
@@ -69,25 +71,30 @@ class Radio:
         self._coming: list[tuple[float, int, bytes]] = []
         self._order = 0
         if key:
-            self._sign(key)
+            signing = self._mav.signing
+            signing.secret_key, signing.sign_outgoing = key, True
+            signing.timestamp = int((time.time() - SIGNATURE_EPOCH) * 100_000)
 
     def fileno(self) -> int:
-        """Return what a selector waits for."""
+        """Return the number of the socket."""
         return self._socket.fileno()
 
     def close(self) -> None:
-        """Fall silent."""
+        """Close the socket."""
         self._socket.close()
 
     def send(self, message: Message) -> None:
         """Send a message, unless it is lost."""
-        data = self._packed(message)
+        if self._old:
+            data = packed(message, self._mav.srcSystem, COMPONENT, self._mav.seq)
+        else:
+            data = bytes(message.pack(self._mav))
         if data is not None:
             self._mav.seq = (self._mav.seq + 1) % 256
             self.relay(data)
 
     def relay(self, data: bytes) -> None:
-        """Send a frame of somebody else's as it is, unless it is lost."""
+        """Send a frame of another sender unchanged, unless it is lost."""
         if self._loses():
             return
         if self._delay:
@@ -97,20 +104,20 @@ class Radio:
             self._transmit(data)
 
     def receive(self) -> Iterator[Message]:
-        """Yield what has come."""
+        """Yield the messages that have arrived."""
         for data in self._datagrams():
             for message in self._mav.parse_buffer(data) or ():
                 if message.get_type() != "BAD_DATA":
-                    self.heard += 1
+                    self.received += 1
                     yield message
 
     @property
-    def late(self) -> bool:
-        """Return whether something is on its way that has not been heard yet."""
+    def pending(self) -> bool:
+        """Return whether a delayed packet has not arrived yet."""
         return bool(self._coming)
 
     def flush(self) -> None:
-        """Send what was held back long enough."""
+        """Send the packets whose delay is over."""
         while self._leaving and self._leaving[0][0] <= time.monotonic():
             self._transmit(heapq.heappop(self._leaving)[2])
 
@@ -128,32 +135,95 @@ class Radio:
         while self._coming and self._coming[0][0] <= time.monotonic():
             yield heapq.heappop(self._coming)[2]
 
-    def _packed(self, message: Message) -> bytes | None:
-        if self._old:
-            return packed(message, self._mav.srcSystem, COMPONENT, self._mav.seq)
-        return bytes(message.pack(self._mav))
-
     def _transmit(self, data: bytes) -> None:
-        if self.dumb():
+        if self.silent():
             return
         try:
             self._socket.sendto(data, self._address)
             self.sent += 1
         except OSError:
-            return  # nobody listens there, there is no way to it, or it takes no more: lost, as on any radio
+            return  # no receiver, no route or a full buffer: lost, as on any radio
 
     def _loses(self) -> bool:
         return self.down() or (self._loss > 0.0 and self._random.random() < self._loss)
 
-    def _sign(self, key: bytes) -> None:
-        signing = self._mav.signing
-        signing.secret_key, signing.sign_outgoing = key, True
-        signing.timestamp = int((time.time() - SIGNATURE_EPOCH) * 100_000)
+
+class Router:
+    """Routes messages between a vehicle and its radios by the rules of ArduPilot's ``MAVLink_routing``.
+
+    Heartbeats go to every other radio by which their sender was not received; other messages go to the radios
+    by which their target was received, and broadcasts to all by which any system was received.
+    """
+
+    def __init__(self, system: int, *radios: Radio) -> None:
+        self.radios = radios
+        self._own = (system, COMPONENT)
+        self._routes: dict[tuple[int, int], set[Radio]] = {}
+
+    def send(self, message: Message) -> None:
+        """Send a message to its target; one that was never received is sought by all radios."""
+        for radio in self._towards(*_target(message)) or self.radios:
+            radio.send(message)
+
+    def receive(self) -> Iterator[Message]:
+        """Yield the messages that have arrived, for any target, and forward them."""
+        for radio in self.radios:
+            for message in radio.receive():
+                source = (message.get_srcSystem(), message.get_srcComponent())
+                if source == self._own:
+                    continue
+                self._routes.setdefault(source, set()).add(radio)
+                for other in self._further(message, source) - {radio}:
+                    other.relay(bytes(message.get_msgbuf()))
+                yield message
+
+    def _further(self, message: Message, source: tuple[int, int]) -> set[Radio]:
+        """Return the radios to which a message is forwarded."""
+        if message.get_type() in NEVER_ROUTED:
+            return set()
+        if message.get_type() == "HEARTBEAT":
+            return set(self.radios) - self._routes[source]
+        system, component = _target(message)
+        if system == BROADCAST:
+            return set().union(*self._routes.values())
+        return set() if (system, component) == self._own else self._towards(system, component)
+
+    def _towards(self, system: int, component: int) -> set[Radio]:
+        """Return the radios by which a target was received."""
+        found = [
+            radios
+            for (its, part), radios in self._routes.items()
+            if its == system and (component in (BROADCAST, part) or system != self._own[0])
+        ]
+        return set().union(*found)
 
 
-def _found(address: tuple[str, int]) -> tuple[str, int]:
+def packed(message: Message, system: int, component: int, number: int) -> bytes | None:
+    """Return a MAVLink 2 message as MAVLink 1 frame, without extension fields; None if MAVLink 1 lacks it.
+
+    Args:
+        message: to be sent.
+        system: of the sender. component: of the sender.
+        number: sequence number of the frame, 0 to 255.
+    """
+    kind = getattr(old, type(message).__name__, None)
+    if kind is None:
+        return None
+    values = message.to_dict()
+    fields = {name: values[name] for name in kind.fieldnames}
+    plain = {name: value.encode() if isinstance(value, str) else value for name, value in fields.items()}
+    packer = old.MAVLink(None, srcSystem=system, srcComponent=component)
+    packer.seq = number
+    return bytes(kind(**plain).pack(packer))
+
+
+def _target(message: Message) -> tuple[int, int]:
+    return getattr(message, "target_system", BROADCAST), getattr(message, "target_component", BROADCAST)
+
+
+def _resolved(address: tuple[str, int]) -> tuple[str, int]:
     host, port = address
     try:
         return socket.gethostbyname(host), port
     except (OSError, UnicodeError) as error:
-        raise ValueError(f"{host}: no address is known of it") from error
+        raise ValueError(f"{host}: cannot be resolved") from error

@@ -1,4 +1,4 @@
-"""How a simulated vehicle is."""
+"""Settings of a simulated vehicle."""
 
 from __future__ import annotations
 
@@ -13,33 +13,30 @@ ARDUPILOT, PX4 = "ardupilot", "px4"
 
 @dataclass(frozen=True, slots=True)
 class Settings:
-    """How a vehicle is.
+    """Settings of a simulated vehicle.
 
     Attributes:
         kind: ``copter``, ``sub`` or ``rover``.
-        latitude, longitude: of its home, degrees. altitude: of its home above the sea, metres.
-        firmware: ``ardupilot``, or ``px4`` for copters, which is written from PX4's documentation and
-            was never compared with one.
-        boot: seconds in which uploads are refused and modes forgotten.
-        ready: seconds after which it has a position and may be armed.
-        disarm_delay: seconds after which it disarms by itself on the ground.
-        energy: seconds of hovering until the battery is empty. capacity: of it, milliampere-hours.
-        recharge: seconds without motors running until it is full again; 0: it stays as it is until
-            somebody changes it, as with an autopilot that counts what was used.
-        tells_battery: whether it knows its battery at all.
+        latitude, longitude: of its home, degrees. altitude: of its home above mean sea level, metres.
+        firmware: ``ardupilot``, or ``px4`` for copters, which follows PX4's documentation and source.
+        boot: seconds after boot in which uploads are refused and mode changes are lost.
+        ready: seconds after boot until it has a position and can be armed.
+        disarm_delay: seconds on the ground after which it disarms.
+        energy: seconds of hovering until the battery is empty. capacity: of the battery, mAh.
+        recharge: seconds disarmed until the battery is full; 0: never.
+        tells_battery: whether it measures its battery.
         falls: whether its motors stop in the air when the battery is empty.
-        wind: metres per second, and degrees where it comes from.
-        gusts: standard deviation of the air about the wind, metres per second on each axis, and for how
-            many seconds they last (correlation time); they carry copters only.
-        seed: of the gusts; vehicles with different system ids meet different ones all the same.
-        rate: of its telemetry until somebody asks for another, hertz.
-        values: by name, what it publishes as NAMED_VALUE_FLOAT, given seconds.
-        sights: what it may detect in its photos; from its home.
-        refuse: commands that it does not know.
-        silent: commands that it never answers.
-        mavlink: version of MAVLink that its port speaks and never leaves, 1 or 2.
-        key: 32 bytes to sign with and to expect signatures of; empty: no signatures.
-        parameters: by name, those that are not as after a reset.
+        wind: metres per second, and degrees that it comes from.
+        gusts: standard deviation of the air speed on each axis, metres per second, and correlation time,
+            seconds; only copters are displaced.
+        seed: of the gusts, together with the system.
+        rate: of telemetry until another is requested, hertz.
+        values: sensors by name, published as NAMED_VALUE_FLOAT: functions of the time in seconds.
+        sights: objects that its photos can show, in metres from its home.
+        refuse: commands answered with UNSUPPORTED. silent: commands that are never answered.
+        mavlink: the only MAVLink version that its port speaks, 1 or 2.
+        key: signing key, 32 bytes; empty: unsigned.
+        parameters: those that differ from the defaults.
     """
 
     kind: str = "copter"
@@ -69,18 +66,14 @@ class Settings:
     parameters: Mapping[str, float] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
-        """Refuse what there is not.
-
-        Raises:
-            ValueError: there is no such vehicle.
-        """
         if self.kind not in KINDS:
-            raise ValueError(f"{self.kind}: no such kind; there are {', '.join(KINDS)}")
+            raise ValueError(f"{self.kind}: unknown vehicle type; known are {', '.join(KINDS)}")
         if self.firmware not in (ARDUPILOT, PX4) or (self.firmware == PX4 and self.kind != "copter"):
-            raise ValueError(f"{self.firmware}: no such firmware for a {self.kind}")
+            raise ValueError(f"{self.firmware}: not a firmware for a {self.kind}")
         if not (0.0 <= self.gusts[0] <= 20.0 and self.gusts[1] > 0.0):
-            raise ValueError(f"{self.gusts[0]:g},{self.gusts[1]:g}: are no gusts; 0 to 20 m/s, some seconds")
+            gusts = f"{self.gusts[0]:g},{self.gusts[1]:g}"
+            raise ValueError(f"gusts {gusts}: not a speed of 0 to 20 m/s and a time above 0 s")
         if self.mavlink not in (1, 2):
-            raise ValueError(f"MAVLink {self.mavlink}: no such version; there are 1 and 2")
+            raise ValueError(f"MAVLink {self.mavlink}: not a MAVLink version; those are 1 and 2")
         if not 1 <= self.system <= 255:
-            raise ValueError(f"{self.system}: is no MAVLink system; they are 1 to 255")
+            raise ValueError(f"system {self.system}: not a MAVLink system; those are 1 to 255")

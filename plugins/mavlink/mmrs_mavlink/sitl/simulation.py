@@ -1,4 +1,4 @@
-"""Time passes: what a vehicle decides, how it moves, what it uses up."""
+"""Simulation of a vehicle over time: its failsafes, its control, its motion and its battery."""
 
 from __future__ import annotations
 
@@ -6,24 +6,26 @@ from math import dist
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
+from mmrs_mavlink.sitl import failsafes, px4_failsafes
 from mmrs_mavlink.sitl.autopilot import Autopilot
 from mmrs_mavlink.sitl.battery import load_of
 from mmrs_mavlink.sitl.body import STILL
-from mmrs_mavlink.sitl.failsafes import watch
+from mmrs_mavlink.sitl.control import decide
 from mmrs_mavlink.sitl.modes import MANUAL, first_mode
-from mmrs_mavlink.sitl.pilots import decide
-from mmrs_mavlink.sitl.settings import PX4
 
 CONTROL_SECONDS = 0.05
 """Longest time between two decisions."""
 
 TRACK_SECONDS = 0.1
 CRUMB_METRES = 3.0
+"""Distance between two positions that SmartRTL remembers."""
+
 FALL_SPEED = 10.0
 
 
 def advance(pilot: Autopilot, seconds: float) -> None:
-    """Let time pass for a vehicle."""
+    """Simulate that many seconds."""
+    watch = px4_failsafes.watch if pilot.px4 else failsafes.watch
     while seconds > 1e-9:
         step = min(seconds, CONTROL_SECONDS)
         seconds -= step
@@ -34,13 +36,13 @@ def advance(pilot: Autopilot, seconds: float) -> None:
         if pilot.armed:
             _move(pilot, step)
         else:
-            _stand(pilot, step)
+            _idle(pilot, step)
 
 
 def _move(pilot: Autopilot, seconds: float) -> None:
     body = pilot.body
     body.adrift = pilot.airborne and (not pilot.located or pilot.mode_name in MANUAL)
-    _blow(pilot, seconds)
+    _apply_gusts(pilot, seconds)
     body.advance(seconds)
     pilot.battery.drain(seconds, load_of(body) if pilot.flies else 0.3 + 0.7 * min(1.0, body.pace))
     pilot.camera.move(body)
@@ -49,13 +51,13 @@ def _move(pilot: Autopilot, seconds: float) -> None:
         pilot.armed = False
     if pilot.flies:
         _touch_ground(pilot)
-    _remember(pilot)
+    _record_track(pilot)
 
 
-def _blow(pilot: Autopilot, seconds: float) -> None:
-    """Let gusts come; only what is in the air is carried by them, and what drifts goes with all of it."""
+def _apply_gusts(pilot: Autopilot, seconds: float) -> None:
+    """Apply gusts to a vehicle in the air; one that drifts moves with the air itself."""
     if pilot.flies and pilot.airborne:
-        pilot.gusts.go_on(seconds)
+        pilot.gusts.advance(seconds)
         pilot.body.gust = (*pilot.gusts.air, 0.0)
         pilot.body.push = STILL if pilot.body.adrift else (*pilot.gusts.push, 0.0)
     else:
@@ -63,13 +65,13 @@ def _blow(pilot: Autopilot, seconds: float) -> None:
         pilot.body.gust = pilot.body.push = STILL
 
 
-def _stand(pilot: Autopilot, seconds: float) -> None:
+def _idle(pilot: Autopilot, seconds: float) -> None:
     pilot.battery.charge(seconds, pilot.settings.recharge)
     if pilot.airborne:
         north, east, up = pilot.body.position
         pilot.body.position = (north, east, max(0.0, up - FALL_SPEED * seconds))
         pilot.body.velocity = (0.0, 0.0, -FALL_SPEED)
-        _remember(pilot)
+        _record_track(pilot)
     else:
         pilot.body.rest_at(0.0 if pilot.flies else pilot.body.position[2])
     if pilot.uptime < pilot.settings.boot:
@@ -83,16 +85,16 @@ def _touch_ground(pilot: Autopilot) -> None:
     if pilot.body.position[2] < 0.0:
         pilot.body.rest_at(0.0)
         pilot.body.target = target if climbs else None
-    delay = pilot.parameters["COM_DISARM_PRFLT" if pilot.settings.firmware == PX4 else "DISARM_DELAY"]
+    delay = pilot.parameters["COM_DISARM_PRFLT" if pilot.px4 else "DISARM_DELAY"]
     if pilot.airborne or climbs:
         pilot.grounded_since = pilot.time
     elif 0.0 < delay < pilot.time - pilot.grounded_since:
         pilot.disarm()
 
 
-def _remember(pilot: Autopilot) -> None:
+def _record_track(pilot: Autopilot) -> None:
     position = pilot.body.position
     if not pilot.track or pilot.time - pilot.track[-1][0] >= TRACK_SECONDS - 1e-6:
         pilot.track.append((pilot.time, *pilot.body.place))
-    if pilot.armed and not pilot.returning and dist(position, pilot.crumbs[-1]) >= CRUMB_METRES:
-        pilot.crumbs.append(position)
+    if pilot.armed and not pilot.return_path and dist(position, pilot.breadcrumbs[-1]) >= CRUMB_METRES:
+        pilot.breadcrumbs.append(position)

@@ -1,24 +1,133 @@
-"""ArduPilot's side of the mission protocol, as its ``MissionItemProtocol.cpp`` has it."""
+"""Mission protocol of a simulated vehicle: what both firmwares share, and ArduPilot's side of it."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass, field
+from typing import Any
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from mmrs_mavlink.sitl.items import FENCE, MISSION, RALLY, Item, fault_of, kept
 from mmrs_mavlink.sitl.settings import ARDUPILOT
-from mmrs_mavlink.sitl.stored import Address, Message, Say, Stored, item_of, sender_of
 
-ASK_AGAIN_SECONDS = 1.0
-GIVE_UP_SECONDS = 8.0
+Message = Any
+Address = tuple[int, int]
+"""MAVLink system and component."""
+
+RETRY_SECONDS = 1.0
+TIMEOUT_SECONDS = 8.0
 NAMES = {MISSION: "Mission", FENCE: "Fence", RALLY: "Rally"}
 
 
+class Transfers:
+    """A vehicle's side of the mission protocol.
+
+    Attributes:
+        stores: items by mission type.
+        busy: whether uploads are refused for lack of space, as just after a boot.
+        finished: called with the type of each upload and each cleared list.
+        home: returns item 0 of a mission, which is ArduPilot's home; None: it is returned as uploaded.
+    """
+
+    def __init__(
+        self, stores: dict[int, list[Item]], send: Callable[[Message], None], say: Callable[[int, str], None]
+    ) -> None:
+        """Create without a transfer.
+
+        Args:
+            stores: items by mission type.
+            send: sends a message.
+            say: sends a STATUSTEXT of a severity.
+        """
+        self.stores = stores
+        self.busy = False
+        self.finished: Callable[[int], None] = lambda kind: None
+        self.home: Callable[[], Item] | None = None
+        self._send, self._say = send, say
+
+    def take(self, message: Message) -> None:
+        """Answer a message of the protocol, and ignore others."""
+        kind, peer = message.get_type(), (message.get_srcSystem(), message.get_srcComponent())
+        if kind == "MISSION_COUNT":
+            self._start(message, peer)
+        elif kind in ("MISSION_ITEM_INT", "MISSION_ITEM"):
+            self._receive(message, peer)
+        elif kind == "MISSION_CLEAR_ALL":
+            self._clear(message, peer)
+        elif kind == "MISSION_ACK":
+            self._end(message, peer)
+        elif kind == "MISSION_REQUEST_LIST":
+            self._list(message, peer)
+        elif kind in ("MISSION_REQUEST_INT", "MISSION_REQUEST"):
+            self._request(message, peer)
+
+    def advance(self, now: float, timeout: float) -> None:
+        """Repeat unanswered requests, and abort a transfer that times out, after `timeout` s at least."""
+        raise NotImplementedError
+
+    def _start(self, message: Message, peer: Address) -> None:
+        raise NotImplementedError
+
+    def _receive(self, message: Message, peer: Address) -> None:
+        raise NotImplementedError
+
+    def _clear(self, message: Message, peer: Address) -> None:
+        raise NotImplementedError
+
+    def _end(self, message: Message, peer: Address) -> None:
+        """Accept that a transfer has ended."""
+
+    def _list(self, message: Message, peer: Address) -> None:
+        raise NotImplementedError
+
+    def _request(self, message: Message, peer: Address) -> None:
+        raise NotImplementedError
+
+    def _acknowledge(self, peer: Address, result: int, kind: int) -> None:
+        self._send(mavlink.MAVLink_mission_ack_message(*peer, int(result), kind))
+
+    def _ask(self, peer: Address, seq: int, kind: int) -> None:
+        self._send(mavlink.MAVLink_mission_request_int_message(*peer, seq, kind))
+
+    def _count(self, peer: Address, kind: int) -> None:
+        number = len(self.stores.get(kind, ()))
+        self._send(mavlink.MAVLink_mission_count_message(*peer, number, kind))
+
+    def _give(self, peer: Address, asked: Message) -> None:
+        """Send a requested item, as MISSION_ITEM if it was requested so."""
+        kind, seq = asked.mission_type, int(asked.seq)
+        items = self.stores.get(kind, [])
+        if not 0 <= seq < len(items):
+            self._acknowledge(peer, mavlink.MAV_MISSION_INVALID_SEQUENCE, kind)
+            return
+        item = self.home() if seq == 0 and kind == MISSION and self.home is not None else items[seq]
+        head = (*peer, seq, item.frame, item.command, 0, 1, *item.params)
+        if asked.get_type() == "MISSION_REQUEST":
+            self._send(
+                mavlink.MAVLink_mission_item_message(*head, item.x * 1e-7, item.y * 1e-7, item.z, kind)
+            )
+        else:
+            self._send(mavlink.MAVLink_mission_item_int_message(*head, item.x, item.y, item.z, kind))
+
+    def _clear_stores(self, peer: Address, kind: int) -> None:
+        for each in list(self.stores) if kind == mavlink.MAV_MISSION_TYPE_ALL else [kind]:
+            self.stores[each] = []
+            self.finished(each)
+        self._acknowledge(peer, mavlink.MAV_MISSION_ACCEPTED, kind)
+
+
+def item_of(message: Message) -> Item:
+    """Return the item in a MISSION_ITEM or MISSION_ITEM_INT."""
+    old = message.get_type() == "MISSION_ITEM"
+    x, y = (round(message.x * 1e7), round(message.y * 1e7)) if old else (message.x, message.y)
+    params = (message.param1, message.param2, message.param3, message.param4)
+    return Item(message.frame, message.command, params, x, y, message.z)
+
+
 @dataclass
-class _Incoming:
-    """A plan on its way: how many items it has, from whom it comes, when it was last asked for or came."""
+class _Upload:
+    """An upload: its number of items, its sender, and when an item was last requested and received."""
 
     expected: int
     peer: Address
@@ -27,159 +136,116 @@ class _Incoming:
     since: float = -1.0
 
 
-class MissionProtocol:
-    """Answers the messages of the mission protocol; each kind of plan has transfers of its own.
+class ArduPilotTransfers(Transfers):
+    """ArduPilot's side of the mission protocol, as its ``MissionItemProtocol.cpp`` has it.
 
-    Missions and rally points are written item by item, so that a transfer that breaks off leaves some of
-    the old and some of the new; fences are replaced as a whole. An item out of turn is answered, and the
-    transfer goes on; whoever has begun it may begin it anew. While it lasts, nothing is cleared or given.
-
-    Attributes:
-        busy: whether uploads are refused for want of space, as just after a boot.
-        finished: called with the type of what was uploaded or cleared.
-        home: gives item 0 of the mission, which ArduPilot makes of its own home; None: as uploaded.
+    Each mission type has a transfer of its own. Missions and rally points are written item by item, so that
+    an aborted upload leaves a mixture of old and new; fences are replaced as a whole. An item out of sequence
+    is rejected, and the upload continues; its sender can restart it. Nothing is cleared or sent during an
+    upload.
     """
 
     def __init__(
         self,
         stores: dict[int, list[Item]],
         send: Callable[[Message], None],
-        say: Say,
+        say: Callable[[int, str], None],
         *,
         old: bool = False,
     ) -> None:
-        """Keep what is uploaded in `stores`, by mission type, answer by `send`, and complain by `say`.
-
-        Args:
-            stores: items by mission type.
-            send: sends a message.
-            say: tells the ground something.
-            old: whether the port speaks MAVLink 1, by which nothing but missions is taken.
-        """
-        self.busy = False
-        self.finished: Callable[[int], None] = lambda kind: None
-        self.home: Callable[[], Item] | None = None
-        self._stored = Stored(stores, send)
-        self._say, self._old = say, old
-        self._incoming: dict[int, _Incoming] = {}
+        """Create without a transfer; `old`: on a MAVLink 1 port, which accepts missions only."""
+        super().__init__(stores, send, say)
+        self._old = old
+        self._uploads: dict[int, _Upload] = {}
 
     def take(self, message: Message) -> None:
-        """Answer a message, if it is one of the protocol."""
-        handler = _HANDLERS.get(message.get_type())
-        if handler is None:
-            return
-        if self._old and message.mission_type != MISSION:
+        """Answer a message of the protocol, and ignore others."""
+        ends = message.get_type() == "MISSION_ACK"
+        if self._old and not ends and getattr(message, "mission_type", MISSION) != MISSION:
             self._say(mavlink.MAV_SEVERITY_WARNING, "Need mavlink2 for item transfer")
-            self._answer(message, mavlink.MAV_MISSION_UNSUPPORTED)
+            peer = (message.get_srcSystem(), message.get_srcComponent())
+            self._acknowledge(peer, mavlink.MAV_MISSION_UNSUPPORTED, message.mission_type)
         else:
-            handler(self, message)
+            super().take(message)
 
-    def go_on(self, now: float, patience: float) -> None:
-        """Ask again for what does not come, and give it up in the end.
-
-        Args:
-            now: seconds.
-            patience: least seconds to wait.
-        """
-        for kind, coming in list(self._incoming.items()):
-            if coming.asked < 0.0:
-                coming.asked = now
-                coming.since = now if coming.since < 0.0 else coming.since
-            if now - coming.since > max(GIVE_UP_SECONDS, 2.0 * patience):
-                del self._incoming[kind]
+    def advance(self, now: float, timeout: float) -> None:
+        """Repeat unanswered requests, and abort a transfer that times out, after `timeout` s at least."""
+        for kind, upload in list(self._uploads.items()):
+            if upload.asked < 0.0:
+                upload.asked = now
+                upload.since = now if upload.since < 0.0 else upload.since
+            if now - upload.since > max(TIMEOUT_SECONDS, 2.0 * timeout):
+                del self._uploads[kind]
                 self._say(mavlink.MAV_SEVERITY_WARNING, f"{NAMES[kind]} upload timeout")
-                self._stored.acknowledge(coming.peer, mavlink.MAV_MISSION_OPERATION_CANCELLED, kind)
-            elif now - coming.asked > max(ASK_AGAIN_SECONDS, patience / 2.0):
-                coming.asked = now
-                self._stored.ask(coming.peer, len(coming.items), kind)
+                self._acknowledge(upload.peer, mavlink.MAV_MISSION_OPERATION_CANCELLED, kind)
+            elif now - upload.asked > max(RETRY_SECONDS, timeout / 2.0):
+                upload.asked = now
+                self._ask(upload.peer, len(upload.items), kind)
 
-    def _count(self, message: Message) -> None:
-        kind, peer = message.mission_type, sender_of(message)
-        coming = self._incoming.get(kind)
+    def _start(self, message: Message, peer: Address) -> None:
+        kind = message.mission_type
+        upload = self._uploads.get(kind)
         if self.busy:
-            self._answer(message, mavlink.MAV_MISSION_NO_SPACE)
-        elif kind not in self._stored.stores:
-            self._answer(message, mavlink.MAV_MISSION_UNSUPPORTED)
-        elif coming is not None and coming.peer != peer:
-            self._answer(message, mavlink.MAV_MISSION_DENIED)
+            self._acknowledge(peer, mavlink.MAV_MISSION_NO_SPACE, kind)
+        elif kind not in self.stores:
+            self._acknowledge(peer, mavlink.MAV_MISSION_UNSUPPORTED, kind)
+        elif upload is not None and upload.peer != peer:
+            self._acknowledge(peer, mavlink.MAV_MISSION_DENIED, kind)
         else:
-            self._begin(kind, _Incoming(message.count, peer))
+            self._uploads[kind] = upload = _Upload(message.count, peer)
+            if kind != FENCE:
+                self.stores[kind] = self.stores[kind][: upload.expected]
+            self._continue(kind, upload)
 
-    def _begin(self, kind: int, coming: _Incoming) -> None:
-        self._incoming[kind] = coming
-        if kind != FENCE:
-            self._stored.stores[kind] = self._stored.stores[kind][: coming.expected]
-        self._go_on_with(kind, coming)
-
-    def _go_on_with(self, kind: int, coming: _Incoming) -> None:
-        """Ask for the next item, or end the transfer when there is none."""
-        if len(coming.items) < coming.expected:
-            coming.asked = -1.0
-            self._stored.ask(coming.peer, len(coming.items), kind)
+    def _continue(self, kind: int, upload: _Upload) -> None:
+        """Request the next item, or end the upload after the last."""
+        if len(upload.items) < upload.expected:
+            upload.asked = -1.0
+            self._ask(upload.peer, len(upload.items), kind)
             return
-        del self._incoming[kind]
-        self._stored.stores[kind] = list(coming.items)
-        self._stored.acknowledge(coming.peer, mavlink.MAV_MISSION_ACCEPTED, kind)
+        del self._uploads[kind]
+        self.stores[kind] = list(upload.items)
+        self._acknowledge(upload.peer, mavlink.MAV_MISSION_ACCEPTED, kind)
         self.finished(kind)
 
-    def _item(self, message: Message) -> None:
+    def _receive(self, message: Message, peer: Address) -> None:
+        kind, item = message.mission_type, item_of(message)
+        upload = self._uploads.get(kind)
+        if upload is None:
+            self._acknowledge(peer, mavlink.MAV_MISSION_ERROR, kind)
+        elif message.seq != len(upload.items):
+            self._acknowledge(peer, mavlink.MAV_MISSION_INVALID_SEQUENCE, kind)
+        elif peer != upload.peer:
+            self._acknowledge(peer, mavlink.MAV_MISSION_DENIED, kind)
+        elif fault := fault_of(item, kind):
+            del self._uploads[kind]
+            self._acknowledge(peer, fault, kind)
+        else:
+            stored = kept(item, kind, ARDUPILOT)
+            if kind != FENCE:
+                self.stores[kind][message.seq : message.seq + 1] = [stored]
+            upload.items.append(stored)
+            upload.since = -1.0
+            self._continue(kind, upload)
+
+    def _clear(self, message: Message, peer: Address) -> None:
         kind = message.mission_type
-        coming = self._incoming.get(kind)
-        if coming is None:
-            self._answer(message, mavlink.MAV_MISSION_ERROR)
-        elif message.seq != len(coming.items):
-            self._answer(message, mavlink.MAV_MISSION_INVALID_SEQUENCE)
-        elif sender_of(message) != coming.peer:
-            self._answer(message, mavlink.MAV_MISSION_DENIED)
-        elif fault := fault_of(item_of(message), kind):
-            del self._incoming[kind]
-            self._answer(message, fault)
-        else:
-            self._keep(kind, coming, kept(item_of(message), kind, ARDUPILOT))
-
-    def _keep(self, kind: int, coming: _Incoming, item: Item) -> None:
-        seq = len(coming.items)
-        coming.items.append(item)
-        coming.since = -1.0
-        if kind != FENCE:
-            self._stored.stores[kind][seq : seq + 1] = [item]
-        self._go_on_with(kind, coming)
-
-    def _clear(self, message: Message) -> None:
-        everything = message.mission_type == mavlink.MAV_MISSION_TYPE_ALL
-        kinds = list(self._stored.stores) if everything else [message.mission_type]
+        receives = self._uploads if kind == mavlink.MAV_MISSION_TYPE_ALL else kind in self._uploads
         if self.busy:
-            self._answer(message, mavlink.MAV_MISSION_NO_SPACE)
-        elif any(kind in self._incoming for kind in kinds):
-            self._answer(message, mavlink.MAV_MISSION_ERROR)
+            self._acknowledge(peer, mavlink.MAV_MISSION_NO_SPACE, kind)
+        elif receives:
+            self._acknowledge(peer, mavlink.MAV_MISSION_ERROR, kind)
         else:
-            for kind in kinds:
-                self._stored.stores[kind] = []
-                self.finished(kind)
-            self._answer(message, mavlink.MAV_MISSION_ACCEPTED)
+            self._clear_stores(peer, kind)
 
-    def _list(self, message: Message) -> None:
-        if message.mission_type in self._incoming:
-            self._answer(message, mavlink.MAV_MISSION_DENIED)
+    def _list(self, message: Message, peer: Address) -> None:
+        if message.mission_type in self._uploads:
+            self._acknowledge(peer, mavlink.MAV_MISSION_DENIED, message.mission_type)
         else:
-            self._stored.count(sender_of(message), message.mission_type)
+            self._count(peer, message.mission_type)
 
-    def _wanted(self, message: Message) -> None:
-        if message.mission_type in self._incoming and message.get_type() == "MISSION_REQUEST_INT":
-            self._answer(message, mavlink.MAV_MISSION_DENIED)
+    def _request(self, message: Message, peer: Address) -> None:
+        if message.mission_type in self._uploads and message.get_type() == "MISSION_REQUEST_INT":
+            self._acknowledge(peer, mavlink.MAV_MISSION_DENIED, message.mission_type)
         else:
-            self._stored.give(sender_of(message), message, self.home)
-
-    def _answer(self, message: Message, result: int) -> None:
-        self._stored.acknowledge(sender_of(message), result, message.mission_type)
-
-
-_HANDLERS: Mapping[str, Callable[[MissionProtocol, Message], None]] = {
-    "MISSION_COUNT": MissionProtocol._count,
-    "MISSION_ITEM_INT": MissionProtocol._item,
-    "MISSION_ITEM": MissionProtocol._item,
-    "MISSION_CLEAR_ALL": MissionProtocol._clear,
-    "MISSION_REQUEST_LIST": MissionProtocol._list,
-    "MISSION_REQUEST_INT": MissionProtocol._wanted,
-    "MISSION_REQUEST": MissionProtocol._wanted,
-}
+            self._give(peer, message)

@@ -12,12 +12,12 @@ from mmrs_mavlink.vehicles import modes
 CASES = [
     *(
         (kind, {"FS_GCS_ENABLE": float(value)}, names)
-        for kind, answers in failsafes.ON_SILENCE.items()
+        for kind, answers in failsafes.ON_LINK_LOSS.items()
         for value, names in answers.items()
     ),
     *(
         ("rover", {"FS_GCS_ENABLE": 1.0, "FS_ACTION": float(value)}, names)
-        for value, names in failsafes.ON_ROVERS_LOSS.items()
+        for value, names in failsafes.ROVER_ACTIONS.items()
     ),
 ]
 CONTINUING = frozenset({3})
@@ -35,7 +35,7 @@ def test_an_ardupilot_goes_into_the_modes_that_are_expected_of_it(kind, values, 
     assert expected - CONTINUING == numbered(kind, names)
 
 
-@pytest.mark.parametrize(("action", "names"), px4_failsafes.ON_SILENCE.items())
+@pytest.mark.parametrize(("action", "names"), px4_failsafes.ON_LINK_LOSS.items())
 def test_a_px4_does_too_and_may_hold_before(action, names):
     with linked(autopilot=PX4) as (link, _):
         expected = modes.alone(link, "copter", {"NAV_DLL_ACT": float(action)})
@@ -47,7 +47,7 @@ BY_HAND = {"poshold", "alt_hold", "stabilize"}
 """Modes that a PX4 leaves the vehicle in for its pilot: nobody takes that for the vehicle's own doing."""
 
 
-@pytest.mark.parametrize(("action", "names"), px4_failsafes.ON_STILLNESS.items())
+@pytest.mark.parametrize(("action", "names"), px4_failsafes.ON_SETPOINT_LOSS.items())
 def test_a_px4_that_misses_set_points_does_too(action, names):
     with linked(autopilot=PX4) as (link, _):
         expected = modes.alone(link, "copter", {"COM_OBL_RC_ACT": float(action)})

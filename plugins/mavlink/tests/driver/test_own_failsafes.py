@@ -19,7 +19,7 @@ def said(made, words: str) -> bool:
 def test_an_altitude_hold_that_the_vehicle_names_is_its_own(in_the_air):
     made = in_the_air(Policy("POSITION_LOST", "RETURN", 1000.0))
     set_parameter(made, "FS_EKF_ACTION", 2.0)
-    made.simulated.faults.lose_position()
+    made.simulated.faults.begin("gps-lost")
     fault = made.caught()
     assert fault.event == "POSITION_LOST"
     assert made.mode == "alt_hold"
@@ -28,14 +28,14 @@ def test_an_altitude_hold_that_the_vehicle_names_is_its_own(in_the_air):
 def test_an_altitude_hold_that_a_pilot_chose_is_not(in_the_air):
     made = in_the_air(Policy("POSITION_LOST", "LAND", 1000.0))
     set_parameter(made, "FS_EKF_ACTION", 0.0)
-    made.simulated.faults.lose_position()
-    made.simulated.faults.take_stick("alt_hold")
+    made.simulated.faults.begin("gps-lost")
+    made.simulated.faults.begin("stick", "alt_hold")
     assert made.caught().event == "TAKEN_OVER"
 
 
 def test_a_robot_that_is_to_go_on_without_a_position_is_landed_where_the_vehicle_gives_up(in_the_air):
     made = in_the_air(Policy("POSITION_LOST", "CONTINUE"))
-    made.simulated.faults.lose_position()
+    made.simulated.faults.begin("gps-lost")
     fault = made.caught()
     assert (fault.event, fault.instead) == ("POSITION_LOST", "LAND")
     assert "without a position it cannot be taken back" in str(fault)

@@ -32,7 +32,7 @@ def perched():
         with simulated.lock:
             simulated.autopilot.body.position = (72.0, 0.0, 0.0)
         if restarted:
-            simulated.faults.restart()
+            simulated.faults.begin("restart")
             until(lambda: simulated.autopilot.ready)
         until(lambda: aside(vehicle.state().place, PERCH) < 1.0)
         vehicle.start = footing(HOME, PERCH)

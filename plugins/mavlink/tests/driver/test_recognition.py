@@ -60,7 +60,7 @@ def found(in_the_air):
         made = in_the_air()
         with made.simulated.lock:
             made.simulated.autopilot.parameters |= parameters
-        made.simulated.faults.take_stick(mode)
+        made.simulated.faults.begin("stick", mode)
         until(lambda: made.vehicle.telemetry.mode() == made.simulated.autopilot.numbers[mode])
         made.vehicle.take_back()
         return made

@@ -20,7 +20,7 @@ def grow_old(made) -> None:
 
 def restart(made, *, armed: bool) -> None:
     grow_old(made)
-    made.simulated.faults.restart(armed=armed)
+    made.simulated.faults.begin("restart", *["armed"] * armed)
 
 
 def test_a_vehicle_whose_motors_go_on_is_landed_since_it_has_forgotten_what_it_did(in_the_air):

@@ -34,7 +34,7 @@ def test_a_robot_that_is_well_is_let_alone(in_the_air):
 
 def test_a_silent_link_is_lost_after_the_seconds_of_the_policy(in_the_air):
     made = in_the_air(Policy("LINK_LOST", "RETURN", 50.0))
-    made.simulated.mute()
+    made.simulated.faults.begin("link-down")
     cut = made.clock.now()
     fault = made.caught()
     assert fault.event == "LINK_LOST"
@@ -43,7 +43,7 @@ def test_a_silent_link_is_lost_after_the_seconds_of_the_policy(in_the_air):
 
 def test_a_silent_link_is_borne_by_who_carries_on_only(in_the_air):
     made = in_the_air(Policy("LINK_LOST", "CONTINUE"))
-    made.simulated.mute()
+    made.simulated.faults.begin("link-down")
     until(lambda: made.link.silent_for() > 60.0)
     made.watch.check()
     bound = Policy("LINK_LOST", "LAND", 1.0)
@@ -53,7 +53,7 @@ def test_a_silent_link_is_borne_by_who_carries_on_only(in_the_air):
 
 def test_a_pilot_who_takes_the_stick_has_the_vehicle(in_the_air):
     made = in_the_air(Policy("POSITION_LOST", "CONTINUE"))
-    made.simulated.faults.take_stick("loiter")
+    made.simulated.faults.begin("stick", "loiter")
     assert made.caught().event == "TAKEN_OVER"
     assert made.watch.taken
     made.watch.let_go()
@@ -62,14 +62,14 @@ def test_a_pilot_who_takes_the_stick_has_the_vehicle(in_the_air):
 
 def test_a_pilot_goes_before_what_he_took_over_for(in_the_air):
     made = in_the_air(Policy("POSITION_LOST", "LAND"))
-    made.simulated.faults.lose_position()
-    made.simulated.faults.take_stick("stabilize")
+    made.simulated.faults.begin("gps-lost")
+    made.simulated.faults.begin("stick", "stabilize")
     assert made.caught().event == "TAKEN_OVER"
 
 
 def test_a_landing_that_the_vehicle_began_by_itself_is_told_with_its_cause(in_the_air):
     made = in_the_air(Policy("POSITION_LOST", "LAND", 1000.0))
-    made.simulated.faults.lose_position()
+    made.simulated.faults.begin("gps-lost")
     until(lambda: made.mode == "land")
     assert made.caught().event == "POSITION_LOST"
     assert not made.watch.taken
@@ -77,17 +77,17 @@ def test_a_landing_that_the_vehicle_began_by_itself_is_told_with_its_cause(in_th
 
 def test_a_cause_that_is_told_after_the_change_of_mode_is_waited_for(in_the_air):
     made = in_the_air(Policy("POSITION_LOST", "LAND", 1000.0))
-    made.simulated.faults.take_stick("land")
+    made.simulated.faults.begin("stick", "land")
     until(lambda: made.vehicle.state().mode == "land")
     caught = in_background(made.caught)
     until(lambda: made.watch.looking)
-    made.simulated.faults.lose_position()
+    made.simulated.faults.begin("gps-lost")
     assert caught.result(20.0).event == "POSITION_LOST"
 
 
 def test_a_landing_for_which_no_cause_is_told_is_a_pilots(in_the_air):
     made = in_the_air()
-    made.simulated.faults.take_stick("land")
+    made.simulated.faults.begin("stick", "land")
     assert made.caught().event == "TAKEN_OVER"
 
 
@@ -98,19 +98,19 @@ def test_seconds_without_a_position_count_only_as_long_as_they_last(in_the_air):
         made.simulated.autopilot.parameters["FS_EKF_ACTION"] = 0.0
     trouble = made.vehicle.telemetry.position_trouble
     for _ in range(2):
-        made.simulated.faults.lose_position()
+        made.simulated.faults.begin("gps-lost")
         until(trouble)
         made.quiet(12.0)
-        made.simulated.faults.find_position()
+        made.simulated.faults.end("gps-lost")
         until(lambda: not trouble())
         made.quiet(1.0)
-    made.simulated.faults.lose_position()
+    made.simulated.faults.begin("gps-lost")
     assert made.caught().event == "POSITION_LOST"
 
 
 def test_a_position_that_leaps_counts_at_once_whatever_seconds_are_borne(in_the_air):
     made = in_the_air(Policy("POSITION_LOST", "LAND", 1000.0))
-    made.simulated.faults.shift_position(40.0, 90.0)
+    made.simulated.faults.begin("position-shift", 40.0, 90.0)
     fault = made.caught()
     assert fault.event == "POSITION_LOST"
     assert "its position has leapt by 40 m" in str(fault)
@@ -120,7 +120,7 @@ def test_a_position_that_leaps_counts_at_once_whatever_seconds_are_borne(in_the_
 
 def test_a_position_that_leaps_is_borne_by_who_carries_on(in_the_air):
     made = in_the_air(Policy("POSITION_LOST", "CONTINUE"))
-    made.simulated.faults.shift_position(40.0)
+    made.simulated.faults.begin("position-shift", 40.0)
     until(lambda: made.vehicle.telemetry.leaps.count)
     made.quiet(5.0)
     assert made.decided == [("POSITION_LOST", "CONTINUE")]
@@ -128,7 +128,7 @@ def test_a_position_that_leaps_is_borne_by_who_carries_on(in_the_air):
 
 def test_what_a_policy_bears_is_told_once(in_the_air):
     made = in_the_air(Policy("OBSTACLE", "CONTINUE"))
-    made.simulated.faults.meet_obstacle(3.0)
+    made.simulated.faults.begin("obstacle", 3.0)
     until(lambda: made.vehicle.telemetry.obstacle())
     made.quiet(5.0)
     assert made.decided == [("OBSTACLE", "CONTINUE")]
@@ -137,13 +137,13 @@ def test_what_a_policy_bears_is_told_once(in_the_air):
 def test_the_policies_of_a_wait_go_before_those_of_the_robot(in_the_air):
     made = in_the_air(Policy("OBSTACLE", "CONTINUE"))
     made.watch.current = lambda: (Policy("OBSTACLE", "HOLD"),)
-    made.simulated.faults.meet_obstacle(3.0)
+    made.simulated.faults.begin("obstacle", 3.0)
     assert made.caught().event == "OBSTACLE"
 
 
 def test_a_battery_under_the_reserve_is_low(in_the_air):
     made = in_the_air()
-    made.simulated.faults.set_battery(0.09)
+    made.simulated.faults.begin("battery", 0.09)
     fault = made.caught()
     assert fault.event == "BATTERY_LOW"
     assert "less than 10%" in str(fault)
@@ -162,7 +162,7 @@ def test_a_low_battery_overtakes_only_responses_that_do_not_bring_the_robot_down
 ):
     made = in_the_air()
     made.watch.relax(handled, response)
-    made.simulated.faults.set_battery(0.05)
+    made.simulated.faults.begin("battery", 0.05)
     until(lambda: (made.vehicle.state().energy or 1.0) < 0.06)
     if heeded:
         assert made.caught().event == "BATTERY_LOW"
@@ -173,7 +173,7 @@ def test_a_low_battery_overtakes_only_responses_that_do_not_bring_the_robot_down
 def test_a_robot_that_goes_on_heeds_everything_again(in_the_air):
     made = in_the_air(Policy("OBSTACLE", "HOLD"))
     made.watch.relax({"OBSTACLE"}, "HOLD")
-    made.simulated.faults.meet_obstacle(3.0)
+    made.simulated.faults.begin("obstacle", 3.0)
     until(lambda: made.vehicle.telemetry.obstacle())
     made.quiet(2.0)
     made.watch.tighten()
@@ -204,7 +204,7 @@ def grow_old(made):
 def test_a_restart_in_the_air_is_a_fault(in_the_air):
     made = in_the_air(falls=False)
     grow_old(made)
-    made.simulated.faults.restart(armed=True)
+    made.simulated.faults.begin("restart", "armed")
     assert made.caught().event == "VEHICLE_RESTARTED"
 
 
@@ -213,7 +213,7 @@ def test_a_restart_on_the_ground_is_kept_for_later(in_the_air):
     made.vehicle.land()
     made.watch.moving = False
     grow_old(made)
-    made.simulated.faults.restart()
+    made.simulated.faults.begin("restart")
     until(lambda: made.watch.restarted)
     made.quiet(5.0)
     made.watch.renew()
@@ -227,12 +227,12 @@ def back(in_the_air):
     def fly(mode: str):
         made = in_the_air(Policy("LINK_LOST", "HOLD", 5.0))
         made.vehicle.answer_lost_link("HOLD", 5.0)
-        made.simulated.mute()
+        made.simulated.faults.begin("link-down")
         assert made.caught().event == "LINK_LOST"
         made.watch.relax({"LINK_LOST"}, "LAND")
         until(lambda: made.mode == "brake")
-        made.simulated.faults.take_stick(mode)
-        made.simulated.unmute()
+        made.simulated.faults.begin("stick", mode)
+        made.simulated.faults.end("link-down")
         until(lambda: made.link.since("HEARTBEAT") < SPEEDUP)
         until(lambda: not made.vehicle.telemetry.announcements.recent())
         return made

@@ -53,7 +53,7 @@ def test_a_ground_station_that_comes_back_changes_no_mode():
 def test_a_ground_station_that_was_never_there_is_not_missed():
     bench = Bench(parameters={"FS_GCS_ENABLE": 1})
     bench.fly_up(10.0)
-    bench.pilot.heard = None
+    bench.pilot.last_heartbeat = None
     assert silent(bench) == "guided"
 
 
@@ -191,6 +191,6 @@ def test_a_lost_position_is_answered_after_a_second(action, mode):
 
 def test_it_is_patient_with_networks_that_do_not_become_faster_with_its_time():
     bench = out(parameters={"FS_GCS_ENABLE": 5})
-    bench.pilot.patience = 40.0
+    bench.pilot.link_timeout = 40.0
     assert silent(bench, 39.0) == "guided"
     assert silent(bench, 2.0) == "land"

@@ -39,11 +39,11 @@ def airborne(vehicle, ground) -> None:
 
 def test_a_lost_position_is_told_and_lands_the_vehicle(vehicle, ground):
     airborne(vehicle, ground)
-    vehicle.faults.lose_position()
+    vehicle.faults.begin("gps-lost")
     assert ground.hear(lambda m: m.get_type() == "GPS_RAW_INT" and m.fix_type < 2)
     assert ground.hear(lambda m: m.get_type() == "EKF_STATUS_REPORT" and not m.flags & 16)
     assert ground.hear(lambda m: m.get_type() == "HEARTBEAT" and m.custom_mode == 9)
-    vehicle.faults.find_position()
+    vehicle.faults.end("gps-lost")
     assert ground.hear(lambda m: m.get_type() == "EKF_STATUS_REPORT" and m.flags & 16)
 
 
@@ -64,7 +64,7 @@ def test_a_restart_begins_time_anew_and_drops_the_vehicle_but_keeps_what_was_upl
     airborne(vehicle, ground)
     vehicle.autopilot.stores[0] = ["kept"]
     assert ground.hear(lambda m: m.get_type() == "SYSTEM_TIME" and m.time_boot_ms > 5_000)
-    vehicle.faults.restart()
+    vehicle.faults.begin("restart")
     assert ground.hear(lambda m: m.get_type() == "SYSTEM_TIME" and m.time_boot_ms < 5_000)
     assert not vehicle.autopilot.armed
     time.sleep(0.3)
@@ -74,21 +74,21 @@ def test_a_restart_begins_time_anew_and_drops_the_vehicle_but_keeps_what_was_upl
 
 def test_a_watchdogs_restart_keeps_the_motors_on(vehicle, ground):
     airborne(vehicle, ground)
-    vehicle.faults.restart(armed=True)
+    vehicle.faults.begin("restart", "armed")
     assert ground.hear(lambda m: m.get_type() == "HEARTBEAT" and m.custom_mode == 0 and m.base_mode & 128)
     assert vehicle.autopilot.body.position[2] > 8.0
 
 
 def test_a_pilots_stick_changes_the_mode(vehicle, ground):
-    vehicle.faults.take_stick("alt_hold")
+    vehicle.faults.begin("stick", "alt_hold")
     assert ground.hear(lambda m: m.get_type() == "HEARTBEAT" and m.custom_mode == 2)
 
 
 def test_an_obstacle_is_told_where_it_is_until_it_is_gone(vehicle, ground):
-    vehicle.faults.meet_obstacle(3.0, 90.0)
+    vehicle.faults.begin("obstacle", 3.0, 90.0)
     told = ground.of("OBSTACLE_DISTANCE")
     assert (told.distances[18], min(told.distances)) == (300, 300)
-    vehicle.faults.clear_obstacle()
+    vehicle.faults.end("obstacle")
     while ground.of("OBSTACLE_DISTANCE", 0.3):
         pass
     assert ground.of("OBSTACLE_DISTANCE", 0.5) is None
@@ -97,47 +97,47 @@ def test_an_obstacle_is_told_where_it_is_until_it_is_gone(vehicle, ground):
 def test_a_breached_fence_is_told_and_answered(vehicle, ground):
     airborne(vehicle, ground)
     assert ground.command(207, 1).result == 0
-    vehicle.faults.breach_fence()
+    vehicle.faults.begin("breach")
     assert ground.hear(lambda m: m.get_type() == "FENCE_STATUS" and m.breach_status == 1)
     assert ground.hear(lambda m: m.get_type() == "HEARTBEAT" and m.custom_mode == 6)
 
 
 def test_a_battery_has_what_it_is_said_to_have(vehicle, ground):
-    vehicle.faults.set_battery(0.17)
+    vehicle.faults.begin("battery", 0.17)
     assert ground.hear(lambda m: m.get_type() == "SYS_STATUS" and 15 <= m.battery_remaining <= 20)
 
 
 def test_a_silent_command_gets_no_answer_and_does_nothing(vehicle, ground):
-    vehicle.faults.silence(400)
+    vehicle.faults.begin("silent", 400)
     assert ground.command(400, 1) is None
     assert not vehicle.autopilot.armed
-    vehicle.faults.silence()
+    vehicle.faults.end("silent")
     assert ground.command(400, 1) is not None
 
 
 def test_a_cut_link_lets_nothing_through_until_it_is_mended(vehicle, ground):
-    vehicle.faults.cut_link()
+    vehicle.faults.begin("link-down")
     ground.of("HEARTBEAT", 0.3)
     assert ground.of("HEARTBEAT", 0.5) is None
-    vehicle.faults.mend_link()
+    vehicle.faults.end("link-down")
     assert ground.of("HEARTBEAT")
 
 
 def test_the_time_of_day_jumps_and_the_time_since_it_booted_does_not(vehicle, ground):
     before = ground.of("SYSTEM_TIME")
-    vehicle.faults.jump_clock(-3600.0)
+    vehicle.faults.begin("clock-jump", -3600.0)
     after = ground.hear(lambda m: m.get_type() == "SYSTEM_TIME" and m.time_unix_usec < before.time_unix_usec)
     assert before.time_boot_ms < after.time_boot_ms < before.time_boot_ms + 3e5
 
 
 def test_arming_is_refused_with_the_reason_in_words(vehicle, ground):
-    vehicle.faults.refuse_arming("Battery 1 unhealthy")
+    vehicle.faults.begin("refuse-arming", "Battery 1 unhealthy")
     assert ground.hear(lambda m: m.get_type() == "STATUSTEXT" and m.text == "PreArm: Battery 1 unhealthy")
     assert ground.command(400, 1).result == mavlink.MAV_RESULT_FAILED
 
 
 def test_answers_to_uploads_come_late(vehicle, ground):
-    vehicle.faults.slow_uploads(5.0)
+    vehicle.faults.begin("slow-upload", 5.0)
     began = time.monotonic()
     ground.send(mavlink.MAVLink_mission_request_list_message(1, 1, 0))
     assert ground.of("MISSION_COUNT")
@@ -147,7 +147,7 @@ def test_answers_to_uploads_come_late(vehicle, ground):
 def test_a_photo_is_told_unless_the_camera_is_dead(vehicle, ground):
     assert ground.command(203, 0, 0, 0, 0, 1).result == 0
     assert ground.of("CAMERA_FEEDBACK").img_idx == 1
-    vehicle.faults.break_camera()
+    vehicle.faults.begin("camera-dead")
     assert ground.command(203, 0, 0, 0, 0, 1).result == 0
     assert ground.of("CAMERA_FEEDBACK", 0.5) is None
 
@@ -155,11 +155,11 @@ def test_a_photo_is_told_unless_the_camera_is_dead(vehicle, ground):
 @pytest.mark.parametrize(
     ("words", "complaint"),
     [
-        (("gps-gone",), "there are gps-lost"),
-        (("battery",), "battery takes level"),
-        (("battery", "half"), "'half' is no finite number"),
-        (("gps-lost", "3"), "gps-lost takes no value"),
-        (("silent", "abc"), "'abc' is no number of a command"),
+        (("gps-gone",), "known are gps-lost"),
+        (("battery",), "battery: takes level"),
+        (("battery", "half"), "'half' is not a finite number"),
+        (("gps-lost", "3"), "gps-lost 3: takes no value"),
+        (("silent", "abc"), "'abc' is not the number of a command"),
         (("restart", "disarmed"), "'disarmed' is not armed"),
         (("stick", "acro"), "this vehicle has"),
     ],

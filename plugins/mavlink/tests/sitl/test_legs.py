@@ -26,8 +26,8 @@ def flown(places: list[Vector], speed: float) -> list[Vector]:
     while len(track) < 20_000:
         body.advance(STEP)
         track.append(body.position)
-        if body.onward is not None and body.goes_by():
-            body.leave()
+        if body.onward is not None and body.passes_target():
+            body.start_next_leg()
             body.target, body.onward = body.onward, ahead.pop(0) if ahead else None
         elif body.onward is None and dist(body.position, places[-1]) < 0.05:
             return track

@@ -159,5 +159,5 @@ def test_items_are_kept_as_they_came():
 
 
 def test_only_copters_fly_it():
-    with pytest.raises(ValueError, match="no such firmware for a rover"):
+    with pytest.raises(ValueError, match="not a firmware for a rover"):
         Settings("rover", firmware="px4")

@@ -75,7 +75,7 @@ def test_all_parameters_are_listed_once(ground, switch_on):
 def test_parameters_outlive_a_restart(ground, switch_on):
     vehicle = switch_on()
     vehicle.autopilot.parameters["RTL_ALT"] = 3000.0
-    vehicle.faults.restart()
+    vehicle.faults.begin("restart")
     assert vehicle.autopilot.parameters["RTL_ALT"] == 3000.0
 
 

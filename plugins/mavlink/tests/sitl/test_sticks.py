@@ -6,7 +6,7 @@ import pytest
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from mmrs_mavlink.sitl.autopilot import Autopilot
-from mmrs_mavlink.sitl.commands import obey
+from mmrs_mavlink.sitl.commands import execute
 from mmrs_mavlink.sitl.settings import Settings
 from mmrs_mavlink.sitl.simulation import advance
 from mmrs_mavlink.sitl.sticks import FULL_CLIMB, FULL_SPEED, FULL_TURN, sticks_of
@@ -17,7 +17,7 @@ ARM = mavlink.MAV_CMD_COMPONENT_ARM_DISARM
 def sub(mode="alt_hold", *, located=False):
     pilot = Autopilot(Settings(kind="sub", ready=0.0, boot=0.0))
     pilot.located = located
-    pilot.take_stick(mode)
+    pilot.enter(mode)
     advance(pilot, 0.1)
     return pilot
 
@@ -30,7 +30,7 @@ def drive(pilot, seconds, x=0, y=0, z=500, r=0):
 
 def armed(**options):
     pilot = sub(**options)
-    assert obey(pilot, ARM, (1.0, *[0.0] * 6)) == mavlink.MAV_RESULT_ACCEPTED
+    assert execute(pilot, ARM, (1.0, *[0.0] * 6)) == mavlink.MAV_RESULT_ACCEPTED
     return pilot
 
 
@@ -40,7 +40,7 @@ def armed(**options):
 def test_what_goes_by_hand_is_armed_without_a_position(mode, result):
     pilot = sub(mode, located=True)
     pilot.located = False
-    assert obey(pilot, ARM, (1.0, *[0.0] * 6)) == getattr(mavlink, f"MAV_RESULT_{result}")
+    assert execute(pilot, ARM, (1.0, *[0.0] * 6)) == getattr(mavlink, f"MAV_RESULT_{result}")
 
 
 def test_a_stick_ahead_moves_it_where_it_looks():

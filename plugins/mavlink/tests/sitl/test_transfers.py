@@ -6,8 +6,8 @@ import pytest
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from mmrs_mavlink.sitl.items import Item
-from mmrs_mavlink.sitl.px4_transfers import Px4MissionProtocol
-from mmrs_mavlink.sitl.transfers import MissionProtocol
+from mmrs_mavlink.sitl.px4_transfers import Px4Transfers
+from mmrs_mavlink.sitl.transfers import ArduPilotTransfers
 
 OLD = [Item(3, 16, (0.0, 0.0, 0.0, 0.0), n, n, 1.0) for n in range(4)]
 
@@ -20,7 +20,7 @@ class Exchange:
         self.stores = {0: list(OLD), 1: list(OLD), 2: []}
         self.said = []
         say = lambda severity, text: self.said.append(text)  # noqa: E731
-        make = Px4MissionProtocol if firmware == "px4" else MissionProtocol
+        make = Px4Transfers if firmware == "px4" else ArduPilotTransfers
         self.protocol = make(self.stores, self.answers.append, say, **port)
 
     def take(self, message) -> None:
@@ -154,7 +154,7 @@ def test_a_fence_and_all_of_px4_stay_as_they_were_until_everything_is_there(firm
 def test_what_does_not_come_is_asked_for_again_and_given_up_in_the_end(exchange):
     exchange.count(2)
     for tick in range(100):
-        exchange.protocol.go_on(tick * 0.1, 0.0)
+        exchange.protocol.advance(tick * 0.1, 0.0)
     asked = [message for message in exchange.answers if message.get_type() == "MISSION_REQUEST_INT"]
     assert 5 <= len(asked) <= 9
     assert exchange.last.type == mavlink.MAV_MISSION_OPERATION_CANCELLED

@@ -56,7 +56,7 @@ def test_what_is_told_next_is_done_as_ever(made):
 @pytest.mark.parametrize("mode", ["return", "alt_hold"])
 def test_a_vehicle_that_a_pilot_has_just_taken_is_left_to_him_whatever_is_ordered(made, mode):
     response, _ = response_of(made)
-    made.simulated.faults.take_stick(mode)
+    made.simulated.faults.begin("stick", mode)
     until(lambda: made.vehicle.telemetry.mode() == made.simulated.autopilot.mode)
     with pytest.raises(Fault, match="somebody else has taken over"):
         response.begin("LAND", None, lambda what, why, does: None, heard=True).run()
@@ -70,7 +70,7 @@ def test_a_vehicle_that_obeys_nothing_is_watched_where_it_would_not_come_down_by
     with manned(robot_of(Policy("LINK_LOST", answer))) as made:
         made.fly_out()
         made.vehicle.hold()
-        made.simulated.faults.silence(176)
+        made.simulated.faults.begin("silent", 176)
         response, _ = response_of(made)
         job = response.begin("RETURN", None, lambda what, why, does: None, heard=True)
         if not stays:
@@ -87,7 +87,7 @@ def test_a_return_that_cannot_be_steered_is_a_landing_and_told_as_that():
         made.fly_out()
         made.vehicle.hold()
         made.simulated.autopilot.parameters["FS_EKF_ACTION"] = 0.0
-        made.simulated.faults.lose_position()
+        made.simulated.faults.begin("gps-lost")
         response, _ = response_of(made)
         decided = []
         response.begin("RETURN", None, lambda *words: decided.append(words[2]), heard=True).run()
