@@ -20,8 +20,8 @@ from mmrs_runtime.semantics import (
     Waiting,
     entry,
     missing,
+    recorded_step,
     steps,
-    told_by,
     waiting,
 )
 
@@ -150,7 +150,7 @@ def _replayed(run: _Replay, records: tuple[StepRecord, ...]) -> Iterable[Complai
         if robot is None:
             yield _complaint(record, "no such robot in the behaviour")
             return
-        step = told_by(record, robot.program, robot.point, run.active)
+        step = recorded_step(record, robot.program, robot.point, run.active)
         if step is None:
             yield _complaint(record, f"is {_shown(record)}, expected {_expected(run, robot)}")
             return

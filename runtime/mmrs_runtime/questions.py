@@ -8,7 +8,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from .conditions import is_standard, question_of
 
 
-class Heard(Mapping[str, bool]):
+class OperatorAnswers(Mapping[str, bool]):
     """Answers by question, as they were at one moment; remembers which of them were looked at."""
 
     def __init__(self, answers: Mapping[str, bool]) -> None:
@@ -60,13 +60,13 @@ class Questions:
             self._answers[question] = answer
         return ""
 
-    def heard(self) -> Heard:
+    def answers(self) -> OperatorAnswers:
         """Return the answers that no choice has used up."""
         with self._lock:
-            return Heard(self._answers)
+            return OperatorAnswers(self._answers)
 
-    def use_up(self, heard: Heard) -> None:
+    def use_up(self, answers: OperatorAnswers) -> None:
         """Forget the answers by which a choice was decided."""
         with self._lock:
-            for question in heard.used:
+            for question in answers.used:
                 self._answers.pop(question, None)

@@ -6,7 +6,7 @@ All awaited slots are tested in one state, after the actions that follow the mov
 either branch here; the engine asks its condition once, at the instant when it fires.
 
 Robots run by `steps`, `fault` and `missing`, and the check of synchronisation reads a behaviour by `steps`;
-`told_by` finds the step of a log record. States of all robots together (`initial`, `enabled`, `apply`,
+`recorded_step` finds the step of a log record. States of all robots together (`initial`, `enabled`, `apply`,
 `is_success`, `is_deadlock`) are the oracle that the engine and that check are tested against, over every
 interleaving.
 """
@@ -132,7 +132,7 @@ def fault(robot: ExecutableRobot, point: Point, which: str) -> PossibleStep:
     return PossibleStep(robot.id, "fault", point.move, which, "", Point(point.move, Phase.FAILED))
 
 
-def told_by(
+def recorded_step(
     record: StepRecord, robot: ExecutableRobot, point: Point, active: Set[SlotId]
 ) -> PossibleStep | None:
     """Return the step of a robot from a point that a record belongs to; None: it can make no such step."""

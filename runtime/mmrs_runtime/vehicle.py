@@ -228,7 +228,7 @@ class Vehicle(ABC):
 
     # What people, and other robots, learn.
 
-    def told(self) -> Mapping[str, object]:
+    def status(self) -> Mapping[str, object]:
         """Return what the robot has told last, as JSON has it; empty before it has; from any thread."""
         return {}
 

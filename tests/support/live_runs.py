@@ -108,7 +108,7 @@ class Walker(Idle):
     def moves(self, now):
         return self.armed
 
-    def told(self):
+    def status(self):
         return {"armed": self.armed} if self.armed is not None else {}
 
     def pause(self, now):

@@ -294,7 +294,7 @@ class Node:
 
     def serve(self, owner: str, sender: str, request: str) -> str:
         """Return the answer of one of this process's robots to a request, whatever it is; empty: none now."""
-        found = self._owners.told(owner, sender, request)
+        found = self._owners.admitted(owner, sender, request)
         if isinstance(found, Answer):
             return written(found)
         with self.lock:

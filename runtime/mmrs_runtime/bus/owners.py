@@ -82,7 +82,7 @@ class Member:
 
 
 class Owners:
-    """Holds the owner of each slot of this process. Not thread-safe, except `told`: its holder guards it.
+    """Holds the owner of each slot of this process. Not thread-safe, except `admitted`: its holder guards it.
 
     Attributes:
         admission: judges messages of other processes.
@@ -149,7 +149,7 @@ class Owners:
         """Return whether a robot is one of this process."""
         return robot in self._owners
 
-    def told(self, owner: str, sender: str, text: str) -> Request | Answer:
+    def admitted(self, owner: str, sender: str, text: str) -> Request | Answer:
         """Return the request that a robot of another process makes in a text, or why it is refused."""
         try:
             found = request_in(text)

@@ -1,4 +1,4 @@
-"""A notify on its way to the owners of its slots: a state machine without clock, thread or transport."""
+"""A notify in progress to the owners of its slots: a state machine without clock, thread or transport."""
 
 from __future__ import annotations
 

@@ -46,7 +46,7 @@ class State:
         return self.energy
 
 
-def told_of(state: State) -> dict[str, object]:
+def status_of(state: State) -> dict[str, object]:
     """Return a vehicle's status, as JSON has it."""
     found = {
         "mode": state.mode,
@@ -60,15 +60,15 @@ def told_of(state: State) -> dict[str, object]:
 
 @dataclass(frozen=True, slots=True)
 class KnownState(vehicle.VehicleState):
-    """What the engine knows of a robot; `told`: as its vehicle tells it."""
+    """What the engine knows of a robot; `own`: its vehicle's state, if it has one."""
 
-    told: State | None = None
+    own: State | None = None
 
 
 def in_words(state: vehicle.VehicleState) -> State:
     """Return what is known of a robot in the words of controllers, which its vehicle need not use itself."""
-    if isinstance(state, KnownState) and state.told is not None:
-        return state.told
+    if isinstance(state, KnownState) and state.own is not None:
+        return state.own
     east, north, up = state.position
     place, detected = Local(north, east, up), state.detected
     return State(

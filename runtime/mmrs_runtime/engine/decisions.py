@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterable, Mapping
 
 from ..conditions import ANSWER_SECONDS, is_standard, standard, truth
 from ..faults import CONDITION_FAILED, FAILURES
-from ..questions import Heard
+from ..questions import OperatorAnswers
 from ..vehicle import Condition, Fault, LinkLost, VehicleState
 
 SLOW_SECONDS = 1.0
@@ -37,14 +37,14 @@ class Asking:
     Attributes:
         done: whether `answer` is there.
         answer: as of `decided`.
-        heard: the operator's answers that it is asked with.
+        answers: the operator's answers that it is asked with.
     """
 
     def __init__(
-        self, condition: Condition, state: VehicleState, heard: Heard, wake: Callable[[], None]
+        self, condition: Condition, state: VehicleState, answers: OperatorAnswers, wake: Callable[[], None]
     ) -> None:
         """Ask; `wake` is called once there is an answer."""
-        self.done, self.heard = False, heard
+        self.done, self.answers = False, answers
         self.answer: bool | Fault | None = None
         self._condition, self._until = condition, time.monotonic() + ANSWER_SECONDS
         name = f"condition {condition.identifier!r}"

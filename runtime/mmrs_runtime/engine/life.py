@@ -197,26 +197,26 @@ class Life(Situation):
         """Return the decision of a choice; None while it cannot be known."""
         then = self.move.then
         assert isinstance(then, Choose)
-        condition, heard = self._run.conditions[then.condition], self.questions.heard()
+        condition, answers = self._run.conditions[then.condition], self.questions.answers()
         holds: bool | Fault | None
         if condition.instant or not self._live:
-            holds = decided(condition, lambda: self._known(heard))
+            holds = decided(condition, lambda: self._known(answers))
         else:
             if self.wait.asking is None:
                 if self.now() < self.wait.ask_at:
                     return None
-                self.wait.asking = Asking(condition, self._known(heard), heard, self._wake)
+                self.wait.asking = Asking(condition, self._known(answers), answers, self._wake)
             asking, self.wait.question = self.wait.asking, then.condition
             if not asking.look():
                 if asking.is_slow:
                     self._tell_undecided(then.condition)
                 return None
-            holds, heard, self.wait.asking = asking.answer, asking.heard, None
+            holds, answers, self.wait.asking = asking.answer, asking.answers, None
             self.wait.ask_at = self.now() + PACE
         if isinstance(holds, Fault):
             raise Broken(holds)
         if holds is not None:
-            self.questions.use_up(heard)
+            self.questions.use_up(answers)
         else:
             self.wait.question, self.questions.asked = then.condition, question_of(then.condition)
             self._tell_undecided(then.condition)
@@ -233,10 +233,10 @@ class Life(Situation):
     def _wake(self) -> None:
         self.vehicle.post(Progress())
 
-    def _known(self, heard: Mapping[str, bool]) -> VehicleState:
+    def _known(self, answers: Mapping[str, bool]) -> VehicleState:
         state = self.vehicle.state(self.now())
         told = frozenset(name for name, _ in self._slots.finds(self.id))
-        return replace(state, answers=heard, found=state.detected | told)
+        return replace(state, answers=answers, found=state.detected | told)
 
     def _may_pass(self) -> bool:
         """Return whether nothing as yet keeps the robot from going into its next move without a stop."""
@@ -374,7 +374,7 @@ class Life(Situation):
     def _get_ready(self) -> Waits:
         """Wait until the robot is ready.
 
-        Faults meanwhile are answered as on the way back to where its program was broken off, unless
+        Faults meanwhile are answered as on the return to where its program was broken off, unless
         it is still unknown whether it is the program's robot: then it must not be touched.
         """
         while self.is_preparing:

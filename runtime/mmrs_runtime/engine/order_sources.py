@@ -49,7 +49,7 @@ def _inbox(robot: str, orders: Orders) -> Inbox:
                 receipt.refuse(why)
 
         order = receipt.order
-        orders.give(order.name, (robot,), question=order.question, answer=order.answer, told=answered)
+        orders.give(order.name, (robot,), question=order.question, answer=order.answer, answered=answered)
 
     inbox = Inbox(robot, arrived=arrived)
     return inbox

@@ -29,7 +29,7 @@ class Order:
         confirmed: by robot, real seconds until its vehicle had obeyed.
         refused: by robot, why it does not obey.
         settled: set once every robot has done one or the other.
-        told: called with a robot, and why it refuses, or None: it has obeyed.
+        answered: called with a robot, and why it refuses, or None: it has obeyed.
         vehicles: by robot; their black boxes record the outcome before it is reported.
         responses: by robot, the response that shows that it obeys, where its program has ended, or is to end.
     """
@@ -38,7 +38,7 @@ class Order:
     robots: tuple[str, ...]
     question: str = ""
     answer: bool = False
-    told: Callable[[str, str | None], None] = lambda robot, why: None
+    answered: Callable[[str, str | None], None] = lambda robot, why: None
     interrupt: bool = False
     confirmed: dict[str, float] = field(default_factory=dict)
     refused: dict[str, str] = field(default_factory=dict)
@@ -69,7 +69,7 @@ class Order:
             content = ordered(self.kind, self.question, self.answer)
             told = {"confirmed": why is None, "seconds": self.confirmed.get(robot), "why": why or ""}
             vehicle.note("order", content | told)
-        self.told(robot, why)
+        self.answered(robot, why)
         if not self.open:
             self.settled.set()
 
@@ -102,7 +102,7 @@ class Orders:
         *,
         question: str = "",
         answer: bool = False,
-        told: Callable[[str, str | None], None] = lambda robot, why: None,
+        answered: Callable[[str, str | None], None] = lambda robot, why: None,
         interrupt: bool = False,
     ) -> Order:
         """Give an order to robots, from any thread or signal handler; return it, with results as they come.
@@ -113,7 +113,7 @@ class Orders:
         if kind not in KINDS:
             raise ValueError(f"order '{kind}': there are {', '.join(KINDS)}")
         order = Order(
-            kind, tuple(dict.fromkeys(robots)), question, answer, told, interrupt, vehicles=self.vehicles
+            kind, tuple(dict.fromkeys(robots)), question, answer, answered, interrupt, vehicles=self.vehicles
         )
         self._waiting.append(order)
         if self._closed:

@@ -51,7 +51,7 @@ def record(
     for id, found in faults.items():
         robot = robots[id]
         note(robot, found.which, reason_of(found))
-        if found.which != LINK_LOST or robot.told():
+        if found.which != LINK_LOST or robot.status():
             fail(id, found.which)
     missing = ", ".join(f"'{id}'" for id in faults)
     note_alone((robot for id, robot in robots.items() if id not in faults), f"{missing} did not get ready")
@@ -143,7 +143,7 @@ class EarlyOrders:
     def _rests(self, id: str) -> bool:
         """Return whether a vehicle is seen to have its motors off, known to be the robot's or not."""
         robot = self._robots.get(id)
-        return robot is not None and robot.told().get("armed") is False
+        return robot is not None and robot.status().get("armed") is False
 
     def _let_go(self, order: Order) -> None:
         for id in order.open:

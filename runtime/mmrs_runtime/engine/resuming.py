@@ -6,7 +6,7 @@ from collections.abc import Iterable
 
 from ..program import ExecutableRobot, Notify, Program
 from ..records.steps import StepRecord, merge
-from ..semantics import Point, PossibleStep, entry, told_by
+from ..semantics import Point, PossibleStep, entry, recorded_step
 from ..slots import LocalSlots
 
 
@@ -16,7 +16,7 @@ def step_of(robot: ExecutableRobot, point: Point, record: StepRecord) -> Possibl
     Raises:
         ValueError: if it is not one of the program's.
     """
-    step = told_by(record, robot, point, {(robot.id, name) for name in robot.slots})
+    step = recorded_step(record, robot, point, {(robot.id, name) for name in robot.slots})
     if step is not None:
         return step
     raise ValueError(f"robot '{robot.id}': step {record.seq} of its log is not one of its program's")

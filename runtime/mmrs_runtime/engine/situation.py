@@ -213,7 +213,7 @@ class Situation:
     @property
     def rests(self) -> bool:
         """Return whether its motors are seen to be off, those of whatever answers on its link."""
-        return self.vehicle.told().get("armed") is False
+        return self.vehicle.status().get("armed") is False
 
     def hindrance(self) -> str:
         """Return why its program cannot be continued; empty if it can, as far as is known."""

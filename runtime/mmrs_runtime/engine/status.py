@@ -65,7 +65,7 @@ class StatusBoard:
         if life is not None:
             found |= _at(life)
         if vehicle is not None:
-            found |= vehicle.told()
+            found |= vehicle.status()
         if life is not None and _responds(life, armed=found.get("armed") is True):
             found |= answering(life.halt.response)
         if life is not None and life.questions.asked:

@@ -98,11 +98,11 @@ class Rehearsal:
         incoming = line([f for f in faults if f.name != "cut-out"], self._clock, f"{seed} in")
         outgoing = line([f for f in faults if f.name != "cut-in"], self._clock, f"{seed} out")
 
-        def told(counts: Mapping[str, int]) -> None:
+        def count(counts: Mapping[str, int]) -> None:
             self._say(f"{_list(robots)}: injected, in pieces: {dict(counts)}")
             self._note(robots, "link", {"state": "counted", **counts})
 
-        return InjectedPort(port, self._clock, incoming, outgoing, told)
+        return InjectedPort(port, self._clock, incoming, outgoing, count)
 
     def wrap_carrier(self, carrier: Carrier, robots: Collection[str]) -> Carrier:
         """Return a carrier of these robots' bus, with its faults."""

@@ -93,16 +93,6 @@ class Receipt:
         """Refuse, with the reason; only the first answer counts."""
         self._answer(False, why)
 
-    @property
-    def told(self) -> dict[str, object]:
-        """Return what was ordered, whether the robot has obeyed, and when, as a black box has it."""
-        return {
-            **ordered(self.order.name, self.order.question, self.order.answer),
-            "confirmed": self.confirmed,
-            "seconds": round(self.seconds, 4),
-            "why": self.why,
-        }
-
     def _answer(self, confirmed: bool, why: str) -> None:
         with self._lock:
             if self.confirmed is not None:

@@ -129,7 +129,7 @@ class Vehicle(Idle):
     def moves(self, now):
         return self.armed
 
-    def told(self):
+    def status(self):
         return {"armed": self.armed} if self.known(now=0.0) else {}
 
 
@@ -210,7 +210,7 @@ class World:
                 assert self._obeys(kind, self.vehicles[id]), (kind, vars(self.vehicles[id]))
             self.answers.append((number, id, why))
 
-        self.given.append(self.orders.give(kind, robots, told=told))
+        self.given.append(self.orders.give(kind, robots, answered=told))
 
     def _obeys(self, kind: str, vehicle: Vehicle) -> bool:
         if kind == RESUME:

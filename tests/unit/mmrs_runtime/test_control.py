@@ -122,7 +122,7 @@ def test_a_robot_that_has_ended_refuses_what_it_was_told_and_what_comes(tmp_path
 def test_an_answer_is_known_to_the_robot_at_once(tmp_path, opened, inboxes):
     opened(inboxes)
     list(give(tmp_path, "answer", ["alpha"], question="is it safe", answer=True))
-    assert inboxes["alpha"].questions.heard() == {"is it safe": True}
+    assert inboxes["alpha"].questions.answers() == {"is it safe": True}
 
 
 def test_an_answer_to_a_question_that_nobody_asks_is_refused(tmp_path, opened, inboxes, capsys):

@@ -12,30 +12,30 @@ def test_the_choice_that_an_answer_decides_uses_it_up():
     questions = Questions(["answer:again", "answer:go on?"])
     questions.give("again", True)
     questions.give("go on?", False)
-    heard = questions.heard()
+    heard = questions.answers()
     assert heard["again"] is True
     questions.use_up(heard)
-    assert questions.heard() == {"go on?": False}
+    assert questions.answers() == {"go on?": False}
 
 
 def test_the_last_answer_before_the_choice_counts():
     questions = Questions(["answer:again"])
     questions.give("again", True)
     questions.give("again", False)
-    assert questions.heard() == {"again": False}
+    assert questions.answers() == {"again": False}
 
 
 def test_an_answer_that_nobody_looked_at_is_kept():
     questions = Questions(["answer:again"])
     questions.give("again", True)
-    questions.use_up(questions.heard())
-    assert questions.heard() == {"again": True}
+    questions.use_up(questions.answers())
+    assert questions.answers() == {"again": True}
 
 
 def test_an_answer_to_another_question_is_not_taken():
     questions = Questions(["answer:go on?", "wind-above:8"])
     assert questions.give("go on", True) == "no choice asks 'go on'; there is 'go on?'"
-    assert questions.heard() == {}
+    assert questions.answers() == {}
 
 
 def test_functions_of_the_users_may_ask_what_they_like():

@@ -36,7 +36,7 @@ def test_a_black_box_knows_what_became_of_an_order_before_people_do(live, kind, 
     run, walker = walking(live)
     happened = []
     walker.note = lambda what, content: happened.append((what, content.get("confirmed")))
-    order = run.orders.give(kind, ["r"], told=lambda robot, why: happened.append(("told", why is None)))
+    order = run.orders.give(kind, ["r"], answered=lambda robot, why: happened.append(("told", why is None)))
     assert order.settled.wait(20.0)
     answers = [each for each in happened if each[0] != "decision"]
     assert answers == [("order", confirmed), ("told", confirmed)]

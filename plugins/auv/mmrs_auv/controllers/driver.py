@@ -98,7 +98,7 @@ class CanDriver(Driver):
         made: list[CanVehicle] = []
 
         def state() -> State:
-            told = made[0].state(options.clock.now()).told
+            told = made[0].state(options.clock.now()).own
             assert told is not None
             return told
 

@@ -30,7 +30,7 @@ from auv_vessel.movement.abilities import abilities_of
 from auv_vessel.sheet import Sheet, Vector
 from mmrs_auv.controllers.orders import NO_WAY, NoWayError, Orders, notes_in
 from mmrs_runtime.controllers.box_entries import FIX_SECONDS, fix
-from mmrs_runtime.controllers.state import KnownState, told_of
+from mmrs_runtime.controllers.state import KnownState, status_of
 from mmrs_runtime.controllers.state import State as Told
 from mmrs_runtime.controllers.vocabulary import Local
 from mmrs_runtime.policies import AFTER, NOTHING, OVERTAKES, patience, response_to
@@ -254,10 +254,10 @@ class CanVehicle(Vehicle):
         """Return whether the vehicle may move by thrust at any moment."""
         return self.reachable(now) and not self._is_up()
 
-    def told(self) -> Mapping[str, object]:
+    def status(self) -> Mapping[str, object]:
         """Return what the vehicle has told last."""
         known = self._craft.state()
-        return told_of(self._told_by(known)) if known.age < LATELY else {}
+        return status_of(self._told_by(known)) if known.age < LATELY else {}
 
     def note(self, kind: str, content: Mapping[str, object]) -> None:
         """Keep something in the black box."""
@@ -304,7 +304,7 @@ class CanVehicle(Vehicle):
             known.charge,
             detected=told.detected,
             places={name: above(place) for name, place in self._places.items()},
-            told=told,
+            own=told,
         )
 
     def _told_by(self, known: State) -> Told:

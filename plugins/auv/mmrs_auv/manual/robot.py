@@ -236,7 +236,7 @@ class ManualRobot(Vehicle):
         """Return whether the vehicle may move by thrust at any moment."""
         return self.reachable(now) and self._autopilot.armed
 
-    def told(self) -> Mapping[str, object]:
+    def status(self) -> Mapping[str, object]:
         """Return what the vehicle has told last."""
         if not self._ready:
             return {}

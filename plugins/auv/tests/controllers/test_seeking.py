@@ -50,7 +50,7 @@ class Dive:
         )
 
     def state(self) -> State:
-        told = self.vehicle.state(self.rig.bus.now).told
+        told = self.vehicle.state(self.rig.bus.now).own
         assert told is not None
         return told
 

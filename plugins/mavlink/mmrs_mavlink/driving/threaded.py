@@ -9,7 +9,7 @@ from math import inf
 from traceback import format_exception
 
 from mmrs_runtime.controllers.box_entries import fix
-from mmrs_runtime.controllers.state import KnownState, told_of
+from mmrs_runtime.controllers.state import KnownState, status_of
 from mmrs_runtime.faults import (
     BATTERY_LOW,
     CRASHED,
@@ -176,13 +176,13 @@ class ThreadedVehicle(Vehicle):
             known.wind,
             known.detected,
             places=places,
-            told=known,
+            own=known,
         )
 
-    def told(self) -> Mapping[str, object]:
+    def status(self) -> Mapping[str, object]:
         """Return what the vehicle has told last, as controllers say it; empty before it was heard."""
         heard = self._link is None or self._link.latest("HEARTBEAT") is not None
-        return told_of(self._with.vehicle.state()) if heard else {}
+        return status_of(self._with.vehicle.state()) if heard else {}
 
     def respond(self, response: str, now: float) -> None:
         """Carry out a response, from any state, or what comes nearest to it that can be done then."""
