@@ -14,7 +14,7 @@ from mmrs_core.cli.copying import copy_example, require_copies
 from mmrs_core.cli.output import counted
 from mmrs_core.cli.plan_words import plan_lines, plan_summary
 from mmrs_core.cli.planned import require_sound, require_writable
-from mmrs_core.cli.preview import picture_of, write_pictures
+from mmrs_core.cli.preview import drawn_on_failure, picture_of, write_pictures
 from mmrs_core.cli.session import Stages
 from mmrs_core.cli.simulation import Chosen, fly, run_lines, succeeded, write_logs
 from mmrs_core.cli.verdict_words import verdict_table
@@ -146,10 +146,12 @@ def demonstrate(
         others: the folders of other examples.
 
     Raises:
-        MmrsError: as the stages raise it; nothing is written before the behaviour is known to be safe.
+        MmrsError: as the stages raise it; until the behaviour is known to be safe, nothing is written but a
+            picture of the problems.
     """
-    session, place = stages.session, stages.place
-    program = stages.program
+    session = stages.session
+    with drawn_on_failure(stages, folder):
+        place, program = stages.place, stages.program
     behaviour = folder / "behaviour.xmi"
     require_writable(stages, behaviour, "choose another folder")
     require_copies(folder, example, others)

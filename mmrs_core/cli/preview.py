@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from mmrs_core.cli.output import progress, say, say_json
+from mmrs_core.cli.output import progress, say, say_json, tell
 from mmrs_core.cli.parameters import (
     Assume,
     Context,
@@ -17,10 +20,14 @@ from mmrs_core.cli.parameters import (
     robot_files,
     without_mission,
 )
+from mmrs_core.cli.protection import files_of, refuse_inputs
 from mmrs_core.cli.settings import Json, settings_of
+from mmrs_core.cli.verdict_words import verdict_rows
+from mmrs_core.errors import InfeasibleError, InvalidModelError
 
 if TYPE_CHECKING:
     from mmrs_core.cli.session import Session, Stages
+    from mmrs_core.diagnostics import Diagnostic
     from mmrs_core.pictures.preview.picture import Picture
 
 PAGE = "preview.html"
@@ -54,17 +61,19 @@ def preview(
 
     Writes preview.html and preview.svg (the map alone). A mission is planned first; a behaviour is simulated,
     with the outcomes that --assume gives to its conditions. With --logs, the flown tracks are drawn over the
-    planned paths.
+    planned paths. A mission that is not valid or has no feasible plan is drawn with its problems.
+
+    Exit codes: 0 drawn · 1 drawn, but the mission is not valid · 4 drawn, but no plan is feasible
 
     Example: mmrs preview field
     """
     from mmrs_core.cli.behaviours import is_behaviour
     from mmrs_core.cli.plan import folder_of
-    from mmrs_core.cli.protection import refuse_inputs
     from mmrs_core.cli.session import Session, Stages
 
     session = Session(settings_of(call))
     types = robot_files(robots)
+    folder = output if output is not None else folder_of(project)
     if logs:
         picture = _of_flight(session, behaviour_file(project), context, types, assume, logs)
     elif is_behaviour(session, alone := without_mission(project)):
@@ -74,8 +83,9 @@ def preview(
             "--assume goes with a behaviour, or with --logs; a mission is drawn as planned"
         )
     else:
-        picture = picture_of(Stages(session, project, context=context, robots=types, seed=seed))
-    folder = output if output is not None else folder_of(project)
+        stages = Stages(session, project, context=context, robots=types, seed=seed)
+        with drawn_on_failure(stages, folder):
+            picture = picture_of(stages)
     refuse_inputs((folder / PAGE, folder / MAP), session.inputs)
     written = write_pictures(picture, folder)
     if json:
@@ -88,11 +98,40 @@ def preview(
 
 def picture_of(stages: Stages) -> Picture:
     """Return the picture of a planned mission, with the moves that carry it out."""
+    from mmrs_core.pictures.preview.from_models import problems_of
     from mmrs_core.pictures.preview.from_plan import picture_of_plan
     from mmrs_core.pictures.preview.moves import with_moves
 
     symbols = stages.session.contributions.map_symbols
-    return with_moves(picture_of_plan(stages.scene, stages.plan, symbols), stages.program)
+    picture = with_moves(picture_of_plan(stages.scene, stages.plan, symbols), stages.program)
+    problems = problems_of(stages.models, stages.warnings)
+    return replace(picture, problems=problems, checks=verdict_rows(stages.verdicts))
+
+
+@contextmanager
+def drawn_on_failure(stages: Stages, folder: Path) -> Iterator[None]:
+    """Draw a mission that turns out not to be valid, or to have no plan, with its problems into a folder.
+
+    Raises:
+        InvalidModelError, InfeasibleError: after that, as the stages raise it.
+    """
+    from mmrs_core.pictures.preview.from_models import picture_of_models
+
+    try:
+        yield
+    except (InvalidModelError, InfeasibleError) as error:
+        models = stages.readable()
+        if models is None:
+            raise
+        if isinstance(error, InvalidModelError):
+            problems: tuple[Diagnostic | str, ...] = error.diagnostics
+        else:
+            problems = (*error.reasons, *stages.warnings)
+        picture = picture_of_models(models, stages.session.contributions.map_symbols, problems)
+        refuse_inputs((folder / PAGE, folder / MAP), files_of(models.models))
+        page, _ = write_pictures(picture, folder)
+        tell(f"drawn with its problems: {page}")
+        raise
 
 
 def _of_behaviour(

@@ -21,6 +21,7 @@ from mmrs_core.pipeline import (
     place_of_scene,
     plan,
     program_of,
+    read_models,
     refusals,
     transform,
     valid_models,
@@ -122,6 +123,13 @@ class Stages:
         self.session.have_read(models.models, models.context)
         report(warnings)
         return models, warnings
+
+    def readable(self) -> ModelSet | None:
+        """Return the models as far as they can be read, valid or not; None where there is no mission."""
+        models, _ = read_models(
+            self._mission, self.session.contributions, context=self._context, robots=self._robots
+        )
+        return models
 
     @property
     def models(self) -> ModelSet:

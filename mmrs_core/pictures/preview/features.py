@@ -6,6 +6,8 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from math import isfinite
 
+from shapely.errors import ShapelyError
+
 from mmrs_core.contributions.symbols import MapSymbol, has_symbol, symbol_of, words_of
 from mmrs_core.geometry.clearance import grow, shrink
 from mmrs_core.geometry.polygons import parts, rings
@@ -35,7 +37,10 @@ def zones_of(areas: Iterable[Area], clearances: Iterable[float]) -> tuple[Zone, 
 
 def _zone(area: Area, clearance: float) -> Zone:
     change = shrink if area.use is AreaUse.EMERGENCY else grow
-    pieces = parts(change(area.shell, clearance))
+    try:
+        pieces = parts(change(area.shell, clearance))
+    except (ValueError, ShapelyError):  # the outline crosses itself
+        pieces = ()
     outlines = tuple(ring for piece in pieces for ring in (rings(piece)[0], *rings(piece)[1]))
     return Zone(area.name, area.use, area.shell, area.low, area.high, outlines, clearance, area.types)
 

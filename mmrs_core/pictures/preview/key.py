@@ -15,11 +15,13 @@ _ROW = 24.0
 _SAMPLE = 34.0
 _GAP = 22.0
 _MARGIN = 18.0
-_SIGNS = (
+_PLANNED_SIGNS = (
     ("work", "thick line: task"),
     ("transit", "thin line: transit"),
     ("action", "dot: device action"),
     ("stay", "ring: stays here"),
+)
+_SIGNS = (
     ("home", "home"),
     ("forbidden", "forbidden area"),
     ("obstacle", "obstacle"),
@@ -54,7 +56,8 @@ class Legend:
 
 def key_of(picture: Picture) -> tuple[Entry, ...]:
     """Return the signs of a map and the symbols that it shows; robots are listed elsewhere on a page."""
-    signs = (*_SIGNS, *(_FLOWN_SIGNS if picture.flown else ()))
+    planned, flown = _PLANNED_SIGNS if picture.planned else (), _FLOWN_SIGNS if picture.flown else ()
+    signs = (*planned, *_SIGNS, *flown)
     problems = [Entry("problem", "problem, by its number")] if picture.problems else []
     symbols = (Entry("badge", shortened(each.label), symbol=each) for each in symbols_in(picture))
     return (*(Entry(sample, words) for sample, words in signs), *problems, *symbols)

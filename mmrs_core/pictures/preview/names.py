@@ -163,7 +163,7 @@ def _of_zones(picture: Picture, projection: Projection) -> Iterator[Label]:
     shown = _shown(projection)
     # What bars some types only is a context element, and named as such.
     for zone in (zone for zone in picture.zones if zone.types is None):
-        seen = shapely.intersection(Polygon(zone.shell), shown)
+        seen = shapely.intersection(_polygon(zone.shell), shown)
         if not seen.is_empty:
             box = _box(_polygon(zone.shell), projection)
             yield Label(_zone_words(zone), box, f"of-{zone.use.value}")
@@ -178,7 +178,7 @@ def _shown(projection: Projection) -> Polygon:
 
 
 def _polygon(ring: Ring) -> BaseGeometry:
-    return Polygon(ring) if len(ring) > 2 else shapely.MultiPoint(ring)
+    return shapely.make_valid(Polygon(ring)) if len(ring) > 2 else shapely.MultiPoint(ring)
 
 
 def _box(shape: BaseGeometry, projection: Projection, reach: float = 0.0) -> Box:

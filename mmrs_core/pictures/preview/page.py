@@ -30,13 +30,17 @@ _LAYERS = (
     ("grid", "grid"),
 )
 _LAYERS_OF_FLIGHTS = ("planned", "marks")
+_LAYERS_OF_PLANS = ("coverage", "paths")
 
 
 def page(picture: Picture) -> str:
     """Return a whole HTML document; nothing in it refers to another file."""
     shown = projection_of(picture)
-    absent = () if picture.flown else _LAYERS_OF_FLIGHTS
-    absent = absent if picture.problems else (*absent, "problems")
+    absent = (
+        *(() if picture.flown else _LAYERS_OF_FLIGHTS),
+        *(() if picture.planned else _LAYERS_OF_PLANS),
+        *(() if picture.problems else ("problems",)),
+    )
     document = render(
         "preview.html",
         title=picture.title or "mission",
@@ -66,7 +70,7 @@ def _lead(picture: Picture) -> str:
     robots, tasks = len(picture.robots), len(picture.tasks)
     counts = [f"{robots} robot{'s' * (robots != 1)}"]
     counts += [f"{tasks} task{'s' * (tasks != 1)}"] if tasks else []
-    if picture.problems:
+    if not picture.planned:
         return f"{', '.join(counts)}, not planned. Origin: {picture.origin}."
     done = "flown for" if picture.flown else "mission time"
     return f"{', '.join(counts)}, {done} {clock(picture.makespan)}. Origin: {picture.origin}."

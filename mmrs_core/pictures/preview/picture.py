@@ -219,11 +219,11 @@ class ElementPicture:
 
 @dataclass(frozen=True, slots=True)
 class Problem:
-    """Something that keeps a mission from being valid or planned.
+    """A diagnostic of a mission, or a reason why no plan is feasible.
 
     Attributes:
         number: on the map and in the list, from 1.
-        severity: ``error`` or ``warning``.
+        severity: ``error``, ``warning`` or ``note``.
         message: with its code, if it has one.
         source: file and line; may be empty.
         hint: how to fix it; may be empty.
@@ -264,7 +264,8 @@ class Picture:
         makespan: seconds until the last robot has finished.
         notes: assumptions behind it.
         flown: whether it shows what happened, and not a plan or a simulation.
-        problems: why the mission is not valid, or has no plan; then there are no paths.
+        problems: errors, with which the mission has no plan and its robots no paths; and warnings.
+        checks: what was found of the safety of its behaviour: (property, words).
     """
 
     title: str
@@ -279,6 +280,12 @@ class Picture:
     surface: float | None = None
     flown: bool = False
     problems: tuple[Problem, ...] = ()
+    checks: Details = ()
+
+    @property
+    def planned(self) -> bool:
+        """Return whether nothing keeps it from being planned."""
+        return not any(problem.severity == "error" for problem in self.problems)
 
     @property
     def shown(self) -> float:

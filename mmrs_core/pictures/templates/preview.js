@@ -168,4 +168,5 @@
     requestAnimationFrame(step);
   });
   if (slider) moveTo(0);
+  else dots.forEach((dot) => dot.remove());
 })();
