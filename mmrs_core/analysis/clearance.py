@@ -2,7 +2,7 @@
 
 Every leg of every move counts, launching and landing included, and so does where a robot begins and
 ends. What must be kept is the area's safety distance, half the robot's diagonal and the position
-error, in all three dimensions. Emergency areas forbid nothing. Where a transition is fluid and the way
+error, in all three dimensions. Emergency areas forbid nothing. Where a transition is fluid and the path
 turns, the robot may be off the corner by as much as it cuts it (`corners.py`).
 """
 
@@ -59,7 +59,7 @@ def _judge(input: CheckInput, robot: RobotProgram) -> Iterator[Verdict]:
 
 
 def _kept(input: CheckInput, robot: RobotProgram, areas: list[Area], own: float) -> Iterator[Verdict]:
-    """Yield how the robot keeps its distances if its ways must stay `own` metres off beside the areas'."""
+    """Yield how the robot keeps `own` metres on top of the distances of areas."""
     motion, error = motions(input)[robot.id], input.program.position_error
     segments = _segments(motion, cuts(input, robot, motion))
     margins = list(_margins(segments, areas, own)) if segments.moves else []
@@ -138,7 +138,7 @@ CLEARANCE = Check(
     name=NAME,
     title="Every leg keeps its distance from forbidden areas and obstacles as drawn.",
     run=for_each_robot(NAME, _judge),
-    hint="move the target or the home away from the area, or lead the way around or above it",
+    hint="move the target or the home away from the area, or lead the path around or above it",
 )
 
 
@@ -184,7 +184,7 @@ def _cut(input: CheckInput, robot: RobotProgram, move: int) -> float:
 
 
 def _turns(leg: MovePath, after: MovePath) -> bool:
-    """Return whether a way turns where one leg goes over into the next."""
+    """Return whether the path turns where one leg goes over into the next."""
     corner = leg.points[-1]
     if dist(corner, after.points[0]) > SAME:
         return False

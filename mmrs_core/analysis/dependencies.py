@@ -22,7 +22,7 @@ Node: TypeAlias = "At | SlotId"
 
 @dataclass(frozen=True, slots=True)
 class Activation:
-    """One way in which a slot is activated, or made inactive.
+    """A move that activates a slot, or makes it inactive.
 
     Attributes:
         at: the move that does it.
@@ -70,8 +70,8 @@ class Dependencies:
                 waits = tuple((robot.id, name) for name in transition.waits)
                 for slot in waits:
                     self.waits[slot].append((robot.id, index))
-                for way in transition.ways:
-                    self._arrivals.setdefault((robot.id, way), []).append(((robot.id, index), waits))
+                for after in transition.next_moves:
+                    self._arrivals.setdefault((robot.id, after), []).append(((robot.id, index), waits))
 
     def is_slot(self, node: Node) -> bool:
         """Return whether a node is a slot, not a move."""
@@ -82,7 +82,7 @@ class Dependencies:
         return self._arrivals.get((move[0], int(move[1])), [])
 
     def activations_of(self, slot: Node) -> list[Activation]:
-        """Return the ways in which a slot is activated; empty if nobody does it."""
+        """Return the moves that activate a slot; empty if none does."""
         return self._activations.get((slot[0], str(slot[1])), [])
 
     def in_order(self) -> Iterator[Node]:
@@ -124,7 +124,7 @@ class Dependencies:
 
 
 def certain_moves(robot: RobotProgram) -> frozenset[int]:
-    """Return the moves that the robot makes in every run that ends, whatever way its Choices go.
+    """Return the moves that the robot makes in every run that ends, whatever its Choices decide.
 
     In an order in which every move comes before those it leads to, a move is certain if no edge passes
     by it, from before it to behind it. Loops stand in this order as a whole; moves in them are left
@@ -137,9 +137,9 @@ def certain_moves(robot: RobotProgram) -> frozenset[int]:
     arriving = [0] * len(groups)
     leaving = [0] * len(groups)
     for move in reachable:
-        for way in graph[move]:
-            if group_of[way] != group_of[move]:
-                arriving[group_of[way]] += 1
+        for after in graph[move]:
+            if group_of[after] != group_of[move]:
+                arriving[group_of[after]] += 1
                 leaving[group_of[move]] += 1
     certain: set[int] = set()
     passing = 0

@@ -70,7 +70,7 @@ class ProvenOrder:
             here, there = (stand.robot, stand.move), (other.robot, other.move)
             if stand.waiting and self._before.is_over(here, False, there):
                 first = -inf
-            if stand.leaves_by and all(self._over(other, stand.robot, way) for way in stand.leaves_by):
+            if stand.leaves_by and all(self._over(other, stand.robot, move) for move in stand.leaves_by):
                 last = inf
         return first, last
 

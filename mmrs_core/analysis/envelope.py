@@ -237,7 +237,7 @@ def _judge_temperature(input: CheckInput, robot: RobotProgram) -> Iterator[Verdi
 
 WIND = Check(
     name=WIND_NAME,
-    title="The wind is no stronger than what flying robots can hold a position in.",
+    title="The wind is not stronger than what flying robots can hold a position in.",
     run=for_each_robot(WIND_NAME, _judge_wind),
     hint="wait for calmer weather, or choose a robot with a larger positionHold",
 )
@@ -245,5 +245,5 @@ TEMPERATURE = Check(
     name=TEMPERATURE_NAME,
     title="The ambient temperature is one that the robots operate in.",
     run=for_each_robot(TEMPERATURE_NAME, _judge_temperature),
-    hint="go on another day, or choose a robot whose operatingTemperature has room",
+    hint="choose another day, or a robot with a wider operatingTemperature",
 )

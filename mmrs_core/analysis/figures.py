@@ -2,7 +2,7 @@
 
 What the planner computed from the same models is not looked at, but both believe the same
 contributions: of a robot kind's kinematics speeds, limits of height and the turning radius are used
-here, of move kinds their paths and durations. Lifetime, energy and dimensions are worked out anew.
+here, of move kinds their paths and durations. Lifetime, energy and dimensions are computed here.
 """
 
 from __future__ import annotations
@@ -20,14 +20,14 @@ _MODES: Mapping[str, TravelMode] = {"SAFE": "SAFE", "NORMAL": "NORMAL", "AGGRESS
 
 
 class MissingFigureError(Exception):
-    """Something that a check needs is not known; the message says what, the culprit first."""
+    """A figure that a check needs is unknown; the message names it, the culprit first."""
 
 
 def type_of(input: CheckInput, robot: RobotProgram) -> RobotType:
     """Return the robot's type.
 
     Raises:
-        MissingFigureError: nobody described that type.
+        MissingFigureError: that type is not described.
     """
     try:
         return input.types[robot.type_name]
@@ -79,18 +79,16 @@ def kind_of(input: CheckInput, robot: RobotProgram) -> RobotKind:
     """Return the kind of the robot.
 
     Raises:
-        MissingFigureError: nobody contributed how robots of that type move.
+        MissingFigureError: no plug-in provides a robot kind for that type.
     """
     kind = robot_kind_of(type_of(input, robot), input.robot_kinds)
     if kind is None:
-        raise MissingFigureError(
-            f"{robot.id}: nobody contributed how robots of type '{robot.type_name}' move"
-        )
+        raise MissingFigureError(f"{robot.id}: no plug-in provides a robot kind for type '{robot.type_name}'")
     return kind
 
 
 def kinematics_of(input: CheckInput, robot: RobotProgram) -> Kinematics:
-    """Return what the robot's kind says of its speeds and heights.
+    """Return the speeds and altitude limits that the robot's kind gives.
 
     Raises:
         MissingFigureError: the kind is unknown, or lacks a figure itself.
@@ -116,7 +114,7 @@ def kinematics_of(input: CheckInput, robot: RobotProgram) -> Kinematics:
 
 
 def move_kind_of(input: CheckInput, move: Move) -> MoveKind | None:
-    """Return what moves of that metaclass do; None where nobody contributed it."""
+    """Return the kind of a move; None where no plug-in provides it."""
     name = most_specific(move.metaclasses, input.move_kinds)
     return input.move_kinds[name] if name else None
 

@@ -1,8 +1,8 @@
-"""Where every robot may be: the legs of all its moves, whatever way its Choices go.
+"""Where every robot may be: the paths of all its moves, whatever its Choices decide.
 
 A forward pass over the moves of each robot. What is propagated is the set of places where the robot
 may be when a move begins; a place is a ball, because an object may be found anywhere within its
-tolerance of where it is expected. A move that nobody can tell the path of leaves a gap, and so do the
+tolerance of where it is expected. A move of unknown path leaves a gap, and so do the
 moves after it until one leads to a known target.
 """
 
@@ -21,7 +21,7 @@ from mmrs_core.contributions.rules import MoveKind
 from mmrs_core.scene import Position
 
 MOST_PLACES = 16
-"""More different places at one move are not told apart: where the robot is counts as unknown."""
+"""With more different places at one move, the robot's position counts as unknown."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,17 +33,17 @@ class Ball:
 
 
 Whereabouts: TypeAlias = "Ball | None"
-"""Where a robot may be; None: nobody knows."""
+"""Where a robot may be; None: unknown."""
 
 
 @dataclass(frozen=True, slots=True)
 class MovePath:
-    """One way that a move may lead.
+    """One possible path of a move.
 
     Attributes:
         move: index in the robot.
-        points: the way that is nominally travelled, at least one point.
-        radius: how far, in metres, the robot may be from that way.
+        points: the nominal path, at least one point.
+        radius: how far, in metres, the robot may be from that path.
     """
 
     move: int
@@ -86,7 +86,7 @@ def motion_of(input: CheckInput, robot: RobotProgram) -> Motion:
         places.add(place)
         after = _pass(input, robot, index, place, motion)
         transition = robot.transitions.get(index)
-        pending.extend((way, after) for way in (transition.ways if transition else ()))
+        pending.extend((successor, after) for successor in (transition.next_moves if transition else ()))
     return motion
 
 
@@ -97,17 +97,17 @@ def _pass(
     move = robot.moves[index]
     kind = move_kind_of(input, move)
     if kind is None:
-        motion.gaps.append(UnknownMove(index, f"nobody contributed what a move of kind '{move.kind}' does"))
+        motion.gaps.append(UnknownMove(index, f"no plug-in provides the move kind '{move.kind}'"))
         return None
     reason = _unknown_target(move)
     if reason is None and place is None:
-        reason = "where it begins is not known"
+        reason = "its start is unknown"
     if reason is not None or place is None:
         motion.gaps.append(UnknownMove(index, reason or ""))
         return _known_end(kind, move, robot.home)
     path = kind.path(move, place.centre, robot.home)
     if path is None:
-        motion.gaps.append(UnknownMove(index, "its path is not known"))
+        motion.gaps.append(UnknownMove(index, "its path is unknown"))
         return None
     spread = move.target.tolerance or 0.0 if move.target else 0.0
     motion.paths.append(MovePath(index, path, place.radius + spread))

@@ -3,7 +3,7 @@
 An occupation is a path along which a robot moves, or a place at which it stands, acts or waits, with the
 earliest time at which it may come there and the latest at which it may still be there. A robot occupies
 its place from the first moment to the last: on the ground before it launches and after it has landed,
-at its home, and after its Stop for ever.
+at its home, and after its Stop.
 """
 
 from __future__ import annotations
@@ -98,14 +98,14 @@ class Occupation:
 
     Attributes:
         robot, move: whose it is; waiting: whether it comes after the movement.
-        points: the way, at least one point. radius: how far from it the robot may be, metres.
+        points: the path, at least one point. radius: how far from it the robot may be, metres.
         begin: the earliest time at which the robot is there. end: the latest.
-        least: seconds, for each leg of the way, that the robot takes at least: it is no faster than it
+        least: seconds, for each leg of the path, that the robot takes at least: it is no faster than it
             is commanded to be, unless its moves' kind says that it may be.
         certain: from when to when the robot is there in every run that makes the move, within the
             radius of a place that is known; the first exceeds the second if never.
         column: the one over its home, where its home is known.
-        leaves_by: the moves with whose begin a stand ends; none if it lasts for ever, or is no wait.
+        leaves_by: the moves with whose begin a stand ends; none if it has no end, or is not a wait.
     """
 
     robot: str
@@ -126,10 +126,9 @@ class Occupation:
         return len(self.points) == 1
 
     def between(self, first: float, last: float) -> tuple[Position, ...]:
-        """Return the part of the way on which the robot may be at some time between two times.
+        """Return the part of the path on which the robot may be at some time between two times.
 
-        It is no further than it can have come since the begin, and no further back than from where it
-        can still come to the end in time.
+        It is at most as far as it can have come since the begin, and far enough to come to the end in time.
         """
         whole = sum(self.least)
         ahead = min(whole, max(0.0, last - self.begin))
@@ -147,7 +146,7 @@ class Occupation:
         return (*passed, self._at(ahead))
 
     def _at(self, seconds: float) -> Position:
-        """Return the point that is reached after so many seconds at full speed."""
+        """Return the point that is reached after `seconds` at full speed."""
         left = seconds
         for (a, b), whole in zip(pairwise(self.points), self.least, strict=False):
             if left < whole:
@@ -205,11 +204,13 @@ def _occupations(
 
 
 def _gone(robot: RobotProgram, move: int, times: Times) -> Span:
-    """Return when a robot goes on after a move."""
+    """Return when a robot leaves after a move."""
     transition = robot.transitions.get(move)
     if transition is None:
         return Span(inf, inf)
-    earliest = min((times.earliest.get((robot.id, way), inf) for way in transition.ways), default=inf)
+    earliest = min(
+        (times.earliest.get((robot.id, after), inf) for after in transition.next_moves), default=inf
+    )
     latest = max(times.latest_end(robot.id, move), times.latest_release(robot, transition.waits))
     return Span(max(earliest, times.earliest_end(robot.id, move)), latest)
 
@@ -238,7 +239,7 @@ def _stand(
         least=(),
         certain=(come.high, go.low),
         column=column,
-        leaves_by=tuple(transition.ways) if transition is not None else (),
+        leaves_by=tuple(transition.next_moves) if transition is not None else (),
     )
 
 

@@ -1,6 +1,6 @@
 """What is certainly over when a move begins, because robots wait for each other.
 
-However uncertain times are: when a robot goes on after waiting for a slot, the move that activated the
+However uncertain times are: when a robot continues after waiting for a slot, the move that activated the
 slot has got so far, and what that robot did before is over. A set of what is over is one whole number
 for each robot: bit 2i stands for the movement of its move i, bit 2i + 1 for the wait after it.
 """
@@ -42,13 +42,13 @@ class HappensBefore:
         return bool(mask >> (2 * move + int(waiting)) & 1)
 
     def _at_begin(self, node: Node) -> Over:
-        ways = []
+        paths = []
         for source, waits in self._dependencies.arrivals_at(node):
             known = dict(self._over.get(source, {}))
             for slot in waits:
                 _unite(known, self._over.get(slot, {}))
-            ways.append(known)
-        return _common(ways)
+            paths.append(known)
+        return _common(paths)
 
     def _at_activation(self, node: Node) -> Over:
         causes = []
@@ -74,11 +74,11 @@ def _unite(known: Over, more: Mapping[str, int]) -> None:
         known[robot] = known.get(robot, 0) | mask
 
 
-def _common(ways: list[Over]) -> Over:
-    """Return what is over on every way."""
-    if not ways:
+def _common(paths: list[Over]) -> Over:
+    """Return what is over on every path."""
+    if not paths:
         return {}
-    first, *others = ways
+    first, *others = paths
     return {
         robot: mask
         for robot in first

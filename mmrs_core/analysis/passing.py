@@ -1,8 +1,8 @@
 """Whether two robots must come too near to each other, however long what they do takes.
 
-Each robot goes through the pieces of its path in order. A run of both is a way through the grid of pairs
+Each robot goes through the pieces of its path in order. A run of both is a path through the grid of pairs
 of pieces (a coordination diagram, O'Donnell and Lozano-Pérez 1989) from the first pair to the last that
-never leads back, over pairs on which both may be at one time. Where every such way leads over a pair
+never leads back, over pairs on which both may be at one time. Where every such path leads over a pair
 all of whose points are too near to each other, no run avoids it.
 """
 
@@ -23,10 +23,10 @@ from mmrs_core.analysis.verdicts import TOLERANCE
 from mmrs_core.behaviour.program import RobotProgram
 
 FINEST = 0.25
-"""Parts of the distance that robots must keep: pieces are no shorter."""
+"""Share of the distance to keep that pieces have at least."""
 
 MOST_PIECES = 1000
-"""About so many pieces of a robot are told apart; they are longer if need be."""
+"""Pieces of a robot's path, about, at most; they are longer if need be."""
 
 
 MOST_PAIRS = 10_000_000
@@ -41,7 +41,7 @@ def in_sequence(
     move: int | None = robot.start
     while move is not None:
         transition = robot.transitions.get(move)
-        if move in order or (transition is not None and len(transition.ways) > 1):
+        if move in order or (transition is not None and len(transition.next_moves) > 1):
             return None
         order[move] = len(order)
         move = transition.to if transition is not None else None
@@ -113,7 +113,7 @@ def _farthest(one: Floats, other: Floats) -> Floats:
 
 
 def _passable(free: Flags) -> bool:
-    """Return whether a way that never leads back joins the first and the last cell over free ones."""
+    """Return whether a path that never leads back joins the first and the last cell over free ones."""
     columns = np.arange(free.shape[1])
     reached = np.logical_and.accumulate(free[0])
     for row in free[1:]:

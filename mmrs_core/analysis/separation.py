@@ -76,7 +76,7 @@ def _excuses(excused: Mapping[tuple[str, str], float]) -> str:
     return (
         f"excused, since their homes are nearer: {pairs},"
         " while one stands at its home and the other does, too, or is straight above its own,"
-        " and they are no nearer to each other than their homes"
+        " and their distance is at least that of their homes"
     )
 
 
@@ -103,7 +103,7 @@ def _encounters(
 
 
 def _near(occupations: list[Occupation], needed: float) -> list[tuple[int, int]]:
-    """Return the pairs of different robots whose ways are too near and whose times overlap."""
+    """Return the pairs of different robots whose paths are too near and whose times overlap."""
     boxes = np.array([_box(each) for each in occupations]).reshape(-1, 4)
     shapes = shapely.box(*boxes.T)
     reach = needed + max((each.radius for each in occupations), default=0.0) * 2

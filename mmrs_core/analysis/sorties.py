@@ -68,7 +68,7 @@ class Sorties:
 def sorties_of(input: CheckInput, robot: RobotProgram) -> Sorties:
     """Return how long one robot runs on each charge, at most and at least.
 
-    Where nothing says whether it launches, it is a gap, and the least is what holds either way.
+    Where it is unknown whether it launches, it is a gap, and the least is what holds either way.
     """
     times = times_of(input)
     try:
@@ -81,7 +81,7 @@ def sorties_of(input: CheckInput, robot: RobotProgram) -> Sorties:
 
 
 def _least_uses(robot: RobotProgram, states: States, times: Times) -> tuple[ChargeUse, ...]:
-    """Return the least use at each move that some run comes to: the shortest of all ways from a charge.
+    """Return the least use at each move that some run comes to: the shortest of all paths since a charge.
 
     Dijkstra's algorithm, from the start and every Recharge at once.
     """
@@ -100,8 +100,8 @@ def _least_uses(robot: RobotProgram, states: States, times: Times) -> tuple[Char
             release = times.earliest_release(robot, transition.waits)
             used += max(0.0, release - times.latest_end(robot.id, move))
         found[move] = used
-        for way in transition.ways if transition else ():
-            heappush(pending, (used, way))
+        for after in transition.next_moves if transition else ():
+            heappush(pending, (used, after))
     return tuple(ChargeUse(move, seconds) for move, seconds in found.items())
 
 
@@ -174,8 +174,8 @@ class _Walk:
             running = self._waited(move, running, transition)
         if self._runs(move):
             self._note(move, running)
-        for way in transition.ways if transition else ():
-            self.arrivals.setdefault(way, []).append(running)
+        for after in transition.next_moves if transition else ():
+            self.arrivals.setdefault(after, []).append(running)
 
     def _waited(self, move: int, running: Running, transition: Transition) -> Running:
         """Return the use after a wait, by the smaller of two bounds.
@@ -207,14 +207,14 @@ class _Walk:
 
     def _reason(self, move: int) -> UnknownMove:
         known = next(iter(self.durations.gaps), None)
-        return known or UnknownMove(move, "how long it takes is not known")
+        return known or UnknownMove(move, "its duration is unknown")
 
     def _runs(self, move: int) -> bool:
         return not self.states.only_grounded(move)
 
 
 def _merged(arrivals: list[Running]) -> Running:
-    """Return a bound on all ways on which a move is reached."""
+    """Return a bound on all paths on which a move is reached."""
     begun = [each.since for each in arrivals if each.since is not None]
     return Running(
         used=max((each.used for each in arrivals), default=0.0),

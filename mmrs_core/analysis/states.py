@@ -1,4 +1,4 @@
-"""Whether robots are on the ground or not when moves need it, whatever way Choices go.
+"""Whether robots are on the ground or not when moves need it, whatever Choices decide.
 
 A forward pass over the moves of each robot propagates the set of states that it may be in.
 """
@@ -24,7 +24,7 @@ class States:
     """In which states a robot may be before and after each reachable move, by the move's index.
 
     Attributes:
-        gaps: moves of kinds that nobody contributed: they are taken to leave the state as it was.
+        gaps: moves of kinds that no plug-in provides: they are taken to leave the state as it was.
     """
 
     before: Mapping[int, frozenset[str]]
@@ -44,7 +44,7 @@ def states_of(input: CheckInput, robot: RobotProgram) -> States:
     """Return the states of one robot; linear in its moves.
 
     Raises:
-        MissingFigureError: nothing says whether the robot launches.
+        MissingFigureError: it is unknown whether the robot launches.
     """
     first = GROUNDED if kinematics_of(input, robot).launches else MOVING
     return _states_from(input, robot, frozenset({first}))
@@ -67,12 +67,14 @@ def _states_from(input: CheckInput, robot: RobotProgram, first: frozenset[str]) 
         before[index] = before.get(index, frozenset()) | states
         kind = move_kind_of(input, robot.moves[index])
         if kind is None:
-            reason = f"nobody contributed what a move of kind '{robot.moves[index].kind}' does"
+            reason = f"no plug-in provides the move kind '{robot.moves[index].kind}'"
             gaps[index] = UnknownMove(index, reason)
         leaves = kind.leaves if kind else None
         after[index] = frozenset({leaves}) if leaves else before[index]
         transition = robot.transitions.get(index)
-        pending.extend((way, after[index]) for way in (transition.ways if transition else ()))
+        pending.extend(
+            (successor, after[index]) for successor in (transition.next_moves if transition else ())
+        )
     return States(before, after, tuple(gaps.values()))
 
 
@@ -112,7 +114,7 @@ def _words(states: frozenset[str]) -> str:
 
 STATES = Check(
     name=NAME,
-    title="Robots are on the ground, in the air or under way when their moves need it.",
+    title="Robots are on the ground, in the air or in motion when their moves need it.",
     run=for_each_robot(NAME, _judge),
     hint="put the move that is missing before it, such as a take-off or a landing",
 )

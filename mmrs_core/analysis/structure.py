@@ -1,4 +1,4 @@
-"""Whether the moves of each robot form a way from its Start to its Stop, which no work lies beside."""
+"""Whether each robot's moves lead from its Start to its Stop and include all its work."""
 
 from __future__ import annotations
 
@@ -61,20 +61,20 @@ def _faults(robot: RobotProgram, index: int, transition: Transition) -> Iterator
     move = robot.moves[index]
     if transition.source != index:
         yield f"the transition after '{move.id}' belongs to another move"
-    for way in transition.ways:
-        if not 0 <= way < len(robot.moves):
+    for after in transition.next_moves:
+        if not 0 <= after < len(robot.moves):
             yield f"the transition after '{move.id}' leaves the robot"
-        elif way == robot.start:
+        elif after == robot.start:
             yield f"the transition after '{move.id}' leads back to Start"
     for slot in transition.waits:
         if slot not in robot.slots:
-            yield f"the transition after '{move.id}' waits for '{slot}', which is no slot of the robot"
+            yield f"the transition after '{move.id}' waits for '{slot}', which is not a slot of the robot"
 
 
 def _dead_ends(robot: RobotProgram) -> list[tuple[str, int | None]]:
     ending = moves_reaching_stop(robot)
     return [
-        (f"no way leads from {move.kind} '{move.id}' to Stop", index)
+        (f"no path leads from {move.kind} '{move.id}' to Stop", index)
         for index, move in enumerate(robot.moves)
         if index not in ending
     ]
@@ -86,7 +86,7 @@ def _strangers(program: Program, robot: RobotProgram) -> Iterator[tuple[str, int
         for action in (*move.before, *move.after):
             for owner, slot in action.sets:
                 if (owner, slot) not in slots:
-                    yield f"'{move.id}' notifies '{owner}.{slot}', which is no slot of any robot", index
+                    yield f"'{move.id}' notifies '{owner}.{slot}', which is not a slot of any robot", index
 
 
 def _undone(robot: RobotProgram) -> Iterator[tuple[str, int | None]]:
@@ -110,7 +110,7 @@ def _never(robot: RobotProgram) -> str:
 
 STRUCTURE = Check(
     name=NAME,
-    title="Every robot has one Start and one Stop, every move is on a way to Stop, and all work is reached.",
+    title="Every robot has one Start and one Stop, every move leads to Stop, and all work is reached.",
     run=for_each_robot(NAME, _judge),
     hint="add the transition that is missing, so that every move leads on to the Stop",
 )

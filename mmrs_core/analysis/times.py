@@ -1,6 +1,6 @@
 """When moves may begin and end: bounds over all runs, in seconds after the mission's start.
 
-The earliest times are those of a run in which every Choice goes every way at once and every move is as
+The earliest times are those of a run in which every Choice takes every branch at once and every move is as
 quick as it can be: Knuth's generalisation of Dijkstra's algorithm to sums and maxima finds them. The
 latest times follow the moves and the slots in the order of their dependencies; what depends on itself
 (a loop) has no latest time. Both hold for runs that end: whether they do is another check's matter.
@@ -32,7 +32,7 @@ class Times:
         durations: of every robot's moves. dependencies: what waits for what.
         earliest, latest: bounds of when a move begins; a move that can never begin is missing from
             the earliest, one without a bound is inf in the latest.
-        slots: (earliest, latest) activation of each slot that somebody activates.
+        slots: (earliest, latest) activation of each slot that some robot activates.
     """
 
     durations: Mapping[str, Durations]
@@ -121,8 +121,8 @@ class _Earliest:
             if (robot.id, name) not in self.slots:
                 self.ended[robot.id, name].append(at)
                 return
-        for way in transition.ways:
-            self._plan(now, "begin", (robot.id, way))
+        for after in transition.next_moves:
+            self._plan(now, "begin", (robot.id, after))
 
     def _activate(self, now: float, slot: SlotId) -> None:
         if slot in self.slots:

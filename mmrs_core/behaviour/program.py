@@ -145,8 +145,8 @@ class Transition:
     place: Place = Place()
 
     @property
-    def ways(self) -> tuple[int, ...]:
-        """Return the indices of all moves that may follow."""
+    def next_moves(self) -> tuple[int, ...]:
+        """Return the indices of possible next moves."""
         return (self.to,) if self.otherwise is None else (self.to, self.otherwise)
 
 

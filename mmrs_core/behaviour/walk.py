@@ -14,7 +14,7 @@ def successors(robot: RobotProgram) -> tuple[tuple[int, ...], ...]:
     """Return for each move the moves that may follow it, each once."""
     ways: list[tuple[int, ...]] = [()] * len(robot.moves)
     for source, transition in robot.transitions.items():
-        ways[source] = tuple(dict.fromkeys(transition.ways))
+        ways[source] = tuple(dict.fromkeys(transition.next_moves))
     return tuple(ways)
 
 

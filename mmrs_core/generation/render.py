@@ -138,5 +138,5 @@ def _facts(robot: RobotProgram, index: int, move: Move) -> Facts:
     transition = robot.transitions.get(index)
     if transition is None:
         return Facts(model, sets=tuple(dict.fromkeys(sets)))
-    then = tuple(robot.moves[way].id for way in transition.ways)
+    then = tuple(robot.moves[way].id for way in transition.next_moves)
     return Facts(model, then, transition.waits, transition.condition or "", tuple(dict.fromkeys(sets)))

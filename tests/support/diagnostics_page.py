@@ -86,7 +86,7 @@ def _entry(entry: Entry, example: Example | None) -> str:
     lines = [f"### {entry.code}", "", f"{entry.meaning[:1].upper()}{entry.meaning[1:]}. ({about})", ""]
     if entry.expected != entry.meaning:
         lines += [f"- Expected: {entry.expected}"]
-    lines += [f"- Mend: {entry.hint}"]
+    lines += [f"- Fix: {entry.hint}"]
     lines += [f"- Quick fix: {entry.fix}"] if entry.fix else []
     return "\n".join((*lines, "", *(_shown(example) if example is not None else ())))
 

@@ -21,7 +21,7 @@ EXACT = 1e-6
 
 @dataclass(frozen=True, slots=True)
 class _Around:
-    """Where something is: within so many metres of a position."""
+    """Where something is: within `radius` metres of a position."""
 
     position: Position
     radius: float
@@ -79,8 +79,8 @@ def _end(move: Element, before: _Before, robot: Element, models: ModelSet) -> _A
             return _home(robot, models)
         if is_kind(move, BEHAVIOUR, "GoTo"):
             target = _target(move, models)
-            way = number(move, "distance") or 0.0
-            return _Around(target.position, target.radius + way) if target is not None else None
+            kept = number(move, "distance") or 0.0
+            return _Around(target.position, target.radius + kept) if target is not None else None
         if isinstance(move, Unknown) or metaclass_of(move).ns_uri != BEHAVIOUR:
             return None  # a plug-in's move may lead anywhere
         if len(before.get(move, ())) != 1:

@@ -73,7 +73,7 @@ def _narrow_emergency(context: Element, models: ModelSet) -> Iterator[Finding]:
 
 
 def _crowded(area: DrawnArea, inwards: float, clearance: float, models: ModelSet) -> Iterator[Finding]:
-    """Tell of an emergency area where a robot is nowhere so far from its sides and clear of the others."""
+    """Yield that an emergency area has no point far enough from its sides and clear of other areas."""
     barred = [
         (other, other.shape.buffer(other.safety_distance + clearance))
         for other in sketch_of(models).kept_from
@@ -133,7 +133,7 @@ CONSTRAINTS = (
         "The temperature suits every robot type.",
         (CONTEXT, "Environment"),
         _too_cold_or_hot,
-        "go on another day, or with another robot",
+        "choose another day or another robot",
         Severity.WARNING,
     ),
 )

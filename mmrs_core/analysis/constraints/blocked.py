@@ -16,7 +16,7 @@ from mmrs_core.geometry.stretches import Stretch, Vertex, between, blocked_stret
 from mmrs_core.scene import Position
 
 SEGMENTS = 64
-"""Of a quarter of a circle about a corner: exact to a ten-thousandth of its radius."""
+"""Segments of a quarter circle about a corner: exact to a ten-thousandth of its radius."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,7 +37,7 @@ def blocked_line(sketch: Sketch, line: Sequence[Position], clearance: float) -> 
     """Return what of a line a robot with a clearance may not follow, as planning takes it.
 
     Args:
-        sketch: of the place.
+        sketch: of the mission.
         line: at least one point.
         clearance: metres that the robot keeps beyond the distances of areas.
     """

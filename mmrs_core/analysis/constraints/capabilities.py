@@ -26,7 +26,7 @@ some water would allow is called impossible."""
 
 
 def _kept_type(name: str, models: ModelSet) -> Unknown | None:
-    """Return the type of robot of that name whose language is not installed, if there is one in its place."""
+    """Return the robot type of that name in a language that is not installed; None if there is none."""
     if name in models.robots:
         return None
     unknown = (root for model in models.models for root in model.roots if isinstance(root, Unknown))
@@ -38,11 +38,11 @@ def _type(robot: Element, models: ModelSet) -> Iterator[Finding]:
     if name and (kept := _kept_type(name, models)) is not None:
         message = f"its type {name!r} stands in {place_of(kept)}, in a language that is not installed"
         ns_uri = kept._mmrs_type.rpartition("#")[0]
-        yield finding(robot, message, f"install the plug-in that brings {ns_uri}")
+        yield finding(robot, message, f"install the plug-in that provides {ns_uri}")
     elif name and name not in models.robots and "" not in models.robots:  # which may be the one that is meant
         known = f"known are {listed(sorted(models.robots))}"
         hint = guessed(known, name, models.robots) if models.robots else ""
-        yield finding(robot, f"its type {name!r} is not known", hint)
+        yield finding(robot, f"unknown robot type {name!r}", hint)
 
 
 def devices_of(robot_type: Element | None) -> Mapping[str, frozenset[str]]:
@@ -174,7 +174,7 @@ def _unmeasured(robot: Element, models: ModelSet) -> Iterator[Finding]:
 
 
 _SENSORS = ("gyro", "accelerometer", "magnetometer", "barometer", "pressuremeter")
-"""By which a robot type shows that its sensors are listed, so that the receiver is left out on purpose."""
+"""Sensors by which a robot type shows that it lists its sensors, so that it deliberately has no receiver."""
 
 
 def _without_satellites(robot: Element, models: ModelSet) -> Iterator[Finding]:
@@ -204,7 +204,7 @@ def _accepted(root: Element, models: ModelSet) -> Iterator[Finding]:
             guess = nearest(name, known)
             yield finding(
                 root,
-                f"accepts that {name!r} stays unknown, which is no check of the core",
+                f"accepts that {name!r} stays unknown, which is not a check of the core",
                 f"checks are {', '.join(known)}{'; ' + guess if guess else ''}; a plug-in may have others",
             )
 
@@ -249,7 +249,7 @@ CONSTRAINTS = (
     ),
     Constraint(
         "MML066",
-        "No task is deeper than the pressure that robots stand.",
+        "Every task is within the robots' depth rating.",
         (MISSION, "Task"),
         _too_deep,
         "lift the task, or add a robot with a larger maxOperatingPressure to the team",
@@ -259,7 +259,7 @@ CONSTRAINTS = (
         "No robot carries more than its type can.",
         (MISSION, "Robot"),
         _overloaded,
-        "take weight off, or state maxPayload in the robot type",
+        "reduce the payload, or state maxPayload in the robot type",
     ),
     Constraint(
         "MML068",

@@ -65,7 +65,7 @@ def _found(task: Element, messages: Iterable[str]) -> Iterator[Finding]:
 
 
 def unreachable(task: Element, point: Element, what: str, models: ModelSet) -> Iterator[str]:
-    """Yield what to say of areas that keep every robot that could do a task from a point, called `what`."""
+    """Yield a message for each area that keeps all capable robots from a point, called `what`."""
     sketch = sketch_of(models)
     position = _at_work(task, sketch.ground.positions.get(point), sketch)
     smallest = smallest_clearance(task, models)
@@ -126,7 +126,7 @@ def _covered(task: Element, models: ModelSet) -> Iterator[Finding]:
 
 
 def covered(task: Element, models: ModelSet) -> Iterator[str]:
-    """Yield what to say if no robot that could do a task may reach any of its shell."""
+    """Yield a message if no capable robot may reach any of a task's shell."""
     area = _area_of(task, models)
     if area is not None and area.closed and not area.left:
         yield "all of its area is too near to what every robot must keep away from"
@@ -137,7 +137,7 @@ def _partly_covered(task: Element, models: ModelSet) -> Iterator[Finding]:
 
 
 def partly_covered(task: Element, models: ModelSet) -> Iterator[str]:
-    """Yield what to say of pieces of a task's shell that no robot may reach, where others are left."""
+    """Yield a message for each piece of a task's shell that no robot may reach, if others are left."""
     area = _area_of(task, models)
     if area is None or not area.left:
         return

@@ -1,4 +1,4 @@
-"""Coordinates that say where something is, without contradiction."""
+"""Coordinates: on the Earth, in a known system, without contradiction."""
 
 from __future__ import annotations
 
@@ -65,8 +65,8 @@ def _without_base(model: Element, origin: Element | None, root: Element) -> Iter
 def _circles(model: Element, models: ModelSet) -> Iterator[Finding]:
     coordinates = [*coordinates_of(model), *coordinates_of(models.context)]
     for circle in cycles_among(coordinates, reference_in(models.context)):
-        way = " → ".join(path_of(each) for each in (*circle, circle[0]))
-        yield finding(circle[0], f"counts from itself: {way}")
+        path = " → ".join(path_of(each) for each in (*circle, circle[0]))
+        yield finding(circle[0], f"counts from itself: {path}")
 
 
 def _local_or_geographic(model: Element, models: ModelSet) -> Iterator[Finding]:

@@ -18,9 +18,9 @@ Node = TypeVar("Node", bound=Hashable)
 
 
 def cycles_in(after: Mapping[Node, Collection[Node]]) -> Iterator[tuple[Node, ...]]:
-    """Yield circles of at least two nodes, so many that none is left without a node of theirs.
+    """Yield cycles of at least two nodes, so many that none is left without a node of theirs.
 
-    Each is a shortest one through the first of the nodes that lead to each other. Circles that have
+    Each is a shortest one through the first of the nodes that lead to each other. Cycles that have
     nothing to do with each other take linear time, however many they are.
 
     >>> list(cycles_in({1: [2], 2: [1, 3], 3: [3, 4], 4: []}))
@@ -31,9 +31,9 @@ def cycles_in(after: Mapping[Node, Collection[Node]]) -> Iterator[tuple[Node, ..
     while pending:
         for knot in _knots(pending.pop(), after):
             first = min(knot, key=place.__getitem__)
-            circle = _shortest_cycle(first, knot, after)
-            yield circle
-            pending.append(tuple(node for node in knot if node not in circle))
+            cycle = _shortest_cycle(first, knot, after)
+            yield cycle
+            pending.append(tuple(node for node in knot if node not in cycle))
 
 
 def _knots(nodes: Sequence[Node], after: Mapping[Node, Collection[Node]]) -> Iterator[frozenset[Node]]:
@@ -41,8 +41,8 @@ def _knots(nodes: Sequence[Node], after: Mapping[Node, Collection[Node]]) -> Ite
     inside = frozenset(nodes)
     following = {node: [each for each in after[node] if each in inside] for node in nodes}
     before: dict[Node, list[Node]] = {node: [] for node in nodes}
-    for node, ways in following.items():
-        for each in ways:
+    for node, edges in following.items():
+        for each in edges:
             before[each].append(node)
     left: set[Node] = set()
     for node in reversed(_left(nodes, following, set())):
@@ -52,12 +52,12 @@ def _knots(nodes: Sequence[Node], after: Mapping[Node, Collection[Node]]) -> Ite
 
 
 def _left(
-    starts: Sequence[Node], ways: Mapping[Node, Sequence[Node]], entered: set[Node]
+    starts: Sequence[Node], edges: Mapping[Node, Sequence[Node]], entered: set[Node]
 ) -> tuple[Node, ...]:
     """Return the nodes that a depth first search newly enters, in the order in which it leaves them."""
     order: list[Node] = []
     for start in starts:
-        open_nodes = [] if start in entered else [(start, iter(ways[start]))]
+        open_nodes = [] if start in entered else [(start, iter(edges[start]))]
         entered.add(start)
         while open_nodes:
             node, rest = open_nodes[-1]
@@ -67,14 +67,14 @@ def _left(
                 open_nodes.pop()
             else:
                 entered.add(each)
-                open_nodes.append((each, iter(ways[each])))
+                open_nodes.append((each, iter(edges[each])))
     return tuple(order)
 
 
 def _shortest_cycle(
     start: Node, knot: frozenset[Node], after: Mapping[Node, Collection[Node]]
 ) -> tuple[Node, ...]:
-    """Return a shortest circle through a node of a knot."""
+    """Return a shortest cycle through a node of a knot."""
     came_from: dict[Node, Node] = {}
     pending = deque([start])
     while start not in came_from:
@@ -83,16 +83,16 @@ def _shortest_cycle(
             if each in knot and each not in came_from and each != node:
                 came_from[each] = node
                 pending.append(each)
-    way = [start]
-    while (node := came_from[way[-1]]) != start:
-        way.append(node)
-    return (start, *reversed(way[1:]))
+    path = [start]
+    while (node := came_from[path[-1]]) != start:
+        path.append(node)
+    return (start, *reversed(path[1:]))
 
 
-def _circles(mission: Element, models: ModelSet) -> Iterator[Finding]:
-    for circle in cycles_in(sketch_of(models).order.after):
-        way = " → ".join(label_of(task) or path_of(task) for task in (*circle, circle[0]))
-        yield finding(circle[0], f"waits for itself: {way}")
+def _cycles(mission: Element, models: ModelSet) -> Iterator[Finding]:
+    for cycle in cycles_in(sketch_of(models).order.after):
+        path = " → ".join(label_of(task) or path_of(task) for task in (*cycle, cycle[0]))
+        yield finding(cycle[0], f"waits for itself: {path}")
 
 
 def _itself(dependency: Element, models: ModelSet) -> Iterator[Finding]:
@@ -116,19 +116,21 @@ def _elsewhere(mission: Element, models: ModelSet) -> Iterator[Finding]:
         for end in ("from", "to"):
             task = child(dependency, end)
             if task is not None and task not in tasks:
-                yield finding(dependency, f"{end} leads to {called(task)}, which is no task of this mission")
+                yield finding(
+                    dependency, f"{end} leads to {called(task)}, which is not a task of this mission"
+                )
 
 
-def _one_way_out(fork: Element, models: ModelSet) -> Iterator[Finding]:
-    ways = len(sketch_of(models).order.after.get(fork, ()))
-    if ways < 2:
-        yield finding(fork, f"has {ways or 'no'} way out, at least 2 are needed")
+def _few_outgoing(fork: Element, models: ModelSet) -> Iterator[Finding]:
+    count = len(sketch_of(models).order.after.get(fork, ()))
+    if count < 2:
+        yield finding(fork, f"has {count or 'no'} outgoing dependency, at least 2 are needed")
 
 
-def _one_way_in(join: Element, models: ModelSet) -> Iterator[Finding]:
-    ways = len(sketch_of(models).order.before.get(join, ()))
-    if ways < 2:
-        yield finding(join, f"has {ways or 'no'} way in, at least 2 are needed")
+def _few_incoming(join: Element, models: ModelSet) -> Iterator[Finding]:
+    count = len(sketch_of(models).order.before.get(join, ()))
+    if count < 2:
+        yield finding(join, f"has {count or 'no'} incoming dependency, at least 2 are needed")
 
 
 def _window(task: Element, models: ModelSet) -> Iterator[Finding]:
@@ -155,17 +157,17 @@ def _late(mission: Element, models: ModelSet) -> Iterator[Finding]:
 CONSTRAINTS = (
     Constraint(
         "MML040",
-        "No task waits for itself by way of others.",
+        "Task dependencies are acyclic.",
         (MISSION, "Mission"),
-        _circles,
-        "take away one of the dependencies of the circle",
+        _cycles,
+        "remove one of the dependencies of the cycle",
     ),
     Constraint(
         "MML041",
         "A dependency leads from one task to another.",
         (MISSION, "TaskDependency"),
         _itself,
-        "take the dependency away",
+        "remove the dependency",
     ),
     Constraint(
         "MML042",
@@ -177,17 +179,17 @@ CONSTRAINTS = (
     ),
     Constraint(
         "MML043",
-        "A Fork has at least two ways out.",
+        "A Fork has at least two outgoing dependencies.",
         (MISSION, "Fork"),
-        _one_way_out,
-        "let at least two tasks depend on the fork, or take the fork away",
+        _few_outgoing,
+        "let at least two tasks depend on the fork, or remove the fork",
     ),
     Constraint(
         "MML044",
-        "A Join has at least two ways in.",
+        "A Join has at least two incoming dependencies.",
         (MISSION, "Join"),
-        _one_way_in,
-        "let the join depend on at least two tasks, or take the join away",
+        _few_incoming,
+        "let the join depend on at least two tasks, or remove the join",
     ),
     Constraint(
         "MML053",

@@ -102,7 +102,7 @@ CONSTRAINTS = (
     ),
     Constraint(
         "CTX008",
-        "The context describes the place of the mission.",
+        "The context describes the area of the mission.",
         (CONTEXT, "Context"),
         _elsewhere,
         f"check that this is the context of this mission; {_MEANT}",

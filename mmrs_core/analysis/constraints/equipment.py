@@ -29,7 +29,7 @@ def _unknown_type(robot: Element, models: ModelSet) -> Iterator[Finding]:
     name = text(robot, "typeName")
     if name and models.robots and name not in models.robots:
         known = f"known are {listed(sorted(models.robots))}"
-        yield finding(robot, f"its type {name!r} is not known", guessed(known, name, models.robots))
+        yield finding(robot, f"unknown robot type {name!r}", guessed(known, name, models.robots))
 
 
 def _without_device(element: Element, models: ModelSet) -> Iterator[Finding]:
@@ -106,7 +106,7 @@ def _no_recharge(recharge: Element, models: ModelSet) -> Iterator[Finding]:
 
 def _tolerance(target: Element, models: ModelSet) -> Iterator[Finding]:
     if number(target, "tolerance") is not None and child(target, "expectedAt") is None:
-        yield finding(target, "has a tolerance, but no place that it is expected at")
+        yield finding(target, "has a tolerance, but no expected position")
 
 
 def _too_fast(move: Element, models: ModelSet) -> Iterator[Finding]:
@@ -122,7 +122,7 @@ def _unused_targets(behaviour: Element, models: ModelSet) -> Iterator[Finding]:
     used = {child(each, end) for each in (behaviour, *descendants(behaviour)) for end in ends}
     for target in children(behaviour, "targets"):
         if target not in used:
-            yield finding(target, "nothing leads to it")
+            yield finding(target, "is not used")
 
 
 CONSTRAINTS = (
@@ -163,10 +163,10 @@ CONSTRAINTS = (
     ),
     Constraint(
         "BL040",
-        "The place of an object has a tolerance, not the object.",
+        "The expected position of an object has a tolerance, not the object.",
         (BEHAVIOUR, "ObjectTarget"),
         _tolerance,
-        "give expectedAt, or take the tolerance away",
+        "give expectedAt, or remove the tolerance",
         Severity.WARNING,
     ),
     Constraint(
@@ -174,7 +174,7 @@ CONSTRAINTS = (
         "No robot carries more than its type can.",
         (BEHAVIOUR, "Robot"),
         _overloaded,
-        "take weight off, or state maxPayload in the robot type",
+        "reduce the payload, or state maxPayload in the robot type",
     ),
     Constraint(
         "BL043",
@@ -195,7 +195,7 @@ CONSTRAINTS = (
         "Every target is used.",
         (BEHAVIOUR, "Behaviour"),
         _unused_targets,
-        "take the target away",
+        "remove the target",
         Severity.WARNING,
     ),
 )

@@ -25,17 +25,17 @@ def called(element: Element) -> str:
 
 
 def finding(element: Element, message: str, hint: str = "") -> Finding:
-    """Return a breach by an element; the message goes on from what the element is called."""
+    """Return a breach by an element; `message` continues its name."""
     return Finding(element, f"{called(element)}: {message}", hint)
 
 
 def listed(names: Iterable[str]) -> str:
-    """Return names for people: quoted, and ``none`` where there are none."""
+    """Return names for messages: quoted, and ``none`` where there are none."""
     return ", ".join(f"'{name}'" for name in names) or "none"
 
 
 def guessed(known: str, name: str, names: Iterable[str]) -> str:
-    """Return a hint that says what is known, and which of the names a misspelt one is nearest to."""
+    """Return a hint of what is known and of the name that a misspelt one is nearest to."""
     guess = nearest(name, names)
     return f"{known}; {guess}" if guess else known
 

@@ -32,7 +32,7 @@ class _Graph:
                 continue
             self.out[before].append(transition)
             ways = (child(transition, end) for end in ENDS[1:])
-            self.after[before].update((way, None) for way in ways if way is not None and way in self.out)
+            self.after[before].update((path, None) for path in ways if path is not None and path in self.out)
 
     def of(self, kind: str) -> list[Element]:
         return [move for move in self.moves if is_kind(move, BEHAVIOUR, kind)]
@@ -89,7 +89,7 @@ def _out_of_stop(transition: Element, models: ModelSet) -> Iterator[Finding]:
 def _two_ways(robot: Element, models: ModelSet) -> Iterator[Finding]:
     for move, ways in _Graph(robot).out.items():
         if len(ways) > 1:
-            others = ", ".join(path_of(way) for way in ways)
+            others = ", ".join(path_of(path) for path in ways)
             yield finding(move, f"{len(ways)} transitions lead out of it: {others}")
 
 
@@ -105,7 +105,9 @@ def _other_robot(robot: Element, models: ModelSet) -> Iterator[Finding]:
         for end in ENDS:
             move = child(transition, end)
             if move is not None and move not in own:
-                yield finding(transition, f"its {end} is {called(move)}, which is no move of {called(robot)}")
+                yield finding(
+                    transition, f"its {end} is {called(move)}, which is not a move of {called(robot)}"
+                )
 
 
 def _same_arms(choice: Element, models: ModelSet) -> Iterator[Finding]:
@@ -125,7 +127,7 @@ def _unreachable(robot: Element, models: ModelSet) -> Iterator[Finding]:
     reached = graph.beyond(starts)
     for move in graph.moves if starts else ():
         if move not in reached:
-            yield finding(move, f"no way from the Start of {called(robot)} leads to it")
+            yield finding(move, f"no path from the Start of {called(robot)} leads to it")
 
 
 def _never_stops(robot: Element, models: ModelSet) -> Iterator[Finding]:
@@ -134,25 +136,25 @@ def _never_stops(robot: Element, models: ModelSet) -> Iterator[Finding]:
     reached, stopping = graph.beyond(starts), graph.leading_to(stops)
     caught = [move for move in graph.moves if move in reached and move not in stopping]
     if starts and stops and caught:
-        yield finding(caught[0], f"no way leads from it to the Stop of {called(robot)}")
+        yield finding(caught[0], f"no path leads from it to the Stop of {called(robot)}")
 
 
 def _for_ever(robot: Element, models: ModelSet) -> Iterator[Finding]:
-    """Yield circles of moves without a Choice and without a wait."""
+    """Yield loops of moves without a Choice and without a wait."""
     graph = _Graph(robot)
     onward = {move: ways[0] for move, ways in graph.out.items() if len(ways) == 1 and _is_free(ways[0])}
     done: set[Element] = set()
     for move in onward:
-        way: dict[Element, None] = {}
+        path: dict[Element, None] = {}
         current: Element | None = move
-        while current is not None and current in onward and current not in done and current not in way:
-            way[current] = None
+        while current is not None and current in onward and current not in done and current not in path:
+            path[current] = None
             current = child(onward[current], "to")
-        if current is not None and current in way:
-            circle = tuple(way)[tuple(way).index(current) :]
+        if current is not None and current in path:
+            circle = tuple(path)[tuple(path).index(current) :]
             names = " → ".join(label_of(each) or path_of(each) for each in (*circle, current))
-            yield finding(current, f"goes round for ever: {names}")
-        done.update(way)
+            yield finding(current, f"loops forever: {names}")
+        done.update(path)
 
 
 def _is_free(transition: Element) -> bool:
@@ -165,7 +167,7 @@ def _foreign(robot: Element, models: ModelSet) -> Iterator[Finding]:
         for slot in children(transition, "waitFor"):
             if slot not in own:
                 owner = container_of(slot)
-                whose = f"of {called(owner)}" if owner is not None else "of nobody"
+                whose = f"of {called(owner)}" if owner is not None else "of no robot"
                 yield finding(
                     transition, f"waits for the slot {text(slot, 'name')!r} {whose}, which is not its own"
                 )
@@ -214,7 +216,7 @@ CONSTRAINTS = (
         "A robot has exactly one Stop.",
         (BEHAVIOUR, "Robot"),
         _exactly_one("Stop"),
-        "let every way lead to the same Stop",
+        "let every path lead to the same Stop",
     ),
     Constraint(
         "BL003",
@@ -235,11 +237,11 @@ CONSTRAINTS = (
         "One transition leads out of a move.",
         (BEHAVIOUR, "Robot"),
         _two_ways,
-        "make one of them a Choice with a falseBranch, or take it away",
+        "make one of them a Choice with a falseBranch, or remove it",
     ),
     Constraint(
         "BL006",
-        "A way leads on from every move but the Stop.",
+        "Every move except Stop has an outgoing transition.",
         (BEHAVIOUR, "Robot"),
         _dead_end,
         "add a transition from this move to the next, or to the Stop",
@@ -256,7 +258,7 @@ CONSTRAINTS = (
         "Every move can be reached from the Start.",
         (BEHAVIOUR, "Robot"),
         _unreachable,
-        "lead a transition to it, or take the move away",
+        "lead a transition to it, or remove the move",
         Severity.WARNING,
     ),
     Constraint(
@@ -264,22 +266,22 @@ CONSTRAINTS = (
         "The Stop can be reached from wherever the robot gets.",
         (BEHAVIOUR, "Robot"),
         _never_stops,
-        "lead a way out of the circle with a Choice",
+        "leave the loop with a Choice",
         Severity.WARNING,
     ),
     Constraint(
         "BL013",
-        "No robot goes round for ever without a Choice.",
+        "Every loop contains a Choice.",
         (BEHAVIOUR, "Robot"),
         _for_ever,
-        "lead a way out of the circle with a Choice",
+        "leave the loop with a Choice",
     ),
     Constraint(
         "BL029",
-        "The two ways of a Choice differ.",
+        "The two branches of a Choice differ.",
         (BEHAVIOUR, "Choice"),
         _same_arms,
-        "make it a plain transition, or lead one way elsewhere",
+        "make it a plain transition, or lead one branch elsewhere",
         Severity.WARNING,
     ),
     Constraint(
@@ -308,7 +310,7 @@ CONSTRAINTS = (
         "Slots are waited for.",
         (BEHAVIOUR, "Behaviour"),
         _useless,
-        "let a transition wait for it, or take the slot away",
+        "let a transition wait for it, or remove the slot",
         Severity.WARNING,
     ),
 )

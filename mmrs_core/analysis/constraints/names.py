@@ -106,7 +106,7 @@ _ONE_POLICY = "keep one policy for each event"
 
 
 MAY_BE_EMPTY = ("conditionIdentifier", "description", "value")
-"""Features that nobody refers to, or that have a constraint of their own."""
+"""Features that nothing refers to, or that have a constraint of their own."""
 
 
 def _empty(root: Element, models: ModelSet) -> Iterator[Finding]:
@@ -138,7 +138,7 @@ CONSTRAINTS = (
     ),
     Constraint(
         "MML011",
-        "Names can be read by people.",
+        "Names are human-readable.",
         (MISSION, "NamedElement"),
         _legible,
         _READABLE,
@@ -160,7 +160,7 @@ CONSTRAINTS = (
     ),
     Constraint(
         "RL031",
-        "Names, identifiers and keys of a robot type can be read by people.",
+        "Names, identifiers and keys of a robot type are human-readable.",
         (ROBOT, "Robot"),
         _legible_type,
         _READABLE,
@@ -210,12 +210,10 @@ CONSTRAINTS = (
         _policies,
         _ONE_POLICY,
     ),
-    Constraint(
-        "BL034", "The name of a slot can be read by people.", (BEHAVIOUR, "Slot"), _legible, _READABLE
-    ),
+    Constraint("BL034", "The name of a slot is human-readable.", (BEHAVIOUR, "Slot"), _legible, _READABLE),
     Constraint(
         "BL053",
-        "The identifier and type of a robot, and the names of its moves, can be read by people.",
+        "The identifier and type of a robot, and the names of its moves, are human-readable.",
         (BEHAVIOUR, "Robot"),
         _legible_parts,
         _READABLE,

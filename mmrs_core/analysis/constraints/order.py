@@ -13,29 +13,29 @@ from mmrs_core.languages.element import Element, is_kind
 
 
 class TaskOrder:
-    """The graph of a mission's tasks; dependencies on tasks of nobody are left out.
+    """The graph of a mission's tasks; dependencies on tasks outside the mission are left out.
 
     Attributes:
         after: by task, those that wait for it, in the order of the model.
         before: by task, those that it waits for.
-        ways: by task, the dependencies that lead out of it.
+        outgoing: by task, the dependencies that lead out of it.
     """
 
     def __init__(self, mission: Element) -> None:
         tasks = children(mission, "tasks")
         self.after: dict[Element, dict[Element, None]] = {task: {} for task in tasks}
         self.before: dict[Element, dict[Element, None]] = {task: {} for task in tasks}
-        self.ways: dict[Element, list[Element]] = {task: [] for task in tasks}
+        self.outgoing: dict[Element, list[Element]] = {task: [] for task in tasks}
         for dependency in children(mission, "taskDependencies"):
             before, after = child(dependency, "from"), child(dependency, "to")
             if before in self.after and after in self.after and before is not None and after is not None:
                 self.after[before][after] = None
                 self.before[after][before] = None
-                self.ways[before].append(dependency)
+                self.outgoing[before].append(dependency)
 
     @cached_property
     def ranks(self) -> Mapping[Element, int]:
-        """Tasks with numbers that grow along the way; those on or behind a circle are left out."""
+        """Tasks with numbers that grow along dependencies; those in or behind a cycle are left out."""
         waiting = {task: len(before) for task, before in self.before.items()}
         ready = deque(task for task, count in waiting.items() if count == 0)
         ranks: dict[Element, int] = {}
@@ -50,11 +50,11 @@ class TaskOrder:
 
     @property
     def is_circular(self) -> bool:
-        """Whether tasks wait for each other in a circle."""
+        """Whether tasks wait for each other in a cycle."""
         return len(self.ranks) < len(self.after)
 
     def meeting(self, fork: Element) -> Element | None:
-        """Return the nearest Join that every way out of a Fork leads to; None where one ends elsewhere.
+        """Return the nearest Join that every branch of a Fork leads to; None where one ends elsewhere.
 
         Goes over the tasks between the two only.
         """

@@ -113,7 +113,7 @@ CONSTRAINTS = (
     ),
     _constraint(
         "MML062",
-        "A task wants at least one robot.",
+        "The robotsWanted of a task is at least 1.",
         (MISSION, "Task"),
         _Range(("robotsWanted",), low=1.0),
         "leave robotsWanted out to let as many robots share the task as help",
@@ -162,14 +162,14 @@ CONSTRAINTS = (
     ),
     _constraint(
         "RL007",
-        "A battery holds something.",
+        "A battery has a capacity and a voltage.",
         (ROBOT, "Battery"),
         _positive("capacity", "voltage"),
         "capacity is in milliampere-hours, voltage in volts; a wired robot has no batteries",
     ),
     _constraint(
         "RL008",
-        "Recharging a battery takes no negative time.",
+        "The recharge time of a battery is not negative.",
         (ROBOT, "Battery"),
         _at_least_zero("rechargeTime"),
         "leave rechargeTime out where the battery cannot be recharged during a mission",
@@ -204,14 +204,14 @@ CONSTRAINTS = (
     ),
     _constraint(
         "RL014",
-        "An action takes no negative time.",
+        "Action durations are not negative.",
         (ROBOT, "SupportedAction"),
         _at_least_zero("duration"),
         "give the duration in seconds, 0 for an instant",
     ),
     _constraint(
         "RL015",
-        "A policy answers after the fault, not before.",
+        "The delay of a policy is not negative.",
         (ROBOT, "Policy"),
         _at_least_zero("after"),
         "give the delay in seconds, 0 for at once",
@@ -232,7 +232,7 @@ CONSTRAINTS = (
     ),
     _constraint(
         "BL023",
-        "Holding a position takes no negative time.",
+        "The duration of a hold is not negative.",
         (BEHAVIOUR, "HoldPosition"),
         _at_least_zero("duration"),
         "give the duration in seconds",

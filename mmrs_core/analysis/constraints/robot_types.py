@@ -112,13 +112,13 @@ def _carry_on(policy: Element, models: ModelSet) -> Iterator[Finding]:
     if text(policy, "event") == "BATTERY_LOW" and text(policy, "response") == "CONTINUE":
         owner = container_of(policy)
         whom = called(owner) if owner is not None else "a robot"
-        yield finding(policy, f"lets {whom} go on until the battery is empty")
+        yield finding(policy, f"lets {whom} continue until the battery is empty")
 
 
 def _way_back(policy: Element, models: ModelSet) -> Iterator[Finding]:
     response = text(policy, "response")
     if text(policy, "event") == "POSITION_LOST" and response in ("RETURN", "EMERGENCY_AREA"):
-        yield finding(policy, f"{response} needs a way, and the robot does not know where it is")
+        yield finding(policy, f"{response} needs a position, and the robot has none")
 
 
 def _shared_output(robot: Element, models: ModelSet) -> Iterator[Finding]:
@@ -158,7 +158,7 @@ CONSTRAINTS = (
         "Figures hold for payloads that the robot can carry.",
         (ROBOT, "Robot"),
         _beyond_payload,
-        "raise maxPayload, or take the figures away",
+        "raise maxPayload, or remove the figures",
         Severity.WARNING,
     ),
     Constraint(
@@ -211,7 +211,7 @@ CONSTRAINTS = (
     ),
     Constraint(
         "RL027",
-        "A low battery is answered.",
+        "A low battery has a response.",
         (ROBOT, "Policy"),
         _carry_on,
         "let the robot return, land or go to an emergency area",
@@ -219,7 +219,7 @@ CONSTRAINTS = (
     ),
     Constraint(
         "RL029",
-        "A robot that has lost its position is sent nowhere.",
+        "A robot that has lost its position does not travel.",
         (ROBOT, "Policy"),
         _way_back,
         "let it land, surface, hold or stop its thrust",

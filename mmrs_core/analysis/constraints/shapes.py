@@ -102,7 +102,7 @@ def _polygon(ring: Ring | None) -> Polygon | None:
 
 _UNCROSS = "put the vertices in the order in which one meets them along the border"
 _SPREAD = "draw at least three vertices that are not on one line"
-_ONCE = "the ring closes by itself: take the repeated vertices away"
+_ONCE = "rings close implicitly: remove duplicate vertices"
 
 CONSTRAINTS = (
     Constraint(
@@ -149,7 +149,7 @@ CONSTRAINTS = (
         "Holes leave something to be done.",
         (MISSION, "PolygonTask"),
         _nothing_left,
-        "make the holes smaller, or take the task away",
+        "make the holes smaller, or remove the task",
     ),
     Constraint(
         "CTX003",

@@ -1,4 +1,4 @@
-"""Values that reading left out, and whether a constraint asks for one: what follows from it is no breach."""
+"""Values that could not be read, and whether a constraint used one: what follows from it does not count."""
 
 from __future__ import annotations
 

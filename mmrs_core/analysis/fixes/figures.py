@@ -123,8 +123,8 @@ FIXES = (
     Fix("MML005", "write the reserve as a part of the whole", as_part("reserve")),
     Fix("BL046", "write the reserve as a part of the whole", as_part("reserve")),
     Fix("CTX012", "turn the direction by a whole circle", _directions),
-    Fix("MML072", "take the repeated vertices away", _vertices("shell")),
-    Fix("CTX006", "take the repeated vertices away", _vertices("shell")),
-    Fix("MML042", "take the repeated dependency away", _dependency),
-    Fix("MML041", "take the dependency on itself away", _circle),
+    Fix("MML072", "remove the repeated vertices", _vertices("shell")),
+    Fix("CTX006", "remove the repeated vertices", _vertices("shell")),
+    Fix("MML042", "remove the repeated dependency", _dependency),
+    Fix("MML041", "remove the dependency on itself", _circle),
 )

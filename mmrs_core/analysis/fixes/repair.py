@@ -23,7 +23,7 @@ from mmrs_core.languages.xmi.events import read_bytes
 from mmrs_core.languages.xmi.markup import Markup, below_root
 
 _MOST_TRIALS = 100
-"""How often a project is diagnosed anew; what takes longer is better looked at by a person."""
+"""How often a project is diagnosed again at most."""
 _STEP = re.compile(r"/([^/\[\]]+)(?:\[([0-9]+)\])?")
 _MEMBER = re.compile(r"[^\[]*\[[0-9]+\]")
 _WITHHELD = "withheld-"
@@ -38,7 +38,7 @@ class Diagnosis:
         complete: whether there is a whole model to judge.
         models: every file that was read.
         project: None where there is no mission.
-        robots: the types of robot.
+        robots: the robot types.
     """
 
     complete: bool
@@ -85,7 +85,7 @@ class Repair:
     Attributes:
         changes: of files, by name.
         texts: what files are to hold, by real path.
-        applied: what was mended, in order.
+        applied: what was fixed, in order.
         refused: what was not, each with its objection.
         diagnosis: what is left.
     """
@@ -106,7 +106,7 @@ class Repairer:
 
     Args:
         fixes: by code.
-        checks: names of all checks of behaviours; asked for when there is something to mend.
+        checks: names of all checks of behaviours; asked for when there is something to fix.
     """
 
     def __init__(
@@ -135,7 +135,7 @@ class Repairer:
         for fault in diagnosis.faults:
             fix, model = self._fixes.get(fault.code), files.get(fault.place.file)
             if fix is None or model is None or model.importer:
-                continue  # what an imported element became has no text of its own to be mended
+                continue  # what an imported element became has no text of its own to be fixed
             file = Path(fault.place.file).resolve()
             if file not in markups:
                 markups[file] = _markup(file, texts or {})
@@ -204,7 +204,7 @@ class Repairer:
             # what is there without these values does not stem from them
             hidden = [each for each in elsewhere if without is None or _stays(each, without)]
             if hidden:
-                return f"that would hide {hidden[0].code} at {hidden[0].place}, and not mend it"
+                return f"that would hide {hidden[0].code} at {hidden[0].place}, and not fix it"
         return then, after
 
     def _diagnosed(self, texts: Mapping[Path, bytes] | None) -> Diagnosis | None:
@@ -289,13 +289,13 @@ def _key(fault: Diagnostic) -> tuple[str, str]:
     return fault.code, f"{fault.place.file}{fault.place.path}: {fault.message}"
 
 
-def _is_better(before: Diagnosis, after: Diagnosis, mended: Sequence[Proposal]) -> bool:
-    """Return whether faults have gone and no error has come; mending what hides a part may uncover others."""
+def _is_better(before: Diagnosis, after: Diagnosis, fixed: Sequence[Proposal]) -> bool:
+    """Return whether faults have gone and no error has come; fixing what hides a part may uncover others."""
     left = Counter(map(_key, after.faults))
-    if after.complete < before.complete or any(left[_key(each.fault)] for each in mended):
+    if after.complete < before.complete or any(left[_key(each.fault)] for each in fixed):
         return False
-    if all(_is_reading(each.fault) for each in mended):
-        lines = {(each.fault.place.file, each.fault.place.line) for each in mended}
+    if all(_is_reading(each.fault) for each in fixed):
+        lines = {(each.fault.place.file, each.fault.place.line) for each in fixed}
         return _on_lines(after.faults, lines) <= _on_lines(before.faults, lines)
     known = {(each.code, each.place.file, each.place.path) for each in before.faults}
     errors = (each for each in after.faults if each.severity is Severity.ERROR)
@@ -303,14 +303,14 @@ def _is_better(before: Diagnosis, after: Diagnosis, mended: Sequence[Proposal]) 
     return not worse and len(after.wrong) < len(before.wrong)
 
 
-def _vanished_elsewhere(before: Diagnosis, after: Diagnosis, mended: Sequence[Proposal]) -> list[Diagnostic]:
-    """Return the faults that are gone though they are not mended, and stand in none of the mended elements.
+def _vanished_elsewhere(before: Diagnosis, after: Diagnosis, fixed: Sequence[Proposal]) -> list[Diagnostic]:
+    """Return the faults that are gone though they were not fixed, and are in none of the fixed elements.
 
-    What could not be read is mended by being read: others were judged without it.
+    Text that could not be read is fixed by being read: others were judged without it.
     """
-    if all(_is_reading(each.fault) for each in mended):
+    if all(_is_reading(each.fault) for each in fixed):
         return []
-    faults = {each.fault for each in mended}
+    faults = {each.fault for each in fixed}
     changed = {_owner(each) for each in faults}
     return [
         each
@@ -326,7 +326,7 @@ def _owner(fault: Diagnostic) -> tuple[str, str]:
 
 
 def _stays(fault: Diagnostic, after: Diagnosis) -> bool:
-    """Return whether a fault is still there: its place may be counted anew, or its figures be others."""
+    """Return whether a fault is still there: its place and its figures may have changed."""
     return any(
         (each.code, each.place.file) == (fault.code, fault.place.file)
         and (each.place.path == fault.place.path or each.message == fault.message)

@@ -112,7 +112,7 @@ def _typed(tag: Tag, general: Metaclass, wrong: Wrong) -> Iterator[Edit]:
 
 
 def _system(wrong: Wrong) -> Iterator[Edit]:
-    """Name a coordinate reference system as everybody does."""
+    """Name a coordinate reference system by its EPSG code."""
     attribute = wrong.tag.attribute("crs")
     if attribute is None:
         return

@@ -26,11 +26,11 @@ MOST_NAMES = 8
 
 
 def verdicts_of(input: CheckInput, *, limit: int = LIMIT) -> Iterator[Verdict]:
-    """Yield who may wait for ever, or that nobody does.
+    """Yield each robot that may wait forever, or that none does.
 
     Args:
         input: of the check.
-        limit: how many steps a search through the ways that Choices go may make.
+        limit: how many steps a search through the outcomes of Choices may make.
     """
     network = network_of(input.program)
     if not network.awaited:
@@ -66,25 +66,25 @@ def _of_group(program: Program, network: Network, limit: int, names: str) -> Ite
 
 
 def _orphaned(program: Program, network: Network, slot: SlotId) -> Iterator[Verdict]:
-    """Yield that nobody ever activates a slot, once for each wait for it."""
+    """Yield that no robot activates a slot, once for each wait for it."""
     for net in network.nets:
         for node in net.nodes:
             if slot in node.waits:
                 words = f"waits after {_move(program, net.robot, node.move)} for '{slot[1]}'"
-                yield _violated(program, net.robot, node.move, f"{words}, which nobody ever activates")
+                yield _violated(program, net.robot, node.move, f"{words}, which no robot activates")
 
 
 def _monotone(program: Program, network: Network, limit: int) -> Iterator[Verdict]:
     fixpoint = must_fixpoint(network)
     if not fixpoint.blocked:
-        yield _free(program, network, "whatever ways Choices go")
+        yield _free(program, network, "whatever Choices decide")
         return
     if not any(net.chooses for net in network.nets):
         yield from _certainly_stuck(program, network, fixpoint)
         return
     endless = _endless(program, network)
     if endless:
-        yield _undecided(f"no way leads {endless} to Stop")
+        yield _undecided(f"no path leads {endless} to Stop")
         return
     try:
         trap = find_trap(network, fixpoint.active, limit=limit)
@@ -93,7 +93,7 @@ def _monotone(program: Program, network: Network, limit: int) -> Iterator[Verdic
         yield from _cut_short(program, network, reason)
         return
     if trap is None:
-        yield _free(program, network, "whatever ways Choices go")
+        yield _free(program, network, "whatever Choices decide")
     else:
         yield from _trapped(program, network, trap)
 
@@ -110,24 +110,24 @@ def _certainly_stuck(
 
 
 def _cut_short(program: Program, network: Network, reason: str) -> Iterator[Verdict]:
-    """Yield who waits for ever in every run, and that the others are not decided."""
+    """Yield each robot that waits forever in every run, and that the others are undecided."""
     yield from _certainly_stuck(program, network, may_fixpoint(network), " at the latest")
     yield _undecided(reason)
 
 
 def _trapped(program: Program, network: Network, trap: Trap) -> Iterator[Verdict]:
     choices = [
-        f"{net.robot} goes on with {_move(program, net.robot, _head(net.nodes[before], after))}"
+        f"{net.robot} continues with {_move(program, net.robot, _head(net.nodes[before], after))}"
         f" after {_move(program, net.robot, net.nodes[before].move)}"
-        for net, way in zip(network.nets, trap.ways, strict=True)
-        for before, after in pairwise(way)
-        if len(net.nodes[before].ways) > 1
+        for net, path in zip(network.nets, trap.paths, strict=True)
+        for before, after in pairwise(path)
+        if len(net.nodes[before].branches) > 1
     ]
     yield from _stuck_verdicts(program, network, trap.stuck, f" if {', '.join(choices)}" if choices else "")
 
 
-def _head(node: NetNode, way: int) -> int:
-    return node.heads[node.ways.index(way)]
+def _head(node: NetNode, branch: int) -> int:
+    return node.heads[node.branches.index(branch)]
 
 
 def _with_resets(program: Program, network: Network) -> Iterator[Verdict]:
@@ -152,7 +152,7 @@ def _stuck_verdicts(
         net = network.nets[each.net]
         move = net.nodes[each.node].move
         reasons = "; ".join(_reason(program, network, slot, waiting) for slot in sorted(each.missing))
-        words = f"waits for ever after {_move(program, net.robot, move)}{condition}: {reasons}"
+        words = f"waits forever after {_move(program, net.robot, move)}{condition}: {reasons}"
         yield _violated(program, net.robot, move, words)
 
 
@@ -161,10 +161,12 @@ def _reason(program: Program, network: Network, slot: SlotId, waiting: set[int])
     givers = [
         f"{network.nets[net].robot} on "
         f"{_move(program, network.nets[net].robot, network.nets[net].nodes[node].move)}"
-        f"{', which itself waits for ever' if net in waiting else ''}"
+        f"{', which itself waits forever' if net in waiting else ''}"
         for net, node in network.givers.get(slot, ())
     ]
-    return f"'{slot[1]}' would be activated by {' or '.join(givers)}" if givers else f"'{slot[1]}' by nobody"
+    return (
+        f"'{slot[1]}' would be activated by {' or '.join(givers)}" if givers else f"'{slot[1]}' by no robot"
+    )
 
 
 def _move(program: Program, robot: str, index: int) -> str:
@@ -178,7 +180,7 @@ def _violated(program: Program, robot: str, index: int, words: str) -> Verdict:
 
 
 def _endless(program: Program, network: Network) -> str:
-    """Return the first move that is made and has no way to Stop, with its robot; empty if there is none."""
+    """Return the first move that is made and cannot lead to Stop, with its robot; empty if there is none."""
     for robot in (program.robot(net.robot) for net in network.nets):
         lost = reachable_moves(robot) - moves_reaching_stop(robot)
         if lost:
@@ -189,18 +191,18 @@ def _endless(program: Program, network: Network) -> str:
 def _free(program: Program, network: Network, scope: str) -> Verdict:
     endless = _endless(program, network)
     if endless:
-        return _undecided(f"no way leads {endless} to Stop")
+        return _undecided(f"no path leads {endless} to Stop")
     words = f"every robot comes to its Stop {scope}; slots awaited: {len(network.awaited)}"
     return Verdict(NAME, Status.SAFE, message=words)
 
 
 def _undecided(reason: str) -> Verdict:
-    return Verdict(NAME, Status.UNKNOWN, message=f"whether robots wait for ever is not decided: {reason}")
+    return Verdict(NAME, Status.UNKNOWN, message=f"undecided whether robots wait forever: {reason}")
 
 
 SYNCHRONISATION = Check(
     name=NAME,
-    title="Every awaited slot is activated by somebody, and no run leaves a robot waiting for ever.",
+    title="Every awaited slot is activated, and no run leaves a robot waiting forever.",
     run=verdicts_of,
-    hint="let some robot notify the slot on every way it may go, or take the wait away",
+    hint="let some robot notify the slot on every path it may take, or remove the wait",
 )

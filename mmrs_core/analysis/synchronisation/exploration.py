@@ -75,7 +75,9 @@ def _enough(network: Network, state: State) -> Iterable[int]:
         if spot.left:
             commutes = not spot.left <= network.volatile
         else:
-            commutes = bool(node.ways) and node.waits <= active and node.waits.isdisjoint(network.volatile)
+            commutes = (
+                bool(node.branches) and node.waits <= active and node.waits.isdisjoint(network.volatile)
+            )
         if commutes:
             return (number,)
     return range(len(spots))
@@ -90,8 +92,8 @@ def _moves(
         for slot in sorted(spot.left - network.volatile)[:1] or sorted(spot.left):
             yield _without(net, spot, slot), active | {slot} if value else active - {slot}
     elif node.waits <= active:
-        for way in node.ways:
-            yield _enter(net, way), active
+        for branch in node.branches:
+            yield _enter(net, branch), active
 
 
 def _enter(net: Net, node: int) -> NetPosition:

@@ -1,8 +1,8 @@
-"""What must happen whatever ways Choices go, if slots are only ever activated.
+"""What must happen whatever Choices decide, if slots are only ever activated.
 
 Every step stays possible until it is taken, and steps of different robots do not disturb each other;
-so without Choices all runs end in the same state, and one run tells what it is. With Choices, a slot
-counts as activated if some robot activates it on every way it can go; that is sound, but not complete.
+so without Choices all runs end in the same state, and one run shows it. With Choices, a slot
+counts as activated if some robot activates it on every path it can take; that is sound, but not complete.
 """
 
 from __future__ import annotations
@@ -50,10 +50,10 @@ def must_fixpoint(network: Network) -> Fixpoint:
 
 
 def may_fixpoint(network: Network) -> Fixpoint:
-    """Return what comes of all Choices going every way at once with no slot made inactive again.
+    """Return what comes of all Choices taking every branch at once with no slot made inactive again.
 
-    No run activates more: `active` are the slots that any may, `blocked` where robots wait for ever at
-    the latest that never come to Stop. Quadratic at worst.
+    No run activates more: `active` are the slots that any may, `blocked` where robots that never come
+    to Stop wait at the latest. Quadratic at worst.
     """
     active: set[SlotId] = set()
     while True:
@@ -76,11 +76,11 @@ def may_fixpoint(network: Network) -> Fixpoint:
 
 
 def _passable(net: Net, active: set[SlotId]) -> frozenset[int]:
-    return reachable([node.ways if node.waits <= active else () for node in net.nodes], (0,))
+    return reachable([node.branches if node.waits <= active else () for node in net.nodes], (0,))
 
 
 class _Progress:
-    """How far one robot certainly gets; a straight way is never walked twice."""
+    """How far one robot certainly gets; a path without branches is never followed twice."""
 
     def __init__(self, net: Net) -> None:
         self.net = net
@@ -98,20 +98,20 @@ class _Progress:
                 self.entered = True
             if not node.waits <= (active | self.given):
                 return frozenset(self.given), (self.at,)
-            if len(node.ways) != 1:
+            if len(node.branches) != 1:
                 break
             if self.at in passed:
                 return frozenset(self.given), ()
             passed.add(self.at)
-            self.at, self.entered = node.ways[0], False
-        if not self.net.nodes[self.at].ways:
+            self.at, self.entered = node.branches[0], False
+        if not self.net.nodes[self.at].branches:
             return frozenset(self.given), ()
         return self._spread(active)
 
     def _spread(self, active: set[SlotId]) -> tuple[frozenset[SlotId], tuple[int, ...]]:
-        """Return the same from a Choice on: what lies on all ways to where the robot may end.
+        """Return the same from a Choice on: what lies on all paths to where the robot may end.
 
-        A wait for slots that the robot itself activated on all ways to it is not a blockage.
+        A wait for slots that the robot itself activated on all paths to it is not a blockage.
         """
         entering: dict[int, frozenset[SlotId]] = {self.at: frozenset(self.given)}
         pending = deque([self.at])
@@ -119,11 +119,11 @@ class _Progress:
             index = pending.popleft()
             node = self.net.nodes[index]
             have = entering[index] | node.gives
-            for way in node.ways if node.waits <= active | have else ():
-                common = have & entering.get(way, have)
-                if way not in entering or common != entering[way]:
-                    entering[way] = common
-                    pending.append(way)
+            for branch in node.branches if node.waits <= active | have else ():
+                common = have & entering.get(branch, have)
+                if branch not in entering or common != entering[branch]:
+                    entering[branch] = common
+                    pending.append(branch)
         return self._ends(active, entering)
 
     def _ends(

@@ -1,6 +1,6 @@
-"""What matters of a behaviour for synchronisation: slots set, slots awaited, ways to go.
+"""What matters of a behaviour for synchronisation: slots set, slots awaited, branches.
 
-Moves that neither set nor await a slot that matters, and lead one way only, are passed over: they
+Moves that neither set nor await a slot that matters, and have one successor, are passed over: they
 are always possible and touch nothing. A node stands for a move that remains. The reduction keeps
 deadlocks: a robot is stuck in the reduced network exactly if it is in the behaviour.
 """
@@ -26,14 +26,14 @@ class NetNode:
         move: index in the robot.
         sets: groups of slots, in order; each group is set to its value by one notify.
         waits: what the transition waits for.
-        ways: numbers of the nodes that may follow; empty for Stop and for a move that never ends.
-        heads: for each way, the move that it begins with, which may be passed over itself.
+        branches: numbers of the nodes that may follow; empty for Stop and for a move that never ends.
+        heads: for each of `branches`, the move that it begins with, which may be passed over itself.
     """
 
     move: int
     sets: tuple[tuple[frozenset[SlotId], bool], ...] = ()
     waits: frozenset[SlotId] = frozenset()
-    ways: tuple[int, ...] = ()
+    branches: tuple[int, ...] = ()
     heads: tuple[int, ...] = ()
 
     @property
@@ -52,8 +52,8 @@ class Net:
 
     @property
     def chooses(self) -> bool:
-        """Return whether some node leads several ways."""
-        return any(len(node.ways) > 1 for node in self.nodes)
+        """Return whether some node leads several branches."""
+        return any(len(node.branches) > 1 for node in self.nodes)
 
 
 @dataclass(frozen=True, slots=True)
@@ -152,13 +152,13 @@ def _net(
     nodes: list[NetNode] = []
     for move in order:
         node = full[move]
-        nexts = {_next_kept(head, full, kept_moves): head for head in reversed(node.ways)}
-        for way in nexts:
-            if way not in number:
-                number[way] = len(order)
-                order.append(way)
-        ways = tuple(number[way] for way in nexts)
-        nodes.append(NetNode(move, node.sets, node.waits, ways, tuple(nexts.values())))
+        nexts = {_next_kept(head, full, kept_moves): head for head in reversed(node.branches)}
+        for branch in nexts:
+            if branch not in number:
+                number[branch] = len(order)
+                order.append(branch)
+        branches = tuple(number[branch] for branch in nexts)
+        nodes.append(NetNode(move, node.sets, node.waits, branches, tuple(nexts.values())))
     return Net(robot.id, tuple(nodes), number.get(robot.stop))
 
 
@@ -174,12 +174,12 @@ def _node(
             sets.append((group, step.active))
         point = step.leads_to
     waits = frozenset(awaited_at(robot, point))
-    ways = (numbers[step.leads_to.move] for step in steps(robot, point, waits))
-    return NetNode(index, tuple(sets), waits, tuple(dict.fromkeys(ways)))
+    branches = (numbers[step.leads_to.move] for step in steps(robot, point, waits))
+    return NetNode(index, tuple(sets), waits, tuple(dict.fromkeys(branches)))
 
 
 def _matters(node: NetNode) -> bool:
-    return bool(node.sets or node.waits or len(node.ways) != 1)
+    return bool(node.sets or node.waits or len(node.branches) != 1)
 
 
 def _next_kept(move: int, full: Mapping[int, NetNode], kept: frozenset[int]) -> int:
@@ -187,5 +187,5 @@ def _next_kept(move: int, full: Mapping[int, NetNode], kept: frozenset[int]) -> 
     passed: set[int] = set()
     while move not in kept and move not in passed:
         passed.add(move)
-        move = full[move].ways[0]
+        move = full[move].branches[0]
     return move

@@ -1,7 +1,7 @@
-"""An exact search for a run that leaves a robot waiting for ever, if slots are only ever activated.
+"""An exact search for a run that leaves a robot waiting forever, if slots are only ever activated.
 
 Such a run exists exactly if there is a set D of slots, none of which is active in every run, and for
-every robot a way from its Start that activates none of D and ends at Stop or at a wait for one of D, at
+every robot a path after its Start that activates none of D and ends at Stop or at a wait for one of D, at
 least one of them not at Stop: D are the slots that are inactive in the end. No interleavings need to be
 looked at. D is found by backtracking over its slots; the question is NP-complete, so there is a limit.
 """
@@ -21,7 +21,7 @@ LIMIT = 20_000
 
 @dataclass(frozen=True, slots=True)
 class Stuck:
-    """A robot that waits for ever.
+    """A deadlocked robot.
 
     Attributes:
         net, node: where it is. missing: slots that it waits for and that never become active.
@@ -34,9 +34,9 @@ class Stuck:
 
 @dataclass(frozen=True, slots=True)
 class Trap:
-    """A way for every robot that together leave some of them stuck. Attributes: nodes by net; who is."""
+    """A path for every robot that together leave some of them stuck. Attributes: nodes by net; who is."""
 
-    ways: tuple[tuple[int, ...], ...]
+    paths: tuple[tuple[int, ...], ...]
     stuck: tuple[Stuck, ...]
 
 
@@ -56,7 +56,7 @@ def find_trap(network: Network, certain: frozenset[SlotId], *, limit: int = LIMI
         LimitExceededError: after so many steps without an answer.
     """
     inactive = _Search(network, certain, limit).run()
-    return None if inactive is None else follow(network, _ways(network, certain, inactive))
+    return None if inactive is None else follow(network, _paths(network, certain, inactive))
 
 
 class _Search:
@@ -155,18 +155,18 @@ def _reach(net: Net, inside: set[SlotId], outside: set[SlotId]) -> _Reach:
             continue
         undecided |= node.waits - outside
         stopped = stopped or index == net.stop
-        pending.extend(way for way in node.ways if way not in seen)
-        seen.update(node.ways)
+        pending.extend(branch for branch in node.branches if branch not in seen)
+        seen.update(node.branches)
     settled = stuck or stopped
     return _Reach(settled or bool(undecided), settled, stuck, frozenset(undecided))
 
 
-def _ways(network: Network, certain: frozenset[SlotId], inactive: set[SlotId]) -> list[tuple[int, ...]]:
-    return [_way(net, inactive - certain) for net in network.nets]
+def _paths(network: Network, certain: frozenset[SlotId], inactive: set[SlotId]) -> list[tuple[int, ...]]:
+    return [_path(net, inactive - certain) for net in network.nets]
 
 
-def _way(net: Net, inactive: set[SlotId]) -> tuple[int, ...]:
-    """Return a shortest way to a wait for one of the inactive slots, or else to Stop."""
+def _path(net: Net, inactive: set[SlotId]) -> tuple[int, ...]:
+    """Return a shortest path to a wait for one of the inactive slots, or else to Stop."""
     came: dict[int, int] = {0: -1}
     pending = [0]
     ends: list[int] = []
@@ -178,41 +178,41 @@ def _way(net: Net, inactive: set[SlotId]) -> tuple[int, ...]:
             return _back(came, index)
         if index == net.stop:
             ends.append(index)
-        for way in node.ways:
-            if way not in came:
-                came[way] = index
-                pending.append(way)
+        for branch in node.branches:
+            if branch not in came:
+                came[branch] = index
+                pending.append(branch)
     if not ends:
-        raise InternalError(f"robot '{net.robot}' has no way that ends, though one was found")
+        raise InternalError(f"robot '{net.robot}' has no path that ends, though one was found")
     return _back(came, ends[0])
 
 
 def _back(came: dict[int, int], index: int) -> tuple[int, ...]:
-    way = [index]
-    while came[way[-1]] >= 0:
-        way.append(came[way[-1]])
-    return tuple(reversed(way))
+    path = [index]
+    while came[path[-1]] >= 0:
+        path.append(came[path[-1]])
+    return tuple(reversed(path))
 
 
-def follow(network: Network, ways: list[tuple[int, ...]]) -> Trap:
-    """Return where the robots end up if they go these ways, as far as they get.
+def follow(network: Network, paths: list[tuple[int, ...]]) -> Trap:
+    """Return where the robots end up if they take these paths, as far as they get.
 
     Raises:
-        InternalError: if nobody is stuck: the search was wrong.
+        InternalError: if no robot is stuck: the search was wrong.
     """
     active: set[SlotId] = set()
-    at = [0] * len(ways)
+    at = [0] * len(paths)
     moved = True
     while moved:
         moved = False
-        for number, way in enumerate(ways):
+        for number, path in enumerate(paths):
             net = network.nets[number]
-            active |= net.nodes[way[at[number]]].gives
-            while at[number] < len(way) - 1 and net.nodes[way[at[number]]].waits <= active:
+            active |= net.nodes[path[at[number]]].gives
+            while at[number] < len(path) - 1 and net.nodes[path[at[number]]].waits <= active:
                 at[number] += 1
-                active |= net.nodes[way[at[number]]].gives
+                active |= net.nodes[path[at[number]]].gives
                 moved = True
-    ends = [(number, way[at[number]]) for number, way in enumerate(ways)]
+    ends = [(number, path[at[number]]) for number, path in enumerate(paths)]
     stuck = tuple(
         Stuck(number, node, network.nets[number].nodes[node].waits - active)
         for number, node in ends
@@ -220,4 +220,4 @@ def follow(network: Network, ways: list[tuple[int, ...]]) -> Trap:
     )
     if not stuck:
         raise InternalError("no robot is stuck in the run that was found to leave one stuck")
-    return Trap(tuple(ways), stuck)
+    return Trap(tuple(paths), stuck)

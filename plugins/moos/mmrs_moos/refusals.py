@@ -83,4 +83,4 @@ def _rings(robot: RobotProgram, context: VehicleContext) -> Iterator[str]:
 
 
 def _ways(transition: Transition | None) -> tuple[int, ...]:
-    return transition.ways if transition is not None else ()
+    return transition.next_moves if transition is not None else ()

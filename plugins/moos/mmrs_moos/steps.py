@@ -141,7 +141,7 @@ class _Walk:
             begun[index] = here
             here = self._perform(index, here)
             transition = robot.transitions.get(index)
-            todo += [(way, here) for way in reversed(transition.ways)] if transition is not None else []
+            todo += [(way, here) for way in reversed(transition.next_moves)] if transition is not None else []
 
     def _meet(self, move: Move, one: Position, other: Position) -> None:
         """Note a slope that begins in two places: its pieces lead from one of them only."""
@@ -167,7 +167,7 @@ class _Walk:
             self._hold(f"{word}_waits", move, here, 0.1).waits = waits
         if transition is not None and transition.condition is not None:
             variable = self._variables.conditions[transition.condition]
-            to, otherwise = (self._words[robot.moves[way].id] for way in transition.ways)
+            to, otherwise = (self._words[robot.moves[way].id] for way in transition.next_moves)
             chooses = self._hold(f"{word}_chooses", move, here, 0.1)
             chooses.ways = ((variable, "true", to), (variable, "false", otherwise))
         for one, other in zip(self.steps[first:], self.steps[first + 1 :], strict=False):

@@ -35,7 +35,7 @@ def test_a_type_that_is_there_but_not_understood_is_told_as_such(farm, mmrs):
         "its type 'Tractor' stands in farm/robots/tractor.xmi:2, in a language that is not installed [MML004]"
         in err
     )
-    assert "hint: install the plug-in that brings urn:test:farm:1.0\n" in err
+    assert "hint: install the plug-in that provides urn:test:farm:1.0\n" in err
     assert "is not known [MML004]" not in err
 
 

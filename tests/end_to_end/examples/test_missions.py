@@ -65,8 +65,8 @@ def test_the_behaviour_survives_a_file(example, contributions, tmp_path):
     program = pipeline.program_of(again.roots[0], contributions)
     for before, after in zip(example.program.robots, program.robots, strict=True):
         assert [move.id for move in after.moves] == [move.id for move in before.moves]
-        assert [each.ways for each in after.transitions.values()] == [
-            each.ways for each in before.transitions.values()
+        assert [each.next_moves for each in after.transitions.values()] == [
+            each.next_moves for each in before.transitions.values()
         ]
 
 

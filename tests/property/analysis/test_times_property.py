@@ -64,7 +64,7 @@ def run(behaviour, random):
                 left[other, at] = now
                 note(other, at, now)
                 order += 1
-                way = random.choice(transition.ways)
+                way = random.choice(transition.next_moves)
                 heappush(agenda, (now, 100 + order, other, way, "begin"))
     stopped = all(robots[name].stop == at for name, at in waiting.items())
     return (begun, ended, left, used) if stopped else None

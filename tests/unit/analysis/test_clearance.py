@@ -158,14 +158,14 @@ def test_a_violation_is_reported_beside_what_is_unknown():
     moves = [go("m1", (20.0, 0.0, 0.0)), strange("dig")]
     found = findings("clearance", given(robot("a", moves), areas=(square(),)))
     assert [verdict.status for verdict in found] == [Status.VIOLATED, Status.UNKNOWN]
-    assert "nobody contributed what a move of kind 'Burrow' does" in found[1].message
+    assert "no plug-in provides the move kind 'Burrow'" in found[1].message
 
 
 def test_a_robot_whose_way_of_turning_nobody_knows_is_unknown():
     nobody = kind(metaclass=("urn:elsewhere:1.0", "Crawler"))
     verdict = past(go("by", (20.0, 0.0, 0.0)), area=square(at=(10.0, 6.0)), robot_kind=nobody)
     assert verdict.status is Status.UNKNOWN
-    assert verdict.message == "a: nobody contributed how robots of type 'rover' move"
+    assert verdict.message == "a: no plug-in provides a robot kind for type 'rover'"
 
 
 def test_a_leg_that_is_too_near_however_the_robot_turns_is_violated_beside_that():

@@ -99,7 +99,7 @@ def test_leading_any_move_into_the_middle_of_an_area_is_violated_by_name(derived
         assert {verdict.robot for verdict in found} == {robot.id}
         assert {verdict.move for verdict in found if verdict.area == area.name} <= {
             move.id,
-            *(robot.moves[way].id for way in robot.transitions[index].ways),
+            *(robot.moves[way].id for way in robot.transitions[index].next_moves),
         }
 
 

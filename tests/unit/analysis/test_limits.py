@@ -47,7 +47,7 @@ def test_no_limits_of_height_are_not_checked():
 def test_a_kind_that_nobody_contributed_is_unknown():
     verdict = finding("altitude", given(flight(), robot_kind=kind(FLYER)))
     assert verdict.status is Status.UNKNOWN
-    assert "nobody contributed how robots of type 'rover' move" in verdict.message
+    assert "no plug-in provides a robot kind for type 'rover'" in verdict.message
 
 
 def dive(depth, *, surface=0.0, type=None, robot_kind=None, density=None):

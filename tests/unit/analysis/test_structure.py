@@ -34,9 +34,9 @@ def test_a_second_stop_is_violated():
 
 def test_a_loop_that_never_ends_is_violated_move_by_move():
     assert faults(robot("a", MOVES, jumps={"two": "one"})) == [
-        "a: no way leads from Start 'start' to Stop",
-        "a: no way leads from HoldPosition 'one' to Stop",
-        "a: no way leads from HoldPosition 'two' to Stop",
+        "a: no path leads from Start 'start' to Stop",
+        "a: no path leads from HoldPosition 'one' to Stop",
+        "a: no path leads from HoldPosition 'two' to Stop",
     ]
 
 
@@ -67,12 +67,12 @@ def test_a_transition_out_of_stop_is_violated():
 
 def test_waiting_for_a_slot_that_is_not_its_own_is_violated():
     made = replace(robot("a", MOVES, waits={"one": ["go"]}), slots=())
-    assert faults(made) == ["a: the transition after 'one' waits for 'go', which is no slot of the robot"]
+    assert faults(made) == ["a: the transition after 'one' waits for 'go', which is not a slot of the robot"]
 
 
 def test_notifying_a_slot_that_nobody_has_is_violated():
     made = robot("a", [hold("one", after=(notify("b.go"),))])
-    assert faults(made, robot("b", [])) == ["a: 'one' notifies 'b.go', which is no slot of any robot"]
+    assert faults(made, robot("b", [])) == ["a: 'one' notifies 'b.go', which is not a slot of any robot"]
 
 
 def test_two_moves_of_one_name_are_violated():

@@ -37,22 +37,22 @@ def test_a_circle_of_waits_names_both_robots_and_the_reasons():
         (Status.VIOLATED, "b", "n"),
     ]
     assert found[0].message == (
-        "a: waits for ever after HoldPosition 'h': 'go' would be activated by"
-        " b on HoldPosition 'o', which itself waits for ever"
+        "a: waits forever after HoldPosition 'h': 'go' would be activated by"
+        " b on HoldPosition 'o', which itself waits forever"
     )
 
 
 def test_a_slot_that_nobody_activates_is_named():
     a = robot("a", [hold("h")], waits={"h": ["go"]})
     assert messages(a, robot("b", [hold("n")])) == [
-        "a: waits after HoldPosition 'h' for 'go', which nobody ever activates"
+        "a: waits after HoldPosition 'h' for 'go', which no robot activates"
     ]
 
 
 def test_a_slot_that_is_only_ever_made_inactive_is_never_activated():
     a = robot("a", [hold("h")], waits={"h": ["go"]})
     b = robot("b", [hold("n", after=(notify("a.go", active=False),))])
-    assert messages(a, b) == ["a: waits after HoldPosition 'h' for 'go', which nobody ever activates"]
+    assert messages(a, b) == ["a: waits after HoldPosition 'h' for 'go', which no robot activates"]
 
 
 def test_who_waits_behind_an_orphaned_slot_is_named_too():
@@ -67,7 +67,7 @@ def test_an_arm_that_does_not_notify_is_named():
     moves = [hold("fork"), hold("tell", after=(notify("a.go"),)), hold("idle")]
     b = robot("b", moves, choices={"fork": ("c", "tell", "idle")}, jumps={"tell": "stop"})
     assert messages(a, b) == [
-        "a: waits for ever after HoldPosition 'h' if b goes on with HoldPosition 'idle' after"
+        "a: waits forever after HoldPosition 'h' if b continues with HoldPosition 'idle' after"
         " HoldPosition 'fork': 'go' would be activated by b on HoldPosition 'tell'"
     ]
 
@@ -207,7 +207,7 @@ def test_a_robot_without_a_way_to_stop_leaves_the_rest_undecided():
     b = robot("b", [hold("n", after=(notify("a.go"),))], jumps={"n": "n"})
     verdict = finding("synchronisation", given(a, b))
     assert verdict.status is Status.UNKNOWN
-    assert "no way leads from Start 'start' of b to Stop" in verdict.message
+    assert "no path leads from Start 'start' of b to Stop" in verdict.message
 
 
 def test_moves_that_do_not_matter_are_passed_over():

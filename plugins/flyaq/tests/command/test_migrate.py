@@ -168,7 +168,7 @@ def test_what_a_folder_holds_already_is_judged_with_what_is_migrated_into_it(mmr
     code, out, err = mmrs("migrate", FLYAQ / "orchard-context.json", "-o", project)
     assert code == 1
     assert out.endswith(f"{project}: not valid\n")
-    assert "its type 'Heron' is not known" in err
+    assert "unknown robot type 'Heron'" in err
 
 
 def test_a_folder_that_cannot_be_judged_is_not_called_valid(mmrs, project):

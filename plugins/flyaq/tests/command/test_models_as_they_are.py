@@ -73,7 +73,7 @@ def test_faults_of_the_mission_stand_on_the_lines_of_the_file_as_it_is(mmrs, orc
     code, _, err = mmrs("validate", orchard, QUIET)
     (fault,) = told(err, "MML004")
     assert code == 1
-    assert fault.startswith(f"{file}:57: error: Robot 'heron_1': its type 'Egret' is not known")
+    assert fault.startswith(f"{file}:57: error: Robot 'heron_1': unknown robot type 'Egret'")
     assert '"heron_1"' in "".join(file.read_text().splitlines()[56:59])
 
 

@@ -124,7 +124,7 @@ def _end_of(index: int, move: Move, context: VehicleContext) -> Position | None:
 
 def _leaves_home(index: int, context: VehicleContext) -> bool:
     robot = context.robot
-    before = [robot.moves[source] for source, each in robot.transitions.items() if index in each.ways]
+    before = [robot.moves[source] for source, each in robot.transitions.items() if index in each.next_moves]
     return bool(before) and all(kind in AT_HOME for move in before for kind in move.metaclasses[:1])
 
 
@@ -170,7 +170,7 @@ def _legs(context: VehicleContext) -> Iterator[tuple[Point, Point]]:
         end = (position[0], position[1]) if position is not None else begin
         yield begin, end
         transition = robot.transitions.get(index)
-        todo += [(following, end) for following in transition.ways] if transition is not None else []
+        todo += [(following, end) for following in transition.next_moves] if transition is not None else []
 
 
 def _along(begin: Point, end: Point) -> Iterator[Point]:

@@ -61,7 +61,7 @@ def _chains(robot: RobotProgram, source: int, transition: Transition) -> bool:
     if not transition.fluid or transition.waits or transition.condition is not None:
         return False
     before, after = robot.moves[source], robot.moves[transition.to]
-    alone = sum(transition.to in other.ways for other in robot.transitions.values()) == 1
+    alone = sum(transition.to in other.next_moves for other in robot.transitions.values()) == 1
     return alone and _plain(before) and _plain(after) and not before.after and not after.before
 
 

@@ -251,7 +251,7 @@ def test_a_fix_that_hides_another_fault_is_refused(session):
         ("MML028", "/team/robots[2]"),
     ]
     assert repair.applied == ()
-    objection = f"that would hide MML028 at {repair.diagnosis.wrong[1].place}, and not mend it"
+    objection = f"that would hide MML028 at {repair.diagnosis.wrong[1].place}, and not fix it"
     assert [each.objection for each in repair.refused] == [objection]
 
 
