@@ -111,7 +111,7 @@ MUTANTS = (
             "not in (None, target):",
             "not in (None, target, raw(element, feature)):",
         ),
-        ("fragments", "references/positions.py", "range(len(value))", "range(1, len(value) + 1)"),
+        ("fragments", "references/addresses.py", "range(len(value))", "range(1, len(value) + 1)"),
         ("wrong-type", "references/resolution.py", "elif not feature.type.accepts(target):", "elif False:"),
         ("other-end", "references/resolution.py", "            values.put(element)\n", "            pass\n"),
         (

@@ -24,10 +24,10 @@ if TYPE_CHECKING:
     from mmrs_core.contributions.targets import Target
     from mmrs_core.contributions.vehicles import VehicleFactory
     from mmrs_core.contributions.wiring import DeviceWiring
+    from mmrs_core.languages.classes import ElementClass
     from mmrs_core.languages.evolution.migration import Migration
     from mmrs_core.languages.importers import Importer
     from mmrs_core.languages.sources import MetamodelSource
-    from mmrs_core.languages.subclasses import ElementClass
     from mmrs_runtime.records.steps import StepRecord
 
 hookspec = pluggy.HookspecMarker("mmrs")

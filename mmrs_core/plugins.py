@@ -24,7 +24,7 @@ GROUP = "mmrs.plugins"
 _CORE = builtin.__name__
 _KINDS: Mapping[str, str] = {
     "metamodels": "languages.sources.MetamodelSource",
-    "element_classes": "languages.subclasses.ElementClass",
+    "element_classes": "languages.classes.ElementClass",
     "migrations": "languages.evolution.migration.Migration",
     "importers": "languages.importers.Importer",
     "constraints": "contributions.constraints.Constraint",

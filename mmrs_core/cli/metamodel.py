@@ -15,9 +15,8 @@ from mmrs_core.cli.tables import table
 from mmrs_core.errors import UnreadableError
 from mmrs_core.generation.stubs.write import write_stubs
 from mmrs_core.languages.evolution.differences import differences, ways_between
-from mmrs_core.languages.evolution.pairing import pairs_of
-from mmrs_core.languages.evolution.verdicts import Verdict
-from mmrs_core.languages.evolution.versions import version_of
+from mmrs_core.languages.evolution.effects import Verdict
+from mmrs_core.languages.evolution.versions import pairs_of, version_of
 from mmrs_core.languages.metamodels.export import export_metamodels
 from mmrs_core.languages.metamodels.gathering import registry_of_files
 

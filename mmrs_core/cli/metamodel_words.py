@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 from mmrs_core.cli.output import counted
+from mmrs_core.languages.evolution.effects import Difference, Verdict
 from mmrs_core.languages.evolution.migration import Migration
-from mmrs_core.languages.evolution.verdicts import Difference, Verdict
 
 _SIGNS = {"added": "+", "removed": "-", "changed": "~"}
 _COLOURS = {Verdict.COMPATIBLE: "32", Verdict.MEANING: "33", Verdict.INCOMPATIBLE: "31"}

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from mmrs_core.languages.json_form.markup import Member, Thing, inserted, taken_away, written
-from mmrs_core.languages.json_form.values import quoted
+from mmrs_core.languages.json_form.stream import quoted
 from mmrs_core.languages.xmi.escapes import in_attribute
 
 if TYPE_CHECKING:

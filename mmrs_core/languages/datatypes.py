@@ -8,9 +8,67 @@ from functools import cache
 
 from mmrs_core.languages.values.codecs import Codec, codec_of, schema_codec_of
 from mmrs_core.languages.values.dates import parse_date
-from mmrs_core.languages.values.java_classes import ECORE_CLASSES, XML_CLASSES
 from mmrs_core.languages.values.real import parse_real, render_real
 from mmrs_core.languages.values.texts import shown
+
+ECORE_CLASSES = {
+    "EBoolean": "boolean",
+    "EBooleanObject": "java.lang.Boolean",
+    "EByte": "byte",
+    "EByteObject": "java.lang.Byte",
+    "EByteArray": "byte[]",
+    "EChar": "char",
+    "ECharacterObject": "java.lang.Character",
+    "EDate": "java.util.Date",
+    "EDouble": "double",
+    "EDoubleObject": "java.lang.Double",
+    "EFloat": "float",
+    "EFloatObject": "java.lang.Float",
+    "EInt": "int",
+    "EIntegerObject": "java.lang.Integer",
+    "ELong": "long",
+    "ELongObject": "java.lang.Long",
+    "EShort": "short",
+    "EShortObject": "java.lang.Short",
+    "EBigInteger": "java.math.BigInteger",
+    "EBigDecimal": "java.math.BigDecimal",
+    "EString": "java.lang.String",
+    "EJavaObject": "java.lang.Object",
+    "EJavaClass": "java.lang.Class",
+}
+
+XML_CLASSES = {
+    "Base64Binary": "byte[]",
+    "HexBinary": "byte[]",
+    "Boolean": "boolean",
+    "BooleanObject": "java.lang.Boolean",
+    "Byte": "byte",
+    "ByteObject": "java.lang.Byte",
+    "Decimal": "java.math.BigDecimal",
+    "Double": "double",
+    "DoubleObject": "java.lang.Double",
+    "Float": "float",
+    "FloatObject": "java.lang.Float",
+    "Int": "int",
+    "IntObject": "java.lang.Integer",
+    "Integer": "java.math.BigInteger",
+    "Long": "long",
+    "LongObject": "java.lang.Long",
+    "Short": "short",
+    "ShortObject": "java.lang.Short",
+    "UnsignedByte": "short",
+    "UnsignedByteObject": "java.lang.Short",
+    "UnsignedShort": "int",
+    "UnsignedShortObject": "java.lang.Integer",
+    "UnsignedInt": "long",
+    "UnsignedIntObject": "java.lang.Long",
+    "UnsignedLong": "java.math.BigInteger",
+    "NonNegativeInteger": "java.math.BigInteger",
+    "NonPositiveInteger": "java.math.BigInteger",
+    "NegativeInteger": "java.math.BigInteger",
+    "PositiveInteger": "java.math.BigInteger",
+}
+
 
 __all__ = [
     "BUILT_IN",

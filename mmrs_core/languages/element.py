@@ -39,7 +39,8 @@ class ElementType(type):
             choose = chosen.get()
             made = made if choose is None else choose(metaclass) or made
         elif cls is not made:
-            made = _subclass(cls)
+            assert metaclass.python is not None  # it has made the class above
+            made = metaclass.python.class_of(cls)  # type: ignore[arg-type]  # interfaces are below Element
         element: Element = made.__new__(made)
         for attribute, value in features.items():
             if attribute not in made._mmrs_missing:
@@ -60,12 +61,6 @@ class ElementType(type):
             inherited = [ancestor for base in cls.__bases__ for ancestor in base.__mro__]
             # the last occurrence, so that no class comes before its own subclass
             return [cls, *reversed(dict.fromkeys(reversed(inherited)))]
-
-
-def _subclass(kind: Any) -> type[Element]:
-    from mmrs_core.languages.subclasses import class_of  # it is made of what stands here
-
-    return class_of(kind)
 
 
 class _EClass:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Protocol
 
 from mmrs_core.languages.datatypes import DataType, shown
 from mmrs_core.languages.naming import nearest
@@ -160,6 +160,16 @@ def is_null(feature: Feature, value: object) -> bool:
     )
 
 
+class PythonClasses(Protocol):
+    """What makes Python classes of metaclasses: the module `classes`."""
+
+    def give_classes(self, metaclass: Metaclass, /) -> None:
+        """Set ancestry, interface and implementation of a metaclass, unless another thread has."""
+
+    def class_of(self, kind: type[Element], /) -> type[Element]:
+        """Return the class of the elements that calling a subclass of an interface makes."""
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class Metaclass:
     """A class of a metamodel, with the Python classes made of it.
@@ -176,6 +186,7 @@ class Metaclass:
         is_entry: whether its elements are the entries of maps, of which each key has one.
         eclass: the class as pyecore has it, an ``EClass``, from which all this was derived.
         package: the package that declares it.
+        python: what makes its Python classes.
         compiled: the functions that were compiled for its elements, by what they do; they live as long as it.
     """
 
@@ -191,6 +202,7 @@ class Metaclass:
     by_name: Mapping[str, Feature] = field(repr=False, default_factory=dict)
     by_attribute: Mapping[str, Feature] = field(repr=False, default_factory=dict)
     package: Package | None = field(repr=False, default=None)
+    python: PythonClasses | None = field(repr=False, default=None)
     is_entry: bool = False
     eclass: Any = field(repr=False, default=None)  # pyecore has no types
     compiled: dict[str, object] = field(init=False, repr=False, default_factory=dict)
@@ -200,9 +212,8 @@ class Metaclass:
         def __getattr__(self, name: str) -> object:
             if name not in ("ancestry", "interface", "implementation"):
                 raise AttributeError(f"{name}: no attribute of a metaclass", name=name, obj=self)
-            from mmrs_core.languages.metamodels.classes import give_classes
-
-            give_classes(self)
+            assert self.python is not None  # only Ecore's EObject is made without, and has them already
+            self.python.give_classes(self)
             return object.__getattribute__(self, name)
 
     @property

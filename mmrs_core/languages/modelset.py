@@ -13,8 +13,7 @@ from mmrs_core.errors import UnreadableError
 from mmrs_core.languages import behaviour, context, mission, robot
 from mmrs_core.languages.codes import explained, refusal
 from mmrs_core.languages.conformance import check_conformance
-from mmrs_core.languages.crowds import crowds
-from mmrs_core.languages.element import Element, Unknown, metaclass_of, place_of
+from mmrs_core.languages.element import Element, Unknown, descendants, held, metaclass_of, place_of
 from mmrs_core.languages.model import Model
 from mmrs_core.languages.reading import Reading
 from mmrs_core.languages.references.documents import Draft
@@ -22,6 +21,29 @@ from mmrs_core.languages.registry import Registry
 
 if TYPE_CHECKING:
     from mmrs_core.languages.metaclass import Metaclass
+
+
+MOST_PARTS = 10_000
+"""Of one kind in one element: tasks of a mission, vertices of a border, robots of a team.
+
+So many tasks of one robot take half a minute to plan, so many vertices of a grid 12 s and of an obstacle 7 s
+(measured on a busy machine); ten times as many take more than a hundred times as long.
+"""
+
+
+def crowds(root: Element) -> Iterator[Diagnostic]:
+    """Yield a fault for whatever holds more parts of one kind than can be worked through."""
+    for element in (root, *descendants(root)):
+        if isinstance(element, Unknown):
+            continue
+        for feature in metaclass_of(element).features:
+            if feature.containment and feature.many and (count := len(held(element, feature))) > MOST_PARTS:
+                message = (
+                    f"{metaclass_of(element).name}: holds {count} {feature.name}, more than {MOST_PARTS}"
+                )
+                hint = f"divide it, or simplify it until it has at most {MOST_PARTS} {feature.name}"
+                yield Diagnostic("FIL006", Severity.ERROR, message, place_of(element), hint)
+
 
 _ENDINGS = (".xmi", ".json")
 

@@ -113,7 +113,7 @@ class Reading:
                 from mmrs_core.languages.evolution.loading import read_json
 
                 read_json(data, draft, self._registry)
-            elif may_be_old(data, self._registry):
+            elif may_be_old(data, self._registry.chains):
                 from mmrs_core.languages.evolution.loading import read_old_xmi
 
                 read_old_xmi(data, draft, self._registry)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from functools import cache, cached_property, lru_cache
 from inspect import ismodule
@@ -11,6 +11,7 @@ from threading import RLock
 from typing import TYPE_CHECKING
 
 from mmrs_core.errors import PluginError
+from mmrs_core.languages.classes import ElementClass, joined, refuse_hiding
 from mmrs_core.languages.collector import collector_at_rest
 from mmrs_core.languages.datatypes import BUILT_IN
 from mmrs_core.languages.element import Element, chosen
@@ -18,14 +19,12 @@ from mmrs_core.languages.evolution.migration import Migration, chains
 from mmrs_core.languages.metaclass import Metaclass, Package
 from mmrs_core.languages.naming import nearest
 from mmrs_core.languages.sources import MetamodelSource as MetamodelSource
-from mmrs_core.languages.subclasses import ElementClass, joined, refuse_hiding
 from mmrs_core.resources import shipped
 
 if TYPE_CHECKING:
     from pyecore.ecore import EPackage
 
     from mmrs_core.languages.importers import Importer
-    from mmrs_core.languages.xmi.shapes import Maker
 
 _ONE_AT_A_TIME = RLock()
 CORE_LANGUAGES = ("robot", "mission", "context", "behaviour")
@@ -53,7 +52,7 @@ class Registry:
         self.packages = tuple(package for package in packages if package.ns_uri not in BUILT_IN)
         self.migrations = tuple(migrations)
         self.importers = tuple(importers)
-        self.makers: dict[tuple[object, ...], Maker | None] = {}
+        self.makers: dict[tuple[object, ...], Callable[..., bool] | None] = {}
         self._packages = {package.ns_uri: package for package in self.packages}
         self._metaclasses: Mapping[tuple[str, str], Metaclass] = {
             metaclass.key: metaclass for package in self.packages for metaclass in package.metaclasses

@@ -67,9 +67,9 @@ def test_every_field_of_what_is_declared_is_told():
         vehicles,
         wiring,
     )
+    from mmrs_core.languages.classes import ElementClass
     from mmrs_core.languages.evolution.migration import Migration
     from mmrs_core.languages.importers import Importer
-    from mmrs_core.languages.subclasses import ElementClass
 
     told = {
         "mmrs_element_classes": ElementClass,

@@ -12,7 +12,7 @@ from mmrs_core.diagnostics import Severity
 from mmrs_core.grounding.features import child, children, number, text, texts, value
 from mmrs_core.grounding.frame import coordinates_of, is_geographic, origin_of
 from mmrs_core.languages.element import Element, Unknown, is_set, metaclass_of, place_of
-from mmrs_core.languages.kept_names import kept_name
+from mmrs_core.languages.json_form.unknown import kept_name
 from mmrs_core.languages.modelset import ModelSet
 from mmrs_core.languages.naming import nearest
 

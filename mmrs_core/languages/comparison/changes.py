@@ -9,9 +9,16 @@ from dataclasses import dataclass
 from enum import Enum
 
 from mmrs_core.languages.collector import collector_at_rest
-from mmrs_core.languages.comparison.features import Paths, address_of, features_of, raw_text, said_by
+from mmrs_core.languages.comparison.features import (
+    Paths,
+    address_of,
+    features_of,
+    raw_text,
+    said_by,
+    traits_of,
+    values_in,
+)
 from mmrs_core.languages.comparison.matching import Matching
-from mmrs_core.languages.comparison.traits import traits_of, values_in
 from mmrs_core.languages.element import Element, Hidden, containing_feature, held
 from mmrs_core.languages.metaclass import Feature
 

@@ -12,8 +12,9 @@ from mmrs_core.languages.comparison.features import (
     identity_of,
     kind_of,
     said_by,
+    traits_of,
+    values_in,
 )
-from mmrs_core.languages.comparison.traits import traits_of, values_in
 from mmrs_core.languages.element import Element, contents, descendants
 
 _LIKE = 0.5

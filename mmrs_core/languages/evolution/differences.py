@@ -6,12 +6,9 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
 from types import MappingProxyType
 
-from mmrs_core.languages.evolution.feature_rules import feature_differences
-from mmrs_core.languages.evolution.migration import Migration, chains
-from mmrs_core.languages.evolution.pairing import pairs_of
-from mmrs_core.languages.evolution.renaming import Renaming
-from mmrs_core.languages.evolution.verdicts import Difference, Verdict, changed, refused
-from mmrs_core.languages.evolution.versions import Version
+from mmrs_core.languages.evolution.effects import Difference, Verdict, changed, feature_differences, refused
+from mmrs_core.languages.evolution.migration import Migration, Renaming, chains
+from mmrs_core.languages.evolution.versions import Version, pairs_of
 from mmrs_core.languages.metaclass import Enumeration, Feature, Metaclass, Package
 
 Ways = Mapping[str, tuple[Migration, ...]]

@@ -13,8 +13,7 @@ from mmrs_core.languages.evolution.old_xmi import OldXmi
 from mmrs_core.languages.json_form.reader import JsonReader
 from mmrs_core.languages.json_form.stream import LANGUAGES, ROOTS, TYPE
 from mmrs_core.languages.json_form.text import Text
-from mmrs_core.languages.json_form.tree import Node, Tree
-from mmrs_core.languages.json_form.tree_stream import TreeStream
+from mmrs_core.languages.json_form.tree import Node, Tree, TreeStream
 from mmrs_core.languages.json_form.unknown import XML, kept_languages, scope_of, xml_of
 from mmrs_core.languages.references.documents import Draft
 from mmrs_core.languages.registry import Registry
@@ -43,7 +42,7 @@ def read_json(data: bytes, draft: Draft, registry: Registry) -> None:
     file = draft.source.file
     text = Text(data, file)
     kept = any(_is_known(registry, ns_uri) for ns_uri in kept_languages(text))
-    if not (kept or may_be_old(data, registry)):
+    if not (kept or may_be_old(data, registry.chains)):
         JsonReader(text, draft, registry).read()
         return
     tree = Tree(data, file)

@@ -6,8 +6,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from mmrs_core.errors import PluginError
-from mmrs_core.languages.evolution.migration import Migration, Refer
-from mmrs_core.languages.evolution.renaming import Kind, Renaming, after
+from mmrs_core.languages.evolution.migration import Kind, Migration, Refer, Renaming, after
 from mmrs_core.languages.json_form.stream import TYPE, is_own
 from mmrs_core.languages.json_form.tree import Leaf, Node, Number
 from mmrs_core.languages.metaclass import Feature, Metaclass

@@ -8,8 +8,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 
 from mmrs_core.errors import UnreadableError
-from mmrs_core.languages.json_form.stream import ID, LANGUAGES, PLACES, REF, ROOTS, TYPE
-from mmrs_core.languages.json_form.values import quoted
+from mmrs_core.languages.json_form.stream import ID, LANGUAGES, PLACES, REF, ROOTS, TYPE, quoted
 from mmrs_core.languages.xmi.events import XSI
 from mmrs_core.languages.xmi.markup import Attribute, Markup, Tag, below_root
 

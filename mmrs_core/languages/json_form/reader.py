@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from mmrs_core.languages.element import Element, metaclass_of
-from mmrs_core.languages.json_form.beginnings import Beginnings, Begun
+from mmrs_core.languages.json_form.beginnings import Beginnings, Begun, Types
 from mmrs_core.languages.json_form.members import Members, Way, ways_of
 from mmrs_core.languages.json_form.stream import (
     END,
@@ -23,7 +23,6 @@ from mmrs_core.languages.json_form.stream import (
     Stream,
     skip,
 )
-from mmrs_core.languages.json_form.types import Types
 from mmrs_core.languages.metaclass import Feature, Metaclass
 from mmrs_core.languages.references.documents import Draft
 from mmrs_core.languages.registry import Registry

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
+from json.encoder import encode_basestring
 from typing import Protocol
 
 TEXT, NUMBER, WORD, OBJECT, LIST, END = range(6)
@@ -92,3 +94,12 @@ def texts_in(event: Event, events: Iterator[Event]) -> dict[str, str] | None:
         found[inner[1]] = inner[2]
         skip(inner, events)
     return found if sound else None
+
+
+_LONE = re.compile("[\ud800-\udfff]")
+
+
+def quoted(text: str) -> str:
+    """Return a text as JSON writes it; halves of surrogate pairs as escapes, since no UTF-8 holds them."""
+    written = encode_basestring(text)
+    return written if written.isascii() else _LONE.sub(lambda match: f"\\u{ord(match.group()):04x}", written)

@@ -1,12 +1,24 @@
-"""JSON as a tree whose objects know their lines, for models that change before they become elements."""
+"""JSON as a tree whose objects know their lines: read from a text, read as a stream, and laid out again."""
 
 from __future__ import annotations
 
 import json
 import re
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator, Sequence
 
-from mmrs_core.languages.json_form.stream import END, LIST, NUMBER, OBJECT, TYPE, WORD, Event, Place
+from mmrs_core.languages.json_form.stream import (
+    END,
+    LIST,
+    NUMBER,
+    OBJECT,
+    TEXT,
+    TYPE,
+    WORD,
+    Event,
+    Place,
+    is_own,
+    quoted,
+)
 from mmrs_core.languages.json_form.text import Text
 
 _STRING = rb'"[^"\\]*(?:\\.[^"\\]*)*"?'
@@ -151,3 +163,107 @@ def _keys_of(text: bytes, begin: int) -> dict[str, int]:
             if depth == 0:
                 break
     return found
+
+
+WIDEST = 110
+
+
+def laid_out(members: Sequence[str], depth: int) -> str:
+    """Return an object on one line, or where that is too long, with a line for each member."""
+    line = f"{{{', '.join(members)}}}"
+    if len(line) + 2 * depth <= WIDEST or not members:
+        return line
+    margin = "  " * (depth + 1)
+    return "{\n" + ",\n".join(margin + member for member in members) + "\n" + "  " * depth + "}"
+
+
+def formatted(value: object, depth: int) -> str:
+    """Return what is kept of an element whose metamodel is not installed, in the same form as all else."""
+    if isinstance(value, Node):
+        members = [f"{quoted(key)}: {formatted(each, depth + 1)}" for key, each in value.members.items()]
+        plain = not any(_holds_objects(each) for each in value.members.values())
+        margin = "  " * (depth + 1)
+        if plain:
+            return laid_out(members, depth)
+        return "{\n" + ",\n".join(margin + member for member in members) + "\n" + "  " * depth + "}"
+    if isinstance(value, list):
+        parts = [formatted(each, depth + 1) for each in value]
+        if not _holds_objects(value):
+            return f"[{', '.join(parts)}]"
+        margin = "  " * (depth + 1)
+        return "[\n" + ",\n".join(margin + part for part in parts) + "\n" + "  " * depth + "]"
+    if isinstance(value, Number):
+        return str(value)
+    if isinstance(value, str):
+        return quoted(value)
+    return {None: "null", True: "true", False: "false"}[value]  # type: ignore[index]  # JSON has no other
+
+
+def _holds_objects(value: object) -> bool:
+    return isinstance(value, Node) or (isinstance(value, list) and any(map(_holds_objects, value)))
+
+
+_Pending = tuple[Iterator[tuple[str, object]], Node | None, Place]
+"""What is still to come of an object or a list, the object, and where a list stands."""
+
+
+class TreeStream:
+    """A tree.
+
+    Attributes:
+        file: what messages call the file.
+    """
+
+    def __init__(self, file: str, top: object, line_of: Callable[[Node, str], int]) -> None:
+        """Take what stands at the top, and what tells the line on which an object says something."""
+        self.file = file
+        self._top = top
+        self._line_of = line_of
+
+    def events(self) -> Iterator[Event]:
+        """Yield what is said, first what an object says of itself; as `Stream` has it."""
+        pending: list[_Pending] = [(iter([("", self._top)]), None, self._top)]
+        while pending:
+            members, owner, place = pending[-1]
+            key, value = next(members, ("", pending))
+            if value is pending:
+                pending.pop()
+                if pending:
+                    yield END, "", "", place, place
+                continue
+            at = (owner, key) if owner is not None else place
+            yield _event(key, value, at)
+            if isinstance(value, Node):
+                pending.append((iter(sorted(value.members.items(), key=_is_other)), value, at))
+            elif isinstance(value, list):
+                pending.append((iter([("", each) for each in value]), None, at))
+
+    def late(self, key: str) -> Iterator[Event] | None:
+        """Return None: nothing stands late."""
+        return None
+
+    def line(self, place: Place) -> int:
+        """Return the line of an object, or on which it says something; as `Stream` has it."""
+        if isinstance(place, tuple):
+            return self._line_of(*place)
+        return place.line if isinstance(place, Node) else 1
+
+    def source(self, begin: Place, end: Place) -> str:
+        """Return an object as JSON writes it; as `Stream` has it."""
+        return formatted(begin, 0)
+
+
+def _is_other(member: tuple[str, object]) -> bool:
+    return not is_own(member[0])
+
+
+def _event(key: str, value: object, place: Place) -> Event:
+    if isinstance(value, Node):
+        return OBJECT, key, "", place, value
+    if isinstance(value, list):
+        return LIST, key, "", place, place
+    if isinstance(value, str) and not isinstance(value, Number):
+        return TEXT, key, value, place, None
+    if value is None or isinstance(value, bool):
+        return WORD, key, "null" if value is None else str(value).lower(), place, None
+    return NUMBER, key, str(value), place, None

@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 import math
-import re
 from decimal import Decimal
-from json.encoder import encode_basestring
 
 from mmrs_core.languages.datatypes import DataType, render_real, shown
-from mmrs_core.languages.json_form.stream import LIST, NUMBER, OBJECT, TEXT, WORD
+from mmrs_core.languages.json_form.stream import LIST, NUMBER, OBJECT, TEXT, WORD, quoted
 from mmrs_core.languages.json_form.tree import Leaf, Words
 from mmrs_core.languages.metaclass import Enumeration
 
@@ -16,13 +14,6 @@ EXACT = 2**53
 """Beyond this, many readers of JSON round whole numbers."""
 _CHARACTERS = ("char", "java.lang.Character")
 _LAST_UNIT = "\uffff"
-_LONE = re.compile("[\ud800-\udfff]")
-
-
-def quoted(text: str) -> str:
-    """Return a text as JSON writes it; halves of surrogate pairs as escapes, since no UTF-8 holds them."""
-    written = encode_basestring(text)
-    return written if written.isascii() else _LONE.sub(lambda match: f"\\u{ord(match.group()):04x}", written)
 
 
 def written(kind: DataType | Enumeration, value: object) -> str:

@@ -13,9 +13,8 @@ from typing import Any
 
 from pyecore import ecore
 
-from mmrs_core.languages.datatypes import ECORE, XML_TYPES, builtin_type
+from mmrs_core.languages.datatypes import ECORE, ECORE_CLASSES, XML_CLASSES, XML_TYPES, builtin_type
 from mmrs_core.languages.metaclass import MAP_ENTRY
-from mmrs_core.languages.values.java_classes import ECORE_CLASSES, XML_CLASSES
 
 _ECORE = """
 EObject

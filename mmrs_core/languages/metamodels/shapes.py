@@ -10,6 +10,7 @@ from typing import Any, NoReturn
 from pyecore import ecore
 
 from mmrs_core.errors import InternalError, PluginError
+from mmrs_core.languages import classes
 from mmrs_core.languages.datatypes import BUILT_IN, ECORE, DataType, builtin_type, refusal
 from mmrs_core.languages.element import Element
 from mmrs_core.languages.metaclass import MAP_ENTRY, Enumeration, Feature, Metaclass, Package
@@ -146,6 +147,7 @@ class _Shapes:
                     documentation_of(kind),
                     is_entry=kind.instanceClassName == MAP_ENTRY,
                     eclass=_eclass(ns_uri, kind),
+                    python=classes,
                 )
         addresses = [(ns_uri, kind.name) for kind in kinds]
         return [self._metaclasses.get(each) or self._types[each] for each in addresses]

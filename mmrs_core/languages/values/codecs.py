@@ -7,7 +7,7 @@ from datetime import datetime
 from decimal import Decimal
 from typing import NamedTuple
 
-from mmrs_core.languages.values import binary, dates, decimals, real, texts, truth, whole
+from mmrs_core.languages.values import binary, dates, exact, real, texts, truth
 
 
 class Codec(NamedTuple):
@@ -31,7 +31,7 @@ class Codec(NamedTuple):
 
 
 def _whole(bits: int | None, default: object = None) -> Codec:
-    return Codec(int, whole.reader(bits), whole.writer(bits), default, bits)
+    return Codec(int, exact.reader(bits), exact.writer(bits), default, bits)
 
 
 def _truth(default: object = None) -> Codec:
@@ -59,7 +59,7 @@ _BY_JAVA_CLASS: dict[str, Codec] = {
     "java.lang.Float": _SINGLE,
     "double": _DOUBLE._replace(default=0.0),
     "java.lang.Double": _DOUBLE,
-    "java.math.BigDecimal": Codec(Decimal, decimals.parse_decimal, decimals.render_decimal),
+    "java.math.BigDecimal": Codec(Decimal, exact.parse_decimal, exact.render_decimal),
     "char": _CHARACTER._replace(default="\0"),
     "java.lang.Character": _CHARACTER,
     "byte[]": Codec(bytes, binary.parse_bytes, binary.render_bytes),
@@ -85,7 +85,7 @@ _SCHEMA_CODECS: dict[str, Codec] = {
     "boolean": Codec(bool, truth.parse_schema_boolean, truth.render_boolean),
     "double": Codec(float, real.parse_schema_real, real.render_schema_real),
     "float": Codec(float, real.parse_schema_single, real.render_schema_single),
-    "java.math.BigDecimal": Codec(Decimal, decimals.parse_schema_decimal, decimals.render_schema_decimal),
+    "java.math.BigDecimal": Codec(Decimal, exact.parse_schema_decimal, exact.render_schema_decimal),
 }
 """Of the Java classes that EMF's XML types read otherwise than Ecore's."""
 _OBJECTS = {"java.lang.Boolean": "boolean", "java.lang.Double": "double", "java.lang.Float": "float"}
@@ -102,6 +102,6 @@ def schema_codec_of(name: str, java_class: str) -> Codec:
     if name in _XML_CODECS:
         return _XML_CODECS[name]
     if codec.python is int:
-        return codec._replace(parse=whole.schema_reader(codec.bits))
+        return codec._replace(parse=exact.schema_reader(codec.bits))
     other = _SCHEMA_CODECS.get(_OBJECTS.get(java_class, java_class))
     return codec if other is None else other._replace(default=codec.default)

@@ -10,10 +10,10 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
+from mmrs_core.languages.classes import bare_name
 from mmrs_core.languages.datatypes import DataType, parse_real
 from mmrs_core.languages.links import LinkedList
 from mmrs_core.languages.metaclass import Feature, Metaclass
-from mmrs_core.languages.metamodels.classes import bare_name
 from mmrs_core.languages.references.documents import Pending
 from mmrs_core.languages.values.real import LARGEST_SINGLE, parse_single
 

@@ -10,7 +10,7 @@ from metamodel_edits import EDITS, ZOO, edited
 from mmrs_core.diagnostics import has_errors
 from mmrs_core.languages.conformance import check_conformance
 from mmrs_core.languages.evolution.differences import differences
-from mmrs_core.languages.evolution.verdicts import Verdict
+from mmrs_core.languages.evolution.effects import Verdict
 from mmrs_core.languages.evolution.versions import version_of
 from mmrs_core.languages.reading import read_text
 from mmrs_core.languages.registry import core_registry

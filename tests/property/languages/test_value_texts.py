@@ -8,9 +8,8 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from mmrs_core.languages.datatypes import ECORE, XML_TYPES, builtin_type
+from mmrs_core.languages.datatypes import ECORE, ECORE_CLASSES, XML_CLASSES, XML_TYPES, builtin_type
 from mmrs_core.languages.values.dates import parse_date, render_date
-from mmrs_core.languages.values.java_classes import ECORE_CLASSES, XML_CLASSES
 
 XML_TEXTS = ("QName", "Token", "NMTOKENS", "AnyURI")
 TYPES = [builtin_type(ECORE, name) for name in ECORE_CLASSES]

@@ -156,9 +156,11 @@ def test_every_code_has_a_meaning_and_every_meaning_a_code():
     import re
     from pathlib import Path
 
-    import mmrs_core.languages as languages
+    import mmrs_flyaq
 
-    core = Path(languages.__file__).parents[1]
-    sources = [file for folder in ("languages", "migration") for file in (core / folder).rglob("*.py")]
+    from mmrs_core import grounding, languages
+
+    folders = [Path(package.__file__).parent for package in (languages, grounding, mmrs_flyaq)]
+    sources = [file for folder in folders for file in folder.rglob("*.py")]
     text = "".join(source.read_text() for source in sources if source.name != "codes.py")
     assert set(re.findall(r'"((?:XMI|ECO|PRJ|MIG|GND|FIL)\d{3})"', text)) == set(CODES) - {"LOG001"}

@@ -2,7 +2,7 @@
 
 import pytest
 
-from mmrs_core.languages import crowds
+from mmrs_core.languages import modelset
 from mmrs_core.languages.modelset import read_project
 
 MISSION = """<m:Mission xmlns:m="urn:mmrs:mission:1.0"
@@ -22,14 +22,14 @@ def faults_of(tmp_path, everything):
 
 
 def test_as_many_tasks_as_may_be_are_read(faults_of, monkeypatch):
-    monkeypatch.setattr(crowds, "MOST_PARTS", 5)
+    monkeypatch.setattr(modelset, "MOST_PARTS", 5)
     models, faults = faults_of(5)
     assert models is not None
     assert faults == ()
 
 
 def test_more_tasks_than_can_be_worked_through_are_refused_at_their_place(faults_of, monkeypatch):
-    monkeypatch.setattr(crowds, "MOST_PARTS", 5)
+    monkeypatch.setattr(modelset, "MOST_PARTS", 5)
     models, faults = faults_of(6)
     assert models is None
     assert [(fault.code, fault.place.line) for fault in faults] == [("FIL006", 1)]

@@ -11,8 +11,7 @@ from metamodel_edits import EDITS, ZOO, edited
 from mmrs_core.errors import PluginError
 from mmrs_core.languages.evolution.differences import differences, ways_between
 from mmrs_core.languages.evolution.migration import Migration
-from mmrs_core.languages.evolution.pairing import pairs_of
-from mmrs_core.languages.evolution.versions import version_of
+from mmrs_core.languages.evolution.versions import pairs_of, version_of
 
 
 @pytest.fixture

@@ -9,13 +9,13 @@ from mmrs_core.analysis.constraints.unread import noting, watching
 from mmrs_core.errors import PluginError
 from mmrs_core.languages import behaviour as bl
 from mmrs_core.languages import robot as rl
+from mmrs_core.languages.classes import ElementClass
 from mmrs_core.languages.comparison.changes import changes_between
 from mmrs_core.languages.conformance import check_conformance
 from mmrs_core.languages.ecore_api.bridge import from_pyecore, to_pyecore
 from mmrs_core.languages.element import metaclass_of
 from mmrs_core.languages.reading import read_text
 from mmrs_core.languages.registry import Registry, core_registry, registry_with
-from mmrs_core.languages.subclasses import ElementClass
 from mmrs_core.languages.writing import to_json, to_xmi
 
 OFTEN = 40

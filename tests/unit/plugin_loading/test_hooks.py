@@ -22,11 +22,11 @@ from mmrs_core.contributions.wiring import DeviceWiring
 from mmrs_core.errors import PluginError
 from mmrs_core.hookspecs import hookimpl
 from mmrs_core.languages import behaviour as bl
+from mmrs_core.languages.classes import ElementClass
 from mmrs_core.languages.evolution.migration import Migration
 from mmrs_core.languages.importers import Candidate, Imported, Importer
 from mmrs_core.languages.reading import read_text
 from mmrs_core.languages.registry import MetamodelSource
-from mmrs_core.languages.subclasses import ElementClass
 from mmrs_core.plugins import language, load_plugins
 from mmrs_runtime.records.steps import StepRecord
 

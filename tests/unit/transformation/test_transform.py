@@ -7,9 +7,9 @@ import pytest
 from mmrs_core.contributions.rules import MoveSpec, Rule
 from mmrs_core.errors import InfeasibleError
 from mmrs_core.languages import behaviour as bl
+from mmrs_core.languages.classes import ElementClass
 from mmrs_core.languages.element import metaclass_of
 from mmrs_core.languages.registry import core_registry, registry_with
-from mmrs_core.languages.subclasses import ElementClass
 from mmrs_core.scene import (
     ActionAt,
     Area,
