@@ -11,29 +11,29 @@ NS_URI: Final[str]
 class Behaviour(Element):
     """The behaviour of all robots of a mission."""
     name: str | None
-    """Name of the mission that the behaviour was derived from, or of the behaviour itself."""
+    """Name of the mission that the behaviour was derived from, or of the behaviour."""
     crs: str
     """Coordinate reference system of all geographic coordinates."""
     altitudeReference: robot.AltitudeReference
-    """What the altitudes of geographic coordinates are measured from."""
+    """Reference of the altitudes of geographic coordinates."""
     origin: Coordinate | None
     """The point (0, 0, 0) of the local metric frame; absent: the home of the first robot that has one."""
     surfaceHeight: float
     """Height of the water surface above the origin, in metres; depths count down from it."""
     geoidSeparation: float | None
-    """Height of mean sea level above the ellipsoid at the origin, in metres; absent: not known."""
+    """Height of mean sea level above the ellipsoid at the origin, in metres; absent: unknown."""
     positionError: float
-    """How far a robot may be from where it believes to be, in metres; added to every clearance."""
+    """Largest error of a robot's position estimate, in metres; added to every clearance."""
     minimumSeparation: float | None
     """Smallest distance allowed between two robots, in metres; absent: not checked."""
     reserve: float
-    """Part of a robot's lifetime and energy that must remain unused, from 0 to 1."""
+    """Fraction of a robot's lifetime and energy that must remain unused, from 0 to 1."""
     acceptedUnknowns: list[str]
     """Names of the properties that may remain unknown when the behaviour is checked."""
     robots: list[Robot]
     """The robots."""
     idleRobots: list[Robot]
-    """Robots of the team that have nothing to do: nobody runs them, and they stand at their homes, where the others keep away from them."""
+    """Idle robots of the team: they are not run and stand at their homes, where the others keep clear of them."""
     targets: list[Target]
     """The positions and objects that moves, headings and homes refer to."""
     def __init__(
@@ -55,25 +55,25 @@ class Behaviour(Element):
     ) -> None: ...
 
 class Robot(Element):
-    """One robot and all that it does."""
+    """One robot and all its moves."""
     id: str
     """Identifier, unique during the mission."""
     typeName: str
-    """Name of the robot's type in the Robot Language."""
+    """Name of the robot type in the Robot Language."""
     travelMode: robot.TravelMode
-    """How the robot trades speed against caution."""
+    """Trade-off between speed and caution."""
     payload: float
-    """Weight of what the robot carries beside its own devices, in kilograms."""
+    """Weight of the robot's payload in addition to its own devices, in kilograms."""
     home: Coordinate | None
-    """Where the robot is at the beginning of the mission."""
+    """Position of the robot at the beginning of the mission."""
     slots: list[Slot]
-    """What other robots can activate to synchronise with this one."""
+    """Slots that other robots can activate to synchronise with this one."""
     moves: list[Move]
     """All moves of the robot."""
     moveTransitions: list[MoveTransition]
-    """Which move follows which."""
+    """Transitions between the moves."""
     policies: list[robot.Policy]
-    """What the robot does when something goes wrong; goes before the policies of its type."""
+    """Responses to faults; they take precedence over the policies of the robot type."""
     def __init__(
         self,
         *,
@@ -89,9 +89,9 @@ class Robot(Element):
     ) -> None: ...
 
 class Target(Element):
-    """What a move leads to or a heading points at."""
+    """Target of a move or a heading."""
     name: str | None
-    """Name for people and messages."""
+    """Name shown on maps and in messages."""
     def __init__(
         self,
         *,
@@ -147,13 +147,13 @@ class RelativeCoordinate(Coordinate):
     ) -> None: ...
 
 class ObjectTarget(Target):
-    """An object that the robot finds by its own means."""
+    """An object that the robot locates with its own sensors."""
     description: str
-    """What the object is: an identifier, a URL of a model of it, a concept of an ontology."""
+    """Description of the object: an identifier, a URL of a model of it, or a concept of an ontology."""
     expectedAt: Coordinate | None
-    """Where the object is expected; absent: its place is unknown."""
+    """Expected position of the object; absent: unknown."""
     tolerance: float | None
-    """How far from there it may be at most, in metres; absent: unknown."""
+    """Largest distance of the object from its expected position, in metres; absent: unknown."""
     def __init__(
         self,
         *,
@@ -168,13 +168,13 @@ class Move(Element):
     name: str | None
     """Name, unique in the robot."""
     task: str | None
-    """Name of the task that the move serves; absent: none in particular."""
+    """Name of the task that the move serves; absent: none."""
     rule: str | None
     """Name of the rule that made the move; absent: written by hand."""
     preActions: list[Action]
-    """What the robot does before the movement, in order."""
+    """Actions before the movement, in order."""
     postActions: list[Action]
-    """What the robot does after the movement, in order."""
+    """Actions after the movement, in order."""
     def __init__(
         self,
         *,
@@ -212,7 +212,7 @@ class Stop(Move):
 class HoldPosition(Move):
     """Keeps the current position."""
     duration: float
-    """For how long, in seconds."""
+    """Duration, in seconds."""
     def __init__(
         self,
         *,
@@ -240,7 +240,7 @@ class Recharge(HoldPosition):
 class HeadTo(Move):
     """Turns on the spot."""
     heading: Heading
-    """What to turn to."""
+    """Heading to turn to."""
     def __init__(
         self,
         *,
@@ -257,11 +257,11 @@ class GoTo(Move):
     target: Target
     """The position or object to go to."""
     distance: float
-    """How far from the target the robot is at the end, in metres."""
+    """Distance between the robot and the target at the end, in metres."""
     heading: Heading | None
-    """How the robot is oriented on the way; absent: its front points the way it goes."""
+    """Orientation of the robot along the path; absent: its front points along the path."""
     speed: float | None
-    """In metres per second; absent: by the travel mode."""
+    """Speed, in metres per second; absent: defined by the travel mode."""
     def __init__(
         self,
         *,
@@ -281,7 +281,7 @@ class Heading(Element):
     deviceId: str | None
     """Identifier of the device in the robot's type; absent: the front of the robot."""
     target: Target
-    """What the device points at."""
+    """Target that the device points at."""
     angle: float
     """Angle between the device and the direction to the target, in degrees: at 90 the target is on the device's right side."""
     def __init__(
@@ -293,7 +293,7 @@ class Heading(Element):
     ) -> None: ...
 
 class MoveTransition(Element):
-    """After one move comes another."""
+    """Transition from one move to the next."""
     from_: Move
     """The move that ends."""
     to: Move
@@ -301,9 +301,9 @@ class MoveTransition(Element):
     waitFor: list[Slot]
     """Own slots that must all be active before the transition is taken."""
     fluid: bool
-    """Whether the robot goes from one move into the next without a stop."""
+    """Whether the robot passes from one move into the next without a stop."""
     policies: list[robot.Policy]
-    """What the robot does when something goes wrong during this wait; goes before the policies of the robot and its type."""
+    """Responses to faults during this wait; they take precedence over the policies of the robot and its type."""
     def __init__(
         self,
         *,
@@ -315,11 +315,11 @@ class MoveTransition(Element):
     ) -> None: ...
 
 class Choice(MoveTransition):
-    """A branch: the way on depends on a condition."""
+    """A branch: a condition decides which move follows."""
     conditionIdentifier: str
-    """Identifier of the condition; where it holds, the robot goes on with the move at to."""
+    """Identifier of the condition; if it holds, the robot continues with the move at to."""
     falseBranch: Move
-    """The move that follows where the condition does not hold."""
+    """The move that follows if the condition does not hold."""
     def __init__(
         self,
         *,
@@ -343,9 +343,9 @@ class Slot(Element):
     ) -> None: ...
 
 class Action(Element):
-    """Something that the robot does before or after a movement."""
+    """An action before or after a movement."""
     name: str | None
-    """Name for people and messages."""
+    """Name shown on maps and in messages."""
     def __init__(
         self,
         *,
@@ -353,7 +353,7 @@ class Action(Element):
     ) -> None: ...
 
 class DeviceAction(Action):
-    """Has a device do something."""
+    """An action of a device."""
     actionName: str
     """Name of the action, among the supported actions of the device."""
     deviceId: str
@@ -370,7 +370,7 @@ class DeviceAction(Action):
     ) -> None: ...
 
 class CommunicationAction(Action):
-    """Sends something to the control station or to other robots."""
+    """A message to the control station or to other robots."""
     def __init__(
         self,
         *,
@@ -380,7 +380,7 @@ class CommunicationAction(Action):
 class Feedback(CommunicationAction):
     """Sends a message to the control station."""
     payload: list[Pair]
-    """What the message says."""
+    """Content of the message."""
     def __init__(
         self,
         *,

@@ -9,7 +9,7 @@ from mmrs_core.languages.element import Element
 NS_URI: Final[str]
 
 class Context(mission.NamedElement):
-    """A place: what robots must keep away from, where they may go in an emergency, and what else matters there."""
+    """The surroundings of a mission: areas to keep clear of, emergency areas, obstacles, and further elements."""
     crs: str | None
     """Coordinate reference system of the geographic coordinates of this model; absent: the mission's."""
     origin: mission.Coordinate | None
@@ -21,9 +21,9 @@ class Context(mission.NamedElement):
     emergencyAreas: list[Area]
     """Areas that robots may go to in an emergency."""
     obstacles: list[Obstacle]
-    """Things that stand in the way."""
+    """Obstacles."""
     elements: list[ContextElement]
-    """Things that missions refer to, of types that plug-ins add."""
+    """Further elements that missions refer to, of types that plug-ins add."""
     environment: Environment | None
     """Weather and water."""
     def __init__(
@@ -71,7 +71,7 @@ class Obstacle(Area):
     ) -> None: ...
 
 class ContextElement(mission.NamedElement):
-    """A thing at the place that missions refer to; plug-ins extend it with panel groups, moorings, pipelines and the like."""
+    """An element that missions refer to; plug-ins extend it with panel groups, moorings, pipelines and the like."""
     def __init__(
         self,
         *,
@@ -79,21 +79,21 @@ class ContextElement(mission.NamedElement):
     ) -> None: ...
 
 class Environment(Element):
-    """Weather and water during the mission; what is absent is not known."""
+    """Weather and water during the mission; absent values are unknown."""
     windSpeed: float | None
-    """In metres per second."""
+    """Wind speed, in metres per second."""
     windDirection: float | None
-    """Where the wind comes from, in degrees clockwise from north."""
+    """Direction that the wind comes from, in degrees clockwise from north."""
     temperature: float | None
-    """Of the air or water, in degrees Celsius."""
+    """Temperature of the air or water, in degrees Celsius."""
     currentSpeed: float | None
-    """Of the water, in metres per second."""
+    """Speed of the water current, in metres per second."""
     currentDirection: float | None
-    """Where the current goes to, in degrees clockwise from north."""
+    """Direction that the current flows to, in degrees clockwise from north."""
     waterDensity: float | None
-    """In kilograms per cubic metre: about 1025 for sea water, 1000 for fresh water."""
+    """Density of the water, in kilograms per cubic metre: about 1025 for sea water, 1000 for fresh water."""
     irradiance: float | None
-    """Of the sun, in watts per square metre."""
+    """Solar irradiance, in watts per square metre."""
     def __init__(
         self,
         *,

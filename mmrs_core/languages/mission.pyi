@@ -9,9 +9,9 @@ from mmrs_core.languages.element import Element
 NS_URI: Final[str]
 
 class NamedElement(Element):
-    """Anything that may have a name."""
+    """An element that may have a name."""
     name: str | None
-    """Name for people and messages; unique among its siblings where another element refers to it."""
+    """Name shown on maps and in messages; unique among its siblings where another element refers to it."""
     def __init__(
         self,
         *,
@@ -25,27 +25,27 @@ class Mission(NamedElement):
     team: Team
     """The robots of the mission."""
     tasks: list[Task]
-    """What is to be done."""
+    """The tasks."""
     taskDependencies: list[TaskDependency]
-    """Which task begins only after which other has ended."""
+    """Order of the tasks."""
     origin: Coordinate | None
     """The point (0, 0, 0) of the local metric frame; absent: the home of the first robot. A relative origin makes the mission a local one, without geographic coordinates."""
     altitudeReference: robot.AltitudeReference
-    """What the altitudes of geographic coordinates are measured from."""
+    """Reference of the altitudes of geographic coordinates."""
     geoidSeparation: float | None
-    """Height of mean sea level above the ellipsoid at the origin, in metres; absent: not known."""
+    """Height of mean sea level above the ellipsoid at the origin, in metres; absent: unknown."""
     transitAltitude: float | None
     """Height above the origin at which robots travel between tasks, in metres, where the robot kind can choose; absent: the height of the next task."""
     positionError: float
-    """How far a robot may be from where it believes to be, in metres; added to every clearance."""
+    """Largest error of a robot's position estimate, in metres; added to every clearance."""
     minimumSeparation: float | None
     """Smallest distance allowed between two robots, in metres; absent: not checked."""
     largestGap: float | None
-    """Largest distance that is meant from a place of the mission or its context to the next one, in metres; absent: 100000. What lies farther off is an error."""
+    """Largest plausible distance from a position of the mission or its context to the nearest other one, in metres; absent: 100000. A position farther off is an error."""
     reserve: float
-    """Part of a robot's lifetime and energy that a plan must leave unused, from 0 to 1."""
+    """Fraction of a robot's lifetime and energy that a plan must leave unused, from 0 to 1."""
     policies: list[robot.Policy]
-    """What robots do when something goes wrong; goes before the policies of their types."""
+    """Responses to faults; they take precedence over the policies of robot types."""
     acceptedUnknowns: list[str]
     """Names of the properties that may remain unknown when the plan is verified, such as clearance or energy; any other unknown refuses the plan."""
     def __init__(
@@ -81,15 +81,15 @@ class Team(Element):
 class Robot(NamedElement):
     """One robot of the team."""
     home: Coordinate
-    """Where the robot starts."""
+    """Position where the robot starts."""
     type: str
-    """Name of the robot's type in the Robot Language."""
+    """Name of the robot type in the Robot Language."""
     returnHome: bool
-    """Whether the robot goes back to its home at the end."""
+    """Whether the robot returns to its home at the end."""
     payload: float
-    """Weight of what the robot carries beside its own devices, in kilograms."""
+    """Weight of the robot's payload in addition to its own devices, in kilograms."""
     travelMode: robot.TravelMode
-    """How the robot trades speed against caution."""
+    """Trade-off between speed and caution."""
     def __init__(
         self,
         *,
@@ -146,19 +146,19 @@ class RelativeCoordinate(Coordinate):
     ) -> None: ...
 
 class Task(NamedElement):
-    """Something to be done. Task types are added by extending PointTask, LineTask, PolygonTask or this class."""
+    """A task. New task types extend PointTask, LineTask, PolygonTask or this class."""
     robotsWanted: int | None
-    """How many robots share the task; absent: as many as help to end early."""
+    """Number of robots that share the task; absent: as many as shorten the mission."""
     requiredDevices: list[str]
     """Identifiers of devices that a robot must have to do the task."""
     requiredActions: list[str]
     """Names of device actions that a robot must support to do the task."""
     earliestStart: float | None
-    """The task begins no sooner than so many seconds after the mission's start."""
+    """Earliest start of the task, in seconds after the mission's start."""
     deadline: float | None
-    """The task ends no later than so many seconds after the mission's start."""
+    """Latest end of the task, in seconds after the mission's start."""
     maxDuration: float | None
-    """The task takes no longer than so many seconds from its begin to its end."""
+    """Longest duration of the task, in seconds."""
     priority: int
     """Among tasks that could come next, the one of higher priority comes first."""
     def __init__(
@@ -177,7 +177,7 @@ class Task(NamedElement):
 class PointTask(Task):
     """A task at a point."""
     point: Coordinate
-    """Where the task is done."""
+    """Position of the task."""
     def __init__(
         self,
         *,
@@ -195,7 +195,7 @@ class PointTask(Task):
 class LineTask(Task):
     """A task along a polyline."""
     initialPosition: Coordinate
-    """Where the robot begins the task; the way to the first point leads from here."""
+    """Position where the robot begins the task; its path to the first point leads from here."""
     points: list[Coordinate]
     """The vertices of the polyline, in order."""
     def __init__(
@@ -216,7 +216,7 @@ class LineTask(Task):
 class PolygonTask(Task):
     """A task over an area."""
     initialPosition: Coordinate
-    """Where the robot that takes the first share begins the task."""
+    """Position where the robot with the first share begins the task."""
     shell: list[Coordinate]
     """The border of the area: its vertices in order, the last one joined to the first."""
     holes: list[Ring]
@@ -248,7 +248,7 @@ class Ring(Element):
     ) -> None: ...
 
 class ControlTask(Task):
-    """A task that takes no time and controls when others are done."""
+    """A task that takes no time and controls when others begin."""
     def __init__(
         self,
         *,
@@ -299,7 +299,7 @@ class TaskDependency(NamedElement):
     to: Task
     """The task that begins afterwards."""
     condition: str | None
-    """Identifier of the condition under which this way out of a Fork is taken; among the ways out of such a Fork exactly one has none: it is taken when no other is."""
+    """Identifier of the condition under which this outgoing branch of a Fork is taken; among the branches of such a Fork exactly one has none: it is taken when no other is."""
     def __init__(
         self,
         *,

@@ -11,23 +11,23 @@ RangingSystem: TypeAlias = Literal["SONAR", "RADAR", "LIDAR", "SODAR"]
 """Systems for navigation, detection and ranging."""
 
 TravelMode: TypeAlias = Literal["SAFE", "NORMAL", "AGGRESSIVE"]
-"""How a robot trades speed against caution."""
+"""Trade-offs between speed and caution."""
 
 AltitudeReference: TypeAlias = Literal["ELLIPSOID", "MSL", "ORIGIN"]
-"""What altitudes are measured from."""
+"""References of altitudes."""
 
 PolicyEvent: TypeAlias = Literal["LINK_LOST", "PEER_LOST", "BATTERY_LOW", "WAIT_TOO_LONG", "DEVICE_SILENT", "POSITION_LOST", "OBSTACLE", "FENCE_BREACHED", "VEHICLE_RESTARTED", "LOG_FAILED", "GROUND_LOST"]
-"""Faults that a policy answers."""
+"""Faults that a policy responds to."""
 
 PolicyResponse: TypeAlias = Literal["HOLD", "RETURN", "EMERGENCY_AREA", "LAND", "SURFACE", "STOP_THRUST", "CONTINUE"]
-"""What a robot does about a fault."""
+"""Responses of a robot to a fault."""
 
 class Robot(Element):
-    """A type of robot. Every robot of a mission names the type that it is of."""
+    """A robot type. Every robot of a mission names its type."""
     name: str
     """Unique name of the type; mission robots and behaviours refer to it."""
     onBoardObstacleAvoidance: bool
-    """Whether the robot avoids collisions by itself."""
+    """Whether the robot avoids collisions autonomously."""
     gyro: bool
     """Whether a gyroscope is on board."""
     gps: bool
@@ -41,7 +41,7 @@ class Robot(Element):
     pressuremeter: bool
     """Whether a pressure meter is on board."""
     communicationRange: float | None
-    """Maximum range of the radio control, in metres; absent: not known."""
+    """Maximum range of the radio control, in metres; absent: unknown."""
     dataRate: float | None
     """Data rate between robot and control station, in kilobits per second."""
     radioFrequency: float | None
@@ -63,9 +63,9 @@ class Robot(Element):
     batteries: list[Battery]
     """The robot's batteries; none where it has a wired power source."""
     movementCapabilities: list[MovementCapability]
-    """How the robot moves, one entry for each payload weight it was measured with."""
+    """How the robot moves, one entry for each payload weight that was measured."""
     policies: list[Policy]
-    """What a robot of this type does when something goes wrong, unless the mission says otherwise."""
+    """Responses of robots of this type to faults, unless the mission defines others."""
     def __init__(
         self,
         *,
@@ -112,7 +112,7 @@ class Size(Element):
     ) -> None: ...
 
 class Interval(Element):
-    """A closed interval of a real quantity, whose unit the owner states."""
+    """A closed interval of a real quantity, in the unit of its owner."""
     min: float
     """The smallest value."""
     max: float
@@ -129,11 +129,11 @@ class Device(Element):
     id: str
     """Identifier, unique in the robot type; behaviours refer to it."""
     name: str | None
-    """What people call the device."""
+    """Name of the device, as displayed."""
     properties: list[Property]
-    """Configuration of the device; documented keys say how it is wired, so that targets need no tables of their own."""
+    """Configuration of the device; documented keys define how it is wired, so that targets need no tables of their own."""
     supportedActions: list[SupportedAction]
-    """What the device can do."""
+    """Actions that the device supports."""
     def __init__(
         self,
         *,
@@ -161,9 +161,9 @@ class SupportedAction(Element):
     name: str
     """Name of the action, unique in the device; behaviours refer to it."""
     description: str | None
-    """What the action does, for people."""
+    """Description of the action."""
     duration: float
-    """How long the action takes, in seconds."""
+    """Duration of the action, in seconds."""
     parameters: list[Parameter]
     """The parameters that the action accepts."""
     def __init__(
@@ -180,7 +180,7 @@ class Parameter(Element):
     key: str
     """Name of the parameter, unique in the action."""
     description: str | None
-    """Meaning, unit and range of its values, for people."""
+    """Meaning, unit and range of its values."""
     def __init__(
         self,
         *,
@@ -242,11 +242,11 @@ class MovementCapability(Element):
     ) -> None: ...
 
 class Policy(Element):
-    """What a robot does when something goes wrong."""
+    """A robot's response to a fault."""
     event: PolicyEvent
-    """What went wrong."""
+    """The fault."""
     response: PolicyResponse
-    """What the robot then does."""
+    """The response."""
     after: float | None
     """How long the fault lasts before the robot responds, in seconds; absent: the default of the platform for that event."""
     def __init__(
