@@ -23,13 +23,12 @@ from mavsdk.plugins.mission_raw_server import MissionRawServer
 from mavsdk.plugins.param_server import ParamServer
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
+from mmrs_mavlink.commands.rehearsal import summary_of
 from mmrs_mavlink.sitl.commands import arming_refusal, execute
-from mmrs_mavlink.sitl.hosting import Host
 from mmrs_mavlink.sitl.items import Item
 from mmrs_mavlink.sitl.settings import Settings
 from mmrs_mavlink.sitl.streams import Streams
-from mmrs_mavlink.sitl.summary import summary_of
-from mmrs_mavlink.sitl.vehicle import SimulatedVehicle
+from mmrs_mavlink.sitl.vehicle import Host, SimulatedVehicle
 
 ARM, TAKE_OFF, JUMP, INTERVAL, REQUEST = 400, 22, 224, 511, 512
 COMMANDS = {ARM, TAKE_OFF, INTERVAL, REQUEST}

@@ -31,7 +31,7 @@ from mmrs_mavlink.program import (
 )
 from mmrs_mavlink.services.uploads import Uploads
 from mmrs_mavlink.sitl import Settings, SimulatedVehicle
-from mmrs_mavlink.sitl.hosting import LONGEST_STEP
+from mmrs_mavlink.sitl.vehicle import LONGEST_STEP
 from mmrs_mavlink.steps.watch import Watch
 from mmrs_mavlink.vehicles.mavlink_vehicle import MavlinkVehicle
 from mmrs_runtime.clock import Clock

@@ -9,8 +9,6 @@ from mmrs_core.cli.settings import Settings
 from mmrs_core.resources import shipped
 from mmrs_mavlink.commands.fleet import Fleet, members_of, plain_members
 
-pytestmark = pytest.mark.real_time("parts of flights")
-
 
 def members(example: str):
     return {each.robot: each for each in members_of(Settings(), shipped("examples") / example)}

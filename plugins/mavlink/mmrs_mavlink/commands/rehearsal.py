@@ -6,28 +6,25 @@ import queue
 import signal
 import sys
 import time
-from collections.abc import Callable, Mapping, Sequence
-from contextlib import nullcontext
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from itertools import pairwise
+from math import dist, hypot
 from types import FrameType
 
 import typer
 
 from mmrs_core.cli.interruption import INTERRUPTED
 from mmrs_core.cli.output import say, tell
-from mmrs_core.cli.typed import addressed, typed_lines
+from mmrs_core.cli.typed import typed_lines
 from mmrs_core.errors import InternalError
-from mmrs_mavlink.commands.schedule import Schedule, ScheduledFault, scheduled
+from mmrs_mavlink.commands.schedule import Schedule, Vehicles, checked, inject
 from mmrs_mavlink.sitl.autopilot import Autopilot
-from mmrs_mavlink.sitl.faults import FAULTS, Faults
-from mmrs_mavlink.sitl.hosting import Host
-from mmrs_mavlink.sitl.summary import status_line, summary_line, summary_of
-from mmrs_mavlink.sitl.vehicle import SimulatedVehicle
+from mmrs_mavlink.sitl.faults import FAULTS
+from mmrs_mavlink.sitl.vehicle import Host, SimulatedVehicle
 
 POLL_SECONDS = 0.1
 STATUS_SECONDS = 10.0
 QUIT = frozenset({"quit", "exit"})
-
-Vehicles = Sequence[tuple[str, SimulatedVehicle]]
 
 
 def fault_list() -> None:
@@ -46,7 +43,10 @@ class Rehearsal:
             typer.BadParameter: a fault is malformed, or no robot can have it.
         """
         self._vehicles = vehicles
-        plan = [_scheduled(text, vehicles) for text in faults]
+        try:
+            plan = [checked(text, vehicles) for text in faults]
+        except ValueError as error:
+            raise typer.BadParameter(f"--fault {error}") from error
         self._schedules = {
             name: Schedule(vehicle, [fault for fault in plan if fault.robot in ("", name)])
             for name, vehicle in vehicles
@@ -134,36 +134,60 @@ class Rehearsal:
             tell(f"{vehicle.autopilot.time:7.1f} s '{name}': {status_line(vehicle.autopilot)}")
 
 
-def inject(line: str, vehicles: Vehicles) -> tuple[str, ...]:
-    """Execute ``ROBOT FAULT [VALUE…]`` or ``ROBOT mend FAULT``, with ``all`` for every robot.
-
-    Returns:
-        The names of the robots.
-
-    Raises:
-        ValueError: the line is malformed, or there is no such robot or fault.
-    """
-    wanted, what, values = addressed(line, [name for name, _ in vehicles])
-    for _, vehicle in [each for each in vehicles if each[0] in wanted]:
-        if what == "mend" and len(values) == 1:
-            vehicle.faults.end(values[0])
-        else:
-            vehicle.faults.begin(what, *values)
-    return wanted
+def status_line(pilot: Autopilot) -> str:
+    """Return the present status of a vehicle."""
+    north, east, up = pilot.body.position
+    armed = "armed" if pilot.armed else "disarmed"
+    item = f", item {pilot.item}" if pilot.mode_name == "auto" else ""
+    faults = "".join(f", {word}" for word in _faults_of(pilot))
+    return (
+        f"{pilot.mode_name.upper()} {armed}, altitude {up:.1f} m, {hypot(north, east):.1f} m from home,"
+        f" {pilot.body.pace:.1f} m/s, battery {pilot.energy:.0%}{item}{faults}"
+    )
 
 
-def _scheduled(text: str, vehicles: Vehicles) -> ScheduledFault:
-    names = [name for name, _ in vehicles]
-    try:
-        fault = scheduled(text)
-        if fault.robot and fault.robot not in names:
-            raise ValueError(f"{text}: unknown robot '{fault.robot}'; known are {', '.join(names)}")
-        for name, vehicle in vehicles:
-            if fault.robot in ("", name):
-                trial = Faults(
-                    Autopilot(vehicle.autopilot.settings), nullcontext(), watched=vehicle.faults.watched
-                )
-                trial.begin(fault.name, *fault.values)
-    except ValueError as error:
-        raise typer.BadParameter(f"--fault {error}") from error
-    return fault
+def _faults_of(pilot: Autopilot) -> Iterator[str]:
+    if not pilot.located:
+        yield "no position"
+    if any(pilot.body.error):
+        yield f"position error {hypot(*pilot.body.error):.0f} m"
+    if pilot.obstacle is not None:
+        yield "obstacle"
+    if pilot.breached:
+        yield "outside its fence"
+    if not pilot.camera.works:
+        yield "camera dead"
+    if pilot.arming_fault:
+        yield f"refuses to arm: {pilot.arming_fault}"
+
+
+def summary_of(vehicle: SimulatedVehicle) -> Mapping[str, object]:
+    """Return what a vehicle has done: metres, seconds, fractions."""
+    pilot = vehicle.autopilot
+    steps = [(a, b) for a, b in pairwise(pilot.track) if b[0] - a[0] < 1.0]
+    names = {number: name.upper() for name, number in pilot.numbers.items()}
+    return {
+        "flown": round(sum(b[0] - a[0] for a, b in steps), 1),
+        "metres": round(sum(dist(a[1:], b[1:]) for a, b in steps), 1),
+        "highest": round(max((place[3] for place in pilot.track), default=0.0), 1),
+        "items": len(pilot.visited),
+        "photos": len(pilot.camera.photos),
+        "battery": round(pilot.energy, 3),
+        "armed": pilot.armed,
+        "from_home": round(hypot(*pilot.body.place[:2]), 1),
+        "sent": vehicle.radio.sent,
+        "heard": vehicle.radio.received,
+        "modes": [names.get(number, str(number)) for _, number in pilot.modes],
+        "texts": [text for _, _, text in pilot.said],
+    }
+
+
+def summary_line(vehicle: SimulatedVehicle) -> str:
+    """Return what a vehicle has done as a line of text."""
+    done = summary_of(vehicle)
+    armed = "still armed" if done["armed"] else "disarmed"
+    return (
+        f"{done['flown']:.1f} s in motion, {done['metres']:.1f} m, max altitude {done['highest']:.1f} m,"
+        f" {done['items']} mission items, {done['photos']} photos,"
+        f" {done['battery']:.0%} battery remaining, {armed} {done['from_home']:.1f} m from home"
+    )

@@ -1,14 +1,18 @@
-"""Faults on a schedule, as ``--fault`` gives them."""
+"""Faults of a rehearsal: on the schedule that ``--fault`` gives, and by lines that are typed."""
 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
+from contextlib import nullcontext
 from dataclasses import dataclass
 
-from mmrs_core.cli.typed import EVERYBODY
-from mmrs_mavlink.sitl.faults import FAULTS
+from mmrs_core.cli.typed import EVERYBODY, addressed
+from mmrs_mavlink.sitl.autopilot import Autopilot
+from mmrs_mavlink.sitl.faults import FAULTS, Faults
 from mmrs_mavlink.sitl.vehicle import SimulatedVehicle
+
+Vehicles = Sequence[tuple[str, SimulatedVehicle]]
 
 _PATTERN = re.compile(
     r"(?:(?P<robot>.+?):)?(?P<name>[a-z-]+)(?:=(?P<values>[^@]+))?"
@@ -58,6 +62,41 @@ def scheduled(text: str) -> ScheduledFault:
     robot = "" if found["robot"] in (None, EVERYBODY) else found["robot"]
     lasts = float(found["lasts"]) if found["lasts"] else None
     return ScheduledFault(robot, found["name"], values, float(found["begin"] or 0.0), lasts)
+
+
+def checked(text: str, vehicles: Vehicles) -> ScheduledFault:
+    """Return a fault from a text, after a trial that its robots can have it.
+
+    Raises:
+        ValueError: the text is malformed, or a robot cannot have the fault.
+    """
+    fault, names = scheduled(text), [name for name, _ in vehicles]
+    if fault.robot and fault.robot not in names:
+        raise ValueError(f"{text}: unknown robot '{fault.robot}'; known are {', '.join(names)}")
+    for name, vehicle in vehicles:
+        if fault.robot in ("", name):
+            pilot = Autopilot(vehicle.autopilot.settings)
+            trial = Faults(pilot, nullcontext(), watched=vehicle.faults.watched)
+            trial.begin(fault.name, *fault.values)
+    return fault
+
+
+def inject(line: str, vehicles: Vehicles) -> tuple[str, ...]:
+    """Execute ``ROBOT FAULT [VALUE…]`` or ``ROBOT mend FAULT``, with ``all`` for every robot.
+
+    Returns:
+        The names of the robots.
+
+    Raises:
+        ValueError: the line is malformed, or there is no such robot or fault.
+    """
+    wanted, what, values = addressed(line, [name for name, _ in vehicles])
+    for _, vehicle in [each for each in vehicles if each[0] in wanted]:
+        if what == "mend" and len(values) == 1:
+            vehicle.faults.end(values[0])
+        else:
+            vehicle.faults.begin(what, *values)
+    return wanted
 
 
 class Schedule:

@@ -5,8 +5,7 @@ point mass without aerodynamics: it accelerates, flies straight legs, climbs, tu
 """
 
 from mmrs_mavlink.sitl.faults import FAULTS, Faults
-from mmrs_mavlink.sitl.hosting import Host
 from mmrs_mavlink.sitl.settings import Settings
-from mmrs_mavlink.sitl.vehicle import SimulatedVehicle
+from mmrs_mavlink.sitl.vehicle import Host, SimulatedVehicle
 
 __all__ = ["FAULTS", "Faults", "Host", "Settings", "SimulatedVehicle"]

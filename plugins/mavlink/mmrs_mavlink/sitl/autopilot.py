@@ -77,7 +77,6 @@ class Autopilot:
         failed: time at which each failure was detected or answered.
         failsafe: of a PX4; None: none is active.
         fence_due: time of the next fence check.
-        rebooting: whether it reboots in the next step.
         home: latitude, longitude, metres above mean sea level. home_set: whether a command has set it.
         last_heartbeat: time of the last heartbeat of its ground station; None: none received.
         setpoints: times of the last set-points, oldest first. aimed: whether it has followed one in its mode.
@@ -105,7 +104,6 @@ class Autopilot:
         self.obstacle: tuple[float, float] | None = None
         self.breached, self.breaches, self.forced_breach = False, 0, False
         self.fence_due = 0.0
-        self.rebooting = False
         self.silent = settings.silent
         self.clock_error = 0.0
         self.link_timeout = 0.0
@@ -300,7 +298,7 @@ class Autopilot:
         self._clear_memory()
         self.armed = stays_armed
         self.home = home if self.armed else self.home
-        self.breached = self.forced_breach = self.rebooting = False
+        self.breached = self.forced_breach = False
         self.mode_name = first_mode(self.settings)
         self.mode = self.numbers[self.mode_name]
         self.modes.append((self.time, self.mode))

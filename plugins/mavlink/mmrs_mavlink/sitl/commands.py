@@ -154,23 +154,6 @@ def _set_mode(pilot: Autopilot, params: Params) -> int:
     return pilot.set_mode(int(params[1]) << 16 | int(params[2]) << 24 if pilot.px4 else int(params[1]))
 
 
-def _pause(pilot: Autopilot, params: Params) -> int:
-    if params[0] == 0.0:
-        pilot.body.target = None
-        pilot.enter("brake" if pilot.mode_name == "auto" else pilot.mode_name, "loiter")
-    return ACCEPTED
-
-
-def _reposition(pilot: Autopilot, params: Params) -> int:
-    wanted = "loiter" if pilot.px4 else "guided"
-    if pilot.mode_name != wanted:
-        if not int(params[1]) & 1:
-            return DENIED
-        pilot.enter(wanted)
-    pilot.body.target = pilot.local(params[4], params[5], params[6])
-    return ACCEPTED
-
-
 def _enable_fence(pilot: Autopilot, params: Params) -> int:
     pilot.parameters["FENCE_ENABLE"] = params[0]
     return ACCEPTED
@@ -186,26 +169,10 @@ def _clear_roi(pilot: Autopilot, params: Params) -> int:
     return ACCEPTED
 
 
-def _reboot(pilot: Autopilot, params: Params) -> int:
-    pilot.rebooting = not pilot.armed
-    return FAILED if pilot.armed else ACCEPTED
-
-
-def _reset_battery(pilot: Autopilot, params: Params) -> int:
-    pilot.battery.change(params[1] / 100.0)
-    return ACCEPTED
-
-
 def _set_home(pilot: Autopilot, params: Params) -> int:
     here = (*pilot.degrees(), pilot.settings.altitude + pilot.body.position[2])
     pilot.home = here if params[0] == 1.0 else (params[4], params[5], params[6])
     pilot.home_set = True
-    return ACCEPTED
-
-
-def _terminate(pilot: Autopilot, params: Params) -> int:
-    if params[0] == 1.0:
-        pilot.armed = False
     return ACCEPTED
 
 
@@ -214,14 +181,6 @@ def _run_checks(pilot: Autopilot, params: Params) -> int:
     if why:
         pilot.say(mavlink.MAV_SEVERITY_CRITICAL, f"PreArm: {why}")
     return FAILED if pilot.armed else ACCEPTED
-
-
-def _inject_failure(pilot: Autopilot, params: Params) -> int:
-    """Fail as PX4's simulation does: the GPS receiver only."""
-    if not pilot.px4 or params[0] != mavlink.FAILURE_UNIT_SENSOR_GPS:
-        return UNSUPPORTED
-    pilot.located = params[1] == mavlink.FAILURE_TYPE_OK
-    return ACCEPTED
 
 
 _HANDLERS: Mapping[int, Callable[[Autopilot, Params], int]] = {
@@ -234,16 +193,9 @@ _HANDLERS: Mapping[int, Callable[[Autopilot, Params], int]] = {
     int(mavlink.MAV_CMD_DO_SET_MISSION_CURRENT): _set_current,
     int(mavlink.MAV_CMD_MISSION_START): _start_mission,
     int(mavlink.MAV_CMD_DO_SET_MODE): _set_mode,
-    int(mavlink.MAV_CMD_DO_PAUSE_CONTINUE): _pause,
-    int(mavlink.MAV_CMD_DO_REPOSITION): _reposition,
     int(mavlink.MAV_CMD_DO_FENCE_ENABLE): _enable_fence,
-    int(mavlink.MAV_CMD_DO_SET_ROI): _set_roi,
     int(mavlink.MAV_CMD_DO_SET_ROI_LOCATION): _set_roi,
     int(mavlink.MAV_CMD_DO_SET_ROI_NONE): _clear_roi,
-    int(mavlink.MAV_CMD_PREFLIGHT_REBOOT_SHUTDOWN): _reboot,
-    int(mavlink.MAV_CMD_BATTERY_RESET): _reset_battery,
     int(mavlink.MAV_CMD_DO_SET_HOME): _set_home,
-    int(mavlink.MAV_CMD_DO_FLIGHTTERMINATION): _terminate,
     int(mavlink.MAV_CMD_RUN_PREARM_CHECKS): _run_checks,
-    int(mavlink.MAV_CMD_INJECT_FAILURE): _inject_failure,
 }

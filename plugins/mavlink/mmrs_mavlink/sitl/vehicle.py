@@ -1,8 +1,10 @@
-"""A simulated vehicle: an autopilot with its radios."""
+"""Simulated vehicles, each an autopilot with its radios, and the thread that advances them."""
 
 from __future__ import annotations
 
+import selectors
 import threading
+import time
 from collections.abc import Callable, Sequence
 from math import degrees, isnan
 from types import TracebackType
@@ -14,7 +16,6 @@ from mmrs_mavlink.sitl import telemetry
 from mmrs_mavlink.sitl.autopilot import Autopilot
 from mmrs_mavlink.sitl.commands import execute, steer
 from mmrs_mavlink.sitl.faults import Faults
-from mmrs_mavlink.sitl.hosting import Host
 from mmrs_mavlink.sitl.items import MISSION, RALLY, Item
 from mmrs_mavlink.sitl.parameters import ParameterService
 from mmrs_mavlink.sitl.px4_transfers import Px4Transfers
@@ -34,6 +35,11 @@ LINK_TIMEOUT = 2.0
 
 GPS_SWITCH = "SIM_GPS1_ENABLE"
 """Parameter with which ArduPilot's simulation switches its GPS receiver."""
+
+TICK_SECONDS = 0.05
+SHORTEST_TICK = 0.01
+LONGEST_STEP = 0.25
+"""Longest step in real seconds, so that vehicles do not jump when their process was suspended."""
 
 
 class SimulatedVehicle:
@@ -156,8 +162,6 @@ class SimulatedVehicle:
             self.on_tick()
             if pilot.booted != self._booted:
                 self._begin()
-            if pilot.rebooting:
-                pilot.restart()
             self._transfers.busy = pilot.uptime < pilot.settings.boot
             self._transfers.advance(pilot.time, pilot.link_timeout / 4.0)
             while self._delayed and self._delayed[0][0] <= pilot.time:
@@ -244,10 +248,6 @@ class SimulatedVehicle:
                 return self.streams.set_interval(params[0], params[1])
             case mavlink.MAV_CMD_REQUEST_MESSAGE:
                 return self.streams.send_once(params[0])
-            case mavlink.MAV_CMD_REQUEST_AUTOPILOT_CAPABILITIES:
-                return self.streams.send_once(mavlink.MAVLINK_MSG_ID_AUTOPILOT_VERSION)
-            case mavlink.MAV_CMD_GET_HOME_POSITION:
-                return self.streams.send_once(mavlink.MAVLINK_MSG_ID_HOME_POSITION)
         return None
 
     def _switch_gps(self, name: str) -> None:
@@ -268,6 +268,55 @@ class SimulatedVehicle:
         name = {MISSION: "MIS_TOTAL", RALLY: "RALLY_TOTAL"}.get(kind)
         if name in self.autopilot.parameters:
             self.autopilot.parameters[name] = len(self.autopilot.stores[kind])
+
+
+class Host:
+    """Advances vehicles in ticks, and has them process messages as these arrive.
+
+    Attributes:
+        failure: the exception that has ended it; None: it has not failed.
+    """
+
+    def __init__(self, vehicles: Sequence[SimulatedVehicle]) -> None:
+        self.failure: Exception | None = None
+        self._vehicles = vehicles
+        fastest = max((each.speedup for each in vehicles), default=1.0)
+        self._tick = max(SHORTEST_TICK, TICK_SECONDS / fastest)
+        self._stopping = threading.Event()
+        self._thread = threading.Thread(target=self._run, name="simulated vehicles", daemon=True)
+
+    def start(self) -> None:
+        """Start the thread."""
+        self._thread.start()
+
+    def stop(self) -> None:
+        """End the thread; the vehicles keep their state."""
+        self._stopping.set()
+        if self._thread.is_alive():
+            self._thread.join()
+
+    def _run(self) -> None:
+        try:
+            with selectors.DefaultSelector() as selector:
+                for vehicle in self._vehicles:
+                    for radio in vehicle.radios:
+                        selector.register(radio, selectors.EVENT_READ, vehicle)
+                self._simulate(selector)
+        except Exception as error:
+            self.failure = error
+
+    def _simulate(self, selector: selectors.BaseSelector) -> None:
+        last = time.monotonic()
+        while not self._stopping.is_set():
+            left = last + self._tick - time.monotonic()
+            if left > 0.0:
+                for key, _ in selector.select(left):
+                    key.data.receive()
+                continue
+            now = time.monotonic()
+            for vehicle in self._vehicles:
+                vehicle.advance(min(now - last, LONGEST_STEP))
+            last = now
 
 
 def _heading(message: Message) -> float | None:

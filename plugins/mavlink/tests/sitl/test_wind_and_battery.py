@@ -81,13 +81,6 @@ def test_a_battery_does_not_become_full_on_the_ground_unless_it_is_charged():
         assert bench.pilot.energy == pytest.approx(level)
 
 
-def test_a_battery_that_was_changed_is_told_to_be_full():
-    bench = Bench()
-    bench.pilot.battery.change(0.2)
-    assert bench.command(42_651, 1, 100) == 0
-    assert bench.pilot.battery.used == 0.0
-
-
 def test_voltage_falls_with_use_and_under_load():
     battery = Battery(1200.0, 5000.0)
     full = battery.voltage
