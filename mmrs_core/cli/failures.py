@@ -10,12 +10,13 @@ from typing import TYPE_CHECKING
 import typer
 
 from mmrs_core.cli.output import one_line, report, say_json, tell
-from mmrs_core.cli.settings import DEBUG, Settings
+from mmrs_core.cli.settings import DEBUG, NO_PLUGINS, Settings
 from mmrs_core.errors import (
     InfeasibleError,
     InternalError,
     InvalidModelError,
     MmrsError,
+    PluginError,
     UnreadableError,
     UnsupportedError,
 )
@@ -27,6 +28,7 @@ if TYPE_CHECKING:
 MODEL_INVALID = 1
 UNREADABLE = 3
 
+_WITHOUT_PLUGINS = f"{DEBUG} prints the traceback; {NO_PLUGINS} runs without plug-ins"
 _HELP = "Usage: "
 """How the message begins when a command is called without arguments: with its help."""
 
@@ -96,6 +98,8 @@ def failure_of(error: Exception) -> Failure:
             return Failure(error.exit_code, _without_list(error), error.elements)
         case InternalError():
             return Failure(error.exit_code, *_unexpected(error))
+        case PluginError():
+            return Failure(error.exit_code, str(error), (_WITHOUT_PLUGINS,))
         case MmrsError():
             return Failure(error.exit_code, str(error))
         case typer.TyperException():

@@ -9,7 +9,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from mmrs_core.contributions.commands import CORE_COMMANDS, Command
-from mmrs_core.errors import PluginError
+from mmrs_core.errors import PluginError, UnreadableError
 
 if TYPE_CHECKING:
     from mmrs_core.contributions.checks import Check
@@ -94,10 +94,17 @@ class Contributions:
 
     @cached_property
     def languages(self) -> Registry:
-        """Return the registry of all metamodels, the core's included."""
+        """Return the registry of all metamodels, the core's included.
+
+        Raises:
+            PluginError: if a metamodel is broken; names its distribution.
+        """
         from mmrs_core.languages.registry import registry_with  # the help needs plug-ins, but no language
 
-        return registry_with(self.metamodels, self.migrations, self.element_classes, self.importers)
+        try:
+            return registry_with(self.metamodels, self.migrations, self.element_classes, self.importers)
+        except UnreadableError as error:
+            raise PluginError(str(error)) from error
 
     @cached_property
     def element_classes(self) -> tuple[ElementClass, ...]:

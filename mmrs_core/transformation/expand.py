@@ -142,9 +142,12 @@ def work_of(rule: Rule, task: Task, robot: Robot, scene: Scene) -> Work:
         InfeasibleError: if the rule says that the robot cannot do the task.
         PluginError: if the rule fails, or returns something that is no sound work; names the rule.
     """
-    where = f"rule '{rule.name}', task '{task.name}', robot '{robot.name}'"
+    place = f" ({task.part.place})" if str(task.part.place) else ""
+    where = f"rule '{rule.name}', task '{task.name}'{place}, robot '{robot.name}'"
     try:
         work = rule.work(task, robot, scene)
+    except PluginError as error:
+        raise PluginError(f"{where}: {error}") from error
     except MmrsError:
         raise
     except Exception as error:

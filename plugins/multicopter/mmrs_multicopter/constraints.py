@@ -7,10 +7,10 @@ from collections.abc import Iterator
 from mmrs_core.contributions.constraints import Constraint, Finding
 from mmrs_core.diagnostics import Severity
 from mmrs_core.grounding.features import child, children, number, text
-from mmrs_core.languages.element import Element, container_of, is_kind, label_of
+from mmrs_core.languages.element import Element, container_of, is_kind, label_of, metaclass_of
 from mmrs_core.languages.modelset import ModelSet
 from mmrs_multicopter.heights import cut_transit, too_high, too_low
-from mmrs_multicopter.names import DRONE, DRONE_SIZE, GO_TO, LAND, TAKE_OFF
+from mmrs_multicopter.names import DRONE, DRONE_SIZE, GO_TO, LAND, MULTICOPTER, TAKE_OFF
 
 MISSION = ("urn:mmrs:mission:1.0", "Mission")
 TEAM_MEMBER = ("urn:mmrs:mission:1.0", "Robot")
@@ -108,6 +108,9 @@ def _take_off_too_high(take_off: Element, models: ModelSet) -> Iterator[Finding]
 
 
 def _flown_by_no_drone(move: Element, models: ModelSet) -> Iterator[Finding]:
+    """Yield moves of other robots, but none of a subclass: its plug-in knows whose it is."""
+    if metaclass_of(move).key[0] != MULTICOPTER:
+        return
     robot_type = _type_of(container_of(move), "typeName", models)
     if robot_type is not None and not is_kind(robot_type, *DRONE):
         yield Finding(move, f"robot type '{label_of(robot_type)}' is no Drone and cannot do this move")

@@ -243,6 +243,10 @@ def test_a_plugin_whose_metamodel_cannot_be_read_is_listed(monkeypatch, tmp_path
     captured = capsys.readouterr()
     assert f"torn: {torn.ecore}:1: not well-formed XML" in captured.err
     assert "torn (given by the caller)\n  metamodels: urn:torn" in captured.out
+    assert run(["show", str(tmp_path / "any.xmi")]) == 1
+    captured = capsys.readouterr()
+    assert f"mmrs: torn: {torn.ecore}:1: not well-formed XML" in captured.err
+    assert "--no-plugins runs without plug-ins" in captured.err
 
 
 def test_help_and_list_work_with_a_broken_plugin(monkeypatch, capsys):

@@ -4,7 +4,9 @@ from math import nan
 
 import pytest
 
+from mmrs_core.contributions.guard import guarded
 from mmrs_core.contributions.rules import Rule
+from mmrs_core.diagnostics import Place
 from mmrs_core.errors import InfeasibleError, PluginError
 from mmrs_core.scene import ActionAt, Capability, Frame, Part, Robot, RobotType, Scene, Stroke, Task, Work
 from mmrs_core.transformation.expand import work_of
@@ -56,6 +58,14 @@ def test_a_work_without_strokes_or_none_at_all_names_the_rule():
 def test_a_rule_that_crashes_is_named():
     with pytest.raises(PluginError, match="rule 'inspect', task 't', robot 'r': fails: ZeroDivisionError"):
         made_by(lambda task, robot, scene: 1 / 0)
+
+
+def test_a_rule_of_a_plugin_that_crashes_is_named_with_the_task_and_its_place():
+    rule = guarded(Rule("inspect", ("urn:t", "T"), lambda task, robot, scene: 1 / 0), "plug-in 'kites': rule")
+    task = Task("t", Part((), {}, Place("m.xmi", 7, "/tasks[0]")))
+    words = r"rule 'inspect', task 't' \(m.xmi:7\), robot 'r': plug-in 'kites': rule fails: ZeroDivisionError"
+    with pytest.raises(PluginError, match=words):
+        work_of(rule, task, ROBOT, SCENE)
 
 
 def test_a_rule_that_says_a_robot_cannot_is_believed():
