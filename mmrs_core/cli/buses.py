@@ -20,7 +20,7 @@ from mmrs_runtime.slots import LocalSlots
 
 
 @dataclass(frozen=True, slots=True)
-class BusWishes:
+class BusOptions:
     """What the command line says of the bus.
 
     Attributes:
@@ -47,7 +47,7 @@ def bus_for(
     here: Sequence[str],
     run: str,
     folder: Path,
-    wishes: BusWishes,
+    wanted: BusOptions,
     resumed: tuple[StepRecord, ...] | None,
     wrap: Callable[[Carrier], Carrier],
 ) -> ProgramBus | LocalSlots:
@@ -66,7 +66,7 @@ def bus_for(
         UnreadableError: if what the folder holds belongs to another run.
         UnsupportedError: if Zenoh is not installed.
     """
-    if not wishes.shared:
+    if not wanted.shared:
         _refuse_strangers(program, here)
         slots = LocalSlots(program.executable)
         restore(slots, program.executable, resumed or ())
@@ -76,9 +76,9 @@ def bus_for(
         from mmrs_runtime.bus.carriers.sessions import Endpoints
     except ModuleNotFoundError as error:
         raise UnsupportedError("--bus: needs Zenoh; pip install 'mmrs-core[bus]'") from error
-    refuse_endpoints("--bus-listen", wishes.listen)
-    refuse_endpoints("--bus-connect", wishes.connect)
-    endpoints = Endpoints(wishes.listen, wishes.connect, wishes.config)
+    refuse_endpoints("--bus-listen", wanted.listen)
+    refuse_endpoints("--bus-connect", wanted.connect)
+    endpoints = Endpoints(wanted.listen, wanted.connect, wanted.config)
     names = sorted(robot.id for robot in program.robots)
     carrier = ZenohCarrier(program.name, run, names, endpoints, plan=program.fingerprint)
     try:

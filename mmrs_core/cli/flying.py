@@ -16,15 +16,15 @@ from mmrs_core.cli.buses import bus_for
 from mmrs_core.cli.observers import ObserverThread
 from mmrs_core.cli.output import say, tell
 from mmrs_core.cli.resuming import end_of, resumed_steps
-from mmrs_core.cli.session import Session
-from mmrs_core.cli.wishes import (
-    Wishes,
+from mmrs_core.cli.run_options import (
+    RunOptions,
     check_backends,
     links_of,
     options_of_robots,
     robots_of,
     stop_response,
 )
+from mmrs_core.cli.session import Session
 from mmrs_core.pictures.figures import clock
 from mmrs_core.pipeline import backend_for, conditions_for, inputs_of
 from mmrs_core.simulation.live import live_run_for, run_live
@@ -78,7 +78,7 @@ class Result:
             say(f"written: {log}")
 
 
-def carry_out(session: Session, loaded: Loaded, wishes: Wishes) -> Result:
+def carry_out(session: Session, loaded: Loaded, wanted: RunOptions) -> Result:
     """Carry a behaviour out; return what became of it.
 
     Raises:
@@ -88,21 +88,21 @@ def carry_out(session: Session, loaded: Loaded, wishes: Wishes) -> Result:
         UnsupportedError: if the backend cannot do what the behaviour holds.
     """
     program = loaded.program
-    backend = backend_for(program, session.contributions, wishes.backend, wishes.own_backends)
-    here = robots_of(program, wishes.robots)
-    links = links_of(wishes.links, here)
-    check_backends(wishes, links, here, session.contributions.vehicles)
-    resumed = resumed_steps(program, wishes, here)
-    run = resumed[0].run if resumed else wishes.run
-    orders, options = Orders(stop_response(wishes.on_stop)), options_of_robots(wishes, here)
-    conditions = conditions_for(program, session.contributions, wishes.assume, asks=True)
+    backend = backend_for(program, session.contributions, wanted.backend, wanted.own_backends)
+    here = robots_of(program, wanted.robots)
+    links = links_of(wanted.links, here)
+    check_backends(wanted, links, here, session.contributions.vehicles)
+    resumed = resumed_steps(program, wanted, here)
+    run = resumed[0].run if resumed else wanted.run
+    orders, options = Orders(stop_response(wanted.on_stop)), options_of_robots(wanted, here)
+    conditions = conditions_for(program, session.contributions, wanted.assume, asks=True)
     with ExitStack() as stack:
-        clock = RealClock(wishes.speedup, end_of(resumed, wishes.folder))
-        wrap = bus_faults(wishes.options.get("inject", ""), program, wishes.bus.shared, clock, stack)
-        given = resumed if wishes.resume else None
-        bus = bus_for(program, here, run, wishes.folder, wishes.bus, given, wrap)
+        clock = RealClock(wanted.speedup, end_of(resumed, wanted.folder))
+        wrap = bus_faults(wanted.options.get("inject", ""), program, wanted.bus.shared, clock, stack)
+        given = resumed if wanted.resume else None
+        bus = bus_for(program, here, run, wanted.folder, wanted.bus, given, wrap)
         stack.callback(bus.close)
-        writer = stack.enter_context(LogWriter(wishes.folder, resumed=wishes.resume))
+        writer = stack.enter_context(LogWriter(wanted.folder, resumed=wanted.resume))
         observers = ObserverThread(session.observers)
         recorder = StepRecorder(observers, writer, program)
         inputs = inputs_of(program, loaded.place, session.contributions, options=options, robots=here)
@@ -111,11 +111,11 @@ def carry_out(session: Session, loaded: Loaded, wishes: Wishes) -> Result:
             clock=clock,
             orders=orders,
             run=run,
-            folder=wishes.folder,
+            folder=wanted.folder,
             links=links,
             resumed=resumed,
-            patience=wishes.patience,
-            meet=begin_all(bus, program.executable, _unbegun(here, resumed), wishes.bus.sync, tell),
+            patience=wanted.patience,
+            meet=begin_all(bus, program.executable, _unbegun(here, resumed), wanted.bus.sync, tell),
             observe=_telling(recorder.record, program),
             sync=writer.sync,
             say=tell,
@@ -124,12 +124,12 @@ def carry_out(session: Session, loaded: Loaded, wishes: Wishes) -> Result:
         def status(robot: str) -> Mapping[str, object]:
             return {**live_run.status_board.status(robot), **recorder.status(robot)}
 
-        _hear(stack, wishes.folder, run, here, orders, status)
+        _hear(stack, wanted.folder, run, here, orders, status)
         stack.enter_context(stopping(orders, here, tell))
         stack.enter_context(unfailing())
         stack.callback(observers.close)
         ending = run_live(live_run)
-    names = [wishes.folder / log_name(robot) for robot in here]
+    names = [wanted.folder / log_name(robot) for robot in here]
     return Result(ending, tuple(path for path in names if path.exists()))
 
 

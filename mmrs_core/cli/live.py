@@ -8,14 +8,14 @@ from typing import Annotated
 import typer
 
 from mmrs_core.cli.behaviours import load_behaviour
-from mmrs_core.cli.buses import BusWishes
+from mmrs_core.cli.buses import BusOptions
 from mmrs_core.cli.flying import carry_out
 from mmrs_core.cli.output import say_json
 from mmrs_core.cli.parameters import Assume, Behaviour, Context, Robots, behaviour_file, robot_files
+from mmrs_core.cli.run_options import MAVLINK, RunOptions
 from mmrs_core.cli.session import Session
 from mmrs_core.cli.settings import Json, settings_of
 from mmrs_core.cli.simulation import answers, backends_of, options_of
-from mmrs_core.cli.wishes import MAVLINK, Wishes
 
 _Texts = list[str] | None
 
@@ -144,7 +144,7 @@ def run(
         given["signing-key"] = str(signing_key)
     if inject:
         given["inject"] = ",".join(inject)
-    wishes = Wishes(
+    wanted = RunOptions(
         folder=log,
         backend=usual,
         own_backends=own,
@@ -157,7 +157,7 @@ def run(
         on_stop=on_stop,
         patience=battery_patience,
         assume=answers(assume),
-        bus=BusWishes(
+        bus=BusOptions(
             bus,
             tuple(bus_listen or ()),
             tuple(bus_connect or ()),
@@ -166,7 +166,7 @@ def run(
         ),
     )
     loaded = load_behaviour(session, behaviour_file(behaviour), context=context, robots=robot_files(robots))
-    result = carry_out(session, loaded, wishes)
+    result = carry_out(session, loaded, wanted)
     if json:
         say_json(result.as_json())
     else:

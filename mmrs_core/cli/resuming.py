@@ -11,7 +11,7 @@ from mmrs_core.behaviour.log import read_log, read_logs, recover_log
 from mmrs_core.behaviour.program import Program
 from mmrs_core.behaviour.replay import replay
 from mmrs_core.cli.output import counted, tell
-from mmrs_core.cli.wishes import Wishes
+from mmrs_core.cli.run_options import RunOptions
 from mmrs_core.errors import InvalidModelError
 from mmrs_core.pictures.figures import clock
 from mmrs_runtime.bus.program_bus import slots_path
@@ -20,21 +20,21 @@ from mmrs_runtime.records.blackbox import black_box_path, last_time, plan_of
 from mmrs_runtime.records.steps import SUFFIX, StepRecord, log_name
 
 
-def resumed_steps(program: Program, wishes: Wishes, here: tuple[str, ...]) -> tuple[StepRecord, ...]:
+def resumed_steps(program: Program, wanted: RunOptions, here: tuple[str, ...]) -> tuple[StepRecord, ...]:
     """Return the steps that the robots of this process made before; none where nothing began then.
 
     Raises:
         typer.BadParameter: if there are logs without --resume, or none with it.
         InvalidModelError: if they are not logs of this behaviour.
     """
-    found = [path for robot in here if (path := wishes.folder / log_name(robot)).exists()]
-    _refuse_others(program, wishes)
-    if not wishes.resume:
+    found = [path for robot in here if (path := wanted.folder / log_name(robot)).exists()]
+    _refuse_others(program, wanted)
+    if not wanted.resume:
         if found:
-            raise typer.BadParameter(f"--log {wishes.folder}: holds logs already; --resume goes on with them")
+            raise typer.BadParameter(f"--log {wanted.folder}: holds logs already; --resume goes on with them")
         return ()
     if not found:
-        _refuse_unknown(wishes.folder, here)
+        _refuse_unknown(wanted.folder, here)
         return ()
     for path in found:
         if plan_of(black_box_path(path)) not in ("", program.fingerprint):
@@ -44,11 +44,11 @@ def resumed_steps(program: Program, wishes: Wishes, here: tuple[str, ...]) -> tu
         tell(f"{damage}: left out")
     result = replay(program, records, partial=True)
     if not result.accepted and len(here) == len(program.robots):
-        raise InvalidModelError(f"{wishes.folder}: not logs of this behaviour: {result.complaints[0]}")
+        raise InvalidModelError(f"{wanted.folder}: not logs of this behaviour: {result.complaints[0]}")
     try:
         over = over_by(program.executable, records)
     except ValueError as error:
-        raise InvalidModelError(f"{wishes.folder}: {error}") from error
+        raise InvalidModelError(f"{wanted.folder}: {error}") from error
     for robot, why in over.items():
         tell(f"'{robot}': {f'its program has ended by {why}' if why else 'has come to its end'}")
     if all(record.label == "fault" and record.seq == 0 for record in records):
@@ -72,11 +72,11 @@ def end_of(records: Sequence[StepRecord], folder: Path) -> float:
     return max((*(record.time for record in records), *map(last_time, boxes)), default=0.0)
 
 
-def _refuse_others(program: Program, wishes: Wishes) -> None:
+def _refuse_others(program: Program, wanted: RunOptions) -> None:
     """Refuse a folder with logs of another run, or of another behaviour."""
     known = {log_name(robot.id) for robot in program.robots}
-    for path in sorted(wishes.folder.glob(f"*{SUFFIX}")) if wishes.folder.is_dir() else ():
+    for path in sorted(wanted.folder.glob(f"*{SUFFIX}")) if wanted.folder.is_dir() else ():
         records = read_log(path, partial=True)
-        strange = path.name not in known or any(each.run != wishes.run for each in records[:1])
-        if strange and not (wishes.resume and path.name in known):
+        strange = path.name not in known or any(each.run != wanted.run for each in records[:1])
+        if strange and not (wanted.resume and path.name in known):
             raise typer.BadParameter(f"--log {path}: is of another run; choose another folder")

@@ -1,4 +1,4 @@
-"""What the command line of ``mmrs run`` asks for, and whether it makes sense."""
+"""Options of ``mmrs run``, and their checks."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from pathlib import Path
 import typer
 
 from mmrs_core.behaviour.program import Program
-from mmrs_core.cli.buses import BusWishes
+from mmrs_core.cli.buses import BusOptions
 from mmrs_core.contributions.vehicles import VehicleFactory
 from mmrs_core.simulation.run import options_for
 
@@ -18,18 +18,17 @@ ON_STOP = {"hold": "HOLD", "return": "RETURN", "land": "LAND"}
 
 
 @dataclass(frozen=True, slots=True)
-class Wishes:
-    """What the command line asks for.
+class RunOptions:
+    """Options of ``mmrs run``.
 
     Attributes:
         folder: of the logs.
-        backend: the usual one. own_backends: by robot, those of others.
+        backend: of robots without one in `own_backends`.
         options: of the backends; ``ROBOT:KEY`` is for that of one robot.
         links: as in ``--connect``.
-        robots: those that this process runs; none: all.
-        patience: seconds to wait for the order to resume once nobody else works.
+        robots: those that this process runs; empty: all.
+        patience: seconds to wait for the command to resume once no other robot is active.
         assume: fixed answers, by condition.
-        bus: what there is to say of the bus.
     """
 
     folder: Path
@@ -44,7 +43,7 @@ class Wishes:
     on_stop: str = "hold"
     patience: float = 0.0
     assume: Mapping[str, bool] = field(default_factory=dict)
-    bus: BusWishes = field(default_factory=BusWishes)
+    bus: BusOptions = field(default_factory=BusOptions)
 
 
 def robots_of(program: Program, wanted: tuple[str, ...]) -> tuple[str, ...]:
@@ -72,7 +71,10 @@ def stop_response(word: str) -> str:
 
 
 def check_backends(
-    wishes: Wishes, links: Mapping[str, str], robots: tuple[str, ...], backends: Mapping[str, VehicleFactory]
+    wanted: RunOptions,
+    links: Mapping[str, str],
+    robots: tuple[str, ...],
+    backends: Mapping[str, VehicleFactory],
 ) -> None:
     """Refuse options and links that the backends of these robots make nothing of.
 
@@ -82,21 +84,21 @@ def check_backends(
     """
     urls = {robot: links.get(robot, "") for robot in robots}
     for name, backend in backends.items():
-        own = {robot: options_for(robot, wishes.options) for robot in _by(name, wishes, robots)}
+        own = {robot: options_for(robot, wanted.options) for robot in _by(name, wanted, robots)}
         for fault in backend.check(own, urls) if own else ():
             raise typer.BadParameter(fault)
 
 
-def options_of_robots(wishes: Wishes, robots: tuple[str, ...]) -> dict[str, str]:
+def options_of_robots(wanted: RunOptions, robots: tuple[str, ...]) -> dict[str, str]:
     """Return the options of backends; where these differ, the key to sign with is for MAVLink's only."""
-    options = dict(wishes.options)
-    if wishes.own_backends and (key := options.pop("signing-key", None)) is not None:
-        options |= {f"{robot}:signing-key": key for robot in _by(MAVLINK, wishes, robots)}
+    options = dict(wanted.options)
+    if wanted.own_backends and (key := options.pop("signing-key", None)) is not None:
+        options |= {f"{robot}:signing-key": key for robot in _by(MAVLINK, wanted, robots)}
     return options
 
 
-def _by(backend: str, wishes: Wishes, robots: tuple[str, ...]) -> tuple[str, ...]:
-    return tuple(each for each in robots if wishes.own_backends.get(each, wishes.backend) == backend)
+def _by(backend: str, wanted: RunOptions, robots: tuple[str, ...]) -> tuple[str, ...]:
+    return tuple(each for each in robots if wanted.own_backends.get(each, wanted.backend) == backend)
 
 
 def links_of(given: tuple[str, ...], robots: tuple[str, ...]) -> dict[str, str]:
