@@ -15,16 +15,16 @@ from pathlib import Path
 from queue import SimpleQueue
 from typing import TYPE_CHECKING
 
-from .hosting import ClockSilentError, Pace, serve
-from .node import Node
-from .sheet import Sheet, from_json
-from .signals import stopped_by_signals
-from .wire.codec import Codec
-from .wire.ports import CHANNEL, PortError, open_port
+from auv_vessel.hosting import ClockSilentError, Pace, serve
+from auv_vessel.node import Node
+from auv_vessel.sheet import Sheet, from_json
+from auv_vessel.signals import stopped_by_signals
+from auv_vessel.wire.codec import Codec
+from auv_vessel.wire.ports import CHANNEL, PortError, open_port
 
 if TYPE_CHECKING:
-    from .body.vehicle import Vehicle
-    from .control.actuators import Drives
+    from auv_vessel.body.vehicle import Vehicle
+    from auv_vessel.control.actuators import Drives
 
 PARTS = ("sensors", "actuators", "movement", "vehicle")
 
@@ -117,19 +117,19 @@ def _node(given: argparse.Namespace, sheet: Sheet) -> Node:
     """Return the part; only what it needs is imported."""
     codec = Codec(sheet)
     if given.part == "sensors":
-        from .control.sensors import Sensors
+        from auv_vessel.control.sensors import Sensors
 
         return Sensors(sheet, codec)
     if given.part == "actuators":
-        from .control.actuators import Actuators
+        from auv_vessel.control.actuators import Actuators
 
         return Actuators(sheet, codec, _drives(given.drives, sheet))
     if given.part == "movement":
-        from .movement.movement import Movement
+        from auv_vessel.movement.movement import Movement
 
         return Movement(sheet, codec)
-    from .body import surroundings as around
-    from .body.vehicle import Vehicle
+    from auv_vessel.body import surroundings as around
+    from auv_vessel.body.vehicle import Vehicle
 
     text = None if given.surroundings is None else given.surroundings.read_text(encoding="utf-8")
     found = around.Surroundings() if text is None else around.from_json(text)
@@ -138,7 +138,7 @@ def _node(given: argparse.Namespace, sheet: Sheet) -> Node:
 
 
 def _befallen(sheet: Sheet, vehicle: Vehicle) -> Node:
-    from .body.befalling import Befallen
+    from auv_vessel.body.befalling import Befallen
 
     lines: SimpleQueue[str] = SimpleQueue()
 
@@ -153,7 +153,7 @@ def _befallen(sheet: Sheet, vehicle: Vehicle) -> Node:
 def _drives(text: str | None, sheet: Sheet) -> Drives | None:
     if text is None:
         return None
-    from .control.foreign import drives_of
+    from auv_vessel.control.foreign import drives_of
 
     return drives_of(text, sheet)
 

@@ -7,12 +7,12 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from types import MappingProxyType
 
-from .goals import GOAL_PERIOD, GOALS, Goal, check_goal, goal_frames
-from .hosting import Pace, Port, serve
-from .sheet import Sheet
-from .wire.catalogue import BEAT_PERIOD, DECISION, EMERGENCIES, MOST_UPTIME, STATUS_BASE, by_id
-from .wire.codec import Codec, Received
-from .wire.frame import Frame
+from auv_vessel.goals import GOAL_PERIOD, GOALS, Goal, check_goal, goal_frames
+from auv_vessel.hosting import Pace, Port, serve
+from auv_vessel.sheet import Sheet
+from auv_vessel.wire.catalogue import BEAT_PERIOD, DECISION, EMERGENCIES, MOST_UPTIME, STATUS_BASE, by_id
+from auv_vessel.wire.codec import Codec, Received
+from auv_vessel.wire.frame import Frame
 
 FIRST_SIGN = 30.0
 """Real seconds to wait for a vehicle's first sign, and until it knows where it is."""

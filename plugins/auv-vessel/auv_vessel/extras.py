@@ -6,8 +6,8 @@ import re
 from collections.abc import Iterator
 from dataclasses import fields
 
-from .instruments import Instruments
-from .sheet import Sheet, unknown
+from auv_vessel.instruments import Instruments
+from auv_vessel.sheet import Sheet, unknown
 
 _ALONG, _ABOUT = ("surge", "sway", "heave"), ("roll", "pitch", "yaw")
 _AXES = {

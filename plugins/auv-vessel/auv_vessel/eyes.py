@@ -14,7 +14,7 @@ from math import hypot
 from statistics import median
 from types import TracebackType
 
-from .sheet import Vector
+from auv_vessel.sheet import Vector
 
 FRONT, BOTTOM = "front", "bottom"
 CAMERAS = (FRONT, BOTTOM)

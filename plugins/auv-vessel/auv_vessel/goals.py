@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
-from .sheet import Sheet
-from .wire.codec import Codec, Received, Value
-from .wire.frame import Frame
+from auv_vessel.sheet import Sheet
+from auv_vessel.wire.codec import Codec, Received, Value
+from auv_vessel.wire.frame import Frame
 
 GOAL_PERIOD = 0.2
 """Seconds from one repetition of a goal to the next."""

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 
-from .node import Node
-from .wire.catalogue import EMERGENCIES, REASONS, VEHICLE
-from .wire.check import check_of
-from .wire.frame import Frame
-from .wire.senders import Senders, own_of
+from auv_vessel.node import Node
+from auv_vessel.wire.catalogue import EMERGENCIES, REASONS, VEHICLE
+from auv_vessel.wire.check import check_of
+from auv_vessel.wire.frame import Frame
+from auv_vessel.wire.senders import Senders, own_of
 
 REASON = "TWO_SENDERS"
 PERIOD = 0.1

@@ -9,11 +9,11 @@ from dataclasses import dataclass
 from random import Random
 from typing import Literal, Protocol
 
-from .guard import Guard
-from .node import Node
-from .wire.catalogue import CLOCK_ID, NODES
-from .wire.check import check_of
-from .wire.frame import Frame
+from auv_vessel.guard import Guard
+from auv_vessel.node import Node
+from auv_vessel.wire.catalogue import CLOCK_ID, NODES
+from auv_vessel.wire.check import check_of
+from auv_vessel.wire.frame import Frame
 
 MICROSECONDS = 1_000_000
 CATCH_UP = 5

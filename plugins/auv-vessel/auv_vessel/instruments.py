@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, fields
 from math import inf
 
-from .sheet import Sheet
+from auv_vessel.sheet import Sheet
 
 
 @dataclass(frozen=True, slots=True)

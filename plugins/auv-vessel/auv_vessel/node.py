@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Protocol
 
-from .wire.frame import Frame
+from auv_vessel.wire.frame import Frame
 
 
 class Node(Protocol):

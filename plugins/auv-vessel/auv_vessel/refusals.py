@@ -7,9 +7,9 @@ from math import hypot
 from sys import float_info
 from typing import Any
 
-from .extras import misnamed
-from .instruments import Instruments
-from .sheet import Sheet, Thruster
+from auv_vessel.extras import misnamed
+from auv_vessel.instruments import Instruments
+from auv_vessel.sheet import Sheet, Thruster
 
 MOST_THRUSTERS, MOST_DEVICES = 32, 256
 LEAST_THRUST, MOST_THRUST = 0.01, 32767.0

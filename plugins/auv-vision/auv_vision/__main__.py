@@ -24,9 +24,8 @@ from auv_vessel.refusals import refuse
 from auv_vessel.sheet import Sheet
 from auv_vessel.sheet import from_json as sheet_from
 from auv_vessel.signals import stopped_by_signals
-
-from .cameras import Camera, Pose, cameras_of
-from .ring import Reader, Writer
+from auv_vision.cameras import Camera, Pose, cameras_of
+from auv_vision.ring import Reader, Writer
 
 FRAMES, NONE = "frames", "none"
 EXIT_USAGE, EXIT_GONE = 2, 3
@@ -121,9 +120,9 @@ def _serve(given: argparse.Namespace, sheet: Sheet, around: Surroundings, stop: 
     if given.part == FRAMES:
         _serve_frames(given, sheet, around, cameras, stop)
         return
-    from .detecting import sought_in, unseen
-    from .processes import watch
-    from .water import POOL, hazier
+    from auv_vision.detecting import sought_in, unseen
+    from auv_vision.processes import watch
+    from auv_vision.water import POOL, hazier
 
     camera, sought = cameras[given.part], sought_in(around)
     for each in unseen(camera, sought):
@@ -139,9 +138,9 @@ def _serve_frames(
     cameras: dict[str, Camera],
     stop: threading.Event,
 ) -> None:
-    from .processes import handle
-    from .renderer import Renderer
-    from .sources import SIMULATED, SourceError, opened
+    from auv_vision.processes import handle
+    from auv_vision.renderer import Renderer
+    from auv_vision.sources import SIMULATED, SourceError, opened
 
     told = {name: getattr(given, name) for name in CAMERAS}
     otherwise = SIMULATED if set(told.values()) == {None} else NONE
@@ -179,8 +178,7 @@ def _whereabouts(
         return lambda: home, time.time, lost
     from auv_vessel.wire.codec import Codec
     from auv_vessel.wire.ports import open_port
-
-    from .hearing import Whereabouts
+    from auv_vision.hearing import Whereabouts
 
     heard = Whereabouts(Codec(sheet))
 

@@ -6,8 +6,8 @@ from colorsys import rgb_to_hsv
 
 import numpy as np
 
-from .cameras import Numbers
-from .water import PALETTE, TOLD_APART, Water
+from auv_vision.cameras import Numbers
+from auv_vision.water import PALETTE, TOLD_APART, Water
 
 FARTHEST = 28.0
 """Degrees of hue by which a colour may differ from that of the palette."""

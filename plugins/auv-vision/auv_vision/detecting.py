@@ -12,14 +12,13 @@ import numpy as np
 from auv_vessel.body.surroundings import BUOY, GATE, PATH, Surroundings
 from auv_vessel.eyes import BOTTOM, FRONT
 from auv_vessel.sheet import Vector
-
-from .cameras import Camera, Numbers, Picture
-from .colours import colour_of
-from .confidence import confidence_of
-from .segments import Segment, View, matted, segments_of, view_of
-from .shapes import Disc, Frame, Post, Strip, discs_of, frames_of, strip_of
-from .stereo import disparities
-from .water import POOL, TOLD_APART, Water
+from auv_vision.cameras import Camera, Numbers, Picture
+from auv_vision.colours import colour_of
+from auv_vision.confidence import confidence_of
+from auv_vision.segments import Segment, View, matted, segments_of, view_of
+from auv_vision.shapes import Disc, Frame, Post, Strip, discs_of, frames_of, strip_of
+from auv_vision.stereo import disparities
+from auv_vision.water import POOL, TOLD_APART, Water
 
 _MOST_SEGMENTS = 12
 _MOST_COVERED = 0.4

@@ -8,8 +8,7 @@ import time
 from auv_vessel.hosting import Port, clock_time
 from auv_vessel.wire.codec import Codec
 from auv_vessel.wire.frame import Frame
-
-from .cameras import Pose
+from auv_vision.cameras import Pose
 
 STALE = 1.0
 """Seconds of silence after which a pose is not known any more."""

@@ -7,12 +7,11 @@ from collections.abc import Sequence
 from auv_vessel.body.surroundings import Surroundings
 from auv_vessel.eyes import Detection
 from auv_vessel.sheet import Sheet
-
-from .cameras import Pose, cameras_of
-from .detecting import Sought, detect, sought_in
-from .placing import detections_of
-from .renderer import Conditions, Renderer
-from .water import POOL, Water, hazier
+from auv_vision.cameras import Pose, cameras_of
+from auv_vision.detecting import Sought, detect, sought_in
+from auv_vision.placing import detections_of
+from auv_vision.renderer import Conditions, Renderer
+from auv_vision.water import POOL, Water, hazier
 
 
 class Eyes:

@@ -7,9 +7,8 @@ from math import dist
 
 from auv_vessel.eyes import Detection, owner_of
 from auv_vessel.sheet import Vector
-
-from .cameras import Camera, Pose
-from .detecting import Sighting, Sought
+from auv_vision.cameras import Camera, Pose
+from auv_vision.detecting import Sighting, Sought
 
 
 def detections_of(

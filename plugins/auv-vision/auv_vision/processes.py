@@ -9,13 +9,12 @@ import time
 from collections.abc import Callable, Mapping, Sequence
 
 from auv_vessel.eyes import to_datagram
-
-from .cameras import Camera, Pose
-from .detecting import Sought, detect
-from .placing import detections_of
-from .ring import Reader, Writer
-from .sources import Adjusted, Source
-from .water import POOL, Water
+from auv_vision.cameras import Camera, Pose
+from auv_vision.detecting import Sought, detect
+from auv_vision.placing import detections_of
+from auv_vision.ring import Reader, Writer
+from auv_vision.sources import Adjusted, Source
+from auv_vision.water import POOL, Water
 
 WAIT, AGAIN = 0.01, 1.0
 """Seconds between two looks for new pictures, and without any until the memory is opened anew."""

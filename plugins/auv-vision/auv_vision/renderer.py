@@ -10,9 +10,8 @@ import cv2
 import numpy as np
 
 from auv_vessel.body.surroundings import BUOY, GATE, PATH, Surroundings, Thing
-
-from .cameras import LEFT, RIGHT, Camera, Numbers, Picture, Pose
-from .water import POOL, Water, bgr, hazier
+from auv_vision.cameras import LEFT, RIGHT, Camera, Numbers, Picture, Pose
+from auv_vision.water import POOL, Water, bgr, hazier
 
 NEAR = 0.15
 """Metres ahead of an eye within which nothing is drawn."""

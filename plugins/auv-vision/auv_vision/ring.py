@@ -23,7 +23,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from .cameras import Picture, Pose
+from auv_vision.cameras import Picture, Pose
 
 SLOTS: Final = 4
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import cv2
 import numpy as np
 
-from .cameras import Numbers, Picture
+from auv_vision.cameras import Numbers, Picture
 
 STANDS_OUT, SURE = 0.055, 0.02
 """How much more a share of a colour must be than around; or than blue's, which it never is in water."""

@@ -10,8 +10,8 @@ from math import hypot, pi, sqrt
 import cv2
 import numpy as np
 
-from .cameras import Numbers, Picture
-from .segments import Segment
+from auv_vision.cameras import Numbers, Picture
+from auv_vision.segments import Segment
 
 Pixel = tuple[float, float]
 

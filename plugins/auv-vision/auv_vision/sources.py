@@ -10,8 +10,8 @@ from typing import Protocol
 import cv2
 import numpy as np
 
-from .cameras import Camera, Picture, Pose
-from .renderer import Renderer
+from auv_vision.cameras import Camera, Picture, Pose
+from auv_vision.renderer import Renderer
 
 SIMULATED = "simulated"
 

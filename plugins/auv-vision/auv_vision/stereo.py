@@ -5,7 +5,7 @@ from __future__ import annotations
 import cv2
 import numpy as np
 
-from .cameras import Camera, Numbers
+from auv_vision.cameras import Camera, Numbers
 
 NEAREST = 0.5
 """Metres within which nothing is ranged."""

@@ -7,7 +7,7 @@ from typing import Final
 
 import numpy as np
 
-from .cameras import Numbers
+from auv_vision.cameras import Numbers
 
 PALETTE: Final = {
     "red": (205, 35, 30),

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from ..instruments import instruments_of
-from ..sheet import Sheet
-from .hydrodynamics import GRAVITY
+from auv_vessel.body.hydrodynamics import GRAVITY
+from auv_vessel.instruments import instruments_of
+from auv_vessel.sheet import Sheet
 
 _PATIENCE, _DEEP, _SOON = 5.0, 0.5, 1e-9
 

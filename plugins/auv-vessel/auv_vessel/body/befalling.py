@@ -7,10 +7,10 @@ from math import isfinite
 from queue import SimpleQueue
 from typing import TypeAlias
 
-from ..sheet import Sheet
-from ..wire.frame import Frame
-from .sensing import SENSORS
-from .vehicle import Vehicle
+from auv_vessel.body.sensing import SENSORS
+from auv_vessel.body.vehicle import Vehicle
+from auv_vessel.sheet import Sheet
+from auv_vessel.wire.frame import Frame
 
 FAULTS = "thruster-dead THRUSTER, frozen MESSAGE, silent MESSAGE, noisy MESSAGE TIMES, leak, battery PART"
 

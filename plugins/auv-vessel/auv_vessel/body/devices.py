@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from ..sheet import Sheet
+from auv_vessel.sheet import Sheet
 
 ACTIVE, REACHED, FAILED = "ACTIVE", "REACHED", "FAILED"
 

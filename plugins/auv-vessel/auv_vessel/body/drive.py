@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ..sheet import Thruster
+from auv_vessel.sheet import Thruster
 
 OFF, RUNS, WATCHDOG, FAULT = "OFF", "RUNS", "WATCHDOG", "FAULT"
 

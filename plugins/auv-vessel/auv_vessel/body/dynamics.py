@@ -15,9 +15,9 @@ from dataclasses import dataclass, replace
 from math import ceil, sqrt
 from typing import TypeAlias
 
-from ..sheet import Sheet, Vector
-from .hydrodynamics import GRAVITY, Hull, Six, hull_of
-from .rotation import Quaternion, Rows, rows_of, to_body, to_world
+from auv_vessel.body.hydrodynamics import GRAVITY, Hull, Six, hull_of
+from auv_vessel.body.rotation import Quaternion, Rows, rows_of, to_body, to_world
+from auv_vessel.sheet import Sheet, Vector
 
 State: TypeAlias = tuple[
     float, float, float, float, float, float, float, float, float, float, float, float, float

@@ -15,7 +15,7 @@ from dataclasses import dataclass
 from math import isfinite, pi, sqrt
 from typing import TypeAlias, cast
 
-from ..sheet import Sheet, Vector
+from auv_vessel.sheet import Sheet, Vector
 
 Six: TypeAlias = tuple[float, float, float, float, float, float]
 

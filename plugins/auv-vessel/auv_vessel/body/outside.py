@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from math import inf
 
-from ..sheet import Sheet
-from ..wire.codec import Received
+from auv_vessel.sheet import Sheet
+from auv_vessel.wire.codec import Received
 
 HELD = 0.5
 """Seconds for which a motor goes on when its drive is silent: motor controllers without set-points stop."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from math import exp, log
 
-from ..sheet import Sheet, Thruster
+from auv_vessel.sheet import Sheet, Thruster
 
 _LAG = 0.15  # seconds
 _LIKE_A_PROPELLER = 1.5  # power by thrust, of an ideal propeller at rest

@@ -5,7 +5,7 @@ from __future__ import annotations
 from math import asin, atan2, cos, degrees, radians, sin
 from typing import TypeAlias
 
-from ..sheet import Vector
+from auv_vessel.sheet import Vector
 
 Quaternion: TypeAlias = tuple[float, float, float, float]
 Rows: TypeAlias = tuple[Vector, Vector, Vector]

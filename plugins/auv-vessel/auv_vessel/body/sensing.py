@@ -7,11 +7,11 @@ from dataclasses import dataclass, field
 from math import cos, radians, sqrt
 from random import Random
 
-from ..instruments import instruments_of
-from ..sheet import Sheet, Vector
-from .hydrodynamics import GRAVITY
-from .rotation import Rows
-from .surroundings import BUOY, Obstacle, Surroundings
+from auv_vessel.body.hydrodynamics import GRAVITY
+from auv_vessel.body.rotation import Rows
+from auv_vessel.body.surroundings import BUOY, Obstacle, Surroundings
+from auv_vessel.instruments import instruments_of
+from auv_vessel.sheet import Sheet, Vector
 
 SENSORS = ("Pressure", "Rates", "Attitude", "Acceleration", "GroundSpeed", "Altitude", "Fix", "Health")
 NOTHING_SEEN = 655.35

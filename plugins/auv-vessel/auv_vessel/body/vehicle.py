@@ -5,19 +5,28 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from math import degrees, inf
 
-from ..sheet import Sheet, Vector
-from ..wire.catalogue import COMMAND_BASE, EMERGENCIES, STATUS_BASE, VEHICLE, messages_of
-from ..wire.codec import Codec, Received, Value
-from ..wire.frame import Frame
-from .ballast import Release
-from .devices import Devices, Operation
-from .drive import Drive
-from .dynamics import Body, at_rest, body_of, floating_depth, lighter, over_ground, slopes, step
-from .outside import Outside
-from .propulsion import Propulsion, watts_of
-from .rotation import angles_of, of_angles, rows_of, to_body
-from .sensing import SENSORS, Faults, Sensing, Truth, antenna_of
-from .surroundings import Surroundings
+from auv_vessel.body.ballast import Release
+from auv_vessel.body.devices import Devices, Operation
+from auv_vessel.body.drive import Drive
+from auv_vessel.body.dynamics import (
+    Body,
+    at_rest,
+    body_of,
+    floating_depth,
+    lighter,
+    over_ground,
+    slopes,
+    step,
+)
+from auv_vessel.body.outside import Outside
+from auv_vessel.body.propulsion import Propulsion, watts_of
+from auv_vessel.body.rotation import angles_of, of_angles, rows_of, to_body
+from auv_vessel.body.sensing import SENSORS, Faults, Sensing, Truth, antenna_of
+from auv_vessel.body.surroundings import Surroundings
+from auv_vessel.sheet import Sheet, Vector
+from auv_vessel.wire.catalogue import COMMAND_BASE, EMERGENCIES, STATUS_BASE, VEHICLE, messages_of
+from auv_vessel.wire.codec import Codec, Received, Value
+from auv_vessel.wire.frame import Frame
 
 STEP = 0.01
 """Seconds of a step of the motion."""

@@ -7,9 +7,13 @@ from typing import Protocol
 
 import numpy as np
 
-from ..instruments import instruments_of
-from ..sheet import Sheet
-from ..wire.catalogue import (
+from auv_vessel.control import failsafe
+from auv_vessel.control.allocation import DEGREES, Allocation, Array
+from auv_vessel.control.drives import CatalogueDrives, Status, Watch
+from auv_vessel.control.thrust_limits import ThrustLimits
+from auv_vessel.instruments import instruments_of
+from auv_vessel.sheet import Sheet
+from auv_vessel.wire.catalogue import (
     ACTUATORS,
     BEAT_PERIOD,
     COMMAND_PERIOD,
@@ -18,12 +22,8 @@ from ..wire.catalogue import (
     STATUS_PERIOD,
     by_id,
 )
-from ..wire.codec import Codec, Received
-from ..wire.frame import Frame
-from . import failsafe
-from .allocation import DEGREES, Allocation, Array
-from .drives import CatalogueDrives, Status, Watch
-from .thrust_limits import ThrustLimits
+from auv_vessel.wire.codec import Codec, Received
+from auv_vessel.wire.frame import Frame
 
 GRAVITY = 9.80665
 UPRIGHT = 0.1

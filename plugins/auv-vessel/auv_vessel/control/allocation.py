@@ -9,8 +9,8 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from ..body.hydrodynamics import GRAVITY, hull_of
-from ..sheet import Sheet
+from auv_vessel.body.hydrodynamics import GRAVITY, hull_of
+from auv_vessel.sheet import Sheet
 
 Array: TypeAlias = NDArray[np.float64]
 

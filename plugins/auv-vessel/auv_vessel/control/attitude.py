@@ -6,9 +6,9 @@ from math import cos, radians, sin, tan
 
 import numpy as np
 
-from ..instruments import Instruments
-from .allocation import Array
-from .plausibility import Channel, Drift
+from auv_vessel.control.allocation import Array
+from auv_vessel.control.plausibility import Channel, Drift
+from auv_vessel.instruments import Instruments
 
 GYRO_GAIN, RATE_GAIN_ALONE = 0.7, 0.06
 ANGLE_GAIN, ANGLE_GAIN_ALONE = 0.12, 0.35

@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from ..sheet import Sheet
-from ..wire.catalogue import STATUS_BASE
-from ..wire.codec import Codec
-from ..wire.frame import Frame
-from .allocation import Array
+from auv_vessel.control.allocation import Array
+from auv_vessel.sheet import Sheet
+from auv_vessel.wire.catalogue import STATUS_BASE
+from auv_vessel.wire.codec import Codec
+from auv_vessel.wire.frame import Frame
 
 SILENT = 0.5
 """Seconds without a status after which a drive counts as dead, where any drive gives some."""

@@ -7,7 +7,7 @@ watchdog (`Sheet.watchdog`) where the actuator controller is gone.
 
 from __future__ import annotations
 
-from ..wire.catalogue import BEAT_PERIOD, COMMAND_PERIOD, SENSOR_PERIOD
+from auv_vessel.wire.catalogue import BEAT_PERIOD, COMMAND_PERIOD, SENSOR_PERIOD
 
 COMMANDS_SILENT = 0.3
 """Seconds without a wrench, complete and valid, after which thrust is zero; it goes on when one comes."""

@@ -6,10 +6,10 @@ from collections.abc import Callable, Mapping, Sequence
 from importlib import import_module
 from typing import TypeAlias
 
-from ..sheet import Sheet, Thruster
-from ..wire.frame import Frame
-from .actuators import Drives
-from .drives import Status
+from auv_vessel.control.actuators import Drives
+from auv_vessel.control.drives import Status
+from auv_vessel.sheet import Sheet, Thruster
+from auv_vessel.wire.frame import Frame
 
 Opener: TypeAlias = Callable[[Sequence[Thruster], Mapping[str, str]], Drives]
 """Given the thrusters in the order of their numbers, and options by name, what speaks for them."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from math import log
 
-from .failsafe import STALE
+from auv_vessel.control.failsafe import STALE
 
 LIVELY, LEAK, JUMPY, QUANTA = 4.0, 0.05, 12.0, 3.0
 """Reversals that show noise, the part of their count that each change takes away, the most that count, and

@@ -6,8 +6,8 @@ from math import cos, radians, sin
 
 import numpy as np
 
-from ..instruments import Instruments
-from .allocation import Array
+from auv_vessel.control.allocation import Array
+from auv_vessel.instruments import Instruments
 
 LOG_PERIOD = 0.2
 """Seconds from one speed of the Doppler log to the next."""

@@ -6,19 +6,19 @@ from math import cos, radians, sin
 
 import numpy as np
 
-from ..instruments import instruments_of
-from ..sheet import Sheet
-from ..wire.catalogue import BEAT_PERIOD, MOST_UPTIME, SENSORS, STATE_PERIOD, STATUS_BASE, by_id
-from ..wire.codec import Codec, Received
-from ..wire.frame import Frame
-from . import failsafe
-from .allocation import Array
-from .attitude import AttitudeFilter
-from .drives import SILENT
-from .plausibility import Channel
-from .reckoning import Reckoning
-from .vertical import Vertical
-from .water import WaterSpeed
+from auv_vessel.control import failsafe
+from auv_vessel.control.allocation import Array
+from auv_vessel.control.attitude import AttitudeFilter
+from auv_vessel.control.drives import SILENT
+from auv_vessel.control.plausibility import Channel
+from auv_vessel.control.reckoning import Reckoning
+from auv_vessel.control.vertical import Vertical
+from auv_vessel.control.water import WaterSpeed
+from auv_vessel.instruments import instruments_of
+from auv_vessel.sheet import Sheet
+from auv_vessel.wire.catalogue import BEAT_PERIOD, MOST_UPTIME, SENSORS, STATE_PERIOD, STATUS_BASE, by_id
+from auv_vessel.wire.codec import Codec, Received
+from auv_vessel.wire.frame import Frame
 
 FLOW_GAIN, FLOW_RELAXES = 0.6, 0.02
 """Part of the log's residual taken over; part of the current taken over at each tick without a log."""

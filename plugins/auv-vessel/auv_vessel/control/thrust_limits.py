@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..body.propulsion import curve_of
-from ..sheet import Sheet
-from .allocation import Array
+from auv_vessel.body.propulsion import curve_of
+from auv_vessel.control.allocation import Array
+from auv_vessel.sheet import Sheet
 
 PEAK_TIME, RISE_TIME = 10.0, 0.4
 """Seconds of peak thrust from cold (`Sheet.extra`: ``peak.time``), and from zero to it (``rise.time``)."""

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from math import sqrt
 
-from ..body.hydrodynamics import GRAVITY
-from ..instruments import Instruments
-from ..sheet import Sheet
-from .plausibility import FORGETS, Channel, Drift
-from .reckoning import LOG_PERIOD
+from auv_vessel.body.hydrodynamics import GRAVITY
+from auv_vessel.control.plausibility import FORGETS, Channel, Drift
+from auv_vessel.control.reckoning import LOG_PERIOD
+from auv_vessel.instruments import Instruments
+from auv_vessel.sheet import Sheet
 
 DEPTH_GAIN, RATE_GAIN, LOG_GAIN = 0.25, 0.04, 0.4
 """Parts of a residual taken over: of depth into depth and (per second) rate, of the log's into rate."""

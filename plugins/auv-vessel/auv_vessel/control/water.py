@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..body.hydrodynamics import GRAVITY, Hull, hull_of
-from ..sheet import Sheet
-from .allocation import Allocation, Array
+from auv_vessel.body.hydrodynamics import GRAVITY, Hull, hull_of
+from auv_vessel.control.allocation import Allocation, Array
+from auv_vessel.sheet import Sheet
 
 
 class WaterSpeed:

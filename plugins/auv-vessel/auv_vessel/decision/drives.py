@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from ..api import Craft
-from ..sheet import Sheet
+from auv_vessel.api import Craft
+from auv_vessel.sheet import Sheet
 
 
 class Drives:

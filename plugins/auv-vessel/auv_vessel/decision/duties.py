@@ -7,9 +7,9 @@ from dataclasses import dataclass
 from math import atan2, degrees, dist, hypot
 from typing import Protocol
 
-from ..api import Craft
-from ..goals import SLOWEST
-from ..sheet import Vector
+from auv_vessel.api import Craft
+from auv_vessel.goals import SLOWEST
+from auv_vessel.sheet import Vector
 
 NO_PROGRESS, DEVICE_SILENT, OBJECT_NOT_FOUND = "NO_PROGRESS", "DEVICE_SILENT", "OBJECT_NOT_FOUND"
 BATTERY_LOW = "BATTERY_LOW"

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from math import inf
 
-from ..api import Craft, State
-from .duties import BATTERY_LOW, NO_PROGRESS, OBJECT_NOT_FOUND, STALE, Duty, FailureError
+from auv_vessel.api import Craft, State
+from auv_vessel.decision.duties import BATTERY_LOW, NO_PROGRESS, OBJECT_NOT_FOUND, STALE, Duty, FailureError
 
 LINK_LOST, POSITION_LOST, OBSTACLE, CRASHED = "LINK_LOST", "POSITION_LOST", "OBSTACLE", "CRASHED"
 

@@ -7,9 +7,9 @@ from math import sqrt
 
 import numpy as np
 
-from ..body.hydrodynamics import GRAVITY, hull_of
-from ..control.allocation import Allocation, Array
-from ..sheet import Sheet, afloat_of
+from auv_vessel.body.hydrodynamics import GRAVITY, hull_of
+from auv_vessel.control.allocation import Allocation, Array
+from auv_vessel.sheet import Sheet, afloat_of
 
 USED = 0.7
 """Part of what thrusters can give continually that movement plans with; the rest is to correct."""

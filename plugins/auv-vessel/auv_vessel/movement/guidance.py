@@ -5,10 +5,10 @@ from __future__ import annotations
 from dataclasses import replace
 from math import cos, hypot, pi, radians, sin, sqrt
 
-from ..goals import Goal
-from ..sheet import Sheet
-from .abilities import Abilities
-from .loops import Aim, Motion, bearing, turn
+from auv_vessel.goals import Goal
+from auv_vessel.movement.abilities import Abilities
+from auv_vessel.movement.loops import Aim, Motion, bearing, turn
+from auv_vessel.sheet import Sheet
 
 PLACE_GAIN, LINE_GAIN = 0.35, 0.35
 """Per second: speed towards the goal by distance, and towards the line to it by distance from that."""

@@ -7,8 +7,8 @@ from math import cos, pi, radians, sin, sqrt
 
 import numpy as np
 
-from ..control.allocation import Array
-from .abilities import Abilities
+from auv_vessel.control.allocation import Array
+from auv_vessel.movement.abilities import Abilities
 
 SPEED_GAIN, SPEED_INTEGRAL = 1.0, 0.25
 DEPTH_GAIN, RISE_GAIN, RISE_INTEGRAL = 0.5, 1.4, 0.35

@@ -7,11 +7,15 @@ from math import isfinite
 
 import numpy as np
 
-from ..control.allocation import DEGREES, Allocation, Array
-from ..control.failsafe import EMERGENCY_PERIOD_LATER
-from ..goals import GOAL_PERIOD, Goal, goal_of, within_rating
-from ..sheet import Sheet
-from ..wire.catalogue import (
+from auv_vessel.control.allocation import DEGREES, Allocation, Array
+from auv_vessel.control.failsafe import EMERGENCY_PERIOD_LATER
+from auv_vessel.goals import GOAL_PERIOD, Goal, goal_of, within_rating
+from auv_vessel.movement.abilities import abilities_of
+from auv_vessel.movement.guidance import Guidance
+from auv_vessel.movement.loops import Loops, Motion
+from auv_vessel.movement.progress import Progress
+from auv_vessel.sheet import Sheet
+from auv_vessel.wire.catalogue import (
     BEAT_PERIOD,
     COMMAND_PERIOD,
     EMERGENCIES,
@@ -22,12 +26,8 @@ from ..wire.catalogue import (
     by_id,
     messages_of,
 )
-from ..wire.codec import Codec, Received
-from ..wire.frame import Frame
-from .abilities import abilities_of
-from .guidance import Guidance
-from .loops import Loops, Motion
-from .progress import Progress
+from auv_vessel.wire.codec import Codec, Received
+from auv_vessel.wire.frame import Frame
 
 GOAL_SILENT = 5.0 * GOAL_PERIOD
 """Seconds without a goal after which the decision centre counts as silent: the vehicle holds its place."""

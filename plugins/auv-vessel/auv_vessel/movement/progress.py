@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from math import hypot
 
-from .abilities import Abilities
-from .guidance import ADRIFT, Guidance
-from .loops import Motion, turn
+from auv_vessel.movement.abilities import Abilities
+from auv_vessel.movement.guidance import ADRIFT, Guidance
+from auv_vessel.movement.loops import Motion, turn
 
 PLACE, DEPTH, HEADING, SPEED = 0.3, 0.1, 5.0, 0.12
 """Metres, metres, degrees and metres per second within which a goal is reached."""

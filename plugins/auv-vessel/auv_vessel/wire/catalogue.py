@@ -12,8 +12,8 @@ from dataclasses import dataclass
 from math import ceil
 from typing import TypeVar
 
-from ..refusals import refuse
-from ..sheet import Sheet, Thruster
+from auv_vessel.refusals import refuse
+from auv_vessel.sheet import Sheet, Thruster
 
 Kind = TypeVar("Kind")
 

@@ -8,12 +8,12 @@ from dataclasses import dataclass
 from math import isfinite
 from typing import TYPE_CHECKING, Any, NoReturn, TypeAlias
 
-from ..sheet import Sheet
-from .catalogue import CHECK, SEQUENCE, Message, messages_of
-from .check import check_of
-from .database import database_of
-from .frame import Frame
-from .layout import Layout, Slot, layout_of
+from auv_vessel.sheet import Sheet
+from auv_vessel.wire.catalogue import CHECK, SEQUENCE, Message, messages_of
+from auv_vessel.wire.check import check_of
+from auv_vessel.wire.database import database_of
+from auv_vessel.wire.frame import Frame
+from auv_vessel.wire.layout import Layout, Slot, layout_of
 
 if TYPE_CHECKING:
     from cantools.database.can import Message as Entry

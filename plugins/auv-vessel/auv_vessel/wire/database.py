@@ -6,10 +6,10 @@ from collections import OrderedDict
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, TypeAlias
 
-from ..refusals import MOST_THRUSTERS
-from ..sheet import Sheet
-from .catalogue import COMMAND_BASE, NODES, Message, messages_of
-from .layout import Slot, layout_of
+from auv_vessel.refusals import MOST_THRUSTERS
+from auv_vessel.sheet import Sheet
+from auv_vessel.wire.catalogue import COMMAND_BASE, NODES, Message, messages_of
+from auv_vessel.wire.layout import Slot, layout_of
 
 if TYPE_CHECKING:
     from cantools.database import Database

@@ -16,8 +16,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from random import Random
 
-from .frame import Frame
-from .socketcand import CHANNEL, ECHO, HI, OK, error_word, frame_of, frame_word, words_of
+from auv_vessel.wire.frame import Frame
+from auv_vessel.wire.socketcand import CHANNEL, ECHO, HI, OK, error_word, frame_of, frame_word, words_of
 
 MOST_CLIENTS, MOST_BEHIND, MOST_WRONG, MOST_DELAYED = 256, 262_144, 100, 100_000
 """Clients; bytes that wait for a client that does not read, after which it misses frames; words that a client

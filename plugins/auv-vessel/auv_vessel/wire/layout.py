@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from math import ceil, floor
 
-from .catalogue import CHECK, SEQUENCE, Field, Message
+from auv_vessel.wire.catalogue import CHECK, SEQUENCE, Field, Message
 
 _COUNTER = Field(SEQUENCE, 8, high=255.0, comment="one more with every frame of this message, from 255 to 0")
 _CHECK = Field(CHECK, 8, high=255.0, comment="CRC-8 SAE J1850 over the identifier (two bytes) and all before")

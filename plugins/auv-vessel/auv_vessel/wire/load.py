@@ -6,11 +6,11 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from math import ceil, floor
 
-from ..sheet import Sheet
-from .catalogue import Message, messages_of
-from .frame import Frame
-from .layout import layout_of
-from .stuffing import length_of, longest, shortest
+from auv_vessel.sheet import Sheet
+from auv_vessel.wire.catalogue import Message, messages_of
+from auv_vessel.wire.frame import Frame
+from auv_vessel.wire.layout import layout_of
+from auv_vessel.wire.stuffing import length_of, longest, shortest
 
 _ROUNDING = 1e-6
 """Part of a window by which a time may come before it and still count in it: times are rounded."""

@@ -11,7 +11,7 @@ from collections import Counter, deque
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
-from .frame import Frame
+from auv_vessel.wire.frame import Frame
 
 if TYPE_CHECKING:
     from can import BusABC, Message

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Collection
 
-from ..refusals import MOST_THRUSTERS
-from .catalogue import ACTUATORS, BEATS, COMMAND_BASE, COMMON, STATUS_BASE, VEHICLE
-from .check import check_of
-from .frame import Frame
+from auv_vessel.refusals import MOST_THRUSTERS
+from auv_vessel.wire.catalogue import ACTUATORS, BEATS, COMMAND_BASE, COMMON, STATUS_BASE, VEHICLE
+from auv_vessel.wire.check import check_of
+from auv_vessel.wire.frame import Frame
 
 LATE = 16
 """Frames by which one may come late, as over a network, and still be of the same sender."""

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import re
 
-from .frame import Frame
+from auv_vessel.wire.frame import Frame
 
 HI, OK, ECHO = b"< hi >", b"< ok >", b"< echo >"
 LONGEST = 128

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from .frame import Frame
+from auv_vessel.wire.frame import Frame
 
 POLYNOMIAL = 0x4599
 TAIL = 13

@@ -33,9 +33,8 @@ from mmrs_runtime.controllers.vocabulary import (
 )
 
 if TYPE_CHECKING:
+    from mmrs_auv.controllers.driver import main
     from mmrs_runtime.controllers.user_functions import Condition
-
-    from .driver import main
 
 __all__ = [
     "Choose",
@@ -91,7 +90,7 @@ class Operate:
 def __getattr__(name: str) -> object:
     """Return what runs programs when it is asked for: to read one, its words are enough."""
     if name == "main":
-        from .driver import main
+        from mmrs_auv.controllers.driver import main
 
         return main
     if name == "Condition":

@@ -24,6 +24,7 @@ from auv_vessel.decision.duties import (
 from auv_vessel.decision.duties import Look as Bearing
 from auv_vessel.movement.abilities import abilities_of
 from auv_vessel.sheet import Sheet, Vector
+from mmrs_auv.controllers import Operate
 from mmrs_auv.controllers.orders import NoWayError, Waters
 from mmrs_runtime.controllers.geodesy import distance_to_leg, ends_of
 from mmrs_runtime.controllers.return_paths import steps_back
@@ -51,8 +52,6 @@ from mmrs_runtime.faults import DEVICE_SILENT, OBJECT_NOT_FOUND
 from mmrs_runtime.faults import Fault as NotFound
 from mmrs_runtime.policies import AFTER, Policy, patience
 from mmrs_runtime.vehicle import Fault
-
-from . import Operate
 
 OFF_ITS_WAY = 5.0
 """Metres that a vehicle may be from the way of its program when it is to go on."""
