@@ -125,7 +125,7 @@ MUTANTS = (
         "vessel",
         "plugins/auv-vessel/auv_vessel",
         VESSEL,
-        ("check-sum", "wire/stuffing.py", "bool(crc & 0x4000)", "bool(crc & 0x2000)"),
+        ("check-sum", "wire/load.py", "bool(crc & 0x4000)", "bool(crc & 0x2000)"),
         ("leak", "control/failsafe.py", "LEAK_SAID = 2", "LEAK_SAID = 20"),
         ("deepest", "control/failsafe.py", "1.02 * max_depth + 0.5", "1.2 * max_depth + 5.0"),
         (
@@ -135,7 +135,7 @@ MUTANTS = (
             "            return False\n",
         ),
         ("held", "control/allocation.py", " - hessian[np.ix_(free, held)] @ x[held]", ""),
-        ("stuffing", "wire/stuffing.py", "count, run = count + 1, 1", "count, run = count + 1, 0"),
+        ("stuffing", "wire/load.py", "count, run = count + 1, 1", "count, run = count + 1, 0"),
         (
             "two-senders",
             "guard.py",

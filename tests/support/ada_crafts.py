@@ -31,9 +31,8 @@ from auv_vessel.wire.catalogue import (
     depth_step,
 )
 from auv_vessel.wire.catalogue import Field as Part
-from auv_vessel.wire.check import check_of
 from auv_vessel.wire.codec import Codec, Value
-from auv_vessel.wire.frame import Frame
+from auv_vessel.wire.frame import Frame, check_of
 
 SCRIPT = Path(__file__).parents[2] / "plugins" / "auv" / "tests" / "targets" / "craft_script.adb"
 FIGURES = {**tables.SECONDS, **tables.METRES, **tables.PARTS, **tables.COUNTS}

@@ -13,13 +13,12 @@ from random import Random
 import pytest
 from mmrs_auv.targets.can_c.target import CAN_C, files_of
 
-from auv_vessel.body.ballast import Release, pressure_of_depth
+from auv_vessel.body.devices import Release, pressure_of_depth
 from auv_vessel.body.vehicle import Vehicle
 from auv_vessel.sheet import Sheet
 from auv_vessel.wire.catalogue import EMERGENCIES, STATUS_BASE
-from auv_vessel.wire.check import check_of
 from auv_vessel.wire.codec import Codec
-from auv_vessel.wire.frame import Frame
+from auv_vessel.wire.frame import Frame, check_of
 from mmrs_core.generation.environment import environment_of
 from mmrs_core.generation.render import Press
 

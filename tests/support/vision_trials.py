@@ -12,8 +12,7 @@ from sample_vessels import pool_sheet
 
 from auv_vessel.body.surroundings import BUOY, GATE, PATH, Surroundings, Thing
 from auv_vision.cameras import LEFT, RIGHT, Camera, Pose, cameras_of
-from auv_vision.detecting import detect, sought_in
-from auv_vision.placing import detections_of
+from auv_vision.detecting import detect, detections_of, sought_in
 from auv_vision.renderer import Conditions, Renderer, directions, gate_ends, middle_of
 from auv_vision.water import POOL, TOLD_APART, hazier
 

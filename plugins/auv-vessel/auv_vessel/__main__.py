@@ -16,15 +16,14 @@ from queue import SimpleQueue
 from typing import TYPE_CHECKING
 
 from auv_vessel.hosting import ClockSilentError, Pace, serve
-from auv_vessel.node import Node
+from auv_vessel.node import Node, stopped_by_signals
 from auv_vessel.sheet import Sheet, from_json
-from auv_vessel.signals import stopped_by_signals
 from auv_vessel.wire.codec import Codec
 from auv_vessel.wire.ports import CHANNEL, PortError, open_port
 
 if TYPE_CHECKING:
     from auv_vessel.body.vehicle import Vehicle
-    from auv_vessel.control.actuators import Drives
+    from auv_vessel.control.drives import Drives
 
 PARTS = ("sensors", "actuators", "movement", "vehicle")
 
@@ -153,7 +152,7 @@ def _befallen(sheet: Sheet, vehicle: Vehicle) -> Node:
 def _drives(text: str | None, sheet: Sheet) -> Drives | None:
     if text is None:
         return None
-    from auv_vessel.control.foreign import drives_of
+    from auv_vessel.control.drives import drives_of
 
     return drives_of(text, sheet)
 

@@ -2,13 +2,145 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections import deque
+from collections.abc import Callable, Collection, Sequence
 
 from auv_vessel.node import Node
-from auv_vessel.wire.catalogue import EMERGENCIES, REASONS, VEHICLE
-from auv_vessel.wire.check import check_of
-from auv_vessel.wire.frame import Frame
-from auv_vessel.wire.senders import Senders, own_of
+from auv_vessel.refusals import MOST_THRUSTERS
+from auv_vessel.wire.catalogue import (
+    ACTUATORS,
+    BEATS,
+    COMMAND_BASE,
+    COMMON,
+    EMERGENCIES,
+    REASONS,
+    STATUS_BASE,
+    VEHICLE,
+)
+from auv_vessel.wire.frame import Frame, check_of
+
+LATE = 16
+"""Frames by which one may come late, as over a network, and still be of the same sender."""
+
+AHEAD = 32
+"""Frames that may be lost between two of the same sender."""
+
+STRAYS = 3
+"""Frames that another sender has to say before it is believed in."""
+
+FORGOTTEN = 5.0
+"""Seconds after which strays, and the counter of a sender that is silent, count no more."""
+
+_NAMES = {each.id: each.name for each in (*COMMON, *BEATS)}
+
+
+class Senders:
+    """Watches the messages that one node says and hears.
+
+    Two senders of one message are told from one that began anew, from frames that are lost, come twice or
+    come late: each counts on by itself, and both go on.
+
+    Args:
+        own: identifiers of what only this node says.
+
+    Attributes:
+        fault: which message has two senders, in words; empty: none has.
+    """
+
+    def __init__(self, own: Collection[int]) -> None:
+        self.fault = ""
+        self._own = frozenset(own)
+        self._mine: deque[float] = deque(maxlen=STRAYS)
+        self._counters: dict[int, _Counter] = {}
+
+    def hear(self, frame: Frame, now: float) -> None:
+        """Take a frame that another node said; one whose check is wrong may be any, damaged."""
+        if self.fault or frame.extended:
+            return
+        data = frame.data
+        if len(data) < 2 or check_of(frame.id, data[:-1]) != data[-1]:
+            return
+        if frame.id in self._own:
+            self._mine.append(now)
+            if len(self._mine) == STRAYS and now - self._mine[0] <= FORGOTTEN:
+                self.fault = f"another node says {name_of(frame.id)}, which only this one is to say"
+            return
+        counter = self._counters.get(frame.id)
+        if counter is None:
+            self._counters[frame.id] = _Counter(data, now)
+        elif counter.is_anothers(data, now):
+            self.fault = f"two nodes say {name_of(frame.id)}, which only one is to say"
+
+
+class _Counter:
+    """The counter of one message.
+
+    It follows one sender; frames that do not follow on are strays, which follow on by themselves if they are
+    another sender's, or that of the first which began anew.
+    """
+
+    def __init__(self, data: bytes, now: float) -> None:
+        self._begin(data, now)
+
+    def _begin(self, data: bytes, now: float) -> None:
+        self._newest, self._heard = data[-2], now
+        self._recent = deque([data], maxlen=2 * LATE)
+        self._stray, self._strayed, self._strays = 0, now, 0
+        self._meanwhile = False
+
+    def is_anothers(self, data: bytes, now: float) -> bool:
+        """Take what the next frame says; return whether there is another sender besides the first."""
+        number = data[-2]
+        if now - self._heard > FORGOTTEN:
+            self._begin(data, now)
+        elif 1 <= (number - self._newest) % 256 <= AHEAD:
+            self._newest, self._heard, self._meanwhile = number, now, True
+            self._recent.append(data)
+        elif data in self._recent:
+            return False
+        elif (self._newest - number) % 256 < LATE and all(each[-2] != number for each in self._recent):
+            self._recent.append(data)
+        else:
+            return self._goes_astray(data, now)
+        return False
+
+    def _goes_astray(self, data: bytes, now: float) -> bool:
+        follows = (data[-2] - self._stray) % 256 <= AHEAD and now - self._strayed <= FORGOTTEN
+        if not self._strays or not follows:
+            self._strays, self._meanwhile = 0, False
+        self._stray, self._strayed = data[-2], now
+        self._strays += 1
+        if self._strays < STRAYS:
+            return False
+        if self._meanwhile:
+            return True
+        self._begin(data, now)
+        return False
+
+
+def name_of(id: int) -> str:
+    """Return the name of a message with an identifier of 11 bits, and that."""
+    name = _NAMES.get(id, "a message")
+    for base, word in ((COMMAND_BASE, "Command"), (STATUS_BASE, "Status")):
+        if base <= id < base + MOST_THRUSTERS:
+            name = f"Thruster{id - base}{word}"
+    return f"{name} (0x{id:03X})"
+
+
+def own_of(node: str, *, drives: bool = True) -> frozenset[int]:
+    """Return the identifiers of what only one node says.
+
+    Args:
+        node: its name. drives: whether those of the thrusters are part of the vehicle's node.
+    """
+    said = {each.id for each in (*COMMON, *BEATS) if each.sender == node}
+    numbers = range(MOST_THRUSTERS)
+    if node == ACTUATORS:
+        said |= {COMMAND_BASE + number for number in numbers}
+    if node == VEHICLE and drives:
+        said |= {STATUS_BASE + number for number in numbers}
+    return frozenset(said)
+
 
 REASON = "TWO_SENDERS"
 PERIOD = 0.1

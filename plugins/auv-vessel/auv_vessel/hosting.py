@@ -12,8 +12,7 @@ from typing import Literal, Protocol
 from auv_vessel.guard import Guard
 from auv_vessel.node import Node
 from auv_vessel.wire.catalogue import CLOCK_ID, NODES
-from auv_vessel.wire.check import check_of
-from auv_vessel.wire.frame import Frame
+from auv_vessel.wire.frame import Frame, check_of
 
 MICROSECONDS = 1_000_000
 CATCH_UP = 5

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import signal
+import threading
 from collections.abc import Sequence
+from queue import SimpleQueue
 from typing import Protocol
 
 from auv_vessel.wire.frame import Frame
@@ -28,3 +31,22 @@ class Node(Protocol):
     def tick(self, now: float) -> Sequence[Frame]:
         """Do what is due at that time, seconds; return what it has to say."""
         ...
+
+
+def stopped_by_signals() -> threading.Event:
+    """Return what SIGTERM and SIGINT set.
+
+    A thread sets it: who waits for an event, or sets it, holds its lock now and then, and a signal that
+    comes just then would wait for that lock for ever.
+    """
+    stop = threading.Event()
+    told: SimpleQueue[int] = SimpleQueue()
+
+    def heed() -> None:
+        told.get()
+        stop.set()
+
+    threading.Thread(target=heed, name="signals", daemon=True).start()
+    for sign in (signal.SIGTERM, signal.SIGINT):
+        signal.signal(sign, lambda number, _frame: told.put(number))
+    return stop

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Sequence
+from dataclasses import fields
 from math import hypot
 from sys import float_info
 from typing import Any
 
-from auv_vessel.extras import misnamed
 from auv_vessel.instruments import Instruments
-from auv_vessel.sheet import Sheet, Thruster
+from auv_vessel.sheet import Sheet, Thruster, unknown
 
 MOST_THRUSTERS, MOST_DEVICES = 32, 256
 LEAST_THRUST, MOST_THRUST = 0.01, 32767.0
@@ -164,3 +165,37 @@ def _name(what: str, value: Any) -> Iterator[str]:
 def _twice(what: str, names: Sequence[str]) -> Iterator[str]:
     for name in sorted({name for name in names if names.count(name) > 1}, key=str):
         yield f"{what}: {name!r} is there {names.count(name)} times"
+
+
+_ALONG, _ABOUT = ("surge", "sway", "heave"), ("roll", "pitch", "yaw")
+_AXES = {
+    "added_mass": _ALONG,
+    "linear_drag": (*_ALONG, *_ABOUT),
+    "quadratic_drag": (*_ALONG, *_ABOUT),
+    "inertia": _ABOUT,
+    "added_inertia": _ABOUT,
+}
+
+EXTRAS = frozenset((
+    *(each.name.replace("_", ".", 1) for each in fields(Instruments)),
+    *(f"{name}.{axis}" for name, axes in _AXES.items() for axis in axes),
+    "righting_arm", "munk", "thruster.lag", "deadman.time", "antenna.height", "sonar.range",
+    "peak.time", "rise.time", "power.limit", "climb.speed", "turn.rate", "search.radius", "search.spacing",
+    "movement.patience", "position.lost", "bottom.clearance",
+    "camera.front.forward", "camera.front.down", "camera.bottom.forward", "camera.bottom.down",
+    "camera.baseline", "camera.focal",
+))  # fmt: skip
+"""All names but those of devices, which are ``device0.seconds``, ``device1.seconds`` and so on."""
+
+_DEVICE = re.compile(r"device(0|[1-9][0-9]{0,8})\.seconds")
+
+
+def misnamed(sheet: Sheet) -> Iterator[str]:
+    """Yield a line for each name of a sheet's `extra` that nobody reads."""
+    devices = [f"device{number}.seconds" for number in range(len(sheet.devices))]
+    for key in sheet.extra:
+        found = _DEVICE.fullmatch(key) if isinstance(key, str) else None
+        if found and int(found[1]) >= len(devices):
+            yield f"extra {key!r}: there is no device {found[1]}, there are {len(devices)}"
+        elif not found and key not in EXTRAS:
+            yield f"extra {key!r}: {unknown(key, (*EXTRAS, *devices))}"

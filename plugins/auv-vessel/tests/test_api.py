@@ -9,7 +9,7 @@ from sample_vessels import pool_sheet
 from vessel_rig import Rig
 
 from auv_vessel.api import Craft
-from auv_vessel.decision.drives import Drives
+from auv_vessel.decision.duties import ThrusterNews
 from auv_vessel.decision.helm import Watch
 from auv_vessel.goals import Goal, goal_frames, goal_of, within_rating
 from auv_vessel.wire.codec import Codec, Received
@@ -44,7 +44,7 @@ def values_of(said: list[Received], name: str) -> list[Mapping[str, object]]:
 
 def test_thrusters_that_fail_are_told_once_and_are_no_sign_of_life() -> None:
     listener = Listener()
-    drives = Drives(listener.craft, listener.sheet)
+    drives = ThrusterNews(listener.craft, listener.sheet)
     for drive in ("RUNS", "FAULT", "FAULT"):
         listener.tell("Thruster2Status", Thrust=0.0, Power=0.0, Drive=drive)
     assert drives.news() == (("ERROR", f"thruster '{listener.sheet.thrusters[2].id}' has failed"),)

@@ -20,12 +20,67 @@ from urllib.parse import quote
 from auv_vessel.body.surroundings import Surroundings
 from auv_vessel.body.surroundings import from_json as surroundings_from
 from auv_vessel.eyes import CAMERAS
+from auv_vessel.hosting import Port, clock_time
+from auv_vessel.node import stopped_by_signals
 from auv_vessel.refusals import refuse
 from auv_vessel.sheet import Sheet
 from auv_vessel.sheet import from_json as sheet_from
-from auv_vessel.signals import stopped_by_signals
+from auv_vessel.wire.codec import Codec
+from auv_vessel.wire.frame import Frame
 from auv_vision.cameras import Camera, Pose, cameras_of
 from auv_vision.ring import Reader, Writer
+
+STALE = 1.0
+"""Seconds of silence after which a pose is not known any more."""
+
+
+class Whereabouts:
+    """Hears places and poses; one thread may hear while another asks."""
+
+    def __init__(self, codec: Codec) -> None:
+        self._codec = codec
+        self._lock = threading.Lock()
+        self._values: dict[str, dict[str, float]] = {}
+        self._heard: dict[str, float] = {}
+        self._clock: float | None = None
+
+    def hear(self, frame: Frame) -> None:
+        """Take a frame of the bus."""
+        told = clock_time(frame)
+        if told is not None:
+            self._clock = told
+            return
+        received = self._codec.decode(frame)
+        if received is None or received.name not in ("Position", "Depth", "Pose"):
+            return
+        values = {key: float(value) for key, value in received.values.items() if not isinstance(value, str)}
+        with self._lock:
+            self._values[received.name] = values
+            self._heard[received.name] = time.monotonic()
+
+    def pose(self) -> Pose | None:
+        """Return where the vehicle believes to be; None if that is not known, or not to be trusted."""
+        with self._lock:
+            now = time.monotonic()
+            if len(self._heard) < 3 or now - min(self._heard.values()) > STALE:
+                return None
+            place, depth, turned = (self._values[name] for name in ("Position", "Depth", "Pose"))
+        if not depth["Trusted"]:
+            return None
+        return Pose(
+            place["North"], place["East"], depth["Depth"], turned["Roll"], turned["Pitch"], turned["Heading"]
+        )
+
+    def now(self) -> float:
+        """Return the time as the vehicle tells it; as this computer does, where nobody tells."""
+        return time.time() if self._clock is None else self._clock
+
+    def listen(self, port: Port, stop: threading.Event) -> None:
+        """Hear a bus until told to stop; raises what the port does when the bus is gone."""
+        while not stop.is_set():
+            if (frame := port.receive(0.1)) is not None:
+                self.hear(frame)
+
 
 FRAMES, NONE = "frames", "none"
 EXIT_USAGE, EXIT_GONE = 2, 3
@@ -178,7 +233,6 @@ def _whereabouts(
         return lambda: home, time.time, lost
     from auv_vessel.wire.codec import Codec
     from auv_vessel.wire.ports import open_port
-    from auv_vision.hearing import Whereabouts
 
     heard = Whereabouts(Codec(sheet))
 

@@ -8,8 +8,7 @@ from auv_vessel.body.surroundings import Surroundings
 from auv_vessel.eyes import Detection
 from auv_vessel.sheet import Sheet
 from auv_vision.cameras import Pose, cameras_of
-from auv_vision.detecting import Sought, detect, sought_in
-from auv_vision.placing import detections_of
+from auv_vision.detecting import Sought, detect, detections_of, sought_in
 from auv_vision.renderer import Conditions, Renderer
 from auv_vision.water import POOL, Water, hazier
 

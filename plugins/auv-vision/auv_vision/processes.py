@@ -10,8 +10,7 @@ from collections.abc import Callable, Mapping, Sequence
 
 from auv_vessel.eyes import to_datagram
 from auv_vision.cameras import Camera, Pose
-from auv_vision.detecting import Sought, detect
-from auv_vision.placing import detections_of
+from auv_vision.detecting import Sought, detect, detections_of
 from auv_vision.ring import Reader, Writer
 from auv_vision.sources import Adjusted, Source
 from auv_vision.water import POOL, Water

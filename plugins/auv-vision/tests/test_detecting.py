@@ -15,14 +15,10 @@ from vision_trials import NOISES, Scene, Told, distance_of, is_visible, trials
 
 from auv_vessel.body.surroundings import BUOY, GATE, PATH, Surroundings, Thing
 from auv_vision.cameras import LEFT, Camera, Pose, cameras_of
-from auv_vision.colours import colour_of
-from auv_vision.confidence import confidence_of
-from auv_vision.detecting import Sought, detect, sought_in
+from auv_vision.detecting import Sought, confidence_of, detect, detections_of, disparities, name_of, sought_in
 from auv_vision.node import Eyes
-from auv_vision.placing import detections_of, name_of
 from auv_vision.renderer import Conditions, Renderer
-from auv_vision.stereo import disparities
-from auv_vision.water import POOL, TOLD_APART, bgr, hazier
+from auv_vision.water import POOL, TOLD_APART, bgr, colour_of, hazier
 
 FRONT_CAMERA, BOTTOM_CAMERA = cameras_of(pool_sheet())
 BUOYS = tuple(Sought(BUOY, f"{colour} buoy", colour, 0.3) for colour in TOLD_APART)

@@ -50,7 +50,7 @@ def mmrs_constraints() -> tuple[Constraint, ...]:
 @hookimpl
 def mmrs_fixes() -> tuple[Fix, ...]:
     """Contribute what mends figures that are exchanged, and overlaps in per cent."""
-    from mmrs_auv.constraints.fixes import FIXES
+    from mmrs_auv.constraints.tasks import FIXES
 
     return FIXES
 
@@ -68,8 +68,7 @@ def mmrs_rules() -> tuple[Rule, ...]:
     """Contribute what tasks under water are made of."""
     from mmrs_auv.tasks.objects import OBJECT_RULES
     from mmrs_auv.tasks.pipelines import PIPELINE_RULE
-    from mmrs_auv.tasks.profiles import YO_YO_RULE
-    from mmrs_auv.tasks.surfacing import SURFACE_RULE
+    from mmrs_auv.tasks.profiles import SURFACE_RULE, YO_YO_RULE
     from mmrs_auv.tasks.surveys import SURVEY_RULE
 
     return (SURVEY_RULE, YO_YO_RULE, *OBJECT_RULES, PIPELINE_RULE, SURFACE_RULE)

@@ -6,8 +6,7 @@ from collections.abc import Iterator
 from math import isfinite
 
 from auv_vessel.sheet import Sheet
-from auv_vessel.wire.catalogue import messages_of
-from auv_vessel.wire.layout import layout_of
+from auv_vessel.wire.catalogue import layout_of, messages_of
 from mmrs_core.behaviour.program import DEVICE_ACTION, Action, Move
 from mmrs_core.scene import Position, RobotType
 

@@ -17,12 +17,11 @@ from auv_vessel.api import Craft
 from auv_vessel.body.vehicle import Vehicle
 from auv_vessel.control.actuators import Actuators
 from auv_vessel.control.sensors import Sensors
-from auv_vessel.extras import EXTRAS
 from auv_vessel.goals import Goal
 from auv_vessel.movement import guidance, loops
 from auv_vessel.movement.abilities import abilities_of
 from auv_vessel.movement.movement import Movement
-from auv_vessel.refusals import SheetError
+from auv_vessel.refusals import EXTRAS, SheetError
 from auv_vessel.sheet import Sheet, from_json, to_json
 from auv_vessel.wire.codec import Codec
 from auv_vision.cameras import cameras_of

@@ -12,8 +12,7 @@ from dronecan.transport import Transfer, TransferManager
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from mmrs_dronecan import speed_controllers
-from mmrs_dronecan.options import Options, options_of
-from mmrs_dronecan.speed_controllers import SpeedControllers
+from mmrs_dronecan.speed_controllers import Options, SpeedControllers, options_of
 from mmrs_dronecan.transfers import Incoming, Outgoing
 
 from auv_vessel.sheet import Thruster

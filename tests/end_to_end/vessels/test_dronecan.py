@@ -20,7 +20,7 @@ from auv_vessel.api import Craft
 from auv_vessel.body.surroundings import Surroundings
 from auv_vessel.body.vehicle import Vehicle
 from auv_vessel.control.actuators import Actuators
-from auv_vessel.control.foreign import drives_of
+from auv_vessel.control.drives import drives_of
 from auv_vessel.control.sensors import Sensors
 from auv_vessel.hosting import Rehearsal
 from auv_vessel.movement.movement import Movement

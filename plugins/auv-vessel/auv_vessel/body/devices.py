@@ -1,14 +1,57 @@
-"""The devices of a simulated vehicle: each does what it is told, one action at a time, and says so."""
+"""Equipment of a simulated vehicle: release of the drop weight, devices, drives outside the simulation."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from math import inf
 
+from auv_vessel.body.hydrodynamics import GRAVITY
+from auv_vessel.instruments import instruments_of
 from auv_vessel.sheet import Sheet
+from auv_vessel.wire.codec import Received
+
+_PATIENCE, _DEEP, _SOON = 5.0, 0.5, 1e-9
+
+
+def patience_of(sheet: Sheet) -> float:
+    """Return seconds without a valid command after which the drop weight falls; 0: it never does."""
+    return max(0.0, sheet.extra.get("deadman.time", _PATIENCE))
+
+
+def pressure_of_depth(sheet: Sheet) -> float:
+    """Return the absolute pressure, Pa, beyond which a vehicle counts as deep."""
+    return instruments_of(sheet).pressure_air + sheet.water_density * GRAVITY * _DEEP
+
+
+class Release:
+    """What holds the drop weight.
+
+    It is held by the supply of the drives: once they have had a valid command, and then none for
+    ``deadman.time`` of `Sheet.extra` (seconds; 5 if it does not say; 0: for ever) while deeper than half a
+    metre, it lets go.
+
+    Attributes:
+        open: whether the weight is gone, which nothing undoes.
+    """
+
+    def __init__(self, sheet: Sheet) -> None:
+        self.open = False
+        self._patience = patience_of(sheet)
+        self._commanded: float | None = None
+
+    def command(self, now: float) -> None:
+        """Take note that a drive had a valid command."""
+        self._commanded = now
+
+    def run(self, now: float, depth: float) -> None:
+        """Let go if it is time to, seconds and metres."""
+        if self._patience > 0.0 and self._commanded is not None and depth > _DEEP:
+            self.open = self.open or now - self._commanded >= self._patience - _SOON
+
 
 ACTIVE, REACHED, FAILED = "ACTIVE", "REACHED", "FAILED"
 
-_SECONDS, _SOON = 0.5, 1e-9
+_SECONDS = 0.5
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,3 +119,23 @@ class Devices:
                 self._answers.append(Answer(device, operation.request, REACHED))
         said, self._answers = self._answers, []
         return said
+
+
+HELD = 0.5
+"""Seconds for which a motor goes on when its drive is silent: motor controllers without set-points stop."""
+
+
+class Outside:
+    """What drives on the bus put out, as `ThrusterStatus` tells it."""
+
+    def __init__(self, sheet: Sheet) -> None:
+        """Know of no thrust yet."""
+        self._told = [(-inf, 0.0)] * len(sheet.thrusters)
+
+    def hear(self, number: int, status: Received, now: float) -> None:
+        """Take what a drive says."""
+        self._told[number] = (now, float(status.values["Thrust"]))
+
+    def thrusts(self, now: float) -> list[float]:
+        """Return newtons of each thruster."""
+        return [thrust if now - at < HELD else 0.0 for at, thrust in self._told]

@@ -5,9 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from math import degrees, inf
 
-from auv_vessel.body.ballast import Release
-from auv_vessel.body.devices import Devices, Operation
-from auv_vessel.body.drive import Drive
+from auv_vessel.body.devices import Devices, Operation, Outside, Release
 from auv_vessel.body.dynamics import (
     Body,
     at_rest,
@@ -18,11 +16,10 @@ from auv_vessel.body.dynamics import (
     slopes,
     step,
 )
-from auv_vessel.body.outside import Outside
-from auv_vessel.body.propulsion import Propulsion, watts_of
 from auv_vessel.body.rotation import angles_of, of_angles, rows_of, to_body
 from auv_vessel.body.sensing import SENSORS, Faults, Sensing, Truth, antenna_of
 from auv_vessel.body.surroundings import Surroundings
+from auv_vessel.body.thrust import Drive, Propulsion, watts_of
 from auv_vessel.sheet import Sheet, Vector
 from auv_vessel.wire.catalogue import COMMAND_BASE, EMERGENCIES, STATUS_BASE, VEHICLE, messages_of
 from auv_vessel.wire.codec import Codec, Received, Value

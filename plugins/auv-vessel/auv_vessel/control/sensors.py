@@ -11,9 +11,7 @@ from auv_vessel.control.allocation import Array
 from auv_vessel.control.attitude import AttitudeFilter
 from auv_vessel.control.drives import SILENT
 from auv_vessel.control.plausibility import Channel
-from auv_vessel.control.reckoning import Reckoning
-from auv_vessel.control.vertical import Vertical
-from auv_vessel.control.water import WaterSpeed
+from auv_vessel.control.reckoning import Reckoning, Vertical, WaterSpeed
 from auv_vessel.instruments import instruments_of
 from auv_vessel.sheet import Sheet
 from auv_vessel.wire.catalogue import BEAT_PERIOD, MOST_UPTIME, SENSORS, STATE_PERIOD, STATUS_BASE, by_id

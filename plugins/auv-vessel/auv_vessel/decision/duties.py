@@ -9,7 +9,7 @@ from typing import Protocol
 
 from auv_vessel.api import Craft
 from auv_vessel.goals import SLOWEST
-from auv_vessel.sheet import Vector
+from auv_vessel.sheet import Sheet, Vector
 
 NO_PROGRESS, DEVICE_SILENT, OBJECT_NOT_FOUND = "NO_PROGRESS", "DEVICE_SILENT", "OBJECT_NOT_FOUND"
 BATTERY_LOW = "BATTERY_LOW"
@@ -340,3 +340,25 @@ class Seek:
             return False
         self._far = f"object {self._name!r} is {away:.1f} m from where it is expected"
         return True
+
+
+class ThrusterNews:
+    """Notices which thrusters have failed since it was asked last, and which work again."""
+
+    def __init__(self, craft: Craft, sheet: Sheet) -> None:
+        """Take all for well."""
+        self._craft, self._thrusters = craft, sheet.thrusters
+        self._failed: frozenset[int] = frozenset()
+
+    def news(self) -> tuple[tuple[str, str], ...]:
+        """Return for each how grave it is, in a word of MAVLink's, and a sentence."""
+        failed, before = self._craft.state().failed, self._failed
+        self._failed = failed
+        return tuple(
+            _told(self._thrusters[number].id, number in failed) for number in sorted(failed ^ before)
+        )
+
+
+def _told(thruster: str, failed: bool) -> tuple[str, str]:
+    grave, what = ("ERROR", "has failed") if failed else ("NOTICE", "works again")
+    return grave, f"thruster '{thruster}' {what}"

@@ -11,9 +11,8 @@ from auv_vessel.control.allocation import DEGREES, Allocation, Array
 from auv_vessel.control.failsafe import EMERGENCY_PERIOD_LATER
 from auv_vessel.goals import GOAL_PERIOD, Goal, goal_of, within_rating
 from auv_vessel.movement.abilities import abilities_of
-from auv_vessel.movement.guidance import Guidance
+from auv_vessel.movement.guidance import Guidance, Progress
 from auv_vessel.movement.loops import Loops, Motion
-from auv_vessel.movement.progress import Progress
 from auv_vessel.sheet import Sheet
 from auv_vessel.wire.catalogue import (
     BEAT_PERIOD,

@@ -9,11 +9,9 @@ from math import isfinite
 from typing import TYPE_CHECKING, Any, NoReturn, TypeAlias
 
 from auv_vessel.sheet import Sheet
-from auv_vessel.wire.catalogue import CHECK, SEQUENCE, Message, messages_of
-from auv_vessel.wire.check import check_of
+from auv_vessel.wire.catalogue import CHECK, SEQUENCE, Layout, Message, Slot, layout_of, messages_of
 from auv_vessel.wire.database import database_of
-from auv_vessel.wire.frame import Frame
-from auv_vessel.wire.layout import Layout, Slot, layout_of
+from auv_vessel.wire.frame import Frame, check_of
 
 if TYPE_CHECKING:
     from cantools.database.can import Message as Entry

@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING, TypeAlias
 
 from auv_vessel.refusals import MOST_THRUSTERS
 from auv_vessel.sheet import Sheet
-from auv_vessel.wire.catalogue import COMMAND_BASE, NODES, Message, messages_of
-from auv_vessel.wire.layout import Slot, layout_of
+from auv_vessel.wire.catalogue import COMMAND_BASE, NODES, Message, Slot, layout_of, messages_of
 
 if TYPE_CHECKING:
     from cantools.database import Database

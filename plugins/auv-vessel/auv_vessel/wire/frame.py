@@ -17,3 +17,23 @@ class Frame:
     id: int
     data: bytes
     extended: bool = False
+
+
+POLYNOMIAL, START, FINAL = 0x1D, 0xFF, 0xFF
+
+
+def _entry(byte: int) -> int:
+    for _ in range(8):
+        byte = (byte << 1) ^ (POLYNOMIAL | 0x100 if byte & 0x80 else 0)
+    return byte
+
+
+_TABLE = bytes(_entry(byte) for byte in range(256))
+
+
+def check_of(id: int, data: bytes) -> int:
+    """Return the check of a message: over its identifier, low byte first, and the bytes before the check."""
+    crc = _TABLE[_TABLE[START ^ (id & 0xFF)] ^ (id >> 8)]
+    for byte in data:
+        crc = _TABLE[crc ^ byte]
+    return crc ^ FINAL

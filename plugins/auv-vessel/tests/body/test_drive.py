@@ -7,7 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from sample_vessels import thruster
 
-from auv_vessel.body.drive import FAULT, OFF, RUNS, WATCHDOG, Drive
+from auv_vessel.body.thrust import FAULT, OFF, RUNS, WATCHDOG, Drive
 
 WATCH = 0.5
 

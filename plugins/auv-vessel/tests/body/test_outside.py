@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from sample_vessels import pool_sheet
 
-from auv_vessel.body.outside import HELD
+from auv_vessel.body.devices import HELD
 from auv_vessel.body.surroundings import Surroundings
 from auv_vessel.body.vehicle import Vehicle
 from auv_vessel.hosting import Rehearsal

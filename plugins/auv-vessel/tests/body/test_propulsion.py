@@ -8,7 +8,7 @@ from math import exp
 import pytest
 from sample_vessels import pool_sheet
 
-from auv_vessel.body.propulsion import Propulsion, watts_of
+from auv_vessel.body.thrust import Propulsion, watts_of
 
 THRUSTER = pool_sheet().thrusters[0]
 

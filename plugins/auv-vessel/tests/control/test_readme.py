@@ -15,7 +15,7 @@ from auv_vessel.control.actuators import Actuators
 from auv_vessel.control.sensors import Sensors
 from auv_vessel.goals import Goal
 from auv_vessel.instruments import Instruments
-from auv_vessel.movement import guidance, loops, movement, progress
+from auv_vessel.movement import guidance, loops, movement
 from auv_vessel.movement.abilities import abilities_of
 from auv_vessel.wire.codec import Codec
 
@@ -41,6 +41,6 @@ def test_the_page_names_all_that_a_sheet_may_say_of_the_control_layer() -> None:
 
 
 def test_the_page_says_within_what_a_goal_is_reached() -> None:
-    said = (progress.PLACE, progress.DEPTH, progress.HEADING, progress.SPEED)
+    said = (guidance.PLACE, guidance.DEPTH, guidance.HEADING, guidance.SPEED)
     assert f"place ({said[0]:g} m), depth ({said[1]:g} m), heading ({said[2]:g}°)" in PART
     assert f"{said[3]:g} m/s" in PART

@@ -6,7 +6,7 @@ import signal
 
 import pytest
 
-from auv_vessel.signals import stopped_by_signals
+from auv_vessel.node import stopped_by_signals
 
 
 @pytest.mark.parametrize("sign", [signal.SIGTERM, signal.SIGINT])

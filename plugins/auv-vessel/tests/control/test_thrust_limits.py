@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from sample_vessels import pool_sheet
 
-from auv_vessel.control.thrust_limits import PEAK_TIME, RISE_TIME, ThrustLimits
+from auv_vessel.control.actuators import PEAK_TIME, RISE_TIME, ThrustLimits
 
 ALL = np.ones(6)
 

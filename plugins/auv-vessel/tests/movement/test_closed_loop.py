@@ -13,8 +13,8 @@ from vessel_rig import Rig, changed
 
 from auv_vessel.body.surroundings import Surroundings
 from auv_vessel.hosting import WireFault
-from auv_vessel.movement import progress
-from auv_vessel.movement.progress import DEPTH, HEADING, PLACE, SETTLED, SPEED
+from auv_vessel.movement import guidance
+from auv_vessel.movement.guidance import DEPTH, HEADING, PLACE, SETTLED, SPEED
 from auv_vessel.sheet import Sheet
 
 pytestmark = pytest.mark.long
@@ -154,7 +154,7 @@ def test_a_body_that_is_not_what_its_sheet_says_gets_there_too(part: float) -> N
 
 @pytest.mark.thorough
 def test_a_goal_that_a_current_keeps_it_from_is_failed(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(progress, "ALLOWANCE", 4.0)
+    monkeypatch.setattr(guidance, "ALLOWANCE", 4.0)
     rig = begun(pool_sheet(), (1.5, 0.0))
     rig.craft.go_to(-2.0, 0.0, 2.0)
     took = rig.until(lambda: rig.state.progress == "FAILED", 120.0, 1.0)

@@ -12,9 +12,8 @@ from vessel_sheets import sheet, sheets
 
 from auv_vessel.sheet import Sheet
 from auv_vessel.wire.catalogue import EMERGENCY_BASE, NODES, Field, Message, messages_of
-from auv_vessel.wire.check import check_of
 from auv_vessel.wire.codec import Codec
-from auv_vessel.wire.frame import Frame
+from auv_vessel.wire.frame import Frame, check_of
 
 SHEET = sheet()
 CODEC = Codec(SHEET)

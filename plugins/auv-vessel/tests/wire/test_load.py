@@ -9,11 +9,9 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from vessel_sheets import sheet
 
-from auv_vessel.wire.catalogue import EMERGENCIES, messages_of
+from auv_vessel.wire.catalogue import EMERGENCIES, layout_of, messages_of
 from auv_vessel.wire.frame import Frame
-from auv_vessel.wire.layout import layout_of
-from auv_vessel.wire.load import heard_load, load_of
-from auv_vessel.wire.stuffing import length_of, longest
+from auv_vessel.wire.load import heard_load, length_of, load_of, longest
 
 
 def test_load_is_the_sum_of_lengths_by_periods() -> None:

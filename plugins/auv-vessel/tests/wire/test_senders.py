@@ -11,12 +11,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from vessel_sheets import sheet
 
-from auv_vessel.guard import emergency_frame
+from auv_vessel.guard import AHEAD, LATE, Senders, emergency_frame, name_of, own_of
 from auv_vessel.wire.catalogue import NODES, REASONS, messages_of
 from auv_vessel.wire.codec import Codec
 from auv_vessel.wire.frame import Frame
 from auv_vessel.wire.hub import corrupted
-from auv_vessel.wire.senders import AHEAD, LATE, Senders, name_of, own_of
 
 SHEET = sheet(2)
 

@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from auv_vessel.wire.frame import Frame
-from auv_vessel.wire.stuffing import bits_of, crc_of, length_of, longest, shortest, stuff_bits
+from auv_vessel.wire.load import bits_of, crc_of, length_of, longest, shortest, stuff_bits
 
 FRAMES = st.one_of(
     st.builds(Frame, st.integers(0, 0x7FF), st.binary(max_size=8)),

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated, TextIO
 import typer
 from typer.main import get_command
 
-from mmrs_auv.commands.vehicles import RobotName, Vehicle, sheet_in
+from mmrs_auv.commands.modelled import RobotName, Vehicle, sheet_in
 from mmrs_core.cli.output import say, say_file, say_json, tell
 from mmrs_core.cli.settings import Json
 from mmrs_core.errors import LinkLostError, UnreadableError
@@ -210,7 +210,7 @@ def load(
     Example: mmrs can load examples/pool --robot Naiad --messages
     """
     from auv_vessel.wire.load import heard_load, load_of
-    from mmrs_auv.commands.load_words import summary, table
+    from mmrs_auv.commands.watching import summary, table
 
     sheet = sheet_in(vehicle, robot)
     designed = load_of(sheet)

@@ -1,17 +1,21 @@
-"""The vehicles of a project or a behaviour."""
+"""The vehicles that a command works on: from a file of its data, or from models."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Annotated
 
-from auv_vessel.sheet import Sheet
+import typer
+
+from auv_vessel.refusals import SheetError, refuse
+from auv_vessel.sheet import Sheet, from_json
 from mmrs_auv.sheets import is_vehicle, sheet_of
 from mmrs_core.cli.behaviours import is_behaviour, load_behaviour
 from mmrs_core.cli.session import Session, Stages
 from mmrs_core.cli.settings import Settings
-from mmrs_core.errors import UnsupportedError
+from mmrs_core.errors import UnreadableError, UnsupportedError
 from mmrs_core.languages.modelset import model_in
 from mmrs_core.scene import Position, RobotType
 
@@ -66,3 +70,51 @@ def _members(path: Path) -> Iterator[_Member]:
     density = scene.environment.get("waterDensity")
     for each in scene.robots:
         yield _Member(each.name, each.type, each.home, each.payload, scene.frame.surface, density)
+
+
+Vehicle = Annotated[
+    Path,
+    typer.Argument(
+        metavar="VEHICLE", help="Vehicle configuration (*.json), or a project or behaviour with a vehicle."
+    ),
+]
+RobotName = Annotated[
+    str, typer.Option("--robot", metavar="NAME", help="Vehicle to use, if there are several.")
+]
+
+
+def sheet_in(path: Path, robot: str) -> Sheet:
+    """Return the data of a vehicle that a bus can be made of.
+
+    Raises:
+        UnreadableError: the file cannot be read, or is no vehicle's data.
+        UnsupportedError: no bus can be made of it; lists why.
+    """
+    sheet = _read(path) if path.suffix == ".json" and path.is_file() else _modelled(path, robot)
+    try:
+        refuse(sheet)
+    except SheetError as error:
+        raise UnsupportedError(f"{path}: no bus can be made of this vehicle", error.faults) from error
+    return sheet
+
+
+def _read(path: Path) -> Sheet:
+    try:
+        return from_json(path.read_text(encoding="utf-8"))
+    except OSError as error:
+        raise UnreadableError(f"{path}: {error.strerror}") from error
+    except ValueError as error:
+        raise UnreadableError(f"{path}: {error}") from error
+
+
+def _modelled(path: Path, robot: str) -> Sheet:
+    """Return the data of a vehicle of a project or a behaviour."""
+    sheets = sheets_in(path)
+    there = ", ".join(sorted(sheets))
+    if robot:
+        if robot not in sheets:
+            raise typer.BadParameter(f"--robot {robot}: no such vehicle in {path}; there are {there}")
+        return sheets[robot]
+    if len(sheets) > 1:
+        raise typer.BadParameter(f"which of its vehicles is meant? --robot, one of {there}")
+    return next(iter(sheets.values()))

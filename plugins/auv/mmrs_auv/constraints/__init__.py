@@ -3,10 +3,8 @@
 from __future__ import annotations
 
 from mmrs_auv.constraints.equipment import EQUIPMENT_CONSTRAINTS
-from mmrs_auv.constraints.mountings import MOUNTING_CONSTRAINTS
-from mmrs_auv.constraints.pipelines import PIPELINE_CONSTRAINTS
-from mmrs_auv.constraints.tasks import TASK_CONSTRAINTS
-from mmrs_auv.constraints.thrusters import THRUSTER_CONSTRAINTS
+from mmrs_auv.constraints.tasks import PIPELINE_CONSTRAINTS, TASK_CONSTRAINTS
+from mmrs_auv.constraints.thrusters import MOUNTING_CONSTRAINTS, THRUSTER_CONSTRAINTS
 from mmrs_auv.constraints.vehicles import VEHICLE_CONSTRAINTS
 
 CONSTRAINTS = tuple(

@@ -7,12 +7,20 @@ from collections.abc import Iterator
 from typing import TypeAlias
 
 from mmrs_auv import names
-from mmrs_auv.tasks.sonar import height_of, swath_at
+from mmrs_auv.tasks.pipelines import way_along
+from mmrs_auv.tasks.surveys import height_of, swath_at
+from mmrs_core.analysis.constraints.blocked import blocked_line
+from mmrs_core.analysis.constraints.capabilities import able
+from mmrs_core.analysis.constraints.sketch import sketch_of
+from mmrs_core.analysis.fixes.figures import as_part, exchanged
 from mmrs_core.contributions.constraints import Constraint, Finding
+from mmrs_core.contributions.fixes import Fix
 from mmrs_core.diagnostics import Severity
+from mmrs_core.errors import InfeasibleError
 from mmrs_core.grounding.features import child, children, number, text, value
 from mmrs_core.languages.element import Element, is_kind, label_of
 from mmrs_core.languages.modelset import ModelSet
+from mmrs_core.scene import Position
 
 TASK = ("urn:mmrs:mission:1.0", "Task")
 CONTEXT = ("urn:mmrs:context:1.0", "Context")
@@ -199,3 +207,51 @@ TASK_CONSTRAINTS = (
     ),
 )
 """What must hold for tasks under water."""
+
+
+def _interrupted(task: Element, models: ModelSet) -> Iterator[Finding]:
+    sketch, way = sketch_of(models), _way(task, models)
+    clearances = [robot.clearance for robot in able(task, models)]
+    smallest = min((each for each in clearances if each is not None), default=None)
+    if not way or smallest is None or None in clearances:
+        return
+    line = blocked_line(sketch, way, smallest)
+    for (begin, end), areas in line.blocked:
+        yield Finding(
+            task,
+            f"task '{label_of(task)}': {end - begin:.1f} of the {line.length:.1f} m of its pipeline are too "
+            f"near to {areas} for every robot, from {begin:.1f} m on",
+        )
+
+
+def _way(task: Element, models: ModelSet) -> tuple[Position, ...]:
+    """Return the way along a task's pipeline; empty where there is none, or its place is not known."""
+    pipeline, known = child(task, "pipeline"), sketch_of(models).ground.positions
+    points = [known.get(each) for each in children(pipeline, "points")]
+    placed = tuple(point for point in points if point is not None)
+    height, offset = number(task, "height") or 0.0, number(task, "offset") or 0.0
+    try:
+        return way_along(placed, height, offset) if len(placed) == len(points) else ()
+    except InfeasibleError:
+        return ()
+
+
+PIPELINE_CONSTRAINTS = (
+    Constraint(
+        "AUV035",
+        "All of a pipeline can be followed",
+        names.FOLLOW_PIPELINE_TASK,
+        _interrupted,
+        "follow it on the other side, or make the area or its safetyDistance smaller",
+        Severity.WARNING,
+    ),
+)
+"""What must hold for tasks along pipelines."""
+
+
+FIXES = (
+    Fix("AUV005", "exchange operatingThrust and maxThrust", exchanged("operatingThrust", "maxThrust")),
+    Fix("AUV006", "exchange operatingPower and maxPower", exchanged("operatingPower", "maxPower")),
+    Fix("AUV023", "write the overlap as a part of one", as_part("overlap")),
+    Fix("AUV025", "exchange minDepth and maxDepth", exchanged("minDepth", "maxDepth")),
+)

@@ -6,7 +6,6 @@ from collections.abc import Callable, Mapping, Sequence
 from math import hypot, inf
 
 from auv_vessel.api import Craft, State
-from auv_vessel.decision.drives import Drives
 from auv_vessel.decision.duties import (
     NO_PROGRESS,
     STALE,
@@ -14,6 +13,7 @@ from auv_vessel.decision.duties import (
     FailureError,
     Stay,
     Surface,
+    ThrusterNews,
 )
 from auv_vessel.decision.helm import (
     COMES_UP,
@@ -79,7 +79,7 @@ class CanVehicle(Vehicle):
         self._robot, self._sheet, self._craft, self._orders = robot, sheet, craft, orders
         self._box, self._note, self._say, self._fixed = box, notes_in(box), say, -inf
         self._seen = seen
-        self._helm, self._drives = Helm(craft), Drives(craft, sheet)
+        self._helm, self._drives = Helm(craft), ThrusterNews(craft, sheet)
         self._watch = Watch(craft, orders.reserve, self._after, clearance)
         self._afloat = float(abilities_of(sheet).afloat)
         self._response, self._instead = "", ""

@@ -6,7 +6,7 @@ from itertools import pairwise
 from math import ceil, dist, hypot
 
 from mmrs_auv.names import FOLLOW_PIPELINE_TASK, PIPELINE
-from mmrs_auv.tasks.recording import recorded
+from mmrs_auv.tasks.surveys import recorded
 from mmrs_core.contributions.rules import Rule
 from mmrs_core.errors import InfeasibleError
 from mmrs_core.planning.open_lines import open_line

@@ -1,4 +1,4 @@
-"""The rule for profiles of the water: along a line, down and up again."""
+"""Rules for profiles through the water column, down and up along a line, and for fixes at the surface."""
 
 from __future__ import annotations
 
@@ -7,16 +7,14 @@ from dataclasses import replace
 from itertools import accumulate, pairwise
 from math import dist, floor, inf, radians, tan
 
-from mmrs_auv.names import YO_YO_TASK
-from mmrs_auv.tasks.recording import recorded
+from mmrs_auv.names import SURFACE_TASK, YO_YO_TASK
+from mmrs_auv.tasks.surveys import recorded
 from mmrs_core.contributions.rules import Rule
 from mmrs_core.errors import InfeasibleError
 from mmrs_core.planning.open_lines import OpenLine, open_line
 from mmrs_core.planning.positions import refuse_blocked, refuse_heights
 from mmrs_core.scene import Part, Point, Position, Robot, Scene, Stroke, Task, Work
 from mmrs_core.scene.attributes import number, position, positions
-
-RULE = "yo_yo"
 
 MOST_WAVES = 5_000
 """Times at most that one line goes down and up: more, nobody means."""
@@ -58,7 +56,7 @@ def yo_yo_work(task: Task, robot: Robot, scene: Scene) -> Work:
             points, cuts=tuple(_climbs(points)), reversible=True, part="the line", stretch=stretch
         )
         strokes.append(recorded(part, robot, stroke))
-    return Work(tuple(strokes), divisible=True, rule=RULE, entry=entry, gaps=found.gaps)
+    return Work(tuple(strokes), divisible=True, rule="yo_yo", entry=entry, gaps=found.gaps)
 
 
 def _waves(line: tuple[Point, ...], wave: float, top: float, bottom: float) -> tuple[Position, ...]:
@@ -127,4 +125,18 @@ def _climbs(points: tuple[Position, ...]) -> Iterator[float]:
             yield travelled
 
 
-YO_YO_RULE = Rule(RULE, YO_YO_TASK, yo_yo_work)
+YO_YO_RULE = Rule("yo_yo", YO_YO_TASK, yo_yo_work)
+
+
+def surface_work(task: Task, robot: Robot, scene: Scene) -> Work:
+    """Return the place at the surface above the point, and how long to stay there."""
+    east, north, _ = position(task.part, "point")
+    place = (east, north, scene.frame.surface)
+    refuse_heights(robot, (place,))
+    refuse_blocked(robot, scene, (place,), "the place at the surface")
+    return Work(
+        (Stroke((place,), hold=number(task.part, "duration") or 0.0),), divisible=False, rule="surface_fix"
+    )
+
+
+SURFACE_RULE = Rule("surface_fix", SURFACE_TASK, surface_work)

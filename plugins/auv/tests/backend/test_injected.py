@@ -11,7 +11,7 @@ from dives import dive, diver
 from hypothesis import given
 from hypothesis import strategies as st
 from mmrs_auv.backend.connected import Faults, faults_of
-from mmrs_auv.controllers.injected import frame_of, injected, piece_of
+from mmrs_auv.controllers.connected import frame_of, injected, piece_of
 
 from auv_vessel.hosting import clock_frame
 from auv_vessel.wire.frame import Frame

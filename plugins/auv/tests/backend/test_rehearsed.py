@@ -12,7 +12,7 @@ from dives import POOL, Rehearsed, dive, rehearse, swim
 from mmrs_auv.backend.rehearsed import RehearsedRobot
 
 from auv_vessel.body.surroundings import BUOY, Surroundings, Thing, to_json
-from auv_vessel.movement import movement, progress
+from auv_vessel.movement import guidance, movement
 from mmrs_core.behaviour.program import Action, Heading, Move, MoveTarget, Transition
 from mmrs_core.contributions.execution import Condition
 from mmrs_core.errors import UnsupportedError
@@ -161,7 +161,7 @@ def test_that_the_dive_was_given_up_is_told_once(tmp_path: Path) -> None:
 
 
 def test_a_vehicle_that_does_not_get_back_comes_up(tmp_path: Path, monkeypatch) -> None:
-    monkeypatch.setattr(progress, "ALLOWANCE", 4.0)
+    monkeypatch.setattr(guidance, "ALLOWANCE", 4.0)
     found = rehearse(dive(swim("out", 0.0, 2.0, 1.0)), tmp_path / "out", noise="no")
     robot, now = found.robots["naiad"], found.run.ending.time
     robot.stage.vehicle.faults.dead |= {0, 1, 2, 3}
@@ -388,7 +388,7 @@ def test_a_speed_that_its_bus_cannot_say_is_not_taken_for_as_fast_as_it_likes(tm
 @pytest.mark.parametrize("clearance", [movement.CLEARANCE, -5.0], ids=["clear of it", "pressing on it"])
 def test_a_vehicle_that_the_bottom_keeps_from_its_goal_comes_up(clearance, tmp_path, monkeypatch) -> None:
     monkeypatch.setattr(movement, "CLEARANCE", clearance)
-    monkeypatch.setattr(progress, "ALLOWANCE", 4.0)
+    monkeypatch.setattr(guidance, "ALLOWANCE", 4.0)
     found = rehearse(dive(swim("out", 1.0, 0.0, 5.0)), tmp_path, bottom="2")
     assert found.fault == "NO_PROGRESS"
     assert at(found.robots["naiad"])[2] < AFLOAT

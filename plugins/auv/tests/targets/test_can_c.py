@@ -16,11 +16,10 @@ from mmrs_auv.targets.can_c.target import CAN_C, files_of
 from mmrs_auv.targets.can_c.words import block, number
 from vessel_sheets import sheet, sheets, thruster
 
-from auv_vessel.body.ballast import pressure_of_depth
+from auv_vessel.body.devices import pressure_of_depth
 from auv_vessel.wire.catalogue import EMERGENCIES
-from auv_vessel.wire.check import check_of
 from auv_vessel.wire.codec import Codec
-from auv_vessel.wire.frame import Frame
+from auv_vessel.wire.frame import Frame, check_of
 from mmrs_core.errors import UnsupportedError
 from mmrs_core.generation.capabilities.probes import plain
 from mmrs_core.generation.render import render

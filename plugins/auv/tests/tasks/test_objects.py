@@ -6,7 +6,7 @@ from math import atan2, cos, degrees, dist, pi
 import pytest
 import shapely
 from mmrs_auv.tasks.objects import align_moves, align_work, inspect_work
-from mmrs_auv.tasks.surfacing import surface_work
+from mmrs_auv.tasks.profiles import surface_work
 
 from mmrs_core.errors import InfeasibleError
 

@@ -7,8 +7,7 @@ import pytest
 import shapely
 from hypothesis import given
 from hypothesis import strategies as st
-from mmrs_auv.tasks.sonar import swath_at
-from mmrs_auv.tasks.surveys import survey_work
+from mmrs_auv.tasks.surveys import survey_work, swath_at
 
 from mmrs_core.errors import InfeasibleError
 

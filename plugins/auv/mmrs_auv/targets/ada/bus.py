@@ -14,8 +14,8 @@ from auv_vessel.wire.catalogue import (
     REASONS,
     Message,
     depth_step,
+    layout_of,
 )
-from auv_vessel.wire.layout import layout_of
 from mmrs_auv.kinds import SEA_WATER, largest_depth
 from mmrs_core.behaviour.program import RobotProgram
 from mmrs_core.contributions.targets import TargetInput

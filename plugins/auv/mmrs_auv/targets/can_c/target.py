@@ -8,13 +8,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
-from auv_vessel.body.ballast import patience_of, pressure_of_depth
-from auv_vessel.body.drive import MOST_AHEAD
-from auv_vessel.body.propulsion import curve_of
+from auv_vessel.body.devices import patience_of, pressure_of_depth
+from auv_vessel.body.thrust import MOST_AHEAD, curve_of
 from auv_vessel.refusals import MOST_POWER
 from auv_vessel.sheet import Sheet
-from auv_vessel.wire.catalogue import EMERGENCIES, STATUS_PERIOD, messages_of
-from auv_vessel.wire.layout import layout_of
+from auv_vessel.wire.catalogue import EMERGENCIES, STATUS_PERIOD, layout_of, messages_of
 from mmrs_auv.sheets import is_vehicle, sheet_of
 from mmrs_auv.targets.can_c.bus import codec_of
 from mmrs_auv.targets.can_c.words import block, number
