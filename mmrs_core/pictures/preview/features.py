@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from itertools import chain
 from math import isfinite
 
 from shapely.errors import ShapelyError
@@ -54,29 +55,63 @@ def task_pictures(
     """Return the tasks, those without a position (Fork, Join) included.
 
     A task's position is found by the shape of its attributes: ``shell`` and ``holes`` make an area,
-    ``points`` a line, ``point`` a point, whichever plug-in the task comes from.
+    ``points`` a line, ``point`` a point, whichever plug-in the task comes from. A task that only refers to a
+    context element is where that element is.
     """
     return tuple(
         _task_picture(
-            task, begins.get(task.name), ends.get(task.name), symbol_of(task.part.metaclasses, symbols)
+            task,
+            begins.get(task.name),
+            ends.get(task.name),
+            symbol_of(task.part.metaclasses, symbols),
+            scene.elements,
         )
         for task in scene.tasks
     )
 
 
-def _task_picture(task: Task, begin: float | None, end: float | None, symbol: MapSymbol) -> TaskPicture:
+def _task_picture(
+    task: Task, begin: float | None, end: float | None, symbol: MapSymbol, elements: Iterable[Part]
+) -> TaskPicture:
     attributes = task.part.attributes
-    shell = points_of(attributes.get("shell"))
+    shell, line = points_of(attributes.get("shell")), points_of(attributes.get("points"))
     return TaskPicture(
         name=task.name,
         symbol=symbol,
         rings=(shell, *_holes(attributes.get("holes"))) if shell else (),
-        line=points_of(attributes.get("points")),
-        point=point_of(attributes.get("point")),
+        line=line,
+        point=point_of(attributes.get("point"))
+        or (None if shell or line else _referred(task.part, elements)),
         begin=begin,
         end=end,
         details=details_of(task.part, symbol),
     )
+
+
+def _referred(part: Part, elements: Iterable[Part]) -> Point | None:
+    """Return the middle of the first element, of those with a position, that another element refers to."""
+    values = [value for name, value in part.attributes.items() if name != "name"]
+    listed = chain.from_iterable(value if isinstance(value, tuple) else (value,) for value in values)
+    named = {each for each in listed if isinstance(each, str) and each}
+    for element in _every(elements):
+        if element.attributes.get("name") in named or element.place.path in named:
+            shapes = _shapes(element)
+            points = [*shapes.marks, *chain(*shapes.outlines, *shapes.lines)]
+            if points:
+                return middle_of(points)
+    return None
+
+
+def _every(elements: Iterable[Part]) -> Iterator[Part]:
+    """Yield elements with all that they contain."""
+    for element in elements:
+        yield element
+        yield from _every(_shapes(element).parts)
+
+
+def middle_of(points: Sequence[Point]) -> Point:
+    """Return the mean of points."""
+    return sum(x for x, _ in points) / len(points), sum(y for _, y in points) / len(points)
 
 
 def symbol_of_robot(robot_type: RobotType, symbols: Mapping[Name, MapSymbol]) -> MapSymbol | None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
 from itertools import accumulate
 from math import isfinite, nan
@@ -20,6 +20,7 @@ from mmrs_core.languages.element import Element, Unknown, place_of
 from mmrs_core.languages.modelset import ModelSet
 from mmrs_core.pictures.preview.features import (
     elements_of,
+    middle_of,
     origin_of,
     symbol_of_robot,
     task_pictures,
@@ -57,14 +58,15 @@ def picture_of_models(
     team = names_of(children(child(mission, "team"), "robots"))
     robots = tuple(_robot(each, name, models, laid, symbols) for each, name in team.items())
     tasks = names_of(each for each in children(mission, "tasks") if not isinstance(each, Unknown))
+    elements = (each for each in children(context, "elements") if not isinstance(each, Unknown))
     scene = Scene(
         name=text(mission, "name"),
         frame=laid.frame,
         tasks=tuple(Task(name, part_of(each, laid)) for each, name in tasks.items()),
         dependencies=(),
         robots=(),
+        elements=tuple(part_of(each, laid) for each in elements),
     )
-    elements = (each for each in children(context, "elements") if not isinstance(each, Unknown))
     error = number(mission, "positionError") or 0.0
     types = {each.type_name for each in robots} & models.robots.keys()
     known = (_type(models.robots[name]) for name in types)
@@ -75,7 +77,7 @@ def picture_of_models(
         robots=tuple(each for each in robots if isfinite(each.home[0])),
         zones=zones_of(_areas(context, laid), clearances),
         tasks=task_pictures(scene, {}, {}, symbols),
-        elements=elements_of((part_of(each, laid) for each in elements), symbols),
+        elements=elements_of(scene.elements, symbols),
         problems=problems_of(models, problems),
     )
 
@@ -125,7 +127,7 @@ def _by_path(models: ModelSet, laid: Ground) -> dict[tuple[str, str], Point]:
                 place = place_of(coordinate)
                 for path in _paths(place.path):
                     points.setdefault((place.file, path), []).append(position[:2])
-    return {key: _middle(found) for key, found in points.items()}
+    return {key: middle_of(found) for key, found in points.items()}
 
 
 def _paths(path: str) -> list[str]:
@@ -135,10 +137,6 @@ def _paths(path: str) -> list[str]:
     ['/tasks[2]', '/tasks[2]/shell[0]']
     """
     return [*accumulate(path.lstrip("/").split("/"), "{}/{}".format, initial="")][1:]
-
-
-def _middle(points: Sequence[Point]) -> Point:
-    return sum(x for x, _ in points) / len(points), sum(y for _, y in points) / len(points)
 
 
 def _by_name(models: ModelSet, by_path: Mapping[tuple[str, str], Point]) -> Iterator[tuple[str, Point]]:

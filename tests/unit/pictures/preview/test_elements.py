@@ -6,11 +6,13 @@ import pytest
 from lxml import etree
 
 from mmrs_core.contributions.symbols import MapSymbol
-from mmrs_core.pictures.preview.features import elements_of
+from mmrs_core.diagnostics import Place
+from mmrs_core.pictures.preview.features import elements_of, task_pictures
 from mmrs_core.pictures.preview.map import map_of
 from mmrs_core.pictures.preview.page import page
 from mmrs_core.pictures.preview.projection import projection_of
-from mmrs_core.scene import Part
+from mmrs_core.scene import Part, Task
+from mmrs_core.testing.scenes import sample_scene
 
 SOLAR, RING = "urn:test:solar:1.0", ("urn:mmrs:mission:1.0", "Ring")
 GROUP, PANEL = (SOLAR, "PanelGroup"), (SOLAR, "Panel")
@@ -48,6 +50,25 @@ def test_other_lists_of_coordinates_are_a_mark_each():
 def test_a_ring_is_an_outline():
     inside = Part((RING,), {"points": SHELL})
     assert of(part(GROUP, basin=inside, ponds=(inside,)))[0].outlines == (FLAT, FLAT)
+
+
+@pytest.mark.parametrize(
+    ("value", "point"),
+    [
+        ("field", (20.0, 20.0 / 3)),
+        (("no such", "edge"), (1.0, 2.0)),
+        ("/elements[7]", (1.0, 2.0)),
+        ("other", None),
+    ],
+)
+def test_a_task_that_only_refers_to_an_element_is_drawn_there(value, point):
+    edge = replace(
+        part(PANEL, name="edge", position=(1.0, 2.0, 3.0)), place=Place("c.xmi", 9, "/elements[7]")
+    )
+    scene = replace(sample_scene(elements=(part(GROUP, name="field", shell=SHELL, panels=(edge,)),)))
+    task = Task("look", Part(((SOLAR, "LookTask"),), {"name": "field", "at": value}))
+    (picture,) = task_pictures(replace(scene, tasks=(task,)), {}, {}, {})
+    assert picture.point == (None if point is None else pytest.approx(point))
 
 
 def test_what_it_contains_looks_as_its_own_metaclass_says():
