@@ -6,11 +6,12 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
-from mmrs_core.cli.output import progress, say, say_json, tell
+from mmrs_core.cli.behaviours import is_behaviour, load_behaviour
+from mmrs_core.cli.output import say, say_json, tell
 from mmrs_core.cli.parameters import (
     Assume,
     Context,
@@ -20,15 +21,25 @@ from mmrs_core.cli.parameters import (
     robot_files,
     without_mission,
 )
+from mmrs_core.cli.plan import folder_of
 from mmrs_core.cli.protection import files_of, refuse_inputs
+from mmrs_core.cli.replacing import replace_files
+from mmrs_core.cli.report import flown
+from mmrs_core.cli.session import Session, Stages
 from mmrs_core.cli.settings import Json, settings_of
+from mmrs_core.cli.simulation import answers, fly
 from mmrs_core.cli.verdict_words import verdict_rows
+from mmrs_core.diagnostics import Diagnostic
 from mmrs_core.errors import InfeasibleError, InvalidModelError
-
-if TYPE_CHECKING:
-    from mmrs_core.cli.session import Session, Stages
-    from mmrs_core.diagnostics import Diagnostic
-    from mmrs_core.pictures.preview.picture import Picture
+from mmrs_core.pictures.preview.from_models import picture_of_models, problems_of
+from mmrs_core.pictures.preview.from_plan import picture_of_plan
+from mmrs_core.pictures.preview.from_run import picture_of_run
+from mmrs_core.pictures.preview.map import map_of
+from mmrs_core.pictures.preview.moves import with_moves
+from mmrs_core.pictures.preview.page import page
+from mmrs_core.pictures.preview.picture import Picture
+from mmrs_core.pictures.report.assembly import report_of
+from mmrs_core.pictures.report.map import flight_picture
 
 PAGE = "preview.html"
 MAP = "preview.svg"
@@ -67,10 +78,6 @@ def preview(
 
     Example: mmrs preview field
     """
-    from mmrs_core.cli.behaviours import is_behaviour
-    from mmrs_core.cli.plan import folder_of
-    from mmrs_core.cli.session import Session, Stages
-
     session = Session(settings_of(call))
     types = robot_files(robots)
     folder = output if output is not None else folder_of(project)
@@ -98,10 +105,6 @@ def preview(
 
 def picture_of(stages: Stages) -> Picture:
     """Return the picture of a planned mission, with the moves that carry it out."""
-    from mmrs_core.pictures.preview.from_models import problems_of
-    from mmrs_core.pictures.preview.from_plan import picture_of_plan
-    from mmrs_core.pictures.preview.moves import with_moves
-
     symbols = stages.session.contributions.map_symbols
     picture = with_moves(picture_of_plan(stages.scene, stages.plan, symbols), stages.program)
     problems = problems_of(stages.models, stages.warnings)
@@ -115,8 +118,6 @@ def drawn_on_failure(stages: Stages, folder: Path) -> Iterator[None]:
     Raises:
         InvalidModelError, InfeasibleError: after that, as the stages raise it.
     """
-    from mmrs_core.pictures.preview.from_models import picture_of_models
-
     try:
         yield
     except (InvalidModelError, InfeasibleError) as error:
@@ -129,8 +130,8 @@ def drawn_on_failure(stages: Stages, folder: Path) -> Iterator[None]:
             problems = (*error.reasons, *stages.warnings)
         picture = picture_of_models(models, stages.session.contributions.map_symbols, problems)
         refuse_inputs((folder / PAGE, folder / MAP), files_of(models.models))
-        page, _ = write_pictures(picture, folder)
-        tell(f"drawn with its problems: {page}")
+        written = write_pictures(picture, folder)
+        tell(f"drawn with its problems: {written[0]}")
         raise
 
 
@@ -141,18 +142,18 @@ def _of_behaviour(
     robots: tuple[Path, ...],
     assume: list[str] | None,
 ) -> Picture:
-    from mmrs_core.cli.behaviours import load_behaviour
-    from mmrs_core.cli.simulation import answers, fly
-    from mmrs_core.pictures.preview.from_run import Surroundings, picture_of_run
-
     conditions = answers(assume)
     loaded = load_behaviour(session, file, context=context, robots=robots)
-    program, place = loaded.program, loaded.place
-    run = fly(session, program, place, conditions)
-    around = Surroundings(place.areas or (), loaded.elements, place.types)
-    contributed = session.contributions
+    run = fly(session, loaded.program, loaded.place, conditions)
+    contributions = session.contributions
     return picture_of_run(
-        program, run.records, run.tracks, contributed.move_kinds, contributed.map_symbols, around
+        loaded.program,
+        run.records,
+        run.tracks,
+        contributions.move_kinds,
+        contributions.map_symbols,
+        loaded.place,
+        loaded.elements,
     )
 
 
@@ -164,30 +165,13 @@ def _of_flight(
     assume: list[str] | None,
     logs: list[Path],
 ) -> Picture:
-    from mmrs_core.cli.behaviours import load_behaviour
-    from mmrs_core.cli.report import picture_of as picture_of_flight
-    from mmrs_core.cli.simulation import answers
-    from mmrs_core.pictures.flights.gathering import read_flight
-    from mmrs_core.pictures.flights.planned import planned_for
-    from mmrs_core.pictures.report.assembly import Given, report_of
-
     loaded = load_behaviour(session, file, context=context, robots=robots)
-    contributed = session.contributions
-    flight = read_flight(logs, loaded.program, loaded.place.types, contributed.robot_kinds)
-    with progress("simulating the plan"):
-        planned = planned_for(loaded.program, loaded.place, contributed, flight, answers(assume))
-    given = Given(
-        loaded.program, loaded.place, flight, planned, contributed.move_kinds, contributed.robot_kinds
-    )
-    return picture_of_flight(session, loaded, given, report_of(given), file.parent)
+    given = flown(session, loaded, logs, assume)
+    return flight_picture(given, report_of(given), session.contributions, loaded.elements, file.parent)
 
 
 def write_pictures(picture: Picture, folder: Path) -> tuple[Path, ...]:
     """Write the page and the map into a folder, which is made where it is missing; return both paths."""
-    from mmrs_core.cli.replacing import replace_files
-    from mmrs_core.pictures.preview.map import map_of
-    from mmrs_core.pictures.preview.page import page
-
     contents = {folder / PAGE: page(picture), folder / MAP: map_of(picture, standalone=True) + "\n"}
     replace_files({path: content.encode() for path, content in contents.items()})
     return tuple(contents)

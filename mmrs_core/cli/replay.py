@@ -20,7 +20,7 @@ from mmrs_core.cli.settings import Json, settings_of
 from mmrs_core.cli.tables import table
 from mmrs_core.pictures.figures import clock
 from mmrs_core.pictures.flights.gathering import read_flight
-from mmrs_core.pictures.flights.steps import steps_of
+from mmrs_core.pictures.flights.positions import steps_of
 from mmrs_core.pictures.report.wording import place
 from mmrs_runtime.semantics import Outcome
 

@@ -1,22 +1,28 @@
-"""``mmrs report``: a page for people about a flight."""
+"""``mmrs report``: a page about a flight."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
+from mmrs_core.behaviour.box_files import black_boxes
+from mmrs_core.behaviour.log import logs_in
+from mmrs_core.cli.behaviours import Loaded, load_behaviour
 from mmrs_core.cli.output import progress, say, say_json, tell
 from mmrs_core.cli.parameters import Assume, Behaviour, Context, Robots, behaviour_file, robot_files
+from mmrs_core.cli.protection import refuse_inputs
+from mmrs_core.cli.replacing import replace_files
+from mmrs_core.cli.session import Session
 from mmrs_core.cli.settings import Json, settings_of
-
-if TYPE_CHECKING:
-    from mmrs_core.cli.behaviours import Loaded
-    from mmrs_core.cli.session import Session
-    from mmrs_core.pictures.preview.picture import Picture
-    from mmrs_core.pictures.report.assembly import Given
-    from mmrs_core.pictures.report.values import Report
+from mmrs_core.cli.simulation import answers
+from mmrs_core.pictures.flights.gathering import read_flight
+from mmrs_core.pictures.flights.planned import planned_for
+from mmrs_core.pictures.report.assembly import Given, report_of
+from mmrs_core.pictures.report.map import flight_picture
+from mmrs_core.pictures.report.page import page
 
 PAGE = "report.html"
 
@@ -46,29 +52,16 @@ def report(
 
     Example: mmrs report mission/ mission/logs -o report.html
     """
-    from mmrs_core.cli.behaviours import load_behaviour
-    from mmrs_core.cli.protection import refuse_inputs
-    from mmrs_core.cli.session import Session
-    from mmrs_core.cli.simulation import answers
-    from mmrs_core.pictures.flights.gathering import read_flight
-    from mmrs_core.pictures.flights.planned import planned_for
-    from mmrs_core.pictures.report.assembly import Given, report_of
-
     session, file = Session(settings_of(call)), behaviour_file(behaviour)
     loaded = load_behaviour(session, file, context=context, robots=robot_files(robots))
-    contributed = session.contributions
-    flight = read_flight(logs, loaded.program, loaded.place.types, contributed.robot_kinds)
-    for damage in flight.damages:
+    given = flown(session, loaded, logs, assume)
+    for damage in given.flight.damages:
         tell(damage)
-    with progress("simulating the plan"):
-        planned = planned_for(loaded.program, loaded.place, contributed, flight, answers(assume))
-    given = Given(
-        loaded.program, loaded.place, flight, planned, contributed.move_kinds, contributed.robot_kinds
-    )
     made = report_of(given)
-    path = output if output is not None else _beside(logs[0])
+    path = output if output is not None else (logs[0] if logs[0].is_dir() else logs[0].parent) / PAGE
     refuse_inputs((path,), (*session.inputs, *read_files(logs)))
-    _write(path, made, given, picture_of(session, loaded, given, made, file.parent))
+    picture = flight_picture(given, made, session.contributions, loaded.elements, file.parent)
+    replace_files({path: page(made, given, picture).encode()})
     if json:
         say_json({"files": [path], "report": made})
     else:
@@ -76,31 +69,21 @@ def report(
     return 0
 
 
-def read_files(logs: list[Path]) -> tuple[Path, ...]:
+def flown(session: Session, loaded: Loaded, logs: Sequence[Path], assume: Sequence[str] | None) -> Given:
+    """Return the flight of a behaviour by its logs, with its plan.
+
+    Raises:
+        UnreadableError: if there is neither a log nor a black box.
+        InvalidModelError: if none of them is of a robot of the behaviour.
+        UsageError: if no Choice has an assumed condition.
+    """
+    program, place, contributions = loaded.program, loaded.place, session.contributions
+    flight = read_flight(logs, program, place.types, contributions.robot_kinds)
+    with progress("simulating the plan"):
+        planned = planned_for(program, place, contributions, flight, answers(assume))
+    return Given(program, place, flight, planned, contributions.move_kinds, contributions.robot_kinds)
+
+
+def read_files(logs: Sequence[Path]) -> tuple[Path, ...]:
     """Return every log and part of a black box that paths lead to."""
-    from mmrs_core.behaviour.box_files import black_boxes
-    from mmrs_core.behaviour.log import logs_in
-
     return (*logs_in(logs), *(part for box in black_boxes(logs) for part in box.parts))
-
-
-def _beside(logs: Path) -> Path:
-    return (logs if logs.is_dir() else logs.parent) / PAGE
-
-
-def picture_of(session: Session, loaded: Loaded, given: Given, made: Report, folder: Path) -> Picture:
-    """Return the picture of a flight, with the tasks of the mission that lies in a folder."""
-    from mmrs_core.pictures.preview.from_flight import picture_of_flight
-    from mmrs_core.pictures.preview.from_run import Surroundings
-    from mmrs_core.pictures.report.asked import with_tasks
-
-    around = Surroundings(given.place.areas or (), loaded.elements, given.place.types)
-    picture = picture_of_flight(given.program, given.flight, given.planned, session.contributions, around)
-    return with_tasks(picture, made, given.program, session.contributions, folder)
-
-
-def _write(path: Path, made: Report, given: Given, picture: Picture) -> None:
-    from mmrs_core.cli.replacing import replace_files
-    from mmrs_core.pictures.report.page import page
-
-    replace_files({path: page(made, given, picture).encode()})

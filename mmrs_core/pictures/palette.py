@@ -49,7 +49,7 @@ COLOURS: Mapping[str, tuple[str, str]] = {
     "foreign": ("#ececea", "#303130"),
     **{f"series-{index}": pair for index, pair in enumerate(_SERIES)},
 }
-"""By name: on light screens and on paper, and on dark screens. Style sheets name them ``var(--name)``."""
+"""Colours by name, on light screens and paper, and on dark screens; ``var(--name)`` in style sheets."""
 _LIFT = "brightness(1.9) saturate(.8)"
 """What a dark screen makes of colours that plug-ins chose for their symbols."""
 

@@ -1,1 +1,1 @@
-"""What logs and black boxes tell of a flight: for the replay, the preview and the report."""
+"""What logs and black boxes contain of a flight: for the replay, the preview and the report."""

@@ -1,4 +1,4 @@
-"""When robots were away from their ways because of a policy: on the way home, at home, and back."""
+"""When robots were off their paths because of a policy: returning, at home, and coming back."""
 
 from __future__ import annotations
 
@@ -12,18 +12,18 @@ from mmrs_core.pictures.flights.planned import PlannedLeg
 from mmrs_core.pictures.flights.values import Flown, Track
 
 AWAY = frozenset({"RETURN", "LAND", "EMERGENCY_AREA", "SURFACE", "STOP_THRUST"})
-"""Responses by which a robot leaves its way."""
+"""Responses by which a robot leaves its path."""
 BACK = 2.0
-"""Metres from its way within which a robot that was away comes back to it."""
+"""Metres from its path within which a robot that was away is back."""
 
 Stretch = tuple[float, float]
 
 
 def away_of(flown: Flown, legs: Sequence[PlannedLeg]) -> tuple[Stretch, ...]:
-    """Return from when to when a robot was away from its ways, by the decisions in its black box.
+    """Return when a robot was off its paths, by the decisions in its black box.
 
-    It is back once it comes no nearer to the way that it left, or to the place where it waited. One
-    that never comes back is away to the end.
+    It is back at the nearest point to the path that it left, or to the position at which it waited. A
+    robot that never comes back is away to the end.
     """
     stretches: list[Stretch] = []
     for decision in flown.of_kind("decision"):
@@ -50,7 +50,7 @@ def without(stretch: Stretch, away: Iterable[Stretch]) -> list[Stretch]:
 
 def _back(flown: Flown, time: float, legs: Sequence[PlannedLeg]) -> float:
     track = flown.track
-    way = _left_way(track, time, legs)
+    way = _left_path(track, time, legs)
     first = int(np.searchsorted(track.times, time))
     if way is None or first >= len(track.times):
         return flown.end
@@ -68,7 +68,7 @@ def _back(flown: Flown, time: float, legs: Sequence[PlannedLeg]) -> float:
     return float(track.times[first + at])
 
 
-def _left_way(track: Track, time: float, legs: Sequence[PlannedLeg]) -> Floats | None:
+def _left_path(track: Track, time: float, legs: Sequence[PlannedLeg]) -> Floats | None:
     on = next((leg.way for leg in legs if leg.begin <= time <= leg.end and leg.way), None)
     at = track.at(time)
     if on is not None:

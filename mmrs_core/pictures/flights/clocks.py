@@ -18,7 +18,7 @@ from mmrs_runtime.records.entries import Entry
 SAME = 0.02
 """Seconds by which the clocks of robots of one process differ at most, as they are written."""
 LONG = 0.2
-"""Seconds of the day from which on a process tells how fast its run was: lines are late by milliseconds."""
+"""Shortest process, in seconds, whose speed-up can be estimated: lines are late by milliseconds."""
 
 
 @dataclass(slots=True)
@@ -26,7 +26,7 @@ class Readings:
     """The clock of one robot: the time of the run and the time of day, in each process that it had.
 
     Attributes:
-        names: of these processes; robots of one process have the same clock. Empty: nobody knows.
+        names: of these processes; robots of one process have the same clock. Empty: unknown.
     """
 
     names: list[str] = field(default_factory=list)
@@ -34,7 +34,7 @@ class Readings:
     _named: bool = False
 
     def add(self, entry: Entry) -> None:
-        """Take both times of an entry; one without a time of day that can be read does not matter."""
+        """Take both times of an entry; one without a readable time of day is ignored."""
         began = entry.kind == "start"
         if not self._processes or (began and self._named):
             self._processes.append(array("d"))
@@ -55,7 +55,7 @@ class Readings:
 
 @dataclass(frozen=True, slots=True)
 class Shift:
-    """By how many seconds the times of a robot are to be moved.
+    """Seconds by which the times of a robot are to be moved.
 
     Attributes:
         since: from which times on, one for each process; by: seconds, as many.
@@ -77,7 +77,7 @@ class Shift:
 
 
 def shifts_of(clocks: Mapping[str, Readings]) -> tuple[dict[str, Shift], tuple[str, ...]]:
-    """Return by how much the times of robots are to be moved, and that, for people.
+    """Return the shifts of robots' times, and notes on them.
 
     Times are those of the robot that began first. Robots without times of day, and those that were in
     another number of processes than that one, stay as they are.
@@ -97,9 +97,7 @@ def shifts_of(clocks: Mapping[str, Readings]) -> tuple[dict[str, Shift], tuple[s
     for robot, own in zeros.items():
         later = own[0] - zeros[first][0]
         if len(own) != len(zeros[first]):
-            notes.append(
-                f"{robot}: was started again otherwise than {first}: their times may not be the same"
-            )
+            notes.append(f"{robot}: was restarted differently from {first}: their times may not agree")
             continue
         names = zip(clocks[robot].names, clocks[first].names, strict=True)
         same = [bool(mine) and mine == its for mine, its in names]

@@ -21,15 +21,15 @@ from mmrs_runtime.records.entries import Damage, Entry, number_of
 from mmrs_runtime.records.steps import StepRecord
 
 SIMULATION = "simulation"
-"""What stands for the link where there was no vehicle."""
+"""The link of a robot without a vehicle."""
 MOST_ENTRIES = 100_000
-"""How many entries of one robot are kept, fixes and messages aside."""
+"""Entries of one robot that are kept, without fixes and messages."""
 _MOST_DAMAGES = 20
 
 
 @dataclass(slots=True)
 class _Contents:
-    """What the box of one robot holds, so far."""
+    """What the box of one robot contains, so far."""
 
     fixes: Fixes = field(default_factory=Fixes)
     entries: list[Entry] = field(default_factory=list)
@@ -66,7 +66,7 @@ class _Contents:
 
     @property
     def vehicle(self) -> str:
-        """Return which sort of vehicle it was; empty where the box does not say."""
+        """Return the class of vehicle; empty where the box does not name it."""
         starts = (each.content.get("vehicle") for each in self.entries if each.kind == "start")
         return next((each for each in starts if isinstance(each, str)), "")
 
@@ -93,7 +93,7 @@ def read_flight(
     types: Mapping[str, RobotType],
     kinds: Mapping[Name, RobotKind] = MappingProxyType({}),
 ) -> Flight:
-    """Return what logs and black boxes tell; damages are in the flight, for people.
+    """Return what logs and black boxes tell; damages are in the flight, in words.
 
     Args:
         paths: logs, parts of black boxes, or folders of them.
@@ -171,7 +171,7 @@ def _steps(paths: Sequence[Path], damages: list[str]) -> dict[str, list[StepReco
     steps: dict[str, list[StepRecord]] = {}
     for path in logs_in(paths):
         records, unread = recover_log(path)
-        damages += _told(unread, len(unread))
+        damages += _listed(unread, len(unread))
         for record in records:
             steps.setdefault(record.robot, []).append(record)
     return steps
@@ -191,11 +191,11 @@ def _contents(boxes: Iterable[BlackBox], damages: list[str]) -> dict[str, _Conte
 
         for entry in box.entries(tell):
             contents.setdefault(entry.robot, _Contents()).add(entry)
-        damages += [*box.missing, *_told(unread, count)]
+        damages += [*box.missing, *_listed(unread, count)]
     return contents
 
 
-def _told(unread: Sequence[Damage], count: int) -> Iterator[str]:
+def _listed(unread: Sequence[Damage], count: int) -> Iterator[str]:
     yield from map(str, unread[:_MOST_DAMAGES])
     if count > _MOST_DAMAGES:
         yield f"{unread[0].file}: {count - _MOST_DAMAGES} more lines cannot be read"

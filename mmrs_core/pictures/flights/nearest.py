@@ -1,4 +1,4 @@
-"""How far points are from a way of straight legs, and how far along it."""
+"""Distances of points from a path of straight legs, and along it."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from mmrs_core.geometry.frames import Floats
 
 
 def nearest(points: Floats, way: Floats) -> tuple[Floats, Floats]:
-    """Return the nearest point of a way to each point, (n, 3), and how far along the way it is, (n,) metres.
+    """Return the nearest point of a path to each point, (n, 3), and how far along it is, (n,) metres.
 
     Args:
         points: (n, 3), at least one.
@@ -34,6 +34,6 @@ def nearest(points: Floats, way: Floats) -> tuple[Floats, Floats]:
 
 
 def along(points: Floats, way: Floats) -> Floats:
-    """Return how far along a way each point is, (n,) parts from 0 to 1; 0 for a way without length."""
+    """Return how far along a path each point is, (n,) from 0 to 1; 0 for a path without length."""
     length = float(np.linalg.norm(np.diff(way, axis=0), axis=1).sum())
     return nearest(points, way)[1] / length if length > 0 else np.zeros(len(points))

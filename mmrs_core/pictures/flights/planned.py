@@ -1,22 +1,27 @@
-"""What should have happened: the behaviour as simulated, and the ways that its moves should go."""
+"""What should have happened: the behaviour as simulated, choosing as the flight did, and its paths."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from itertools import zip_longest
 
 from mmrs_core.behaviour.program import Move, Program, RobotProgram
+from mmrs_core.contributions.execution import Condition, RobotState
 from mmrs_core.contributions.registry import Contributions
 from mmrs_core.contributions.rules import MoveKind, most_specific
 from mmrs_core.errors import MmrsError
-from mmrs_core.pictures.flights.answers import choosing_as
 from mmrs_core.pictures.flights.values import Flight, Flown
 from mmrs_core.pipeline import Place, conditions_for
 from mmrs_core.scene import Name, Position
 from mmrs_core.simulation.run import SimulatedRun, refuse_unasked, simulate
 
 BACKEND = "simulation"
+_LONGEST = 100
+"""How often a Choice repeats its last logged answer before it answers otherwise.
+
+The log of a flight that was aborted in a loop has no answer that ends the loop, but its plan must end.
+"""
 
 
 @dataclass(frozen=True, slots=True)
@@ -25,7 +30,7 @@ class Planned:
 
     Attributes:
         run: as simulated, from when the flight's first step was; None where it cannot be simulated.
-        notes: what was taken for granted, or why there is no run, for people.
+        notes: what was assumed, or why there is no run.
     """
 
     run: SimulatedRun | None
@@ -34,12 +39,12 @@ class Planned:
 
 @dataclass(frozen=True, slots=True)
 class PlannedLeg:
-    """A move that a robot began, and the way that it should have gone.
+    """A move that a robot began, and its planned path.
 
     Attributes:
-        begin: when it began; end: when its next step was, or the last thing was known of the robot.
+        begin: when it began; end: when its next step was, or the end of the robot's record.
         ended: whether it came to its end.
-        way: straight legs, the first point where the robot should have been; empty where nobody knows.
+        way: straight legs from where the robot should have been; empty where unknown.
     """
 
     move: Move
@@ -59,7 +64,7 @@ def planned_for(
     """Return what should have happened in a flight.
 
     Args:
-        assume: what conditions answer that the flight never asked, by identifier.
+        assume: outcomes of conditions that the flight never evaluated, by identifier.
 
     Raises:
         UsageError: if no Choice asks for one of the conditions.
@@ -81,13 +86,13 @@ def planned_for(
             areas=place.areas or (),
         )
     except MmrsError as error:
-        return Planned(None, (*notes, f"times and energy as planned are not known: {error}"))
+        return Planned(None, (*notes, f"planned times and energy are unknown: {error}"))
     begun = min((flown.records[0].time for flown in flight.robots.values() if flown.records), default=0.0)
     return Planned(_later(run, begun), (*notes, *run.notes))
 
 
 def _later(run: SimulatedRun, seconds: float) -> SimulatedRun:
-    """Return a run that begins so much later: when the flight does, whose vehicles had to get ready."""
+    """Return a run that begins later: when the flight does, after the preparation of its vehicles."""
     if seconds <= 0:
         return run
     return replace(
@@ -101,10 +106,10 @@ def _later(run: SimulatedRun, seconds: float) -> SimulatedRun:
 
 
 def legs_of(robot: RobotProgram, flown: Flown, kinds: Mapping[Name, MoveKind]) -> tuple[PlannedLeg, ...]:
-    """Return every move that a robot began, with the way that it should have gone.
+    """Return every move that a robot began, with its planned path.
 
-    Each begins where the one before should have ended; after a move to an object, whose place the robot
-    had to find, where the robot was.
+    Each begins where the one before should have ended; after a move to an object that the robot had to
+    find, at the robot's position.
     """
     moves = {move.id: move for move in robot.moves}
     here: Position | None = robot.home if robot.home is not None else (0.0, 0.0, 0.0)
@@ -129,3 +134,88 @@ def _way(
     if name is None or here is None or searches:
         return ()
     return kinds[name].path(move, here, home) or ()
+
+
+@dataclass(slots=True)
+class Choosing:
+    """A behaviour whose Choices are decided as in a flight.
+
+    Attributes:
+        program: the behaviour, each Choice with a condition of its own.
+        conditions: by their identifiers there.
+        notes: outcomes that were assumed.
+    """
+
+    program: Program
+    conditions: dict[str, Condition] = field(default_factory=dict)
+    notes: dict[str, None] = field(default_factory=dict)
+
+
+def choosing_as(
+    flight: Flight, program: Program, assume: Mapping[str, bool], known: Mapping[str, Condition]
+) -> Choosing:
+    """Return a behaviour that chooses as a flight did.
+
+    A Choice that the flight never reached has the assumed outcome. Without one, its condition decides as
+    it did elsewhere in the flight, then by the state of the robot, and last it holds, which a note says.
+
+    Args:
+        assume: outcomes by condition identifier.
+        known: conditions that decide by the state of the robot, by identifier.
+    """
+    elsewhere = _first_answers(flight, program)
+    made = Choosing(program)
+
+    def decided(robot: RobotProgram, move: int, condition: str) -> Callable[[RobotState], bool]:
+        answers = list(_answers(flight, robot, robot.moves[move].id))
+        if answers:
+            return _in_order(answers)
+        fixed = assume.get(condition, elsewhere.get(condition))
+        if fixed is None and condition in known:
+            return known[condition].holds
+        if fixed is None:
+            made.notes[f"condition '{condition}' was never evaluated; the plan assumes that it holds"] = None
+        return _in_order([True if fixed is None else fixed])
+
+    robots = []
+    for robot in program.robots:
+        transitions = dict(robot.transitions)
+        for move, transition in robot.transitions.items():
+            if transition.condition is not None:
+                own = f"{robot.id}, {robot.moves[move].id}: {transition.condition}"
+                made.conditions[own] = Condition(own, decided(robot, move, transition.condition))
+                transitions[move] = replace(transition, condition=own)
+        robots.append(replace(robot, transitions=transitions))
+    made.program = replace(program, robots=tuple(robots))
+    return made
+
+
+def _answers(flight: Flight, robot: RobotProgram, move: str) -> Iterator[bool]:
+    flown = flight.robots.get(robot.id)
+    for record in flown.records if flown is not None else ():
+        if record.label == "choose" and record.move == move:
+            yield record.detail == "true"
+
+
+def _first_answers(flight: Flight, program: Program) -> dict[str, bool]:
+    """Return what each condition answered first, by identifier."""
+    answers: dict[str, bool] = {}
+    for robot in program.robots:
+        for move, transition in robot.transitions.items():
+            if transition.condition is not None:
+                for answer in _answers(flight, robot, robot.moves[move].id):
+                    answers.setdefault(transition.condition, answer)
+    return answers
+
+
+def _in_order(answers: Sequence[bool]) -> Callable[[RobotState], bool]:
+    asked = 0
+
+    def holds(state: RobotState) -> bool:
+        nonlocal asked
+        asked += 1
+        if asked <= len(answers):
+            return answers[asked - 1]
+        return answers[-1] is (asked <= len(answers) + _LONGEST)
+
+    return holds

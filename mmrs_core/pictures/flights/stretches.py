@@ -1,4 +1,4 @@
-"""Cuts tracks into pieces of which it is known where the robot was."""
+"""Cuts tracks into pieces without gaps."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ Piece: TypeAlias = tuple[tuple[float, ...], tuple[Position, ...]]
 
 
 def stretches_of(track: Track, begin: float, end: float) -> Iterator[Piece]:
-    """Yield times and positions of what is known of a stretch of time, one for each piece between gaps."""
+    """Yield times and positions within a stretch of time, for each piece between gaps."""
     if not len(track.times) or end < begin:
         return
     first, last = np.searchsorted(track.times, begin, side="right"), np.searchsorted(track.times, end)

@@ -1,4 +1,4 @@
-"""Thins out tracks for pictures, by a stated tolerance."""
+"""Thins out tracks for pictures, within a tolerance."""
 
 from __future__ import annotations
 
@@ -10,9 +10,9 @@ from mmrs_core.geometry.frames import Floats
 from mmrs_core.pictures.flights.values import Track
 
 TOLERANCE = 0.2
-"""Metres that a thinned track may be off at first."""
+"""Metres by which a thinned track may be off at first."""
 MOST_POINTS = 6_000
-"""Points of a track from which on the tolerance is doubled."""
+"""Points of a track beyond which the tolerance is doubled."""
 
 
 def thinned(track: Track, tolerance: float = TOLERANCE) -> tuple[Track, float]:
@@ -68,13 +68,13 @@ class _Cones:
         self._low, self._high = [-inf] * 3, [inf] * 3
 
     def stay(self, i: int) -> None:
-        """Have a point stay, and begin anew there."""
+        """Keep a point, and begin new cones there."""
         if i != self.kept[-1]:
             self.kept.append(i)
         self._low, self._high = [-inf] * 3, [inf] * 3
 
     def hold(self, i: int) -> bool:
-        """Return whether a straight way to the point passes near enough to all points since."""
+        """Return whether a straight line to the point passes near enough to all points since."""
         first = self.kept[-1]
         passed = self.times[i] - self.times[first]
         if passed <= 0.0:
@@ -85,7 +85,7 @@ class _Cones:
         return True
 
     def narrow(self, i: int) -> None:
-        """Have the cones lead through a point, too."""
+        """Narrow the cones to a point."""
         first = self.kept[-1]
         passed = self.times[i] - self.times[first]
         if passed <= 0.0:

@@ -1,4 +1,4 @@
-"""A flight as logs and black boxes tell it: plain values in the local frame of the behaviour."""
+"""A flight by its logs and black boxes: plain values in the local frame of the behaviour."""
 
 from __future__ import annotations
 
@@ -17,7 +17,6 @@ from mmrs_runtime.records.entries import Entry
 from mmrs_runtime.records.steps import StepRecord
 
 _OFTEN = 0.5
-"""Names of what policies answer."""
 Flags: TypeAlias = NDArray[np.bool_]
 
 
@@ -28,8 +27,8 @@ class Track:
     Attributes:
         times: (n,) seconds of the run, never falling.
         positions: (n, 3) metres east, north, up.
-        energies: (n,) part of the battery that is left, 0 to 1; nan where nobody knows.
-        broken: (n,) whether nobody knows where it was between that fix and the next; false for the last.
+        energies: (n,) fraction of the battery that is left, 0 to 1; nan where unknown.
+        broken: (n,) whether its position between that fix and the next is unknown; false for the last.
             Between others it went straight.
     """
 
@@ -40,14 +39,14 @@ class Track:
 
     @property
     def gaps(self) -> tuple[tuple[float, float], ...]:
-        """Return (since, until) of every stretch of time in which nobody knows where the robot was."""
+        """Return (since, until) of every gap."""
         found = np.flatnonzero(self.broken)
         return tuple((float(self.times[i]), float(self.times[i + 1])) for i in found)
 
     def at(self, time: float) -> Position | None:
         """Return where the robot was; None before the first fix, after the last, and in a gap.
 
-        At the ends, half a second does not matter: fixes come that often.
+        Half a second is tolerated at the ends, the usual time between fixes.
         """
         if not len(self.times) or not self.times[0] - _OFTEN <= time <= self.times[-1] + _OFTEN:
             return None
@@ -93,7 +92,7 @@ class Flown:
 
     @property
     def given_up(self) -> tuple[Entry, ...]:
-        """Return the decisions that tell of what could not be carried out, so that nobody steered it then."""
+        """Return the decisions after which the robot was not under control: responses that failed."""
         decisions = ((entry, entry.content) for entry in self.of_kind("decision"))
         return tuple(
             entry
@@ -103,7 +102,7 @@ class Flown:
 
     @property
     def answered(self) -> tuple[Entry, ...]:
-        """Return the decisions that answer faults of which its log does not know: its program went on."""
+        """Return the decisions on faults that are not in its log: its program continued."""
         logged = {record.detail.partition(":")[0] for record in self.records if record.label == "fault"}
         return tuple(
             entry
@@ -113,12 +112,12 @@ class Flown:
 
     @property
     def program_time(self) -> float:
-        """Return how long its program took by its log, seconds; without one, until the last sign of it."""
+        """Return how long its program took by its log, seconds; without one, until the end of its record."""
         return self.records[-1].time - self.records[0].time if self.records else self.end
 
     @property
     def end(self) -> float:
-        """Return the time of the last thing that is known of the robot, seconds."""
+        """Return the end of its record, seconds."""
         times = [*self.track.times[-1:].tolist(), *(entry.time for entry in self.entries[-1:])]
         return max([*times, *(record.time for record in self.records[-1:])], default=0.0)
 
@@ -130,10 +129,10 @@ class Flight:
     Attributes:
         run: identifier of the run; empty where nothing could be read.
         robots: by name, those of the behaviour in its order; one without log or box is here, too.
-        damages: what could not be read, or does not fit together, for people.
+        damages: what could not be read, or is inconsistent.
         boxes: how many black boxes there are.
         whole: whether every robot has a log, and all logs can be read.
-        begun: date and time of day, ISO 8601; empty where nobody wrote it.
+        begun: date and time of day, ISO 8601; empty where unknown.
     """
 
     run: str

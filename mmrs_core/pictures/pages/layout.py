@@ -1,6 +1,6 @@
 """Lays out a directed graph in columns from left to right.
 
-The classical way in four steps (Sugiyama, Tagawa and Toda 1981): columns by longest path, corridors
+The classical method in four steps (Sugiyama, Tagawa and Toda 1981): columns by longest path, corridors
 for edges that pass columns, order by barycentre, heights by the neighbours' mean. The same graph
 always gets the same layout.
 """
@@ -101,7 +101,7 @@ def _without_circles(count: int, pairs: Sequence[tuple[int, int]]) -> list[bool]
 
 
 def _columns(count: int, pairs: Iterable[tuple[int, int]]) -> list[int]:
-    """Return the column of each box: the longest way to it, sources as near to their targets as can be."""
+    """Return the column of each box: the longest path to it, sources as near to their targets as can be."""
     listed = list(pairs)
     columns = [0] * count
     for _ in range(count):

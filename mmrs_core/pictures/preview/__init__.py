@@ -1,1 +1,1 @@
-"""Pictures of missions for people: the place, the ways, the heights, and who waits for whom."""
+"""Pictures of missions: map, timeline and altitude profile."""

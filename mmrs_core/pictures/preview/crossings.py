@@ -1,4 +1,4 @@
-"""Finds when a robot is over, under or beside what stands in the place."""
+"""Finds when a robot is above, inside or beneath an area."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ def crossings(robot: RobotPicture, zones: Iterable[Zone]) -> Iterator[Crossing]:
 
 
 def corners(leg: Leg) -> Iterator[tuple[float, Position]]:
-    """Yield (time, position) at every corner of a leg, travelled at an even pace where no times are known."""
+    """Yield (time, position) at every corner of a leg; without times, at a constant speed."""
     if leg.times:
         yield from zip(leg.times, leg.points, strict=True)
         return
@@ -53,7 +53,7 @@ def corners(leg: Leg) -> Iterator[tuple[float, Position]]:
 
 
 def _shares(start: Position, stop: Position, shape: Polygon) -> Iterator[tuple[float, float]]:
-    """Yield from which to which share of a straight stretch it lies over a shape."""
+    """Yield the fractions of a straight stretch between which it lies over a shape."""
     way = LineString((start[:2], stop[:2]))
     if way.length == 0:
         if shape.covers(shapely.Point(start[:2])):

@@ -1,4 +1,4 @@
-"""Makes the picture of a flight: what robots did by their logs and black boxes, over what was planned."""
+"""Makes the picture of a flight, from logs and black boxes, over its plan."""
 
 from __future__ import annotations
 
@@ -20,22 +20,22 @@ from mmrs_core.pictures.flights.stretches import Piece, stretches_of
 from mmrs_core.pictures.flights.thinning import pieces, thinned
 from mmrs_core.pictures.flights.values import Flight, Flown
 from mmrs_core.pictures.preview.from_run import (
-    Surroundings,
     bars_of_records,
     handovers_of,
     kind_of_leg,
     picture_of_run,
 )
 from mmrs_core.pictures.preview.picture import Arm, Bar, Leg, Mark, Picture, RobotPicture
-from mmrs_core.scene import Name, Position
+from mmrs_core.pipeline import Place
+from mmrs_core.scene import Name, Part, Position
 from mmrs_runtime.records.steps import StepRecord
 
 _HOLD = (BEHAVIOUR, "HoldPosition")
 _STILL = 0.3
 _STAYING = 3.0
-"""Metres from the middle within which a robot that is to stay is taken to stay."""
+"""Metres of movement below which a robot that is to hold its position counts as holding it."""
 _LONGEST_UNNAMED = 1.0
-"""Metres of a way outside of all moves that are not shown."""
+"""Longest stretch outside of all moves that is not shown, metres."""
 
 
 def picture_of_flight(
@@ -43,9 +43,10 @@ def picture_of_flight(
     flight: Flight,
     planned: Planned,
     contributed: Contributions,
-    surroundings: Surroundings,
+    place: Place,
+    elements: Iterable[Part] = (),
 ) -> Picture:
-    """Return what to show of a flight; tracks are thinned out by a tolerance that a note tells."""
+    """Return what to show of a flight; tracks are thinned out by a tolerance that a note gives."""
     run = planned.run
     plan = picture_of_run(
         program,
@@ -53,10 +54,11 @@ def picture_of_flight(
         run.tracks if run else {},
         contributed.move_kinds,
         contributed.map_symbols,
-        surroundings,
+        place,
+        elements,
     )
     kinds = contributed.move_kinds
-    shots = shots_in(program, flight, surroundings.types, contributed.robot_kinds)
+    shots = shots_in(program, flight, place.types, contributed.robot_kinds)
     shown = [_Shown(robot, flight.robots[robot.id], kinds, shots[robot.id]) for robot in program.robots]
     robots = tuple(each.over(picture) for each, picture in zip(shown, plan.robots, strict=True))
     coarsest = max(each.tolerance for each in shown) if shown else 0.0
@@ -74,13 +76,13 @@ def _notes(flight: Flight, tolerance: float) -> Iterator[str]:
     if any(flown.simulated for flown in flight.robots.values()):
         yield "this run had no vehicles: it was simulated"
     else:
-        yield f"ways are drawn within {tolerance:g} m of what the vehicles told"
+        yield f"tracks are drawn within {tolerance:g} m of the reported positions"
     for robot, flown in flight.robots.items():
         if not len(flown.track.times):
-            yield f"{robot}: where it was is not known, there is no black box of it"
+            yield f"{robot}: its track is unknown, there is no black box of it"
         elif gaps := flown.track.gaps:
             whole = sum(until - since for since, until in gaps)
-            yield f"{robot}: nothing was heard of where it was for {clock(whole)} in {len(gaps)} gaps"
+            yield f"{robot}: no positions for {clock(whole)} in {len(gaps)} gaps"
     yield from flight.damages
 
 
@@ -149,7 +151,7 @@ class _Shown:
             yield from stretches_of(self._track, since, until)
 
     def _between_moves(self) -> Iterator[Leg]:
-        """Yield the ways that belong to no move: what policies, people and autopilots did."""
+        """Yield the stretches that belong to no move: those of policies, operators and autopilots."""
         records = self._flown.records
         moving = [(a.time, b.time) for a, b in pairwise(records) if a.label == "begin"]
         busy = [part for move in moving for part in without(move, self._away)]
@@ -157,12 +159,12 @@ class _Shown:
         for begin, end in (*busy, (self._flown.end, self._flown.end)):
             for times, points in stretches_of(self._track, since, begin):
                 if _reach(points) > _LONGEST_UNNAMED:
-                    note = "not in the plan"
+                    note = "off-plan"
                     yield Leg("response", points, times[0], times[-1], note=note, times=times)
             since = max(since, end)
 
     def _bars(self) -> Iterator[Bar]:
-        """Yield what the robot spent its time on, by the log; what a policy did meanwhile goes before."""
+        """Yield what the robot spent its time on, by the log; responses of policies take precedence."""
         for bar in bars_of_records(self._moves, self._flown.records, self._kinds):
             for begin, end in without((bar.begin, bar.end), self._away):
                 yield replace(bar, begin=begin, end=end)
@@ -216,5 +218,5 @@ def _acts(records: Iterable[StepRecord]) -> dict[tuple[str, int], list[float]]:
 
 
 def _reach(points: Sequence[Position]) -> float:
-    """Return how far points are apart, by the box around them, metres."""
+    """Return the diagonal of the box around points, metres."""
     return float(np.linalg.norm(np.ptp(np.asarray(points), axis=0)))

@@ -1,10 +1,10 @@
-"""Makes the picture of a run: what robots did, whoever wrote their behaviour."""
+"""Makes the picture of a simulated run."""
 
 from __future__ import annotations
 
 from bisect import bisect_left, bisect_right
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from itertools import pairwise
 from math import dist
 
@@ -15,7 +15,8 @@ from mmrs_core.contributions.symbols import MapSymbol
 from mmrs_core.pictures.figures import clock, length
 from mmrs_core.pictures.preview.features import elements_of, origin_of, symbol_of_robot, zones_of
 from mmrs_core.pictures.preview.picture import Bar, Handover, Leg, Picture, RobotPicture
-from mmrs_core.scene import Area, Name, Part, Position, RobotType
+from mmrs_core.pipeline import Place
+from mmrs_core.scene import Name, Part, Position
 from mmrs_runtime.records.steps import StepRecord
 
 _STANDSTILL = 1e-3
@@ -24,28 +25,14 @@ _RECHARGE = (BEHAVIOUR, "Recharge")
 _STATES = {"airborne": "launch", "grounded": "recover"}
 
 
-@dataclass(frozen=True, slots=True)
-class Surroundings:
-    """What a run took place in, as far as it is known.
-
-    Attributes:
-        areas: of the place, as drawn.
-        elements: context elements of plug-ins.
-        types: of the robots, by name.
-    """
-
-    areas: tuple[Area, ...] = ()
-    elements: tuple[Part, ...] = ()
-    types: Mapping[str, RobotType] = field(default_factory=dict)
-
-
 def picture_of_run(
     program: Program,
     records: Iterable[StepRecord],
     tracks: Mapping[str, Sequence[Sample]],
     move_kinds: Mapping[Name, MoveKind],
     symbols: Mapping[Name, MapSymbol],
-    surroundings: Surroundings,
+    place: Place,
+    elements: Iterable[Part] = (),
 ) -> Picture:
     """Return what to show of a run.
 
@@ -55,12 +42,13 @@ def picture_of_run(
         tracks: by robot, the way that it came.
         move_kinds: what tells launches and recoveries apart from other moves.
         symbols: how things look, by metaclass.
-        surroundings: what it took place in.
+        place: what it took place in.
+        elements: context elements of plug-ins.
     """
     by_robot: dict[str, list[StepRecord]] = {robot.id: [] for robot in program.robots}
     for record in records:
         by_robot[record.robot].append(record)
-    types = surroundings.types
+    types = place.types
     robots = tuple(
         replace(
             _robot(robot, by_robot[robot.id], tracks.get(robot.id, ()), move_kinds),
@@ -74,8 +62,8 @@ def picture_of_run(
         title=program.name,
         origin=origin_of(program.frame),
         robots=robots,
-        zones=zones_of(surroundings.areas, clearances),
-        elements=elements_of(surroundings.elements, symbols),
+        zones=zones_of(place.areas or (), clearances),
+        elements=elements_of(elements, symbols),
         handovers=tuple(handovers_of(program, by_robot)),
         makespan=max((steps[-1].time for steps in by_robot.values() if steps), default=0.0),
     )
@@ -148,7 +136,7 @@ def kind_of_leg(move: Move, kinds: Mapping[Name, MoveKind]) -> str:
 def bars_of_records(
     moves: Mapping[str, Move], records: Sequence[StepRecord], kinds: Mapping[Name, MoveKind]
 ) -> Iterator[Bar]:
-    """Yield what every stretch of time between two steps was spent on: the later step tells."""
+    """Yield a bar for every stretch of time between two steps: its kind is that of the later step."""
     for record, following in pairwise(records):
         if following.time <= record.time:
             continue
@@ -165,7 +153,7 @@ def bars_of_records(
 
 
 def handovers_of(program: Program, by_robot: Mapping[str, Sequence[StepRecord]]) -> Iterator[Handover]:
-    """Yield who told whom to go on, and since when the other had waited.
+    """Yield which robot released which, and since when the other had waited.
 
     Args:
         program: the behaviour.
@@ -189,7 +177,7 @@ def handovers_of(program: Program, by_robot: Mapping[str, Sequence[StepRecord]])
 def _waits(
     program: Program, by_robot: Mapping[str, Sequence[StepRecord]]
 ) -> Iterator[tuple[str, str, float, float]]:
-    """Yield (robot, slot, since, until) for every slot that a robot waited for until it went on."""
+    """Yield (robot, slot, since, until) for every slot that a robot waited for until it continued."""
     for robot in program.robots:
         index = {move.id: i for i, move in enumerate(robot.moves)}
         for before, record in pairwise(by_robot[robot.id]):

@@ -37,7 +37,7 @@ _FLOWN_SIGNS = (
 )
 
 
-class Entry(NamedTuple):
+class KeyEntry(NamedTuple):
     """A sign and its meaning: `sample` names what the template draws, which may need a style or symbol."""
 
     sample: str
@@ -51,24 +51,25 @@ class Legend:
     """Entries placed beneath a map: (x, y, entry), in pixels from its upper edge."""
 
     height: float
-    entries: tuple[tuple[float, float, Entry], ...]
+    entries: tuple[tuple[float, float, KeyEntry], ...]
 
 
-def key_of(picture: Picture) -> tuple[Entry, ...]:
+def key_of(picture: Picture) -> tuple[KeyEntry, ...]:
     """Return the signs of a map and the symbols that it shows; robots are listed elsewhere on a page."""
     planned, flown = _PLANNED_SIGNS if picture.planned else (), _FLOWN_SIGNS if picture.flown else ()
     signs = (*planned, *_SIGNS, *flown)
-    problems = [Entry("problem", "problem, by its number")] if picture.problems else []
-    symbols = (Entry("badge", shortened(each.label), symbol=each) for each in symbols_in(picture))
-    return (*(Entry(sample, words) for sample, words in signs), *problems, *symbols)
+    problems = [KeyEntry("problem", "problem, by its number")] if picture.problems else []
+    symbols = (KeyEntry("badge", shortened(each.label), symbol=each) for each in symbols_in(picture))
+    return (*(KeyEntry(sample, words) for sample, words in signs), *problems, *symbols)
 
 
 def legend_of(picture: Picture, width: float) -> Legend:
     """Return the legend of a picture that stands alone: robots, signs and symbols, in rows that wide."""
     robots = (
-        Entry("robot", shortened(robot.name), style_of(index)) for index, robot in enumerate(picture.robots)
+        KeyEntry("robot", shortened(robot.name), style_of(index))
+        for index, robot in enumerate(picture.robots)
     )
-    placed: list[tuple[float, float, Entry]] = []
+    placed: list[tuple[float, float, KeyEntry]] = []
     x, row = _MARGIN, 0
     for entry in (*robots, *key_of(picture)):
         needed = _SAMPLE + 8 + width_of(entry.words) + _GAP

@@ -50,7 +50,7 @@ class Shape(NamedTuple):
     colour: str = ""
 
 
-class Badge(NamedTuple):
+class SymbolShape(NamedTuple):
     """The sign of a symbol around a pixel; with a stem it stands above the pixel."""
 
     symbol: MapSymbol
@@ -166,7 +166,7 @@ def _kept(zone: Zone, projection: Projection) -> Shape:
     return Shape(f"kept {zone.use.value}", projection.closed(zone.kept), tip)
 
 
-def _tasks(tasks: tuple[TaskPicture, ...], projection: Projection) -> Iterator[Shape | Badge]:
+def _tasks(tasks: tuple[TaskPicture, ...], projection: Projection) -> Iterator[Shape | SymbolShape]:
     """Yield every task that has a position: its area, line or point."""
     places = badge_places(tasks, projection)
     for task in tasks:
@@ -176,10 +176,10 @@ def _tasks(tasks: tuple[TaskPicture, ...], projection: Projection) -> Iterator[S
         elif task.line:
             yield Shape("task line", projection.lines([task.line]), tip, colour)
         elif task.name in places:
-            yield Badge(task.symbol, *places[task.name], tip)
+            yield SymbolShape(task.symbol, *places[task.name], tip)
 
 
-def _element(element: ElementPicture, projection: Projection) -> Iterator[Shape | Badge]:
+def _element(element: ElementPicture, projection: Projection) -> Iterator[Shape | SymbolShape]:
     """Yield the outlines, lines and marks of a context element."""
     tip, colour = element.tip, element.symbol.colour
     if element.outlines:
@@ -187,7 +187,7 @@ def _element(element: ElementPicture, projection: Projection) -> Iterator[Shape 
     for line in element.lines:
         yield Shape("element line", projection.lines([line]), tip, colour)
     for mark in element.marks:
-        yield Badge(element.symbol, *projection.place(mark), tip, STEM)
+        yield SymbolShape(element.symbol, *projection.place(mark), tip, STEM)
 
 
 def _path(index: int, robot: RobotPicture, projection: Projection) -> _Path:

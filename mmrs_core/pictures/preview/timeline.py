@@ -82,7 +82,7 @@ class BarShape(NamedTuple):
     tip: str
 
 
-class Label(NamedTuple):
+class Caption(NamedTuple):
     """Words, the middle of their base line in pixels, and what they stand for, for the pointer."""
 
     words: str
@@ -95,17 +95,17 @@ class Label(NamedTuple):
 class _Row:
     """A robot's row, or one of a branch beneath it, with its frame."""
 
-    name: Label
+    name: Caption
     bars: tuple[BarShape, ...]
-    tasks: tuple[Label, ...]
+    tasks: tuple[Caption, ...]
     frame: BarShape | None = None
 
 
 @dataclass(frozen=True, slots=True)
 class _TaskRow:
-    """A task's row: a bar, or a mark where it has no duration; `part` says how much of it was done."""
+    """A task's row: a bar, or a mark where it has no duration; `part` is how much of it was done."""
 
-    name: Label
+    name: Caption
     icon: str
     colour: str
     bar: BarShape
@@ -153,7 +153,7 @@ def _task_row(task: TaskPicture, axis: TimeAxis, middle: float) -> _TaskRow:
     part = "" if task.part >= 1.0 else f"{100 * task.part:.0f} %"
     tip = f"{task.tip}, done to {part}" if part else task.tip
     bar = BarShape("", left, middle - _TASK_BAR / 2, right - left, _TASK_BAR, tip)
-    name = Label(shortened(task.name, _NAMES), LEFT - 10, middle + 4)
+    name = Caption(shortened(task.name, _NAMES), LEFT - 10, middle + 4)
     return _TaskRow(name, task.symbol.icon, task.symbol.colour, bar, part)
 
 
@@ -162,7 +162,7 @@ def _row(
 ) -> _Row:
     shown = tuple(bars)
     shapes = tuple(_bar(subject, bar, axis, middle, highest) for bar in shown)
-    label = Label(shortened(name, _NAMES), LEFT - 10, middle + 4, tip)
+    label = Caption(shortened(name, _NAMES), LEFT - 10, middle + 4, tip)
     return _Row(label, shapes, tuple(_task_names(shown, axis, middle)))
 
 
@@ -211,13 +211,13 @@ def stretches(bars: Iterable[Bar]) -> Iterator[tuple[str, float, float]]:
         yield task, begin, end
 
 
-def _task_names(bars: Iterable[Bar], axis: TimeAxis, middle: float) -> Iterator[Label]:
+def _task_names(bars: Iterable[Bar], axis: TimeAxis, middle: float) -> Iterator[Caption]:
     """Yield the names of tasks over the stretches that are wide enough for them."""
     for task, begin, end in stretches(bars):
         left, right = axis.at(begin), axis.at(end)
         fitting = int((right - left - 6) / width_of("m", 11.0))
         if fitting >= 4:
-            yield Label(shortened(task, fitting), (left + right) / 2, middle + 4)
+            yield Caption(shortened(task, fitting), (left + right) / 2, middle + 4)
 
 
 def _arrow(handover: Handover, axis: TimeAxis, rows: dict[str, float]) -> tuple[str, str, str]:

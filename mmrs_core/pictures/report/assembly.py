@@ -16,8 +16,8 @@ from mmrs_core.contributions.rules import MoveKind, RobotKind
 from mmrs_core.pictures.flights.away import AWAY
 from mmrs_core.pictures.flights.fixes import Zero, zero_of
 from mmrs_core.pictures.flights.photos import shots_in
-from mmrs_core.pictures.flights.places import Places
 from mmrs_core.pictures.flights.planned import Planned, PlannedLeg, legs_of
+from mmrs_core.pictures.flights.positions import Locator
 from mmrs_core.pictures.flights.thinning import pieces
 from mmrs_core.pictures.flights.values import Flight, Flown
 from mmrs_core.pictures.report.deviations import deviation_of
@@ -34,7 +34,7 @@ from mmrs_core.pictures.report.values import (
     Separation,
 )
 from mmrs_core.pictures.report.visits import move_reports, wait_reports
-from mmrs_core.pipeline import Place as Surroundings
+from mmrs_core.pipeline import Place
 from mmrs_core.scene import Name
 from mmrs_runtime.records.entries import number_of
 from mmrs_runtime.semantics import Outcome
@@ -52,7 +52,7 @@ class Given:
     """
 
     program: Program
-    place: Surroundings
+    place: Place
     flight: Flight
     planned: Planned
     kinds: Mapping[Name, MoveKind]
@@ -70,7 +70,7 @@ class Given:
 def report_of(given: Given) -> Report:
     """Return the report of a flight."""
     program, flight, plan = given.program, given.flight, given.planned.run
-    legs, places = given.legs(), Places(program.frame)
+    legs, places = given.legs(), Locator(program.frame)
     records = [record for flown in flight.robots.values() for record in flown.records]
     judged = replay(program, records, partial=True)
     robots = [flight.robots[robot.id] for robot in program.robots]
@@ -150,7 +150,7 @@ def _length(flown: Flown) -> float:
     return float(sum(np.linalg.norm(np.diff(piece, axis=0), axis=1).sum() for piece in pieces(flown.track)))
 
 
-def _approaches(given: Given, places: Places) -> Iterator[Approach]:
+def _approaches(given: Given, places: Locator) -> Iterator[Approach]:
     for robot in given.program.robots:
         robot_type = given.place.types.get(robot.type_name)
         own = robot_type.half_diagonal + given.program.position_error if robot_type is not None else None
@@ -160,7 +160,7 @@ def _approaches(given: Given, places: Places) -> Iterator[Approach]:
 
 
 def _separations(
-    given: Given, legs: Mapping[str, tuple[PlannedLeg, ...]], places: Places
+    given: Given, legs: Mapping[str, tuple[PlannedLeg, ...]], places: Locator
 ) -> Iterator[Separation]:
     program = given.program
     apart, flown = program.minimum_separation, given.flight.robots
@@ -169,7 +169,7 @@ def _separations(
     yield from separations_of(moving, None if apart is None else apart + errors, places.of, errors)
 
 
-def _photos(given: Given, places: Places) -> Iterator[PhotoReport]:
+def _photos(given: Given, places: Locator) -> Iterator[PhotoReport]:
     for robot, shots in shots_in(given.program, given.flight, given.place.types, given.robot_kinds).items():
         for shot in shots:
             where = places.of(shot.at) if shot.at is not None else None

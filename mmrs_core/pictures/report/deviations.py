@@ -1,4 +1,4 @@
-"""How far robots were from where they should have been."""
+"""How far robots were off their planned paths."""
 
 from __future__ import annotations
 
@@ -10,8 +10,8 @@ from mmrs_core.behaviour.program import BEHAVIOUR
 from mmrs_core.geometry.frames import Floats
 from mmrs_core.pictures.flights.away import away_of, without
 from mmrs_core.pictures.flights.nearest import nearest
-from mmrs_core.pictures.flights.places import Place
 from mmrs_core.pictures.flights.planned import PlannedLeg
+from mmrs_core.pictures.flights.positions import GeoPosition
 from mmrs_core.pictures.flights.values import Flown
 from mmrs_core.pictures.report.values import Deviation, Spread
 from mmrs_core.scene import Position
@@ -20,11 +20,11 @@ _ON_GROUND = tuple((BEHAVIOUR, name) for name in ("Start", "Stop", "Recharge"))
 
 
 def deviation_of(
-    flown: Flown, legs: Sequence[PlannedLeg], place_of: Callable[[Position], Place]
+    flown: Flown, legs: Sequence[PlannedLeg], place_of: Callable[[Position], GeoPosition]
 ) -> Deviation | None:
-    """Return how far a robot was from its planned ways, over all fixes on them.
+    """Return how far a robot was off its planned paths, over all fixes on them.
 
-    What a robot does by a policy belongs to no planned way. None where there is no fix on one.
+    Responses of policies belong to no planned path. None where there is no fix on one.
     """
     parts = list(_by_leg(flown, legs))
     if not parts:
@@ -50,7 +50,7 @@ def deviation_of(
 
 
 def deviations_over_time(flown: Flown, legs: Sequence[PlannedLeg]) -> list[tuple[Floats, Floats]]:
-    """Return (times, metres sideways) of each piece of a planned way, for a chart."""
+    """Return (times, metres sideways) of each piece of a planned path, for a chart."""
     return [(times, np.hypot(off[:, 0], off[:, 1])) for _, times, off, _ in _by_leg(flown, legs)]
 
 

@@ -12,8 +12,8 @@ from mmrs_core.analysis.distance import prism_distances
 from mmrs_core.behaviour.program import BEHAVIOUR
 from mmrs_core.geometry.frames import Floats
 from mmrs_core.pictures.flights.away import Stretch, without
-from mmrs_core.pictures.flights.places import Place
 from mmrs_core.pictures.flights.planned import PlannedLeg
+from mmrs_core.pictures.flights.positions import GeoPosition
 from mmrs_core.pictures.flights.values import Flags, Flown, Track
 from mmrs_core.pictures.report.values import Approach, Separation
 from mmrs_core.scene import Area, AreaUse, Position
@@ -30,7 +30,7 @@ def approaches_of(
     track: Track,
     areas: Iterable[Area],
     own: float | None,
-    place_of: Callable[[Position], Place],
+    place_of: Callable[[Position], GeoPosition],
     error: float = 0.0,
 ) -> Iterator[Approach]:
     """Yield the nearest approach of a robot to each area that it must keep away from.
@@ -100,7 +100,7 @@ def _box_distances(begins: Floats, ends: Floats, area: Area) -> Floats:
 def separations_of(
     robots: Sequence[Moving],
     required: float | None,
-    place_of: Callable[[Position], Place],
+    place_of: Callable[[Position], GeoPosition],
     error: float = 0.0,
 ) -> Iterator[Separation]:
     """Yield how near each two robots came to each other that were in motion at one time.

@@ -7,9 +7,9 @@ from collections.abc import Callable, Iterator, Mapping
 
 from mmrs_core.pictures.figures import quantity
 from mmrs_core.pictures.flights.fixes import Zero
-from mmrs_core.pictures.flights.places import Place
+from mmrs_core.pictures.flights.positions import GeoPosition
 from mmrs_core.pictures.flights.values import Flown
-from mmrs_core.pictures.report.values import Event, Reading
+from mmrs_core.pictures.report.values import Event, Measurement
 from mmrs_core.scene import Position
 from mmrs_runtime.policies import NOTHING
 from mmrs_runtime.records.entries import Entry, number_of
@@ -29,7 +29,9 @@ def events_of(flown: Flown) -> tuple[Event, ...]:
     return tuple(sorted(_events(flown), key=lambda event: event.time))
 
 
-def readings_of(flown: Flown, zero: Zero, place_of: Callable[[Position], Place]) -> Iterator[Reading]:
+def readings_of(
+    flown: Flown, zero: Zero, place_of: Callable[[Position], GeoPosition]
+) -> Iterator[Measurement]:
     """Yield what a robot has measured and reported, in order."""
     for entry in flown.entries:
         if entry.kind in ("measured", "reported"):
@@ -37,7 +39,7 @@ def readings_of(flown: Flown, zero: Zero, place_of: Callable[[Position], Place])
             at = at if at is not None else flown.track.at(entry.time)
             where = place_of(at) if at is not None else None
             name, content = _words(entry, "name"), _content(entry.content.get("content"))
-            yield Reading(flown.robot, entry.time, entry.kind, name, content, where)
+            yield Measurement(flown.robot, entry.time, entry.kind, name, content, where)
 
 
 def _events(flown: Flown) -> Iterator[Event]:

@@ -23,7 +23,7 @@ from mmrs_core.pictures.report.charts import battery_chart, cross_track_chart
 from mmrs_core.pictures.report.deviations import deviations_over_time
 from mmrs_core.pictures.report.energies import planned_levels
 from mmrs_core.pictures.report.tables import Section
-from mmrs_core.pictures.report.values import Report, Status
+from mmrs_core.pictures.report.values import Report, TaskStatus
 from mmrs_core.pictures.report.wording import metres, nearness, percent, spoken
 from mmrs_runtime.policies import EVENTS
 
@@ -98,8 +98,8 @@ def _robot(index: int, name: str, given: Given, picture: Picture, legs: Sequence
 
 def verdict(report: Report) -> tuple[str, str]:
     """Return one sentence on how it went, and its colour: ``good``, ``fair`` or ``bad``."""
-    asked = [task for task in report.tasks if task.status is not Status.NOT_CHOSEN]
-    done = sum(task.status is Status.DONE for task in asked)
+    asked = [task for task in report.tasks if task.status is not TaskStatus.NOT_CHOSEN]
+    done = sum(task.status is TaskStatus.DONE for task in asked)
     ended = sum(robot.ended_early for robot in report.robots)
     near = any(each.too_near for each in (*report.approaches, *report.separations))
     success = report.outcome == "success"

@@ -11,7 +11,7 @@ from markupsafe import Markup
 
 from mmrs_core.pictures.figures import clock, quantity
 from mmrs_core.pictures.report.events import BY_PEOPLE
-from mmrs_core.pictures.report.values import Event, Nearness, Report, Status, TaskReport
+from mmrs_core.pictures.report.values import Event, Nearness, Report, TaskReport, TaskStatus
 from mmrs_core.pictures.report.wording import (
     UNKNOWN,
     level,
@@ -97,12 +97,12 @@ def tasks(report: Report) -> Section:
 
 def _status(task: TaskReport) -> Badge:
     kinds = {
-        Status.DONE: "good",
-        Status.PART: "fair",
-        Status.NOT_DONE: "bad",
-        Status.NOT_CHOSEN: "none",
+        TaskStatus.DONE: "good",
+        TaskStatus.PART: "fair",
+        TaskStatus.NOT_DONE: "bad",
+        TaskStatus.NOT_CHOSEN: "none",
     }
-    if task.status is Status.PART:
+    if task.status is TaskStatus.PART:
         return Badge(f"{task.status.value}: {percent(task.part)}", "fair", task.part)
     return Badge(task.status.value, kinds[task.status])
 
@@ -227,7 +227,7 @@ def deviations(report: Report) -> Section:
     )
     note = (
         "From each fix to the nearest point of its move's planned path. Fixes outside of moves, on the"
-        " ground, on the way to objects that had to be found, and during off-plan responses do not count."
+        " ground, during searches for objects and during off-plan responses do not count."
         " Errors of the vehicle's own position are not in these figures."
     )
     return Section("Planned vs. flown", (Table(head, rows),), note)

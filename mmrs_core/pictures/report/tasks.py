@@ -1,4 +1,4 @@
-"""What was asked, and how much of it was achieved."""
+"""Tasks: what was asked, and how much of it was achieved."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from mmrs_core.behaviour.program import Move, Program
 from mmrs_core.pictures.flights.nearest import along
 from mmrs_core.pictures.flights.planned import PlannedLeg
 from mmrs_core.pictures.flights.values import Flight, Track
-from mmrs_core.pictures.report.values import Status, TaskReport
+from mmrs_core.pictures.report.values import TaskReport, TaskStatus
 from mmrs_core.pictures.report.visits import Visit, visits_of
 from mmrs_core.simulation.run import SimulatedRun
 from mmrs_runtime.records.steps import StepRecord
@@ -24,7 +24,7 @@ _SHORTEST = 1e-3
 
 @dataclass(slots=True)
 class _Work:
-    """Of one task: what was to be done and was, in seconds of the plan, and when."""
+    """One task: what was to be done and was, in seconds of the plan, and when."""
 
     asked: float = 0.0
     achieved: float = 0.0
@@ -36,7 +36,7 @@ class _Work:
 
 
 def serves(move: Move) -> bool:
-    """Return whether a move is work on its task, and not only the way there."""
+    """Return whether a move is work on its task, and not only transit."""
     return bool(move.task) and move.rule not in ASIDE
 
 
@@ -46,11 +46,11 @@ def task_reports(
     """Return every task that moves serve, in their order.
 
     The part that was done is of the planned time of the moves that serve it; of a move that was begun
-    and not ended, it is the part of its way up to the last known place. Without a plan, every move
+    and not ended, it is the part of its path up to the last known position. Without a plan, every move
     counts the same, and those that were never reached count as asked for.
 
     Args:
-        legs: of each robot, with the way that each begun move should have gone.
+        legs: of each robot, with the planned path of each begun move.
     """
     works: dict[str, _Work] = {}
     for robot in program.robots:
@@ -105,7 +105,7 @@ def _seconds(planned: Sequence[Visit]) -> float:
 
 
 def _partly(legs: Sequence[PlannedLeg], track: Track) -> dict[str, float]:
-    """Return by move that was begun and not ended how much of its way is behind, 0 to 1."""
+    """Return by move that was begun and not ended the completed part of its path, 0 to 1."""
     parts: dict[str, float] = {}
     for leg in legs:
         inside = (track.times >= leg.begin) & (track.times <= leg.end)
@@ -117,12 +117,12 @@ def _partly(legs: Sequence[PlannedLeg], track: Track) -> dict[str, float]:
 def _report(name: str, work: _Work) -> TaskReport:
     part = work.achieved / work.asked if work.asked else 0.0
     if not work.asked:
-        status = Status.NOT_CHOSEN
+        status = TaskStatus.NOT_CHOSEN
     elif part >= _ALL:
-        status = Status.DONE
+        status = TaskStatus.DONE
     else:
-        status = Status.PART if part > 0 else Status.NOT_DONE
+        status = TaskStatus.PART if part > 0 else TaskStatus.NOT_DONE
     planned = (min(work.planned_begins), max(work.planned_ends)) if work.planned_begins else None
-    end = max(work.ends, default=None) if status is Status.DONE else None
+    end = max(work.ends, default=None) if status is TaskStatus.DONE else None
     flown = (min(work.begins), end) if work.begins else None
     return TaskReport(name, status, part, tuple(work.robots), planned, flown)

@@ -6,13 +6,13 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import Enum
 
-from mmrs_core.pictures.flights.places import Place
+from mmrs_core.pictures.flights.positions import GeoPosition
 
 MILLIMETRE = 1e-3
 """Rounding error of distances, metres."""
 
 
-class Status(Enum):
+class TaskStatus(Enum):
     """How much of a task was done."""
 
     DONE = "done"
@@ -32,7 +32,7 @@ class TaskReport:
     """
 
     name: str
-    status: Status
+    status: TaskStatus
     part: float
     robots: tuple[str, ...]
     planned: tuple[float, float] | None
@@ -61,7 +61,7 @@ class Deviation:
     fixes: int
     sideways: Spread
     upwards: Spread
-    where: Place
+    where: GeoPosition
     time: float
     move: str
     high_time: float
@@ -128,7 +128,7 @@ class Nearness:
     kept: float
     required: float | None
     error: float
-    where: Place
+    where: GeoPosition
     time: float
 
     @property
@@ -169,11 +169,11 @@ class PhotoReport:
     index: int | None
     task: str
     move: str
-    where: Place | None
+    where: GeoPosition | None
 
 
 @dataclass(frozen=True, slots=True)
-class Reading:
+class Measurement:
     """Something ``measured`` or ``reported``: its kind, its name, and its content in words."""
 
     robot: str
@@ -181,7 +181,7 @@ class Reading:
     kind: str
     name: str
     content: str
-    where: Place | None
+    where: GeoPosition | None
 
 
 @dataclass(frozen=True, slots=True)
@@ -278,7 +278,7 @@ class Report:
     approaches: tuple[Approach, ...]
     separations: tuple[Separation, ...]
     photos: tuple[PhotoReport, ...]
-    readings: tuple[Reading, ...]
+    readings: tuple[Measurement, ...]
     events: tuple[Event, ...]
     links: tuple[LinkReport, ...]
     unknown: tuple[str, ...]

@@ -6,7 +6,7 @@ import re
 
 from mmrs_core.contributions.checks import AT_LIMIT
 from mmrs_core.pictures.figures import clock, energy, length
-from mmrs_core.pictures.flights.places import Place
+from mmrs_core.pictures.flights.positions import GeoPosition
 from mmrs_core.pictures.report.values import Nearness
 from mmrs_runtime.policies import EVENTS, RESPONSES
 
@@ -90,10 +90,10 @@ def nearness(approach: Nearness) -> str:
     return "kept"
 
 
-def place(where: Place | None) -> str:
+def place(where: GeoPosition | None) -> str:
     """Return where something was: degrees where it lies on the Earth, else metres; and the height.
 
-    >>> place(Place((1.0, 2.0, 3.0), 42.37, 13.35)), place(Place((1.0, -2.0, 3.0)))
+    >>> place(GeoPosition((1.0, 2.0, 3.0), 42.37, 13.35)), place(GeoPosition((1.0, -2.0, 3.0)))
     ('42.3700000, 13.3500000, 3.0 m up', '1.0 m east, -2.0 m north, 3.0 m up')
     """
     if where is None:

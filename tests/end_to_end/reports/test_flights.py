@@ -130,7 +130,7 @@ def test_a_preview_shows_the_flight(mmrs, project):
     code, _, err = mmrs("preview", project, "--logs", project / "logs", "-o", project / "out")
     assert code == 0, err
     text = (project / "out" / "preview.html").read_text("utf-8")
-    assert "ways are drawn within 0.2 m of what the vehicles told" in text
+    assert "tracks are drawn within 0.2 m of the reported positions" in text
 
 
 def test_a_replay_of_a_flight_knows_where_robots_were(mmrs, project):

@@ -162,7 +162,7 @@ def test_without_types_and_place_the_report_says_what_is_missing(mmrs, project, 
     code, out, err = mmrs("report", alone, project / "logs", "--json", "-o", alone / "r.html")
     assert code == 0, err
     unknown = json.loads(out)["report"]["unknown"]
-    assert any("times and energy as planned are not known" in each for each in unknown)
+    assert any("planned times and energy are unknown" in each for each in unknown)
     assert any("no context: " in each for each in unknown)
 
 

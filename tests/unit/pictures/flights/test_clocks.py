@@ -86,8 +86,8 @@ def test_a_robot_whose_process_was_started_again_alone_is_left_and_that_is_told(
     box = folder / "beta.blackbox.ndjson"
     lines = box.read_text().splitlines(keepends=True)
     box.write_text("".join([*lines, lines[0], *lines[-3:]]))
-    (note,) = [each for each in flight().damages if "started again" in each]
-    assert note.startswith("beta: was started again otherwise than alpha")
+    (note,) = [each for each in flight().damages if "was restarted" in each]
+    assert note.startswith("beta: was restarted differently from alpha")
 
 
 def test_what_is_noted_before_a_vehicle_is_known_is_of_the_same_process(flight, folder):

@@ -7,9 +7,9 @@ from flights_by_hand import flight_as, track_of
 
 from mmrs_core.pictures.flights.planned import Planned
 from mmrs_core.pictures.preview.from_flight import picture_of_flight
-from mmrs_core.pictures.preview.from_run import Surroundings
 from mmrs_core.pictures.preview.map import map_of
 from mmrs_core.pictures.preview.page import page
+from mmrs_core.pipeline import Place
 from mmrs_runtime.records.entries import Entry
 from mmrs_runtime.records.steps import StepRecord
 
@@ -20,7 +20,7 @@ def shown(behaviour, run, types, contributions):
 
     def picture(**changed):
         flight = flight_as(run, behaviour, **changed)
-        around = Surroundings(types=types)
+        around = Place(types)
         return picture_of_flight(behaviour, flight, Planned(run), contributions, around)
 
     return picture
@@ -91,7 +91,7 @@ def test_time_at_home_for_a_battery_is_not_work(shown, run):
 def test_a_robot_of_which_nobody_knows_where_it_was_is_said_to_be_one(shown):
     picture = shown(beta={"track": track_of([])})
     assert picture.robots[1].legs == ()
-    assert "beta: where it was is not known, there is no black box of it" in picture.notes
+    assert "beta: its track is unknown, there is no black box of it" in picture.notes
     assert ("distance", "unknown") in picture.robots[1].summary
 
 

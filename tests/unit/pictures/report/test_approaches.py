@@ -6,14 +6,14 @@ import numpy as np
 import pytest
 from shapely.geometry import LineString, Polygon
 
-from mmrs_core.pictures.flights.places import Places
+from mmrs_core.pictures.flights.positions import Locator
 from mmrs_core.pictures.report.distances import approaches_of
 from mmrs_core.scene import Area, AreaUse, Frame
 
 SQUARE = ((10.0, 10.0), (20.0, 10.0), (20.0, 20.0), (10.0, 20.0))
 SCHOOL = Area("school", AreaUse.FORBIDDEN, SQUARE, safety_distance=3.0)
 TOWER = Area("tower", AreaUse.OBSTACLE, SQUARE, 0.0, 30.0)
-PLACES = Places(Frame("EPSG:4326", None, None))
+PLACES = Locator(Frame("EPSG:4326", None, None))
 
 
 def nearest(track, *areas, own=0.5):

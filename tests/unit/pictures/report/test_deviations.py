@@ -12,15 +12,15 @@ from hypothesis.extra import numpy as hnp
 from shapely.geometry import LineString, Point
 
 from mmrs_core.pictures.flights.nearest import along, nearest
-from mmrs_core.pictures.flights.places import Places
 from mmrs_core.pictures.flights.planned import PlannedLeg
+from mmrs_core.pictures.flights.positions import Locator
 from mmrs_core.pictures.report.charts import cross_track_chart
 from mmrs_core.pictures.report.deviations import deviation_of
 from mmrs_core.scene import Frame
 from mmrs_core.testing.programs import go_to, move
 
 WAY = ((0.0, 0.0, 10.0), (100.0, 0.0, 10.0))
-PLACES = Places(Frame("EPSG:4326", None, None))
+PLACES = Locator(Frame("EPSG:4326", None, None))
 
 
 def leg(begin=0.0, end=10.0, way=WAY, of=None):

@@ -9,14 +9,14 @@ import pytest
 
 from mmrs_core.pictures.flights.fixes import zero_of
 from mmrs_core.pictures.flights.photos import shots_of
-from mmrs_core.pictures.flights.places import Places
+from mmrs_core.pictures.flights.positions import Locator
 from mmrs_core.pictures.report.assembly import link_of
 from mmrs_core.pictures.report.energies import energy_of, used
 from mmrs_core.pictures.report.events import MOST_TEXTS, events_of, readings_of, without_secrets
 from mmrs_core.pictures.report.visits import move_reports, wait_reports
 from mmrs_core.scene import Frame
 
-PLACES = Places(Frame("EPSG:4326", None, None))
+PLACES = Locator(Frame("EPSG:4326", None, None))
 
 
 def test_the_lowest_level_and_its_time_are_told(make):

@@ -6,7 +6,6 @@ import pytest
 
 from mmrs_core.pictures.flights.planned import Planned
 from mmrs_core.pictures.preview.from_flight import picture_of_flight
-from mmrs_core.pictures.preview.from_run import Surroundings
 from mmrs_core.pictures.report.assembly import Given, report_of
 from mmrs_core.pictures.report.page import page
 
@@ -21,8 +20,7 @@ def markup(behaviour, place, run, contributions, as_run, make):
         flight = as_run(alpha={"entries": entries})
         planned = Planned(run)
         given = Given(behaviour, place, flight, planned, contributions.move_kinds)
-        around = Surroundings(place.areas, types=place.types)
-        picture = picture_of_flight(behaviour, flight, planned, contributions, around)
+        picture = picture_of_flight(behaviour, flight, planned, contributions, place)
         return page(report_of(given), given, picture)
 
     return made

@@ -7,14 +7,14 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from mmrs_core.pictures.flights.places import Places
 from mmrs_core.pictures.flights.planned import PlannedLeg
+from mmrs_core.pictures.flights.positions import Locator
 from mmrs_core.pictures.flights.values import Flown, Track
 from mmrs_core.pictures.report.distances import in_motion, separations_of
 from mmrs_core.scene import Frame
 from mmrs_core.testing.programs import move
 
-PLACES = Places(Frame("EPSG:4326", None, None))
+PLACES = Locator(Frame("EPSG:4326", None, None))
 
 
 def told(*tracks, required=None, moving=((0.0, 1e6),)):

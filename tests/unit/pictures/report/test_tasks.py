@@ -8,7 +8,7 @@ import pytest
 
 from mmrs_core.pictures.flights.planned import legs_of
 from mmrs_core.pictures.report.tasks import task_reports
-from mmrs_core.pictures.report.values import Status
+from mmrs_core.pictures.report.values import TaskStatus
 from mmrs_core.testing.programs import go_to, move, program, robot_program, take_off
 
 
@@ -34,8 +34,8 @@ def until(records, move, label="begin"):
 def test_a_run_as_planned_has_done_every_task(told, as_run):
     tasks = told(as_run())
     assert {name: (task.status, task.part) for name, task in tasks.items()} == {
-        "photos": (Status.DONE, 1.0),
-        "look": (Status.DONE, 1.0),
+        "photos": (TaskStatus.DONE, 1.0),
+        "look": (TaskStatus.DONE, 1.0),
     }
     assert tasks["photos"].flown == pytest.approx(tasks["photos"].planned)
     assert tasks["photos"].robots == ("alpha",)
@@ -44,7 +44,7 @@ def test_a_run_as_planned_has_done_every_task(told, as_run):
 def test_a_task_that_nobody_came_to_is_not_done(told, as_run):
     records = until(as_run().robots["beta"].records, "b1")
     look = told(as_run(beta={"records": records}))["look"]
-    assert (look.status, look.part, look.flown) == (Status.NOT_DONE, 0.0, None)
+    assert (look.status, look.part, look.flown) == (TaskStatus.NOT_DONE, 0.0, None)
 
 
 def test_a_task_that_was_broken_off_is_told_in_parts_of_its_planned_time(told, as_run, run):
@@ -57,7 +57,7 @@ def test_a_task_that_was_broken_off_is_told_in_parts_of_its_planned_time(told, a
     photos = told(as_run(alpha={"records": records, "track": cut}))["photos"]
     planned = {r.move: r.time for r in run.records if r.robot == "alpha" and r.label == "begin"}
     whole = photos.planned[1] - planned["a1"]
-    assert photos.status is Status.PART
+    assert photos.status is TaskStatus.PART
     assert photos.part == pytest.approx((begun - planned["a1"]) / whole, abs=0.02)
     assert photos.flown == (planned["a1"], None)
 
@@ -87,4 +87,4 @@ def test_a_task_on_the_other_way_of_a_choice_was_not_needed(make, told, run, as_
     )
     skipped = replace(run, records=tuple(r for r in run.records if r.move in ("start", "up")))
     flight = make.flight(replace(as_run().robots["alpha"], records=()))
-    assert told(flight, skipped, of)["extra"].status is Status.NOT_CHOSEN
+    assert told(flight, skipped, of)["extra"].status is TaskStatus.NOT_CHOSEN

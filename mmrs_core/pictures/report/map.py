@@ -1,37 +1,45 @@
-"""The tasks of the mission that a behaviour was planned from, for the map of its flight."""
+"""The picture of a flight with the tasks of the mission that its behaviour was planned from."""
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import replace
 from pathlib import Path
 
-from mmrs_core.behaviour.program import Program
 from mmrs_core.contributions.registry import Contributions
 from mmrs_core.diagnostics import has_errors
 from mmrs_core.errors import MmrsError
 from mmrs_core.languages.modelset import model_in
 from mmrs_core.pictures.preview.features import task_pictures
+from mmrs_core.pictures.preview.from_flight import picture_of_flight
 from mmrs_core.pictures.preview.picture import Picture
-from mmrs_core.pictures.report.values import Report, Status
+from mmrs_core.pictures.report.assembly import Given
+from mmrs_core.pictures.report.values import Report, TaskStatus
 from mmrs_core.pipeline import check_models, ground, read_models
-from mmrs_core.scene import Scene
+from mmrs_core.scene import Part, Scene
 
 
-def with_tasks(
-    picture: Picture, report: Report, program: Program, contributions: Contributions, folder: Path
+def flight_picture(
+    given: Given, report: Report, contributions: Contributions, elements: Iterable[Part], folder: Path
 ) -> Picture:
-    """Return the picture with the tasks of the mission beside the behaviour, when they were done.
+    """Return the picture of a flight, with the tasks of the mission in a folder and when they were done.
 
-    A mission that cannot be read, is not valid, lies in another frame, or has none of these tasks
-    changes nothing.
+    A mission that cannot be read, is not valid, lies in another frame, or does not have these tasks
+    adds nothing.
+
+    Args:
+        elements: context elements of plug-ins.
     """
+    picture = picture_of_flight(
+        given.program, given.flight, given.planned, contributions, given.place, elements
+    )
     scene = _scene_in(folder, contributions)
     named = {task.name for task in report.tasks}
-    if scene is None or scene.frame != program.frame or not named <= {task.name for task in scene.tasks}:
+    if scene is None or scene.frame != given.program.frame or not named <= {t.name for t in scene.tasks}:
         return picture
     begins = {task.name: task.flown[0] for task in report.tasks if task.flown is not None}
     ends = {t.name: t.flown[1] for t in report.tasks if t.flown is not None and t.flown[1] is not None}
-    partly = {task.name: task.part for task in report.tasks if task.status is Status.PART}
+    partly = {task.name: task.part for task in report.tasks if task.status is TaskStatus.PART}
     ends |= {name: _last(picture, name) for name in partly if name in begins}
     tasks = task_pictures(scene, begins, ends, contributions.map_symbols)
     return replace(picture, tasks=tuple(replace(each, part=partly.get(each.name, 1.0)) for each in tasks))

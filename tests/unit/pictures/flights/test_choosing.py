@@ -6,7 +6,7 @@ import pytest
 
 from mmrs_core.behaviour.program import Transition
 from mmrs_core.contributions.execution import Condition, RobotState
-from mmrs_core.pictures.flights.answers import choosing_as
+from mmrs_core.pictures.flights.planned import choosing_as
 from mmrs_core.pictures.flights.values import Flight, Flown
 from mmrs_core.testing.programs import move, program, robot_program
 from mmrs_runtime.records.steps import StepRecord
@@ -75,4 +75,4 @@ def test_a_choice_that_was_never_asked_is_decided_by_what_is_known_of_its_condit
 def test_a_condition_of_which_nobody_knows_anything_holds_and_a_note_says_so():
     made, ask = choosing(flight())
     assert ask["alpha"]() is True
-    assert list(made.notes) == ["condition 'again' was never asked; the plan takes it that it holds"]
+    assert list(made.notes) == ["condition 'again' was never evaluated; the plan assumes that it holds"]
