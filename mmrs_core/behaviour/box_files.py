@@ -1,4 +1,4 @@
-"""Finds the files of black boxes: full parts that were put aside are numbered, the newest has no number."""
+"""The files of black boxes: full parts are numbered, the newest has no number."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ class BlackBox:
     Attributes:
         stem: of its files, which is that of the robot's log.
         parts: oldest first.
-        missing: what of it is not there, for people; empty if nothing seems to be.
+        missing: messages about missing parts; empty if nothing seems to be missing.
     """
 
     stem: str
@@ -31,7 +31,7 @@ class BlackBox:
     missing: tuple[str, ...] = ()
 
     def entries(self, tell: Tell) -> Iterator[Entry]:
-        """Yield every entry that can be read, in the order of the lines; tell what cannot be.
+        """Yield every readable entry in the order of the lines; pass damage to `tell`.
 
         Raises:
             UnreadableError: if a part cannot be opened.
@@ -62,7 +62,7 @@ def black_boxes(paths: Iterable[Path]) -> tuple[BlackBox, ...]:
 
 
 def is_part(path: Path) -> bool:
-    """Return whether a path is called as parts of black boxes are."""
+    """Return whether a path has the name of a part of a black box."""
     return bool(_stem(path))
 
 

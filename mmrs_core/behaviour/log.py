@@ -1,4 +1,4 @@
-"""Reads logs of runs, and says of every line that is no step where it is."""
+"""Reads logs of runs: whole ones, and what is left of damaged ones."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ def read_log(path: Path, *, partial: bool = False) -> tuple[StepRecord, ...]:
     Args:
         path: of the log.
         partial: pass over a last line that was cut off while it was written, and over lines behind the
-            last whole one that are no JSON: after a loss of power, disks leave rubbish there.
+            last whole one that are not JSON: after a loss of power, disks leave rubbish there.
 
     Raises:
         UnreadableError: if the file cannot be read.

@@ -116,7 +116,7 @@ class Move:
 
     @property
     def kind(self) -> str:
-        """Return the name of the most specific metaclass, for people."""
+        """Return the name of the most specific metaclass."""
         return self.metaclasses[0][1]
 
     def action(self, detail: str) -> Action:
@@ -132,7 +132,7 @@ class Transition:
     Attributes:
         waits: names of own slots that must all be active.
         condition: identifier of a Choice; None for a plain transition.
-        otherwise: where a Choice goes on when its condition does not hold.
+        otherwise: the next move of a Choice whose condition does not hold.
     """
 
     source: int
@@ -155,7 +155,7 @@ class RobotProgram:
     """All that one robot does.
 
     Attributes:
-        home: where it is at the beginning; None where the model does not say.
+        home: where it is at the beginning; None where the model leaves it open.
         moves: in the model's order.
         transitions: by index of the move that they leave; every move but Stop has one.
         start, stop: indices of the only Start and the only Stop.
@@ -194,7 +194,7 @@ class Program:
         minimum_separation: metres between robots; None: not asked for.
         reserve: part of lifetime and energy that must remain unused, 0 to 1.
         accepted_unknowns: names of the checks whose properties may remain unknown.
-        idle: robots that nobody runs, and that stand at their homes.
+        idle: robots without a program, which stand at their homes.
     """
 
     name: str
@@ -210,7 +210,7 @@ class Program:
     def fingerprint(self) -> str:
         """Return what differs where two plans of the mission do, whatever files they were read from.
 
-        Robots that nobody runs make no difference.
+        Idle robots make no difference.
         """
         return fingerprint(
             {each.name: getattr(self, each.name) for each in fields(self) if each.name != "idle"}

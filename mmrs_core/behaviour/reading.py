@@ -43,7 +43,7 @@ def program_of(behaviour: bl.Behaviour, *, registry: Registry) -> Program:
         registry: of the metamodels that the behaviour may use.
 
     Raises:
-        InvalidModelError: if it breaks what every program keeps (one Start, one Stop, one way on from
+        InvalidModelError: if it breaks what every program keeps (one Start, one Stop, one transition from
             every other move, transitions inside one robot, waits for own slots, unique identifiers,
             known positions); lists every fault with its place.
     """
@@ -61,8 +61,8 @@ class _Reading:
 
     def program(self) -> Program:
         behaviour = self._behaviour
-        everybody = [*behaviour.robots, *behaviour.idleRobots]
-        self._refuse_doubles(everybody, [robot.id for robot in everybody], "robot")
+        everyone = [*behaviour.robots, *behaviour.idleRobots]
+        self._refuse_doubles(everyone, [robot.id for robot in everyone], "robot")
         robots = self._robots(behaviour.robots, "robots")
         idle = self._robots(behaviour.idleRobots, "idleRobots")
         if not robots:
@@ -155,14 +155,14 @@ class _Reading:
         if isinstance(target, bl.ObjectTarget):
             return MoveTarget(self._position(target.expectedAt), target.description, target.tolerance, name)
         if not isinstance(target, bl.Coordinate):
-            self._add(target, "is a target of a kind that nobody knows")
+            self._add(target, "is a target of an unknown kind")
             return MoveTarget(None, name=name)
         return MoveTarget(self._position(target), name=name)
 
     def _position(self, coordinate: bl.Coordinate | None) -> Position | None:
         """Return where a coordinate lies; None for none, and for one with a fault."""
         if coordinate is not None and container_of(coordinate) is not self._behaviour:
-            self._add(coordinate, "is no target of this behaviour")
+            self._add(coordinate, "is not a target of this behaviour")
         return self._ground.positions.get(coordinate) if coordinate is not None else None
 
     def _heading(self, heading: bl.Heading) -> Heading | None:
@@ -204,7 +204,7 @@ class _Reading:
             found.setdefault(made.source, made)
         for move, number in index.items():
             if number not in found and not isinstance(move, bl.Stop):
-                self._add(move, "is followed by no move, and is no Stop")
+                self._add(move, "is followed by no move, and is not a Stop")
         return found
 
     def _transition(
@@ -266,7 +266,7 @@ class _Reading:
 
 
 def _flowing(robot: bl.Robot) -> set[bl.Move | None]:
-    """Return the moves that the robot may go into or out of without a stop."""
+    """Return the moves that the robot may enter or leave without a stop."""
     return {
         move
         for transition in robot.moveTransitions
@@ -282,7 +282,7 @@ def slots_set_by(notify: bl.Notify, behaviour: bl.Behaviour) -> tuple[SlotId, ..
     in every robot that has one, the sender included, in the order of the robots.
 
     Raises:
-        ValueError: if it leads to no slot of a robot, or is of a kind that nobody knows.
+        ValueError: if it refers to no slot of a robot, or is of an unknown kind.
     """
     if isinstance(notify, bl.UnicastNotify):
         return (_slot_id(notify.slot),)
@@ -293,7 +293,7 @@ def slots_set_by(notify: bl.Notify, behaviour: bl.Behaviour) -> tuple[SlotId, ..
     if isinstance(notify, bl.BroadcastNotify):
         name = _slot_id(notify.slot)[1]
         return tuple((robot.id, name) for robot in behaviour.robots if _has_slot(robot, name))
-    raise ValueError("is a notify of a kind that nobody knows")
+    raise ValueError("is a notify of an unknown kind")
 
 
 def _slot_id(slot: bl.Slot | None) -> SlotId:

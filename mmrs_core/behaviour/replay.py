@@ -1,4 +1,4 @@
-"""The judge of every log: replays it through the step rules and says where it goes wrong.
+"""The judge of every log: replays it through the step rules and reports where it deviates.
 
 The oracle for engine, simulators, exports, generated code and logs from the field.
 """
@@ -47,7 +47,7 @@ class Complaint:
     message: str
 
     def __str__(self) -> str:
-        """Return one line for people."""
+        """Return the complaint in one line."""
         where = f"{self.robot}: step {self.seq} at '{self.move}'" if self.seq >= 0 else self.robot
         return f"{where}: {self.message}"
 
@@ -198,7 +198,7 @@ def _unfinished(run: _Replay) -> Iterable[Complaint]:
     for robot in run.robots.values():
         if not steps(robot.program, robot.point, run.active):
             continue
-        message = f"log ends although the robot can go on: expected {_expected(run, robot)}"
+        message = f"log ends although the robot can continue: expected {_expected(run, robot)}"
         if robot.last is None:
             yield Complaint(robot.program.id, -1, "", message)
         else:

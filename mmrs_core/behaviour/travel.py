@@ -1,4 +1,4 @@
-"""How robots travel by their travel modes: how fast, and how near they come."""
+"""Speeds and margins of travel modes."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ if TYPE_CHECKING:
     from mmrs_core.behaviour.program import Move, RobotProgram
 
 SHARE_OF_LARGEST_SPEED: Mapping[str, float] = {"SAFE": 0.5, "NORMAL": 0.75, "AGGRESSIVE": 1.0}
-"""At which a robot goes where nobody says how fast."""
+"""Share of the largest speed at which a robot travels by default, by travel mode."""
 
 
 @dataclass(frozen=True, slots=True)
 class TravelMargins:
-    """How carefully robots travel in a travel mode.
+    """Distances that robots keep in a travel mode.
 
     Attributes:
         acceptance: metres from a place at which it counts as reached, where the mission's position
@@ -47,7 +47,7 @@ def capability_of(robot: RobotProgram, type: RobotType) -> Capability | None:
 
 
 def cruise_of(robot: RobotProgram, type: RobotType | None) -> float | None:
-    """Return the speed of a robot where nobody says how fast, in metres per second; None: not known."""
+    """Return the default speed of a robot in metres per second; None where it is unknown."""
     capability = capability_of(robot, type) if type is not None else None
     if capability is None:
         return None
@@ -56,7 +56,7 @@ def cruise_of(robot: RobotProgram, type: RobotType | None) -> float | None:
 
 
 def speed_of(move: Move, robot: RobotProgram, type: RobotType | None) -> float | None:
-    """Return the commanded speed of a move in metres per second; None where it is not known."""
+    """Return the commanded speed of a move in metres per second; None where it is unknown."""
     return cruise_of(robot, type) if move.speed is None else move.speed
 
 

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 class Status(Enum):
-    """What a check says of a property."""
+    """What a check finds of a property."""
 
     VIOLATED = "violated"
     SAFE = "safe"
@@ -38,7 +38,7 @@ class Verdict:
         margin: what is left before the property breaks, negative where it is violated; None where
             it has no measure. unit: of the margin.
         move: identifier of the move where the margin is smallest; area: name of the area it is to.
-        message: what was found, for people; for unknown: what is missing.
+        message: what was found; for unknown: what is missing.
         place: where that move, or else the robot, stands in the user's files.
         caveat: what a safe verdict excuses or leaves out, so that it is always shown.
         error: the part of a required distance that allows for position errors, metres.
@@ -91,7 +91,7 @@ class Check:
         name: snake_case, unique; missions accept unknowns by it.
         title: the property as a sentence.
         run: one verdict for each robot, or one for all.
-        hint: how to mend a behaviour that has not got it, or what to say so that it can be known.
+        hint: how to fix a behaviour without it, or which figure makes it known.
     """
 
     name: str

@@ -21,7 +21,7 @@ class Finding:
     Attributes:
         element: the culprit, whose place the diagnostic gets.
         message: lower case, no full stop, the culprit first.
-        hint: how to mend it; empty: the constraint's own hint.
+        hint: how to fix it; empty: the constraint's own hint.
     """
 
     element: Element
@@ -38,7 +38,7 @@ class Constraint:
         title: what must hold, as a sentence for the documentation.
         metaclass: whose instances (subclasses included) it is checked on.
         check: the breaches by one such element in its models.
-        hint: how to mend a breach.
+        hint: how to fix a breach.
         severity: of the diagnostics.
     """
 

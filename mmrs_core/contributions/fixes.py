@@ -1,4 +1,4 @@
-"""Quick fixes: changes of a model's text that mend a fault in the one right way."""
+"""Quick fixes: changes of a model's text that fix an unambiguous problem."""
 
 from __future__ import annotations
 
@@ -31,16 +31,16 @@ class Edit:
 class Wrong:
     """What is wrong, in the model and in its text.
 
-    A JSON text is told as if it were XMI: objects are tags, plain values attributes, ``$type`` is
+    A JSON text is presented as if it were XMI: objects are tags, plain values attributes, ``$type`` is
     ``xsi:type``, and ``$languages`` declares namespaces. What gives a tag another text knows the difference.
 
     Attributes:
-        fault: the diagnostic to be mended.
+        fault: the diagnostic to be fixed.
         element: it is about; None where no element could be made.
         tag: of that element in the file's text.
         markup: the whole text.
-        models: the project; None where there is no mission, or the file is a behaviour by itself.
-        robots: the types of robot that are known, by name; also beside a behaviour.
+        models: the project; None where there is no mission, or the file is a standalone behaviour.
+        robots: the known robot types, by name; also of a standalone behaviour.
         registry: all metamodels.
         checks: names of all checks of behaviours.
     """
@@ -70,10 +70,10 @@ def _lines(tag: Tag) -> Iterator[int]:
 
 @dataclass(frozen=True, slots=True)
 class Fix:
-    """What mends the faults of a code, where there is one right answer.
+    """A fix of the diagnostics of one code, where there is one right answer.
 
     Attributes:
-        code: of the diagnostics it mends; one fix for a code.
+        code: of the diagnostics; one fix for a code.
         title: what it does, in the imperative.
         edits: of the file in which the fault stands; none where there is more than one right answer.
     """
@@ -117,7 +117,7 @@ def with_attribute(tag: Tag, name: str, value: str, markup: Markup) -> Edit:
 
 
 def without(tag: Tag, markup: Markup) -> Edit:
-    """Return what takes a tag away, with its line where nothing else stands there."""
+    """Return the edit that removes a tag, with its line where nothing else stands there."""
     if isinstance(tag, Thing):
         return Edit(*taken_away(tag), "")
     begin, end, data = tag.begin, tag.end, markup.data
@@ -130,6 +130,6 @@ def without(tag: Tag, markup: Markup) -> Edit:
 def referred_to(name: str, markup: Markup) -> bool:
     """Return whether some reference of the text counts elements in features of that name.
 
-    Such a reference would lead to another element if one before it were taken away.
+    Such a reference would lead to another element if one before it were removed.
     """
     return f"@{name}.".encode() in markup.data or f"@{name}[".encode() in markup.data

@@ -1,4 +1,4 @@
-"""Says whose fault it is when something that a plug-in contributed fails."""
+"""The guard of plug-ins: failures of their functions name them."""
 
 from __future__ import annotations
 
@@ -15,8 +15,8 @@ Descriptor = TypeVar("Descriptor")
 class Guarded:
     """A function of a plug-in, whose failures name the plug-in; equal to the function itself.
 
-    Errors of this package pass: by them, a plug-in says what its contract lets it say. What the
-    function yields later is guarded, too.
+    Errors of this package pass: contracts allow plug-ins to raise them. What the function yields later is
+    guarded, too.
 
     Attributes:
         function: the plug-in's own.
@@ -61,7 +61,7 @@ class Guarded:
 
 
 def guarded(descriptor: Descriptor, label: str) -> Descriptor:
-    """Return a descriptor whose functions blame the plug-in for their failures.
+    """Return a descriptor whose functions name the plug-in when they fail.
 
     >>> from mmrs_core.contributions.execution import Condition
     >>> guarded(Condition("windy", lambda state: 1 / 0), "condition 'windy' of 'kites'").holds(0)

@@ -57,7 +57,7 @@ _SHOWN: Mapping[str, Callable[[Any], object]] = {
 
 @dataclass(frozen=True, slots=True)
 class Contribution:
-    """One thing that a plug-in contributed: for people."""
+    """One contribution of a plug-in, for lists and messages."""
 
     plugin: str
     sort: str
@@ -120,7 +120,7 @@ class Contributions:
         from mmrs_core.languages.evolution.migration import chains
 
         found = tuple(self._by("migrations", lambda migration: migration.from_uri).values())
-        chains(found, ())  # they must not lead in a circle
+        chains(found, ())  # they must not form a cycle
         return found
 
     @cached_property
@@ -143,7 +143,7 @@ class Contributions:
 
     @cached_property
     def fixes(self) -> Mapping[str, Fix]:
-        """Return what mends faults, by code."""
+        """Return the quick fixes, by code."""
         return self._by("fixes", lambda fix: fix.code)
 
     @cached_property
@@ -154,12 +154,12 @@ class Contributions:
 
     @cached_property
     def robot_kinds(self) -> Mapping[Name, RobotKind]:
-        """Return the kinds of robots by metaclass."""
+        """Return the robot kinds by metaclass."""
         return self._by_metaclass("robot_kinds")
 
     @cached_property
     def move_kinds(self) -> Mapping[Name, MoveKind]:
-        """Return the kinds of moves by metaclass."""
+        """Return the move kinds by metaclass."""
         return self._by_metaclass("move_kinds")
 
     @cached_property

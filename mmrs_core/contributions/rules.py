@@ -39,8 +39,8 @@ class MoveSpec:
         object: description of an object to go up to, expected at `target`; None for a coordinate.
         object_tolerance: how far from `target` the object may be, metres; None where unknown.
         distance: metres from the target at the end.
-        look: orientation; None: the way the robot goes.
-        facing: whether `look` means the object, wherever it is found, and not the place where it is expected.
+        look: orientation; None: the direction of travel.
+        facing: whether `look` means the object, wherever it is found, and not its expected position.
         speed: metres per second; None: by the travel mode.
         before, after: device actions before and after the movement; their `at` does not matter.
     """
@@ -68,8 +68,8 @@ class Rule:
     Attributes:
         name: snake_case; stands in `Move.rule` of every move that it led to.
         metaclass: of the tasks.
-        work: the work of that task for that robot, whose kinematics are known. It says nothing of
-            who, when, or how to get there. Raises InfeasibleError if that robot cannot do the task;
+        work: the work of that task for that robot, whose kinematics are known. It leaves open
+            who does it, when, and how to get there. Raises InfeasibleError if that robot cannot do the task;
             the reason is shown to the operator when no robot can.
         moves: the moves of a stroke, for tasks whose moves are not GoTo with actions; the robot is
             at the stroke's first point. None: the engine's own.
@@ -83,14 +83,14 @@ class Rule:
 
 @dataclass(frozen=True, slots=True)
 class RobotKind:
-    """How robots of one kind move.
+    """A robot kind: how its robots move.
 
     Attributes:
         name: snake_case.
         metaclass: of the robot type or of its movement capabilities; the most specific one wins,
             the robot type's own metaclasses before those of its capabilities.
         kinematics: what a robot of this kind can do on that mission.
-        launch: moves that take it from home to so many metres above home.
+        launch: moves that take it from home to that height above home, metres.
         recover: moves that bring it down where it is.
         travel: moves along straight legs; the first position is where the robot is.
         policies: response by event, where the models say nothing; one for each event.
@@ -140,7 +140,7 @@ def most_specific(metaclasses: tuple[Name, ...], registered: Mapping[Name, objec
 
 
 def robot_kind_of(robot_type: RobotType, kinds: Mapping[Name, RobotKind]) -> RobotKind | None:
-    """Return the kind of robots of that type; None where nobody contributed one.
+    """Return the robot kind of a type; None where no plug-in provides one.
 
     A capability's metaclass counts only where the type's own most specific match is the general
     robot or none, so that an underwater capability makes an underwater vehicle of a plain Robot.
@@ -160,7 +160,7 @@ def barriers(
     Args:
         elements: grounded, in the context's order.
         types: of the robots; sorted here, so that their order does not matter.
-        kinds: of robots, by metaclass.
+        kinds: robot kinds by metaclass.
     """
     found = []
     known = sorted(types, key=lambda each: each.name)

@@ -28,10 +28,10 @@ class MapSymbol:
 
     Attributes:
         metaclass: of the elements.
-        label: what people call such an element.
+        label: common name of such an element.
         colour: as ``#rrggbb``.
         icon: up to two characters that stand for it on a map.
-        fields: attributes that an editor offers first, and that pictures tell, by feature name.
+        fields: attributes that an editor offers first and pictures show, by feature name.
         outlines: rings (east, north) in metres that an element's figures make beside its coordinates, such
             as a circle of its radius; none where a figure is missing. None: its coordinates are all.
 
@@ -55,12 +55,12 @@ class MapSymbol:
 
 
 def has_symbol(metaclasses: Metaclasses, symbols: Mapping[Name, MapSymbol]) -> bool:
-    """Return whether somebody contributed a symbol for one of the metaclasses."""
+    """Return whether a plug-in provides a symbol for one of the metaclasses."""
     return most_specific(metaclasses, symbols) is not None
 
 
 def symbol_of(metaclasses: Metaclasses, symbols: Mapping[Name, MapSymbol]) -> MapSymbol:
-    """Return the symbol of the most specific metaclass that has one; else a neutral one by its own name.
+    """Return the symbol of the most specific metaclass that has one, by default a neutral one.
 
     >>> symbol_of((("urn:solar:1.0", "PanelGroup"),), {}).label
     'panel group'

@@ -1,4 +1,4 @@
-"""Where the ground is: flat at the origin's height, but for the place that a robot calls home."""
+"""Where the ground is: flat at the origin's height, except around a robot's home."""
 
 from __future__ import annotations
 

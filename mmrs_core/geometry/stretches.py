@@ -112,7 +112,7 @@ def part_of(line: Sequence[Place], begin: float, end: float) -> tuple[Place, ...
 
 
 def point_at(line: Sequence[Place], arc: float) -> Place:
-    """Return the point of a polyline so many metres after its first point."""
+    """Return the point of a polyline `arc` metres after its first point."""
     arcs = _arcs(line)
     east, north, up = (float(np.interp(arc, arcs, axis)) for axis in zip(*line, strict=True))
     return (east, north, up)

@@ -87,7 +87,7 @@ def _place_geographic(
 def _local(
     root: Element | None, found: Sequence[Element], crs: str, frame: Frame, faults: list[Diagnostic]
 ) -> LocalFrame | None:
-    """Return the projection, or None where there is nothing to project or no way to do it."""
+    """Return the projection, or None where there is nothing to project or it is impossible."""
     if root is None or not found:
         return None
     if frame.latitude is None or frame.longitude is None:
@@ -183,7 +183,7 @@ def _chain(
     current: Element | None = coordinate
     while current is not None and current not in positions:
         if current in chain:
-            return tuple(chain), "counts from itself in a circle"
+            return tuple(chain), "counts from itself in a cycle"
         if not is_relative(current):
             return tuple(chain), f"counts from {place_of(current).path}, which has no position"
         chain[current] = None

@@ -43,10 +43,10 @@ AREAS = ("forbiddenAreas", "obstacles", "emergencyAreas")
 
 
 def ground(models: ModelSet) -> Scene:
-    """Return the mission in its local frame, with its place and its robots; nothing is expanded yet.
+    """Return the mission in its local frame, with its context and its robots; nothing is expanded yet.
 
     Raises:
-        InvalidModelError: if the models do not say where something is, or lack something that is required;
+        InvalidModelError: if a position is undefined, or something required is missing;
             lists every such fault.
     """
     mission, context = models.mission, models.context
@@ -173,7 +173,7 @@ def _misdirected(mission: Element) -> Iterator[Diagnostic]:
     tasks = set(children(mission, "tasks"))
     for dependency in children(mission, "taskDependencies"):
         if {child(dependency, "from"), child(dependency, "to")} - tasks:
-            yield fault(dependency, "leads from or to what is no task of the mission", code=MISSING)
+            yield fault(dependency, "leads from or to a task that is not in the mission", code=MISSING)
 
 
 def _unknown_types(models: ModelSet) -> Iterator[Diagnostic]:

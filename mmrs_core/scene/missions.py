@@ -1,4 +1,4 @@
-"""The scene itself: tasks, what comes before what, the robots and the place."""
+"""The scene: frame, areas, tasks and their dependencies, robots."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ class Area:
     types: frozenset[str] | None = None
 
     def concerns(self, robot_type: str) -> bool:
-        """Return whether robots of the type of that name must heed the area."""
+        """Return whether robots of the type of that name must respect the area."""
         return self.types is None or robot_type in self.types
 
 

@@ -69,7 +69,7 @@ class Await(Step):
 
 @dataclass(frozen=True, slots=True)
 class Signal(Step):
-    """Tells other robots that this one's part of `task` has ended.
+    """Notifies other robots that this one's part of `task` has ended.
 
     Attributes:
         signal: unique in the plan.
@@ -155,13 +155,13 @@ class Omission:
 
 @dataclass(frozen=True, slots=True)
 class Plan:
-    """Who does what, when, and by which way.
+    """A plan: which robot does what, when and along which route.
 
     Attributes:
         robots: in the scene's order, robots without work included.
         makespan: seconds until the last robot has finished.
         begins, ends: by task, seconds after the mission's start.
-        notes: assumptions that people must know, such as flat terrain.
+        notes: assumptions to show, such as flat terrain.
         left_out: what is not done of tasks, since it cannot be reached.
     """
 

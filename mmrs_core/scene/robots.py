@@ -1,4 +1,4 @@
-"""Types of robot, what a robot of the team can do, and how it answers faults."""
+"""Robot types, and what a robot of the team can do."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from mmrs_runtime.policies import Policy
 
 @dataclass(frozen=True, slots=True)
 class Capability:
-    """How a type of robot moves with a payload of one weight; None is not known.
+    """How a robot type moves with a payload of one weight; None: unknown.
 
     Attributes:
         payload: kilograms that the figures hold for.
@@ -62,7 +62,7 @@ class Device:
 
 @dataclass(frozen=True, slots=True)
 class RobotType:
-    """A type of robot.
+    """A robot type.
 
     Attributes:
         name: as missions refer to it.

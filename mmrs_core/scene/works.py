@@ -1,4 +1,4 @@
-"""What a task is made of for one kind of robot: strokes, and what is done along them."""
+"""What a task is made of for one robot: strokes, and what is done along them."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ class ActionAt:
 
 @dataclass(frozen=True, slots=True)
 class Look:
-    """What a device points at on the way: a position, with the angle of BL's Heading in degrees."""
+    """What a device points at during a stroke: a position, with the angle of BL's Heading in degrees."""
 
     at: Position
     device: str = ""
@@ -39,7 +39,7 @@ class Stroke:
     Attributes:
         points: (east, north, up), at least one; consecutive points are joined by straight lines.
         actions: ordered by arc length.
-        look: orientation on the way and while holding; None: the way the robot goes.
+        look: orientation during the stroke and while holding; None: the direction of travel.
         speed: largest speed on it, metres per second; None: the robot's cruise.
         slow_down: factor on the robot's cruise speed, 0 to 1; None: 1. QUICK work has speed=inf.
         hold: seconds to hold at the last point, after which actions there are done.
@@ -76,7 +76,7 @@ class Coverage:
         shell, holes: the polygon asked for, (east, north).
         target: the parts of it that the robot's clearance leaves, as (shell, holes) polygons.
         width: of the strip that a stroke covers, metres, centred on the stroke; length: of what one
-            action covers along the way, centred on the action's point; 0 where actions do not matter.
+            action covers along the stroke, centred on the action's point; 0 where actions do not matter.
     """
 
     shell: Ring
@@ -107,7 +107,7 @@ class Gap:
 
 @dataclass(frozen=True, slots=True)
 class Work:
-    """What a task is made of for one kind of robot; says nothing of who, when, or how to get there.
+    """What a task is made of for one robot; leaves open who does it, when, and how to get there.
 
     Attributes:
         strokes: in an order that is good to follow; hops between them are routed by the planner.

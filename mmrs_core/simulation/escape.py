@@ -1,4 +1,4 @@
-"""The ways by which simulated robots respond to faults."""
+"""The paths by which simulated robots respond to faults."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from mmrs_core.scene import Area, AreaUse, Kinematics, Position
 class Escapes:
     """Where one robot goes when something has gone wrong.
 
-    Ways home and to emergency areas keep the robot's height, then lead down to the height of home.
+    Paths to home and to emergency areas keep the robot's altitude, then lead down to that of home.
     """
 
     def __init__(self, given: VehicleInput, kinematics: Kinematics, home: Position) -> None:
@@ -24,7 +24,7 @@ class Escapes:
         self._clearance = own + kinematics.turning_radius
 
     def straight(self, response: str, here: Position) -> tuple[Position, ...]:
-        """Return the way as if nothing stood in it; `here` alone where the robot stays."""
+        """Return the path regardless of areas; `here` alone where the robot stays."""
         if response == "SURFACE":
             return (here, (here[0], here[1], self._given.program.frame.surface))
         if response == "LAND":
@@ -35,9 +35,9 @@ class Escapes:
         return self._down((here,) if goal[:2] == here[:2] else (here, goal))
 
     def clear(self, response: str, here: Position) -> tuple[Position, ...]:
-        """Return the way that keeps from forbidden areas and obstacles.
+        """Return the path that keeps clear of forbidden areas and obstacles.
 
-        Where there is none, the robot comes down where it is if it flies, and else stays.
+        Where there is none, a robot that flies lands where it is, and any other stays.
         """
         goal = self._goal(response, here)
         if goal is None or goal[:2] == here[:2]:
@@ -47,16 +47,16 @@ class Escapes:
         except UnreachableError:
             return self._down((here,)) if self._kinematics.launches else (here,)
 
-    def way(self, here: Position, goal: Position) -> tuple[Position, ...]:
-        """Return the way to a place that keeps from forbidden areas and obstacles.
+    def path(self, here: Position, goal: Position) -> tuple[Position, ...]:
+        """Return the path to a position that keeps clear of forbidden areas and obstacles.
 
         Raises:
-            UnreachableError: there is none; says why.
+            UnreachableError: there is none; gives the reason.
         """
         return (here,) if here == goal else self._space.route(here, goal)
 
     def _goal(self, response: str, here: Position) -> Position | None:
-        """Return the place to go to, at the robot's height; None where it goes nowhere else."""
+        """Return the goal at the robot's altitude; None where the robot stays."""
         if response == "RETURN":
             return (self._home[0], self._home[1], self._height(here))
         if response == "EMERGENCY_AREA":

@@ -1,4 +1,4 @@
-"""What plug-ins contributed about a robot and its moves; what nobody knows is refused."""
+"""Kinematics and move kinds of a robot, by what plug-ins provide; unknown kinds are refused."""
 
 from __future__ import annotations
 
@@ -16,13 +16,13 @@ def kinematics_of(given: VehicleInput) -> Kinematics:
     """Return what the robot can do with full batteries and nothing kept in reserve.
 
     Raises:
-        UnsupportedError: if nobody contributed how robots of its type move.
+        UnsupportedError: if no plug-in provides a robot kind for its type.
         InfeasibleError: if its type lacks the figures.
     """
     kind = robot_kind_of(given.type, given.robot_kinds)
     if kind is None:
         who = f"robot '{given.robot.id}': type '{given.type.name}'"
-        raise UnsupportedError(f"{who}: nobody contributed how it moves", [who])
+        raise UnsupportedError(f"{who}: no plug-in provides its robot kind", [who])
     alone = replace(given.program, robots=(given.robot,))
     types = {given.robot.type_name: given.type}
     scene = scene_of(alone, types, environment=given.environment, reserve=0.0)
@@ -33,7 +33,7 @@ def move_kinds_of(given: VehicleInput) -> dict[str, MoveKind]:
     """Return the kind of every move, by its identifier.
 
     Raises:
-        UnsupportedError: if moves or actions are of kinds that nobody knows; lists all of them.
+        UnsupportedError: if moves or actions are of unknown kinds; lists all of them.
     """
     kinds: dict[str, MoveKind] = {}
     unknown: list[str] = []

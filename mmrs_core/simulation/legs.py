@@ -1,7 +1,7 @@
 """How a simulated robot gets along: straight legs, evenly travelled, and what they cost.
 
 Cost is counted in seconds at mean power. It grows by `CLIMBING` times the share of the largest climb
-rate that is used, and falls by as much on the way down, so that up and down again costs no more than
+rate that is used, and falls by as much in a descent, so that up and down again costs no more than
 the time that it takes; it grows by the square of the headwind's share of the largest speed. A robot that
 holds its position has the whole wind against it.
 """
@@ -132,22 +132,22 @@ def stretches(
 
 
 def response_stretches(
-    path: tuple[Position, ...], kinematics: Kinematics, flow: Flow, *, under_way: bool
+    path: tuple[Position, ...], kinematics: Kinematics, flow: Flow, *, moving: bool
 ) -> tuple[Stretch, ...]:
     """Return how a robot travels when it responds to a fault; empty if the flow is too strong for it.
 
     It stops at every corner. What it is doing takes its time evenly, speeding up and slowing down
-    included: a robot that is under way has that behind it, and goes on at even speed.
+    included: a robot in motion has that behind it, and continues at even speed.
 
     Args:
         path: straight legs from where it is; one position: it stays there.
         kinematics: of the robot.
         flow: velocity of the air or water, east and north, metres per second.
-        under_way: whether it moves already.
+        moving: whether it is already in motion.
     """
     found: list[Stretch] = []
     for number, leg in enumerate(pairwise(path)):
-        stops = 0 if under_way and number == 0 else 2
+        stops = 0 if moving and number == 0 else 2
         made = stretches(leg, kinematics.cruise, kinematics, (0.0, inf), flow=flow, stops=stops)
         if not made:
             return ()
@@ -166,7 +166,7 @@ def cost(start: Position, finish: Position, seconds: float, kinematics: Kinemati
 
 
 def _against(start: Position, finish: Position, flow: Flow) -> float:
-    """Return how fast the flow comes towards a robot on its way, all of it where the robot stays."""
+    """Return the headwind or counter-current of a leg; the whole flow where the robot stays."""
     level = hypot(finish[0] - start[0], finish[1] - start[1])
     if level <= 0.0:
         return hypot(*flow)

@@ -48,7 +48,7 @@ def run_live(live_run: LiveRun) -> Ending:
     Raises:
         LinkLostError: if a robot does not answer at first, or robots of other processes have not come.
         UnsupportedError: if a robot cannot do what its program holds, or options are wrong.
-        MmrsError: if a robot does not get ready, and none is under way without it.
+        MmrsError: if a robot does not get ready, and none has started without it.
         ValueError: if the steps to resume from are not the program's.
         KeyboardInterrupt: if robots are ordered to stop before they are ready.
     """

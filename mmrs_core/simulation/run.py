@@ -30,7 +30,7 @@ class SimulatedRun:
     Attributes:
         records: the steps, in the order in which they were made.
         ending: how it ended.
-        tracks: by robot, the way that it came; empty where the backend does not tell.
+        tracks: by robot, the track it left; empty where the backend does not record it.
         notes: what was taken for granted, each line with its robot.
     """
 
@@ -64,11 +64,11 @@ def simulate(
         conditions: by identifier; see `assumed` for fixed answers.
         environment: of the context, by attribute name; still air and water where it says nothing.
         areas: of the context as drawn; robots flee to its emergency areas.
-        terms: who is told, and what cuts the run off.
+        terms: observers of the run, and what cuts it off.
 
     Raises:
         UnsupportedError: if a robot type is missing, or robots, moves, actions or conditions are of
-            kinds that nobody contributed; lists them.
+            kinds that no plug-in provides; lists them.
         UsageError: if the backend's time is not simulated, or it does not know an option.
     """
     if not backend.simulated:
@@ -101,13 +101,13 @@ def simulate(
             policies={id: each.policies for id, each in given.items()},
             terms=replace(terms, observe=observe),
         )
-    told = {id: robot for id, robot in connected.items() if isinstance(robot, Recorder)}
-    notes = tuple(f"robot '{id}', {note}" for id, robot in told.items() for note in robot.notes)
-    return SimulatedRun(tuple(made), ending, _Tracks(told), notes)
+    recorders = {id: robot for id, robot in connected.items() if isinstance(robot, Recorder)}
+    notes = tuple(f"robot '{id}', {note}" for id, robot in recorders.items() for note in robot.notes)
+    return SimulatedRun(tuple(made), ending, _Tracks(recorders), notes)
 
 
 class _Tracks(Mapping[str, tuple[Sample, ...]]):
-    """The ways of robots that have come to their ends, each found when it is first asked for."""
+    """Tracks of robots, each computed when it is first asked for."""
 
     def __init__(self, recorders: Mapping[str, Recorder]) -> None:
         self._recorders = recorders
@@ -184,10 +184,10 @@ def asked_by(program: Program) -> tuple[str, ...]:
 
 
 def refuse_unasked(program: Program, identifiers: Collection[str]) -> None:
-    """Do nothing if a program asks for each of these conditions.
+    """Check that a program asks for each of these conditions.
 
     Raises:
-        UsageError: if it does not; tells what it asks for.
+        UsageError: if it does not; lists what it asks for.
     """
     asked = asked_by(program)
     for identifier in identifiers:
@@ -199,7 +199,7 @@ def refuse_unasked(program: Program, identifiers: Collection[str]) -> None:
 
 
 def refuse_undecided(program: Program, robots: Container[str], conditions: Container[str]) -> None:
-    """Do nothing if each choice of these robots can be decided.
+    """Check that each choice of these robots can be decided.
 
     Raises:
         UnsupportedError: a condition is unknown; lists all of them.
@@ -212,7 +212,7 @@ def refuse_undecided(program: Program, robots: Container[str], conditions: Conta
         if transition.condition is not None and transition.condition not in conditions
     ]
     if unknown:
-        raise UnsupportedError(f"{len(unknown)} choices have conditions that nobody decides", unknown)
+        raise UnsupportedError(f"{len(unknown)} choices have conditions without a decision", unknown)
 
 
 def mixed(
@@ -221,7 +221,7 @@ def mixed(
     """Return what makes the usual backend for all robots but those that have their own.
 
     Raises:
-        UsageError: if one of them is no robot of the program, or simulated time would meet real time.
+        UsageError: if one of them is not a robot of the program, or simulated time would meet real time.
     """
     if strange := sorted(set(own) - set(robots)):
         raise UsageError(f"backend of '{strange[0]}': no such robot; there are {', '.join(robots)}")
@@ -256,7 +256,7 @@ def options_for(robot: str, options: Mapping[str, str]) -> dict[str, str]:
 
 
 def refuse_strange(options: Mapping[str, str], robots: Collection[str]) -> None:
-    """Do nothing if options name no other robots than these.
+    """Check that options name no other robots than these.
 
     Raises:
         UsageError: if one does.

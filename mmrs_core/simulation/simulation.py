@@ -4,7 +4,7 @@ A robot follows the path of each move at the commanded speed, in the time that t
 wind and current slow it down where it would have to be faster than it can. Its batteries fall by mean
 power and time, faster in a climb and against the wind (`mmrs_core.simulation.legs`); on the ground, a
 robot that flies takes nothing. Holding a position in more wind than the type's `positionHold` is a
-fault. An object whose place nobody knows is taken to be where the robot looks for it. Where there are
+fault. An object of unknown position is taken to be where the robot looks for it. Where there are
 surroundings, a robot that flies detects what lies below it whenever one of its devices does something.
 """
 
@@ -53,14 +53,14 @@ class SimulatedRobot(Vehicle):
     """A robot that exists only here.
 
     Attributes:
-        notes: what the simulation took for granted, for people.
+        notes: what the simulation took for granted.
     """
 
     def __init__(self, given: VehicleInput) -> None:
         """Put a robot at its home, with full batteries.
 
         Raises:
-            UnsupportedError: if nobody contributed what moves its robot, or one of its moves or
+            UnsupportedError: if no plug-in provides its robot kind, or the kind of one of its moves or
                 actions; lists them.
             UsageError: if an option other than ``surroundings`` is given.
             UnreadableError: if that is no such file.
@@ -127,7 +127,7 @@ class SimulatedRobot(Vehicle):
         self._stay(now, seconds)
 
     def wait(self, now: float) -> None:
-        """Hold the pose; energy goes on falling."""
+        """Hold the pose; energy continues to fall."""
         self._catch_up(now)
         self._stay(now, inf)
 
@@ -141,7 +141,7 @@ class SimulatedRobot(Vehicle):
         return self._next_event(now, flow)
 
     def bear(self, now: float) -> bool:
-        """Go on in spite of what is wrong."""
+        """Tolerate the present trouble."""
         self._bears = True
         return True
 
@@ -179,20 +179,20 @@ class SimulatedRobot(Vehicle):
         )
 
     def respond(self, response: str, now: float) -> None:
-        """Do what a fault's response says, from wherever the robot is; only the first call counts."""
+        """Carry out the response to a fault from where the robot is; only the first call counts."""
         if self._halted:
             return
-        under_way = self._leg(now).speed > 0.0
+        moving = self._leg(now).speed > 0.0
         self._catch_up(now)
         self._halted, self._move = True, None
         path = self._escapes.clear(response, self._legs[-1].finish)
         if self._legs[-1].charge_at(now) <= SLACK or len(path) < 2:
             return
-        self._append(response_stretches(path, self._kinematics, self._flow(), under_way=under_way), now)
+        self._append(response_stretches(path, self._kinematics, self._flow(), moving=moving), now)
         self._cut_where_empty()
 
     def track(self) -> tuple[Sample, ...]:
-        """Return the way that the robot has come, in order of time."""
+        """Return the robot's track, in order of time."""
         samples: list[Sample] = []
         for leg in self._legs:
             end = leg.end if leg.end < inf else leg.begin

@@ -60,7 +60,7 @@ class DraftTransition:
 
 @dataclass(frozen=True, slots=True)
 class OpenEnd:
-    """Where the chain goes on: after a move, or at one way out of a Choice."""
+    """An open end of the chain: after a move, or one branch of a Choice."""
 
     source: int
     choice: DraftTransition | None = None
@@ -91,7 +91,7 @@ class Chain:
         return node
 
     def wait(self, signals: tuple[str, ...]) -> None:
-        """Have the next move wait for these signals, beside those it already waits for."""
+        """Let the next move wait for these signals as well."""
         self._waits += tuple(signal for signal in signals if signal not in self._waits)
 
     @property
@@ -109,11 +109,11 @@ class Chain:
         return self.nodes[self._ends[0].source]
 
     def pause(self, task: str, rule: str, seconds: float = 0.0) -> DraftMove:
-        """Add a stop on the spot for so many seconds."""
+        """Add a stop on the spot for `seconds`."""
         return self.add(MoveSpec((BEHAVIOUR, "HoldPosition"), {"duration": seconds}), task, rule)
 
     def branch(self, condition: str) -> tuple[OpenEnd, OpenEnd]:
-        """OpenEnd the chain with a Choice; return its two ways out, to be given to `resume`."""
+        """End the chain with a Choice; return its two branches, to be given to `resume`."""
         if len(self._ends) > 1 or self._ends[0].choice is not None:
             self.pause("", "choice")
         edge = DraftTransition(self._ends[0].source, waits=self._waits, condition=condition)
@@ -122,7 +122,7 @@ class Chain:
         return OpenEnd(edge.source, edge), OpenEnd(edge.source, edge, holds=False)
 
     def resume(self, *ends: OpenEnd) -> None:
-        """Go on at these open ends."""
+        """Continue at these open ends."""
         self._ends = ends
 
     @property
@@ -136,7 +136,7 @@ class Chain:
         if end.choice is None:
             self.edges.append(DraftTransition(end.source, index, self._waits))
         elif self._waits:
-            raise ValueError("a way out of a choice cannot wait; add a stop on the spot first")
+            raise ValueError("a branch of a choice cannot wait; add a stop on the spot first")
         elif end.holds:
             end.choice.to = index
         else:

@@ -104,7 +104,7 @@ def _undoable(
 def unfit(robot: Robot, scene: Scene) -> str | None:
     """Return why no robot of that type operates in the weather of the scene; None if it does.
 
-    What is not known of the weather or of the robot is no reason.
+    Unknown weather and unknown limits are not a reason.
     """
     interval = robot.type.part.attributes.get("operatingTemperature")
     temperature = scene.environment.get("temperature")
@@ -139,8 +139,8 @@ def work_of(rule: Rule, task: Task, robot: Robot, scene: Scene) -> Work:
     """Return what a rule makes of a task.
 
     Raises:
-        InfeasibleError: if the rule says that the robot cannot do the task.
-        PluginError: if the rule fails, or returns something that is no sound work; names the rule.
+        InfeasibleError: if the robot cannot do the task.
+        PluginError: if the rule fails, or returns an unsound work; names the rule.
     """
     place = f" ({task.part.place})" if str(task.part.place) else ""
     where = f"rule '{rule.name}', task '{task.name}'{place}, robot '{robot.name}'"

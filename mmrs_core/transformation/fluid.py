@@ -20,7 +20,7 @@ STRAIGHT = pi / 180
 
 
 class Corners:
-    """Tells whether a robot that does not stop at a corner stays clear of everything.
+    """Corners of a robot's moves, and whether it may pass them without a stop.
 
     A robot that goes round a corner without a stop cuts it by up to v² / 2a, or by the radius within which
     its autopilot counts the corner as passed. Where robots must keep apart
@@ -33,7 +33,7 @@ class Corners:
         self._keep = np.array([area.safety_distance + robot.clearance for area in areas])
         self._robot, self._chain = robot, chain
         self._timed = scene.minimum_separation is not None
-        self._before = {way: edge.source for edge in chain.edges for way in (edge.to, edge.otherwise)}
+        self._before = {after: edge.source for edge in chain.edges for after in (edge.to, edge.otherwise)}
 
     def may_flow(self, edge: DraftTransition) -> bool:
         """Return whether the transition along that edge may be fluid."""
@@ -70,7 +70,7 @@ def _travels(spec: MoveSpec) -> bool:
 
 
 def _turn(start: Position, corner: Position, end: Position) -> float:
-    """Return the angle by which the way turns at the corner, in radians; pi where it is not defined."""
+    """Return the angle by which the path turns at the corner, in radians; pi where it is not defined."""
     a = tuple(y - x for x, y in zip(start, corner, strict=True))
     b = tuple(y - x for x, y in zip(corner, end, strict=True))
     lengths = hypot(*a) * hypot(*b)

@@ -62,8 +62,8 @@ def kinematics_for(
     """Return the kinematics that follow from a robot type's own figures.
 
     Cruise is the travel mode's share of the largest speed, never under the smallest. Against the flow a
-    robot goes over ground at its largest speed less the flow's; no more is commanded on any way, so that
-    all ways take as long in any direction. The mean power is what empties the batteries in the lifetime;
+    robot goes over ground at its largest speed less the flow's; no more is commanded on any path, so that
+    every path takes as long either way. The mean power is what empties the batteries in the lifetime;
     against the flow it grows by (flow / largest speed)². Robot kinds add their limits of height.
 
     Args:
@@ -125,7 +125,7 @@ def straight_travel(route: tuple[Position, ...]) -> tuple[MoveSpec, ...]:
 
 
 def straight_path(move: Move, here: Position, home: Position | None) -> tuple[Position, ...] | None:
-    """Return the straight way to a GoTo's target, ended `distance` before it.
+    """Return the straight path to a GoTo's target, ended `distance` before it.
 
     None where the target is an object whose place is not known.
     """
@@ -135,7 +135,7 @@ def straight_path(move: Move, here: Position, home: Position | None) -> tuple[Po
 
 
 def before_target(here: Position, target: Position, distance: float) -> Position:
-    """Return the point on the straight way that is so far before the target; `here` if it is nearer."""
+    """Return the point `distance` before the target on a straight path; `here` if it is nearer."""
     whole = dist(here, target)
     if distance <= 0.0:
         return target

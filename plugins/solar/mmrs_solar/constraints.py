@@ -90,7 +90,7 @@ CONSTRAINTS = (
         "A panel group has the panels that are suspected",
         PANEL_LOOK_TASK,
         panel_outside,
-        "rows, columns and tiers count from 1; the group says how many there are",
+        "rows, columns and tiers count from 1, up to their numbers in the group",
     ),
     Constraint(
         "SOL010",
@@ -125,7 +125,7 @@ CONSTRAINTS = (
     ),
     Constraint(
         "SOL014",
-        "A camera for tasks on panels says what it sees, and how long and how often",
+        "A camera for tasks on panels states its optics, exposure and interval",
         PANEL_TASK,
         undescribed,
         "add these properties to the camera: lengths in millimetres, images in pixels, times in seconds",

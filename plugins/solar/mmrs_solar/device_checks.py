@@ -24,7 +24,7 @@ def undone(task: Element, models: ModelSet) -> Iterator[Finding]:
 
 
 def undescribed(task: Element, models: ModelSet) -> Iterator[Finding]:
-    """Yield tasks that no camera can do because none says what it sees."""
+    """Yield tasks that no camera can do because none states its optics."""
     keys = (*OPTICS_KEYS, *RECORDING_KEYS) if is_kind(task, *THERMAL_ROW_TASK) else OPTICS_KEYS
     missing = [_missing(camera, keys) for camera in _cameras(task, models)]
     if missing and all(missing):

@@ -1,4 +1,4 @@
-"""What mends figures of panels that can only be meant in one way."""
+"""Quick fixes of figures of panel groups."""
 
 from __future__ import annotations
 

@@ -70,7 +70,7 @@ def name_shared(context: Element, models: ModelSet) -> Iterator[Finding]:
     for group in groups:
         name = label_of(group)
         if not name:
-            yield Finding(group, "panel group has no name, tasks could not be told what it is")
+            yield Finding(group, "panel group has no name that tasks can refer to")
         elif counted[name] > 1:
             yield Finding(group, f"panel group '{name}' is one of {counted[name]} of that name")
 

@@ -39,7 +39,7 @@ class Group:
     tiers: int
 
     def row(self, number: int, uphill: float = 0.0) -> tuple[Position, Position]:
-        """Return both ends of a row, counted from 1, so many metres uphill of its middle."""
+        """Return both ends of a row, counted from 1, at a distance uphill of its middle."""
         step = tuple(
             (number - 1) * back + uphill * up for back, up in zip(self.behind, self.uphill, strict=True)
         )
@@ -53,7 +53,7 @@ class Group:
         """
         known = zip((row, column, tier), (self.rows, self.columns, self.tiers), strict=True)
         if not all(1 <= asked <= there for asked, there in known):
-            raise InfeasibleError(f"row {row}, column {column}, tier {tier} is no panel of the group")
+            raise InfeasibleError(f"row {row}, column {column}, tier {tier} is not a panel of the group")
         height = self.width / self.tiers
         begin, end = self.row(row, (tier - 0.5) * height - self.width / 2.0)
         return between(begin, end, (column - 0.5) / self.columns)
@@ -62,7 +62,7 @@ class Group:
 def outlines_of(part: Part) -> tuple[Ring, ...]:
     """Return each row of a panel group as seen from above; none where figures are missing.
 
-    Where there are so many that nobody could tell them apart, it is one outline around all of them.
+    Where there are too many to distinguish, it is one outline around all of them.
     """
     try:
         group = laid_out(part)
@@ -128,7 +128,7 @@ def whole(part: Part, name: str, otherwise: int) -> int:
 
 
 def between(begin: Position, end: Position, share: float) -> Position:
-    """Return the point at a share of the way from one to another; below 0 it is before it."""
+    """Return the point at a share of the line between two points; below 0 it is before the first."""
     east, north, up = (a + share * (b - a) for a, b in zip(begin, end, strict=True))
     return (east, north, up)
 

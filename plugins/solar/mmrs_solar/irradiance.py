@@ -18,7 +18,7 @@ def _judge(given: CheckInput, robot: RobotProgram) -> Iterator[Verdict]:
     sunlight = given.environment.get("irradiance")
     for move, needed in _needs(robot):
         if needed is None:
-            gaps.append(UnknownMove(move, f"its {IRRADIANCE} is no number"))
+            gaps.append(UnknownMove(move, f"its {IRRADIANCE} is not a number"))
         elif sunlight is None:
             gaps.append(
                 UnknownMove(move, f"images need {needed:g} W/m², the environment states no irradiance")
@@ -30,7 +30,7 @@ def _judge(given: CheckInput, robot: RobotProgram) -> Iterator[Verdict]:
 
 
 def _needs(robot: RobotProgram) -> Iterator[tuple[int, float | None]]:
-    """Yield the index of each move with such an action, and what that needs; None where it is no number."""
+    """Yield the index and the need of each move with such an action; None where it is not a number."""
     for index, move in enumerate(robot.moves):
         for action in (*move.before, *move.after):
             for key, value in action.parameters:

@@ -14,7 +14,7 @@ def refuse_near(robot: Robot, group: Group, place: Position, what: str) -> None:
 
     Args:
         place: of the robot; on a way along the rows, any place.
-        what: it is, for people.
+        what: its name, for messages.
 
     Raises:
         InfeasibleError: it does not; says by how much, and which row is too near.

@@ -18,7 +18,7 @@ RULE = "panel_look"
 
 
 def panel_look_work(task: Task, robot: Robot, scene: Scene) -> Work:
-    """Return for each panel the place on its normal, or as near to it as the camera can be tilted."""
+    """Return for each panel the position on its normal, or as near to it as the camera can be tilted."""
     refuse_unsteady(robot)
     part, group = task.part, group_of(task.part, scene)
     action = text(part, "actionName")
@@ -30,7 +30,7 @@ def panel_look_work(task: Task, robot: Robot, scene: Scene) -> Work:
     for row, column, tier in _suspects(part):
         panel = group.panel(row, column, tier)
         place = before(panel, view, distance)
-        what = f"the place before row {row}, column {column}, tier {tier}"
+        what = f"the position before row {row}, column {column}, tier {tier}"
         refuse_heights(robot, (place,))
         refuse_blocked(robot, scene, (place,), what)
         refuse_near(robot, group, place, what)
@@ -49,7 +49,7 @@ def _suspects(part: Part) -> tuple[tuple[int, int, int], ...]:
 
 
 def address_of(panel: Part) -> tuple[int, int, int]:
-    """Return (row, column, tier) of a suspected panel; 0 where one is not given, which is no panel."""
+    """Return (row, column, tier) of a suspected panel; 0 where one is not given, which never is a panel."""
     row, column, tier = (whole(panel, name, 0) for name in ("row", "column", "tier"))
     return row, column, tier
 

@@ -35,7 +35,7 @@ def mmrs_constraints() -> tuple[Constraint, ...]:
 
 @hookimpl
 def mmrs_fixes() -> tuple[Fix, ...]:
-    """Contribute what mends figures that can only be meant in one way."""
+    """Contribute the fixes of unambiguous figures."""
     from mmrs_solar.fixes import FIXES
 
     return FIXES

@@ -32,7 +32,7 @@ def camera_for(task: Part, robot: Robot, *actions: str) -> Device:
 
 
 def recorded(task: Part, camera: Device, action: str, at: float) -> ActionAt:
-    """Return an action, so many metres along a stroke, that records the irradiance that it needs."""
+    """Return an action along a stroke that records the irradiance that it needs."""
     least = number(task, IRRADIANCE) or 0.0
     return ActionAt(at, action, camera.id, ((IRRADIANCE, f"{least:g}"),))
 

@@ -27,10 +27,10 @@ LONGEST = 150.0
 """Metres of a row that are recorded in one go, so that robots can share long rows."""
 
 MOST_PASSES = 1_000
-"""Passes at most over one row: more, nobody means."""
+"""Passes at most over one row: more are taken for a mistake."""
 
 MOST_WAYS = 20_000
-"""Ways at most along the rows of one task: more, nobody waits for."""
+"""Passes at most along the rows of one task: more take too long to plan."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -12,7 +12,7 @@ LARGEST_OFF_NORMAL = 30.0
 """Degrees from the normal of panels beyond which glass mirrors the sky more than it shows its own heat."""
 
 STEEPEST = -85.0
-"""Degrees: a camera that looks straight down sees its robot mirrored, and gives it no way to face."""
+"""Degrees: a camera that looks straight down sees its robot mirrored, and leaves its heading undefined."""
 
 PARALLAX = 1.0
 """Degrees by which the direction to the point that a camera aims at may change along a row."""
@@ -66,17 +66,17 @@ def view_of(azimuth: float, tilt: float, lowest: float, highest: float) -> View:
 
 
 def before(place: Position, view: View, distance: float) -> Position:
-    """Return where a camera is that sees a place in the middle of its image, so many metres away."""
+    """Return the position of a camera that has a point in the middle of its image, at a distance."""
     return _along(place, view.azimuth, view.pitch, -distance)
 
 
 def aim_beyond(place: Position, view: View, length: float) -> Position:
     """Return a point that lies in nearly the same direction all along a row.
 
-    Whoever keeps looking at it on the way keeps heading and pitch, to within the swing and the parallax.
+    A camera that keeps looking at it keeps heading and pitch, to within the swing and the parallax.
 
     Args:
-        place: of the camera in the middle of its way.
+        place: of the camera in the middle of its path.
         length: of the way, metres.
     """
     pitch, half = max(view.pitch, STEEPEST), max(1.0, length / 2.0)

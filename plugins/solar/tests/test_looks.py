@@ -69,7 +69,7 @@ def test_a_robot_that_cannot_stand_still_is_refused(robot, scene):
 
 
 def test_a_place_too_near_to_an_obstacle_is_refused_with_the_panel(robot, scene):
-    with pytest.raises(InfeasibleError, match="the place before row 1, column 1, tier 1 comes"):
+    with pytest.raises(InfeasibleError, match="the position before row 1, column 1, tier 1 comes"):
         panel_look_work(look(panel(1, 1)), robot(), scene(square("shed", 1.0, -6.0, 1.0)))
 
 

@@ -29,7 +29,7 @@ class Footprint:
 
 
 def footprint_at(properties: Mapping[str, str], distance: float) -> Footprint | None:
-    """Return what the camera sees from so many metres; None where its optics are not described.
+    """Return what the camera sees from a distance; None where its optics are not described.
 
     >>> footprint_at({"sensor.width": "13.2", "sensor.height": "8.8", "focal.length": "8.8"}, 40.0)
     Footprint(width=60.0, length=40.0)
@@ -44,8 +44,8 @@ def footprint_at(properties: Mapping[str, str], distance: float) -> Footprint | 
 def footprint_of(properties: Mapping[str, str], distance: float, resolution: float, device: str) -> Footprint:
     """Return what a photo covers if a pixel may be at most `resolution` metres large.
 
-    Where the optics are known, this is what the camera really sees from so many metres; else what
-    its pixels make at exactly that resolution.
+    Where the optics are known, this is what the camera sees from that distance, otherwise what its
+    pixels cover at exactly that resolution.
 
     Raises:
         InfeasibleError: the image size is not known, or the camera is too coarse from there.

@@ -42,7 +42,7 @@ CONSTRAINTS = (
     ),
     Constraint(
         "SUR002",
-        "A photo grid tells how far apart photos are",
+        "The distance between photos of a photo grid is defined",
         names.PHOTO_GRID_TASK,
         nothing_seen,
         "give gridResolution, a footprint, groundResolution, or the optics among the camera's properties",
@@ -113,7 +113,7 @@ CONSTRAINTS = (
     ),
     Constraint(
         "SUR012",
-        "A measurement tells where",
+        "A MeasureTask has points or a shell",
         names.MEASURE_TASK,
         nowhere_to_measure,
         "give points, or a shell of at least three points with a spacing",

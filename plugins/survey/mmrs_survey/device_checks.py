@@ -71,7 +71,7 @@ def parameter_unknown(task: Element, models: ModelSet) -> Iterator[Finding]:
 
 
 def camera_unreadable(device: Element, models: ModelSet) -> Iterator[Finding]:
-    """Yield properties of cameras that are no numbers above zero."""
+    """Yield properties of cameras that are not numbers above zero."""
     for each in children(device, "properties"):
         key, value = text(each, "name"), text(each, "value")
         if key in CAMERA_KEYS and figure({key: value}, key) is None:

@@ -1,4 +1,4 @@
-"""What mends figures of survey tasks that can only be meant in one way."""
+"""Quick fixes of figures of survey tasks."""
 
 from __future__ import annotations
 

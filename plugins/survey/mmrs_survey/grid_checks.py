@@ -26,12 +26,12 @@ def seen_twice(task: Element, models: ModelSet) -> Iterator[Finding]:
 
 
 def nothing_seen(task: Element, models: ModelSet) -> Iterator[Finding]:
-    """Yield photo grids for which neither task nor any camera says how far apart photos are."""
+    """Yield photo grids for which neither the task nor any camera defines the distance between photos."""
     if _given(task, ("gridResolution", *SEEN)):
         return
     devices = devices_for(models, text(task, "actionName"), text(task, "deviceId"))
     if not any(_keys(device) >= {*SENSOR_KEYS, FOCAL_KEY} for device in devices):
-        yield Finding(task, f"task '{label_of(task)}' does not tell how far apart photos are")
+        yield Finding(task, f"task '{label_of(task)}' does not define the distance between photos")
 
 
 def overlap_outside(task: Element, models: ModelSet) -> Iterator[Finding]:

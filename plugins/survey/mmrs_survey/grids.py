@@ -56,7 +56,7 @@ def spacing_of(part: Part, device: Device, altitude: float) -> Footprint:
     The ground is taken to be level at the height of the origin.
 
     Raises:
-        InfeasibleError: neither the task nor the device says what one photo covers, or the camera is
+        InfeasibleError: neither the task nor the device defines what one photo covers, or the camera is
             too coarse.
     """
     grid = number(part, "gridResolution")

@@ -26,7 +26,7 @@ def measure_work(task: Task, robot: Robot, scene: Scene) -> Work:
         return _grid(part, robot, scene, spacing, up)
     points = at_altitude(positions(part, "points"), up)
     if not points:
-        raise InfeasibleError("neither points nor a shell say where to measure")
+        raise InfeasibleError("has neither points nor a shell to measure at")
     refuse_heights(robot, points)
     action = _action(part, robot)
     if spacing is None or len(points) == 1:

@@ -34,7 +34,7 @@ def mmrs_constraints() -> tuple[Constraint, ...]:
 
 @hookimpl
 def mmrs_fixes() -> tuple[Fix, ...]:
-    """Contribute what mends overlaps in per cent."""
+    """Contribute the fix of overlaps in per cent."""
     from mmrs_survey.fixes import FIXES
 
     return FIXES

@@ -47,12 +47,12 @@ def _place_to_look_from(part: Part, point: Position, robot: Robot, scene: Scene)
     refuse_heights(robot, (centre,))
     if distance > 0.0:
         return stand_off(robot, scene, centre, distance, distance)[0]
-    refuse_blocked(robot, scene, (centre,), "the place to observe from")
+    refuse_blocked(robot, scene, (centre,), "the observing position")
     return centre
 
 
 def approach_work(task: Task, robot: Robot, scene: Scene) -> Work:
-    """Return the way up to an object, from outside of where it may be, and back to there.
+    """Return the approach to an object, from outside of where it may be, and the return.
 
     The first stroke leads from the stand-off position to `distance` before where the object is
     expected, at which `look` points; the second ends the task where the robot's position is
@@ -77,7 +77,7 @@ def approach_work(task: Task, robot: Robot, scene: Scene) -> Work:
 
 
 def approach_moves(stroke: Stroke, robot: Robot) -> tuple[MoveSpec, ...]:
-    """Return the move up to the object and what is done there; a hold for the way back's end."""
+    """Return the move up to the object with the actions there; a hold ends the return."""
     if stroke.object is None or stroke.look is None:
         return (MoveSpec((BEHAVIOUR, "HoldPosition"), {"duration": 0.0}),)
     return (

@@ -253,7 +253,7 @@ def test_every_move_but_stop_has_one_way_on():
             "MoveTransition robots[0]/moveTransitions[1]"
             " leaves a move that another transition leaves already",
         ),
-        ("/robots[0]/moves[1]", "HoldPosition robots[0]/moves[1] is followed by no move, and is no Stop"),
+        ("/robots[0]/moves[1]", "HoldPosition robots[0]/moves[1] is followed by no move, and is not a Stop"),
     ]
 
 
@@ -306,7 +306,7 @@ def test_coordinates_that_count_from_each_other_in_a_circle_are_refused():
     c = bl.RelativeCoordinate(x=1, y=0, z=0, reference=b)
     found = faults(robot(), code="GND001", targets=[a, b, c])
     assert {path for path, _ in found} == {"/targets[0]", "/targets[1]", "/targets[2]"}
-    assert any("counts from itself in a circle" in message for _, message in found)
+    assert any("counts from itself in a cycle" in message for _, message in found)
 
 
 @pytest.mark.parametrize(
@@ -345,7 +345,7 @@ def test_an_unknown_crs_is_refused():
 def test_a_target_of_another_behaviour_is_refused_not_taken_for_an_unknown_place():
     foreign = bl.RelativeCoordinate(x=0, y=0, z=0)
     ((_, message),) = faults(robot(moves=[bl.GoTo(target=foreign)]))
-    assert "is no target of this behaviour" in message
+    assert "is not a target of this behaviour" in message
 
 
 def test_a_goto_without_a_target_and_a_turn_without_a_heading_are_refused():

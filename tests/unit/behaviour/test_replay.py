@@ -157,7 +157,7 @@ def test_a_log_that_ends_early_is_accepted_only_as_a_part():
 
 def test_an_empty_log_of_a_robot_that_should_move_is_noticed():
     (first, second) = replay(BEHAVIOUR, []).complaints
-    assert str(first) == "a: log ends although the robot can go on: expected begin of 'start'"
+    assert str(first) == "a: log ends although the robot can continue: expected begin of 'start'"
     assert second.robot == "b"
 
 

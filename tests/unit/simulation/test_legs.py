@@ -95,25 +95,25 @@ def test_no_descent_gives_energy_back_beyond_what_flying_takes():
 SLOW = replace(FLYER, acceleration=1.0)
 
 
-def response(*path, under_way):
-    made = response_stretches(path, SLOW, (0.0, 0.0), under_way=under_way)
+def response(*path, moving):
+    made = response_stretches(path, SLOW, (0.0, 0.0), moving=moving)
     return [each.seconds for each in made]
 
 
 def test_a_response_stops_at_every_corner():
-    assert response(UP, (100.0, 0.0, 10.0), EAST, under_way=False) == pytest.approx([25.0, 11.0])
+    assert response(UP, (100.0, 0.0, 10.0), EAST, moving=False) == pytest.approx([25.0, 11.0])
 
 
 def test_a_robot_under_way_has_its_first_start_behind_it():
-    assert response(UP, (100.0, 0.0, 10.0), EAST, under_way=True) == pytest.approx([20.0, 11.0])
+    assert response(UP, (100.0, 0.0, 10.0), EAST, moving=True) == pytest.approx([20.0, 11.0])
 
 
 def test_a_robot_that_stays_needs_no_time_to_respond():
-    assert response(HERE, under_way=False) == []
+    assert response(HERE, moving=False) == []
 
 
 def test_there_is_no_response_against_too_much_wind():
-    assert response_stretches((HERE, EAST, UP), SLOW, (-10.0, 0.0), under_way=True) == ()
+    assert response_stretches((HERE, EAST, UP), SLOW, (-10.0, 0.0), moving=True) == ()
 
 
 def test_a_climb_gets_to_its_own_pace_only():

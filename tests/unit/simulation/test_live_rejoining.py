@@ -30,7 +30,7 @@ def broken_off(live):
     """Return a function that breaks a run off with both robots under way, and resumes it with none ready."""
 
     def begin(behaviour, move="walk", **more):
-        made = under_way(live, behaviour, move)
+        made = moving(live, behaviour, move)
         bus = LocalSlots(behaviour.executable)
         restore(bus, behaviour.executable, made)
         return gets_ready(live, behaviour, Script(ready=inf, **more), resumed=made, bus=bus)
@@ -38,7 +38,7 @@ def broken_off(live):
     return begin
 
 
-def under_way(live, behaviour, move="walk"):
+def moving(live, behaviour, move="walk"):
     """Return the records of a run that is broken off with both robots under way."""
     first = live(behaviour, Script(walk=inf, h=inf))
     first.wait_for_step(f"a begin {move}")
@@ -166,7 +166,7 @@ def test_a_robot_that_is_not_ready_is_not_touched_where_the_run_is_broken_off_ag
     def interrupt(record):
         raise KeyboardInterrupt
 
-    made = under_way(live, TWO)
+    made = moving(live, TWO)
     run = gets_ready(live, TWO, Script(ready=inf), resumed=made, observe=interrupt)
     ready(run, "a")
     run.end()

@@ -331,7 +331,7 @@ def test_unknown_moves_and_actions_are_refused_and_listed_never_skipped(kinds):
 
 
 def test_a_robot_of_a_kind_that_nobody_contributed_is_refused(kinds):
-    with pytest.raises(UnsupportedError, match="type 'rover': nobody contributed how it moves"):
+    with pytest.raises(UnsupportedError, match="type 'rover': no plug-in provides its robot kind"):
         SimulatedRobot(given(program(robot("r", [])), kinds, robot_type(metaclass=("urn:x", "Blimp"))))
 
 

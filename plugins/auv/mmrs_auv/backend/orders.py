@@ -100,7 +100,7 @@ class BehaviourOrders:
         """
         above = self.waters.above(here)
         try:
-            return self.way(self._escapes.way(above, self._ended_at(passed, above)))
+            return self.way(self._escapes.path(above, self._ended_at(passed, above)))
         except UnreachableError as error:
             raise NoWayError(str(error)) from error
 

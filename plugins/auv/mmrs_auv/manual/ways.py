@@ -53,7 +53,7 @@ class Ways:
             target = moves[id].target
             if target is not None and target.position is not None:
                 place = before_target(place, target.position, moves[id].distance)
-        return self._goals(self._escapes.way(here, place))
+        return self._goals(self._escapes.path(here, place))
 
     def away(self, east: float, north: float) -> str:
         """Return how far from home a place is; empty at home."""
