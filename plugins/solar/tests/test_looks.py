@@ -54,7 +54,7 @@ def test_a_panel_that_is_listed_twice_is_looked_at_once(robot, scene):
 
 
 def test_a_panel_that_is_not_there_is_refused(robot, scene):
-    with pytest.raises(InfeasibleError, match="row 9, column 1, tier 1 is no panel"):
+    with pytest.raises(InfeasibleError, match="row 9, column 1, tier 1 is not a panel"):
         panel_look_work(look(panel(9, 1)), robot(), scene())
 
 

@@ -35,14 +35,14 @@ def test_relative_coordinates_in_a_circle_are_refused(registry):
     one, two = relative(1.0), relative(2.0)
     one.reference, two.reference = two, one
     found = faults(simple(registry, geo(), one, point=two))
-    assert "circle" in found[0]
+    assert "cycle" in found[0]
 
 
 def test_coordinate_beside_a_circle_says_what_it_counts_from(registry):
     one, two = relative(1.0), relative(2.0)
     one.reference, two.reference = two, two
     found = faults(simple(registry, geo(), one, point=two))
-    assert sorted("circle" in each for each in found) == [False, True]
+    assert sorted("cycle" in each for each in found) == [False, True]
 
 
 def test_relative_origin_makes_a_local_mission(registry):

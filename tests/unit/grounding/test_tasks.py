@@ -29,7 +29,7 @@ def test_dependencies_name_the_tasks(registry):
 def test_dependency_on_a_task_of_nobody_is_refused(registry):
     made = simple(registry, geo())
     made.taskDependencies = [mission.TaskDependency(from_=mission.Fork(), to=made.tasks[0])]
-    assert "no task of the mission" in faults(made)[0]
+    assert "a task that is not in the mission" in faults(made)[0]
 
 
 def test_task_carries_its_wishes(registry):
