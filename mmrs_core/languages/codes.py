@@ -1,4 +1,4 @@
-"""The codes of faults that are no constraint's: of reading, of metamodels, of projects, places and logs."""
+"""Diagnostic codes of reading, metamodels, projects, coordinates and logs; constraints have their own."""
 
 from __future__ import annotations
 
@@ -12,13 +12,13 @@ from mmrs_core.errors import UnreadableError
 
 @dataclass(frozen=True, slots=True)
 class Code:
-    """What all faults of one code have in common.
+    """What all diagnostics of one code have in common.
 
     Attributes:
-        meaning: what is wrong.
-        expected: what there ought to be instead.
-        hint: how to mend it, where the fault itself knows nothing better.
-        brief: whether its faults, of which there may be long lists, are told without that.
+        meaning: the title: what is wrong.
+        expected: what is required instead.
+        hint: how to fix it, unless the diagnostic has a better hint.
+        brief: whether diagnostics omit both, because there may be many.
     """
 
     meaning: str
@@ -31,301 +31,303 @@ class Code:
 CODES: Mapping[str, Code] = MappingProxyType(
     {
         "XMI001": Code(
-            "an element of a language that is not installed",
+            "Language not installed",
             "an element of an installed language",
-            "install the plug-in that brings the language, or correct its address (nsURI); "
-            "'mmrs metamodel list' shows what is installed",
+            "install the plug-in that provides the language, or correct the nsURI; 'mmrs metamodel "
+            "list' lists installed languages",
         ),
         "XMI002": Code(
-            "a class that its language does not have",
-            "the name of a class of that language",
-            "correct the name; 'mmrs metamodel list' shows the languages that are installed",
+            "Unknown class",
+            "the name of a class of the language",
+            "correct the name; 'mmrs metamodel list' lists installed languages",
         ),
         "XMI003": Code(
-            "an element that does not say which kind of its class it is",
-            "one of the kinds of that class",
-            'state the kind by xsi:type="prefix:Class", in JSON by "$type": "prefix:Class"',
+            "Abstract class; xsi:type is missing",
+            "a concrete subclass of the class",
+            'state the class by xsi:type="prefix:Class", in JSON by "$type": "prefix:Class"',
         ),
         "XMI004": Code(
-            "an element has something that its class does not know",
-            "only attributes and parts that the element's class has",
-            "correct the name, or take it away; the page about languages lists what each class has",
+            "Unknown attribute or child element",
+            "only attributes and child elements of the element's class",
+            "correct the name or remove it; docs/languages.md lists the features of each class",
         ),
         "XMI005": Code(
-            "a value that the attribute does not take",
-            "a value that the attribute takes: a number, a word of its list, true or false",
-            "correct the value, or leave the attribute out where it is optional",
+            "Invalid attribute value",
+            "a value of the attribute's type: a number, an enum literal, true or false",
+            "correct the value, or omit the attribute if it is optional",
         ),
         "XMI006": Code(
-            "a reference that leads to no element",
-            "a reference to an element, as //@tasks.0 or #id",
-            "count from 0 in the order of the file, or correct the id",
+            "Unresolved reference",
+            "a reference to an element, such as //@tasks.0 or #id",
+            "count from 0 in file order, or correct the id",
         ),
         "XMI007": Code(
-            "a reference to a file that may not be opened",
-            "a reference to a model inside the project's folder",
+            "Reference to a file outside the project",
+            "a reference to a model inside the project folder",
             "move the other file into the project, and refer to it by its relative path",
         ),
         "XMI008": Code(
-            "an element of a class that does not belong there",
+            "Element of a class that is not allowed here",
             "an element of the class that the message names",
             "choose a class that fits, or refer to another element",
         ),
         "XMI009": Code(
-            "several values where one is allowed", "one value", "keep one of them, and take the others away"
+            "Too many values",
+            "one value",
+            "keep one value and remove the others",
         ),
         "XMI010": Code(
-            "text where only elements may stand, or the reverse",
+            "Text where elements are expected, or the reverse",
             "elements inside elements, and text inside values",
-            "take the text away, make it a comment, or put it into an attribute",
+            "remove the text, make it a comment, or put it into an attribute",
         ),
         "XMI011": Code(
-            "a note of another tool inside the model, which is not read",
+            "Extension of another tool, which is not read",
             "only the model's own elements",
-            "take it away if nobody needs it: saving the model loses it",
+            "remove it if it is not needed: saving the model loses it",
             Severity.WARNING,
         ),
         "XMI012": Code(
-            "an id that two elements of a file have",
+            "Duplicate xmi:id",
             "an id that no other element has",
-            "give one of them another id, and correct what refers to it",
+            "give one of the elements another id, and correct the references to it",
         ),
         "XMI013": Code(
-            "the two ends of a reference contradict each other",
+            "The two ends of a reference contradict each other",
             "two ends that refer to each other",
-            "correct one end, or leave it out: it follows from the other",
+            "correct one end, or omit it: it follows from the other",
         ),
         "XMI014": Code(
-            "a namespace prefix that is not declared",
+            "Undeclared namespace prefix",
             "a prefix that is declared at the root",
             'declare it as xmlns:prefix="nsURI", or among $languages in JSON',
         ),
         "XMI015": Code(
-            "a root element without a namespace",
-            "a root that says which language it is of",
+            "Root element without a namespace",
+            "a root whose language is stated",
             'write the root as prefix:Class, and declare xmlns:prefix="nsURI"; in JSON, give it a $type',
         ),
         "XMI016": Code(
-            "a reference to a file that cannot be read",
-            "a reference to a model that can be read",
-            "correct the path, or put the file there",
+            "Reference to a file that cannot be read",
+            "a reference to a readable model",
+            "correct the path, or add the file",
         ),
         "XMI017": Code(
-            "an element of another file that cannot be contained here",
+            "Element of another file that cannot be contained here",
             "an element that no other element contains",
             "contain it once, and refer to it elsewhere",
         ),
         "ECO001": Code(
-            "a required value is missing",
-            "a value for everything that has to be known",
-            "write it, since there is no default",
+            "Missing required value",
+            "a value for every required feature",
+            "add the value: it has no default",
         ),
         "ECO002": Code(
-            "too few or too many values",
-            "as many values as the message says",
-            "add what is missing, or take away what is too much",
+            "Too few or too many values",
+            "as many values as the message states",
+            "add the missing values, or remove the surplus",
         ),
         "ECO003": Code(
-            "a value of another kind than the attribute takes",
-            "a value of the kind that the message names",
+            "Value of the wrong type",
+            "a value of the type that the message names",
             "correct the value",
         ),
         "ECO004": Code(
-            "a word that is not among those that the attribute takes",
-            "one of the words that the message lists",
-            "choose one of those that the message lists",
+            "Invalid enum literal",
+            "one of the literals that the message lists",
+            "choose one of the listed literals",
         ),
         "ECO005": Code(
-            "an element of the wrong class",
+            "Element of the wrong class",
             "an element of the class that the message names",
-            "put an element of that class there, or move this one to where it belongs",
+            "replace it by an element of that class, or move it to where it belongs",
         ),
         "ECO006": Code(
-            "the same value twice among values that must differ",
+            "Duplicate value among unique values",
             "each value once",
-            "take the repetition away",
+            "remove the duplicate",
         ),
         "ECO007": Code(
-            "an element that its container does not know, or that two contain",
-            "an element that one container holds",
+            "Inconsistent containment",
+            "an element that exactly one container contains",
             "contain it once",
         ),
         "ECO008": Code(
-            "a reference to an element that stands in no model",
+            "Reference to an uncontained element",
             "a reference to an element of a model",
             "put it into a containment feature of the model",
         ),
         "ECO009": Code(
-            "a number that is not finite",
+            "Number that is not finite",
             "a finite number",
-            "give a number; leave the attribute out where the value is not known",
+            "state a number, or omit the attribute if the value is unknown",
         ),
         "ECO010": Code(
-            "an element of a language that is not installed",
+            "Element of a language that is not installed",
             "an element of an installed language",
-            "install the plug-in that brings the language",
+            "install the plug-in that provides the language",
         ),
         "ECO011": Code(
-            "a reference whose other end does not refer back",
+            "Opposite reference does not refer back",
             "two ends that refer to each other",
             "set one end; the other follows",
         ),
         "ECO012": Code(
-            "an identifier that two elements of a model have",
+            "Duplicate identifier",
             "an identifier that no other element has",
-            "give one of them another",
+            "give one of the elements another identifier",
         ),
         "ECO013": Code(
-            "two elements of one key among those that their keys tell apart",
-            "one element for each key: in a map, and wherever the metamodel names eKeys",
-            "give one of them another key, or take it away: references would lead to the wrong one",
+            "Duplicate key",
+            "one element for each key: in a map, and wherever the metamodel has eKeys",
+            "give one of the elements another key, or remove it: references would resolve to the wrong one",
         ),
         "ECO014": Code(
-            "a value that Eclipse may understand otherwise than its text suggests",
-            "a value that means the same to everybody, such as the date 2024-05-01T10:11:12.123+0200",
-            "write it in the form that EMF itself writes",
+            "Value that Eclipse may read differently",
+            "an unambiguous value, such as the date 2024-05-01T10:11:12.123+0200",
+            "write it in the format that EMF writes",
             Severity.WARNING,
         ),
         "FIL001": Code(
-            "a file that is not there",
+            "File not found",
             "a file of that name",
-            "correct the path, or put the file there",
+            "correct the path, or add the file",
         ),
         "FIL002": Code(
-            "a file that the system does not give",
-            "a file that whoever runs this may read",
-            "permit its reading, or name another file",
+            "File not readable",
+            "a file that the current user may read",
+            "grant read permission, or name another file",
         ),
         "FIL003": Code(
-            "a file larger than any model",
-            "a model within the bounds of what is read",
-            "divide the model into several files, or name the right file",
+            "File too large",
+            "a model within the reader's limits",
+            "split the model into several files, or name the right file",
         ),
         "FIL004": Code(
-            "text that is not well-formed XML",
-            "XML in which every tag is closed by its own",
-            "mend the line, or the one in front of it; a file cut short has to be copied anew",
+            "Malformed XML",
+            "well-formed XML: every tag is closed",
+            "correct this line or the previous one; copy a truncated file again",
         ),
         "FIL005": Code(
-            "a DOCTYPE, which could make a model read other files",
+            "DOCTYPE is not allowed",
             "a model without DOCTYPE",
-            "take the DOCTYPE away: models need none",
+            "remove the DOCTYPE: it could make a model read other files",
         ),
         "FIL006": Code(
-            "more in one place than any model has",
-            "a model within the bounds of what is read",
-            "look whether the file is a model at all",
+            "Reader limit exceeded",
+            "a model within the reader's limits",
+            "check that the file is a model",
         ),
         "FIL007": Code(
-            "text that is not well-formed JSON",
-            "JSON in UTF-8, each key once in its object",
-            "mend the line, or the one in front of it; a file cut short has to be copied anew",
+            "Malformed JSON",
+            "JSON in UTF-8, without duplicate keys in an object",
+            "correct this line or the previous one; copy a truncated file again",
         ),
         "FIL008": Code(
-            "more faults than anybody would read",
-            "a model of the languages that are installed",
-            "mend what the first fault is about: most others follow from it",
+            "Too many problems",
+            "a model of the installed languages",
+            "fix the first problem: most others follow from it",
         ),
         "FIL009": Code(
-            "a file of another tool that holds no model",
+            "File of another tool without a model",
             "a file with a mission, context, robot type or behaviour",
-            "name the file that holds the model",
+            "name the file that contains the model",
         ),
         "FIL010": Code(
-            "a model of another tool, and what migrates it does not work",
-            "a mapping whose languages are installed",
-            "install the plug-ins that the mapping names, or leave out --no-plugins",
+            "Model of another tool that cannot be imported",
+            "an importer whose languages are installed",
+            "install the plug-ins that the importer needs, or omit --no-plugins",
         ),
         "MIG001": Code(
-            "a model of an older version of its language, migrated while it was read",
+            "Model of an older language version",
             "a model of the installed version",
-            "save the model to have it in the new version, as 'mmrs convert' does; the file is as it was",
+            "save the model to upgrade it, for example with 'mmrs convert'; the file is unchanged",
             Severity.NOTE,
         ),
         "MIG002": Code(
-            "a value that the newer version of a language has no place for",
-            "only what the newer version knows",
-            "see whether the value is needed; if so, say it in another way",
+            "Value without a place in the newer language version",
+            "only values that the newer version has",
+            "check whether the value is needed; if so, express it in another way",
             Severity.WARNING,
         ),
         "MIG003": Code(
-            "a model of another tool, migrated while it was read",
-            "a model in the languages that are installed",
-            "the file is as it was; 'mmrs migrate' makes a project of it",
+            "Imported model of another tool",
+            "a model of the installed languages",
+            "the file is unchanged; 'mmrs migrate' makes a project of it",
             Severity.NOTE,
             brief=True,
         ),
         "MIG004": Code(
-            "a model whose nsURI nobody knows, taken for one of another tool by the names of its classes",
-            "the nsURI that the tool gives its language",
-            "if it is of that tool, correct the nsURI; else read it by its own .ecore file: --metamodel",
+            "Unknown nsURI, taken for another tool's by its class names",
+            "the nsURI of the tool's language",
+            "if the model is of that tool, correct the nsURI; otherwise give its metamodel with --metamodel",
             Severity.WARNING,
         ),
         "MIG005": Code(
-            "values that were defaulted or changed in meaning in a model of another tool",
-            "values that mean the same here, and all that is needed",
-            "see whether that is right; --quiet-migration does not list them",
+            "Values defaulted or changed on import",
+            "values with the same meaning here, and all required values",
+            "check them; --quiet-migration does not list them",
             Severity.NOTE,
             brief=True,
         ),
         "MIG006": Code(
-            "values of a model of another tool that are doubtful here, or not carried over",
-            "values that have one meaning, and a place here",
-            "see whether the mission still means what it did; if not, 'mmrs migrate' it, and mend the result",
+            "Values doubtful or not carried over on import",
+            "values that have one meaning and a place here",
+            "check that the mission still means the same; if not, 'mmrs migrate' it and correct the result",
             Severity.WARNING,
             brief=True,
         ),
         "MIG007": Code(
-            "a root of another tool's model that nothing comes of",
+            "Root element that is not imported",
             "a mission, context, robot type or behaviour",
-            "name the file that holds the model, or take the element away",
+            "name the file that contains the model, or remove the element",
         ),
         "GND001": Code(
-            "a coordinate that has no place",
+            "Coordinate without a known position",
             "a coordinate whose origin and reference are known",
-            "correct the coordinate or what it counts from",
+            "correct the coordinate or its reference",
         ),
         "GND002": Code(
-            "something that a robot type needs for planning is missing",
-            "a robot type with all that planning needs, such as its size and speed",
-            "write it into the robot type's file",
+            "Robot type lacks data for planning",
+            "a robot type with all data for planning, such as size and speed",
+            "add it to the robot type's file",
         ),
         "GND003": Code(
-            "a robot of a type that is not among the models",
+            "Unknown robot type",
             "the name of a robot type of the project",
             "add the robot type to the project's robots folder, or correct the name",
         ),
         "GND004": Code(
-            "an element whose plug-in is not installed, where it is needed",
+            "Element of a plug-in that is not installed",
             "elements of installed languages only",
-            "install the plug-in that brings the language, or take the element away",
+            "install the plug-in that provides the language, or remove the element",
         ),
         "LOG001": Code(
-            "a line of a log that is no step",
-            "one step a line, with all that the message names",
-            "take the line away, or run the mission again to have a whole log",
+            "Log line that is not a step",
+            "one step per line, with all fields that the message names",
+            "remove the line, or run the mission again for a complete log",
         ),
         "PRJ001": Code(
-            "two types of robot of one name",
+            "Duplicate robot type name",
             "robot types with different names",
             "give each type its own name",
         ),
         "PRJ003": Code(
-            "a project of which it cannot be told which files are meant",
-            "one mission.xmi or mission.json, and beside it at most one context of that form",
-            "name the mission's file, or give the files of the project these names",
+            "Ambiguous project files",
+            "one mission.xmi or mission.json, and next to it at most one context in the same format",
+            "name the mission file, or rename the files of the project",
         ),
         "PRJ002": Code(
-            "a file of a project that does not hold what belongs there",
+            "Unexpected content in a project file",
             "one mission in mission.xmi, one context in context.xmi, robot types in robots",
-            "name the mission's file or its folder, or move what does not belong there to a file of its own",
+            "name the mission file or its folder, or move the unexpected content to a file of its own",
         ),
     }
 )
 
 
 def refusal(error: UnreadableError) -> tuple[Diagnostic, ...]:
-    """Return the faults for which something cannot be read; none where it is no file of a model."""
+    """Return the diagnostics of an unreadable file; empty if it is not a model file."""
     if error.diagnostics or not error.code:
         return error.diagnostics
     place = Place(error.file, error.line)
@@ -333,12 +335,12 @@ def refusal(error: UnreadableError) -> tuple[Diagnostic, ...]:
 
 
 def is_refusal(fault: Diagnostic) -> bool:
-    """Return whether a fault keeps a whole file from being read."""
+    """Return whether a diagnostic says that a whole file cannot be read."""
     return fault.code.startswith("FIL") or fault.code == "PRJ003"
 
 
 def explained(fault: Diagnostic) -> Diagnostic:
-    """Return a fault with what its code expects, and with its code's hint if it has none of its own."""
+    """Return a diagnostic with the expectation of its code, and with the code's hint if it has none."""
     code = CODES.get(fault.code)
     if code is None or code.brief:
         return fault
