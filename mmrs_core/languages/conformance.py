@@ -24,7 +24,7 @@ from mmrs_core.languages.values.texts import described, shown
 
 Stands = Callable[[Element], bool]
 Sound = Callable[[Element, Stands], bool]
-"""Whether an element is sound, given a function that tells whether another one stands in a model."""
+"""Whether an element is sound; takes a function that returns whether another one is in a model."""
 
 
 def soundness(metaclass: Metaclass) -> Sound:
@@ -113,7 +113,7 @@ def check_conformance(model: Model, registry: Registry) -> tuple[Diagnostic, ...
     An element whose metamodel is not installed is passed over: reading reported it.
 
     Raises:
-        UnreadableError: if there are more than anybody would read.
+        UnreadableError: if there are too many to read.
     """
     check = _Check(model, registry)
     doubtful = (element for element in model.elements() if not check.is_sound(element))

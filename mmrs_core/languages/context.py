@@ -1,4 +1,4 @@
-"""The context layer of MML: the place in which missions are carried out.
+"""The context layer of MML: the surroundings of a mission.
 
 The classes come from ``context.ecore`` when they are first asked for; the stub beside this file lists them.
 """

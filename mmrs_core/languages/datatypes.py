@@ -87,7 +87,7 @@ __all__ = [
 ECORE = "http://www.eclipse.org/emf/2002/Ecore"
 XML_TYPES = "http://www.eclipse.org/emf/2003/XMLType"
 BUILT_IN = (ECORE, XML_TYPES)
-"""The nsURIs of metamodels that nobody brings."""
+"""The nsURIs of metamodels that no plug-in provides."""
 
 
 _ONLY_ECORES = ("java.lang.Object", "java.lang.Class")
@@ -117,7 +117,7 @@ class DataType:
         serializable: whether values appear in files at all.
         java_class: the class of its values in EMF.
         bits: of whole numbers, sign included; None where they are not bounded, and for other values.
-        doubt: says what of a value Eclipse may understand otherwise, and after a semicolon what to do about
+        doubt: returns what in a value Eclipse may read differently, and after a semicolon what to do about
             it; nothing for nearly all values, and None where that holds for all.
     """
 

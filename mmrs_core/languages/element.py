@@ -29,7 +29,7 @@ class ElementType(type):
         """Make an element whose features have the given values; None stands for "not given".
 
         Raises:
-            ValueError: if the class is abstract, a name is no feature of it, or it is an unfit subclass.
+            ValueError: if the class is abstract, a name is not a feature of it, or it is an unfit subclass.
         """
         metaclass = cls._mmrs_metaclass
         made = metaclass.implementation if metaclass else None
@@ -213,13 +213,13 @@ class Unknown(Element):
 
 
 class Hidden(Unknown):
-    """What a reference leads to inside an element whose metamodel is not installed; nobody can look there.
+    """The target of a reference inside an element whose metamodel is not installed; its content is unknown.
 
     It is in no feature of any element, and says nothing but how files refer to it.
 
     Attributes:
         _mmrs_outer: the element it stands in.
-        _mmrs_rest: the way to it from there, such as ``/@point``; or its identifier, good from anywhere.
+        _mmrs_rest: the path to it from there, such as ``/@point``; or its identifier, good from anywhere.
     """
 
     __slots__ = ("_mmrs_outer", "_mmrs_rest")

@@ -48,7 +48,7 @@ class Importer:
     Attributes:
         name: the tool's models in messages, such as "Kite planner 3".
         recognise: (data, file, registry, stored) to a `Candidate`; None for any file that is not entirely of
-            the tool. `stored` says whether the file exists, so that metamodels may lie next to it.
+            the tool. `stored`: whether the file exists, so that metamodels may lie next to it.
         prepare: (candidate, file, registry) to a `Candidate` ready to be converted; raises UnreadableError
             with a code if the file cannot be imported.
         convert: (candidates, registry, known, notes) to one `Imported` for each candidate. The candidates

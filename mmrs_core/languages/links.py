@@ -109,11 +109,11 @@ class LinkedList(list[Element]):
         return found
 
     def put(self, value: Element) -> None:
-        """Add at the end and tell nobody; for whoever sets the other end himself."""
+        """Add at the end and notify no other end; for callers that set the other end."""
         super().append(value)
 
     def drop(self, value: Element) -> None:
-        """Take out, if present, and tell nobody."""
+        """Take out, if present, and notify no other end."""
         if any(present is value for present in self):
             super().remove(value)
 
@@ -122,7 +122,7 @@ def link(owner: Element, feature: Feature, value: Element) -> None:
     """Make the other end of a reference know that ``owner`` is about to hold ``value``.
 
     Raises:
-        ValueError: if the value is no element, or would contain itself.
+        ValueError: if the value is not an element, or would contain itself.
     """
     if not isinstance(value, Element):
         raise ValueError(f"{feature.name}: takes elements, not {value!r}")
@@ -136,12 +136,12 @@ def link(owner: Element, feature: Feature, value: Element) -> None:
     elif not inverse.many:
         previous = raw(value, inverse)
         if isinstance(previous, Element) and previous is not owner:
-            withdraw(previous, feature, value)
+            take_out(previous, feature, value)
     store(value, inverse, owner)
 
 
 def settle(owner: Element, feature: Feature, element: Element, occupied: bool = False) -> None:
-    """Contain an element that was just read; where the place is `occupied`, it only knows its owner."""
+    """Contain an element that was just read; where the slot is `occupied`, it only knows its owner."""
     if feature.many:
         getattr(owner, feature.attribute).put(element)
     elif not occupied:
@@ -162,7 +162,7 @@ def unlink(owner: Element, feature: Feature, value: Element) -> None:
         return
     if inverse.containment:
         _disown(owner)
-    withdraw(value, inverse, owner)
+    take_out(value, inverse, owner)
 
 
 def raw(element: Element, feature: Feature) -> object:
@@ -175,7 +175,7 @@ def raw(element: Element, feature: Feature) -> object:
 
 
 def store(element: Element, feature: Feature, value: Element) -> None:
-    """Put a value into a reference, unless it is there, and tell nobody."""
+    """Put a value into a reference, unless it is there, and notify no other end."""
     if not feature.many:
         type(element)._mmrs_slots[feature.attribute].__set__(element, value)
         return
@@ -184,8 +184,8 @@ def store(element: Element, feature: Feature, value: Element) -> None:
         values.put(value)
 
 
-def withdraw(element: Element, feature: Feature, value: Element) -> None:
-    """Take a value out of a reference, if it is there, and tell nobody."""
+def take_out(element: Element, feature: Feature, value: Element) -> None:
+    """Take a value out of a reference, if it is there, and notify no other end."""
     current = raw(element, feature)
     if isinstance(current, LinkedList):
         current.drop(value)
@@ -202,9 +202,9 @@ def _adopt(owner: Element, feature: Feature, value: Element) -> None:
         ancestor = ancestor._mmrs_container
     before, through = value._mmrs_container, value._mmrs_feature
     if before is not None and through is not None:
-        withdraw(before, through, value)
+        take_out(before, through, value)
         if through.opposite is not None and through is not feature:
-            withdraw(value, through.opposite, before)
+            take_out(value, through.opposite, before)
     value._mmrs_container = owner
     value._mmrs_feature = feature
 

@@ -47,7 +47,7 @@ class Enumeration:
         """Return the name whose literal the text is.
 
         Raises:
-            ValueError: if it is nobody's literal; the message begins with the text.
+            ValueError: if it is not a literal; the message begins with the text.
         """
         for literal in self.literals:
             if literal.literal == text:
@@ -84,7 +84,7 @@ class Feature:
         lower: fewest values.
         upper: the upper bound as it stands in the metamodel; 1 where that is unspecified (-2), as in EMF.
         type: a metaclass for a reference, else a data type or an enumeration.
-        default: what it holds when it was never set; None where an unset number is no number.
+        default: what it holds when it was never set; None where an unset number is not a number.
         unsettable: whether "never set" differs from "set to the default".
         unique: whether a value may occur only once among many.
         opposite: the reference that the other end keeps, or None.

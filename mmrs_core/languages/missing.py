@@ -1,4 +1,4 @@
-"""What is told of a metamodel that a model needs and that is not installed."""
+"""Hints about metamodels that a model needs and that are not installed."""
 
 from __future__ import annotations
 

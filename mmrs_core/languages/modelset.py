@@ -1,4 +1,4 @@
-"""All models of a project: the mission, its place, its types of robot, and a behaviour if there is one."""
+"""All models of a project: the mission, its context, its robot types, and a behaviour if there is one."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 
 MOST_PARTS = 10_000
-"""Of one kind in one element: tasks of a mission, vertices of a border, robots of a team.
+"""The most child elements in one feature: tasks of a mission, vertices of a border, robots of a team.
 
 So many tasks of one robot take half a minute to plan, so many vertices of a grid 12 s and of an obstacle 7 s
 (measured on a busy machine); ten times as many take more than a hundred times as long.
@@ -53,7 +53,7 @@ class ModelSet:
     """The models that belong together.
 
     Attributes:
-        robots: the types of robot, by name.
+        robots: the robot types, by name.
         models: every file that was read, in the order in which they were read.
     """
 
@@ -73,7 +73,7 @@ def project_files(
     Each may be XMI or JSON, by its ending.
 
     Raises:
-        UnreadableError: if a folder has no mission, or two; or its context bears another name.
+        UnreadableError: if a folder has no mission, or two; or its context has another name.
     """
     mission_file = place
     if place.is_dir():
@@ -135,19 +135,19 @@ def read_project(
 ) -> tuple[ModelSet | None, tuple[Diagnostic, ...]]:
     """Return the models of a project and the faults of their files.
 
-    There are no models if there is no mission among them, the mission or its place holds more than can be
-    worked through, or a file cannot be read at all: then whatever the others say is checked by itself, and
+    There are no models if there is no mission among them, the mission or its context holds more than can be
+    worked through, or a file cannot be read at all: then whatever the others say is checked on its own, and
     not against each other.
 
     Args:
         mission: the project's folder, or the mission's file.
-        context: the place; by default the file ``context`` beside the mission, if there is one.
-        robots: the types of robot; by default the models in ``robots`` beside the mission.
+        context: by default the file ``context`` beside the mission, if there is one.
+        robots: the robot types; by default the models in ``robots`` beside the mission.
         registry: the metamodels they may use.
         unsaved: texts to be read instead of what files hold, by real path.
 
     Raises:
-        UnreadableError: if it cannot be told which files belong to the project.
+        UnreadableError: if it is ambiguous which files belong to the project.
     """
     mission_file, context_file, robot_files = project_files(mission, context, robots)
     files = [mission_file, *([context_file] if context_file else []), *robot_files]
@@ -157,7 +157,7 @@ def read_project(
     drafts = [draft for draft in opened if isinstance(draft, Draft)]
     if len(drafts) < len(files):
         refused = [fault for each in opened if isinstance(each, UnreadableError) for fault in refusal(each)]
-        return None, (*refused, *_told(reading, drafts, registry))
+        return None, (*refused, *_separate_faults(reading, drafts, registry))
     main = reading.model(drafts[0])
     models = (main, *main.linked)
     faults = [fault for model in models for fault in model.diagnostics]
@@ -181,7 +181,7 @@ def _opened(reading: Reading, file: Path) -> Draft | UnreadableError:
         return refused
 
 
-def _told(reading: Reading, drafts: Sequence[Draft], registry: Registry) -> Iterator[Diagnostic]:
+def _separate_faults(reading: Reading, drafts: Sequence[Draft], registry: Registry) -> Iterator[Diagnostic]:
     """Yield the faults of files that are not checked against each other."""
     if not drafts:
         return
@@ -213,15 +213,13 @@ def _single(draft: Draft, metaclass: Metaclass, faults: list[Diagnostic]) -> Ele
 
 
 def types_by_name(roots: Iterable[robot.Robot], faults: list[Diagnostic]) -> Mapping[str, robot.Robot]:
-    """Return the first type of robot of each name, after a fault for every other of that name."""
+    """Return the first robot type of each name, after a fault for every other of that name."""
     types: dict[str, robot.Robot] = {}
     for root in roots:
         name = root.name or ""
         if name in types:
             first = place_of(types[name])
-            message = (
-                f"{name or 'a nameless type'}: two types of robot have this name; the first is at {first}"
-            )
+            message = f"{name or 'a nameless type'}: two robot types have this name; the first is at {first}"
             faults.append(
                 Diagnostic("PRJ001", Severity.ERROR, message, place_of(root), "give each type its own name")
             )
@@ -239,7 +237,7 @@ def _robot_roots(
             if isinstance(root, robot.Robot):
                 yield root
             elif not isinstance(root, Unknown):
-                message = f"{metaclass_of(root).name}: expected types of robot in this file, nothing else"
+                message = f"{metaclass_of(root).name}: expected robot types in this file, nothing else"
                 faults.append(Diagnostic("PRJ002", Severity.ERROR, message, place_of(root)))
         if not draft.source.roots and not draft.diagnostics:
             message = f"{metaclass.name}: the file holds none"

@@ -42,7 +42,7 @@ class _Top:
         self.kind = ("", "")
 
     def start(self, tag: str, attributes: list[str]) -> None:
-        """Take what it is and says of its metamodels; stop, unless more elements like it may follow."""
+        """Take its class and where its metamodels are; stop, unless more elements like it may follow."""
         named = dict(zip(attributes[::2], attributes[1::2], strict=True))
         self.words += named.get(_SCHEMA_LOCATION, "").split()
         if tag != _WRAPPER:

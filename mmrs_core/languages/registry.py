@@ -152,7 +152,7 @@ class Registry:
 
     @contextmanager
     def in_use(self) -> Iterator[None]:
-        """Have the classes of languages make what `create` makes, while it lasts, in this thread or task."""
+        """Make calls of the language classes create what `create` creates, in this thread or task."""
         token = chosen.set(self.implementation)
         try:
             yield
@@ -164,11 +164,11 @@ class Registry:
         for each in classes:
             other = found.setdefault(each.metaclass, each)
             if other is not each:
-                both = f"{_told(other)} and {_told(each)}"
+                both = f"{_described(other)} and {_described(each)}"
                 raise PluginError(f"{'#//'.join(each.metaclass)}: two Python classes for it, {both}")
             ns_uri, name = each.metaclass
             if self.has(ns_uri) and each.metaclass not in self._metaclasses:  # else its plug-in is missing
-                raise PluginError(f"{_told(each)}: {ns_uri} has no class {name} any more")
+                raise PluginError(f"{_described(each)}: {ns_uri} has no class {name} any more")
         for metaclass in self._metaclasses.values() if found else ():
             for key in metaclass.ancestry:
                 if key in found:
@@ -176,7 +176,7 @@ class Registry:
         return found
 
 
-def _told(given: ElementClass) -> str:
+def _described(given: ElementClass) -> str:
     return given.python.__qualname__ + (given.provider and f" of {given.provider}")
 
 
@@ -218,7 +218,7 @@ def registry_with(
         PluginError: if a metamodel refers to one that is missing, two have the same nsURI, a class inherits
             from itself, a file holds another metamodel than announced, there are two Python classes for a
             metaclass, or one hides a feature of a metaclass below its own.
-        UnreadableError: if a file is no metamodel.
+        UnreadableError: if a file is not a metamodel.
     """
     given = tuple(sources)
     packages = _assembled(given, tuple(_stamp(source.ecore) for source in given))

@@ -1,4 +1,4 @@
-"""The Robot Language (RL): what each type of robot is and can do.
+"""The Robot Language (RL): what each robot type is and can do.
 
 The classes come from ``robot.ecore`` when they are first asked for; the stub beside this file lists them.
 """

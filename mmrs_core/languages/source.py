@@ -19,7 +19,7 @@ class Source:
         roots: the elements at its top.
         ids: the identifiers that the file itself gave to elements (``xmi:id``).
         blanks: the unsettable features that the file states to be nil or empty; EMF takes them for set.
-        ns_uri: of the metamodel whose description it is, where it is no file but was made of one; else empty.
+        ns_uri: of the metamodel that it describes, if it was made of one; empty for a file.
     """
 
     __slots__ = ("blanks", "file", "ids", "ns_uri", "path", "roots")

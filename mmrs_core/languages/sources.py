@@ -8,7 +8,7 @@ from pathlib import Path
 
 @dataclass(frozen=True, slots=True)
 class MetamodelSource:
-    """A metamodel that somebody brings.
+    """A metamodel that a plug-in provides.
 
     Attributes:
         ns_uri: of the package, as its file states it.

@@ -123,7 +123,7 @@ def attributes_of(element: Element) -> Iterator[tuple[str, tuple[str, ...]]]:
 
 
 def raw_text(element: Element) -> str:
-    """Return all that is known of an element whose class is not installed; else an empty text.
+    """Return all that is known of an element whose class is not installed; otherwise an empty text.
 
     How its file lays it out does not count.
     """
@@ -191,7 +191,7 @@ class Paths(dict[int, str]):
         chain = [element]
         while id(chain[-1]) not in self:
             container = chain[-1]._mmrs_container
-            assert container is not None  # it is no root
+            assert container is not None  # it is not a root
             chain.append(container)
         for outer in chain[:0:-1]:
             self._enter(outer)

@@ -20,7 +20,7 @@ from mmrs_core.languages.element import Element, contents, descendants
 _LIKE = 0.5
 """The least share of equal attributes by which two elements are taken for one."""
 _MOST_PAIRS = 40_000
-"""Of elements of one list that are compared for likeness; beyond, position decides."""
+"""The most pairs of elements of one list to compare for likeness; beyond it, position decides."""
 
 Key = Callable[[Element], Hashable]
 

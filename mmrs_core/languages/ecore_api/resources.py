@@ -40,7 +40,7 @@ class ModelResource(Resource):  # type: ignore[misc]  # pyecore has no types
     """A file of a model, in XMI or in our form of JSON, whose contents are pyecore's objects.
 
     Attributes:
-        notices: the diagnostics of the last load that are no errors.
+        notices: the diagnostics of the last load that are not errors.
         importer: what imported the file at the last load; None for a file in our own format.
     """
 
@@ -153,7 +153,7 @@ class ModelResource(Resource):  # type: ignore[misc]  # pyecore has no types
 
 
 def _present(element: Element, known: Mapping[Path | None, Resource]) -> Any:
-    """Return the object that is where the element's file has it, in a resource that is open; else None.
+    """Return the object that is where the element's file has it, in a resource that is open; otherwise None.
 
     Raises:
         InvalidModelError: if nothing is there any more.

@@ -1,1 +1,1 @@
-"""Versions of languages: models of older ones on their way into newer, and what differs between two."""
+"""Versions of languages: migration of older models, and the differences of two versions."""

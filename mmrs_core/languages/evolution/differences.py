@@ -130,7 +130,7 @@ class _Comparison:
         return f"; if it is {alike[0]} now, a migration has to say so" if len(alike) == 1 else ""
 
     def _goes_above(self, feature: Feature) -> bool:
-        """Return whether the class that declares a feature has lost it, so that it is told there."""
+        """Return whether the class that declares a feature has lost it, which is reported there."""
         above = self._new.metaclass(*self._image(feature.owner.key))
         return above is None or feature.name not in above.by_name
 

@@ -212,7 +212,7 @@ def _flags(what: str, old: Feature, new: Feature) -> Iterator[Difference]:
         yield changed(what, "is not written any more", Verdict.MEANING, "it is lost when a model is saved")
     if old.unsettable and not new.unsettable:
         yield changed(
-            what, "cannot be unset any more", Verdict.MEANING, "a stated default is no statement now"
+            what, "cannot be unset any more", Verdict.MEANING, "a stated default now counts as unset"
         )
     yield from _other_ends(what, old, new)
 

@@ -27,7 +27,7 @@ class Lost:
 
 
 class Migrating:
-    """One model on its way; when it is made, the way is done.
+    """One model that is migrated as soon as this is created.
 
     Attributes:
         steps: that were taken, in order.
@@ -87,7 +87,7 @@ class Migrating:
                 pending += _addressed(arranged, feature, f"{address}/@{key}")
 
     def _is_foreign(self, node: Node) -> bool:
-        """Return whether an object is of a language that nobody knows, or in one; it stays as it is."""
+        """Return whether an object is of, or inside, an unknown language; it stays as it is."""
         ns_uri, _ = self._kind(node)
         return not self._registry.has(ns_uri) and ns_uri not in self._registry.chains
 

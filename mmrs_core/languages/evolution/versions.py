@@ -45,7 +45,7 @@ def version_of(given: str, installed: Registry) -> Version:
     What a file needs is taken from the files it refers to, else from what is installed.
 
     Raises:
-        UnreadableError: if the file cannot be read or is no metamodel.
+        UnreadableError: if the file cannot be read or is not a metamodel.
         PluginError: if the metamodel is broken, or needs another that is not at hand.
         ValueError: if no metamodel of that nsURI is installed.
     """
@@ -123,7 +123,7 @@ def pairs_of(old: Version, new: Version) -> Pairs:
     """Return which packages are to be compared.
 
     The outermost package of one version is that of the other, whatever it is called. Of all others, those of
-    one nsURI are the same; else those of one name inside the same package; else, among the files that are
+    one nsURI are the same; next, those of one name inside the same package; last, among the files that are
     referred to, those whose nsURIs differ in the version at their ends, or whose files have one name.
     """
     same: dict[str, Package] = {old.packages[0].ns_uri: new.packages[0]}
@@ -152,7 +152,7 @@ def pairs_of(old: Version, new: Version) -> Pairs:
 
 
 def _renamed(package: Package, candidates: Sequence[Package], same: dict[str, Package]) -> Package | None:
-    """Return what a package is called now that bears no nsURI of the newer version."""
+    """Return what a package is called now whose nsURI the newer version does not have."""
     if package.parent:
         above = same[package.parent].ns_uri if package.parent in same else ""
         return next((each for each in candidates if (each.parent, each.name) == (above, package.name)), None)

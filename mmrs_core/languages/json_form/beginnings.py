@@ -129,7 +129,7 @@ class Begun:
         above: the line on which the owner says it.
         at_top: whether it is the whole file.
         declares: whether its `$languages` are still to be read.
-        said: what it says of itself, such as `$type`; what stands inside that was passed over.
+        said: its own keys, such as `$type`; their content was skipped.
         scope: the texts in its `$namespaces`.
         deepest: levels of objects and lists inside it, as far as they were passed over.
     """
@@ -200,7 +200,7 @@ class Beginnings:
         return found, following
 
     def head(self, start: Begun, event: Event) -> Event:
-        """Take what an object says of itself before all else, from an event on, and return what follows."""
+        """Take the leading own keys of an object, from an event on, and return what follows."""
         while is_own(event[1]) and not (start.at_top and event[1] == ROOTS):
             sort, key, _, place, begin = event
             if key == LANGUAGES and start.declares:
@@ -267,7 +267,7 @@ class Beginnings:
         """Return whether an element of a class may stand there; it is a fault otherwise."""
         feature = start.feature
         if metaclass.implementation is None:
-            message = f"{metaclass.name}: abstract; say which kind of it by {TYPE}"
+            message = f"{metaclass.name}: abstract; state a concrete subclass by {TYPE}"
             self._members.fault("XMI003", message, start.line, start.owner)
             return False
         if is_claimed and feature is not None and not _fits(feature, metaclass):

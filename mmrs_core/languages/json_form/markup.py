@@ -41,7 +41,7 @@ class Thing(Tag):
     Attributes:
         key: bytes of the feature's name, between its quotes; those of a root are none.
         lines: of its key, of its begin, and of its end.
-        slot: bytes of all that goes with it; of an object that is no list's, its key too.
+        slot: bytes of all that goes with it; of an object that is not a list's, its key too.
         before, after: where its list or object has something in front of it ending, and something behind it
             beginning; -1 where there is nothing.
         languages: for the outermost one, what declares the prefixes.
@@ -66,7 +66,7 @@ class JsonMarkup(Markup):
         """Find the objects.
 
         Raises:
-            UnreadableError: if the text is no JSON with an object at its top, or not in UTF-8.
+            UnreadableError: if the text is not JSON with an object at its top, or not in UTF-8.
         """
         try:
             json.loads(data.decode("utf-8-sig"))

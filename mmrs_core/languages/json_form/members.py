@@ -1,4 +1,4 @@
-"""What an object says of the element that it is: values, references and identifiers."""
+"""The members of a JSON object: values, references and identifiers of its element."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ from mmrs_core.languages.references.documents import Draft, Pending
 from mmrs_core.languages.values.texts import words_of
 
 _HELPED_FAULTS = 200
-"""Beyond this many faults nobody reads which name was probably meant, and looking for it takes time."""
+"""Beyond this many faults no name is suggested: looking for it takes time."""
 _MOST_WORDS = 500
 """References that wait as one text."""
 _A_TYPE = "a:type"
@@ -72,7 +72,7 @@ def _way(metaclass: Metaclass, feature: Feature) -> Way:
 
 
 class Members:
-    """Reads members into elements, from one file; elements inside are none of its business."""
+    """Reads members into elements, from one file; elements inside are read elsewhere."""
 
     def __init__(self, stream: Stream, events: Iterator[Event], draft: Draft) -> None:
         self._stream = stream
@@ -80,7 +80,7 @@ class Members:
         self._draft = draft
 
     def other(self, element: Element, metaclass: Metaclass, event: Event, at_top: bool) -> None:
-        """Take a member that is no feature: `$id`, what may stand at the top of a file, or else a fault."""
+        """Take a member that is not a feature: `$id`, a key of the file's top, or a fault."""
         key, line = event[1], self._stream.line(event[3])
         skip(event, self._events)
         if key == ID and event[0] == TEXT and event[2]:

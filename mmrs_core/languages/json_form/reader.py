@@ -98,7 +98,7 @@ class JsonReader:
             self._no_model(start.line)
 
     def _no_model(self, line: int) -> None:
-        hint = f"say which class it is of by {TYPE}; 'mmrs migrate' reads the JSON of another platform"
+        hint = f"state its class by {TYPE}"
         self._draft.fault("XMI015", f"the root: no model: it has no {TYPE}", line, hint=hint)
 
     def _several(self, start: Begun, event: Event) -> None:

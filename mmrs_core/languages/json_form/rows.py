@@ -104,4 +104,4 @@ _TEXTS: dict[Callable[[object], str], tuple[type, _Text]] = {
     render_boolean: (bool, _truth),
     str: (str, quoted),
 }
-"""By how a type is written in XMI."""
+"""The usual class and text of values, by the renderer of their type."""

@@ -33,7 +33,7 @@ class Stream(Protocol):
         """Yield what is said, in file order.
 
         Raises:
-            UnreadableError: at the first place that is no JSON, or says a key twice, or is too deep.
+            UnreadableError: at the first place that is not JSON, or says a key twice, or is too deep.
         """
 
     def late(self, key: str) -> Iterator[Event] | None:

@@ -52,7 +52,7 @@ _DISGUISED = re.compile(rb'"\$\w*+\\')
 DEEPEST = 2 * DEEPEST_NESTING
 """An element inside another stands in an object and, mostly, in a list."""
 MOST_MEMBERS = 10_000
-"""Of one object: far more than any class has features."""
+"""The most members of one object: far more than any class has features."""
 _MANY = 10_000
 _SHORTEST_OBJECT = 10
 _MOST_SHORT, _SHORT = 4096, 40
@@ -76,7 +76,7 @@ class Text:
             shortest: bytes that an object or list of many must have on average.
 
         Raises:
-            UnreadableError: if they are no text, or nearly nothing but brackets.
+            UnreadableError: if they are not a text, or nearly nothing but brackets.
         """
         self.file = file
         _refuse_crowds(data, file, shortest)
@@ -235,7 +235,7 @@ class Text:
     # what is wrong
 
     def _refuse_member(self, pos: int) -> NoReturn:
-        """Say why no member begins there."""
+        """Raise the error for a malformed member."""
         key = _KEY.match(self.data, pos)
         if key is None:
             self._refuse_text(pos, "expecting property name enclosed in double quotes")
@@ -246,12 +246,12 @@ class Text:
         self._refuse_value(colon.end())
 
     def _refuse_value(self, pos: int) -> NoReturn:
-        """Say why no value begins there."""
+        """Raise the error for a malformed value."""
         blank = _BLANK.match(self.data, pos)
         word = _NO_NUMBER.match(self.data, blank.end() if blank is not None else pos)
         if word is not None:
             name = word.group().decode()
-            self._refuse_malformed(f'{name} is no number; write "{name}"', pos)
+            self._refuse_malformed(f'{name} is not a number; write "{name}"', pos)
         self._refuse_text(pos, "expecting value")
 
     def _refuse_text(self, pos: int, expected: str) -> NoReturn:
@@ -272,7 +272,7 @@ class Text:
 
 
 def _is_orderly(data: bytes) -> bool:
-    """Return whether every ``$type``, and what the top says of the file, certainly stands before all else."""
+    """Return whether every ``$type``, and the keys of the file's top, certainly precede all other members."""
     top = _TOP.match(data)
     if top is None or b"\\u0024" in data or _DISGUISED.search(data) is not None:
         return False

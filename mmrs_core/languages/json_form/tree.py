@@ -86,7 +86,7 @@ class Tree:
         """Read the text of a file.
 
         Raises:
-            UnreadableError: if it is no JSON, says a key twice in one object, or nests too deeply.
+            UnreadableError: if it is not JSON, says a key twice in one object, or nests too deeply.
         """
         self.file = file
         self._text = Text(data, file, _SHORTEST_OBJECT)
@@ -221,7 +221,7 @@ class TreeStream:
         self._line_of = line_of
 
     def events(self) -> Iterator[Event]:
-        """Yield what is said, first what an object says of itself; as `Stream` has it."""
+        """Yield what is said, the own keys of an object first; as `Stream` has it."""
         pending: list[_Pending] = [(iter([("", self._top)]), None, self._top)]
         while pending:
             members, owner, place = pending[-1]

@@ -32,7 +32,7 @@ class UnknownObject(Unknown):
 
 @dataclass(slots=True)
 class Kept:
-    """What an object says of an element that is not read.
+    """The text of an object whose element is not read.
 
     Attributes:
         text: all of it.
@@ -54,7 +54,7 @@ def kept(found: Kept, claimed: str, languages: Mapping[str, str]) -> Unknown:
         languages: the prefixes that types in it may use.
 
     Raises:
-        ValueError: if what it keeps is no XML.
+        ValueError: if what it keeps is not XML.
     """
     element: Unknown
     if found.xml is not None:
@@ -94,7 +94,7 @@ def xml_of(xml: str, scope: Mapping[str, str]) -> str:
     """Return the XML that an object keeps of an element, with all namespaces that it needs.
 
     Raises:
-        ValueError: if it is no element of XML.
+        ValueError: if it is not an element of XML.
     """
     if not xml.startswith("<"):
         raise ValueError(f"{XML}: not well-formed XML: no element found")
@@ -123,7 +123,7 @@ def scope_of(node: Node) -> Mapping[str, str]:
 
 
 def stated(element: Unknown, typed: Callable[[str], str] = str) -> Node:
-    """Return the object that says what is known of an element; `typed` shortens ``nsURI#Name``."""
+    """Return an object with all that is known of an element; `typed` shortens ``nsURI#Name``."""
     if isinstance(element, UnknownObject):
         top = tree_of(element._mmrs_json)
         return _retyped(top, lambda name: typed(_expanded(name, element._mmrs_scope)))

@@ -117,7 +117,7 @@ class JsonWriter:
         return members, children
 
     def _own(self, element: Element, metaclass: Metaclass, feature: Feature | None) -> list[str]:
-        """Return what an element says of itself."""
+        """Return the own keys of an element."""
         members: list[str] = []
         if feature is None or metaclass is not feature.type:
             members.append(f'"{TYPE}": {self._kind(metaclass)}')
@@ -154,7 +154,7 @@ class JsonWriter:
 
     def _one(self, feature: Feature, value: object, depth: int) -> _Piece:
         if not isinstance(value, Element):
-            raise ValueError(f"{feature.name}: {value!r} is no element")
+            raise ValueError(f"{feature.name}: {value!r} is not an element")
         if self._addresses.stands_elsewhere(value):
             return laid_out([f'"{REF}": {quoted(self._address(value, value, feature))}'], depth)
         return value, feature, depth

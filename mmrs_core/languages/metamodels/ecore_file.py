@@ -42,7 +42,7 @@ _WORD = re.compile(r"\S+")
 
 @dataclass(slots=True, eq=False)
 class Node:
-    """An element that says what classes there are.
+    """An element that declares classes.
 
     Attributes:
         tag: its name, without a namespace.
@@ -185,7 +185,7 @@ class EcoreFile:
 
 
 class _Listener:
-    """Keeps the elements that say what classes there are, and passes over all others."""
+    """Keeps the elements that declare classes, and skips all others."""
 
     def __init__(self, document: Document, roots: list[Node | None], ids: dict[str, Node]) -> None:
         self.line = 0
@@ -282,7 +282,7 @@ def read_ecore(path: Path) -> EcoreFile:
     """Return an .ecore file.
 
     Raises:
-        UnreadableError: if it cannot be read, is larger than `LARGEST_METAMODEL`, or is no metamodel.
+        UnreadableError: if it cannot be read, is larger than `LARGEST_METAMODEL`, or is not a metamodel.
     """
     return EcoreFile(read_bytes(path, LARGEST_METAMODEL), str(path))
 

@@ -1,6 +1,6 @@
 """Ecore and EMF's types of XML as metamodels of their own, for models and metamodels that refer to them.
 
-They hold what files can hold, and the ways back to containers. What Java works out, such as
+They hold what files can hold, and the references back to containers. What Java works out, such as
 ``EClass.eAllSuperTypes``, is left out, and so are feature maps. The facts are those of
 ``Ecore.ecore`` and ``XMLType.ecore`` in EMF 2.29.
 """
@@ -130,7 +130,7 @@ _NOT_IN_FILES = {
 def built_in() -> tuple[ecore.EPackage, ecore.EPackage]:
     """Return Ecore and EMF's types of XML; always the same objects.
 
-    pyecore's own classes of Ecore say less than EMF's: they are what metamodels refer to, and these say what
+    pyecore's own classes of Ecore have less than EMF's: they are what metamodels refer to, and these are what
     models of Ecore hold.
     """
     types = {**dict.fromkeys(ECORE_CLASSES, ""), **_NOT_IN_FILES}

@@ -33,7 +33,7 @@ _PROJECT = """<?xml version="1.0" encoding="UTF-8"?>
 def exported_names(registry: Registry) -> dict[str, str]:
     """Return the file name that each metamodel gets, by nsURI; packages inside others have no own file.
 
-    Models point there by what `schema_locations` returns. Packages that share a file go on sharing one.
+    Models point there by what `schema_locations` returns. Packages of one file stay in one file.
     """
     names: dict[str, str] = {}
     files: dict[Path, str] = {}
@@ -90,7 +90,7 @@ def export_metamodels(registry: Registry, directory: Path, *, force: bool = Fals
     Args:
         registry: the metamodels.
         directory: made if need be; what else is in it stays.
-        force: replace files that somebody else wrote or changed. A metamodel that is installed from
+        force: replace files that were written or changed by others. A metamodel that is installed from
             there is never replaced.
 
     Returns:
@@ -128,7 +128,7 @@ def _others(directory: Path, files: Mapping[str, bytes]) -> list[str]:
 
 
 def _content(path: Path) -> str:
-    """Return the hash of a file; empty for what is no file that can be read."""
+    """Return the hash of a file; empty for what is not a file that can be read."""
     try:
         return _hash(path.read_bytes()) if path.is_file() else ""
     except OSError:

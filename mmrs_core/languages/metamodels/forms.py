@@ -69,7 +69,7 @@ class Forms:
         """Return the text.
 
         Raises:
-            UnreadableError: if a file says what no .ecore file can say.
+            UnreadableError: if a file has content that an .ecore file cannot have.
             PluginError: if a metamodel is referred to that is not at hand.
         """
         tops = [entry for entry in self._located.values() if not entry.parent]

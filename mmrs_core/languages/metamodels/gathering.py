@@ -17,7 +17,7 @@ def gathered(files: Iterable[Path], registry: Registry) -> Iterator[MetamodelSou
     """Yield metamodels, and those that they refer to, as far as they are not installed.
 
     Raises:
-        UnreadableError: if a file is no metamodel.
+        UnreadableError: if a file is not a metamodel.
     """
     pending, seen = list(files), set()
     brought: set[str] = set()
@@ -40,7 +40,7 @@ def registry_of_files(
 ) -> tuple[Registry, tuple[str, ...]]:
     """Return the metamodels of some .ecore files with those that are installed, and the files' nsURIs.
 
-    A file takes the place of an installed metamodel of the same nsURI. The .ecore files that it refers to
+    A file replaces an installed metamodel of the same nsURI. The .ecore files that it refers to
     are taken along where they are there; where a path leads nowhere, as in a workspace of Eclipse projects
     that were moved, a file of that name beside it.
 
@@ -49,7 +49,7 @@ def registry_of_files(
         installed: what plug-ins bring.
 
     Raises:
-        UnreadableError: if a file is no metamodel.
+        UnreadableError: if a file is not a metamodel.
         PluginError: if a metamodel refers to one that is missing, or two files hold the same.
     """
     given = [real_path(file) for file in files]

@@ -57,10 +57,10 @@ def load(located: Sequence[Located], known: Iterable[Package], *, lenient: bool 
     Args:
         located: packages of .ecore files, and EPackages, which are taken as they are.
         known: packages that stand, which the others may refer to.
-        lenient: let a stand-in that has nothing but a name be in the place of a class that is not at hand.
+        lenient: let a stand-in that has nothing but a name be for a class that is not at hand.
 
     Raises:
-        UnreadableError: if a file says what no .ecore file can say.
+        UnreadableError: if a file has content that an .ecore file cannot have.
         PluginError: if a class is not at hand, or inherits from itself.
     """
     packages = tuple(known)
@@ -95,7 +95,7 @@ def load_alone(path: Path) -> list[Any]:
     """Return the EPackages at the top of a file, with stand-ins for the classes of all other files.
 
     Raises:
-        UnreadableError: if it is no metamodel.
+        UnreadableError: if it is not a metamodel.
         PluginError: if a class is missing in it, or inherits from itself.
     """
     located = located_in(path, path.name)
@@ -120,7 +120,7 @@ def epackage_of(given: Any) -> Any:
 
 
 class _Text(URI):  # type: ignore[misc]  # pyecore has no types
-    """A text in memory, in the place of a file."""
+    """A text in memory that stands in for a file."""
 
     def __init__(self, data: bytes) -> None:
         super().__init__("metamodels")
@@ -297,7 +297,7 @@ def _give_files(files: Iterable[Located], contents: Sequence[Any]) -> None:
 
 
 def _check_inheritance(forms: Forms) -> None:
-    """Refuse classes that inherit from themselves, or through more others than pyecore bears.
+    """Refuse classes that inherit from themselves, or through more others than pyecore supports.
 
     Raises:
         PluginError: for the first such class.

@@ -46,7 +46,7 @@ class Located:
     node: Node | None = None
 
     def refuse(self, reason: str, node: Node | None = None, between: str = ": ") -> NoReturn:
-        """Raise the error for something in it, with the place of the element, if one is given."""
+        """Raise the error for something in it, with the position of the element, if one is given."""
         place = (
             f"{self.file.name}:{node.line}" if self.file is not None and node is not None else self.provider
         )
@@ -57,7 +57,7 @@ def located_in(ecore: Path, provider: str) -> list[Located]:
     """Return the packages of a file, those inside others included; messages name who brings it.
 
     Raises:
-        UnreadableError: if the file is no metamodel.
+        UnreadableError: if the file is not a metamodel.
     """
     who = "" if provider in (str(ecore), ecore.name) else f"{provider}: "
     try:
@@ -214,5 +214,5 @@ class Directory:
 
 
 def _cut(text: str) -> str:
-    """Return a text for a message, not longer than anybody reads."""
+    """Return a text for a message, cut to a readable length."""
     return text if len(text) <= 120 else f"{text[:117]}..."

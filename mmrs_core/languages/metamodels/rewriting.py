@@ -63,7 +63,7 @@ class Rewriter:
         if not hash_ or not document:
             return token
         referrer = self._located[package.ns_uri]
-        with suppress(PluginError):  # an annotation may refer to what is no metamodel, and stays as it is
+        with suppress(PluginError):  # an annotation may refer to what is not a metamodel, and stays as it is
             ns_uri, file = self._directory.document(document, referrer, token)
             if ns_uri not in self._packages:
                 return token
@@ -128,7 +128,7 @@ class _Places:
 
 
 class _Deaf:
-    """Hears nothing: only the encoding of the document is wanted."""
+    """Ignores all events: only the encoding of the document is needed."""
 
     def start(self, tag: str, attributes: list[str]) -> None:
         """Pass over."""

@@ -22,7 +22,7 @@ from mmrs_core.languages.naming import nearest, python_name
 from mmrs_core.languages.values.texts import described
 
 MOST_FEATURES = 500_000
-"""Of all classes together, inherited ones counted again in each; the largest metamodels have a tenth."""
+"""The most features of all classes, inherited ones included; the largest metamodels have a tenth."""
 
 _STRAYS = (ecore.EEnum.eClass, ecore.EDataType.eClass)
 """What modules that pyecoregen wrote take for classes of their own."""
@@ -42,7 +42,7 @@ def packages_of(sources: Iterable[tuple[str, Any, str]], known: tuple[Package, .
     Raises:
         PluginError: if a metamodel is already there, does not hold the nsURI that is announced, refers to
             one that is missing, or is broken.
-        UnreadableError: if a file is no metamodel.
+        UnreadableError: if a file is not a metamodel.
     """
     located: list[Located] = []
     seen = {package.ns_uri: package.provider for package in known}
@@ -84,7 +84,7 @@ def _flat(package: Any, given: object, provider: str, parent: str = "") -> Itera
 
 
 class _Shapes:
-    """Packages on their way from EClasses to metaclasses."""
+    """Packages whose metaclasses are derived from EClasses."""
 
     def __init__(self, known: tuple[Package, ...], loaded: Loaded) -> None:
         """Take packages that stand already and share their classes, and those to be made."""
@@ -320,7 +320,7 @@ def _address(kind: Any) -> Address:
 
 
 def _one_name(metaclass: Metaclass, features: Iterable[Feature]) -> str:
-    """Say which features, inherited from different classes, Python cannot tell apart."""
+    """Return which features, inherited from different classes, Python cannot tell apart."""
     seen: dict[str, Feature] = {}
     for feature in features:
         other = seen.setdefault(feature.attribute, feature)

@@ -70,7 +70,7 @@ def default_of(feature: Any, kind: _Type, upper: int) -> object:
     """Return what a feature holds that was never set.
 
     Raises:
-        ValueError: if the default is no value of its type; the message begins with it.
+        ValueError: if the default is not a value of its type; the message begins with it.
     """
     if isinstance(kind, Metaclass) or upper > 1 or upper == MANY:
         return None

@@ -1,4 +1,4 @@
-"""Whether elements say what a path asks for."""
+"""The conditions of a query path."""
 
 from __future__ import annotations
 
@@ -77,7 +77,7 @@ def _is_so(feature: Feature, value: object, condition: Condition) -> bool:
     if number is None:
         raise ValueError(f"{feature.name}: no number and no date, cannot be compared by {condition.sign}")
     bound = _number(condition.value)
-    return number == number and bound == bound and order(number, bound)  # nothing is beside what is no number
+    return number == number and bound == bound and order(number, bound)  # NaN compares with nothing
 
 
 def _equals(feature: Feature, value: object, wanted: str) -> bool:
@@ -107,7 +107,7 @@ def _moment(text: str) -> datetime:
 
 
 def _exact(value: object) -> Decimal | float | None:
-    """Return a number of any kind in a form that compares without rounding; None for what is no number.
+    """Return a number of any kind in a form that compares without rounding; None for what is not a number.
 
     A whole number beyond 2**53 and a decimal one keep all their digits; what is not finite stays a float.
     """

@@ -69,7 +69,7 @@ def parse_path(text: str) -> tuple[Step, ...]:
     """Return the steps of a path; none for the roots themselves, of which ``/1`` is the second.
 
     Raises:
-        ValueError: if it is no path; says where it breaks.
+        ValueError: if it is not a path; with the position.
     """
     text = text.strip()
     match = _FRAGMENT.fullmatch(text)

@@ -48,7 +48,7 @@ def find(roots: Sequence[Element], text: str) -> tuple[Match, ...]:
 
     Raises:
         NothingFoundError: if nothing is there; says up to where something was.
-        ValueError: if it is no path, or follows a feature or names a class that there is not.
+        ValueError: if it is not a path, or follows a feature or names a class that there is not.
     """
     found = tuple(Match(root, root) for root in roots)
     for step in parse_path(text):

@@ -110,7 +110,7 @@ class Addresses:
         if source is None or source.path is None or top not in source.roots:
             raise ValueError(f"refers to {element!r}, which stands in no file")
         if self._folder is None:
-            raise ValueError(f"refers to {source.file}; say which file the model is written to")
+            raise ValueError(f"refers to {source.file}; state the file that the model is written to")
         return f"{relative_href(source.path, self._folder)}#{self._fragment_in(source, top, element)}"
 
     def _fragment_in(self, source: Source, top: Element, element: Element) -> str:
@@ -132,7 +132,7 @@ class Addresses:
         return f"/{number}{''.join(reversed(steps))}"
 
     def _fragments(self) -> dict[int, str]:
-        """Return the fragments of all elements; not worked out before somebody asks for one."""
+        """Return the fragments of all elements; computed at the first request."""
         if not self._entered:
             for index, root in enumerate(self._roots):
                 self._enter(root, f"/{index}" if len(self._roots) > 1 else "/")

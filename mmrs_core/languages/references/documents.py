@@ -119,7 +119,7 @@ class Draft:
         """Note a fault at a line, in an element if it is known.
 
         Raises:
-            UnreadableError: if there are more than anybody would read: then it is no model at all.
+            UnreadableError: if there are too many to read: then it is not a model at all.
         """
         if len(self.diagnostics) >= MOST_FAULTS:
             first = self.diagnostics[0]
@@ -132,7 +132,7 @@ class Draft:
         )
 
     def take(self, roots: Sequence[Element], diagnostics: Iterable[Diagnostic]) -> None:
-        """Take elements that were made of the file, and what there is to say of them."""
+        """Take elements that were made of the file, and their diagnostics."""
         self.roots += roots
         self.source.roots = tuple(self.roots)
         self.diagnostics += diagnostics
@@ -143,7 +143,7 @@ class Draft:
     def number_roots(self) -> None:
         """Take all roots as read: if there are several, their numbers lead the paths of what was noted.
 
-        While the first is read, nobody knows whether others follow.
+        While the first is read, it is unknown whether others follow.
         """
         self.source.roots = tuple(self.roots)
         if len(self.roots) < 2:
@@ -169,7 +169,7 @@ class Draft:
         return found
 
     def list_at(self, head: str) -> list[object]:
-        """Return what a path without its last index leads to, such as ``//@robots.3/@moves``; else nothing.
+        """Return the list that a path without its last index leads to, such as ``//@robots.3/@moves``.
 
         What was found once stands in ``lists``.
         """

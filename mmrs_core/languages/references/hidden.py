@@ -1,4 +1,4 @@
-"""References into elements whose metamodel is not installed: kept, since nobody can look what is there."""
+"""References into elements whose metamodel is not installed: kept, but not resolved."""
 
 from __future__ import annotations
 

@@ -23,7 +23,7 @@ _BLANKS = re.compile("[ \t\n\r\f]+")
 """What stands between references; others may stand in an identifier."""
 
 _HELPED_FAULTS = 20
-"""Looking for what was meant goes over the whole model; beyond this many faults nobody waits for it."""
+"""Looking for what was meant goes over the whole model; skipped beyond this many faults."""
 
 
 class Library(Protocol):
@@ -48,7 +48,7 @@ def resolve(
         registry: the metamodels that are installed.
 
     Returns:
-        The references whose other ends are to be told, with their targets, once all files have said theirs.
+        The references whose other ends are to be notified, with their targets, once all files are read.
     """
     pending, draft.pending = draft.pending, []
     doubled = []
@@ -164,7 +164,7 @@ def _opened(
         return library.described(document)
     path = draft.source.path
     if path is None or root is None:
-        message = f"{reference.feature.name}: {document}: a text that is no file cannot refer to files"
+        message = f"{reference.feature.name}: {document}: a text that is not a file cannot refer to files"
         _fault("XMI007", message, reference, draft)
         return None
     try:
@@ -184,7 +184,7 @@ def _as_given(document: str, draft: Draft, real: Path) -> Path:
 
 
 def _set(reference: Pending, target: Element, draft: Draft) -> bool:
-    """Put the target into the reference; return whether the other end has to be told."""
+    """Put the target into the reference; return whether the other end has to be notified."""
     element, feature = reference.element, reference.feature
     if isinstance(target, Unknown):
         draft.broken.add((element, feature.name))
@@ -223,7 +223,7 @@ def _contain(reference: Pending, target: Element, draft: Draft) -> bool:
 
 
 def _tell_other_end(reference: Pending, target: Element, draft: Draft, known: dict[int, set[int]]) -> None:
-    """Tell one other end; what each list held before is `known`, so that no list is searched again."""
+    """Notify one other end; what each list held before is `known`, so that no list is searched again."""
     element, opposite = reference.element, reference.feature.opposite
     if opposite is None or opposite.attribute not in type(target)._mmrs_slots:
         return

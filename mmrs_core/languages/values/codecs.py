@@ -17,9 +17,9 @@ class Codec(NamedTuple):
         python: the class of its values.
         parse: reads a value from text; raises ValueError, whose message begins with the text.
         render: writes a value as EMF does; raises ValueError if EMF could not read it again as that value.
-        default: what a primitive type of Java holds that was never set; else None.
-        bits: of a whole number, sign included; None for any number, and for what is no whole number.
-        doubt: says of a value what it is not certain that Eclipse understands; mostly nothing.
+        default: what a primitive type of Java holds that was never set; otherwise None.
+        bits: of a whole number, sign included; None for any number, and for what is not a whole number.
+        doubt: returns what in a value Eclipse may read differently; mostly nothing.
     """
 
     python: type
@@ -87,7 +87,7 @@ _SCHEMA_CODECS: dict[str, Codec] = {
     "float": Codec(float, real.parse_schema_single, real.render_schema_single),
     "java.math.BigDecimal": Codec(Decimal, exact.parse_schema_decimal, exact.render_schema_decimal),
 }
-"""Of the Java classes that EMF's XML types read otherwise than Ecore's."""
+"""The codecs of the Java classes that EMF's XML types read otherwise than Ecore's."""
 _OBJECTS = {"java.lang.Boolean": "boolean", "java.lang.Double": "double", "java.lang.Float": "float"}
 
 

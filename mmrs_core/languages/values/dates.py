@@ -3,7 +3,7 @@
 EMF reads dates with Java's ``SimpleDateFormat``: it counts the digits behind the point of the seconds in
 milliseconds, knows a zone only behind them and only as +0200, GMT+2:00, GMT or UTC, takes the time zone of
 its machine where there is none, and lets 13 months pass. So do we, with UTC for the machine's zone; a date
-keeps the text of its file, and says what is doubtful about it. Before 15 October 1582, where Java counts in
+keeps the text of its file, and knows what is doubtful about it. Before 15 October 1582, where Java counts in
 the Julian calendar, there are no dates here.
 """
 

@@ -9,7 +9,7 @@ from decimal import Context, Decimal
 from mmrs_core.languages.values.texts import LAST_UNIT, collapsed, described, shown
 
 MOST_DIGITS = 100_000
-"""Of a number that is read or written; the time that this takes grows faster than their count."""
+"""The most digits of a number that is read or written; the time for it grows faster than their count."""
 
 _AT_ONCE = 4000
 """Digits that Python turns into a number in one go; of many more it refuses to."""
@@ -133,7 +133,7 @@ def _in_tens(value: int, context: Context) -> Decimal:
 
 _DECIMAL = re.compile(r"[+-]?(?:\d+(?:\.(\d*))?|\.(\d+))(?:[eE]([+-]?)(\d+))?")
 _BITS = 31
-"""Of the scale, which is the number of digits behind the point, and of the power of ten."""
+"""The bits of the scale, which is the number of digits behind the point, and of the power of ten."""
 _LONGEST_POWER = 10
 _MOST_PLAIN = 1000
 """Digits that a number may need for its place alone; one that needs more is written with a power of ten."""

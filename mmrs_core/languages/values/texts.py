@@ -72,7 +72,7 @@ def render_qualified(value: object) -> str:
 
 
 def parse_character(text: str) -> str:
-    """Read a character as EMF does: its number, or itself where it is no digit."""
+    """Read a character as EMF does: its number, or itself where it is not a digit."""
     if _NUMBER.fullmatch(text) and max(text) <= LAST_UNIT and len(text) < 7 and 0 <= int(text) < 1 << 16:
         return chr(int(text))
     if len(text) != 1:

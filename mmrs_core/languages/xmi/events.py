@@ -77,14 +77,14 @@ class Namespaces:
 
 
 class Document:
-    """One XML document on its way through the parser.
+    """One XML document and its parser.
 
     Attributes:
         file: what messages call it.
         data: its bytes, in an encoding that offsets count in.
         namespaces: the prefixes in scope at the current event.
         encoding: the declared one.
-        parser: expat's; for whoever needs the line of every element.
+        parser: expat's; for listeners that need the line of every element.
     """
 
     def __init__(self, data: bytes, file: str) -> None:
@@ -110,7 +110,7 @@ class Document:
 
     @property
     def offset(self) -> int:
-        """The place of the current event in ``data``, in bytes."""
+        """The position of the current event in ``data``, in bytes."""
         return self.parser.CurrentByteIndex
 
     def text_from(self, begin: int) -> str:
@@ -213,7 +213,7 @@ def _without_wide_characters(data: bytes, file: str) -> tuple[bytes, str | None]
 
 
 def _refuse_crowds(data: bytes, file: str) -> None:
-    """Refuse an element with too many attributes: the parser takes them all in before it tells of any."""
+    """Refuse an element with too many attributes: the parser takes them all in before it reports any."""
     window, begin = MOST_ATTRIBUTES * _SHORTEST_ATTRIBUTE, data.find(b"<")
     while begin >= 0:
         following = data.rfind(b"<", begin + 1, begin + window)

@@ -133,7 +133,7 @@ class XmiReader:
             self._ignored = 1
 
     def _owns_href(self, feature: Feature, attributes: list[str]) -> bool:
-        """Return whether ``href``, which is no link, is a feature of the element; EMF would not ask."""
+        """Return whether ``href``, which is not a link, is a feature of the element; EMF would not ask."""
         assert isinstance(feature.type, Metaclass)  # it is a reference
         if not feature.containment:
             return False
@@ -185,7 +185,7 @@ class XmiReader:
         """Make an element; one of an unknown, wrong or abstract class is kept, and holds its place."""
         made = None if metaclass is None else self._registry.implementation(metaclass)
         if metaclass is not None and made is None:
-            self._fault("XMI003", f"{metaclass.name}: abstract; say which kind of it by xsi:type", owner)
+            self._fault("XMI003", f"{metaclass.name}: abstract; state a concrete subclass by xsi:type", owner)
         if made is None:
             element: Element = Unknown.__new__(Unknown)
             assert isinstance(element, Unknown)
@@ -211,7 +211,7 @@ class XmiReader:
         if not ns_uri and prefix is not None:
             self._fault("XMI014", f"{prefix}:{name}: the prefix {prefix!r} is not declared", owner)
         elif not ns_uri:
-            self._fault("XMI015", f"{name}: the root is no model: it has no namespace", owner)
+            self._fault("XMI015", f"{name}: the root is not a model: it has no namespace", owner)
         else:
             self._no_metamodel(ns_uri, name, owner)
         return None

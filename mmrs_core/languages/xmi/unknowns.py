@@ -15,14 +15,14 @@ _DECLARED = re.compile(r"""xmlns(?::([\w.-]+))?\s*=""")
 
 
 def text_of(element: Unknown, declare: Callable[[str, str], bool]) -> str:
-    """Return the text of an element, with the namespaces it needs and that nobody else declares.
+    """Return the text of an element, with the namespaces it needs and that are not declared elsewhere.
 
     Args:
         element: as it was read.
         declare: asked whether a prefix (first) is, or can be, declared for an nsURI at the root of the file.
 
     Raises:
-        ValueError: if it was not read from XML, so that nobody knows how it is written there.
+        ValueError: if it was not read from XML, so that its XML is unknown.
     """
     text = element._mmrs_xml
     begin = _BEGIN.match(text)

@@ -99,7 +99,7 @@ class XmiWriter:
     def _child(self, row: Row, value: object, jobs: list[Job]) -> None:
         element, feature, _, depth = row
         if not isinstance(value, Element):
-            raise ValueError(f"{_where(element, feature)}: {value!r} is no element")
+            raise ValueError(f"{_where(element, feature)}: {value!r} is not an element")
         if self._addresses.stands_elsewhere(value):
             self._lines.append(self._href(element, feature, value, depth))
         else:
@@ -259,7 +259,7 @@ class XmiWriter:
         return f'{"  " * depth}<{feature.name}{kind} href="{in_attribute(href)}"/>\n'
 
     def _claim(self, target: Element, feature: Feature) -> str:
-        """Return what a link to an element says of its class; nothing, if that is the expected one."""
+        """Return the class that a link to an element states; empty if it is the expected one."""
         if not isinstance(target, Unknown):
             metaclass = metaclass_of(target)
             return "" if metaclass is feature.type else f' xsi:type="{self._kind(metaclass)}"'

@@ -31,7 +31,7 @@ def migrated(
     Args:
         name: of the dialect.
         known: elements of other files, among which may be robot types that these files name.
-        notes: whether to list what is not just as it was; else only what was lost or is doubtful is counted.
+        notes: whether to list changes; otherwise lost and doubtful values are counted.
     """
     mapping = files[0].mapping
     settled = [settle(each.opened, mapping, (), stored=each.stored) for each in files]
@@ -106,7 +106,7 @@ def _counted(findings: Iterable[Finding], place: Place) -> Iterator[Diagnostic]:
     counts = Counter(finding.category for finding in findings)
     words = ", ".join(f"{each.value}: {counts[each]}" for each in _DOUBTFUL if counts[each])
     if words:
-        message = f"values {words}; without --quiet-migration, each is told"
+        message = f"values {words}; --quiet-migration hides the list"
         yield Diagnostic(DOUBTFUL, Severity.WARNING, message, place)
 
 

@@ -1,4 +1,4 @@
-"""From source files to models of ours, with everything that has to be told about the way."""
+"""Migrate source files to models of the installed languages, with a report of all changes."""
 
 from __future__ import annotations
 
@@ -88,7 +88,7 @@ def migrate(
         types: what the names of robot types in the files stand for; goes before what the mapping says.
         present: robot types that are at hand already, by name.
 
-    A file that cannot be read is told among the sources; the others are migrated.
+    A file that cannot be read is listed among the sources; the others are migrated.
 
     Raises:
         UnreadableError: if one of the given metamodels is none.

@@ -16,7 +16,7 @@ class Record:
     def value(
         self, category: Category, reason: str, node: SourceNode, feature: str, value: Text | None = None
     ) -> None:
-        """Note what happens to a feature of an element, or to one value of it; to every element by itself."""
+        """Note what happens to a feature of an element, or to one of its values."""
         inner = node.nodes(feature) if value is None else ()
         plain = [each.text for each in node.values.get(feature, ()) if not isinstance(each, SourceNode)]
         said = value.text if value is not None else ", ".join(plain)
@@ -35,7 +35,7 @@ class Record:
         self._add(category, reason, f"{node.feature} {_words(node)}{around}", node.place())
 
     def element(self, category: Category, reason: str, node: SourceNode) -> None:
-        """Note what happens to a whole element; its values are told with it where it is lost."""
+        """Note what happens to a whole element; a lost one with its values."""
         content = _content(node) if category is Category.LOST else ""
         told = content and f" ({content})"
         self._add(category, reason, f"{node.called()}{told}", node.place())

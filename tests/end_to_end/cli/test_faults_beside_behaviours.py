@@ -51,7 +51,7 @@ def test_two_robot_types_of_one_name_are_refused(mmrs, project):
     shutil.copy(file, file.with_name("again.xmi"))
     for command in ("validate", "check"):
         code, _, err = mmrs(command, project)
-        assert (code, "two types of robot have this name" in err) == (1, True)
+        assert (code, "two robot types have this name" in err) == (1, True)
 
 
 def test_a_context_is_drawn_in_the_frame_of_the_behaviour(mmrs, project):

@@ -191,7 +191,7 @@ def test_elements_know_file_and_line(read):
         ('"star": 3', "XMI010", "star: takes the paths of elements, such as //@tasks.0"),
         ('"star": ["/", "/"]', "XMI009", "star: a list of 2, takes one"),
         ('"animals": "x"', "XMI010", "animals: takes objects"),
-        ('"animals": [{"name": "x"}]', "XMI003", "Animal: abstract; say which kind of it by $type"),
+        ('"animals": [{"name": "x"}]', "XMI003", "Animal: abstract; state a concrete subclass by $type"),
         ('"animals": [{"$type": "zoo:Lio"}]', "XMI002", "Lio: no class of urn:test:zoo"),
         ('"animals": [{"$type": "zo:Lion"}]', "XMI014", "zo:Lion: the prefix 'zo' is not declared"),
         (
@@ -204,7 +204,7 @@ def test_elements_know_file_and_line(read):
         (
             '"anything": {"$ref": "x.json#/"}',
             "XMI007",
-            "anything: x.json: a text that is no file cannot refer to files",
+            "anything: x.json: a text that is not a file cannot refer to files",
         ),
     ],
 )
@@ -244,8 +244,8 @@ def test_an_id_used_twice_is_a_fault(faults):
         (b"", "a.json:1: not well-formed JSON: expecting value"),
         (b'{"a": 1,\n}', "a.json:2: not well-formed JSON: expecting property name"),
         (b'{"a": 1,\n"b": {"a": 1},\n"a": 2}', "a.json:3: 'a': given twice in one object"),
-        (b'{"a": "NaN",\n"b": -Infinity}', "a.json:2: not well-formed JSON: -Infinity is no number"),
-        (b'{"a": NaN}', 'a.json:1: not well-formed JSON: NaN is no number; write "NaN"'),
+        (b'{"a": "NaN",\n"b": -Infinity}', "a.json:2: not well-formed JSON: -Infinity is not a number"),
+        (b'{"a": NaN}', 'a.json:1: not well-formed JSON: NaN is not a number; write "NaN"'),
         (b"\xff\x00x", "a.json:1: not readable as UTF-8 text"),
         (b'{"a":\n' * 2000, "a.json:801: nested deeper than 800 levels"),
         (b"[" * 900 + b"]" * 900, "a.json:1: nested deeper than 800 levels"),

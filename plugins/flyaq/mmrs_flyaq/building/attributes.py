@@ -96,7 +96,7 @@ class Attributes:
     def _put(
         self, node: SourceNode, feature: str, source: Text, element: Element, use: Use, value: Constant
     ) -> None:
-        """Set a value wherever it goes, and tell of the further places that it goes to."""
+        """Set a value at all its targets, and report the further ones."""
         keep = self._keep(node, element, use)
         for path in use.to:
             put(element, path, value, keep)

@@ -58,7 +58,7 @@ def border_around(
         return vertices
     key = metaclass_of(vertices[0]).key
     places = ", ".join(f"({north!r}, {east!r})" for north, east in known)
-    record.value(Category.DOUBTFUL, f"{mended.reason}: draw it anew", node, feature, Text(places, node.line))
+    record.value(Category.DOUBTFUL, f"{mended.reason}: draw it again", node, feature, Text(places, node.line))
     return [
         placed(registry.create(*key, latitude=north, longitude=east), node) for north, east in mended.corners
     ]

@@ -22,7 +22,7 @@ from mmrs_flyaq.sources.structure import Sort, Structure
 
 _ORDER = {Sort.ATTRIBUTE: 0, Sort.REFERENCE: 1, Sort.CONTAINED: 2}
 _NO_RULE = "the mapping has no rule for this class"
-_NO_USE = "the mapping does not say what becomes of this feature"
+_NO_USE = "the mapping has no rule for this feature"
 _NO_FEATURE = "the metamodel has no such feature"
 _STRAY = "text where only elements may stand"
 

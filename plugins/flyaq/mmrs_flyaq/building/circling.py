@@ -33,7 +33,7 @@ class Circle:
         up: metres from the centre.
         turn: degrees from one way point to the next, clockwise from above.
         points: of one round.
-        duration: seconds; 0 where nobody said.
+        duration: seconds; 0 where it is not stated.
     """
 
     radius: float
@@ -100,7 +100,7 @@ def _circle(node: SourceNode, ring: Ring, draft: Draft, altitude: float) -> Circ
         altitude: of its centre, in metres.
 
     Raises:
-        ValueError: if a figure is no number, or the radius not above 0.
+        ValueError: if a figure is not a number, or the radius not above 0.
     """
     radius = number_in(draft.said(node, ring.radius) or "0")
     if not 0 < radius < inf:
@@ -127,7 +127,7 @@ def _rounds(circle: Circle, speeds: Speeds | None) -> tuple[int, float | None]:
 
 
 def _unknown(robot: bl.Robot, types: RobotTypes) -> str:
-    """Return how to mend that nothing tells the speeds of a robot."""
+    """Return how to provide the unknown speeds of a robot."""
     name = robot.typeName or ""
     how = types.how(name)
     return f"the speeds of robot type {name!r} are not known, so the robot goes round once at its own: {how}"
@@ -139,7 +139,7 @@ def _pace(rounds: int, speed: float | None, unknown: str) -> tuple[Category, str
     Args:
         rounds: that are flown.
         speed: at which; None: at the robot's own.
-        unknown: what to say where nothing tells how fast the robot's type is.
+        unknown: the message where the speed of the robot type is unknown.
     """
     times = "once" if rounds == 1 else f"{rounds} times"
     if speed is not None:

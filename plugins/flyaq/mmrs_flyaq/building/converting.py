@@ -30,7 +30,7 @@ def scaled(text: str, factor: float) -> str:
     """Return a number times a factor, as text.
 
     Raises:
-        ValueError: if the text is no number.
+        ValueError: if the text is not a number.
 
     >>> scaled("45", 60), scaled("0.5", 1.0)
     ('2700.0', '0.5')

@@ -1,4 +1,4 @@
-"""A model on its way from nodes to elements."""
+"""Elements that are being built, with the nodes that they are made of."""
 
 from __future__ import annotations
 

@@ -20,7 +20,7 @@ class Speeds:
     Attributes:
         slowest, fastest: that its type has.
         usual: by its travel mode.
-        acceleration: the largest, in metres per second squared; None where nobody knows.
+        acceleration: the largest, in metres per second squared; None where unknown.
     """
 
     slowest: float
@@ -56,7 +56,7 @@ class RobotTypes:
         self.beside = beside
 
     def resolved(self, name: str, otherwise: str) -> tuple[str, str]:
-        """Return the name of a type, and what has to be told about it: an empty text if nothing has.
+        """Return the name of a type, and what to report about it; empty if nothing.
 
         Args:
             otherwise: the type that stands in for one that is not known; empty: none does.
@@ -73,9 +73,9 @@ class RobotTypes:
         if otherwise in self.known:
             return (
                 otherwise,
-                f"{unknown}; {otherwise!r} stands in for it: say what it is by {option}",
+                f"{unknown}; {otherwise!r} stands in for it: state its type by {option}",
             )
-        return name, f"{unknown}: {self.how(name)}, or say what it is by {option}"
+        return name, f"{unknown}: {self.how(name)}, or state its type by {option}"
 
     def how(self, name: str) -> str:
         """Return how a robot type of a name becomes known."""

@@ -1,4 +1,4 @@
-"""Borders that bound no area as they are drawn, mended so that what they stand for does not go unnoticed."""
+"""Borders that bound no area as they are drawn, corrected so that no area is lost."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from math import cos, dist, radians
 from shapely.geometry import LinearRing, LineString, MultiPoint, Point, Polygon, box
 
 METRES_PER_DEGREE = 111_320.0
-"""Of latitude, on a sphere; good to half a per cent, which a widening does not notice."""
+"""Metres per degree of latitude on a sphere; good to half a per cent, which a widening does not notice."""
 THINNEST = 0.01
 """Metres that a border is wide on average, at least, to hold an area."""
 _NARROWEST = 1e-6
@@ -32,7 +32,7 @@ class Mended:
 
 
 def border_of(corners: tuple[Corner, ...], metres: float) -> Mended | None:
-    """Return a border that holds all corners of one that is no border of an area; None if it is one.
+    """Return a border around all corners of one that bounds no area; None if it bounds one.
 
     One that crosses or touches itself becomes the hull of its corners. Of one without an area, even in its
     hull, that hull is a point or a line, and the new border is drawn around it.
@@ -64,7 +64,7 @@ def _around(flat: list[tuple[float, float]], metres: float) -> Polygon:
 
 
 def _of_wide(corners: tuple[Corner, ...], flat: list[tuple[float, float]]) -> Mended | None:
-    """Return a border whose hull holds an area, mended if it crosses itself or leaves that area again."""
+    """Return a border whose hull holds an area, corrected if it crosses itself or leaves that area again."""
     drawn = Polygon(flat)
     if LinearRing(flat).is_simple and drawn.area > THINNEST * drawn.length / 2:
         return None

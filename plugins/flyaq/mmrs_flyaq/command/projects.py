@@ -55,7 +55,7 @@ def read_sources(
 
 
 def _mapping_for(files: Iterable[Path], registry: Registry) -> DialectMapping:
-    """Return the mapping of the first dialect that knows one of the files; else that of FLYAQ 2015."""
+    """Return the mapping of the first dialect that knows one of the files; by default that of FLYAQ 2015."""
     for file in files:
         with suppress(UnreadableError):  # that is told when it is migrated
             found = foreign_file(read_bytes(file), str(file), registry)

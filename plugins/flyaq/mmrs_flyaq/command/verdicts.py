@@ -24,7 +24,7 @@ _ROBOTS = "robots"
 
 @dataclass(frozen=True, slots=True)
 class Verdict:
-    """What there is to say of a folder, or of a behaviour.
+    """The validity of a folder or of a behaviour.
 
     Attributes:
         path: what ``mmrs validate`` is to be called with.
@@ -85,7 +85,7 @@ def _judged(subject: Subject) -> Verdict:
 
 
 def _missing(found: Diagnosis) -> Iterator[str]:
-    """Yield the names of the robot types that a behaviour names and nobody knows."""
+    """Yield the names of the robot types that a behaviour names and that are unknown."""
     known = {each.name for each in found.robots if isinstance(each, robot.Robot)}
     programs = _of((root for model in found.models for root in model.roots), behaviour.Behaviour)
     named = dict.fromkeys(each.typeName or "" for program in programs for each in program.robots)

@@ -65,4 +65,4 @@ class Classes:
         ]
         example = f"{feature.name}:{names[0]}" if names else f"{feature.name}:CLASS"
         known = ", ".join(dict.fromkeys(names))
-        return f"{kind.name} is abstract: say which class is made ({known}), as in {example}"
+        return f"{kind.name} is abstract: state a concrete class ({known}), as in {example}"

@@ -59,7 +59,7 @@ class Bearing:
     """Turn an angle clockwise from north into a heading to a place far away in that direction.
 
     Attributes:
-        base: ``self``: the place is seen from the coordinate that the angle stands in, and the heading is
+        base: ``self``: the position is seen from the coordinate that the angle stands in, and the heading is
             that of the element around it; ``home``: seen from the robot's home, for the element itself.
         distance: how far away, metres.
     """
@@ -173,7 +173,7 @@ class Rule:
 
     Attributes:
         source: ``package.Class``, with ``/variant`` behind it for a rule that others ask for by name.
-        to: (nsURI, name) of the new class; None where there is no element of its own.
+        to: (nsURI, name) of the new class; None where there is not an element of its own.
         drop: why it is not carried over.
         unreferred: why it is not carried over where nothing refers to it; empty: it is.
         merge: its features go into the element made of its container.

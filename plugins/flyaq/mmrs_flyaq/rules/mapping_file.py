@@ -30,8 +30,8 @@ def read_mapping(path: Path, registry: Registry) -> DialectMapping:
     """Return the mapping in a file.
 
     Raises:
-        UnreadableError: if it is no mapping, or leads to a class or feature that no installed language has;
-            says where.
+        UnreadableError: if it is not a mapping, or names a class or feature that no installed language has;
+            with the line.
     """
     return _read(path, lambda top: _mapping(top, registry))
 
@@ -40,7 +40,7 @@ def read_dialect(path: Path) -> DialectMapping:
     """Return the mapping in a file without its rules, which tells the files that it is for.
 
     Raises:
-        UnreadableError: if it is no mapping; says where.
+        UnreadableError: if it is not a mapping; with the line.
     """
     return _read(path, _without_rules)
 
@@ -59,7 +59,7 @@ def _read(path: Path, made_of: Callable[[Table], DialectMapping]) -> DialectMapp
         raise UnreadableError(f"{path}:{fault.line}: {fault}") from None
     top = Table(str(path), value)
     if not value.get("rules"):
-        raise top.fault("holds no rules, so it says of no class what becomes of it")
+        raise top.fault("contains no rules")
     try:
         return made_of(top)
     except UnreadableError as fault:

@@ -53,5 +53,5 @@ def _features(lines: Sequence[str], package: str, names: set[str], where: str) -
 def _known(name: str, package: str, names: set[str], where: str) -> str:
     full = name if "." in name else f"{package}.{name}"
     if full not in names:
-        raise ValueError(f"{where}: {name!r} is no declared class, nor one of {', '.join(ATTRIBUTES)}")
+        raise ValueError(f"{where}: {name!r} is not a declared class, nor one of {', '.join(ATTRIBUTES)}")
     return full

@@ -2,7 +2,7 @@
 
 ``speed.max`` is the feature ``max`` of what ``speed`` contains; ``batteries[1].voltage`` is that of the
 second battery; ``payload[key=note].value`` is that of the entry whose ``key`` is ``note``. What is missing
-on the way is made; ``home:GeoCoordinate.latitude`` says of which class it is.
+on the way is made; ``home:GeoCoordinate.latitude`` states its class.
 """
 
 from __future__ import annotations

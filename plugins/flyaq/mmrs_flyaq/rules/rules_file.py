@@ -109,7 +109,7 @@ def _ring(table: Table) -> Ring:
 def _with_inherited(
     rule: Rule, rules: Mapping[str, Rule], packages: Table, classes: Classes, structure: Structure
 ) -> Rule:
-    """Return a rule with what those of the supertypes say of further features."""
+    """Return a rule with the supertypes' rules for further features."""
     if rule.to is None:
         return rule
     metaclass, uses = classes.registry.metaclass(*rule.to), dict(rule.uses)

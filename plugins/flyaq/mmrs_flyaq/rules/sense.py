@@ -14,7 +14,7 @@ from mmrs_flyaq.sources.structure import Sort, SourceFeature, Structure
 WORD = re.compile(r"\{(\w+)\}")
 """What stands for a source feature in a text that a target gets."""
 NUMBER = "number"
-"""The word that stands for the place of an element among its siblings."""
+"""The word that stands for the position of an element among its siblings."""
 
 
 def nonsense(rules: Mapping[str, Rule], structure: Structure) -> Iterator[str]:
@@ -69,7 +69,7 @@ def _of_name(
 
 def _unknown(name: str, kind: str, known: set[str]) -> str:
     hint = nearest(name, sorted(known))
-    return f"{name!r} is no declared feature of {kind}{hint and '; ' + hint}"
+    return f"{name!r} is not a declared feature of {kind}{hint and '; ' + hint}"
 
 
 def _of_use(use: Use, feature: SourceFeature, kind: str, structure: Structure) -> Iterator[str]:

@@ -10,7 +10,7 @@ from typing import Any
 
 _HEADER = re.compile(r"\s*(\[[^\[\]]+\])\s*(#.*)?")
 _TRANSPARENT = "features"
-"""The table that messages leave out: what is in it, they tell of the class."""
+"""The table that messages leave out: messages about its content name the class."""
 
 
 LONGEST_LINE = 4_000
@@ -43,7 +43,7 @@ def parsed(text: str) -> dict[str, Any]:
 
     Raises:
         TooMuchError: if a line is longer, nests deeper or has longer numbers or keys than any mapping's.
-        tomllib.TOMLDecodeError: if it is no TOML.
+        tomllib.TOMLDecodeError: if it is not TOML.
     """
     deep = 0
     for number, line in enumerate(text.split("\n"), 1):
@@ -62,7 +62,7 @@ def parsed(text: str) -> dict[str, Any]:
 def line_of(text: str, *ways: Sequence[str]) -> int:
     r"""Return the line, from 1, of the deepest of nested keys that is found; 0 if not even the first is.
 
-    Lines inside texts of several lines may be taken for keys; nobody writes such texts in mappings.
+    Lines inside texts of several lines may be taken for keys; mappings contain no such texts.
 
     Args:
         ways: the keys from the root; several, where it is not known which of their dots divide keys.
@@ -111,6 +111,6 @@ def _keys(line: str) -> list[str]:
 
 
 def _shared(path: Sequence[str], keys: Sequence[str]) -> int:
-    """Return how many keys a path has in common with others, if it leads to one of them; else 0."""
+    """Return how many keys a path has in common with others, if it leads to one of them; otherwise 0."""
     same = len(path) <= len(keys) and all(one == other for one, other in zip(path, keys, strict=False))
     return len(path) if same else 0

@@ -1,4 +1,4 @@
-"""Tables of a TOML file, taken apart key by key so that a misspelt or ill-typed one is told."""
+"""Tables of a TOML file, taken apart key by key so that misspelt and ill-typed keys are reported."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ Value = TypeVar("Value")
 
 
 class Table:
-    """A table whose keys are taken one after the other; those that nobody takes are faults.
+    """A table whose keys are taken one after the other; those left over are errors.
 
     Attributes:
         where: file and dotted key, for messages.
@@ -86,7 +86,7 @@ class Table:
             raise self.fault(f"{key}: no such key here{hint and '; ' + hint}")
 
     def fault(self, message: str) -> UnreadableError:
-        """Return an error that says where."""
+        """Return an error with its position in the file."""
         return UnreadableError(f"{self.where}: {message}")
 
 

@@ -1,4 +1,4 @@
-"""Reads what a mapping file says of a feature: where its values go, and how they change on the way."""
+"""Reads the rules for a feature in a mapping file: the targets and conversions of its values."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ def read_use(table: Table, metaclass: Metaclass | None, classes: Classes) -> Use
 
 
 def for_class(use: Use, metaclass: Metaclass, classes: Classes) -> Use:
-    """Return what a supertype's rule says of a feature, for elements of another class.
+    """Return a supertype's rule for a feature, adapted to elements of another class.
 
     Raises:
         ValueError: if a path leads nowhere from there.
@@ -78,7 +78,7 @@ def read_paths(
     """Return the paths under a key, which lead somewhere from a class; none where the key is missing.
 
     Raises:
-        UnreadableError: if one is no path, or leads nowhere.
+        UnreadableError: if one is not a path, or leads nowhere.
     """
     return tuple(_path(text, table, metaclass, classes, hoisted) for text in table.texts(key))
 

@@ -43,4 +43,4 @@ def misfit(feature: Feature, value: Constant) -> str:
 def no_literal(text: str, of: str, literals: list[str]) -> str:
     """Return the message for a text that is none of an enumeration's literals."""
     hint = nearest(text, literals)
-    return f"{text!r} is no literal of {of} ({', '.join(literals)}){hint and '; ' + hint}"
+    return f"{text!r} is not a literal of {of} ({', '.join(literals)}){hint and '; ' + hint}"

@@ -43,7 +43,7 @@ class Opened:
     Attributes:
         what: what it is called: "a model", "a metamodel", or as the mapping says.
         document: its elements; None where there is nothing to migrate.
-        form: as which it was recognised; None where its elements say what it is.
+        form: as which it was recognised; None where its elements state their classes.
     """
 
     file: str
@@ -67,7 +67,7 @@ def open_text(data: bytes, file: str, known: Iterable[KnownDocument]) -> Opened:
     if start in ("{", "["):
         return _json(Tree(data, file), known)
     if start != "<":
-        reason = "no model: its root is no object and no list" if is_json(file) else "neither XML nor JSON"
+        reason = "its root is neither an object nor a list" if is_json(file) else "neither XML nor JSON"
         raise UnreadableError(f"{file}:1: {reason}")
     document = parse_xmi(data, file)
     claims = [root.claim for root in document.roots]
@@ -78,7 +78,7 @@ def open_text(data: bytes, file: str, known: Iterable[KnownDocument]) -> Opened:
 
 
 def first_letter(data: bytes) -> str:
-    """Return the first letter that is no blank, whichever Unicode encoding the text is in."""
+    """Return the first letter that is not a blank, whichever Unicode encoding the text is in."""
     letters = data[:4096].translate(None, b"\0").removeprefix(BOM_UTF8)
     for mark in (BOM_UTF16_LE, BOM_UTF16_BE):
         letters = letters.removeprefix(mark)
@@ -97,7 +97,7 @@ def _json(tree: Tree, known: Iterable[KnownDocument]) -> Opened:
             return Opened(tree.file, f"{form.name}: nothing to migrate", None, form)
     if isinstance(top, Object) and text_in(top, "nsURI"):
         return Opened(tree.file, f"a metamodel, {text_in(top, 'nsURI')}: nothing to migrate")
-    message = f"no model: the root names no class by {CLASS!r}, and no list that the mapping knows is like it"
+    message = f"not a model: the root has no {CLASS!r}, and is not a list that the mapping knows"
     raise UnreadableError(f"{tree.file}: {message}")
 
 

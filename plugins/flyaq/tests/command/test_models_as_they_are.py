@@ -63,7 +63,7 @@ def test_validate_takes_each_file_by_itself(mmrs, orchard, name):
 def test_quiet_migration_counts_what_was_lost_and_lists_nothing(mmrs, orchard):
     _, _, err = mmrs("validate", orchard / "robots" / "Heron.xmi", QUIET)
     file = orchard / "robots" / "Heron.xmi"
-    words = "values not carried over: 2; without --quiet-migration, each is told [MIG006]"
+    words = "values not carried over: 2; --quiet-migration hides the list [MIG006]"
     assert err.splitlines() == [f"{file}:2: warning: {words}"]
 
 

@@ -37,7 +37,7 @@ def test_a_behaviour_is_no_list_although_it_holds_drones(what, flyaq):
 
 @pytest.mark.parametrize("text", ["3", '"x"', "null", " true"])
 def test_json_that_is_no_model_is_told_so(what, written, text):
-    with pytest.raises(UnreadableError, match=r"x\.json:1: no model: its root is no object"):
+    with pytest.raises(UnreadableError, match=r"x\.json:1: its root is neither an object"):
         what(written("x.json", text))
 
 

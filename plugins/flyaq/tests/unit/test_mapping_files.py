@@ -69,7 +69,7 @@ def test_a_mapping_is_read(read):
             "needs base = 'self' or 'home'",
         ),
         ("[rules.port.Hull]", "[rules.port.Hulk]", "port.Hulk is not among the declared classes"),
-        ('"length: number"', '"length: metre"', "port.Hull: length: 'metre' is no declared class"),
+        ('"length: number"', '"length: metre"', "port.Hull: length: 'metre' is not a declared class"),
         ("urn:mmrs:robot:1.0", "urn:mmrs:robots", "languages: robot: urn:mmrs:robots is not installed"),
         ("[languages]", "[languages", "not TOML"),
         ("port.uris", "harbour.uris", "packages: port: needs 'uris' or 'files'"),
@@ -87,7 +87,7 @@ def test_a_mapping_is_read(read):
         (
             'title = "name"',
             'colour = { to = "name", values = { REED = "red" } }',
-            "port: Hull: colour: values: 'REED' is no literal of colour (RED, BLUE); did you mean RED?",
+            "port: Hull: colour: values: 'REED' is not a literal of colour (RED, BLUE); did you mean RED?",
         ),
         (
             'title = "name"',
@@ -117,7 +117,7 @@ FLYAQ = FLYAQ_2015.read_text(encoding="utf-8")
         (
             'set.altitudeReference = "ORIGIN"',
             'set.altitudeReference = "MOON"',
-            "set: altitudeReference: 'MOON' is no literal of AltitudeReference (ELLIPSOID, MSL, ORIGIN)",
+            "set: altitudeReference: 'MOON' is not a literal of AltitudeReference (ELLIPSOID, MSL, ORIGIN)",
         ),
         ('set.altitudeReference = "ORIGIN"', 'set.reserve = "x"', "set: reserve: 'x': not a"),
         (
@@ -127,16 +127,28 @@ FLYAQ = FLYAQ_2015.read_text(encoding="utf-8")
         ),
         ('set.altitudeReference = "ORIGIN"', 'set.team = "x"', "set: team: 'x': team holds elements"),
         ("absent = 50.0", 'absent = "four"', "gridResolution: absent: 'four': not a"),
-        ('absent = "NORMAL"', 'absent = "NORMALLY"', "absent: 'NORMALLY' is no literal of GoToType"),
-        ('absent = "{type}_{number}"', 'absent = "{nope}_{number}"', "absent: 'nope' is no declared feature"),
+        ('absent = "NORMAL"', 'absent = "NORMALLY"', "absent: 'NORMALLY' is not a literal of GoToType"),
+        (
+            'absent = "{type}_{number}"',
+            'absent = "{nope}_{number}"',
+            "absent: 'nope' is not a declared feature",
+        ),
         ('hoist = "targets"', 'hoist = "nowhere"', "home: hoist: 'nowhere': no class that a rule leads to"),
         ('radius = "radius"', 'radius = "name"', "Circle: ring: radius: name holds no number"),
-        ('clockwise = "clockwise"', 'clockwise = "way"', "ring: clockwise: 'way' is no declared feature"),
+        ('clockwise = "clockwise"', 'clockwise = "way"', "ring: clockwise: 'way' is not a declared feature"),
         ('below = "maxHeight"', 'below = "name"', "minHeight: below: name holds no number"),
-        ('below = "maxHeight"', 'below = "greatest"', "below: 'greatest' is no declared feature"),
-        ('given = "maxPayload"', 'given = "payload"', "given: 'payload' is no declared feature of drone.Fl"),
-        ('given = ["maxPayload",', 'given = ["payload",', "also: given: 'payload' is no declared feature"),
-        ('radius = { with = "targetPosition"', 'radius = { with = "x"', "radius: with: 'x' is no declared"),
+        ('below = "maxHeight"', 'below = "greatest"', "below: 'greatest' is not a declared feature"),
+        (
+            'given = "maxPayload"',
+            'given = "payload"',
+            "given: 'payload' is not a declared feature of drone.Fl",
+        ),
+        ('given = ["maxPayload",', 'given = ["payload",', "also: given: 'payload' is not a declared feature"),
+        (
+            'radius = { with = "targetPosition"',
+            'radius = { with = "x"',
+            "radius: with: 'x' is not a declared",
+        ),
         ('of = "receiver"', 'of = "name"', "slot: counterpart: of: name is no reference"),
         ('within = "slots"', 'within = "boxes"', "counterpart: within: 'boxes': no class that a rule"),
         ('action = "actionName"', 'action = "parameters"', "device: action: parameters is no attribute"),
@@ -144,7 +156,7 @@ FLYAQ = FLYAQ_2015.read_text(encoding="utf-8")
         ('wait = { slot = "slot"', 'wait = { slot = "name"', "wait: slot: name is no reference"),
         ('add = "waitFor"', 'add = "waits"', "wait: add: 'waits': no transition has such a"),
         ('add = "waitFor"', 'add = "slots"', "wait: add: 'slots': no transition has such a reference"),
-        ("at = { preActions", "at = { beforehand", "wait: at: 'beforehand' is no declared feature of any"),
+        ("at = { preActions", "at = { beforehand", "wait: at: 'beforehand' is not a declared feature of any"),
         ('as = "home"', 'as = "house"', "home: as: no rule has the variant 'house'"),
         ('first_of = "shell"', 'first_of = "name"', "initialPosition: first_of: name is no contained"),
         ("widen = 1.0", "widen = -1.0", "shell: widen: expected metres, not -1"),
@@ -159,7 +171,11 @@ FLYAQ = FLYAQ_2015.read_text(encoding="utf-8")
             "distinct: means nothing for name",
         ),
         ('giro = { to = "gyro"', 'giro = { to = "gps"', "gps: to: gps takes one value only, and giro goes"),
-        ('crs = { to = "crs"', 'crs = { to = "altitudeReference"', "absent: 'wgs84' is no literal of Alti"),
+        (
+            'crs = { to = "crs"',
+            'crs = { to = "altitudeReference"',
+            "absent: 'wgs84' is not a literal of Alti",
+        ),
         ('tasks = "tasks"', 'tasks = "crs"', "tasks: to: crs holds values, and tasks holds elements"),
         ('name = "name"', 'name = "team"', "name: to: team holds elements, and name is an attribute"),
         ('from = "from"', 'from = "name"', "from: to: name holds values, and from holds elements"),
@@ -225,7 +241,7 @@ def test_a_form_of_document_needs_something_to_be_recognised_by(read):
 
 @pytest.mark.parametrize("text", ["", 'name = "Port"\n'])
 def test_a_mapping_without_rules_is_none(read, text):
-    with pytest.raises(UnreadableError, match="holds no rules"):
+    with pytest.raises(UnreadableError, match="contains no rules"):
         read(text)
 
 

@@ -20,7 +20,7 @@ SCHEMA = (
     'xmlns:xsi="http://www.w3.org/2001/XMLSchema-instance" xsi:schemaLocation="http://www.flyaq.it/drone {}"'
 )
 UNKNOWN = "LOST: the metamodel has no such feature: colour white of Drone 'Tern'"
-UNMAPPED = "LOST: the mapping does not say what becomes of this feature: colour white of Drone 'Tern'"
+UNMAPPED = "LOST: the mapping has no rule for this feature: colour white of Drone 'Tern'"
 
 
 @pytest.fixture
@@ -57,9 +57,7 @@ def test_a_metamodel_is_found_beside_a_model_whose_workspace_was_moved(flyaq, mi
     folder = shutil.copytree(flyaq / "workspace", tmp_path / "flat")
     found = migrated(folder / "Finch.xmi")
     assert found.sources[0].metamodels == {"drone": folder / "drone.ecore"}
-    assert told(
-        found, "LOST: the mapping does not say what becomes of this feature: hull Hull (colour green)"
-    )
+    assert told(found, "LOST: the mapping has no rule for this feature: hull Hull (colour green)")
 
 
 def test_of_two_metamodels_that_of_the_same_spelling_is_taken(colour, written):

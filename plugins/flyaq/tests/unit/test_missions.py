@@ -139,7 +139,7 @@ def test_an_obstacle_without_an_area_is_drawn_around_its_vertices(orchard, conte
     assert (north - 46.004) * 111_320 == pytest.approx(1.0, abs=0.01)
     assert told(
         orchard,
-        "so one is drawn 1 m around its vertices: draw it anew: shell (46.004, 11.004)",
+        "so one is drawn 1 m around its vertices: draw it again: shell (46.004, 11.004)",
     )
 
 

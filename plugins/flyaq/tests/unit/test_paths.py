@@ -79,7 +79,7 @@ def test_what_is_no_path_is_refused(path, text):
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        ("home.latitude", "Coordinate is abstract: say which class is made"),
+        ("home.latitude", "Coordinate is abstract: state a concrete class"),
         ("home.latitude", r"\(GeoCoordinate, RelativeCoordinate\), as in home:GeoCoordinate"),
         ("home:Coordinate.latitude", "Coordinate is abstract"),
         ("home:Team.latitude", "Team is no Coordinate, which home takes"),

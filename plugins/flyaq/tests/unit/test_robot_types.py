@@ -146,4 +146,4 @@ def test_the_same_file_gives_the_same_bytes(migrated, flyaq, registry):
 
 def test_the_option_for_an_unknown_type_can_be_pasted_into_a_shell():
     _, told = RobotTypes({}, {}).resolved("Bot X", "")
-    assert told.endswith("say what it is by --type 'Bot X=NAME'")
+    assert told.endswith("state its type by --type 'Bot X=NAME'")
