@@ -54,11 +54,11 @@ class MavlinkDriver(Driver):
     _outfit: DriverInput
 
     def __init__(self) -> None:
-        """Speak to nobody yet."""
+        """Create without connections."""
         self._radios: Radios | None = None
 
     def add_options(self, parser: ArgumentParser) -> None:
-        """Add those of links, and of what a vehicle is told."""
+        """Add the options of links and of commands to vehicles."""
         add_reach(parser)
 
     def settle(
@@ -83,7 +83,7 @@ class MavlinkDriver(Driver):
         self._radios = Radios(outfit.options.clock, reach.signer, reach.retries, wrap)
 
     def connect(self, robot: words.Robot, live: Live, box: BlackBox) -> ThreadedVehicle:
-        """Return a robot's vehicle, which need not have been heard yet.
+        """Return a robot's vehicle, possibly before its first message.
 
         Raises:
             Fault: its port cannot be opened.
@@ -128,7 +128,7 @@ class MavlinkDriver(Driver):
 
 
 def _from(home: Place) -> Callable[[Place], Position]:
-    """Return what tells where a place is from home: metres east and north of it, and its height."""
+    """Return the function from a position to metres east and north of home, and its height."""
 
     def position(place: Place) -> Position:
         north, east, _ = offset(home, place)

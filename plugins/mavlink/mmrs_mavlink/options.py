@@ -1,4 +1,4 @@
-"""What the command line says of vehicles that speak MAVLink: how they are reached, and what is near."""
+"""The command line of vehicles that speak MAVLink: how they are reached, and the acceptance radius."""
 
 from __future__ import annotations
 
@@ -61,11 +61,9 @@ def add_reach(parser: argparse.ArgumentParser) -> None:
     add("--tries", type=count, default=TRIES, help="how often to send at most what a vehicle does not answer")
     add("--answer-seconds", type=positive, default=ANSWER_SECONDS, help="to wait for an answer each time")
     add("--item-seconds", type=positive, default=ITEM_SECONDS, help="to wait for an item of a mission")
-    add("--signing-key", type=Path, metavar="FILE", help="sign what is sent, and hear only what is signed so")
+    add("--signing-key", type=Path, metavar="FILE", help="sign all messages, and accept only signed ones")
     add("--no-fence", action="store_true", help="do not upload the fence")
-    add(
-        "--acceptance", type=positive, help="metres from a place that count as there; else by the travel mode"
-    )
+    add("--acceptance", type=positive, help="acceptance radius in metres; default: by the travel mode")
 
 
 def reach_of(parser: argparse.ArgumentParser, robots: Sequence[Robot], given: Any) -> Reach:

@@ -40,11 +40,11 @@ Movement: TypeAlias = Start | Stop | TakeOff | Land | GoTo | Hold | Recharge | T
 
 @dataclass(frozen=True, slots=True)
 class Operate:
-    """Have a device do something: a MAVLink command with its parameters, and how long it takes.
+    """A device action: a MAVLink command with its parameters, and its duration.
 
     Attributes:
         more: further commands with their parameters, which follow at once.
-        confirmed: whether the vehicle promises to tell each image that it takes (CAMERA_IMAGE_CAPTURED
+        confirmed: whether the vehicle reports each image that it takes (CAMERA_IMAGE_CAPTURED
             or CAMERA_FEEDBACK), so that silence is a fault.
     """
 
@@ -102,17 +102,17 @@ class Travel:
 
 @dataclass(frozen=True)
 class Robot(words.Robot):
-    """One robot whose vehicle speaks MAVLink (``copter``, ``sub`` or ``rover``), and all that it does.
+    """One robot whose vehicle speaks MAVLink (``copter``, ``sub`` or ``rover``), and all its moves.
 
     Attributes:
-        endurance: seconds that a full battery lasts at the type's mean power; None where nobody knows.
-        fastest: metres per second that its type can do through air or water; None where nobody knows.
-        descent: metres per second at which it comes down; None where nobody knows.
-        fence: polygons to stay out of; rally: places to go to in an emergency.
-        tight: what people must know of these.
-        straight: whether the vehicle may fly straight to the nearest rally point from anywhere on its way.
+        endurance: seconds that a full battery lasts at the type's mean power; None where unknown.
+        fastest: its type's largest speed through air or water, metres per second; None where unknown.
+        descent: speed of its descent, metres per second; None where unknown.
+        fence: polygons to stay out of; rally: emergency positions.
+        tight: what operators must know of these.
+        straight: whether the vehicle may fly straight to the nearest rally point from anywhere on its path.
         neighbours: homes of the others whose vehicles might be taken for this robot's, by robot.
-        travel: how carefully it travels.
+        travel: travel mode.
     """
 
     endurance: float | None = field(default=None, kw_only=True)

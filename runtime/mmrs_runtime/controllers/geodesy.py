@@ -53,11 +53,12 @@ def bearing(a: Place, b: Place) -> float:
 def between(a: Place, b: Place, part: float) -> Place:
     """Return the position at a fraction of the straight line, 0 at `a` and 1 at `b`."""
     if isinstance(a, Geographic) and isinstance(b, Geographic):
-        return Geographic(
-            a.latitude + (b.latitude - a.latitude) * part,
-            wrapped(a.longitude + wrapped(b.longitude - a.longitude) * part),
-            a.height + (b.height - a.height) * part,
-        )
+        latitude = a.latitude + (b.latitude - a.latitude) * part
+        # Meridians converge: a degree of the part's longitude is as long as at the part's middle.
+        _, whole = metres_per_degree((a.latitude + b.latitude) / 2.0)
+        _, partial = metres_per_degree((a.latitude + latitude) / 2.0)
+        longitude = wrapped(a.longitude + wrapped(b.longitude - a.longitude) * part * whole / partial)
+        return Geographic(latitude, longitude, a.height + (b.height - a.height) * part)
     north, east, up = offset(a, b)
     assert isinstance(a, Local)
     return Local(a.north + north * part, a.east + east * part, a.height + up * part)

@@ -79,5 +79,5 @@ def test_a_robot_that_does_not_know_its_battery_says_so_and_charges_as_long_as_e
     code, said = made.run("fleet.py", *links)
     assert code == 0, said
     assert said.count("does not tell its battery") == 1
-    assert "charging: charged for 20 s; nobody knows how far" in said
+    assert "charging: charged for 20 s; its range is unknown" in said
     assert take_offs(vehicles["alpha"]) == 2

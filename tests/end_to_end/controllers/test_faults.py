@@ -333,7 +333,7 @@ def test_a_vehicle_that_somebody_else_has_is_told_nothing(controllers, hangar, a
     parameters = dict(foreign.parameters)
     code, said = made.run("fleet.py", *links)
     assert code == 1
-    assert "does not get ready: the vehicle's motors run already: somebody else has it" in said
+    assert "does not get ready: the vehicle is armed already: it is under external control" in said
     assert (foreign.armed, foreign.stores[0]) == (True, [])
     assert foreign.parameters == parameters
 

@@ -24,7 +24,7 @@ STATION = mavlink.MAVLink_heartbeat_message(mavlink.MAV_TYPE_GCS, mavlink.MAV_AU
 
 @pytest.fixture
 def looking():
-    """Return the socket of a ground station, which is no robot's."""
+    """Return the socket of a ground station, which is not a robot's."""
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as station:
         station.bind(("127.0.0.1", 0))
         station.settimeout(0.1)

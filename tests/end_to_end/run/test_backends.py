@@ -165,4 +165,4 @@ def test_a_vehicle_that_starts_anew_on_its_way_is_told_of_where_the_robot_was_to
         until(lambda: driven.fault == "VEHICLE_RESTARTED")
         found = driven.backend.trouble
         assert found.instead == "HOLD"
-        assert "with its motors off: nothing can be carried on" in found.reason
+        assert "disarmed: its program cannot be continued" in found.reason

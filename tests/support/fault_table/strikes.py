@@ -43,7 +43,7 @@ def stick_and_battery(vehicle: SimulatedVehicle) -> None:
 
 
 def barely(vehicle: SimulatedVehicle) -> None:
-    """Leave a little more than the reserve, but not what the way back takes beside it."""
+    """Leave a little more than the reserve, but not what the return path takes beside it."""
     vehicle.faults.begin("battery", 0.215)
 
 

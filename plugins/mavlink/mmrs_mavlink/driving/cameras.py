@@ -1,4 +1,4 @@
-"""Cameras that go on by themselves, and have to be told so again after a break."""
+"""Cameras that continue on their own, and need their commands again after a break."""
 
 from __future__ import annotations
 
@@ -10,14 +10,14 @@ from ..program import Operate, Robot
 from ..vehicles.vehicle import Vehicle
 
 STATES = {206: 206, 2500: 2500, 2501: 2500}
-"""Commands after which a camera goes on by itself, and which of them concern the same."""
+"""Commands after which a camera continues on its own, and which of them concern the same function."""
 
 
 class Cameras:
-    """Knows what each camera was told last that it goes on with by itself."""
+    """Keeps the last continuous command of each camera."""
 
     def __init__(self, robot: Robot, records: Iterable[StepRecord]) -> None:
-        """Know what the steps of a robot's log tell."""
+        """Create from the steps of a robot's log."""
         self._last: dict[tuple[str, int], Operate] = {}
         moves = robot.executable.by_id
         for record in records:
@@ -30,7 +30,7 @@ class Cameras:
             self._last[action.device, STATES[action.command]] = action
 
     def restore(self, vehicle: Vehicle) -> None:
-        """Tell all cameras what they were told last.
+        """Send all cameras their last continuous commands again.
 
         Raises:
             Fault: one does not accept it.

@@ -25,7 +25,7 @@ class Guard:
     """What every wait of a vehicle calls; it raises what is to end the wait."""
 
     def __init__(self) -> None:
-        """Raise nothing until somebody sets `check`."""
+        """Raise nothing until `check` is set."""
         self.check: Callable[[], None] = lambda: None
 
     def __call__(self) -> None:
@@ -38,8 +38,8 @@ class Radio:
     """How a vehicle that speaks MAVLink is reached.
 
     Attributes:
-        patience: seconds of the run to wait for its first sign.
-        system: of the vehicle when the run began; 0: nobody knows.
+        patience: seconds of the run to wait for its first message.
+        system: of the vehicle when the run began; 0: unknown.
     """
 
     url: str
@@ -52,20 +52,20 @@ class Radio:
 
 @dataclass(frozen=True, slots=True)
 class Equipment:
-    """What a robot is driven with.
+    """What a robot's driver works with.
 
     Attributes:
         guard: that the vehicle calls in its waits.
         radio: None where the vehicle is reached otherwise, or there is none.
         position: of a place: east, north, up.
-        joules: that its batteries hold when full; None where nobody says.
-        locators: what finds objects, by description.
+        joules: capacity of its batteries; None where unknown.
+        locators: find objects, by description.
         box: None where no logs are kept.
         home_tolerance: metres that a vehicle may be from where it is to stand.
         fence: whether forbidden areas are uploaded.
         dry: whether there is no vehicle.
         records: the steps that it made before; the vehicle may be in the air then.
-        start: to be called once the robot gets ready, for faults that are made on purpose.
+        start: to be called once the robot gets ready, for injected faults.
         let_go: to be called before the link is closed.
     """
 

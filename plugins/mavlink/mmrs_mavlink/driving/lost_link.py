@@ -1,4 +1,4 @@
-"""What a vehicle is told to do by itself when it is not heard of, or hears nobody."""
+"""The vehicle's own failsafe for a lost link: to the robot's program, or to the ground."""
 
 from __future__ import annotations
 
@@ -19,12 +19,12 @@ class LostLink:
     """
 
     def __init__(self, robot: Robot, vehicle: Vehicle, say: Callable[[str], None]) -> None:
-        """Begin with the robot's own policies; the vehicle is told nothing yet.
+        """Create from the robot's own policies; nothing is sent to the vehicle yet.
 
         Args:
             robot: whose policies count.
             vehicle: of the robot.
-            say: tells people where the vehicle cannot do by itself what the policies want.
+            say: reports where the vehicle's failsafes cannot do what the policies ask for.
         """
         self.policies: Sequence[Policy] = ()
         self._robot, self._vehicle, self._say = robot, vehicle, say
@@ -32,7 +32,7 @@ class LostLink:
 
     @property
     def is_due(self) -> bool:
-        """Return whether the vehicle must be told something else than it was told before."""
+        """Return whether the vehicle's failsafe must be set differently from before."""
         return self._told is not None and self._told != self._wanted
 
     def follow(self, policies: Sequence[Policy]) -> None:
@@ -40,10 +40,10 @@ class LostLink:
         self.policies = policies
 
     def tell(self) -> None:
-        """Tell the vehicle what counts now, also one that was told before, and has forgotten it.
+        """Set the vehicle's failsafe, also where it was set before and lost.
 
         Raises:
-            Refused: it cannot respond so, or does not say that it will.
+            Refused: it cannot respond so, or does not confirm that it will.
         """
         wanted = self._wanted
         possible = alone(wanted, self._robot)
@@ -53,10 +53,10 @@ class LostLink:
         self._told = wanted
 
     def tell_what_is_due(self) -> None:
-        """Tell the vehicle what counts now, unless it was told that last.
+        """Set the vehicle's failsafe, unless it was set so last.
 
         Raises:
-            Refused: it cannot respond so, or does not say that it will.
+            Refused: it cannot respond so, or does not confirm that it will.
         """
         if self.is_due:
             self.tell()

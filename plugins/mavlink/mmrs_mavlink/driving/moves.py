@@ -101,7 +101,7 @@ class Moves:
         return Job(self._vehicle.finish) if isinstance(movement, Stop) else Job()
 
     def run(self, flight: Flight, passed: Callable[[str], None]) -> Job:
-        """Return the flying of an uploaded run; `passed` is told every move of it but the last."""
+        """Return the flight of an uploaded run; `passed` is called with every move of it but the last."""
         return Job(_Flight(self, flight, passed))
 
     def action(self, action: Action) -> Job:
@@ -113,7 +113,7 @@ class Moves:
         if isinstance(action, Report):
             return Job(lambda: self._report(action))
         if isinstance(action, NoEffect):
-            return Job(lambda: self._told("text", action.name, {"text": f"no way to do it: {action.why}"}))
+            return Job(lambda: self._told("text", action.name, {"text": f"not supported: {action.why}"}))
         return Job()
 
     def kind(self, move: str) -> type[object]:
@@ -121,7 +121,7 @@ class Moves:
         return type(self._steps[move].movement)
 
     def above_home(self, height: float) -> Place:
-        """Return the place at that height above home."""
+        """Return the position at that height above home."""
         return at_height(self._home, height)
 
     def _pass(self, move: str, place: Place) -> None:
@@ -129,15 +129,15 @@ class Moves:
         self._passed(place)
 
     def target_of(self, movement: GoTo) -> Place:
-        """Return where a movement led to, or leads to, without the distance that it keeps.
+        """Return the target of a movement, without the distance that it keeps.
 
         Raises:
-            Fault: it leads to an object, and nobody finds it.
+            Fault: it leads to an object that cannot be found.
         """
         return self._found.get(movement) or self._find(movement)
 
     def knows(self, move: str) -> bool:
-        """Return whether nobody need look for an object to say where a move leads to."""
+        """Return whether the target of a move is known without looking for an object."""
         movement = self._steps[move].movement
         is_sought = isinstance(movement, GoTo) and isinstance(movement.at, Object)
         return not is_sought or movement in self._found
@@ -181,7 +181,7 @@ class Moves:
         self._vehicle.fly(flight.first, flight.last, reached)
 
     def note(self, move: str) -> None:
-        """Remember that the place was passed where a move of a run ends."""
+        """Record that the position at the end of a run's move was passed."""
         movement = self._steps[move].movement
         assert isinstance(movement, GoTo)
         self._pass(move, place_of(movement.at, {}, self._vehicle.state()))
@@ -217,7 +217,7 @@ class Moves:
         return go
 
     def _operate(self, action: Operate) -> None:
-        """Have a device do something; one that does not answer is asked for as long as policies bear it."""
+        """Carry out a device action; a silent device is asked for as long as policies tolerate it."""
         begun = self._clock.now()
         while True:
             try:
@@ -275,7 +275,7 @@ class Moves:
                     raise Fault(BATTERY_LOW, why)
                 self._vehicle.rest(min(5.0, seconds or 5.0))
             if left is None:
-                self._told("text", "charging", {"text": f"charged for {seconds:.0f} s; nobody knows how far"})
+                self._told("text", "charging", {"text": f"charged for {seconds:.0f} s; its range is unknown"})
 
         return Job(finish, self._rest(seconds), top_up)
 

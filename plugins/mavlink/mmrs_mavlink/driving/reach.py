@@ -1,4 +1,4 @@
-"""Whether a vehicle is heard, and for how long one that is not is listened to."""
+"""Whether a vehicle's messages arrive, and how long to wait for one that is silent."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 class Reach:
-    """Knows how long ago a vehicle was heard."""
+    """Measures how long ago a vehicle was last received."""
 
     def __init__(self, link: Link | None, clock: Clock) -> None:
         """Listen to the vehicle at the end of a link; None: it is reached otherwise."""
@@ -24,16 +24,16 @@ class Reach:
 
     @property
     def is_heard(self) -> bool:
-        """Return whether it was heard lately; one without a link always is."""
+        """Return whether a message arrived lately; one without a link is always reachable."""
         return self._link is None or is_heard(self._link)
 
     @property
     def is_heard_again(self) -> bool:
-        """Return whether it was heard lately over a link that can be lost."""
+        """Return whether a message arrived lately over a link that can be lost."""
         return self._link is not None and is_heard(self._link)
 
     def may_come_back(self, lost: Fault) -> bool:
-        """Return whether it may still be heard again, for some time after a link was lost or last heard."""
+        """Return whether the link may still be restored, for some time after it was lost or last received."""
         if self._link is None:
             return False
         now = self._clock.now()

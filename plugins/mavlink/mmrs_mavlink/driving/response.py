@@ -16,17 +16,17 @@ from ..vehicles.vehicle import Vehicle
 from .moves import Moves
 from .worker import Interrupted, Job
 
-KEPT_UP = "hands off until its motors are off; it still hears heartbeats, so end this later"
+KEPT_UP = "hands off until it is disarmed; it still receives heartbeats, so end this later"
 
 
 class Response:
-    """Has a vehicle respond, from any state.
+    """Carries out responses with a vehicle, from any state.
 
     Attributes:
-        name: of the response that it was told last; empty: it follows its program.
-        holds: whether it stays where it is with its motors running, so that somebody must watch it.
-        hands_off: whether somebody else has it.
-        failed: is told what comes out of code that is wrong, or somebody else's.
+        name: of the last commanded response; empty: it follows its program.
+        holds: whether it holds position while armed, so that an operator must watch it.
+        hands_off: whether the vehicle is under external control.
+        failed: called with exceptions of faulty or foreign code.
     """
 
     def __init__(
@@ -50,13 +50,13 @@ class Response:
         self.failed: Callable[[BaseException], None] = lambda error: None
 
     def begin(self, name: str, found: Fault | None, decide: Decide, *, heard: bool) -> Job | None:
-        """Return what is to be done about a fault; None where the vehicle cannot be told anything.
+        """Return the response to a fault; None where the vehicle cannot be commanded.
 
         Args:
             name: of the response, a literal of PolicyResponse or NOTHING.
-            found: None where somebody has ordered it.
-            decide: is told what is done instead.
-            heard: whether a vehicle whose link was lost is heard again.
+            found: None for an order.
+            decide: called with the response that replaces it.
+            heard: whether the link was lost and is restored.
         """
         self.name, self.holds, self._instead, self._shown = name, False, "", lambda: False
         self._decide = decide
@@ -74,13 +74,13 @@ class Response:
         return Job(lambda: self._carry_out(name, event))
 
     def forget(self) -> None:
-        """Be ready for whatever goes wrong next: the program goes on."""
+        """Prepare for the next fault: the program continues."""
         self.name = ""
         self._handled.clear()
 
     @property
     def is_shown(self) -> bool:
-        """Return whether the vehicle was seen to do it since it was told."""
+        """Return whether the vehicle was seen to do it since it was commanded."""
         return self._shown()
 
     @property
@@ -100,11 +100,11 @@ class Response:
         self._watch.moving = self.holds
 
     def _respond(self, name: str, *, low: bool) -> bool:
-        """Do what was told, or what is plainer, or, where the program itself fails, halt.
+        """Carry out the response, a simpler one, or, where the program itself fails, a halt.
 
         Returns:
-            Whether it must be watched, as one that does nothing of what it is told, and would not come down
-            without us either.
+            Whether it must be watched, because it follows no command, and would not land
+            without this program either.
         """
         robot, vehicle, track = self._robot, self._vehicle, self._moves.track
         try:
@@ -126,7 +126,7 @@ class Response:
             return self._vehicle.hold()
 
     def _do_less(self, name: str, why: Fault, less: str) -> None:
-        """Tell that something plainer is done than what was told."""
+        """Report that a simpler response replaces the commanded one."""
         self._instead = f"{name} cannot be carried out: {why}: it does {less}"
         self._decide(why.event, f"{name} cannot be carried out: {why}", less)
         self._say(f"cannot carry out {name}: {why}; response: {less}")

@@ -17,10 +17,10 @@ from .way_back import WayBack
 
 
 class Setup:
-    """Gets a vehicle ready, and again where it has started anew.
+    """Gets a vehicle ready, and again after a restart.
 
     Attributes:
-        is_known: whether it is known to be the robot's, so that it may be told what to do.
+        is_known: whether it is known to be the robot's, so that it may be commanded.
         is_done: whether it was ready once.
     """
 
@@ -60,10 +60,10 @@ class Setup:
             self._note("start", start_of(self._robot, radio.url, "pymavlink", **about))
 
     def set_up(self) -> None:
-        """Have the vehicle know what it must, once it is known to be the robot's.
+        """Upload what the vehicle must know, once it is known to be the robot's.
 
         Raises:
-            Refused: it is not the robot's, or refuses what it must know.
+            Refused: it is not the robot's, or refuses an upload.
         """
         vehicle = self._with.vehicle
         self._watch.renew()
@@ -74,19 +74,19 @@ class Setup:
         equip(self._robot, vehicle, self._uploads, self._with.say)
         self.is_done = True
         if vehicle.state().energy is None and not self._with.dry:
-            self._with.say("does not tell its battery: nobody will notice when it is low")
+            self._with.say("does not report its battery: a low battery will go unnoticed")
         self._watch.forewarn()
 
     def take_up(self) -> None:
-        """Heed everything again, and go on with the sortie."""
+        """Obey all events again, and continue the sortie."""
         self._restarted = self._restarted or self._watch.restarted
         self._watch.tighten()
         self.begin_sortie()
 
     def begin_sortie(self) -> None:
-        """Be under way.
+        """Begin or continue a sortie.
 
-        A vehicle that has started anew, as with a new battery, or was not set up to the end, is set up first.
+        A vehicle that has restarted, as with a new battery, or was not completely set up, is set up first.
         """
         self._restarted = self._restarted or self._watch.restarted
         if self._restarted or not self.is_done:
@@ -96,7 +96,7 @@ class Setup:
         self._watch.moving = True
 
     def _recognise(self) -> None:
-        """Refuse a vehicle that is not the robot's, or that somebody else flies, before it is touched."""
+        """Refuse a vehicle that is not the robot's, or under external control, before it is touched."""
         resumed, vehicle = self._with.resumed, self._with.vehicle
         first = resumed and not self.is_done
         if (radio := self._with.radio) is not None:

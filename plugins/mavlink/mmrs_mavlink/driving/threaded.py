@@ -38,14 +38,14 @@ from .way_back import WayBack
 from .worker import Interrupted, Job, Worker
 
 FAREWELL_SECONDS = 5.0
-"""Real seconds that a vehicle has to be told to stay where it is."""
+"""Real seconds within which a vehicle must be commanded to hold position."""
 
 
 class ThreadedVehicle(Vehicle):
     """Drives one robot; a thread of its own waits for the vehicle, so that every call returns at once."""
 
     def __init__(self, robot: Robot, equipment: Equipment) -> None:
-        """Listen to the vehicle; it is told nothing before it is to get ready."""
+        """Receive from the vehicle; no command is sent before it is to get ready."""
         self._robot, self._with = robot, equipment
         self._lost_link = LostLink(robot, equipment.vehicle, equipment.say)
         self._watch = self._new_watch()
@@ -139,7 +139,7 @@ class ThreadedVehicle(Vehicle):
         return inf
 
     def bear(self, now: float) -> bool:
-        """Go on after a device that is silent, or with a battery that does not get full."""
+        """Continue after a silent device, or with a battery that does not get full."""
         found = self._worker.fault
         if found is None:
             return True
@@ -180,7 +180,7 @@ class ThreadedVehicle(Vehicle):
         )
 
     def status(self) -> Mapping[str, object]:
-        """Return what the vehicle has told last, as controllers say it; empty before it was heard."""
+        """Return the last reported state, in the words of controllers; empty before the first message."""
         heard = self._link is None or self._link.latest("HEARTBEAT") is not None
         return status_of(self._with.vehicle.state()) if heard else {}
 
@@ -203,19 +203,19 @@ class ThreadedVehicle(Vehicle):
         return (self._worker.done or self._response.is_shown) and not self._response.undone
 
     def undone(self, now: float) -> str:
-        """Return why nothing is left to do, and the vehicle has not done what it was told."""
+        """Return why nothing is left to do, and the vehicle has not carried out its command."""
         return self._response.undone
 
     def reachable(self, now: float) -> bool:
-        """Return whether the vehicle was heard lately."""
+        """Return whether a message of the vehicle arrived lately."""
         return self._reach.is_heard
 
     def in_doubt(self, now: float) -> bool:
-        """Return whether the vehicle has left its mode and nobody knows why, or the program not yet."""
+        """Return whether the vehicle has left its mode for an unknown cause, or one not yet handled."""
         return self._watch.looking or (self._watch.taken and not self._response.hands_off)
 
     def watched(self, now: float) -> bool:
-        """Return whether the motors run, and it holds, a pilot has it, its link is lost, or nothing works.
+        """Return whether it is armed, and holds, is under external control, lost, or unresponsive.
 
         Without the heartbeats of this process, it might fly away from the pilot.
         """
@@ -228,10 +228,10 @@ class ThreadedVehicle(Vehicle):
         return self._response.holds or (armed and (hands_off or not self._worker.done))
 
     def hindrance(self, passed: Sequence[str], begun: str, now: float) -> str:
-        """Return why there is no way back now; empty where there is one."""
+        """Return why no return path exists now; empty where there is one."""
         vehicle = self._with.vehicle
         if not self._reach.is_heard:
-            return "its vehicle is not heard"
+            return "no messages from its vehicle"
         if not vehicle.state().armed and (why := astray(self._robot, vehicle, self._tolerance)):
             return why
         try:
@@ -241,18 +241,18 @@ class ThreadedVehicle(Vehicle):
         return ""
 
     def away(self, now: float) -> str:
-        """Return that the vehicle stands elsewhere than at home, or is not heard; empty where it is there."""
+        """Return that the vehicle stands elsewhere than at home, or is silent; empty where it is there."""
         if not self._reach.is_heard:
-            return "its vehicle is not heard"
+            return "no messages from its vehicle"
         return away(self._robot, self._with.vehicle, self._tolerance)
 
     def moves(self, now: float) -> bool:
-        """Return whether the motors run."""
+        """Return whether it is armed."""
         return self._worker.fault is None and self._with.vehicle.state().armed
 
     @property
     def comes_home(self) -> bool:
-        """Return that it knows the way back."""
+        """Return that it knows the return path."""
         return True
 
     def recover(self, passed: Sequence[str], begun: str, now: float) -> bool:
@@ -261,7 +261,7 @@ class ThreadedVehicle(Vehicle):
         self._response.forget()
         self._move = begun or (passed[-1] if passed else "")
         if self._move:
-            self._with.say(f"goes on {'with' if begun else 'after'} {self._move!r}")
+            self._with.say(f"continues {'with' if begun else 'after'} {self._move!r}")
             self._note_decision("resume", f"its log ends at {self._move}", "goes the way it came")
         job = self._way.job(passed, begun)
         job.first(self._setup.take_up)
@@ -281,7 +281,7 @@ class ThreadedVehicle(Vehicle):
         self._wake_vehicle()
 
     def resume(self, now: float) -> None:
-        """Go on."""
+        """Continue."""
         self._brakes = lambda: False
         self._worker.resume()
 
@@ -331,7 +331,7 @@ class ThreadedVehicle(Vehicle):
         self.note("decision", {"what": what, "why": why, "response": response})
 
     def _come_back(self, lost: VehicleFault) -> None:
-        """Have a vehicle that is heard again respond to its lost link, if it does nothing by itself."""
+        """Make a vehicle whose link is restored respond to the loss, if its failsafe has not."""
         name, state = self._response.name, self._with.vehicle.state()
         if lost.event != LINK_LOST or lost is self._left or name in ("", NOTHING):
             return
@@ -340,23 +340,23 @@ class ThreadedVehicle(Vehicle):
         if self._watch.answers_alone():
             self._left = lost
             return
-        self._with.say(f"is heard again, in mode {state.mode}, and has done nothing by itself: {name}")
+        self._with.say(f"link restored, in mode {state.mode}, and no failsafe has acted: {name}")
         job = self._response.begin(name, lost, self._note_decision, heard=True)
         if job is not None:
             job.append(lambda: self._with.say(f"has done {name}"))
             self._worker.instead(lost, job)
 
     def _note_failure(self, error: BaseException) -> None:
-        """Tell people, and the black box, where the program itself has failed."""
+        """Report an error of the program itself, and record it in the black box."""
         trace = "".join(format_exception(error))
         self._with.say(f"the program itself fails: {trace}")
         self.note("failed", {"error": repr(error), "trace": trace})
 
     def _look(self) -> None:
-        """Look after the vehicle, whatever it does; what it has left by itself is begun again.
+        """Look after the vehicle, whatever it does; what it has left without a command is begun again.
 
-        One that has started anew before its take-off is first set up again. Of a vehicle that is not known
-        to be the robot's, nothing but its silence counts.
+        One that has restarted before its take-off is first set up again. Of a vehicle that is not known
+        to be the robot's, only silence counts.
         """
         try:
             self._watch.check()
@@ -372,7 +372,7 @@ class ThreadedVehicle(Vehicle):
                 raise
 
     def _idle(self) -> None:
-        """Look after a vehicle that has nothing to do, and that somebody else may take over."""
+        """Look after a vehicle without a task, which may come under external control."""
         if self._setup.is_known and not self._response.hands_off:
             self._with.vehicle.rest(0.0)
         else:
@@ -382,7 +382,7 @@ class ThreadedVehicle(Vehicle):
         self._with.vehicle.hold()
 
     def _leave_it_holding(self) -> None:
-        """Have a vehicle that holds stay where it is when nobody talks to it any more."""
+        """Make a vehicle that holds stay in position once its controller is silent."""
         self._worker.begin(Job(lambda: self._with.vehicle.answer_lost_link("HOLD")))
         until = time.monotonic() + FAREWELL_SECONDS
         while not self._worker.done and self._worker.fault is None and time.monotonic() < until:
@@ -391,7 +391,7 @@ class ThreadedVehicle(Vehicle):
             self._with.say("may not stay where it is when this program has ended")
 
     def _begins_sortie(self, move: str) -> bool:
-        """Return whether the robot leaves the ground, or the place where it was charged, with a move."""
+        """Return whether the robot leaves the ground, or its place of charging, with a move."""
         kind = self._moves.kind(move)
         return kind is TakeOff or (kind is GoTo and not (self._watch.moving and self._moves.track))
 

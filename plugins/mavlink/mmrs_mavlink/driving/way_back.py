@@ -1,4 +1,4 @@
-"""The way back to where a robot's program was broken off: along its own way, which is known to be clear."""
+"""The return to where a robot's program was broken off: along its own path, which is known to be clear."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ Point = tuple[str, Place]
 
 
 class WayBack:
-    """Finds the way from wherever a vehicle is to where a leg of its program begins."""
+    """Finds the path from a vehicle's position to the beginning of a leg of its program."""
 
     def __init__(self, robot: Robot, moves: Moves, vehicle: Vehicle, home_tolerance: float) -> None:
         """Find ways for that vehicle; on the ground it may be that far from where it is to stand, metres."""
@@ -32,11 +32,11 @@ class WayBack:
     def job(self, passed: Sequence[str], begun: str) -> Job:
         """Return what brings the vehicle to where it was when it ended the last of these moves.
 
-        A vehicle on the ground where its sortie began takes off and flies the way that it came. One that is
-        in the air, on its way or ahead on the leg or run that it had begun, goes along that way. One that is
-        anywhere else is refused, since nobody has checked a way from there.
+        A vehicle on the ground where its sortie began takes off and retraces its path. One that is
+        in the air, on its path or ahead on the leg or run that it had begun, continues along that path. One
+        that is anywhere else is refused, since no path from there is verified.
 
-        Where the motors are off, the battery must not be low, unless a policy says to carry on with it.
+        If it is disarmed, the battery must not be low, unless a policy tolerates that.
 
         Args:
             passed: moves that the robot has ended, in order.
@@ -54,12 +54,12 @@ class WayBack:
         return job
 
     def check(self, passed: Sequence[str], begun: str) -> None:
-        """Make sure that there is a way back, without a word to the vehicle.
+        """Check that there is a return path, without a command to the vehicle.
 
         Where an object has yet to be found, there may be one; it is looked for when the vehicle sets out.
 
         Raises:
-            Refused: there is none that anybody has checked.
+            Refused: there is no verified one.
         """
         if not all(self._moves.knows(move) for move in (*passed, *self._run(begun))):
             return
@@ -68,10 +68,10 @@ class WayBack:
         self._moves.track = track
 
     def know(self, passed: Sequence[str], begun: str) -> None:
-        """Know the places that a vehicle has come past in this sortie, by which it can go back, if it flies.
+        """Restore the positions by which a flying vehicle can return: those passed in this sortie.
 
         Raises:
-            Refused: it is not on its way.
+            Refused: it is not on its path.
         """
         self._parts(passed, begun)
 
@@ -139,13 +139,13 @@ class WayBack:
         return here
 
     def _leg(self, here: Place, way: Sequence[Place]) -> int:
-        """Return on which leg of its way a vehicle is; of two, the later one is meant."""
+        """Return on which leg of its path a vehicle is; of two, the later one."""
         gaps = [distance_to_leg(here, *leg) for leg in pairwise(way)]
         nearest = max(range(len(gaps)), key=lambda leg: (-round(gaps[leg] / ALIKE), leg))
         if gaps[nearest] > OFF_ITS_WAY:
             home = self._robot.home
             back = there(footing(home, way[0]), home)
-            raise Refused(f"it is {gaps[nearest]:.0f} m off its way: bring it {back} before it goes on")
+            raise Refused(f"it is {gaps[nearest]:.0f} m off its path: bring it {back} before it continues")
         return nearest
 
     def _legs_back(self, came: list[Point], flown: list[Point]) -> list[Callable[[], None]]:

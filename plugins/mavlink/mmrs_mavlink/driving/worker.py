@@ -1,4 +1,4 @@
-"""A thread that has a vehicle do one thing after another, so that nobody else has to wait for it."""
+"""A thread in which a vehicle does one thing after another, so that its caller does not wait."""
 
 from __future__ import annotations
 
@@ -44,13 +44,13 @@ class Job:
 
 
 class Worker:
-    """Carries out the job that it was given last.
+    """Carries out its last job.
 
     Attributes:
-        fault: what went wrong, until something is begun afresh.
+        fault: the present fault, until another job is begun.
         changed: called when it has done something, or failed to.
-        faulty: called again and again while there is a fault.
-        failed: is told what comes out of code that is wrong, or somebody else's.
+        faulty: called repeatedly while there is a fault.
+        failed: called with exceptions of faulty or foreign code.
     """
 
     def __init__(
@@ -116,7 +116,7 @@ class Worker:
 
     @property
     def goes_on(self) -> bool:
-        """Return whether the vehicle was told to halt, and has still to be told that it goes on."""
+        """Return whether the vehicle was ordered to halt, and not yet to continue."""
         return self._halting and not self._holds
 
     def instead(self, fault: Fault, job: Job) -> None:
@@ -143,7 +143,7 @@ class Worker:
                 self._news.notify_all()
 
     def resume(self) -> None:
-        """Go on with the job."""
+        """Continue the job."""
         with self._news:
             self._holds = False
             self._newest += 1

@@ -12,19 +12,19 @@ WRAP = 2**32
 """Milliseconds, 49.7 days, after which a vehicle's time is counted from 0 again."""
 
 AROUND_WRAP = 600_000
-"""Milliseconds before and after that in which a vehicle whose time begins again has not started anew."""
+"""Milliseconds before and after that in which a vehicle whose clock begins again has not restarted."""
 
 
 class Identity:
-    """Tells a vehicle that has started anew, and two vehicles that have the same system id.
+    """Detects restarts of a vehicle, and two vehicles with the same system id.
 
     Attributes:
-        starts: how often the vehicle has been seen to start anew.
+        starts: how often the vehicle was seen to restart.
         twin: why there must be two vehicles; empty while there is one.
     """
 
     def __init__(self, late_milliseconds: float = LATE_MILLISECONDS) -> None:
-        """Begin with a vehicle that was not heard yet."""
+        """Create for a vehicle without messages yet."""
         self.starts = 0
         self.twin = ""
         self._late = late_milliseconds

@@ -28,13 +28,13 @@ Observer = Callable[[Message, bool], None]
 """Is given every message and whether it goes out; called from whatever thread sends or reads."""
 
 FORSAKEN_SECONDS = 600.0
-"""Silence after which nobody waits for a vehicle any more, where no policy has said so before."""
+"""Silence after which a vehicle counts as lost, where no policy has decided before."""
 
 LEAST_SECONDS = 0.5
 """Real seconds for an answer at least, unless less was asked for."""
 
 GAP_SECONDS, LEAST_GAP_SECONDS = 2.0, 0.5
-"""Silence of the vehicle, of the run and real, after which ground stations had no chance to be heard."""
+"""Silence of the vehicle, of the run and real, during which ground stations could not be received."""
 
 TELL_BOOT = frozenset({"GLOBAL_POSITION_INT", "LOCAL_POSITION_NED", "SYSTEM_TIME", "ATTITUDE"})
 
@@ -44,13 +44,13 @@ def nobody() -> None:
 
 
 class Link:
-    """Talks to one vehicle.
+    """Communicates with one vehicle.
 
     Attributes:
-        guard: called again and again during every wait; raises what should end it.
-        system, component: the vehicle's address; 0 until it was heard of.
+        guard: called repeatedly during every wait; raises what should end it.
+        system, component: the vehicle's address; 0 before its first message.
         retries: how often, and how long apart, to send what is not answered.
-        stations: of people, as far as they are heard over the link.
+        stations: ground stations received over the link.
     """
 
     def __init__(
@@ -103,7 +103,7 @@ class Link:
 
     @property
     def trouble(self) -> str:
-        """Return what the port has last complained of; empty once something is heard again."""
+        """Return the port's last error; empty once messages arrive again."""
         return self._radio.trouble
 
     @property
@@ -123,7 +123,7 @@ class Link:
 
     @property
     def starts(self) -> int:
-        """Return how often the vehicle was seen to start anew."""
+        """Return how often the vehicle was seen to restart."""
         return self._identity.starts
 
     @property
@@ -132,35 +132,37 @@ class Link:
         return bool(self._wanted)
 
     def doubt(self) -> str:
-        """Return why this may not be the robot's vehicle; empty if it is, as far as can be heard."""
+        """Return why this may not be the robot's vehicle; empty if it is, as far as is known."""
         twin = self._roaming.twin or self._identity.twin
         if twin:
             return f"there are two vehicles with system id {self.system}: {twin}"
         others = sorted(each for each in self._radio.heard - {self.system} if not self._radio.claimed(each))
         if not self._wanted and others:
             shown = " and ".join(map(str, sorted([self.system, *others])))
-            return f"vehicles with the system ids {shown} speak on this link: say which, as URL@{self.system}"
+            return (
+                f"vehicles with the system ids {shown} vehicles on this link: name one, as URL@{self.system}"
+            )
         return ""
 
     def strangers(self) -> str:
-        """Return who speaks on the radio instead of the vehicle; empty if nobody does."""
+        """Return the systems on the radio other than the vehicle; empty if there are none."""
         shown = ", ".join(map(str, sorted(self._radio.heard)))
-        return f"heard system {shown}, and not {self._wanted}" if shown and self._wanted else ""
+        return f"received system {shown}, and not {self._wanted}" if shown and self._wanted else ""
 
     @property
     def given_up(self) -> bool:
-        """Return whether the vehicle is to hear no heartbeats, so that it answers that by itself."""
+        """Return whether heartbeats are withheld, so that the vehicle's failsafe acts."""
         return self.clock.now() < self._given_up
 
     def give_up(self, seconds: float) -> None:
-        """Send a vehicle that is not heard no heartbeats for some time: it may still hear us.
+        """Send a silent vehicle no heartbeats for some time: it may still receive them.
 
-        They go on as soon as it is heard again, and later anyway: it may have forgotten where we are.
+        They continue as soon as its messages arrive again, and later anyway: it may have lost the address.
         """
         self._given_up = self.clock.now() + seconds
 
     def observe(self, observer: Observer) -> None:
-        """Have every message told from now on: what is sent, and what the vehicle says.
+        """Call an observer with every message from now on, sent or received.
 
         An observer must neither raise nor wait: it runs in the thread that reads, or that sends.
         """
@@ -173,7 +175,7 @@ class Link:
         self._radio.send(message, self._roaming.sender)
 
     def speak(self, message: Message) -> None:
-        """Send one message to everybody as a component of the vehicle, as its onboard computer does."""
+        """Broadcast one message as a component of the vehicle, as its onboard computer does."""
         for observer in self._observers:
             observer(message, True)
         self._radio.send(message, self._roaming.sender, self.system)
@@ -194,7 +196,7 @@ class Link:
         return self._messages.order(kind)
 
     def silent_for(self) -> float:
-        """Return for how many seconds the vehicle has not been heard; 0 before it was first heard."""
+        """Return the seconds since the vehicle's last message; 0 before the first."""
         return 0.0 if self._heard is None else self.clock.now() - self._heard
 
     def unheard(self) -> bool:
@@ -206,13 +208,13 @@ class Link:
         return self._watched() and (self._heard is not None and self._heard < begun)
 
     def attempts(self, most: int | None = None) -> Iterator[int]:
-        """Yield how often something has been sent, as long as it may be sent again.
+        """Yield the number of attempts, as long as another one may be made.
 
-        A try counts where the vehicle was heard since it was made. One that says nothing at all is not
-        one that does not answer: whoever watches the link says when it is lost, by the policy's seconds.
+        An attempt counts if the vehicle was received since. A silent vehicle is not
+        one that does not answer: whatever watches the link decides when it is lost, by the policy's seconds.
 
         Args:
-            most: tries that count; None: as the link says.
+            most: attempts that count; None: the link's default.
         """
         most = self.retries.tries if most is None else most
         sent = counted = 0
@@ -222,18 +224,18 @@ class Link:
             sent, counted = sent + 1, counted + (not self.silent_since(begun))
 
     def wait(self, test: Callable[[], Found | None], seconds: float, *, heard: bool = False) -> Found | None:
-        """Return what the test finds as soon as it finds something; None if time runs out.
+        """Return the result of the test as soon as it has one; None if time runs out.
 
         Time that the guard takes, as for an order to hold, does not count.
 
         Args:
-            test: asked again whenever something has come.
+            test: asked again after every message.
             seconds: of the run.
             heard: whether time in which the vehicle is silent does not count either, since a guard
-                says when it is lost.
+                decides when it is lost.
 
         Raises:
-            Fault: the port has ended, so that nothing will come any more; or what the guard raises.
+            Fault: the port has ended, so that no message will come any more; or what the guard raises.
         """
         before = self.clock.now()
         until = before + seconds
@@ -254,12 +256,12 @@ class Link:
                 self._changed.wait(min(self.clock.real(left), GLANCE_SECONDS))
 
     def wake(self) -> None:
-        """Have a wait ask its guard and its test again at once."""
+        """Make a wait ask its guard and its test again at once."""
         with self._changed:
             self._changed.notify_all()
 
     def _watched(self) -> bool:
-        """Return whether somebody else says when the link is lost."""
+        """Return whether another party decides when the link is lost."""
         return self.guard is not nobody and self.silent_for() < FORSAKEN_SECONDS
 
     def inbox(self, *kinds: str, component: int | None = None) -> AbstractContextManager[deque[Message]]:
@@ -310,7 +312,7 @@ class Link:
         self.stations.hear(heartbeat, self.clock.now())
 
     def learns(self, reason: str) -> None:
-        """Be told that nothing will come any more."""
+        """Note that no more messages will come."""
         with self._changed:
             self._ended = reason
             self._changed.notify_all()

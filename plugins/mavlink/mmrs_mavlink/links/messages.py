@@ -1,4 +1,4 @@
-"""What one vehicle has said: the latest message of each name, and collections for whoever wants them all."""
+"""Messages of one vehicle: the latest of each name, and collections of all."""
 
 from __future__ import annotations
 
@@ -35,10 +35,10 @@ class Messages:
     """Keeps messages as they come, and knows which of them are news."""
 
     def __init__(self, lock: threading.Condition, clock: Clock) -> None:
-        """Know of none.
+        """Create without messages.
 
         Args:
-            lock: guards everything here; with it messages are taken.
+            lock: guards everything here; held while messages are taken.
             clock: of the run.
         """
         self._lock, self._clock = lock, clock
@@ -124,8 +124,8 @@ class Messages:
 
 
 def tells_place(message: Message) -> bool:
-    """Return whether a GLOBAL_POSITION_INT or LOCAL_POSITION_NED tells where the vehicle is.
+    """Return whether a GLOBAL_POSITION_INT or LOCAL_POSITION_NED holds the vehicle's position.
 
-    ArduPilot sends 0 degrees north, 0 degrees east as long as it does not know, with the right height.
+    ArduPilot sends 0 degrees north, 0 degrees east until it knows its position, with the right height.
     """
     return message.get_type() != "GLOBAL_POSITION_INT" or bool(message.lat or message.lon)

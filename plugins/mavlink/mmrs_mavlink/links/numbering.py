@@ -20,7 +20,7 @@ class Numbering:
     """Counts the frames of one vehicle."""
 
     def __init__(self, clock: Clock) -> None:
-        """Know of none; `clock` is that of the run."""
+        """Create without messages; `clock` is that of the run."""
         self._clock = clock
         self._newest, self._newest_at = -1, -inf
 

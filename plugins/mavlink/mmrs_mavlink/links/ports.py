@@ -1,4 +1,4 @@
-"""Ways to reach a vehicle: UDP and TCP by the standard library, anything else by pymavlink."""
+"""Ports to vehicles: UDP and TCP by the standard library, anything else by pymavlink."""
 
 from __future__ import annotations
 
@@ -38,13 +38,13 @@ def split_system(text: str) -> tuple[str, int]:
     """Return the url and the MAVLink system of ``URL[@SYSTEM]``; 0 where none is given.
 
     Raises:
-        ValueError: the system is no number from 1 to 255.
+        ValueError: the system is not a number from 1 to 255.
     """
     url, separator, number = text.rpartition("@")
     if not separator:
         return text, 0
     if not number.isdecimal() or len(number) > 9 or not 0 < int(number) <= LAST_SYSTEM:
-        raise ValueError(f"{text}: {number!r} after the @ is no MAVLink system from 1 to {LAST_SYSTEM}")
+        raise ValueError(f"{text}: {number!r} after the @ must be a MAVLink system from 1 to {LAST_SYSTEM}")
     return url, int(number)
 
 
@@ -72,7 +72,7 @@ def _baud_of(url: str) -> int:
 
 
 class UdpPort:
-    """A UDP socket; one that listens sends to those that it is told, when they have spoken."""
+    """A UDP socket; a listening one sends to the given addresses, once they have sent."""
 
     def __init__(self, address: Address, listens: bool) -> None:
         """Bind to the address, or send to it."""
@@ -90,7 +90,7 @@ class UdpPort:
             return NOTHING
 
     def write(self, data: bytes, to: Address | None = None) -> object:
-        """Send a datagram if there is somebody to send it to; an unreachable peer loses it."""
+        """Send a datagram if there is a receiver; an unreachable peer loses it."""
         peer = to or self._peer
         if peer is None:
             return None

@@ -1,4 +1,4 @@
-"""A port with one or several vehicles behind it: one thread reads it, and everybody sends through it."""
+"""A port with one or several vehicles behind it: one thread reads it, all vehicles send through it."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ class Ear(Protocol):
 
     @property
     def given_up(self) -> bool:
-        """Return whether the vehicle is to hear no heartbeats."""
+        """Return whether heartbeats to the vehicle are withheld."""
         ...
 
     def meets(self, heartbeat: Message) -> bool:
@@ -58,7 +58,7 @@ class Ear(Protocol):
         ...
 
     def learns(self, reason: str) -> None:
-        """Be told that nothing will come any more."""
+        """Note that no more messages will come."""
         ...
 
 
@@ -67,8 +67,8 @@ class Radio:
 
     Attributes:
         dropped: how many frames were not used, by type and reason.
-        heard: the systems of all autopilots that have spoken.
-        trouble: what the port has last complained of; empty once something is heard again.
+        heard: the systems of all autopilots received.
+        trouble: the port's last error; empty once messages arrive again.
     """
 
     def __init__(self, port: Port, clock: Clock, signer: Signer | None = None) -> None:
@@ -102,10 +102,10 @@ class Radio:
         return self._open and self._thread.is_alive()
 
     def join(self, ear: Ear) -> None:
-        """Have a vehicle listened to from now on.
+        """Start receiving from a vehicle.
 
         Raises:
-            ValueError: somebody listens to that system already.
+            ValueError: that system is received already.
         """
         with self._sending:
             if ear.system and any(other.system == ear.system for other in self._ears):
@@ -128,11 +128,11 @@ class Radio:
                 self._signer.save(at_once=True)
 
     def send(self, message: Message, to: Address | None, system: int = GROUND_SYSTEM) -> None:
-        """Send one message; where the port does not take it, it is lost like any on a poor link.
+        """Send one message; if the port does not take it, it is lost as on a poor link.
 
         Args:
             message: to send.
-            to: where to; None: to whoever is at the other end.
+            to: receiver; None: the peer at the other end.
             system: that it comes from.
         """
         with self._sending:
@@ -220,14 +220,14 @@ class Radio:
                 return
         if all(ear.component for ear in self._ears):
             # Before everybody has met their vehicle, nobody can say whose this is.
-            self.dropped[f"{message.get_type()}: from system {system}, which is no robot's"] += 1
+            self.dropped[f"{message.get_type()}: from system {system}, which is not a robot's"] += 1
 
     def _is_own(self, message: Message) -> bool:
         """Return whether a message says that a program of ours has sent it, as one that came back."""
         return (message.get_srcSystem(), message.get_srcComponent()) == (GROUND_SYSTEM, GROUND_COMPONENT)
 
     def _hear_station(self, heartbeat: Message, sender: Address | None) -> None:
-        """Tell it to those whose vehicles have handed it on, or to all if it came directly."""
+        """Pass it on to those whose vehicles have forwarded it, or to all if it came directly."""
         for ear in [ear for ear in self._ears if ear.speaks_from(sender)] or self._ears:
             ear.hears_station(heartbeat)
 
@@ -252,7 +252,7 @@ class Radio:
                 self.send(_heartbeat(), sender)
 
     def _is_to_hear(self, sender: Address | None) -> bool:
-        """Return whether anybody there, as far as is known who, is to hear that we are there."""
+        """Return whether any known peer there is to receive heartbeats."""
         there = [ear for ear in self._ears if ear.speaks_from(sender)] or self._ears
         return not there or not all(ear.given_up for ear in there)
 

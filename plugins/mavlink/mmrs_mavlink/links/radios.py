@@ -61,10 +61,10 @@ class Radios:
                 raise Refused(f"{url}: {error}") from error
 
     def meet(self, link: Link, url: str, seconds: float) -> None:
-        """Wait for a vehicle's first sign.
+        """Wait for a vehicle's first message.
 
         Raises:
-            Fault: none comes; it says what was heard instead.
+            Fault: none comes; names what was received instead.
         """
         if link.wait(lambda: link.component, seconds):
             return

@@ -1,7 +1,8 @@
-"""From where a vehicle speaks: another address must prove that it is the same vehicle that speaks there.
+"""The address of a vehicle: a new address must prove that the same vehicle sends from there.
 
-A vehicle with a modem may change its address. So may nobody else: a second vehicle with the same
-system id, or a stranger, that speaks when ours has fallen silent would be commanded in its stead.
+A vehicle with a modem may change its address. Without the proof, a second vehicle with the same
+system id, or an intruder, that sends when the robot's vehicle has fallen silent would be commanded in its
+stead.
 """
 
 from __future__ import annotations
@@ -97,7 +98,7 @@ class Roaming:
 
 
 def sign_in(message: Message, now: float) -> Sign | None:
-    """Return what a message tells of where the vehicle is; None if it tells nothing."""
+    """Return the position in a message; None if it holds none."""
     kind = message.get_type()
     if kind == "GLOBAL_POSITION_INT" and tells_place(message):
         place: Place = Geographic(message.lat * 1e-7, message.lon * 1e-7, message.relative_alt * 1e-3)

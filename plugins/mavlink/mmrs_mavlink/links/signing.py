@@ -1,8 +1,8 @@
-"""MAVLink 2 signing: nobody without the key commands a vehicle, or speaks in its name.
+"""MAVLink 2 signing: without the key, vehicles cannot be commanded, nor messages be sent in their name.
 
-Frames count up a time stamp, so that nobody can send an old one again. What was last sent and
-heard is kept in a file beside the key, so that this holds over restarts, whatever the clock on the
-wall says.
+Frames carry a rising time stamp, so that old ones cannot be replayed. The last stamps sent and
+received are kept in a file next to the key, so that this holds over restarts, whatever the wall clock
+shows.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ BEHIND = 60 * TICKS
 """How old the first frame of a new stream may be: a minute, as the protocol says."""
 
 SAVE_SECONDS = 10.0
-"""Real seconds between two times that the stamps are saved; they go on from as much later."""
+"""Real seconds between two times that the stamps are saved; after a restart they continue that much later."""
 
 SIGNATURE_BYTES = 6
 _LINK, _STAMP = slice(-13, -12), slice(-12, -6)
@@ -62,7 +62,7 @@ def signer_for(path: Path) -> Signer:
 
 
 class Signer:
-    """A key, the time stamp to sign with next, and the newest that was heard of each stream.
+    """A key, the time stamp to sign with next, and the newest that was received of each stream.
 
     Attributes:
         refused: how many signed frames were refused, by reason: ``bad signature``, ``replayed``.
@@ -151,11 +151,11 @@ class Signer:
 
 
 class Signed(mavlink.MAVLink):  # type: ignore[misc]  # pymavlink is not typed
-    """Packs and parses signed frames; radios say unsigned how well they hear, and are believed.
+    """Packs and parses signed frames; radios report their signal strength unsigned, and are accepted.
 
     pymavlink's own check takes a frame's time stamp before it looks at the signature, so that one
     forged frame from the future shuts its stream for good; and it never moves its own stamp on,
-    so that a vehicle that starts anew after a minute no longer hears us.
+    so that a vehicle that restarts after a minute no longer accepts its frames.
     """
 
     def __init__(self, signer: Signer, system: int, component: int) -> None:

@@ -1,8 +1,8 @@
-"""Ground stations of people, heard over the link of a vehicle, which hands on what it hears itself.
+"""Ground stations, received over the link of a vehicle, which forwards their messages.
 
-ArduPilot and PX4 hand heartbeats on between their ports, but ArduPilot never to a port where the same
-system and component is heard already (https://mavlink.io/en/guide/routing.html): that is why our own
-programs do not speak as the component that ground stations usually are.
+ArduPilot and PX4 forward heartbeats between their ports, but ArduPilot never to a port where the same
+system and component was received already (https://mavlink.io/en/guide/routing.html): therefore our own
+programs do not use the usual component of ground stations.
 """
 
 from __future__ import annotations
@@ -18,14 +18,14 @@ Station = tuple[int, int]
 
 
 class Stations:
-    """When each ground station was last heard; any thread may ask.
+    """When each ground station was last received; any thread may ask.
 
     Attributes:
-        deaf: whether they are left unheard, as in a rehearsal.
+        deaf: whether they are ignored, as in a rehearsal.
     """
 
     def __init__(self) -> None:
-        """Know of no station yet."""
+        """Create without stations."""
         self.deaf = False
         self._heard: dict[Station, float] = {}
         self._lock = threading.Lock()
@@ -37,23 +37,23 @@ class Stations:
                 self._heard[heartbeat.get_srcSystem(), heartbeat.get_srcComponent()] = now
 
     def pass_over(self, seconds: float) -> None:
-        """Leave seconds out of account in which nothing could be heard of any station."""
+        """Leave out seconds in which no station could be received."""
         with self._lock:
             self._heard = {station: heard + seconds for station, heard in self._heard.items()}
 
     def silent_for(self, now: float) -> float | None:
-        """Return for how many seconds none of them was heard; None before the first was."""
+        """Return the seconds since any of them was received; None before the first."""
         with self._lock:
             return max(0.0, now - max(self._heard.values())) if self._heard else None
 
     @property
     def systems(self) -> tuple[int, ...]:
-        """Return the system ids of all that were heard, ascending."""
+        """Return the system ids of all stations received, ascending."""
         with self._lock:
             return tuple(sorted({system for system, _ in self._heard}))
 
     def __str__(self) -> str:
-        """Return which there are, for people; empty before the first was heard."""
+        """Return their names, as printed; empty before the first message."""
         systems = self.systems
         word = "ground stations" if len(systems) > 1 else "ground station"
         return f"{word} {' and '.join(map(str, systems))}" if systems else ""

@@ -1,7 +1,7 @@
-"""Has a vehicle forget a plan, also in the middle of receiving one.
+"""Clears a vehicle's plan, also while it receives one.
 
-ArduPilot clears nothing while it receives, but takes a plan without items instead from whoever sends the
-plan; PX4 takes neither before it was told that the transfer is over.
+ArduPilot clears nothing while it receives, but takes a plan without items instead from the sender of the
+plan; PX4 takes neither before it was informed that the transfer is over.
 """
 
 from __future__ import annotations
@@ -46,13 +46,13 @@ def clear(link: Link, kind: int, *, receiving: bool = False) -> int:
 
 
 def break_off(link: Link, kind: int) -> None:
-    """Have the vehicle end a transfer and forget the plan, without waiting for an answer."""
+    """End a transfer and clear the plan, without waiting for an answer."""
     for message in _ending(link, kind):
         link.send(message)
 
 
 def left_of(link: Link, kind: int) -> str:
-    """Have a vehicle forget a plan of which it took only a part; return what it has now, in words."""
+    """Clear a plan of which the vehicle took only a part; return what it has now, in words."""
     # No answer to this either is told as what it is: nobody knows what is left.
     with suppress(Refused):
         for _ in range(link.retries.tries):

@@ -41,17 +41,17 @@ class CommandCancel(mavlink.MAVLink_message):  # type: ignore[misc]  # pymavlink
 def command(
     link: Link, number: int, *params: float, tries: int | None = None, component: int | None = None
 ) -> None:
-    """Have the vehicle carry out a command, and return when it says that it does.
+    """Send a command, and return when the vehicle has carried it out.
 
     Sends again, with the confirmation counted up, when no answer comes or the vehicle asks for
-    patience; waits on while it reports progress, and has it cancel what it has begun when the wait is
+    time; waits on while it reports progress, and cancels what it has begun when the wait is
     broken off.
 
     Args:
         link: to the vehicle.
         number: a MAV_CMD.
         params: up to seven; the rest is 0.
-        tries: how often to send at most; None: as often as the link says.
+        tries: how often to send at most; None: the link's default.
         component: that is to carry it out; None: the autopilot.
 
     Raises:
@@ -63,12 +63,12 @@ def command(
 
 
 def command_at(link: Link, number: int, place: Geographic, frame: int, *params: float) -> None:
-    """Have the vehicle carry out a command at a place, told to 1e-7 degrees.
+    """Send a command with a position, encoded to 1e-7 degrees.
 
     Args:
         link: to the vehicle.
         number: a MAV_CMD.
-        place: its height counts as the frame says.
+        place: its height counts as the frame defines.
         frame: a MAV_FRAME.
         params: the first four at most.
 
@@ -85,12 +85,12 @@ def command_at(link: Link, number: int, place: Geographic, frame: int, *params: 
 
 
 def ask(link: Link, number: int, *params: float) -> None:
-    """Send a command to the autopilot once; nobody waits for the acknowledgement."""
+    """Send a command to the autopilot once, without waiting for the acknowledgement."""
     link.send(_message(link, number, params, link.component))
 
 
 def name_of(number: int) -> str:
-    """Return the name of a MAV_CMD for people."""
+    """Return the name of a MAV_CMD, as printed."""
     entry = mavlink.enums["MAV_CMD"].get(number)
     return entry.name.removeprefix("MAV_CMD_") if entry else f"command {number}"
 
@@ -136,10 +136,10 @@ def _message(
 
 
 def _end(link: Link, inbox: deque[Message], number: int, component: int) -> Message:
-    """Return how a command that takes its time ends.
+    """Return how a long-running command ends.
 
     Raises:
-        Unanswered: nothing was heard of it for too long.
+        Unanswered: the vehicle was silent about it for too long.
     """
     try:
         while (answer := link.wait(lambda: _answer(inbox, number), PROGRESS_SECONDS, heard=True)) is not None:
@@ -149,7 +149,7 @@ def _end(link: Link, inbox: deque[Message], number: int, component: int) -> Mess
         link.send(CommandCancel(link.system, component, number))
         raise
     link.send(CommandCancel(link.system, component, number))
-    raise Unanswered(f"{name_of(number)}: begun, and then not heard of for {PROGRESS_SECONDS:.0f} s")
+    raise Unanswered(f"{name_of(number)}: begun, and then no messages about it for {PROGRESS_SECONDS:.0f} s")
 
 
 def _answer(inbox: deque[Message], number: int) -> Message | None:

@@ -38,7 +38,7 @@ def lacks_kinds(message: Message, kind: int) -> bool:
 
 
 def old_port(kind: int) -> Refused:
-    """Return what to say where the port is too old for that kind of plan."""
+    """Return the message where the port's protocol is too old for that kind of plan."""
     return Refused(f"{NAMES[kind]}: the vehicle {OLD_PORT}; it keeps what it had")
 
 

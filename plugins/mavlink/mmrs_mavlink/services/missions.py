@@ -19,16 +19,16 @@ from .sending import Transfer, send_all
 
 
 def upload(link: Link, items: Sequence[Item], kind: int = MISSION) -> int:
-    """Replace what the vehicle has of that kind; an empty list clears it.
+    """Replace the vehicle's plan of that kind; an empty list clears it.
 
-    A vehicle that has just started, or is busy, refuses; it is asked again after a while. When it
-    refuses for good in the middle, what it has by then is cleared: nobody should fly half of it.
+    A vehicle that has just started, or is busy, refuses; it is asked again after a while. If it
+    refuses for good in the middle, what it has by then is cleared, so that it cannot fly half a plan.
 
     Returns:
-        The id that the vehicle gave to what it has now; 0 where it gives none.
+        The id that the vehicle gave to the plan; 0 where it gives none.
 
     Raises:
-        Refused: the vehicle does not accept it, or does not answer; it says what the vehicle has now.
+        Refused: the vehicle does not accept it, or does not answer; names what the vehicle has now.
     """
     transfer = Transfer()
     with link.inbox("STATUSTEXT") as said:
@@ -69,8 +69,8 @@ def verify(link: Link, items: Sequence[Item], kind: int = MISSION) -> None:
 def _replaces(link: Link, items: Sequence[Item], kind: int, transfer: Transfer, attempt: int) -> bool:
     """Try once to replace a plan; return whether the vehicle has the new one.
 
-    A vehicle whose last word is lost may say that it knows of no transfer when it is sent the last item
-    once more: what it has then tells whether it had accepted it.
+    A vehicle whose last message is lost may deny the transfer when it is sent the last item
+    once more: its plan then shows whether it had accepted it.
     """
     if not items:
         result = clear(link, kind, receiving=attempt % 2 == 1)

@@ -21,12 +21,12 @@ TRIES = 5
 
 
 def attended(link: Link) -> Attended:
-    """Return what faults made on purpose need of a vehicle at the end of a link."""
+    """Return what injected faults need of a vehicle at the end of a link."""
     return Attended(link.stations, partial(switch, link))
 
 
 def switch(link: Link, on: bool) -> bool:
-    """Give satellites or take them away; return whether the vehicle confirms it, as no real one does."""
+    """Enable or disable satellite reception; return whether the vehicle confirms it, as no real one does."""
     values = {name: pair[on] for name, pair in SWITCHES.items()}
     with link.inbox("PARAM_VALUE") as inbox:
         for _ in range(TRIES):

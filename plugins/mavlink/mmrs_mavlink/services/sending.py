@@ -1,15 +1,15 @@
 """One transfer of a plan to a vehicle, by its rules: it asks for items, and acknowledges at the end.
 
-Links lose, double and delay, and autopilots differ in what they say then; what they do was read in their
+Links lose, double and delay, and autopilots differ in their replies then; the following was read in their
 sources (ArduPilot's ``MissionItemProtocol.cpp``, PX4's ``mavlink_mission.cpp``):
 
-- An item that comes twice is no fault: ArduPilot says INVALID_SEQUENCE to it and goes on receiving, PX4
-  says nothing. It comes twice as soon as the way there and back takes longer than the vehicle waits before
-  it asks again (a second, and a quarter of one).
-- PX4 says ERROR to a count that comes twice, and goes on receiving, too. So what is refused is final only
-  where the vehicle asks for nothing more.
-- PX4 accepts once more what it took to be a doubled last item, even of a transfer that it had given up. So
-  nothing is accepted before the last item was sent.
+- An item that comes twice is not an error: ArduPilot answers INVALID_SEQUENCE and continues receiving, PX4
+   does not answer. It comes twice as soon as a round trip takes longer than the vehicle waits before
+   it asks again (a second, and a quarter of one).
+- PX4 answers ERROR to a count that comes twice, and continues receiving, too. So a refusal is final only
+   where the vehicle asks for nothing more.
+- PX4 accepts once more what it took to be a doubled last item, even of a transfer that it had aborted. So
+   no acceptance counts before the last item was sent.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ BEFORE_MARK = 4
 """Bytes of a MISSION_ACK before the id of the plan."""
 
 REPEATS = 50
-"""How often a vehicle is given one item: one that asks for it more often does not hear it."""
+"""How often an item is sent to a vehicle: one that asks for it more often does not receive it."""
 
 
 @dataclass
@@ -113,10 +113,10 @@ class _Sending:
         return False
 
     def _heeds(self, message: Message) -> bool:
-        """Return whether a message says something about this transfer.
+        """Return whether a message concerns this transfer.
 
         A PX4 that still wants or gives items of another kind, since a doubled count has reached it late or
-        our last word has not, begins nothing else until it is told that this is over.
+        our last message has not, begins nothing else until it is informed that this is over.
         """
         answers = message.get_type() == "MISSION_ACK"
         if not concerns(message, self.kind):
@@ -143,7 +143,7 @@ class _Sending:
             self.refused = True
 
     def _give(self, seq: int) -> None:
-        """Have the item sent that was asked for, unless the vehicle never gets it."""
+        """Send the item that was asked for, unless the vehicle never receives it."""
         self.given[seq] += 1
         self.refused, self.transfer.begun, self.transfer.outcome = False, True, "answers nothing more"
         self.transfer.whole = self.transfer.whole or seq == len(self.items) - 1
@@ -156,7 +156,7 @@ class _Sending:
 
 
 def cancellation(link: Link, kind: int) -> Message:
-    """Return what has a vehicle end a transfer of that kind; ArduPilot does not heed it."""
+    """Return the message that makes a vehicle end a transfer of that kind; ArduPilot ignores it."""
     cancelled = mavlink.MAV_MISSION_OPERATION_CANCELLED
     return mavlink.MAVLink_mission_ack_message(link.system, link.component, cancelled, kind)
 

@@ -1,8 +1,8 @@
-"""Tells people at ground stations something, over the link to a vehicle: as STATUSTEXT.
+"""Messages to ground stations, over the link to a vehicle: as STATUSTEXT.
 
-It is said in the vehicle's own system, by the component that programs have: ground stations show what a
-vehicle's system says, and pass over the words of other stations. Autopilots hand it on to wherever a
-station was heard. Nobody acknowledges it; on a link that loses frames it may be lost.
+They are sent in the vehicle's own system, by the component of programs: ground stations show a
+vehicle's system, and ignore the texts of other stations. Autopilots forward them to all
+stations received. They are not acknowledged; on a link that loses frames they may be lost.
 """
 
 from __future__ import annotations
@@ -29,9 +29,9 @@ def tell(link: Link, text: str) -> None:
 
 
 def pieces_of(text: str) -> Iterator[Message]:
-    """Yield a text as STATUSTEXT; a longer one than a ground station would bear ends with dots.
+    """Yield a text as STATUSTEXT; one that is too long for ground stations ends with dots.
 
-    The last of several pieces is shorter than the others, which is how stations know that it is the last.
+    The last of several pieces is shorter than the others, by which stations recognise the last.
     """
     data = text.encode("ascii", "backslashreplace")
     if len(data) >= MOST_CHUNKS * CHUNK:

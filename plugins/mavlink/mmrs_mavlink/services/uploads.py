@@ -58,8 +58,8 @@ def uploads_of(robot: Robot, *, fenced: bool = True) -> Uploads:
 def mission_of(robot: Robot) -> tuple[tuple[Item, ...], dict[str, Flight]]:
     """Return the mission of all runs, and by first move where each lies in it; both may be empty.
 
-    After each run the vehicle waits where it is until the program goes on. The mission has no
-    take-off, so that a vehicle on the ground never begins it by itself.
+    After each run the vehicle waits where it is until the program continues. The mission has no
+    take-off, so that a vehicle on the ground never begins it on its own.
     """
     if not robot.runs:
         return (), {}

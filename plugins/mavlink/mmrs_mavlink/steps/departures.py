@@ -1,4 +1,4 @@
-"""Who has put a vehicle into another mode than it was told: the vehicle itself, and for what, or a pilot."""
+"""The cause of a mode change that was not commanded: a failsafe of the vehicle, and for what, or a pilot."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ CAUSE_SECONDS = 1.5
 """For how long the cause is looked for when a vehicle has left its mode as a failsafe would."""
 
 RESTART_SECONDS = 4.0
-"""For how long it is looked for when the vehicle may have started anew, until it tells since when it runs."""
+"""How long to wait for the vehicle's boot time where it may have restarted."""
 
 Cause = tuple[str, str]
 """An event, and the reason to believe that it is there."""
@@ -44,7 +44,7 @@ class Departures:
         signs: Signs,
         answers: Callable[[str], bool],
     ) -> None:
-        """Look at a vehicle; `answers` tells whether the robot is to answer an event that happens now."""
+        """Look at a vehicle; `answers` returns whether the robot is to answer an event that happens now."""
         self.looking = self.taken = False
         self.taken_back = -inf
         self._kind, self._answers = robot.vehicle, answers
@@ -57,29 +57,29 @@ class Departures:
         return self._link.clock
 
     def find(self, *, moving: bool) -> Cause | None:
-        """Return what the vehicle has answered by leaving its mode; None: it has not left it.
+        """Return the event that the vehicle has answered by leaving its mode; None: it has not left it.
 
-        The cause is waited for as long as it may still be on its way.
+        The cause is awaited for as long as its message may still be in transit.
 
         Args:
-            moving: whether the robot is under way.
+            moving: whether the robot is in motion.
 
         Raises:
-            Fault: a pilot has taken over, as far as anybody can tell.
+            Fault: a pilot has taken over, as far as is known.
         """
         self._moving = moving
         left = _left(self._vehicle)
         return None if left is None else self._find(left)
 
     def check(self, event: str, *, moving: bool) -> None:
-        """Make sure that the vehicle has left its mode for nothing but what it answers by itself.
+        """Check that the vehicle has left its mode only for an event that its failsafes answer.
 
         Args:
-            event: that is responded to; a mode in which the vehicle answers it by itself is no pilot's.
-            moving: whether the robot is under way.
+            event: that is responded to; a mode in which the vehicle's failsafe answers it is not a pilot's.
+            moving: whether the robot is in motion.
 
         Raises:
-            Fault: a pilot has taken over, as far as anybody can tell.
+            Fault: a pilot has taken over, as far as is known.
         """
         tells = self._vehicle.telemetry
         if not tells.armed() or event == VEHICLE_RESTARTED:
@@ -89,20 +89,20 @@ class Departures:
             self.find(moving=moving)
 
     def _explain(self, left: Fault) -> Fault:
-        """Return what the vehicle has answered by going elsewhere while it was told a mode.
+        """Return the event that the vehicle has answered by another mode than the commanded one.
 
         Raises:
-            Fault: a pilot has taken over, as far as anybody can tell.
+            Fault: a pilot has taken over, as far as is known.
         """
         mode = self._vehicle.state().mode
         event, why = self._find(left)
-        return left if event == left.event else Fault(event, f"{why}; by itself it has gone into mode {mode}")
+        return left if event == left.event else Fault(event, f"{why}; a failsafe switched it to mode {mode}")
 
     def _find(self, left: Fault) -> Cause:
-        """Return what the vehicle has answered by going into its mode, or into another one since.
+        """Return the event that the vehicle has answered by its mode, or by another one since.
 
         Raises:
-            Fault: a pilot has taken over, as far as anybody can tell.
+            Fault: a pilot has taken over, as far as is known.
         """
         taken_over, mode = _taken_over(left, self._vehicle), self._vehicle.telemetry.mode()
         self.looking = True
@@ -127,7 +127,7 @@ class Departures:
         return link.wait(lambda: self._cause(mode), seconds)
 
     def _cause(self, mode: int) -> Cause | None:
-        """Return the event that the vehicle has answered by itself, by going into that very mode."""
+        """Return the event that the vehicle's failsafe has answered by that very mode."""
         if self._signs.restarted and self._moving:
             return VEHICLE_RESTARTED, STARTED_ANEW
         tells = self._vehicle.telemetry.announcements
@@ -147,7 +147,7 @@ def _taken_over(left: Fault, vehicle: MavlinkVehicle) -> Fault:
     if left.event == TAKEN_OVER:
         return left
     mode = vehicle.state().mode
-    return Fault(TAKEN_OVER, f"the vehicle has gone into mode {mode}: somebody else has taken over")
+    return Fault(TAKEN_OVER, f"the vehicle has gone into mode {mode}: it is under external control")
 
 
 def _left(vehicle: MavlinkVehicle) -> Fault | None:

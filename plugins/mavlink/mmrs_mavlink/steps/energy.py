@@ -1,4 +1,4 @@
-"""Whether what is left in the battery still suffices for the way back: the point of no return."""
+"""The point of no return: whether the energy left still suffices for the return path."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ SLOWEST = 0.5
 """Metres per second; a robot that the wind keeps from being faster than that does not come back."""
 
 TURNING_SECONDS = 6.0
-"""To brake, turn round, get up to speed, and stop at the end."""
+"""To brake, turn round, accelerate, and stop at the end."""
 
 ACCELERATION = 2.0
 """Metres per second squared with which vehicles speed up, and slow down at every place of the way."""
@@ -42,16 +42,16 @@ class Reserve:
     """Watches the battery of a sortie.
 
     It is low when less than the robot's reserve is left, or when what is left no longer suffices for
-    the response to a low battery from where the robot is: whichever comes first. Power is the type's
-    mean power, or what the sortie has used so far where that is more. What a vehicle no longer tells is
-    reckoned on from what it told last in the air.
+    the response to a low battery from the robot's position: whichever comes first. Power is the type's
+    mean power, or what the sortie has used so far where that is more. If the vehicle stops reporting,
+    the last report in the air is extrapolated.
 
     Attributes:
-        untold: what people should know of a battery that is told no longer; empty while it is.
+        untold: warning about a battery that is no longer reported; empty while it is.
     """
 
     def __init__(self, robot: Robot) -> None:
-        """Know nothing of a sortie yet."""
+        """Create without a sortie."""
         self.untold = ""
         self._robot = robot
         self._begun: tuple[float, float] | None = None
@@ -65,12 +65,12 @@ class Reserve:
         self._begun, self._counted = None, -inf
 
     def low(self, state: State, response: str, track: Track) -> str:
-        """Return why the battery is low; empty while it is not, and where nobody knows.
+        """Return why the battery is low; empty while it is not, or unknown.
 
         Args:
             state: of the robot, now.
-            response: what it does when the battery is low.
-            track: the places that it has passed in this sortie.
+            response: to a low battery.
+            track: the positions that it has passed in this sortie.
         """
         state = self._wind.heed(state)
         if not state.armed:
@@ -90,7 +90,7 @@ class Reserve:
         needed = self._way_back(state, response, track) / endurance
         if left >= needed + MARGIN:
             return ""
-        way = f"the way back takes {needed:.0%}" if needed < inf else "the wind is stronger than the robot"
+        way = f"the return path takes {needed:.0%}" if needed < inf else "the wind is stronger than the robot"
         return f"point of no return: {left:.0%} of the energy is left, and {way}"
 
     def short(self, state: State, response: str, track: Track) -> str:
@@ -105,18 +105,18 @@ class Reserve:
         return f"{left:.0%} of the energy is left, and {response} takes {needed:.0%}"
 
     def _left(self, state: State) -> float | None:
-        """Return what is left as it is told, or as it is reckoned; None where nobody knows."""
+        """Return the energy left as reported, or as extrapolated; None where unknown."""
         self.untold = ""
         if state.energy is not None or self._told is None:
             return state.energy
         time, left = self._told
         endurance = self._endurance(time, left)
-        known = "nobody will notice when it is low" if endurance is None else f"reckoned from {left:.0%}"
+        known = "a low battery will go unnoticed" if endurance is None else f"reckoned from {left:.0%}"
         self.untold = f"does not tell its battery any more: {known}"
         return None if endurance is None else max(0.0, left - (state.time - time) / endurance)
 
     def _endurance(self, time: float, left: float) -> float | None:
-        """Return for how many seconds a full battery lasts; None where nobody knows."""
+        """Return for how many seconds a full battery lasts; None where unknown."""
         begun, full = self._begun or (time, left)
         used = full - left
         found = (time - begun) / used if used >= LEAST_USED else None

@@ -1,4 +1,4 @@
-"""What a vehicle is told before its program begins, or goes on."""
+"""What a vehicle receives before its program begins, or continues."""
 
 from __future__ import annotations
 
@@ -16,16 +16,16 @@ if TYPE_CHECKING:
 
 
 def equip(robot: Robot, vehicle: Vehicle, uploads: Uploads, say: Callable[[str], None]) -> None:
-    """Have a vehicle know what it must, and what to do by itself outside its fence.
+    """Upload what a vehicle must know, and its response outside its fence.
 
     Args:
         robot: whose policies count.
         vehicle: of the robot.
         uploads: of its program.
-        say: tells people what the vehicle refuses, where the program can do without.
+        say: reports refusals that the program can do without.
 
     Raises:
-        Refused: the vehicle does not accept what it must know, or does not become ready.
+        Refused: the vehicle does not accept an upload that it needs, or does not become ready.
     """
     vehicle.prepare(uploads)
     if not uploads.fence:

@@ -20,17 +20,17 @@ LEAST_GROUND_SECONDS = 3.0
 
 WATCHED = "watched from now on"
 SAME_SYSTEM = (
-    f"as long as its vehicle hears ground station {GROUND_SYSTEM}, it does not notice when this program falls"
-    " silent, which has the same system id: give the station another one"
+    f"as long as its vehicle receives ground station {GROUND_SYSTEM}, it does not notice when this program"
+    " falls silent, which has the same system id: give the station another one"
 )
 ANY_STATION = (
-    "as long as its vehicle, a PX4, hears any ground station, it does not notice when this program falls"
+    "as long as its vehicle, a PX4, receives any ground station, it does not notice when this program falls"
     " silent"
 )
 
 
 class Ground:
-    """Sees over a robot's link when the first ground station is heard, and when none is any more."""
+    """Detects over a robot's link when the first ground station is received, and when none is any more."""
 
     def __init__(self, link: Link) -> None:
         """Listen to the stations of a link."""
@@ -38,7 +38,7 @@ class Ground:
         self._met: tuple[int, ...] = ()
 
     def news(self) -> list[str]:
-        """Return what is to be said of the stations, whenever another one is heard; else nothing."""
+        """Return the message about the stations, whenever a new one is received; otherwise nothing."""
         stations = self._link.stations
         before, self._met = self._met, stations.systems
         if before == self._met:
@@ -54,11 +54,11 @@ class Ground:
         silent = self._link.stations.silent_for(clock.now() - self._link.silent_for())
         if silent is None or silent <= limit:
             return ""
-        return f"nothing heard of {self._link.stations} for {silent:.0f} s"
+        return f"no messages from {self._link.stations} for {silent:.0f} s"
 
     def missing(self, robot: Robot) -> str:
         """Return what people should know before the robot moves; empty if they need not."""
         policy = policy_for(GROUND_LOST, robot)
         if policy.response == CONTINUE or self._link.stations.systems:
             return ""
-        return f"hears no ground station yet: policy {GROUND_LOST} ({policy.response}) waits for the first"
+        return f"no ground station received yet: policy {GROUND_LOST} ({policy.response}) waits for the first"

@@ -1,4 +1,4 @@
-"""Whether a vehicle is heard, and for how long one that is not is listened for."""
+"""Whether a vehicle is received, and how long to wait for one that is silent."""
 
 from __future__ import annotations
 
@@ -10,19 +10,19 @@ if TYPE_CHECKING:
     from ..links.link import Link
 
 HEARD_SECONDS, LEAST_HEARD_SECONDS = 3.0, 1.0
-"""How old the last word of a vehicle that is heard may be, of the run and real."""
+"""Largest age of the last message of a reachable vehicle, of the run and real."""
 
 LISTEN_SECONDS, LEAST_LISTEN_SECONDS = 30.0, 2.0
-"""How long a vehicle is listened for whose link is lost, of the run and real, when nobody else works."""
+"""How long to wait for a vehicle whose link is lost, of the run and real, when no other robot works."""
 
 
 def is_heard(link: Link) -> bool:
-    """Return whether a vehicle was heard lately."""
+    """Return whether a vehicle was received lately."""
     return link.listening and link.silent_for() < lately(link.clock)
 
 
 def lately(clock: Clock) -> float:
-    """Return how many seconds ago a vehicle that is heard may have spoken."""
+    """Return the largest age in seconds of a reachable vehicle's last message."""
     return clock.patience(HEARD_SECONDS, LEAST_HEARD_SECONDS)
 
 

@@ -21,7 +21,7 @@ COMES_DOWN_IN = frozenset({modes.LAND, modes.SURFACE, "return", "smart return"})
 
 
 class Motors:
-    """Keeps whether a vehicle is on its way through the air, or below the surface."""
+    """Keeps whether a vehicle is in flight, or below the surface."""
 
     def __init__(self, vehicle: MavlinkVehicle, kind: str) -> None:
         """Look at a ``copter``, ``sub`` or ``rover``."""
@@ -33,16 +33,16 @@ class Motors:
         self._flown = False
 
     def check(self, *, moving: bool) -> None:
-        """Make sure that a vehicle that was in the air, or below, stops its motors only to land or surface.
+        """Check that a vehicle that was in the air, or below, disarms only to land or surface.
 
-        If it does so elsewhere, it has crashed, or somebody has stopped it: whoever lies there must not be
+        If it does so elsewhere, it has crashed, or was disarmed by someone: it must not be
         armed again.
 
         Args:
-            moving: whether the robot is under way.
+            moving: whether the robot is in motion.
 
         Raises:
-            Fault: it has stopped them elsewhere.
+            Fault: it has disarmed elsewhere.
         """
         tells, state = self._vehicle.telemetry, self._vehicle.state()
         below = self._kind == "sub" and state.place.height < -TOUCHING
@@ -52,19 +52,18 @@ class Motors:
         elif tells.armed():
             self._flown = below or (self._kind == "copter" and (self._flown or tells.airborne()))
         elif self._flown:
-            raise Fault(MOTORS_OFF, "its motors have stopped on its way: it has crashed, or somebody did it")
+            raise Fault(MOTORS_OFF, "it has disarmed in motion: it has crashed, or was disarmed by someone")
 
     def check_stands(self, said: str) -> None:
-        """Make sure that a vehicle that has started anew has yet to take off, and so can begin anew.
+        """Check that a vehicle that has restarted has yet to take off, and so can begin again.
 
         Args:
             said: of its start.
 
         Raises:
-            Fault: it was on its way: it has forgotten what it was doing, and may not know where it is.
+            Fault: it was in motion: it has lost its state, and may not know its position.
         """
         armed = self._vehicle.telemetry.armed()
         if armed or self._flown or self._kind != "copter":
-            motors = "on" if armed else "off"
-            why = f"{said} on its way, with its motors {motors}: nothing can be carried on"
+            why = f"{said} in motion, {'armed' if armed else 'disarmed'}: its program cannot be continued"
             raise Fault(VEHICLE_RESTARTED, why, DOWN[self._kind] if armed else HOLD)

@@ -31,22 +31,22 @@ def obeying(response: str, robot: Robot, vehicle: Vehicle, track: Track) -> Call
 
 
 def undone(response: str, robot: Robot, vehicle: Vehicle, tolerance: float) -> str:
-    """Return why a vehicle has not done what it was told to, although nothing is left to do; or nothing.
+    """Return why a vehicle with nothing left to do has not carried out its command; empty where it has.
 
-    One whose motors are off further from home than `tolerance`, metres, does not return; a submarine
-    whose motors are off below does not hold.
+    One that is disarmed further from home than `tolerance`, metres, does not return; a submarine
+    that is disarmed below the surface does not hold.
     """
     state = vehicle.state()
     away = aside(robot.home, state.place)
     if response == RETURN and not state.armed and away > tolerance:
         return f"it stands {away:.0f} m from its home"
     if response == HOLD and robot.vehicle == "sub" and not state.armed and state.place.height < -TOUCHING:
-        return "its motors are off, below the surface"
+        return "it is disarmed, below the surface"
     return ""
 
 
 def away(robot: Robot, vehicle: Vehicle, tolerance: float) -> str:
-    """Return that a vehicle on the ground is further than so many metres from home; empty where it is not."""
+    """Return that a vehicle on the ground is further than `tolerance` metres from home, or nothing."""
     return misplaced(robot.home, robot.home, vehicle.state().place, tolerance)
 
 

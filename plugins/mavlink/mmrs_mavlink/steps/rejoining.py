@@ -1,6 +1,6 @@
-"""Where a vehicle may be that is still in the air: on the leg that was under way, or on its run.
+"""Possible positions of a vehicle that is still in the air: on its last leg, or on its run.
 
-What is left of a run it flies to its end by itself.
+It flies the rest of a run to its end without further commands.
 """
 
 from __future__ import annotations
@@ -12,18 +12,18 @@ from mmrs_runtime.controllers.geodesy import at_height, ends_of
 from ..program import GoTo, Land, Place, Robot, TakeOff
 
 OFF_ITS_WAY = 5.0
-"""Metres that a robot may be from the way of its program when it is to go on in the air."""
+"""Metres that a robot may be from the path of its program to continue in the air."""
 
 ALIKE = 0.1
 """Metres by which one leg must be nearer than another to count as that: of two, the later one is meant."""
 
 
 def way_ahead(robot: Robot, move: str, here: Place, locate: Callable[[GoTo], Place]) -> tuple[Place, ...]:
-    """Return the ends of the legs that a vehicle may be on without another word from its program.
+    """Return the ends of the legs that a vehicle may be on without another command of its program.
 
     Args:
         robot: whose program it is.
-        move: that was under way.
+        move: that was in progress.
         here: where that move began.
         locate: finds where a movement leads to.
     """

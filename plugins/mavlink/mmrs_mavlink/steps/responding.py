@@ -1,4 +1,4 @@
-"""Carries out what a robot does when something has gone wrong, or when somebody orders it."""
+"""Carries out the responses of a robot to faults and to orders."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from .responses import DOWN, alone, policy_for
 SURFACE = "SURFACE"
 STOP_THRUST = "STOP_THRUST"
 OFF = "off"
-"""To stop the motors, whatever happens then."""
+"""To disarm, whatever happens then."""
 
 RESTS: Mapping[str, Mapping[str, str]] = {
     "copter": {LAND: modes.LAND, SURFACE: modes.HOLD},
@@ -28,7 +28,7 @@ RESTS: Mapping[str, Mapping[str, str]] = {
 """The mode in which each kind of vehicle comes down, or up: a rover stops, and a copter cannot surface."""
 
 HINDRANCES = frozenset({NO_PROGRESS, REFUSED})
-"""Faults that say that a vehicle does not do what it was told, while all else is well."""
+"""Faults of a vehicle that does not carry out a command, while all else is well."""
 
 Movement = Callable[[], None]
 Repeat = Callable[[Movement], None]
@@ -36,12 +36,12 @@ Repeat = Callable[[Movement], None]
 
 @dataclass(frozen=True, slots=True)
 class Course:
-    """What a response comes to, for one robot where it is.
+    """The outcome of a response, for one robot at its position.
 
     Attributes:
         places: that it goes to first, each with its number in the track; None: not on it.
         rest: the mode in which it comes to rest then, or `OFF`.
-        stays: whether somebody must watch it there, as long as its motors run.
+        stays: whether an operator must watch it there, as long as it is armed.
     """
 
     places: tuple[tuple[int | None, Place], ...]
@@ -78,12 +78,12 @@ def respond(
         response: as in policies, or ``NOTHING``.
         robot: whose program it was.
         vehicle: its vehicle.
-        track: the places it has passed, with the moves that ended there; what it has gone back is
-            taken off, so that another response begins where this one was left.
+        track: the positions it has passed, with the moves that ended there; what it has retraced is
+            removed, so that another response begins where this one was left.
         repeat: carries out a movement, again if it was held in the middle of it.
 
     Returns:
-        Whether the vehicle now holds and somebody must watch it.
+        Whether the vehicle now holds and must be watched.
 
     Raises:
         Fault: the response cannot be carried out either.
@@ -112,18 +112,18 @@ def respond_or_less(
     *,
     low: bool,
 ) -> bool:
-    """Carry out a response, or what is plainer, where the vehicle does not do what it is told.
+    """Carry out a response, or a simpler one, where the vehicle does not carry out a command.
 
     Args:
         response, robot, vehicle, track, repeat: as for `respond`.
-        tell: is told the response that cannot be carried out, why, and what is done instead.
-        low: whether the battery is, so that nothing may be waited for in the air.
+        tell: called with the response that cannot be carried out, why, and its replacement.
+        low: whether the battery is, so that there must be no waiting in the air.
 
     Returns:
-        Whether the vehicle now holds and somebody must watch it.
+        Whether the vehicle now holds and must be watched.
 
     Raises:
-        Fault: nothing plainer can be carried out either, or something else has gone wrong.
+        Fault: no simpler response can be carried out either, or there is another fault.
     """
     while True:
         try:
@@ -137,7 +137,7 @@ def respond_or_less(
 
 
 def comes_down_alone(robot: Robot, vehicle: Vehicle, policies: Sequence[Policy]) -> bool:
-    """Return whether a vehicle comes down when it hears nobody any more, or is down.
+    """Return whether a vehicle lands once it receives no messages, or has landed.
 
     Args:
         robot: whose policies count, after those of the wait.

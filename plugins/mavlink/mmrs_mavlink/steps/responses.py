@@ -12,14 +12,14 @@ from mmrs_runtime.policies import ESCAPE, HOLD, LAND, NOTHING, RETURN, SURFACE, 
 from ..program import Policy, Robot
 
 BLOCKED = (
-    "cannot fly straight to an emergency area from everywhere on its way: where nobody hears it, its vehicle"
-    " goes back the way it came instead"
+    "cannot fly straight to an emergency area from everywhere on its path: when its link is lost, its vehicle"
+    " retraces its path instead"
 )
 
-NO_ESCAPE = "has no clear way to an emergency area: where it is to go there, it goes home the way it came"
+NO_ESCAPE = "has no clear path to an emergency area: instead of going there, it retraces its path home"
 
 NEEDS_POSITION = frozenset({RETURN, ESCAPE, HOLD})
-"""Responses that nobody can carry out who does not know where it is."""
+"""Responses that need a known position."""
 
 DOWN: Mapping[str, str] = {"copter": LAND, "sub": SURFACE, "rover": HOLD}
 """What is left, by kind of vehicle, where nothing else can be carried out: a rover halts."""
@@ -37,26 +37,26 @@ def policy_for(event: str, robot: Robot, first: Sequence[Policy] = ()) -> Policy
 
 
 def lacks_escape(robot: Robot) -> bool:
-    """Return whether a robot is to go to an emergency area some time, and there is no way to any."""
+    """Return whether a robot is to go to an emergency area some time, and has no path to any."""
     waits = [policy for step in robot.steps if step.then is not None for policy in step.then.policies]
     flees = any(policy.response == ESCAPE for policy in (*robot.policies, *waits))
     return flees and not robot.escapes
 
 
 def alone(policy: Policy, robot: Robot) -> Policy:
-    """Return what the vehicle is told to do by itself about a lost link.
+    """Return the vehicle's failsafe for a lost link.
 
     It flies to the nearest rally point in a straight line and knows nothing of forbidden areas: where
-    such a line may be blocked, it goes back the way it came instead.
+    such a line may be blocked, it retraces its path instead.
     """
     blocked = policy.response == ESCAPE and not robot.straight
     return replace(policy, response=RETURN) if blocked else policy
 
 
 def response_to(event: str, robot: Robot, first: Sequence[Policy] = ()) -> str:
-    """Return how a robot responds to an event, or what comes nearest to it that can be done then.
+    """Return a robot's response to an event, or the nearest one that is possible then.
 
-    Without a position there is no way back and, for what flies, no staying either: it comes down.
+    Without a position it can neither return nor, if it flies, hold position: it lands.
     """
     response = policy_for(event, robot, first).response
     if event == POSITION_LOST and robot.vehicle == "copter" and response in NEEDS_POSITION:

@@ -39,9 +39,9 @@ BEAT_SECONDS = 3.0
 ANYWHERE = frozenset({LAND, "SURFACE", "STOP_THRUST"})
 """Responses that need neither a position nor much energy."""
 
-GROUND_ONLY = f"carries on after {VEHICLE_RESTARTED} before it sets out only; on its way it does {{}} then"
+GROUND_ONLY = f"carries on after {VEHICLE_RESTARTED} before it sets out only; in motion it does {{}} then"
 CRITICAL = ("critical", "emergency")
-"""What vehicles say of batteries that are nearly empty; of others, policies know better what to do."""
+"""Vehicles' messages about nearly empty batteries; of others, policies know the better response."""
 
 Decide = Callable[[str, str, str], None]
 
@@ -59,14 +59,14 @@ class _Watched:
 
 
 class Watch:
-    """Raises what ends a robot's program: a lost link, a pilot, whatever policies name.
+    """Raises what ends a robot's program: a lost link, a pilot, and the events of policies.
 
     Attributes:
         current: the policies of the wait that the robot is in.
-        track: the places that the robot has passed in this sortie.
-        decide: is told what was decided without ending the program: event, reason, response.
-        say: tells people what the robot hears.
-        moving: whether the robot is under way; one that stands on the ground may start anew.
+        track: the positions that the robot has passed in this sortie.
+        decide: called with decisions that do not end the program: event, reason, response.
+        say: reports messages of the robot to the operator.
+        moving: whether the robot is in motion; one that stands on the ground may restart.
     """
 
     def __init__(self, robot: Robot, clock: Clock) -> None:
@@ -96,7 +96,7 @@ class Watch:
         vehicle.insist(self._insists)
 
     def forewarn(self) -> None:
-        """Tell people before the robot moves what of its policies does not count, or not yet."""
+        """Report, before the robot moves, policies that do not apply, or not yet."""
         if policy_for(VEHICLE_RESTARTED, self._robot).response == CONTINUE:
             self.say(GROUND_ONLY.format(DOWN[self._robot.vehicle]))
         if lacks_escape(self._robot):
@@ -105,12 +105,12 @@ class Watch:
             self.say(missing)
 
     def relax(self, handled: Collection[str], response: str) -> None:
-        """Heed less from now on: the robot already responds to something.
+        """Watch for less from now on: the robot already responds to an event.
 
         Args:
             handled: the events that it has responded to.
-            response: what it does; what this cannot be carried out with, or would end by, is heeded,
-                and always the link, and who has the vehicle.
+            response: its response; what would prevent or end that is still watched for,
+                and always the link, and external control.
         """
         heeded = {POSITION_LOST, VEHICLE_RESTARTED}
         if response not in COMES_DOWN:
@@ -119,16 +119,16 @@ class Watch:
         self._response = response
 
     def let_go(self) -> None:
-        """Heed nothing but the link from now on: somebody else has the vehicle."""
+        """Watch only the link from now on: the vehicle is under external control."""
         self._heeded, self._hands_off = frozenset(), True
 
     def answers_alone(self) -> bool:
-        """Return whether a vehicle that is heard again answers its lost link by itself.
+        """Return whether a vehicle whose link is restored has answered the loss with its failsafe.
 
-        One that heard us all the time does not, and goes on as it was told.
+        One that received messages all the time has not, and continues its last command.
 
         Raises:
-            Fault: a pilot has it, as far as anybody can tell, or it does not tell its mode.
+            Fault: a pilot has it, as far as is known, or its mode is unknown.
         """
         if self._watched is None:
             return True
@@ -139,18 +139,18 @@ class Watch:
             self._out_of_reach = self._hands_off = False
 
     def _accept(self, watched: _Watched) -> bool:
-        """Return whether the vehicle does something by itself, and let it go on with that."""
+        """Return whether a failsafe of the vehicle is active, and leave it active."""
         link, vehicle, answers = watched.link, watched.vehicle, True
         limit = self._clock.patience(BEAT_SECONDS, 1.0)
         if not link.wait(lambda: link.since("HEARTBEAT") < limit, limit):
-            raise Fault(LINK_LOST, "its heartbeat is not heard")
+            raise Fault(LINK_LOST, "no heartbeat is received from it")
         if vehicle.telemetry.mode() not in vehicle.modes_alone and vehicle.telemetry.armed():
             answers = watched.departures.find(moving=self.moving) is not None
         vehicle.accept_own_modes()
         return answers
 
     def tighten(self) -> None:
-        """Heed everything again: the robot goes on with its program."""
+        """Watch for everything again: the robot continues its program."""
         self._heeded, self._response = None, ""
         self._hands_off = False
         self.renew()
@@ -168,7 +168,7 @@ class Watch:
 
     @property
     def restarted(self) -> bool:
-        """Return whether the vehicle has started anew since `renew`."""
+        """Return whether the vehicle has restarted since `renew`."""
         return self._anew or (self._watched is not None and self._watched.signs.restarted)
 
     @property
@@ -227,7 +227,7 @@ class Watch:
         return low or (vehicle.telemetry.battery_trouble() if state.armed and self.moving else "")
 
     def _weigh(self, event: str, why: str, *, at_once: bool = False) -> None:
-        """Raise a fault for what has lasted long enough, or counts at once, and must not be borne."""
+        """Raise a fault for what has lasted long enough, or counts at once, and must not be tolerated."""
         if not why:
             self._since.pop(event, None)
             self._borne.discard(event)
@@ -241,7 +241,7 @@ class Watch:
             self._judge(event, why, policy)
 
     def _judge(self, event: str, why: str, policy: Policy) -> None:
-        """Raise a fault, or keep that it is borne."""
+        """Raise a fault, or record that it is tolerated."""
         if event == VEHICLE_RESTARTED:
             self._note_restart()
         if policy.response != CONTINUE:
@@ -266,16 +266,16 @@ class Watch:
             raise Fault(LINK_LOST, f"the vehicle has been silent for {silent:.0f} s{why}")
 
     def _answer(self, event: str, said: str, watched: _Watched) -> None:
-        """Answer what the vehicle has answered by leaving its mode, as policies say.
+        """Answer, as policies define, what the vehicle has answered by leaving its mode.
 
-        Where the robot bears that, or does so already, the vehicle is taken back, if that makes sense; one
-        that was out of reach, or stands still where it may start anew, is let be.
+        If the robot tolerates that, or does the same already, the vehicle is brought back, if that makes
+        sense; one that was out of reach, or stands still where it may restart, is left alone.
 
         Raises:
             Fault: what is to be answered, or Displaced.
         """
         vehicle = watched.vehicle
-        why = f"{said}; by itself it has gone into mode {vehicle.state().mode}"
+        why = f"{said}; a failsafe switched it to mode {vehicle.state().mode}"
         if event == VEHICLE_RESTARTED:
             self._note_restart()
             if not self.moving:
@@ -300,7 +300,7 @@ class Watch:
             self._watched.signs.renew()
 
     def _insists(self, fault: Fault) -> bool:
-        """Return whether a vehicle that goes elsewhere by itself, while it is told a mode, is told again."""
+        """Return whether a vehicle that leaves its commanded mode is commanded again."""
         assert self._watched is not None
         vehicle, departures = self._watched.vehicle, self._watched.departures
         event, said = fault.event, vehicle.telemetry.announcements.of_this_mode
@@ -316,14 +316,14 @@ class Watch:
         goes_on = self._response or CONTINUE
         departures.taken_back = self._clock.now()
         self.decide(event, why, goes_on)
-        self.say(f"takes its vehicle back, {goes_on} goes on: {event}: {why}")
+        self.say(f"takes its vehicle back, {goes_on} continues: {event}: {why}")
 
     def _hindrance(self, event: str, said: str, vehicle: MavlinkVehicle) -> str:
-        """Return why a vehicle that does something by itself is not taken back; empty if it is.
+        """Return why a vehicle with an active failsafe is not brought back; empty if it is.
 
         Args:
             event: that it answers.
-            said: what it has said about that.
+            said: its message about that.
             vehicle: it.
         """
         if self._response in ANYWHERE:
@@ -336,10 +336,10 @@ class Watch:
         return f"it is not taken back: {short}" if short else ""
 
     def check_hands(self, event: str) -> None:
-        """Make sure, right before the vehicle is told how to respond, that no pilot has just taken it.
+        """Check, right before the vehicle is commanded to respond, that no pilot has just taken control.
 
         Args:
-            event: that is responded to; a mode in which the vehicle answers it by itself is no pilot's.
+            event: that is responded to; a mode in which the vehicle's failsafe answers it is not a pilot's.
 
         Raises:
             Fault: one has.

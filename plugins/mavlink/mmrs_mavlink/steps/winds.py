@@ -1,4 +1,4 @@
-"""The mean wind of a sortie: gusts come and go, ways back last for minutes."""
+"""The mean wind of a sortie: gusts come and go, return paths last for minutes."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ class MeanWind:
     """Averages the wind that a vehicle tells: evenly at first, later the more the newer it is."""
 
     def __init__(self) -> None:
-        """Know nothing of the wind yet."""
+        """Create without wind."""
         self._mean: tuple[float, ...] | None = None
         self._begun = self._last = 0.0
 

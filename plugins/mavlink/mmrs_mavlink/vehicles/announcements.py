@@ -1,4 +1,4 @@
-"""What a vehicle says that it does by itself, and when it has changed its mode."""
+"""Messages of a vehicle about its active failsafes, and about the end of these."""
 
 from __future__ import annotations
 
@@ -33,10 +33,10 @@ WORDS = (
     (BATTERY_LOW, ABOUT_BATTERIES),
     (LINK_LOST, ABOUT_LINKS),
 )
-"""What ArduPilot and PX4 say when they answer something by themselves, in small letters."""
+"""Messages of ArduPilot and PX4 when a failsafe acts, in lower case."""
 
 CLEARED = "cleared"
-"""In what they say when it is over: of a lost link, nobody can hear more than that."""
+"""Parts of messages when it is over: for a lost link, no more than that can be received."""
 
 RECENT_SECONDS = 5.0
 """For how long what was said counts."""
@@ -49,7 +49,7 @@ class Announcements:
     """Reads what one vehicle says; an observer of its link, for its modes."""
 
     def __init__(self, clock: Clock, texts: Texts) -> None:
-        """Have heard nothing."""
+        """Create without messages."""
         self._clock = clock
         self._texts = texts
         self._mode: int | None = None
@@ -63,7 +63,7 @@ class Announcements:
             self._mode = message.custom_mode
 
     def recent(self) -> tuple[tuple[str, Text], ...]:
-        """Return what the vehicle has just said that it answers by itself: events and texts, oldest first."""
+        """Return the failsafes that the vehicle has just reported: events and texts, oldest first."""
         said = self._texts.since(self._clock.now() - self._clock.patience(RECENT_SECONDS))
         return tuple((event, text) for text in said for event in _events(text))
 

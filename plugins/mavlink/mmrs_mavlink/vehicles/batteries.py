@@ -1,4 +1,4 @@
-"""What a vehicle tells of each of its batteries (BATTERY_STATUS), one after the other."""
+"""Reports of a vehicle's batteries (BATTERY_STATUS), one after the other."""
 
 from __future__ import annotations
 
@@ -10,15 +10,15 @@ from ..links.link import Message
 
 
 class Batteries:
-    """Keeps what was told last of each battery but the payload's; an observer of the vehicle's link."""
+    """Keeps the last report of each battery except the payload's; an observer of the vehicle's link."""
 
     def __init__(self, component: Callable[[], int]) -> None:
-        """Have heard nothing; `component` gives that of the autopilot, which tells its own batteries."""
+        """Create without reports; `component` gives that of the autopilot, which reports its batteries."""
         self._component = component
         self._told: dict[int, tuple[int, int]] = {}
 
     def __call__(self, message: Message, outgoing: bool) -> None:
-        """Keep what a message tells of a battery that the vehicle moves by."""
+        """Keep the report of a battery that propels the vehicle."""
         if outgoing or message.get_type() != "BATTERY_STATUS":
             return
         payload = message.battery_function == mavlink.MAV_BATTERY_FUNCTION_PAYLOAD

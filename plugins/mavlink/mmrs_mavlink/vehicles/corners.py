@@ -13,14 +13,14 @@ STRAIGHT_DEGREES = 10.0
 
 
 def goes_through(step: Step, following: Step | None, here: Place) -> bool:
-    """Return whether a vehicle goes through the end of a move without a stop.
+    """Return whether a vehicle passes the end of a move without a stop.
 
-    It does where the behaviour says so, nothing is to be done there but to notify, and the way goes
-    straight on. Whoever calls knows whether slots keep it from going on.
+    It does if the behaviour asks for it, the only actions there are notifies, and the path continues
+    straight. The caller knows whether slots keep it from continuing.
 
     Args:
         step: of the move.
-        following: the step after it; None where that is not known.
+        following: the step after it; None where unknown.
         here: where the move begins.
     """
     fluid = isinstance(step.then, Then) and step.then.fluid

@@ -1,7 +1,7 @@
-"""Whether a vehicle keeps to the legs of its run: nobody has checked the ground beside them.
+"""Whether a vehicle keeps to the legs of its run: the space beside them is not verified.
 
 Another ground station may give a vehicle another mission at any moment, and what it flies then is
-known by where it flies only.
+known only from where it flies.
 """
 
 from __future__ import annotations

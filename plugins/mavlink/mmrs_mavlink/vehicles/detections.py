@@ -1,7 +1,7 @@
-"""What a vehicle has told that it detected: by a text ``detected NAME``, or a named value above 0.
+"""Detections of a vehicle: a text ``detected NAME``, or a named value above 0.
 
-A text may say where: ``detected NAME at LATITUDE,LONGITUDE``. Else, or where the vehicle has no place on
-Earth, it is where the vehicle was then.
+A text may have a position: ``detected NAME at LATITUDE,LONGITUDE``. Otherwise, or where the vehicle has no
+geographic position, it is the vehicle's position at that time.
 """
 
 from __future__ import annotations
@@ -18,15 +18,15 @@ _PLACED = re.compile(r"(?P<name>.+) at (?P<latitude>-?\d+(\.\d+)?), ?(?P<longitu
 
 
 class Detections:
-    """All that was detected since the link was opened; an observer of the link.
+    """All detections since the link was opened; an observer of the link.
 
     Attributes:
-        names: of it.
-        places: where it is, by name, as was told last.
+        names: of the detections.
+        places: their last reported positions, by name.
     """
 
     def __init__(self, here: Callable[[], Place | None] = lambda: None) -> None:
-        """Know of nothing yet; `here`: where the vehicle is, None where nobody knows."""
+        """Create without detections; `here`: the vehicle's position, None where unknown."""
         self.names: frozenset[str] = frozenset()
         self.places: dict[str, Place] = {}
         self._here = here

@@ -1,4 +1,4 @@
-"""A vehicle that is not there: it goes where it is told at a steady speed, for trials without a link."""
+"""A simulated stand-in for a vehicle: it moves at a steady speed, for dry runs without a link."""
 
 from __future__ import annotations
 
@@ -61,7 +61,7 @@ class DryVehicle:
         self._armed = False
 
     def go_to(self, place: Place, speed: float | None, look: Look | None, through: bool) -> None:
-        """Be at a place after the time that the way takes."""
+        """Be at a position after the time that the path takes."""
         self._mode = GUIDED
         self.rest(distance(self._here, place) / (speed or CRUISE))
         self._here = place
@@ -78,7 +78,7 @@ class DryVehicle:
             reached(seq)
 
     def rest(self, seconds: float) -> None:
-        """Stay for so many seconds."""
+        """Stay for `seconds`."""
         until = self._clock.now() + seconds
         while (left := until - self._clock.now()) > 0:
             before = self._clock.now()
@@ -95,7 +95,7 @@ class DryVehicle:
         """Measure nothing: there is nothing to measure."""
 
     def tell_ground(self, text: str) -> None:
-        """Tell nobody: there is no link."""
+        """Do nothing: there is no link."""
 
     def hold(self) -> bool:
         """Stay."""
@@ -104,20 +104,20 @@ class DryVehicle:
         return False
 
     def carry_on(self) -> None:
-        """Be ready."""
+        """Become ready."""
         self._mode = GUIDED
 
     def check(self) -> None:
-        """Do nothing: nobody takes over what is not there."""
+        """Do nothing: there is no external control."""
 
     def take_back(self) -> None:
-        """Do nothing: it does nothing by itself."""
+        """Do nothing: there are no failsafes."""
 
     def regain(self) -> None:
-        """Do nothing: it does nothing by itself."""
+        """Do nothing: there are no failsafes."""
 
     def surface(self) -> None:
-        """Be at the surface."""
+        """Move to the surface."""
         self._mode = SURFACE
         self._here = at_height(self._here, 0.0)
 
@@ -128,7 +128,7 @@ class DryVehicle:
         """Do nothing."""
 
     def evidence(self) -> DryVehicle:
-        """Return itself: it does what it is told."""
+        """Return itself: it carries out every command."""
         return self
 
     def in_mode(self, mode: str) -> bool:
@@ -140,7 +140,7 @@ class DryVehicle:
         return True
 
     def bound_for(self, place: Place, speed: float | None) -> bool:
-        """Return that it goes wherever it was told."""
+        """Return that it goes to every commanded position."""
         return True
 
     def state(self) -> State:

@@ -1,9 +1,9 @@
 """The vehicle's own fences, by radius and height: they must not stop it in the middle of its program.
 
-An ArduPilot whose fence is switched on heeds whatever FENCE_TYPE says, which is at first also a circle
-of FENCE_RADIUS about home and a height of FENCE_ALT_MAX. Where its owner had it off, only the areas of
-the program are fenced; where it was on, its owner wanted all of it, and a program that goes farther is
-refused. A PX4 always heeds GF_MAX_HOR_DIST and GF_MAX_VER_DIST, where they are not 0.
+An ArduPilot whose fence is enabled obeys all of FENCE_TYPE, which by default includes a circle
+of FENCE_RADIUS about home and a height of FENCE_ALT_MAX. If its owner had it disabled, only the areas of
+the program are fenced; if it was enabled, the owner wants all of it, and a program that goes farther is
+refused. A PX4 always obeys GF_MAX_HOR_DIST and GF_MAX_VER_DIST, where they are not 0.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ PX4 = ("GF_MAX_HOR_DIST", "GF_MAX_VER_DIST")
 def enclose(
     link: Link, home: Place, places: Sequence[Place], rally: Sequence[Item], *, polygons: bool
 ) -> Iterator[str]:
-    """Make sure that the vehicle's own fences leave a program room; yield what people should know.
+    """Check that the vehicle's own fences leave a program room; yield what operators should know.
 
     Args:
         link: to the vehicle.
@@ -41,7 +41,7 @@ def enclose(
         polygons: whether the program has areas to fence.
 
     Raises:
-        Refused: a fence is in the way, or the vehicle does not confirm which fences it heeds.
+        Refused: a fence is in the way, or the vehicle does not confirm which fences it obeys.
     """
     if is_px4(link):
         values = parameters.read(link, PX4)
@@ -66,7 +66,7 @@ def _heed_polygons(link: Link, heeded: int, wanted: int) -> Iterator[str]:
     if not parameters.write(link, "FENCE_TYPE", wanted):
         raise Refused(f"the fence: the vehicle does not confirm FENCE_TYPE = {wanted}")
     alone = wanted == POLYGONS
-    what = "is the areas of the program alone" if alone else "heeds the areas of the program, too"
+    what = "is the areas of the program alone" if alone else "obeys the areas of the program, too"
     yield f"FENCE_TYPE = {wanted}, which was {heeded}: its fence {what}"
 
 
@@ -97,5 +97,5 @@ def _far_from_rally(places: Sequence[Place], rally: Sequence[Item], kilometres: 
         default=0.0,
     )
     if farthest > kilometres * 1000.0:
-        limit = f"RALLY_LIMIT_KM = {kilometres:g}: return by itself"
+        limit = f"RALLY_LIMIT_KM = {kilometres:g}: failsafe return"
         yield f"{limit}: (beware: from {farthest:.0f} m away it goes home, and not to a rally point)"

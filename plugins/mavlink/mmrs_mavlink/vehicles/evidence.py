@@ -1,9 +1,9 @@
-"""What shows that a vehicle obeys: nothing that it was told, and nothing that wind or chance may do.
+"""Evidence that a vehicle obeys: neither its commands nor what wind or chance may do.
 
-A mode counts when a heartbeat has shown it since. Where a vehicle goes is what its autopilot itself
-tells as its target (POSITION_TARGET_GLOBAL_INT, POSITION_TARGET_LOCAL_NED), asked for while somebody
-waits. Only of vehicles that never tell it the motion decides: straight to the place, at a pace at which
-nothing drifts.
+A mode counts when a heartbeat has shown it since. The direction of a vehicle is what its autopilot
+reports as its target (POSITION_TARGET_GLOBAL_INT, POSITION_TARGET_LOCAL_NED), requested while an order
+waits. Only for vehicles that never report it the motion decides: straight to the position, at a speed at
+which nothing drifts.
 """
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ class LinkEvidence:
     """Looks at what a vehicle has told since an instant; nothing here waits."""
 
     def __init__(self, link: Link, telemetry: Telemetry, kind: str, *, geographic: bool) -> None:
-        """Let nothing count that was told up to now."""
+        """Discard all evidence so far."""
         self._link, self._telemetry, self._kind = link, telemetry, kind
         self._target = GLOBAL if geographic else LOCAL
         self._begun = link.clock.now()
@@ -58,15 +58,15 @@ class LinkEvidence:
         return self._beats() and self._word() == wanted
 
     def is_off(self) -> bool:
-        """Return whether a heartbeat has shown since that the motors are off."""
+        """Return whether a heartbeat has shown since that it is disarmed."""
         return self._beats() and not self._telemetry.armed()
 
     def bound_for(self, place: Place, speed: float | None) -> bool:
-        """Return whether the vehicle is steered, and goes to a place, or is there.
+        """Return whether the vehicle is steered, and goes to a position, or is there.
 
         Args:
-            place: that it was told.
-            speed: metres per second that it was told; None: as fast as it goes.
+            place: that was commanded.
+            speed: commanded speed, metres per second; None: the vehicle's own.
         """
         if self._word() != modes.GUIDED:
             return False
@@ -110,7 +110,7 @@ class LinkEvidence:
         return self._link.clock.now() - self._link.since(kind) > self._begun
 
     def _ask(self, kind: str) -> None:
-        """Ask for a message, and not again right away; nobody waits for the acknowledgement."""
+        """Request a message, at most once in a while, without waiting for the acknowledgement."""
         now = time.monotonic()
         if now - self._asked.get(kind, 0.0) < ASK_SECONDS:
             return

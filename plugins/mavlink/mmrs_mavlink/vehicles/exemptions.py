@@ -1,4 +1,4 @@
-"""What a vehicle goes on with by itself although it hears no ground: nothing, where a policy answers."""
+"""Exemptions of a vehicle's failsafe for a lost ground station: none may stay where a policy answers."""
 
 from __future__ import annotations
 
@@ -11,18 +11,18 @@ from . import modes
 
 OPTIONS = "FS_OPTIONS"
 IN_MISSIONS = 2
-"""The bit by which missions go on (ArduCopter's ``GCS_CONTINUE_IF_AUTO``), whatever FS_GCS_ENABLE says."""
+"""The bit that continues missions (ArduCopter's ``GCS_CONTINUE_IF_AUTO``), whatever FS_GCS_ENABLE is."""
 
 PX4_OPTIONS = "COM_DLL_EXCEPT"
 IN_OUR_MODES = 0b111
-"""The bits by which a PX4 goes on in missions, its other own modes, OFFBOARD, whatever NAV_DLL_ACT says."""
+"""The bits by which a PX4 continues missions, its other own modes, OFFBOARD, whatever NAV_DLL_ACT is."""
 
 
 def end_exemption(link: Link, kind: str) -> str:
-    """Have a vehicle respond to a lost link in all modes of programs; return what people should know of it.
+    """Make the failsafe for a lost link act in all modes of programs; return what operators should know.
 
     Raises:
-        Refused: it would go on, and does not confirm that it will not.
+        Refused: it would continue, and does not confirm that it will not.
     """
     coded = parameters.REAL
     if is_px4(link):

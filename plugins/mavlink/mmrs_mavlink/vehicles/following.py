@@ -1,7 +1,7 @@
-"""Whether a vehicle really flies the items of its mission that it says it has left behind.
+"""Whether a vehicle really flies the items of its mission that it reports as passed.
 
 MISSION_CURRENT alone proves nothing: another ground station may set the mission ahead, or replace it,
-and the vehicle then goes straight to an item over ground that nobody has checked.
+and the vehicle then goes straight to an item along a path that is not verified.
 """
 
 from __future__ import annotations
@@ -23,14 +23,15 @@ JUDGED_AFTER = 2
 """How many positions that were sent after it said that it has left an item behind must have come."""
 
 SET_BACK_AFTER = 3
-"""How many must have come since it said that it has gone back: one that starts anew says so, too, and its
-positions tell that by their times."""
+"""How many must have come since it reported an earlier item: one that restarts reports that, too, and its
+positions show the restart by their times.
+"""
 
 
 class Following:
-    """Keeps how near the vehicle has come to each place of a run.
+    """Keeps how near the vehicle has come to each position of a run.
 
-    Between two positions that were told it may have been anywhere that its speed allows; so much is
+    Between two reported positions it may have been anywhere that its speed allows; that distance is
     added to what counts as near.
     """
 
@@ -42,14 +43,14 @@ class Following:
         first: int,
         width: float | None = None,
     ) -> None:
-        """Begin at an item, before the vehicle does: it may be past it when it is heard to fly.
+        """Begin at an item, before the vehicle does: it may have passed it by its next message.
 
         Args:
             trail: of the vehicle, from now on.
             places: by item.
-            item: gives the item that the vehicle is at; less than 0: not known.
+            item: gives the item that the vehicle is at; less than 0: unknown.
             first: that it begins with.
-            width: metres that the vehicle may be beside the legs between the places; None: any number.
+            width: metres that the vehicle may be beside the legs between the positions; None: any number.
         """
         self._trail = trail
         self._places = places
@@ -95,9 +96,9 @@ class Following:
             self._claimed, self._claimed_order = now, self._trail.item_order()
 
     def _count(self) -> None:
-        """Count a position that the vehicle has sent since it last claimed to have left something behind.
+        """Count a position that the vehicle has sent since it last reported an item as passed.
 
-        One that stands still counts as well: at the end of a mission it would else be waited for in vain.
+        One that stands still counts as well: otherwise the wait at the end of a mission would time out.
         """
         order = self._trail.place_order()
         if order > max(self._claimed_order, self._judged_order):

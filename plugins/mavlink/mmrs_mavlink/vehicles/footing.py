@@ -41,7 +41,7 @@ def misplaced(home: Place, start: Place, here: Place, tolerance: float) -> str:
 
 
 def there(start: Place, home: Place) -> str:
-    """Return the way to where a vehicle is to take off, for people.
+    """Return the direction to a vehicle's take-off position, as printed.
 
     >>> there(Geographic(42.3706, 13.35, 0.0), Geographic(42.37, 13.35, 0.0))
     'to 42.370600, 13.350000'

@@ -38,11 +38,11 @@ class Habits(Protocol):
         ...
 
     def end_guiding(self) -> None:
-        """Steer no longer: another mode has been entered, or somebody else has the vehicle."""
+        """Stop steering: another mode was entered, or the vehicle is under external control."""
         ...
 
     def aim(self, place: Place, yaw: float, speed: float | None) -> None:
-        """Have the vehicle go to a place and look in a direction (radians clockwise from north)."""
+        """Command a position and a heading (radians clockwise from north)."""
         ...
 
     def take_off(self, height: float) -> tuple[float, ...]:
@@ -50,11 +50,11 @@ class Habits(Protocol):
         ...
 
     def climbing(self) -> tuple[int, ...]:
-        """Return the numbers of the modes that a take-off may go through by itself."""
+        """Return the numbers of the modes that a take-off may pass through."""
         ...
 
     def paces(self) -> bool:
-        """Return whether the vehicle heeds a commanded speed when it is steered."""
+        """Return whether the vehicle obeys a commanded speed when it is steered."""
         ...
 
     def level(self, height: float) -> tuple[int, float]:
@@ -70,11 +70,11 @@ class Habits(Protocol):
         ...
 
     def select(self, seq: int) -> None:
-        """Have the mission go on at the vehicle's item of that number."""
+        """Continue the mission at the vehicle's item of that number."""
         ...
 
     def enable_fence(self) -> None:
-        """Have the vehicle heed its fence."""
+        """Enable the vehicle's fence."""
         ...
 
 
@@ -94,7 +94,7 @@ class ArduPilot:
         """Do nothing: a target that was sent is forgotten with the mode."""
 
     def aim(self, place: Place, yaw: float, speed: float | None) -> None:
-        """Send a target; speed is told by another command."""
+        """Send a target; the speed needs another command."""
         frame = mavlink.MAV_FRAME_GLOBAL_RELATIVE_ALT_INT
         self._link.send(target(self._link, place, yaw, frame))
 
@@ -107,7 +107,7 @@ class ArduPilot:
         return ()
 
     def paces(self) -> bool:
-        """Return that it heeds DO_CHANGE_SPEED."""
+        """Return that it obeys DO_CHANGE_SPEED."""
         return True
 
     def level(self, height: float) -> tuple[int, float]:

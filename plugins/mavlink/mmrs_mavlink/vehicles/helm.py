@@ -28,7 +28,7 @@ WORDS_SECONDS = 0.5
 """After which a vehicle that refuses has said why."""
 
 PACE_TELLINGS = 3
-"""Behind how many targets a speed is told: all of them are hardly ever lost."""
+"""Number of targets after which the speed is sent: all of them are hardly ever lost."""
 
 AFRESH_SECONDS = 3.0
 """After which at least one new heartbeat should have come, even over a poor link."""
@@ -37,15 +37,15 @@ AFRESH_SECONDS = 3.0
 class Helm:
     """Keeps a vehicle in the mode that the program needs.
 
-    Modes are believed when heartbeats show them, never by acknowledgement alone. A mode that
-    nobody here asked for means that a pilot has taken over: the program then ends and leaves the
-    vehicle alone. One that was asked for lately is no pilot's, although something else was asked for
-    since: it is only late, or a copy of it was.
+    Modes count when heartbeats show them, never by acknowledgement alone. A mode that
+    was not requested here means that a pilot has taken over: the program then ends and leaves the
+    vehicle alone. One that was requested lately is not a pilot's, although another was requested
+    since: it is only late, or a copy of the request was.
 
     Attributes:
-        alone: modes into which the vehicle goes by itself, as it was told once, beside those of failsafes.
-        explains: finds out what a vehicle has gone elsewhere for while it was told a mode.
-        insists: whether the vehicle is to be told again what it has left by itself while it was told.
+        alone: modes of failsafes that were set, in addition to the default ones.
+        explains: finds the cause of another mode during a mode change.
+        insists: whether a mode is commanded again that the vehicle has left during a mode change.
     """
 
     def __init__(self, link: Link, telemetry: Telemetry, kind: str) -> None:
@@ -86,11 +86,11 @@ class Helm:
         return modes.word_of(self._link, self._kind, self._telemetry.mode())
 
     def enter(self, mode: str) -> None:
-        """Change the mode; the vehicle forgets the speed it was told.
+        """Change the mode; the vehicle forgets the commanded speed.
 
         Raises:
-            Refused: the vehicle does not go into the mode.
-            Fault: it goes into a third one, or out of the wanted one again: somebody has taken over.
+            Refused: the vehicle does not enter the mode.
+            Fault: it enters a third one, or leaves the wanted one again: it is under external control.
         """
         wanted, left = self._modes[mode], self._mode or self.mode()
         self._heed(left)
@@ -117,10 +117,10 @@ class Helm:
         raise Refused(f"the vehicle does not go into mode {mode}")
 
     def regain(self) -> None:
-        """Go into the mode again that the vehicle has left by itself.
+        """Enter the mode again that the vehicle has left without a command.
 
         Raises:
-            Refused: the vehicle does not go into it. Fault: somebody has taken over.
+            Refused: the vehicle does not enter it. Fault: it is under external control.
         """
         mode = self._mode
         self.let_go()
@@ -132,14 +132,14 @@ class Helm:
         self._mode, self._accepted = None, frozenset()
 
     def accept(self, own: Collection[int]) -> None:
-        """Accept that the vehicle is in a mode by itself: one of these, or the present one."""
+        """Accept a mode of a failsafe: one of these, or the present one."""
         self._mode, self._accepted = None, frozenset({*own, self._telemetry.mode()})
 
     def check(self) -> None:
-        """Make sure that nobody else has taken over.
+        """Check that the vehicle is not under external control.
 
         Raises:
-            Fault: the vehicle has left the mode; TAKEN_OVER, or what it has answered by itself.
+            Fault: the vehicle has left the mode; TAKEN_OVER, or the event that its failsafe has answered.
         """
         number, mode = self._telemetry.mode(), self._mode or "take-off"
         if (glimpse := self._glimpse()) not in (None, number):
@@ -152,14 +152,14 @@ class Helm:
             raise self._left(number, mode)
 
     def _strays(self) -> bool:
-        """Return whether the vehicle is in a mode that nobody here has told it."""
+        """Return whether the vehicle is in a mode that was not commanded here."""
         number = self._telemetry.mode()
         return bool(self._accepted) and number not in self._accepted and not self._requests.own(number)
 
     def _glimpse(self) -> int | None:
-        """Return a mode that nobody but a pilot chooses, if one was shown since this was asked last.
+        """Return a mode that only a pilot chooses, if one was shown since the last call.
 
-        What was told the vehicle at that moment may have put it into another since.
+        A command at that moment may have put it into another since.
         """
         known = self._accepted | self.alone
         shown = [number for number in self._requests.shown() if number not in known]
@@ -167,10 +167,10 @@ class Helm:
         return next(pilots, None) if self._accepted else None
 
     def _ask_again(self, number: int) -> None:
-        """Ask once more for the mode, where an earlier request of the program, being late, was heeded.
+        """Request the mode once more, where an earlier request of the program, being late, was obeyed.
 
-        Where it is to be in none, as after what it did by itself, the one that it heeded is accepted.
-        Nobody waits for the acknowledgement: this is called in the middle of other waits.
+        If no mode is required, as after a failsafe, the one that it obeyed is accepted.
+        There is no wait for the acknowledgement: this is called in the middle of other waits.
         """
         now = self._link.clock.now()
         if self._mode is None:
@@ -186,10 +186,10 @@ class Helm:
             self.habits.begin_guiding()
 
     def _heed(self, before: str) -> None:
-        """Make sure that nobody else has taken over while the vehicle is told to leave a mode.
+        """Check that the vehicle is not under external control while it is commanded to leave a mode.
 
         Raises:
-            Fault: somebody has, or what the vehicle has answered by itself is to be answered.
+            Fault: it is, or an event that its failsafe has answered is to be answered.
         """
         glimpse = self._glimpse()
         if self._strays():
@@ -198,19 +198,20 @@ class Helm:
             raise self.explains(self._overtaken(glimpse, before))
 
     def _overtaken(self, number: int, mode: str) -> Fault:
-        """Return that a pilot had chosen a mode before the vehicle heard what it was told."""
+        """Return that a pilot had chosen a mode before the vehicle received its command."""
         self.habits.end_guiding()
         return Fault(
             TAKEN_OVER,
-            f"the vehicle left mode {mode} for {modes.word_of(self._link, self._kind, number)}: somebody else"
-            f" has taken over; what it was told at that moment has put it into mode {self.mode()}",
+            f"the vehicle left mode {mode} for {modes.word_of(self._link, self._kind, number)}: it is under"
+            f" external control; a command at that moment has put it into mode {self.mode()}",
         )
 
     def _explain(self, before: str) -> None:
-        """Accept the mode that a vehicle has left another for by itself, where it is to be told again.
+        """Accept the mode of a failsafe, where the wanted one is to be commanded again.
 
         Raises:
-            Fault: somebody has taken over, or what it has answered by itself is to be answered.
+            Fault: it is under external control, or the event that its failsafe has answered is to be
+                answered.
         """
         fault = self.explains(self._left(self._telemetry.mode(), before))
         if not self.insists(fault):
@@ -223,25 +224,25 @@ class Helm:
         cause = self._telemetry.failsafe()
         said = [text.text for event, text in self._telemetry.announcements.recent() if event == cause]
         if cause is not None and number in modes.answers_to(self._link, self._kind, cause, said):
-            return Fault(cause, f"the vehicle left mode {mode} by itself, for mode {self.mode()}")
+            return Fault(cause, f"the vehicle left mode {mode} without a command, for mode {self.mode()}")
         return Fault(
-            TAKEN_OVER, f"the vehicle left mode {mode} for {self.mode()}: somebody else has taken over"
+            TAKEN_OVER, f"the vehicle left mode {mode} for {self.mode()}: it is under external control"
         )
 
     def until(self, test: Callable[[], bool], seconds: float, doing: str) -> None:
         """Wait until a test holds; time in which the vehicle is silent does not count.
 
         Raises:
-            Fault: it does not in that time; `doing` says what takes too long.
+            Fault: it does not in that time; `doing` names the activity.
         """
         if not self._link.wait(test, self._link.clock.patience(seconds, 2.0), heard=True):
             raise Fault(NO_PROGRESS, f"the vehicle takes too long {doing}")
 
     def arm(self) -> None:
-        """Be in GUIDED and armed.
+        """Enter GUIDED and arm.
 
         Raises:
-            Refused: the vehicle does not arm; it says why, where the vehicle does.
+            Refused: the vehicle does not arm; with its reason, if it gives one.
         """
         self._be_in(modes.GUIDED)
         self.start_motors()
@@ -309,7 +310,7 @@ class Helm:
         self.until(lambda: not self._telemetry.armed(), MODE_SECONDS, "to disarm")
 
     def motors_may_run(self) -> bool:
-        """Return whether the vehicle is armed, or was told to arm, and may be by now."""
+        """Return whether the vehicle is armed, or was commanded to arm, and may be by now."""
         return self._telemetry.armed() or self._arming
 
     def stops_motors(self) -> bool:
@@ -325,11 +326,11 @@ class Helm:
         return True
 
     def pace(self, speed: float | None) -> None:
-        """Go at a speed in metres per second to the target that was just sent and on; None: as before.
+        """Set the speed, metres per second, towards the target just sent and later ones; None: unchanged.
 
-        With the first target that it hears in a mode, or after a take-off, an ArduCopter goes back to its
-        usual speed (``ModeGuided::pva_control_start``), and a Rover heeds no speed before one
-        (``ModeGuided::set_desired_speed``). As any target may be lost, the speed is told behind several.
+        With the first target that it receives in a mode, or after a take-off, an ArduCopter returns to its
+        default speed (``ModeGuided::pva_control_start``), and a Rover obeys no speed before one
+        (``ModeGuided::set_desired_speed``). As any target may be lost, the speed is sent after several.
 
         Raises:
             Refused: the vehicle takes no such speed.
@@ -350,7 +351,7 @@ class Helm:
                 raise
 
     def _be_in(self, mode: str) -> None:
-        """Be in a mode, whatever anybody has chosen while nobody here cared."""
+        """Enter a mode, whatever was chosen while the mode was not controlled here."""
         if self._mode != mode or not (self._telemetry.armed() or self._is_in(mode)):
             self.enter(mode)
 
@@ -358,7 +359,7 @@ class Helm:
         return self._telemetry.mode() == self._modes[mode].number
 
     def _follow_climb(self) -> None:
-        """Accept the modes that a take-off goes through by itself; none here is entered then."""
+        """Accept the modes that a take-off passes through; none here is entered then."""
         through = self.habits.climbing()
         if through:
             self._mode, self._accepted = None, frozenset(through)

@@ -1,7 +1,7 @@
-"""Whether the place that a vehicle tells can be where it is: what it takes for its place may leap.
+"""Position jumps: whether a vehicle's reported position can be its true one.
 
-An estimator that takes another satellite's word, or comes back from none, puts the vehicle elsewhere from
-one message to the next. One of the two places is wrong, and nobody here knows which.
+An estimator that loses or regains satellites may put the vehicle elsewhere from
+one message to the next. One of the two positions is wrong, and it is unknown which.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ MORE_SPEED = 3.0
 """Metres per second by which a vehicle may be faster between two messages than either of them tells."""
 
 LATE_SECONDS = 5.0
-"""By how much a message may be older than the one before it; one that is older yet is of another start."""
+"""By how much a message may be older than the one before it; an older one belongs to another start."""
 
 
 class Leaps:
@@ -33,12 +33,12 @@ class Leaps:
     """
 
     def __init__(self, kind: str, component: Callable[[], int], armed: Callable[[], bool]) -> None:
-        """Have heard nothing.
+        """Create without positions.
 
         Args:
-            kind: of message that tells where it is.
+            kind: of message with the position.
             component: gives that of the autopilot.
-            armed: whether the motors may run; else people may carry the vehicle.
+            armed: whether it may be armed; otherwise people may carry the vehicle.
         """
         self.count = 0
         self.last = ""
@@ -46,7 +46,7 @@ class Leaps:
         self._before: Sign | None = None
 
     def __call__(self, message: Message, outgoing: bool) -> None:
-        """Compare a place with the one that was told before it."""
+        """Compare a position with the one reported before it."""
         if outgoing or message.get_type() != self._kind or message.get_srcComponent() != self._component():
             return
         sign, before = sign_in(message, 0.0), self._before

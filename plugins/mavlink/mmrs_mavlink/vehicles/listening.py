@@ -1,7 +1,7 @@
-"""Whose heartbeats a vehicle counts when it decides whether the ground is still there.
+"""The senders of heartbeats that a vehicle counts as its ground station.
 
-An ArduPilot counts those of one system, or of a range of systems, and never misses a ground that it has
-not heard: where the program is not among them, its failsafe never answers a lost link.
+An ArduPilot counts those of one system, or of a range of systems, and never misses a ground station that it
+has not received: if the program is not among them, its failsafe never answers a lost link.
 """
 
 from __future__ import annotations
@@ -28,13 +28,13 @@ NOT_TOLD = (
 
 
 def check_listening(link: Link) -> str:
-    """Make sure that a vehicle misses this program when it falls silent.
+    """Check that a vehicle's failsafe acts when this program falls silent.
 
     Returns:
-        What people should know, where the vehicle does not tell; else nothing.
+        What operators should know, where the vehicle does not report it; otherwise nothing.
 
     Raises:
-        Refused: it does not count what this program sends.
+        Refused: it does not count this program's heartbeats.
     """
     if is_px4(link):
         return ""
@@ -52,7 +52,7 @@ def check_listening(link: Link) -> str:
 
 
 def _counted(told: Mapping[str, float]) -> tuple[str, range]:
-    """Return the parameter that says which systems count, and these; an empty name: nobody knows."""
+    """Return the parameter that defines which systems count, and these; an empty name: unknown."""
     name = next((each for each in (FIRST, OF_OLD) if each in told), "")
     first = round(told.get(name, 0.0))
     last = round(told.get(LAST, 0.0)) if name == FIRST else 0

@@ -63,11 +63,11 @@ class MavlinkVehicle:
         Args:
             link: open.
             kind: ``copter``, ``sub`` or ``rover``.
-            home: of the robot, as its program says.
-            acceptance: metres from a place at which it counts as reached; None: as `travel` says.
-            travel: how carefully it is to go.
+            home: of the robot, as in its program.
+            acceptance: acceptance radius in metres; None: as `travel` defines.
+            travel: travel mode.
             home_tolerance: metres that the vehicle may be from where it is to stand.
-            tell: is given what people should know, as what the vehicle does by itself.
+            tell: called with what operators should know, such as the vehicle's failsafes.
         """
         self.start = home
         self._tell = tell
@@ -116,18 +116,18 @@ class MavlinkVehicle:
             self._helm.habits.enable_fence()
 
     def check(self) -> None:
-        """Make sure that nobody else has taken over.
+        """Check that the vehicle is not under external control.
 
         Raises:
-            Fault: somebody has, or the vehicle has answered something by itself.
+            Fault: it is, or a failsafe has answered an event.
         """
         self._helm.check()
 
     def answer_lost_link(self, response: str, after: float | None = None) -> None:
-        """Have the vehicle respond by itself when it has not heard the ground for some seconds.
+        """Set the failsafe for a lost ground station.
 
         Raises:
-            Refused: it cannot respond so, does not say that it will, or does not listen to this program.
+            Refused: it cannot respond so, does not confirm that it will, or does not count this program.
         """
         if response != "CONTINUE" and not self._listens:
             for said in (check_listening(self._link), end_exemption(self._link, self._kind)):
@@ -145,10 +145,10 @@ class MavlinkVehicle:
             self._tell(otherwise)
 
     def answer_breach(self, response: str) -> None:
-        """Have the vehicle respond by itself when it breaks its fence.
+        """Set the failsafe for a broken fence.
 
         Raises:
-            Refused: it cannot respond so, or does not say that it will.
+            Refused: it cannot respond so, or does not confirm that it will.
         """
         preparation.answer_breach(self._link, self._kind, response)
 
@@ -179,7 +179,7 @@ class MavlinkVehicle:
         return abs(self._telemetry.here().height - height) <= self._acceptance
 
     def _has_climbed(self) -> bool:
-        """Return whether a vehicle that climbs by itself has ended that, wherever it has.
+        """Return whether a vehicle's own climb has ended, at whatever height.
 
         A PX4 takes for home where it leaves the ground, by when its height has drifted, or it has risen.
         """
@@ -206,7 +206,7 @@ class MavlinkVehicle:
         self._steering.go_to(place, speed, look, through)
 
     def turn(self, look: Look) -> None:
-        """Turn until a device points at something; a device with a gimbal turns by itself."""
+        """Turn until a device points at a target; a device with a gimbal turns on its own."""
         self._steering.turn(look)
 
     def fly(self, first: int, last: int, reached: Callable[[int], None]) -> None:
@@ -214,7 +214,7 @@ class MavlinkVehicle:
 
         Raises:
             Refused: the vehicle has another mission by now, or does not begin with that item.
-            Fault: no item was reached for too long, or somebody else has set the mission ahead or back.
+            Fault: no item was reached for too long, or the mission was set ahead or back externally.
         """
         self._helm.arm()
         end = self._mission.fly(first, last, reached)
@@ -222,21 +222,21 @@ class MavlinkVehicle:
         self._steering.stay(end)
 
     def rest(self, seconds: float) -> None:
-        """Stay for so many seconds."""
+        """Stay for `seconds`."""
         until = self._link.clock.now() + seconds
         self._link.wait(lambda: self._link.clock.now() >= until, seconds)
         self._helm.check()
 
     def operate(self, number: int, params: tuple[float, ...], *, confirmed: bool = False) -> None:
-        """Have a device do something.
+        """Carry out a device action.
 
         Args:
             number: of the command.
             params: of the command.
-            confirmed: whether the vehicle has promised to tell the image that it takes.
+            confirmed: whether the vehicle reports the image that it takes.
 
         Raises:
-            Unanswered: the vehicle does not answer, or tells no image.
+            Unanswered: the vehicle does not answer, or reports no image.
             Refused: it does not do it.
         """
         with self._link.inbox(*IMAGES, component=ANYBODY) as inbox:
@@ -246,13 +246,13 @@ class MavlinkVehicle:
                 self._link.clock.patience(IMAGE_SECONDS),
                 heard=True,
             ):
-                raise Unanswered(f"{name_of(number)}: no image was told within {IMAGE_SECONDS:.0f} s")
+                raise Unanswered(f"{name_of(number)}: no image was reported within {IMAGE_SECONDS:.0f} s")
 
     def measure(self, value: str, seconds: float) -> float:
         """Return the next value published under that name.
 
         Raises:
-            Unanswered: none comes within so many seconds.
+            Unanswered: none comes within `seconds`.
         """
         with self._link.inbox("NAMED_VALUE_FLOAT") as inbox:
             found = self._link.wait(
@@ -265,14 +265,14 @@ class MavlinkVehicle:
         return float(found.value)
 
     def tell_ground(self, text: str) -> None:
-        """Have people at ground stations read something; nobody says whether they do."""
+        """Send a text to ground stations, without an acknowledgement."""
         tell(self._link, text)
 
     def hold(self) -> bool:
-        """Halt and stay, and return when the vehicle does; on the ground, when its motors are off.
+        """Halt and hold, and return when the vehicle does; on the ground, when it is disarmed.
 
         Returns:
-            Whether it is still armed, so that somebody must watch it.
+            Whether it is still armed, so that it must be watched.
 
         Raises:
             Refused: it does not halt.
@@ -289,13 +289,13 @@ class MavlinkVehicle:
         return self._telemetry.armed()
 
     def carry_on(self) -> None:
-        """Go on being steered after a hold, where the vehicle is; nothing happens on the ground."""
+        """Resume steering after a hold, at the vehicle's position; nothing happens on the ground."""
         if self._telemetry.airborne() or (self._telemetry.armed() and self._kind != "copter"):
             self._helm.arm()
             self._steering.stay()
 
     def take_back(self) -> None:
-        """Be ready to command the vehicle out of a mode that it went into by itself."""
+        """Prepare to command the vehicle out of a failsafe's mode."""
         try:
             self._helm.check()
         except Fault:
@@ -303,52 +303,52 @@ class MavlinkVehicle:
 
     @property
     def modes_alone(self) -> frozenset[int]:
-        """Return the numbers of the modes into which it goes when it hears nobody, as it was told."""
+        """Return the numbers of the modes of its failsafe for a lost ground station, as set."""
         return self._alone
 
     def answers_to(self, event: str, said: Iterable[str]) -> frozenset[int]:
-        """Return the numbers of the modes into which it goes by itself when an event happens.
+        """Return the numbers of the modes of its failsafe for an event.
 
         Args:
             event: of policies.
-            said: what it has just said about that.
+            said: its latest message about that.
         """
         if event == LINK_LOST:
             return self._alone
         return modes.answers_to(self._link, self._kind, event, said)
 
     def accept_own_modes(self) -> None:
-        """Accept, until it is told something, that it is as it is, or does what it does alone."""
+        """Accept its present state, or the mode of its own failsafe, until the next command."""
         self._helm.accept(self._alone)
 
     def accept_mode(self) -> None:
-        """Accept, until it is told something, that it is in the mode that it is in."""
+        """Accept its present mode until the next command."""
         self._helm.accept(())
 
     def regain(self) -> None:
-        """Have the vehicle again in the mode that it has left by itself, and stay where it is in GUIDED.
+        """Return the vehicle to the mode that it has left without a command, and hold position in GUIDED.
 
         Raises:
-            Refused: it does not go into it. Fault: somebody has taken over.
+            Refused: it does not enter it. Fault: it is under external control.
         """
         self._helm.regain()
         if self._helm.mode() == modes.GUIDED:
             self._steering.stay()
 
     def explain(self, explains: Callable[[Fault], Fault]) -> None:
-        """Ask what the vehicle has gone elsewhere for, where it does so while it is told a mode."""
+        """Find the cause of another mode during a mode change."""
         self._helm.explains = explains
 
     def insist(self, insists: Callable[[Fault], bool]) -> None:
-        """Ask that, where the vehicle has left by itself what it is just told, before telling it again."""
+        """Find the cause of a mode that was left during a mode change, before commanding it again."""
         self._helm.insists = insists
 
     def surface(self) -> None:
-        """Come up to the water surface.
+        """Surface.
 
         Raises:
-            Refused: its motors are off, below.
-            Fault: it does not come up.
+            Refused: it is disarmed, below.
+            Fault: it does not surface.
         """
 
         def is_up() -> bool:
@@ -359,7 +359,7 @@ class MavlinkVehicle:
             seconds = 10 * PATIENCE_SECONDS
             self._helm.until(lambda: is_up() or not self._telemetry.armed(), seconds, "to surface")
         if not is_up():
-            raise Refused("its motors are off: it comes up only if it is buoyant")
+            raise Refused("it is disarmed: it surfaces only if it is buoyant")
 
     def disarm(self) -> None:
         """Switch off propulsion, whatever happens then."""
@@ -383,5 +383,5 @@ class MavlinkVehicle:
 
 
 def _taken(message: Message) -> bool:
-    """Return whether a message tells of an image that was taken."""
+    """Return whether a message reports an image that was taken."""
     return message.get_type() == "CAMERA_FEEDBACK" or bool(message.capture_result == 1)

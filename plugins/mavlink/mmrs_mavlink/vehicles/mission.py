@@ -1,4 +1,4 @@
-"""The mission that a vehicle was given: flown run by run, as long as nobody has replaced it."""
+"""The uploaded mission: flown run by run, as long as it is not replaced."""
 
 from __future__ import annotations
 
@@ -56,14 +56,14 @@ class Mission:
         return keep_place(self._link) if self._items else ""
 
     def fly(self, first: int, last: int, reached: Callable[[int], None]) -> Place | None:
-        """Fly a run of items, and tell each that is behind; the vehicle then waits at the end of the run.
+        """Fly a run of items, and report each one passed; the vehicle then waits at the end of the run.
 
         Returns:
-            Where that is; None where no item says.
+            Where that is; None where no item defines it.
 
         Raises:
             Refused: the vehicle has another mission by now, or does not begin with that item.
-            Fault: no item was reached for too long, or somebody else has set the mission ahead or back.
+            Fault: no item was reached for too long, or the mission was set ahead or back externally.
         """
         self._check()
         self._select(first)
@@ -78,21 +78,21 @@ class Mission:
         return places[max(places)] if places else None
 
     def _check(self) -> None:
-        """Make sure that nobody has replaced the mission, where the vehicle has given it an id.
+        """Check that the mission was not replaced, where the vehicle has given it an id.
 
         Raises:
-            Refused: somebody has.
+            Refused: it was.
         """
         current = self._link.latest("MISSION_CURRENT")
         found = mark_of(current, BEFORE_ID) if current is not None else 0
         if self._id and found and found != self._id:
-            raise Refused("the vehicle has another mission than was uploaded: somebody has replaced it")
+            raise Refused("the vehicle has another mission than was uploaded: it was replaced externally")
 
     def _select(self, seq: int) -> None:
-        """Have the mission go on at an item, or at the first after it that is flown to.
+        """Continue the mission at an item, or at the first after it that is flown to.
 
         Raises:
-            Refused: the vehicle does not say that it will.
+            Refused: the vehicle does not confirm that it will.
         """
         flown = first_flown(self._items, seq)
         self._helm.habits.select(self._helm.habits.number(seq))
@@ -114,7 +114,7 @@ class Mission:
         }
 
     def _follow(self, first: int, last: int, following: Following, reached: Callable[[int], None]) -> None:
-        """Tell each item of a run that the vehicle reaches, up to the last."""
+        """Report each item of a run that the vehicle reaches, up to the last."""
         done = first - 1
         while done < last:
             now = self._await_item_after(done + 1, following)

@@ -1,4 +1,4 @@
-"""Flight modes by autopilot and kind of vehicle, and what each can do by itself."""
+"""Flight modes by autopilot and vehicle class, and the failsafes of each."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ PX4_MODES: Mapping[str, tuple[int, int]] = {
 
 @dataclass(frozen=True, slots=True)
 class Mode:
-    """A mode: what heartbeats say of it, and the parameters of the command that asks for it."""
+    """A mode: its encoding in heartbeats, and the parameters of the command that requests it."""
 
     number: int
     params: tuple[float, ...]
@@ -79,11 +79,11 @@ PX4_OTHERS: Mapping[tuple[int, int], str] = {
     (5, 0): "acro",
     (7, 0): "stabilize",
 }
-"""Modes that programs never ask for, for people."""
+"""Modes that programs never request, by name."""
 
 
 def word_of(link: Link, kind: str, number: int) -> str:
-    """Return a mode in words, or its number where nobody here has a word for it."""
+    """Return the name of a mode, or its number where it has no name here."""
     for word, mode in modes_of(link, kind).items():
         if mode.number == number:
             return word
@@ -101,21 +101,21 @@ PX4_FAILSAFES = frozenset({(4, 3), (4, 5), (4, 6)})
 
 
 def of_failsafes(link: Link, kind: str) -> frozenset[int]:
-    """Return the numbers of the modes that a vehicle goes into by itself when something is wrong."""
+    """Return the numbers of the modes of a vehicle's failsafes."""
     if is_px4(link):
         return frozenset(px4_number(main, sub) for main, sub in PX4_FAILSAFES)
     return FAILSAFES[kind]
 
 
 FIRST_MODE = 0
-"""The mode that ArduPilot starts in unless it is told otherwise."""
+"""The mode that ArduPilot starts in by default."""
 
 PX4_OWN = (4, 6)
-"""Main modes of a PX4 that flies by itself, or as a program says."""
+"""Main modes of a PX4 that flies autonomously, or under a program."""
 
 
 def is_pilots(link: Link, kind: str, number: int) -> bool:
-    """Return whether nobody but a pilot puts a vehicle into the mode of a number."""
+    """Return whether only a pilot puts a vehicle into the mode of a number."""
     if is_px4(link):
         return number >> 16 & 0xFF not in PX4_OWN
     own = {mode.number for mode in modes_of(link, kind).values()}
@@ -133,28 +133,28 @@ ANSWERS: Mapping[str, Mapping[str, frozenset[int]]] = {
     | {POSITION_LOST: frozenset({4})},
     "sub": {event: frozenset({9}) for event in (POSITION_LOST, BATTERY_LOW, LOST_LINK)},
 }
-"""Modes into which an ArduPilot goes by itself, by the event that it answers so.
+"""Modes of ArduPilot's failsafes, by the event that they answer.
 
-A pilot who takes over because of an event goes into another: that the event is there is no reason to
-take the vehicle back. What a pilot may choose as well (to hold the height without a position) is left
+A pilot who takes over because of an event chooses another: the event alone is not a reason to
+bring the vehicle back. Modes that a pilot may choose as well (to hold the height without a position) are left
 out: there the vehicle must have named the mode.
 """
 
 NAMED: Mapping[str, Mapping[str, int]] = {"copter": {"althold": 2, "altitudehold": 2}}
-"""Modes that vehicles name when they go into them by themselves, in small letters only.
+"""Modes that failsafe messages name, in lower case only.
 
 ``EKF Failsafe: changed to ALT_HOLD Mode`` (ArduCopter, ``ekf_check.cpp``) with FS_EKF_ACTION = 2.
 """
 
 
 def answers_to(link: Link, kind: str, event: str, said: Iterable[str] = ()) -> frozenset[int]:
-    """Return the numbers of the modes into which a vehicle goes by itself when an event happens.
+    """Return the numbers of the modes of a vehicle's failsafe for an event.
 
     Args:
         link: to the vehicle.
         kind: of the vehicle.
         event: of policies.
-        said: what the vehicle has just said about the event.
+        said: the vehicle's latest message about the event.
     """
     if is_px4(link):
         return of_failsafes(link, kind)
@@ -165,7 +165,7 @@ def answers_to(link: Link, kind: str, event: str, said: Iterable[str] = ()) -> f
 
 
 def px4_number(main: int, sub: int) -> int:
-    """Return what a PX4's heartbeat says of a mode: the sub-mode above the main mode above 16 bits."""
+    """Return a PX4 mode as its heartbeat encodes it: the sub-mode above the main mode above 16 bits."""
     return sub << 24 | main << 16
 
 
@@ -202,12 +202,12 @@ LINK_LOST: Mapping[str, Mapping[str, Mapping[str, int]]] = {
         "STOP_THRUST": {ON_ANY_LOSS: 5, ON_LOST_LINK: 1},
     },
 }
-"""Parameters with which a vehicle responds by itself when it no longer hears the ground.
+"""Parameters of the failsafe for a lost ground station.
 
-By kind and by the policy's response, or by what comes nearest to it: a copter returns by the way it
-came, or to the nearest rally point, and lands where it may not hold for ever; a sub comes up. A
-rover heeds its action only where the failsafe of the ground station is switched on, too, which it is
-not at first.
+By vehicle class and the policy's response, or the nearest possible one: a copter retraces its
+path, or flies to the nearest rally point, and lands where it may not hold without limit; a sub surfaces. A
+rover obeys its action only where the failsafe of the ground station is enabled, too, which it is
+not by default.
 """
 
 ALONE: Mapping[str, tuple[str, Mapping[int, frozenset[int]]]] = {
@@ -235,13 +235,13 @@ ALONE: Mapping[str, tuple[str, Mapping[int, frozenset[int]]]] = {
         },
     ),
 }
-"""Modes into which an ArduPilot goes when it no longer hears the ground: the parameter, and by its value.
+"""Modes of ArduPilot's failsafe for a lost ground station: the parameter, and by its value.
 
-With what it does where the first of them is not possible; in other modes it stays as it is, or disarms.
+Including the fallback where the first of them is not possible; in other modes it stays as it is, or disarms.
 """
 
 PX4_ON_SILENCE, PX4_ON_STILLNESS = "NAV_DLL_ACT", "COM_OBL_RC_ACT"
-"""What a PX4 does when it hears no ground station, and, in OFFBOARD, when set-points stay away."""
+"""A PX4's failsafe for a lost ground station, and, in OFFBOARD, for missing set-points."""
 
 PX4_RETURNS_TO = "RTL_TYPE"
 """Whether a PX4 returns to home or a rally point (0 at first), or to a rally point rather than home (1)."""
@@ -255,10 +255,10 @@ PX4_ALONE: Mapping[str, Mapping[int, tuple[tuple[int, int], ...]]] = {
     },
     PX4_ON_STILLNESS: {3: (PX4_RETURNS, PX4_LANDS), 4: (PX4_LANDS,), 5: (PX4_HOLDS,)},
 }
-"""Modes into which a PX4 goes then, by parameter and value, with those where the first is not possible.
+"""Modes of a PX4's failsafe, by parameter and value, with those where the first is not possible.
 
-Before it returns or lands since it hears no station it holds for COM_FAIL_ACT_T, five seconds at first
-(``failsafe/framework.cpp``, ``getSelectedAction``); when set-points stay away it does so at once.
+Before it returns or lands for a lost station it holds for COM_FAIL_ACT_T, five seconds by default
+(``failsafe/framework.cpp``, ``getSelectedAction``); for missing set-points it does so at once.
 """
 
 BREACH: Mapping[str, Answers] = {
@@ -278,7 +278,7 @@ BREACH: Mapping[str, Answers] = {
     },
     "sub": {},
 }
-"""What an ArduPilot does by itself when it breaks its fence."""
+"""ArduPilot's failsafe for a broken fence."""
 
 PX4_LINK_LOST: Answers = {
     "CONTINUE": {PX4_ON_STILLNESS: 5, PX4_ON_SILENCE: 0},
@@ -288,8 +288,8 @@ PX4_LINK_LOST: Answers = {
     "LAND": {PX4_ON_STILLNESS: 4, PX4_ON_SILENCE: 3},
     "STOP_THRUST": {PX4_ON_STILLNESS: 7, PX4_ON_SILENCE: 6},
 }
-"""A PX4 in OFFBOARD misses set-points before it misses heartbeats, and does then what it was told for that:
-at first, to let the pilot have it. It cannot go on without set-points: where it is to, it holds.
+"""A PX4 in OFFBOARD misses set-points before it misses heartbeats, and then acts by their failsafe:
+by default, it gives control to the pilot. It cannot continue without set-points: where it is to, it holds.
 """
 
 PX4_BREACH: Answers = {
@@ -317,24 +317,24 @@ PARAMETER_KINDS = dict.fromkeys(
 
 
 def lost_link_answers(link: Link, kind: str) -> Answers:
-    """Return what the vehicle at a link can do by itself when it no longer hears the ground."""
+    """Return the possible failsafes for a lost ground station of the vehicle at a link."""
     return PX4_LINK_LOST if is_px4(link) else LINK_LOST[kind]
 
 
 def decides_alone(link: Link, kind: str) -> tuple[str, ...]:
-    """Return the parameters by which the vehicle at a link acts when it no longer hears the ground."""
+    """Return the parameters of the failsafe for a lost ground station of the vehicle at a link."""
     if is_px4(link):
         return tuple(PX4_ALONE)
     return (ON_LOST_LINK, ON_ANY_LOSS) if kind == "rover" else (ON_LOST_LINK,)
 
 
 def alone(link: Link, kind: str, values: Mapping[str, float]) -> frozenset[int]:
-    """Return the numbers of the modes into which a vehicle goes by itself when it no longer hears the ground.
+    """Return the numbers of the modes of a vehicle's failsafe for a lost ground station.
 
     Args:
         link: to the vehicle.
         kind: of the vehicle.
-        values: of the parameters by which it does; of those that are not known, nothing is expected.
+        values: of its parameters; unknown ones add no modes.
     """
     if is_px4(link):
         told = (known.get(round(values.get(name, 0.0)), ()) for name, known in PX4_ALONE.items())
@@ -356,5 +356,5 @@ def set_point_patience(link: Link) -> tuple[str, float, float] | None:
 
 
 def breach_answers(link: Link, kind: str) -> Answers:
-    """Return what the vehicle at a link can do by itself when it breaks its fence."""
+    """Return the possible failsafes for a broken fence of the vehicle at a link."""
     return PX4_BREACH if is_px4(link) else BREACH[kind]

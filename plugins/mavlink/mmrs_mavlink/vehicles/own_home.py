@@ -1,6 +1,6 @@
-"""A vehicle's own home: its heights count from there, and by itself it returns there.
+"""A vehicle's own home: the reference of its heights, and the target of its own return.
 
-Autopilots take for home where they arm, unless they were told a home since they were switched on.
+Autopilots take the position where they arm for home, unless a home was set since they were switched on.
 """
 
 from __future__ import annotations
@@ -21,9 +21,9 @@ SAME = 1.0
 
 
 def keep_home(link: Link, telemetry: Telemetry, home: Geographic, start: Place) -> str:
-    """Have a vehicle that takes off elsewhere keep the home of its program for its own.
+    """Keep the home of the program as the home of a vehicle that takes off elsewhere.
 
-    One whose own home is still there keeps that; one that was switched on since is told it again, at the
+    A vehicle that still has its home keeps it; one that was switched on since receives it again, at the
     height from which the ground where it stands is as high as before.
 
     Args:
@@ -33,10 +33,10 @@ def keep_home(link: Link, telemetry: Telemetry, home: Geographic, start: Place) 
         start: where it stands, with the height of the ground above home.
 
     Returns:
-        What people should know.
+        What operators should know.
 
     Raises:
-        Refused: the vehicle does not take it, or does not say that it has.
+        Refused: the vehicle does not take it, or does not confirm that it has.
     """
     takes_off = f"takes off {aside(home, start):.0f} m from its home"
     try:
@@ -47,8 +47,8 @@ def keep_home(link: Link, telemetry: Telemetry, home: Geographic, start: Place) 
         _await(link, telemetry, kept)
     except Refused as error:
         raise Refused(
-            f"it {takes_off}, and the vehicle does not keep that for its own ({error}), so that by itself it"
-            " would return elsewhere: bring it home, and begin anew"
+            f"it {takes_off}, and the vehicle does not keep that for its own ({error}), so that its own"
+            " return would lead elsewhere: bring it home, and begin again"
         ) from error
     return f"{takes_off}, which the vehicle keeps for its own: {kept.latitude:.6f}, {kept.longitude:.6f}"
 
@@ -81,7 +81,7 @@ def _level_with(telemetry: Telemetry, home: Geographic, start: Place) -> Geograp
     """Return home with that height above the sea from which on the ground here is as high as before."""
     level = telemetry.sea_level()
     if level is None:
-        raise Refused("the vehicle has not told how high above the sea it is")
+        raise Refused("the vehicle has not reported its height above sea level")
     return Geographic(home.latitude, home.longitude, level + telemetry.here().height - start.height)
 
 

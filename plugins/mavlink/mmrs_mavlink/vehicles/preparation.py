@@ -1,4 +1,4 @@
-"""What is set up on a vehicle before it moves: what it tells, what it does by itself, what it keeps."""
+"""The set-up of a vehicle before it moves: its messages, its failsafes, its parameters."""
 
 from __future__ import annotations
 
@@ -126,7 +126,7 @@ def check_identity(
 
 
 def hear_out(link: Link) -> None:
-    """Listen to a link whose vehicle nobody has named until every vehicle there has had time to speak."""
+    """Receive on a link without a named vehicle until every vehicle there has had time to send."""
     if not link.named:
         link.wait(link.doubt, link.clock.patience(HEARING_SECONDS))
 
@@ -155,19 +155,19 @@ def await_ready(link: Link, telemetry: Telemetry) -> None:
 
 
 def answer_lost_link(link: Link, kind: str, response: str, after: float | None = None) -> str:
-    """Have the vehicle respond by itself when it no longer hears the ground.
+    """Set the failsafe for a lost ground station.
 
     Args:
         link: to the vehicle.
         kind: ``copter``, ``sub`` or ``rover``.
         response: of a policy.
-        after: seconds of silence until then; None: as it is set.
+        after: seconds of silence until then; None: unchanged.
 
     Returns:
         What the vehicle does otherwise than wanted; empty if nothing.
 
     Raises:
-        Refused: it cannot respond so, or does not say that it will.
+        Refused: it cannot respond so, or does not confirm that it will.
     """
     _answer(link, "a lost link", modes.lost_link_answers(link, kind), response, kind)
     told = [_wait_for(link, modes.set_point_patience(link), after, OFFBOARD_SECONDS)]
@@ -177,7 +177,7 @@ def answer_lost_link(link: Link, kind: str, response: str, after: float | None =
 
 
 def _wait_for(link: Link, known: tuple[str, float, float] | None, wanted: float | None, usual: float) -> str:
-    """Have the vehicle respond after some seconds; return what it does otherwise, empty if nothing.
+    """Set the delay of a failsafe; return what the vehicle does otherwise, empty if nothing.
 
     Args:
         link: to the vehicle.
@@ -197,10 +197,10 @@ def _wait_for(link: Link, known: tuple[str, float, float] | None, wanted: float 
 
 
 def answer_breach(link: Link, kind: str, response: str) -> None:
-    """Have the vehicle respond by itself when it breaks its fence.
+    """Set the failsafe for a broken fence.
 
     Raises:
-        Refused: it cannot respond so, or does not say that it will.
+        Refused: it cannot respond so, or does not confirm that it will.
     """
     _answer(link, "a broken fence", modes.breach_answers(link, kind), response, kind)
 
@@ -208,7 +208,7 @@ def answer_breach(link: Link, kind: str, response: str) -> None:
 def _answer(link: Link, event: str, answers: modes.Answers, response: str, kind: str) -> None:
     values = answers.get(response)
     if values is None:
-        raise Refused(f"response to {event}: a {kind} cannot do {response} by itself")
+        raise Refused(f"response to {event}: a {kind} cannot do {response} as a failsafe")
     for name, value in values.items():
         if not parameters.write(link, name, value, modes.PARAMETER_KINDS.get(name, parameters.REAL)):
             raise Refused(f"response to {event}: the vehicle does not confirm {name} = {value}")

@@ -1,9 +1,9 @@
-"""PX4's way of being steered. Written from its documents and source; no PX4 has flown by it yet.
+"""Steering a PX4. Written from its documents and source; no PX4 has flown by it yet.
 
-OFFBOARD takes nothing but a stream of set-points, which must have begun a second before the mode is
-asked for, and ends the mode when it stops (https://docs.px4.io, "Offboard Mode"). So a thread of its
+OFFBOARD takes only a stream of set-points, which must have begun a second before the mode is
+requested, and ends the mode when it stops (https://docs.px4.io, "Offboard Mode"). So a thread of its
 own sends them, at 10 Hz, until another mode has been entered. A set-point moves along the leg at the
-commanded speed: OFFBOARD heeds no DO_CHANGE_SPEED.
+commanded speed: OFFBOARD ignores DO_CHANGE_SPEED.
 
 Heights of set-points are above sea level: with MAV_FRAME_GLOBAL_RELATIVE_ALT_INT, PX4 1.13 to 1.15 put
 the set-point on the wrong side of home wherever home is not where the estimator began
@@ -64,7 +64,7 @@ class Stream:
         return self._running is not None
 
     def begin(self) -> None:
-        """Send the place where the vehicle is, again and again, if nothing is being sent."""
+        """Send the vehicle's position again and again, if nothing is being sent."""
         with self._lock:
             if self._running is not None:
                 return
@@ -135,10 +135,10 @@ class Px4:
     def take_off(self, height: float) -> tuple[float, ...]:
         """Return the parameters of NAV_TAKEOFF, straight up from here.
 
-        Home is there, and as high, as the vehicle was armed: what it told before that does not count.
+        Home is where and as high as the vehicle was armed: earlier reports do not count.
 
         Raises:
-            Refused: the vehicle has not told how high its home is.
+            Refused: the vehicle has not reported its home's height.
         """
         begun, clock = self._link.clock.now(), self._link.clock
         self._link.wait(
@@ -152,21 +152,21 @@ class Px4:
         return (modes.px4_number(*TAKING_OFF), modes.px4_number(*modes.PX4_MODES[modes.HOLD]))
 
     def paces(self) -> bool:
-        """Return that it heeds no commanded speed: set-points move as fast as it shall."""
+        """Return that it ignores commanded speeds: set-points move at the wanted speed."""
         return False
 
     def level(self, height: float) -> tuple[int, float]:
         """Return the frame of heights above sea level, and the height there.
 
         Raises:
-            Refused: the vehicle has not told how high its home is.
+            Refused: the vehicle has not reported its home's height.
         """
         return mavlink.MAV_FRAME_GLOBAL, self._above(height)
 
     def _above(self, height: float) -> float:
         level = self._telemetry.sea_level()
         if level is None:
-            raise Refused("the vehicle has not told how high above the sea its home is")
+            raise Refused("the vehicle has not reported its home's height above sea level")
         return level + height
 
     def mission(self, items: Sequence[Item]) -> Sequence[Item]:
@@ -187,7 +187,7 @@ class Px4:
                 return
 
     def enable_fence(self) -> None:
-        """Do nothing: a PX4 heeds the fence that it has (GF_ACTION)."""
+        """Do nothing: a PX4 obeys its own fence (GF_ACTION)."""
 
 
 def _unheaded(item: Item) -> Item:

@@ -53,18 +53,18 @@ SENSORS: Mapping[int, str] = {
 
 
 def lacks(link: Link, texts: Texts, position: str, *, geographic: bool) -> tuple[str, ...]:
-    """Return what a vehicle lacks; empty when it knows where it is and its own checks pass.
+    """Return what a vehicle lacks; empty when it knows its position and its own checks pass.
 
     Args:
         link: to the vehicle.
         texts: of the vehicle.
-        position: the message that tells where it is.
-        geographic: whether it must know its place on the Earth.
+        position: the message with its position.
+        geographic: whether it must know its geographic position.
     """
     found = [*_unlocated(link, position, geographic=geographic)]
     status = link.latest("SYS_STATUS")
     if status is None:
-        found.append("it has not told its state (SYS_STATUS)")
+        found.append("it has not reported its state (SYS_STATUS)")
     elif _checks_fail(link, status):
         found.append(_why(status, texts))
     return tuple(found)
@@ -78,7 +78,7 @@ def unlocated(link: Link, *, geographic: bool) -> str:
 def _unlocated(link: Link, position: str, *, geographic: bool) -> Iterator[str]:
     told = link.latest(position)
     if told is None or not tells_place(told):
-        yield f"it has not told where it is ({position})"
+        yield f"it has not reported its position ({position})"
     yield from _estimate_trouble(link, geographic=geographic)
     yield from _fix_trouble(link, geographic)
 
@@ -102,7 +102,7 @@ def _estimate_trouble(link: Link, *, geographic: bool) -> Iterator[str]:
 
 
 def _tells_all(flags: int) -> bool:
-    """Return whether more than the position is told, as real vehicles do."""
+    """Return whether more than the position is reported, as real vehicles do."""
     return bool(flags & ~16)
 
 
@@ -114,10 +114,10 @@ def _fix_trouble(link: Link, geographic: bool) -> Iterator[str]:
 
 
 def _checks_fail(link: Link, status: object) -> bool:
-    """Return whether the vehicle's own checks fail; only ArduPilot and PX4 must say that they pass.
+    """Return whether the vehicle's own checks fail; only ArduPilot and PX4 must report that they pass.
 
-    A PX4 says whether it may be armed in the mode that it is in (``SYS_STATUS.hpp``), since 1.14 without
-    saying that it has such a check: that counts in the mode that it is to be armed in.
+    A PX4 reports whether it may be armed in its present mode (``SYS_STATUS.hpp``), since 1.14 without
+    announcing that it has such a check: that counts in the mode that it is to be armed in.
     """
     health, present = (
         int(getattr(status, f"onboard_control_sensors_{word}")) for word in ("health", "present")

@@ -1,4 +1,4 @@
-"""Whether the vehicle at the end of a link is the robot's, before it is told anything that matters."""
+"""Whether the vehicle at the end of a link is the robot's, before it receives any command that matters."""
 
 from __future__ import annotations
 
@@ -33,19 +33,19 @@ def recognise(
     under_way: bool,
     system: int,
 ) -> None:
-    """Make sure that a vehicle is the robot's, and that nobody flies it; it is told nothing, only asked.
+    """Check that a vehicle is the robot's, and not under external control; it is only asked, not commanded.
 
     Args:
         link: to the vehicle.
         vehicle: at its end.
         robot: its program.
         tolerance: metres that it may be from where it is to stand.
-        starts: where it may stand, the place where its sortie began first; the nearest counts.
-        under_way: whether its motors may run, as where a run is resumed.
-        system: that it had when the run began; 0: nobody knows.
+        starts: where it may stand, the position where its sortie began first; the nearest counts.
+        under_way: whether it may be armed, as where a run is resumed.
+        system: that it had when the run began; 0: unknown.
 
     Raises:
-        Refused: it is not, or somebody may.
+        Refused: it is not, or it may be.
     """
     telemetry = vehicle.telemetry
     preparation.ask_for_messages(link, geographic=isinstance(robot.home, Geographic))
@@ -64,11 +64,11 @@ def recognise(
     if not telemetry.armed():
         return
     if not under_way:
-        raise Refused("the vehicle's motors run already: somebody else has it")
+        raise Refused("the vehicle is armed already: it is under external control")
     mode = vehicle.state().mode
     if mode not in OURS and telemetry.mode() not in _alone(link, robot.vehicle):
         raise Refused(
-            f"the vehicle's motors run, and it is in mode {mode}, by which it answers no lost link:"
+            f"the vehicle is armed, and it is in mode {mode}, by which it answers no lost link:"
             " a pilot may have it"
         )
 
@@ -111,7 +111,7 @@ def system_of(box: Path) -> int:
 
 
 def firmware_of(link: Link) -> str | None:
-    """Return the firmware that a vehicle says it is, such as ``ARDUPILOTMEGA``; None before it is heard."""
+    """Return a vehicle's reported firmware, such as ``ARDUPILOTMEGA``; None before its first message."""
     from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
     beat = link.latest("HEARTBEAT")

@@ -1,6 +1,7 @@
-"""Modes that the program itself has asked for lately: no pilot has chosen them, however late they come.
+"""Modes that the program itself has requested lately: not a pilot's, however late they come.
 
-And all that the vehicle has shown since somebody looked: a pilot's may last no longer than a request takes.
+Also all modes that the vehicle has shown since the last look: a pilot's may last no longer than a request
+takes.
 """
 
 from __future__ import annotations
@@ -15,7 +16,8 @@ from ..links.link import Link, Message
 from . import modes
 
 SHOWN_SECONDS = 5.0
-"""In which a vehicle shows a mode after it has heard of it, its next heartbeats being lost."""
+"""Seconds in which a vehicle shows a mode after it has received the request, its next heartbeats being lost.
+"""
 
 
 MOST_SHOWN = 16
@@ -30,16 +32,16 @@ class Request:
 
 
 class Requests:
-    """Remembers what was asked for until it cannot come any more; an observer of the vehicle's link.
+    """Remembers requests until they cannot arrive any more; an observer of the vehicle's link.
 
     A request may have been broken off by an order or a fault before the vehicle showed it. Until a
     later one is shown it may come as late as an answer over the link, and the heartbeat after that;
-    then only a copy of it may still be on its way. Every copy that is sent counts, also of a command
+    then only a copy of it may still be in transit. Every copy that is sent counts, also of a command
     that was sent again since its answer was late.
     """
 
     def __init__(self, link: Link) -> None:
-        """Have asked for nothing."""
+        """Create without requests."""
         self._link = link
         self._of: dict[int, Request] = {}
         self._late: tuple[int, float] | None = None
@@ -61,7 +63,7 @@ class Requests:
         return tuple(self._shown.popleft() for _ in range(len(self._shown)))
 
     def shows(self, number: int) -> None:
-        """Know that the vehicle has gone into the mode that was asked for last."""
+        """Record that the vehicle has entered the mode that was requested last."""
         for other, request in self._of.items():
             request.overtaken = request.overtaken or other != number
 
@@ -80,7 +82,7 @@ class Requests:
         return begun - request.asked <= (usual if request.overtaken else long) and now - begun <= long
 
     def is_back(self) -> None:
-        """Know that the vehicle is in a mode that it should be in."""
+        """Record that the vehicle is in a mode that it should be in."""
         self._late = None
 
 

@@ -1,9 +1,9 @@
 """How a run of the uploaded mission begins where the program wants it, on ArduPilot and on PX4.
 
-An ArduPilot that is not in AUTO goes on from the item that it is told to the next one that it flies to,
-and tells the number of that one; what stands before it is done when AUTO begins (``AP_Mission.cpp``,
+An ArduPilot that is not in AUTO continues from the commanded item to the next one that it flies to,
+and reports the number of that one; what stands before it is done when AUTO begins (``AP_Mission.cpp``,
 ``set_current_cmd``; ``GCS_Common.cpp``, ``MSG_CURRENT_WAYPOINT``). With MIS_RESTART = 1 it begins with
-the first item whatever it was told (``start_or_resume``). A PX4 tells the item that it was told
+the first item whatever was commanded (``start_or_resume``). A PX4 reports the commanded item
 (``mission.cpp``, ``set_current_mission_index``), and has no such parameter; but with COM_TAKEOFF_ACT = 1 it
 begins its mission as soon as it has taken off (``Commander.cpp``, ``checkForMissionUpdate``), of whichever
 run. An ArduPilot forgets the speed of a mission when AUTO is entered.
@@ -28,14 +28,14 @@ LAST_TO_FLY = int(mavlink.MAV_CMD_NAV_LAST)
 
 RESTART, AFTER_TAKE_OFF = "MIS_RESTART", "COM_TAKEOFF_ACT"
 AT_ONCE = 1
-"""The value of either by which a vehicle begins a run that it was not told to begin."""
+"""The value of either by which a vehicle begins a run without a command."""
 
 USUAL_SPEED = -1.0
-"""By which DO_CHANGE_SPEED has a PX4 take the speed of its parameters."""
+"""With which DO_CHANGE_SPEED makes a PX4 take the speed of its parameters."""
 
 TROUBLE = {
     RESTART: "the vehicle would begin every run with the first item of its mission",
-    AFTER_TAKE_OFF: "the vehicle would begin its mission by itself after take-off",
+    AFTER_TAKE_OFF: "the vehicle would begin its mission without a command after take-off",
 }
 
 
@@ -45,10 +45,10 @@ def first_flown(mission: Sequence[Item], seq: int) -> int:
 
 
 def speed_for(link: Link, mission: Sequence[Item], seq: int) -> float | None:
-    """Return the speed to tell a vehicle that begins AUTO at an item; None: it need not be told.
+    """Return the speed to command to a vehicle that begins AUTO at an item; None: none is needed.
 
-    A PX4 sets the speed again that was last said before the item, of whichever run (``mission_base.cpp``,
-    ``on_activation``): less than 0 has it take its usual one.
+    A PX4 restores the speed that was last set before the item, of whichever run (``mission_base.cpp``,
+    ``on_activation``): less than 0 makes it take its default.
     """
     said = speed_before(mission, seq)
     if said is not None or mission[seq].command == CHANGE_SPEED or not is_px4(link):
@@ -67,13 +67,13 @@ def speed_before(mission: Sequence[Item], seq: int) -> float | None:
 
 
 def keep_place(link: Link) -> str:
-    """Have the vehicle begin AUTO at the item that it was told.
+    """Make the vehicle begin AUTO at the commanded item.
 
     Returns:
-        What was changed, for people; empty where nothing was.
+        What was changed, in words; empty where nothing was.
 
     Raises:
-        Refused: it would begin runs elsewhere, or by itself.
+        Refused: it would begin runs elsewhere, or without a command.
     """
     name = AFTER_TAKE_OFF if is_px4(link) else RESTART
     if round(parameters.read(link, [name]).get(name, 0)) != AT_ONCE:

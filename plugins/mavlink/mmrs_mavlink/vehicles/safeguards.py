@@ -1,8 +1,8 @@
-"""What a vehicle does by itself when something goes wrong: parameters that are checked and told.
+"""Failsafes of a vehicle: parameters that are checked and listed.
 
-Which of them are set: the answers to a lost link and to a broken fence, where the robot's policies
-say them (``modes.py``). All others are its owner's business and only told, with a warning where the
-vehicle would do nothing, or would get in the program's way. Meanings are those of ArduCopter 4.5 and
+Set are only the answers to a lost link and to a broken fence, where the robot's policies
+define them (``modes.py``). All others are its owner's business and only listed, with a warning where the
+vehicle has no failsafe, or one would interfere with the program. Meanings are those of ArduCopter 4.5 and
 later, ArduPilot's Rover and Sub, and PX4 1.14 and later, as their parameter references give them.
 """
 
@@ -22,10 +22,10 @@ class Safeguard:
 
     Attributes:
         name: of the parameter.
-        what: when the vehicle acts by it.
-        words: what it does, by value; others are told as numbers, in `unit`.
-        doubtful: by value, why people should think about it.
-        below: why people should think about values below a limit: (limit, why).
+        what: its failsafe's trigger.
+        words: its actions, by value; others are listed as numbers, in `unit`.
+        doubtful: by value, warnings.
+        below: warning about values below a limit: (limit, why).
     """
 
     name: str
@@ -43,31 +43,31 @@ class Safeguard:
         if self.below is not None and value < self.below[0]:
             why = self.below[1]
         line = f"{self.name} = {value:g}: {self.what}: {shown}"
-        return f"{line} (beware: {why})" if why else line
+        return f"{line} (warning: {why})" if why else line
 
 
-NOTHING = "the vehicle does nothing by itself"
-_LANDING = {1: "return, or land", 2: "land", 3: "return by its way, or return, or land"}
+NOTHING = "no failsafe set"
+_LANDING = {1: "return, or land", 2: "land", 3: "SmartRTL, else RTL, else land"}
 
 COPTER = (
     Safeguard(
         "FS_GCS_ENABLE",
         "no heartbeats from the ground",
-        {0: "nothing", 1: "return", 2: "go on with a mission, or return", 5: "land", 7: "brake, or land"}
-        | {3: "return by its way, or return", 4: "return by its way, or land"},
+        {0: "nothing", 1: "return", 2: "continue a mission, else RTL", 5: "land", 7: "brake, or land"}
+        | {3: "SmartRTL, else RTL", 4: "SmartRTL, else land"},
     ),
     Safeguard(
         "FS_THR_ENABLE",
         "no signal from the pilot's remote control",
-        {0: "nothing", 1: "return", 2: "go on with a mission, or return", 3: "land"}
-        | {4: "return by its way, or return", 5: "return by its way, or land", 6: "mission's landing"},
+        {0: "nothing", 1: "return", 2: "continue a mission, else RTL", 3: "land"}
+        | {4: "SmartRTL, else RTL", 5: "SmartRTL, else land", 6: "mission's landing"},
         {0: "a pilot whose remote control fails can not take over, and nothing happens"},
     ),
     Safeguard(
         "BATT_FS_LOW_ACT",
         "battery low",
-        {0: "nothing", 1: "land", 2: "return", 3: "return by its way, or return"}
-        | {4: "return by its way, or land", 5: "stop the motors", 6: "mission's landing"},
+        {0: "nothing", 1: "land", 2: "return", 3: "SmartRTL, else RTL"}
+        | {4: "SmartRTL, else land", 5: "stop the motors", 6: "mission's landing"},
         {0: NOTHING, 5: "it falls"},
     ),
     Safeguard(
@@ -80,7 +80,7 @@ COPTER = (
     Safeguard(
         "FENCE_ACTION",
         "fence broken",
-        {0: "say so only", 4: "brake, or land", 5: "return by its way, or land"} | _LANDING,
+        {0: "say so only", 4: "brake, or land", 5: "SmartRTL, else land"} | _LANDING,
         {0: "nothing stops it"},
     ),
     Safeguard(
@@ -95,7 +95,7 @@ COPTER = (
     Safeguard(
         "DISARM_DELAY",
         "seconds on the ground until it disarms",
-        below=(5.0, "it may disarm before it is told to take off"),
+        below=(5.0, "it may disarm before its take-off command"),
         unit=" s",
     ),
     Safeguard("FLTMODE_GCSBLOCK", "modes that the ground must not choose"),
@@ -106,7 +106,7 @@ ROVER = (
     Safeguard(
         "FS_ACTION",
         "link lost",
-        {0: "nothing", 1: "return", 2: "hold", 3: "return by its way", 5: "disarm"},
+        {0: "nothing", 1: "return", 2: "hold", 3: "SmartRTL", 5: "disarm"},
     ),
     Safeguard("FS_THR_ENABLE", "no signal from the pilot's remote control", {0: "nothing"}, {0: NOTHING}),
     Safeguard("BATT_FS_LOW_ACT", "battery low", {0: "nothing", 1: "return", 2: "hold"}, {0: NOTHING}),
@@ -174,13 +174,13 @@ PX4 = (
         {0: "it goes into no OFFBOARD, in which it is steered"},
     ),
     Safeguard("COM_OF_LOSS_T", "seconds until set-points count as ended", unit=" s"),
-    Safeguard("COM_FAIL_ACT_T", "seconds that it holds before it returns or lands by itself", unit=" s"),
+    Safeguard("COM_FAIL_ACT_T", "seconds that it holds before its failsafe returns or lands", unit=" s"),
     Safeguard("COM_POS_FS_DELAY", "seconds until a lost position counts", unit=" s"),
     Safeguard("RTL_RETURN_ALT", "height at which it returns", unit=" m"),
     Safeguard(
         "COM_DISARM_PRFLT",
         "seconds on the ground until it disarms",
-        below=(5.0, "it may disarm before it is told to take off"),
+        below=(5.0, "it may disarm before its take-off command"),
         unit=" s",
     ),
 )
@@ -204,7 +204,7 @@ def report(link: Link, kind: str, instead: Sequence[Safeguard] = ()) -> Iterator
     safeguards = {each.name: each for each in (*safeguards_of(link, kind), *instead)}
     values = parameters.read(link, list(safeguards))
     if not values:
-        yield "the vehicle tells none of its failsafe parameters: look yourself what it does by itself"
+        yield "the vehicle reports none of its failsafe parameters: check its failsafes yourself"
     for name, safeguard in safeguards.items():
         if name in values:
             yield safeguard.told(values[name])

@@ -9,7 +9,7 @@ from mmrs_runtime.faults import FENCE_BREACHED, OBSTACLE, POSITION_LOST, VEHICLE
 if TYPE_CHECKING:
     from .telemetry import Telemetry
 
-STARTED_ANEW = "the vehicle has started anew"
+STARTED_ANEW = "the vehicle has restarted"
 
 
 class Signs:
@@ -33,19 +33,19 @@ class Signs:
 
     @property
     def restarted(self) -> bool:
-        """Return whether the vehicle has started anew since `renew`."""
+        """Return whether the vehicle has restarted since `renew`."""
         return self._telemetry.starts() > self._starts
 
     @property
     def leapt(self) -> bool:
-        """Return whether the place that it takes for its own has leapt since `renew`."""
+        """Return whether its position estimate has jumped since `renew`."""
         return self._heeds_leaps and self._telemetry.leaps.count > self._leaps
 
     def seen(self, *, moving: bool) -> tuple[tuple[str, str], ...]:
-        """Return each event with the reason to believe that it is there; an empty one: it is not.
+        """Return each event with the reason to assume it; an empty one: none.
 
         Args:
-            moving: whether the robot is under way; one that is not may start anew.
+            moving: whether the robot is in motion; one that is not may restart.
         """
         tells = self._telemetry
         active = moving and tells.armed()
@@ -57,5 +57,5 @@ class Signs:
         )
 
     def _unlocated(self) -> str:
-        """Return why nobody knows where the vehicle is; empty if somebody does."""
+        """Return why the vehicle's position is unknown; empty if it is known."""
         return self._telemetry.position_trouble() or (self._telemetry.leaps.last if self.leapt else "")

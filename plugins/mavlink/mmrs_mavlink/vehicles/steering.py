@@ -76,7 +76,7 @@ class Steering:
         self._unpoint(look)
 
     def turn(self, look: Look) -> None:
-        """Turn until a device points at something; a device with a gimbal turns by itself.
+        """Turn until a device points at a target; a device with a gimbal turns on its own.
 
         Raises:
             Fault: it does not turn so far.

@@ -25,10 +25,10 @@ from .trail import Trail, place_in
 NO_HEADING = 65_535
 NO_DISTANCE = 65_535
 STALE_SECONDS = 3.0
-"""After which a position that has not come again counts as lost, while the vehicle is heard."""
+"""Seconds after which a position without an update counts as lost, while the vehicle is received."""
 
 RECENT_SECONDS = 5.0
-"""For how long an obstacle or a breach that was told counts."""
+"""Seconds for which a reported obstacle or breach counts."""
 
 IN_AIR = frozenset(
     {
@@ -46,9 +46,9 @@ class Telemetry:
     """Reads the latest messages of a link; nothing here waits.
 
     Attributes:
-        texts: what the vehicle has said.
-        announcements: what of that is about what it does by itself.
-        leaps: of the place that it takes for its own.
+        texts: of the vehicle.
+        announcements: its texts about its failsafes.
+        leaps: jumps of its position estimate.
     """
 
     def __init__(self, link: Link, home: Place) -> None:
@@ -103,15 +103,15 @@ class Telemetry:
         trouble = unlocated(self._link, geographic=self._geographic)
         silent = self._link.since(self._position) - self._link.silent_for()
         if not trouble and silent > self._link.clock.patience(STALE_SECONDS, 1.0):
-            return f"it has not told where it is for {silent:.0f} s ({self._position})"
+            return f"it has not reported its position for {silent:.0f} s ({self._position})"
         return trouble
 
     def starts(self) -> int:
-        """Return how often the vehicle was seen to start anew."""
+        """Return how often the vehicle was seen to restart."""
         return self._link.starts
 
     def obstacle(self) -> str:
-        """Return what the vehicle reports to be in its way; empty if there is nothing."""
+        """Return the obstacle that the vehicle reports; empty if there is none."""
         collision, scan = self._recent("COLLISION"), self._recent("OBSTACLE_DISTANCE")
         if collision is not None and collision.threat_level == mavlink.MAV_COLLISION_THREAT_LEVEL_HIGH:
             return f"a collision threatens in {collision.time_to_minimum_delta:.0f} s"
@@ -139,7 +139,7 @@ class Telemetry:
         return None
 
     def failsafe(self) -> str | None:
-        """Return the event that the vehicle has just answered by itself, as it says; None if it has not."""
+        """Return the event that a failsafe has just answered, as reported; None if none has."""
         if self.position_trouble():
             return POSITION_LOST
         if self.breach():
@@ -148,7 +148,7 @@ class Telemetry:
         return next((event for event, _ in WORDS if event in said), None)
 
     def here(self) -> Place:
-        """Return the last position that was told; home before there is one."""
+        """Return the last reported position; home before there is one."""
         found = self._link.latest(self._position)
         if found is not None and tells_place(found):
             self._place = place_in(found)
@@ -156,17 +156,17 @@ class Telemetry:
 
     @contextmanager
     def trail(self) -> Iterator[Trail]:
-        """Collect all positions that are told from now on, also while nobody looks."""
+        """Collect all positions that are reported from now on, also between two looks."""
         with self._link.trail(self._position) as told:
             yield Trail(self._link, self._position, self.here(), told)
 
     def still_since(self, begun: float, pace: float) -> bool:
-        """Return whether a position that has come since tells of no more than a pace, metres a second."""
+        """Return whether a position that has come since shows no more than a speed, metres per second."""
         told = self._link.clock.now() - self._link.since(self._position)
         return told > begun and self.speed() <= pace
 
     def aim(self) -> Place | None:
-        """Return the place that the vehicle last said that it steers to; None where it has said none.
+        """Return the vehicle's last reported target position; None where it has reported none.
 
         The height of a geographic one means nothing: firmwares count it from different levels.
         """

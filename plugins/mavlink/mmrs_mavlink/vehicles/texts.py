@@ -30,7 +30,7 @@ class Texts:
     """Collects the texts of one vehicle; an observer of its link."""
 
     def __init__(self, clock: Clock) -> None:
-        """Have heard nothing."""
+        """Create an empty STATUSTEXT buffer."""
         self._clock = clock
         self._texts: deque[Text] = deque(maxlen=KEPT)
         self._pieces: dict[int, dict[int, str]] = {}

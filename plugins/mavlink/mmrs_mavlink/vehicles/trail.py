@@ -1,4 +1,4 @@
-"""The way that a vehicle goes, position by position, also while nobody looks."""
+"""A vehicle's track, position by position, also between two looks."""
 
 from __future__ import annotations
 
@@ -21,8 +21,8 @@ class Trail:
 
         Args:
             link: to the vehicle.
-            kind: of message that tells where it is.
-            begun: where it is now.
+            kind: of message with its position.
+            begun: its present position.
             told: gets such messages, in the order in which the vehicle has sent them.
         """
         self.begun = begun

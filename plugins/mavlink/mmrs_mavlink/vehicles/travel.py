@@ -1,12 +1,12 @@
-"""How carefully a vehicle travels: by the robot's travel mode, never less than its owner has set it.
+"""Travel modes: a vehicle is as careful as the robot's travel mode asks, never less than its owner has set.
 
-The places of a mission count as passed within a radius (WPNAV_RADIUS in centimetres, WP_RADIUS_M
-since ArduPilot 4.7, Rover's WP_RADIUS, PX4's NAV_ACC_RAD): it is made smaller where the mode asks for
-that. A Rover stops as soon as it is within that radius of where it is steered, so that it is never more
-than what counts as there. What the vehicle perceives itself it keeps away from by AVOID_MARGIN, and
-where it also plans its own way round by OA_MARGIN_MAX: these are made larger. Whether it avoids anything
-at all (AVOID_ENABLE, OA_TYPE) is its owner's business, since a vehicle that leaves its way leaves what
-was checked.
+The positions of a mission count as passed within a radius (WPNAV_RADIUS in centimetres, WP_RADIUS_M
+since ArduPilot 4.7, Rover's WP_RADIUS, PX4's NAV_ACC_RAD): it is reduced where the mode asks for
+that. A Rover stops as soon as it is within that radius of its target, so that it is never more
+than the acceptance radius. The vehicle keeps clear of what it perceives by AVOID_MARGIN, and
+where it also plans its own path round by OA_MARGIN_MAX: these are increased. Whether it avoids anything
+at all (AVOID_ENABLE, OA_TYPE) is its owner's business, since a vehicle that leaves its path leaves what
+was verified.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ RADII: Mapping[str, Mapping[str, float]] = {
     "sub": {"WP_RADIUS_M": 1.0, "WPNAV_RADIUS": _CENTIMETRES},
     "rover": {"WP_RADIUS": 1.0},
 }
-"""By kind of vehicle: names of the radius in ArduPilot's versions, with their units in a metre."""
+"""By vehicle class: names of the radius in ArduPilot's versions, with their units in a metre."""
 
 PX4_RADIUS = "NAV_ACC_RAD"
 MARGINS = ("AVOID_MARGIN", "OA_MARGIN_MAX")

@@ -21,11 +21,11 @@ class Evidence(Protocol):
         ...
 
     def is_off(self) -> bool:
-        """Return whether it has shown since that its motors are off."""
+        """Return whether it was shown disarmed since."""
         ...
 
     def bound_for(self, place: Place, speed: float | None) -> bool:
-        """Return whether it is steered, and goes to a place that it was told, or is there."""
+        """Return whether it is steered, and goes to a commanded position, or is there."""
         ...
 
 
@@ -39,11 +39,11 @@ class Vehicle(Protocol):
     start: Place
 
     def answer_lost_link(self, response: str, after: float | None = None) -> None:
-        """Have the vehicle respond so by itself when it has not heard the ground for some seconds."""
+        """Set the failsafe for a ground station that is silent for some seconds."""
         ...
 
     def answer_breach(self, response: str) -> None:
-        """Have the vehicle respond so by itself when it is outside its fence."""
+        """Set the failsafe for a vehicle outside its fence."""
         ...
 
     def prepare(self, uploads: Uploads) -> None:
@@ -51,7 +51,7 @@ class Vehicle(Protocol):
         ...
 
     def take_off(self, height: float) -> None:
-        """Climb to a height above home, or go on climbing to it."""
+        """Climb to a height above home, or continue climbing to it."""
         ...
 
     def land(self) -> None:
@@ -71,23 +71,23 @@ class Vehicle(Protocol):
         ...
 
     def rest(self, seconds: float) -> None:
-        """Stay for so many seconds."""
+        """Stay for `seconds`."""
         ...
 
     def operate(self, number: int, params: tuple[float, ...], *, confirmed: bool = False) -> None:
-        """Have a device do something; `confirmed`: and wait for the image that it has promised to tell."""
+        """Carry out a device action; `confirmed`: wait for the report of its image, too."""
         ...
 
     def measure(self, value: str, seconds: float) -> float | None:
-        """Return the next value published under that name; None where there is only a dry run.
+        """Return the next value published under that name; None in a dry run.
 
         Raises:
-            Unanswered: none comes within so many seconds.
+            Unanswered: none comes within `seconds`.
         """
         ...
 
     def tell_ground(self, text: str) -> None:
-        """Have people at ground stations read something."""
+        """Send a text to ground stations."""
         ...
 
     def hold(self) -> bool:
@@ -95,23 +95,23 @@ class Vehicle(Protocol):
         ...
 
     def carry_on(self) -> None:
-        """Be ready to move again after a hold; what flies stays where it is."""
+        """Prepare to move again after a hold; what flies stays where it is."""
         ...
 
     def check(self) -> None:
-        """Make sure, without waiting, that nobody else has taken the vehicle over.
+        """Check, without waiting, that the vehicle is not under external control.
 
         Raises:
-            Fault: somebody has.
+            Fault: it is.
         """
         ...
 
     def take_back(self) -> None:
-        """Be ready to command the vehicle out of a mode that it went into by itself."""
+        """Prepare to command the vehicle out of a failsafe's mode."""
         ...
 
     def regain(self) -> None:
-        """Have the vehicle again in the mode that it has left by itself."""
+        """Return the vehicle to the mode that it has left without a command."""
         ...
 
     def surface(self) -> None:

@@ -64,7 +64,7 @@ def test_a_program_inside_a_fence_that_was_on_is_not_and_the_fence_stays():
 def test_only_what_a_fence_heeds_counts_and_areas_are_added():
     lines, kept = told(place(1000.0, 90.0), **USUAL | {"FENCE_ENABLE": 1.0, "FENCE_TYPE": 1.0})
     assert kept["FENCE_TYPE"] == 5.0
-    assert lines == ["FENCE_TYPE = 5, which was 1: its fence heeds the areas of the program, too"]
+    assert lines == ["FENCE_TYPE = 5, which was 1: its fence obeys the areas of the program, too"]
 
 
 def test_a_px4_heeds_its_distances_unless_they_are_zero():

@@ -150,7 +150,7 @@ def test_people_are_told_where_nobody_can_reckon_a_battery_that_is_told_no_longe
     watched = Reserve(robot(endurance=None))
     watched.low(state(0.5, time=0.0), "LAND", TRACK)
     assert watched.low(state(None, time=9.0), "LAND", TRACK) == ""
-    assert "nobody will notice when it is low" in watched.untold
+    assert "a low battery will go unnoticed" in watched.untold
 
 
 @pytest.mark.parametrize("known", [state(None), state(0.01, armed=False)])

@@ -88,7 +88,7 @@ def test_a_mode_that_nobody_asked_for_is_a_pilot(steered, mode):
     helm, telemetry, _, wire = steered()
     helm.arm()
     in_mode(wire, telemetry, mode)
-    with pytest.raises(Fault, match=r"left mode guided for .*: somebody else has taken over") as fault:
+    with pytest.raises(Fault, match=r"left mode guided for .*: it is under external control") as fault:
         helm.check()
     assert fault.value.event == "TAKEN_OVER"
 
@@ -214,5 +214,5 @@ def test_an_image_that_never_comes_is_a_silent_device(camera, monkeypatch, told)
     if told is not None:
         wire.say(told, component=100)
     vehicle.operate(PHOTO, (0.0, 0.0, 1.0))
-    with pytest.raises(Unanswered, match="IMAGE_START_CAPTURE: no image was told within 2 s"):
+    with pytest.raises(Unanswered, match="IMAGE_START_CAPTURE: no image was reported within 2 s"):
         vehicle.operate(PHOTO, (0.0, 0.0, 1.0), confirmed=True)

@@ -87,7 +87,7 @@ def test_a_place_near_home_is_home_and_the_vehicle_is_told_nothing(perched):
 def test_one_that_does_not_take_it_does_not_take_off(perched, settings, why):
     made = perched(restarted=True, **settings)
     made.link.retries = Retries(tries=2)
-    with pytest.raises(Refused, match="bring it home, and begin anew") as refused:
+    with pytest.raises(Refused, match="bring it home, and begin again") as refused:
         made.vehicle.take_off(16.0)
     assert f"it takes off 72 m from its home, and the vehicle does not keep that for its own ({why}" in str(
         refused.value

@@ -143,18 +143,18 @@ def test_failsafes_are_told_in_words_with_a_warning_where_there_is_cause():
         told = list(safeguards.report(link, "copter"))
     assert told == [
         "FS_GCS_ENABLE = 0: no heartbeats from the ground: nothing",
-        "BATT_FS_LOW_ACT = 0: battery low: nothing (beware: the vehicle does nothing by itself)",
+        "BATT_FS_LOW_ACT = 0: battery low: nothing (warning: no failsafe set)",
         "FENCE_ACTION = 1: fence broken: return, or land",
         "RTL_ALT = 1500: height at which it returns: 1500 cm",
         "DISARM_DELAY = 2: seconds on the ground until it disarms: 2 s"
-        " (beware: it may disarm before it is told to take off)",
+        " (warning: it may disarm before its take-off command)",
     ]
 
 
 def test_a_vehicle_that_tells_no_failsafes_is_told():
     with linked() as (link, _):
         (line,) = safeguards.report(link, "rover")
-    assert line == "the vehicle tells none of its failsafe parameters: look yourself what it does by itself"
+    assert line == "the vehicle reports none of its failsafe parameters: check its failsafes yourself"
 
 
 @pytest.mark.parametrize(
@@ -199,7 +199,7 @@ def test_seconds_that_no_vehicle_can_be_told_are_told_to_people():
 
 
 def test_a_response_that_a_vehicle_cannot_give_by_itself_is_refused():
-    with linked() as (link, _), pytest.raises(Refused, match="a copter cannot do SURFACE by itself"):
+    with linked() as (link, _), pytest.raises(Refused, match="a copter cannot do SURFACE as a failsafe"):
         preparation.answer_breach(link, "copter", "SURFACE")
 
 
@@ -225,4 +225,4 @@ def test_a_submarine_that_stops_when_a_joystick_falls_silent_is_told_of():
     values = Values(FS_PILOT_INPUT=2.0)
     with linked(values) as (link, _):
         (line,) = safeguards.report(link, "sub")
-    assert line.startswith("FS_PILOT_INPUT = 2: a pilot's sticks, once used, fall silent: disarm (beware: ")
+    assert line.startswith("FS_PILOT_INPUT = 2: a pilot's sticks, once used, fall silent: disarm (warning: ")

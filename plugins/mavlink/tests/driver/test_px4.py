@@ -150,7 +150,7 @@ def test_set_points_end_when_somebody_else_has_the_vehicle(px4):
     helm.enter(modes.GUIDED)
     autopilot.wire.beat(autopilot=PX4, mode=POSITION, armed=True)
     eventually(lambda: telemetry.mode() == POSITION)
-    with pytest.raises(Fault, match="somebody else has taken over") as fault:
+    with pytest.raises(Fault, match="it is under external control") as fault:
         helm.check()
     assert fault.value.event == "TAKEN_OVER"
     assert_silent(autopilot)

@@ -106,7 +106,7 @@ def test_without_a_system_two_vehicles_on_one_link_are_told():
         assert link.doubt() == ""
         wire.beat(system=7)
         eventually(link.doubt)
-        assert "system ids 1 and 7 speak on this link: say which, as URL@1" in link.doubt()
+        assert "system ids 1 and 7 vehicles on this link: name one, as URL@1" in link.doubt()
 
 
 def test_with_a_system_another_vehicle_is_only_counted():
@@ -114,7 +114,7 @@ def test_with_a_system_another_vehicle_is_only_counted():
         wire.beat(system=7)
         eventually(lambda: link.dropped)
         assert link.doubt() == ""
-        assert link.dropped == {"HEARTBEAT: from system 7, which is no robot's": 1}
+        assert link.dropped == {"HEARTBEAT: from system 7, which is not a robot's": 1}
 
 
 def test_a_wrong_system_is_told_when_nobody_else_speaks():
@@ -122,7 +122,7 @@ def test_a_wrong_system_is_told_when_nobody_else_speaks():
     radios = Radios(clock, retries=QUICK, wrap=lambda port, url: port.close() or wire)
     link = radios.open("udpin:127.0.0.1:0", 3)
     wire.beat(system=7)
-    with pytest.raises(Fault, match=r"no vehicle at here; heard system 7, and not 3"):
+    with pytest.raises(Fault, match=r"no vehicle at here; received system 7, and not 3"):
         radios.meet(link, "here", 0.3)
     link.close()
 
@@ -212,7 +212,7 @@ def test_frames_that_are_not_used_are_counted_by_type_and_reason():
         wire.say(ITEM, system=9)
         eventually(lambda: len(link.dropped) >= 3)
         assert link.dropped["message 54321: unknown"] == 1
-        assert link.dropped["MISSION_CURRENT: from system 9, which is no robot's"] == 1
+        assert link.dropped["MISSION_CURRENT: from system 9, which is not a robot's"] == 1
         assert link.dropped["unreadable"] == link.garbled > 0
 
 
@@ -291,7 +291,7 @@ def test_a_url_may_name_a_system(text, found):
 
 @pytest.mark.parametrize("text", ["tcp:a:1@0", "tcp:a:1@256", "tcp:a:1@x", "tcp:a:1@"])
 def test_a_system_that_is_none_is_refused(text):
-    with pytest.raises(ValueError, match="is no MAVLink system from 1 to 255"):
+    with pytest.raises(ValueError, match="must be a MAVLink system from 1 to 255"):
         split_system(text)
 
 

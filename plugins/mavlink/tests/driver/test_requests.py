@@ -89,7 +89,7 @@ def test_a_pilots_mode_is_a_pilots_however_many_requests_are_on_their_way(late):
     helm, link, _, wire = late
     broken_off(helm, link, wire, modes.GUIDED)
     wire.answer = lambda message: (acknowledged(176), heartbeat(mode=LOITER, armed=True))
-    with pytest.raises(Fault, match="left mode stabilize for loiter: somebody else has taken over"):
+    with pytest.raises(Fault, match="left mode stabilize for loiter: it is under external control"):
         helm.enter(modes.LAND)
 
 
@@ -99,5 +99,5 @@ def test_what_was_asked_for_long_ago_is_a_pilots_again(late):
     helm.enter(modes.LAND)
     threading.Event().wait(1.0)
     show(wire, telemetry, BRAKE)
-    with pytest.raises(Fault, match="left mode land for hold: somebody else has taken over"):
+    with pytest.raises(Fault, match="left mode land for hold: it is under external control"):
         helm.check()

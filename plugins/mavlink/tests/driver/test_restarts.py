@@ -28,7 +28,7 @@ def test_a_vehicle_whose_motors_go_on_is_landed_since_it_has_forgotten_what_it_d
     restart(made, armed=True)
     fault = made.caught()
     assert (fault.event, fault.instead) == ("VEHICLE_RESTARTED", "LAND")
-    assert "on its way, with its motors on: nothing can be carried on" in str(fault)
+    assert "in motion, armed: its program cannot be continued" in str(fault)
 
 
 def test_a_vehicle_whose_motors_have_stopped_on_its_way_ends_the_program_in_words(in_the_air):
@@ -37,7 +37,7 @@ def test_a_vehicle_whose_motors_have_stopped_on_its_way_ends_the_program_in_word
     restart(made, armed=False)
     fault = made.caught()
     assert (fault.event, fault.instead) == ("VEHICLE_RESTARTED", "HOLD")
-    assert "with its motors off: nothing can be carried on" in str(fault)
+    assert "disarmed: its program cannot be continued" in str(fault)
 
 
 @pytest.fixture
@@ -64,6 +64,4 @@ def test_people_are_told_before_that_carrying_on_counts_on_the_ground_only(on_th
     told = []
     made.watch.say = told.append
     made.watch.forewarn()
-    assert told == [
-        "carries on after VEHICLE_RESTARTED before it sets out only; on its way it does LAND then"
-    ]
+    assert told == ["carries on after VEHICLE_RESTARTED before it sets out only; in motion it does LAND then"]

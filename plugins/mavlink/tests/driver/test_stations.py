@@ -96,7 +96,7 @@ def test_a_station_counts_as_lost_after_the_seconds_of_the_policy(ears, policy, 
     pass_seconds(ears, seconds)
     assert ground.silence(policy) == ""
     pass_seconds(ears, 1)
-    assert ground.silence(policy) == f"nothing heard of ground station 254 for {seconds + 1} s"
+    assert ground.silence(policy) == f"no messages from ground station 254 for {seconds + 1} s"
 
 
 def test_a_station_that_comes_back_in_time_is_not_lost(ears):
@@ -116,7 +116,7 @@ def test_of_several_stations_the_last_counts(ears):
     pass_seconds(ears, 4)
     assert ground.silence(FIVE) == ""
     pass_seconds(ears, 4)
-    assert ground.silence(FIVE) == "nothing heard of ground stations 253 and 254 for 8 s"
+    assert ground.silence(FIVE) == "no messages from ground stations 253 and 254 for 8 s"
 
 
 def test_seconds_in_which_the_vehicle_itself_is_silent_do_not_count(ears):
@@ -128,7 +128,7 @@ def test_seconds_in_which_the_vehicle_itself_is_silent_do_not_count(ears):
     alive(ears)
     assert ground.silence(FIVE) == ""
     pass_seconds(ears, 4)
-    assert ground.silence(FIVE) == "nothing heard of ground station 254 for 6 s"
+    assert ground.silence(FIVE) == "no messages from ground station 254 for 6 s"
 
 
 def test_what_is_cut_for_a_rehearsal_is_not_heard(ears):
@@ -170,7 +170,7 @@ def test_any_station_hides_our_silence_from_a_px4():
 @pytest.mark.parametrize(
     ("policy", "heard", "said"),
     [
-        (FIVE, (), "hears no ground station yet: policy GROUND_LOST (RETURN) waits for the first"),
+        (FIVE, (), "no ground station received yet: policy GROUND_LOST (RETURN) waits for the first"),
         (FIVE, (254,), ""),
         (Policy("GROUND_LOST", "CONTINUE"), (), ""),
     ],
@@ -197,7 +197,7 @@ def test_a_watch_ends_the_program_when_the_last_station_is_lost(ears):
     beat(ears)
     watch.check()
     pass_seconds(ears, 6)
-    with pytest.raises(Fault, match="nothing heard of ground station 254 for 6 s") as fault:
+    with pytest.raises(Fault, match="no messages from ground station 254 for 6 s") as fault:
         watch.check()
     assert (fault.value.event, decided) == ("GROUND_LOST", [HEARD])
 
@@ -212,7 +212,7 @@ def test_a_robot_that_carries_on_alone_has_that_recorded_each_time(ears, policie
         watch.check()
         beat(ears)
         watch.check()
-    borne = ("GROUND_LOST", "nothing heard of ground station 254 for 12 s", "CONTINUE")
+    borne = ("GROUND_LOST", "no messages from ground station 254 for 12 s", "CONTINUE")
     assert decided == [HEARD, borne, borne]
 
 

@@ -33,7 +33,7 @@ def test_a_submarine_whose_motors_are_off_below_has_not_surfaced(below):
         below.simulated.autopilot.disarm()
     below.watch.moving = False
     assert below.link.wait(lambda: not below.vehicle.state().armed, 60.0)
-    with pytest.raises(Refused, match="its motors are off: it comes up only if it is buoyant"):
+    with pytest.raises(Refused, match="it is disarmed: it surfaces only if it is buoyant"):
         below.vehicle.surface()
 
 
@@ -43,7 +43,7 @@ def test_a_submarine_whose_motors_are_off_below_does_not_hold(below):
         below.simulated.autopilot.disarm()
     below.watch.moving = False
     assert below.link.wait(lambda: not below.vehicle.state().armed, 60.0)
-    assert undone("HOLD", below.robot, below.vehicle, 20.0) == "its motors are off, below the surface"
+    assert undone("HOLD", below.robot, below.vehicle, 20.0) == "it is disarmed, below the surface"
 
 
 def test_motors_that_stop_below_are_noticed(below):

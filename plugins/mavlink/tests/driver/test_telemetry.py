@@ -79,7 +79,7 @@ def test_a_vehicle_that_knows_all_lacks_nothing(told):
 def test_all_that_is_lacking_is_told_at_once(told):
     telemetry = told(status(0), ekf(1 | 4 | 32), gps(1, 4))
     assert telemetry.lacks() == (
-        "it has not told where it is (GLOBAL_POSITION_INT)",
+        "it has not reported its position (GLOBAL_POSITION_INT)",
         "its estimator (EKF) knows no horizontal velocity and no horizontal position",
         "it has no GPS fix (4 satellites)",
         "its own checks fail",
@@ -99,7 +99,7 @@ def test_parts_that_are_unhealthy_are_named_where_the_vehicle_says_nothing(told)
 
 
 def test_a_vehicle_that_has_told_nothing_of_itself_lacks_that(told):
-    assert told(*READY[1:]).lacks() == ("it has not told its state (SYS_STATUS)",)
+    assert told(*READY[1:]).lacks() == ("it has not reported its state (SYS_STATUS)",)
 
 
 def test_only_an_ardupilot_must_say_that_its_checks_pass(told):
@@ -146,7 +146,7 @@ def test_a_position_that_comes_no_more_is_lost(told, monkeypatch):
     eventually(lambda: link.since("GLOBAL_POSITION_INT") > 0.3)
     assert telemetry.position_trouble() == ""
     link._heard = link.clock.now()
-    assert "it has not told where it is for" in telemetry.position_trouble()
+    assert "it has not reported its position for" in telemetry.position_trouble()
 
 
 @pytest.mark.parametrize(
@@ -234,7 +234,7 @@ def test_zero_degrees_of_both_are_no_place_but_what_ardupilots_tell_before_they_
     telemetry = told(*READY[:3], nowhere())
     assert not telemetry.placed()
     assert telemetry.here() == HOME
-    assert telemetry.lacks() == ("it has not told where it is (GLOBAL_POSITION_INT)",)
+    assert telemetry.lacks() == ("it has not reported its position (GLOBAL_POSITION_INT)",)
 
 
 def test_a_vehicle_that_does_not_know_its_place_any_more_is_where_it_was_last():

@@ -25,7 +25,7 @@ def test_a_robot_that_has_no_way_to_an_emergency_area_says_so_before_it_moves(po
     watch = Watch(robot_of(Policy("OBSTACLE", policy), escapes=escapes), Clock())
     watch.say = said.append
     watch.forewarn()
-    assert any("no clear way to an emergency area" in line for line in said) is told
+    assert any("no clear path to an emergency area" in line for line in said) is told
 
 
 def test_a_robot_that_is_well_is_let_alone(in_the_air):
@@ -249,5 +249,5 @@ def test_a_vehicle_that_is_heard_again_in_the_mode_that_it_was_told_for_then_may
 
 def test_a_vehicle_that_is_heard_again_in_another_mode_is_a_pilots(back):
     made = back("return")
-    with pytest.raises(Fault, match="somebody else has taken over"):
+    with pytest.raises(Fault, match="it is under external control"):
         made.watch.check_hands("LINK_LOST")

@@ -14,19 +14,19 @@ _SWITCHES = {"yes": True, "no": False}
 
 @dataclass(frozen=True, slots=True)
 class LinkOptions:
-    """How vehicles are spoken to.
+    """How to communicate with vehicles.
 
     Attributes:
-        patience: real seconds to wait for a vehicle's first sign.
-        acceptance: metres from a place that count as there; None: by the robot's travel mode.
+        patience: real seconds to wait for a vehicle's first message.
+        acceptance: acceptance radius in metres; None: by the robot's travel mode.
         home_tolerance: metres that a vehicle may be from its home at first.
         tries: how often to send at most what is not answered.
         answer_seconds: how long to wait for an answer.
         item_seconds: how long to wait for an item of a mission that is read back.
         fence: whether forbidden areas are uploaded as a fence.
-        objects: ``expected`` takes objects to be where they are expected; nobody looks for them.
-        signing_key: file of 32 bytes to sign with; empty: nothing is signed.
-        inject: faults to be made on purpose.
+        objects: ``expected`` takes objects to be at their expected positions, without a search.
+        signing_key: file of 32 bytes to sign with; empty: no signing.
+        inject: faults to inject.
     """
 
     patience: float = 30.0

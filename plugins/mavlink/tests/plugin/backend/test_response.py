@@ -58,7 +58,7 @@ def test_a_vehicle_that_a_pilot_has_just_taken_is_left_to_him_whatever_is_ordere
     response, _ = response_of(made)
     made.simulated.faults.begin("stick", mode)
     until(lambda: made.vehicle.telemetry.mode() == made.simulated.autopilot.mode)
-    with pytest.raises(Fault, match="somebody else has taken over"):
+    with pytest.raises(Fault, match="it is under external control"):
         response.begin("LAND", None, lambda what, why, does: None, heard=True).run()
     assert made.mode == mode
 
