@@ -157,6 +157,15 @@ def need_program():
 
 
 @pytest.fixture(scope="session")
+def warm(tmp_path_factory):
+    """Return a folder with an ``mmrs`` and an ``mmrs-gen`` that need not import anything when they start."""
+    from warm_commands import warm_commands
+
+    with warm_commands(tmp_path_factory.mktemp("warm"), os.environ) as programs:
+        yield programs
+
+
+@pytest.fixture(scope="session")
 def plugins():
     """Return the installed plug-ins."""
     from mmrs_core.plugins import load_plugins

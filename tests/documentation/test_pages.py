@@ -32,9 +32,9 @@ def unhurried():
 
 
 @pytest.mark.parametrize("page", [page for page in PAGES if BLOCKS[page]])
-def test_what_a_page_says_to_type_does_what_it_says(page, tmp_path):
+def test_what_a_page_says_to_type_does_what_it_says(page, tmp_path, warm):
     shutil.copytree(ROOT / "examples", tmp_path / "examples")
-    reader = Reader(tmp_path)
+    reader = Reader(tmp_path, warm)
     for block in BLOCKS[page]:
         reader.follow(block)
 

@@ -1,14 +1,13 @@
 """What the README tells to type works, in the order in which it tells it."""
 
-import os
 import re
 import shlex
 import shutil
 import subprocess
-import sys
 from pathlib import Path
 
 import pytest
+from code_blocks import environment
 
 pytestmark = pytest.mark.long
 
@@ -40,16 +39,15 @@ def test_every_page_that_the_readme_names_exists():
     assert [link for link in links if not (ROOT / link).exists()] == []
 
 
-def test_every_command_of_the_readme_works_and_the_demo_leaves_what_is_promised(tmp_path):
+def test_every_command_of_the_readme_works_and_the_demo_leaves_what_is_promised(tmp_path, warm):
     promised = re.findall(r"^\| `(\S+?)` \|", README, re.MULTILINE)
     assert len(promised) == 6
     shutil.copytree(ROOT / "examples", tmp_path / "examples")
-    environment = os.environ | {"PATH": f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"}
     for command in [".venv/bin/mmrs demo", *COMMANDS[2:]]:
         done = subprocess.run(
             shlex.split(command.replace(".venv/bin/", "")),
             cwd=tmp_path,
-            env=environment,
+            env=environment(warm),
             capture_output=True,
             text=True,
             timeout=240,
