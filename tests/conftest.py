@@ -11,9 +11,11 @@ from functools import cache
 from pathlib import Path
 
 import pytest
+import shared
 
 AT_WORK_WITH_OTHERS = "PYTEST_XDIST_WORKER" in os.environ
-GROUPS = pytest.StashKey[Path]()
+GROUPS = "groups.json"
+"""What a worker writes for the scheduler, which sees names of tests, but not their markers."""
 GIVING_WAY = 10
 """Niceness of workers, and of the processes that they start, once they have no tests in real time left."""
 
@@ -28,6 +30,8 @@ def pytest_configure(config: pytest.Config) -> None:
     """Have tests, and the many processes that they start, compile each module once."""
     if os.environ.pop("PYTHONDONTWRITEBYTECODE", "") and "PYTHONPYCACHEPREFIX" not in os.environ:
         keep_bytecode_elsewhere(config)
+    if not AT_WORK_WITH_OTHERS:
+        config.add_cleanup(shared.open_folder())
     draw_the_same_examples_everywhere()
     take_time_for_examples()
     if AT_WORK_WITH_OTHERS and hasattr(os, "nice"):
@@ -74,7 +78,7 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
         items.sort(key=rank)
         if config.workerinput["workerid"] == "gw0":  # type: ignore[attr-defined]
             grouped = {file_of(item.nodeid): group for item in items if (group := group_of(item))}
-            Path(config.workerinput["groups"]).write_text(json.dumps(grouped))  # type: ignore[attr-defined]
+            (shared.folder() / GROUPS).write_text(json.dumps(grouped))
 
 
 def rank(item: pytest.Item) -> int:
@@ -104,17 +108,6 @@ class Courtesy:
 
 
 @pytest.hookimpl(optionalhook=True)
-def pytest_configure_node(node) -> None:
-    """Tell a worker where to write the groups: the scheduler sees tests' names, but not their markers."""
-    config = node.config
-    if GROUPS not in config.stash:
-        folder = Path(tempfile.mkdtemp(prefix="mmrs-tests-"))
-        config.add_cleanup(lambda: shutil.rmtree(folder, ignore_errors=True))
-        config.stash[GROUPS] = folder / "groups.json"
-    node.workerinput["groups"] = str(config.stash[GROUPS])
-
-
-@pytest.hookimpl(optionalhook=True)
 def pytest_xdist_make_scheduler(config: pytest.Config, log):
     """Give each group of tests, or else each file, one worker."""
     if config.getoption("dist") != "loadgroup":
@@ -125,7 +118,7 @@ def pytest_xdist_make_scheduler(config: pytest.Config, log):
 
     @cache
     def groups() -> dict[str, str]:
-        return json.loads(config.stash[GROUPS].read_text())
+        return json.loads((shared.folder() / GROUPS).read_text())
 
     class ByGroup(LoadScopeScheduling):
         def _split_scope(self, nodeid: str) -> str:
@@ -154,15 +147,6 @@ def need_program():
         return found
 
     return need
-
-
-@pytest.fixture(scope="session")
-def warm(tmp_path_factory):
-    """Return a folder with an ``mmrs`` and an ``mmrs-gen`` that need not import anything when they start."""
-    from warm_commands import warm_commands
-
-    with warm_commands(tmp_path_factory.mktemp("warm"), os.environ) as programs:
-        yield programs
 
 
 @pytest.fixture(scope="session")

@@ -5,12 +5,12 @@ from __future__ import annotations
 import os
 import socketserver
 import subprocess
-import sys
 import threading
 from pathlib import Path
 
 import pytest
 from code_blocks import blocks_of
+from warm_python import python
 
 from mmrs_core.behaviour.log import read_logs
 
@@ -69,7 +69,7 @@ def yard(tmp_path_factory):
 
 def command(folder, module, *arguments):
     """Run a command where the page's distribution is installed."""
-    call = [sys.executable, "-m", module, *arguments]
+    call = [python(), "-m", module, *arguments]
     return subprocess.run(
         call, cwd=folder, env=_env(folder), capture_output=True, text=True, timeout=PATIENCE
     )
@@ -81,7 +81,7 @@ def _env(folder):
 
 def drive(yard, kart, log, *more):
     """Begin to drive the kart that listens at HOST:PORT; return the process."""
-    call = [sys.executable, "fleet.py", "--kart", kart, "--log", str(log), *more]
+    call = [python(), "fleet.py", "--kart", kart, "--log", str(log), *more]
     return subprocess.Popen(
         call, cwd=yard / "code", env=_env(yard), stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True
     )

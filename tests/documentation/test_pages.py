@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 from code_blocks import Block, Reader, alike, blocks_of, commands_of
 from hypothesis import HealthCheck, settings
+from warm_python import programs
 
 pytestmark = pytest.mark.long
 
@@ -32,9 +33,9 @@ def unhurried():
 
 
 @pytest.mark.parametrize("page", [page for page in PAGES if BLOCKS[page]])
-def test_what_a_page_says_to_type_does_what_it_says(page, tmp_path, warm):
+def test_what_a_page_says_to_type_does_what_it_says(page, tmp_path):
     shutil.copytree(ROOT / "examples", tmp_path / "examples")
-    reader = Reader(tmp_path, warm)
+    reader = Reader(tmp_path, programs())
     for block in BLOCKS[page]:
         reader.follow(block)
 

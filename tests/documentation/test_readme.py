@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 from code_blocks import environment
+from warm_python import programs
 
 pytestmark = pytest.mark.long
 
@@ -39,7 +40,7 @@ def test_every_page_that_the_readme_names_exists():
     assert [link for link in links if not (ROOT / link).exists()] == []
 
 
-def test_every_command_of_the_readme_works_and_the_demo_leaves_what_is_promised(tmp_path, warm):
+def test_every_command_of_the_readme_works_and_the_demo_leaves_what_is_promised(tmp_path):
     promised = re.findall(r"^\| `(\S+?)` \|", README, re.MULTILINE)
     assert len(promised) == 6
     shutil.copytree(ROOT / "examples", tmp_path / "examples")
@@ -47,7 +48,7 @@ def test_every_command_of_the_readme_works_and_the_demo_leaves_what_is_promised(
         done = subprocess.run(
             shlex.split(command.replace(".venv/bin/", "")),
             cwd=tmp_path,
-            env=environment(warm),
+            env=environment(programs()),
             capture_output=True,
             text=True,
             timeout=240,

@@ -5,7 +5,6 @@ from __future__ import annotations
 import shutil
 import socket
 import subprocess
-import sys
 import tempfile
 import threading
 import time
@@ -22,6 +21,7 @@ from can_hub import RunningHub, running
 from dives import diver
 from mmrs_auv.sheets import sheet_of
 from mmrs_auv.targets.ada.target import ADA
+from warm_python import python
 
 from auv_vessel.body.surroundings import Surroundings
 from auv_vessel.body.vehicle import Vehicle
@@ -235,7 +235,7 @@ def gateways(behaviour: Path, folder: Path, robots: Sequence[str]) -> Iterator[M
     processes, files = [], {}
     for number, robot in enumerate(robots):
         kept = folder / f"gateway-{robot}"
-        words = [sys.executable, "-m", "mmrs_core", "bus", "gateway", str(behaviour), "--robot", robot]
+        words = [python(), "-m", "mmrs_core", "bus", "gateway", str(behaviour), "--robot", robot]
         words += ["--log", str(kept), "--connect" if number else "--listen", meeting]
         processes.append(subprocess.Popen(words, stderr=subprocess.DEVNULL))
         files[robot] = kept / "gateway.json"

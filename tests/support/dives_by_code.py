@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 import subprocess
-import sys
 from dataclasses import replace
 from pathlib import Path
 
@@ -12,6 +11,7 @@ from dives import diver
 from mmrs_auv.kinds import AUV_KIND
 from mmrs_auv.rehearsal import Berth
 from mmrs_auv.targets.can_python.target import CAN_PYTHON
+from warm_python import python
 
 from mmrs_core.behaviour.program import Program
 from mmrs_core.contributions.registry import Contributions
@@ -57,7 +57,7 @@ def dive_by_code(behaviour: Program, berth: Berth, folder: Path, *words: str) ->
     write(render(CAN_PYTHON, given), folder / "code")
     words = ("--can", berth.channel, "--clock", "bus", "--speedup", str(SPEED), *words)
     done = subprocess.run(
-        [sys.executable, "fleet.py", *words, "--log", str(folder / "logs")],
+        [python(), "fleet.py", *words, "--log", str(folder / "logs")],
         cwd=folder / "code",
         env=os.environ | {"PYTHONDONTWRITEBYTECODE": "1"},
         capture_output=True,

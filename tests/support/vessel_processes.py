@@ -5,12 +5,13 @@ from __future__ import annotations
 import os
 import signal
 import subprocess
-import sys
 import threading
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
+
+from warm_python import python
 
 from auv_vessel.api import Connection
 from auv_vessel.sheet import Sheet, to_json
@@ -61,7 +62,7 @@ class Boat:
         self.file = folder / "sheet.json"
         self.file.write_text(to_json(sheet))
         hub = [
-            sys.executable,
+            python(),
             "-m",
             "mmrs_core",
             "can",
@@ -90,7 +91,7 @@ class Boat:
 
     def start(self, part: str, *more: str) -> subprocess.Popen[str]:
         words = [
-            sys.executable,
+            python(),
             "-m",
             "auv_vessel",
             part,

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import signal
 import subprocess
-import sys
 import threading
 import time
 from pathlib import Path
@@ -15,6 +13,7 @@ from bus_walking import RUN, Gone, Walker, logged
 from cut_proxy import CutProxy
 from hub import Hub
 from ports import free_port
+from warm_python import FREEZE, THAW, python
 
 from mmrs_core.behaviour.replay import replay
 from mmrs_runtime.bus import FileJournal, Node
@@ -229,7 +228,7 @@ class ProcessFleet(Fleet):
         self.processes[robot] = [self._walker(robot, die, again, pause, self.endpoints(robot))]
 
     def _walker(self, robot: str, die, again: bool, pause: float, ways: list[str]) -> subprocess.Popen:
-        command = [sys.executable, str(SCRIPT), self.behaviour, robot, str(self.folder_of(robot))]
+        command = [python(), str(SCRIPT), self.behaviour, robot, str(self.folder_of(robot))]
         command += ["--size", str(self.size), "--pause", str(pause), *ways]
         command += [word for each in die for word in ("--die", each)] + (["--again"] if again else [])
         return subprocess.Popen(command)
@@ -241,11 +240,11 @@ class ProcessFleet(Fleet):
 
     def freeze(self, robot: str) -> None:
         for process in self.processes[robot]:
-            process.send_signal(signal.SIGSTOP)
+            process.send_signal(FREEZE)
 
     def thaw(self, robot: str) -> None:
         for process in self.processes[robot]:
-            process.send_signal(signal.SIGCONT)
+            process.send_signal(THAW)
 
     def ended(self, robot: str) -> bool:
         return self.processes[robot][0].wait(PATIENCE) == 0
@@ -267,7 +266,7 @@ class GatewayFleet(ProcessFleet):
         (folder / "gateway.json").unlink(missing_ok=True)
         gateway = subprocess.Popen(
             [
-                sys.executable,
+                python(),
                 "-c",
                 GATEWAY,
                 self.behaviour,
@@ -284,7 +283,7 @@ class GatewayFleet(ProcessFleet):
 
     def freeze(self, robot: str) -> None:
         """Freeze the program alone: the gateway must notice."""
-        self.processes[robot][0].send_signal(signal.SIGSTOP)
+        self.processes[robot][0].send_signal(FREEZE)
 
     def ended(self, robot: str) -> bool:
         well = super().ended(robot)

@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 import os
-import signal
 import subprocess
-import sys
 from pathlib import Path
 
 import bus_walking
 import pytest
 from bus_walking import RUN, exchange
 from stalls import Stalls
+from warm_python import FREEZE, THAW, python
 
 from mmrs_runtime.bus import Unwelcome
 from mmrs_runtime.bus.carriers.over_zenoh import ZenohCarrier
@@ -41,10 +40,9 @@ def watcher(ends, tmp_path):
 @pytest.fixture
 def walker(watcher, tmp_path):
     """Return the process of robot 'a', which waits for 'b' for ever."""
-    command = [sys.executable, str(SCRIPT), "exchange", "a", str(tmp_path / "a"), "--connect", watcher[1]]
+    command = [python(), str(SCRIPT), "exchange", "a", str(tmp_path / "a"), "--connect", watcher[1]]
     process = subprocess.Popen(command)
     yield process
-    process.send_signal(signal.SIGCONT)
     process.kill()
     process.wait()
 
@@ -79,9 +77,9 @@ def test_whoever_waits_is_woken_when_a_robot_is_killed(seen, until):
 
 def test_a_frozen_robot_is_noticed_within_the_lease_and_again_when_it_wakes(seen, until):
     bus, walker = seen
-    os.kill(walker.pid, signal.SIGSTOP)
+    os.kill(walker.pid, FREEZE)
     assert until(lambda: bus.lost(["a"])) < 1.5 * LEASE
-    os.kill(walker.pid, signal.SIGCONT)
+    os.kill(walker.pid, THAW)
     until(lambda: not bus.lost(["a"]))
 
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import subprocess
-import sys
 from contextlib import contextmanager
 from pathlib import Path
 from types import MappingProxyType
@@ -12,6 +11,7 @@ from types import MappingProxyType
 import pytest
 from patience import until
 from ports import free_port
+from warm_python import python
 
 from mmrs_core.behaviour.earth import degrees_of
 from mmrs_core.behaviour.log import read_logs
@@ -36,7 +36,7 @@ class Controllers:
         write(files or render(MAVLINK_PYTHON, target_input(program, types), **options), folder)
 
     def start(self, script: str, *arguments: str) -> subprocess.Popen[str]:
-        command = [sys.executable, "-W", "error", str(self.folder / script), *arguments]
+        command = [python(), "-W", "error", str(self.folder / script), *arguments]
         return subprocess.Popen(
             command, cwd=self.folder, stderr=subprocess.PIPE, stdout=subprocess.PIPE, text=True
         )

@@ -11,6 +11,7 @@ from dataclasses import replace
 
 import pytest
 from ports import free_endpoint
+from warm_python import FREEZE, THAW
 
 from mmrs_core.behaviour.log import read_logs
 from mmrs_core.behaviour.program import Transition
@@ -117,11 +118,11 @@ def test_a_robot_notices_that_a_peer_is_frozen_and_does_not_wait_for_it_at_the_e
         await_line(beta, "waits for 'go'")
         await_line(alpha, "'stay'")
         time.sleep(1.0)
-        alpha.send_signal(signal.SIGSTOP)
+        alpha.send_signal(FREEZE)
         begun = time.monotonic()
         code, said = end(beta)
         taken = time.monotonic() - begun
-        alpha.send_signal(signal.SIGCONT)
+        alpha.send_signal(THAW)
         alpha.kill()
         alpha.communicate()
     assert (code, "PEER_LOST" in said) == (1, True)

@@ -5,10 +5,10 @@ from __future__ import annotations
 import json
 import shutil
 import subprocess
-import sys
 
 import pytest
 from ports import free_port
+from warm_python import python
 
 from mmrs_core.behaviour.log import read_logs
 from mmrs_core.cli import run
@@ -42,7 +42,7 @@ def flown(tmp_path_factory):
     for vehicle in vehicles:
         vehicle.start()
     try:
-        command = [sys.executable, str(code / "fleet.py"), "--speedup", "20", "--log", str(folder / "logs")]
+        command = [python(), str(code / "fleet.py"), "--speedup", "20", "--log", str(folder / "logs")]
         done = subprocess.run([*command, *links], capture_output=True, text=True, timeout=PATIENCE)
     finally:
         for vehicle in vehicles:

@@ -6,12 +6,12 @@ import json
 import re
 import signal
 import subprocess
-import sys
 from math import hypot
 
 import pytest
 from fault_table.fleet import GENERATED, Fleet, wait_for
 from fault_table.project import LATITUDE, LONGITUDE, OUT, Pad
+from warm_python import python
 
 from mmrs_runtime.semantics import Outcome
 
@@ -33,7 +33,7 @@ def flown(tmp_path):
 
 def resume(fleet) -> dict[str, object]:
     """Order the robot to go on; return its answer."""
-    command = [sys.executable, "-m", "mmrs_core", "control", "resume", "--log", str(fleet.logs), "--json"]
+    command = [python(), "-m", "mmrs_core", "control", "resume", "--log", str(fleet.logs), "--json"]
     done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=PATIENCE)
     (reply,) = json.loads(done.stdout)["robots"]
     return reply

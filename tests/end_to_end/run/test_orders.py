@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import signal
 import subprocess
-import sys
 import time
 
 import pytest
@@ -13,6 +12,7 @@ from fault_table.fleet import wait_for
 from fault_table.project import Pad
 from real_runs import AT_HOME, HOLDING, PATIENCE, UNHURRIED, begun, judged, landed, ordered
 from stalls import Stalls
+from warm_python import python
 
 from mmrs_runtime.semantics import Outcome
 
@@ -21,7 +21,7 @@ pytestmark = pytest.mark.real_time("runs")
 
 def control(fleet, order):
     """Give an order to all robots by `mmrs control`; return its answer by robot."""
-    command = [sys.executable, "-m", "mmrs_core", "control", order, "--log", str(fleet.logs), "--json"]
+    command = [python(), "-m", "mmrs_core", "control", order, "--log", str(fleet.logs), "--json"]
     done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=PATIENCE)
     assert done.stdout, done.stderr
     return {reply["robot"]: reply for reply in json.loads(done.stdout)["robots"]}

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import json
 import subprocess
-import sys
 
 import pytest
 from fault_table.fleet import wait_for
 from fault_table.project import Pad
+from warm_python import python
 
 from mmrs_runtime.semantics import Outcome
 
@@ -36,7 +36,7 @@ def asking(fleet):
 
 def control(fleet, *words):
     """Give an order by `mmrs control`; return the exit code and the robot's answer."""
-    command = [sys.executable, "-m", "mmrs_core", "control", *words, "--log", str(fleet.logs), "--json"]
+    command = [python(), "-m", "mmrs_core", "control", *words, "--log", str(fleet.logs), "--json"]
     done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=PATIENCE)
     (reply,) = json.loads(done.stdout)["robots"]
     return done.returncode, reply

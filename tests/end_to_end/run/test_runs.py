@@ -6,13 +6,13 @@ import json
 import os
 import signal
 import subprocess
-import sys
 from pathlib import Path
 
 import pytest
 from fault_table.project import OUT, TOUR, Pad
 from ports import free_endpoint
 from real_runs import PATIENCE, SYNCHRONISED, begun, fly_by_hand, judged, landed, least_distance
+from warm_python import python
 
 from mmrs_core.cli import run
 from mmrs_runtime.semantics import Outcome
@@ -173,7 +173,7 @@ def test_faults_on_purpose_are_made_and_the_mission_still_flies(fleet):
 
 def test_simulated_robots_run_by_the_same_command(fleet):
     flown = fleet(*SYNCHRONISED)
-    command = [sys.executable, "-m", "mmrs_core", "run", str(flown.behaviour), "--backend", "simulation"]
+    command = [python(), "-m", "mmrs_core", "run", str(flown.behaviour), "--backend", "simulation"]
     command += ["--speedup", "100", "--log", str(flown.logs), "--json"]
     done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=PATIENCE)
     assert done.returncode == 0, done.stderr

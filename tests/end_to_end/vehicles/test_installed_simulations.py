@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import subprocess
-import sys
 from math import hypot
 
 import pytest
 from example_flight.fleets import PEERS, ArduCopter
 from example_flight.mission import Home
+from warm_python import python
 
 from mmrs_core.behaviour.earth import degrees_of
 from mmrs_core.generation.render import render
@@ -31,7 +31,7 @@ def test_its_vehicles_are_started_reached_and_recorded(tmp_path, monkeypatch):
     homes = [Home(robot.id, *place, robot.home) for robot, place in zip(program.robots, degrees, strict=True)]
     with ArduCopter(homes, tmp_path) as fleet:
         links = [part for robot, url in fleet.links.items() for part in ("--connect", f"{robot}={url}")]
-        command = [sys.executable, "fleet.py", *links, "--speedup", str(fleet.speedup)]
+        command = [python(), "fleet.py", *links, "--speedup", str(fleet.speedup)]
         done = subprocess.run(
             command, cwd=tmp_path / "controllers", capture_output=True, text=True, check=False, timeout=120
         )

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import subprocess
-import sys
 
 import pytest
 from example_flight.fleets import OfMavsdk
 from example_flight.mission import Home
+from warm_python import python
 
 from mmrs_core.behaviour.earth import degrees_of
 from mmrs_core.behaviour.log import read_logs
@@ -35,7 +35,7 @@ def flown(tmp_path_factory):
     homes = [Home(robot.id, *place, robot.home) for robot, place in zip(program.robots, degrees, strict=True)]
     with OfMavsdk(homes, folder) as vehicles:
         links = [part for robot, url in vehicles.links.items() for part in ("--connect", f"{robot}={url}")]
-        command = [sys.executable, "fleet.py", *links, "--speedup", str(vehicles.speedup)]
+        command = [python(), "fleet.py", *links, "--speedup", str(vehicles.speedup)]
         done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False, timeout=120)
     return program, folder, vehicles, done
 

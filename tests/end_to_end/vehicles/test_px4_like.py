@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import subprocess
-import sys
 
 import pytest
 from ports import free_port
+from warm_python import python
 
 from mmrs_core.behaviour.earth import degrees_of
 from mmrs_core.behaviour.log import read_logs
@@ -37,7 +37,7 @@ def flown(tmp_path_factory):
         links += ["--connect", f"{robot.id}=udpin:127.0.0.1:{port}@{number}"]
     host = Host(list(vehicles.values()))
     host.start()
-    command = [sys.executable, "fleet.py", *links, "--speedup", str(SPEEDUP)]
+    command = [python(), "fleet.py", *links, "--speedup", str(SPEEDUP)]
     done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False, timeout=120)
     host.stop()
     for vehicle in vehicles.values():

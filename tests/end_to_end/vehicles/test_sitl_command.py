@@ -13,6 +13,7 @@ import time
 import pytest
 from ports import free_port
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
+from warm_python import python
 
 from mmrs_core.resources import shipped
 
@@ -20,7 +21,7 @@ pytestmark = pytest.mark.real_time("faults")
 
 
 def start(*arguments: str) -> subprocess.Popen[str]:
-    command = [sys.executable, "-W", "error", "-m", "mmrs_core", "sitl", *arguments]
+    command = [python(), "-W", "error", "-m", "mmrs_core", "sitl", *arguments]
     pipes = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE, "stderr": subprocess.PIPE}
     return subprocess.Popen(command, text=True, **pipes)
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Mapping
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
@@ -19,6 +18,7 @@ from mmrs_auv.kinds import AUV_KIND
 from mmrs_auv.plugin import mmrs_metamodels
 from mmrs_auv.targets.can_python.target import CAN_PYTHON
 from waiting_pair import waiting_pair
+from warm_python import python
 
 from auv_vessel.eyes import Detection
 from mmrs_core.behaviour.log import read_logs
@@ -89,7 +89,7 @@ def controlled(behaviour, folder: Path) -> Dive:
 
     def words(port: int) -> list[str]:
         options = ["--can", f"can0@127.0.0.1:{port}", "--log", str(folder / "logs")]
-        return [sys.executable, str(folder / "code" / "fleet.py"), *options]
+        return [python(), str(folder / "code" / "fleet.py"), *options]
 
     return commanded(words, behaviour, folder, strange=1.0)
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import subprocess
-import sys
 from collections.abc import Sequence
 from math import copysign, dist, sqrt
 from pathlib import Path
@@ -15,6 +14,7 @@ from dronecan.transport import Frame as Part
 from dronecan.transport import Transfer, TransferManager
 from mmrs_dronecan.transfers import Outgoing
 from sample_vessels import pool_sheet
+from warm_python import python
 
 from auv_vessel.api import Craft
 from auv_vessel.body.surroundings import Surroundings
@@ -219,7 +219,7 @@ def test_the_process_of_the_actuator_controller_takes_drives_by_name(tmp_path: P
             "--drives",
             DRIVES,
         ]
-        process = subprocess.Popen([sys.executable, "-m", "auv_vessel", *words], stderr=subprocess.PIPE)
+        process = subprocess.Popen([python(), "-m", "auv_vessel", *words], stderr=subprocess.PIPE)
         try:
             ids = {heard.word().split()[2] for _ in range(40)}
         finally:
@@ -234,7 +234,7 @@ def test_a_process_with_drives_that_are_none_says_so(tmp_path: Path) -> None:
     file = tmp_path / "sheet.json"
     file.write_text(to_json(pool_sheet()))
     words = ["actuators", "--sheet", str(file), "--interface", "virtual", "--drives", "no.such:thing"]
-    done = subprocess.run([sys.executable, "-m", "auv_vessel", *words], capture_output=True, text=True)
+    done = subprocess.run([python(), "-m", "auv_vessel", *words], capture_output=True, text=True)
     assert done.returncode == 2
     assert done.stderr == "actuators: drives no.such:thing: No module named 'no'\n"
 

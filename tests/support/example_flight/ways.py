@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import subprocess
-import sys
 from collections.abc import Mapping
 from pathlib import Path
 
 from ports import free_endpoint
+from warm_python import python
 
 from example_flight.mission import Mission
 
@@ -21,7 +21,7 @@ def by_controllers(mission: Mission, links: Mapping[str, str], speedup: float) -
     processes = {}
     for number, (robot, link) in enumerate(links.items()):
         bus = ("--bus-connect" if number else "--bus-listen", endpoint)
-        command = [sys.executable, str(_script(folder, robot)), "--connect", link]
+        command = [python(), str(_script(folder, robot)), "--connect", link]
         command += ["--speedup", f"{speedup:g}", "--log", str(mission.folder / "logs"), *bus]
         processes[robot] = subprocess.Popen(
             command, cwd=folder, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True
@@ -43,7 +43,7 @@ def by_behaviour(mission: Mission, links: Mapping[str, str], speedup: float) -> 
 def _run(
     mission: Mission, links: Mapping[str, str], speedup: float, *models: str
 ) -> tuple[dict[str, int], str]:
-    command = [sys.executable, "-W", "error", "-m", "mmrs_core", "run", *models, "--speedup", f"{speedup:g}"]
+    command = [python(), "-W", "error", "-m", "mmrs_core", "run", *models, "--speedup", f"{speedup:g}"]
     command += ["--log", str(mission.folder / "logs")]
     for robot, link in links.items():
         command += ["--connect", f"{robot}={link}"]

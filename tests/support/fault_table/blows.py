@@ -9,6 +9,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from warm_python import FREEZE, THAW
+
 from fault_table.fleet import Fleet, wait_for
 from fault_table.links import SILENCE
 from fault_table.orders import RESUMED_AFTER, to_all
@@ -70,8 +72,8 @@ def _kill(fleet: Fleet, process: Process) -> None:
 
 
 def _freeze(fleet: Fleet, process: Process) -> None:
-    process.signal(signal.SIGSTOP)
-    threading.Timer(FROZEN_SECONDS / fleet.speedup, process.signal, (signal.SIGCONT,)).start()
+    process.signal(FREEZE)
+    threading.Timer(FROZEN_SECONDS / fleet.speedup, process.signal, (THAW,)).start()
 
 
 def _interrupt(fleet: Fleet, process: Process) -> None:

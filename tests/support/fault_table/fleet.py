@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import subprocess
-import sys
 import time
 from collections.abc import Callable, Mapping, Sequence
 from functools import cache
@@ -12,6 +11,7 @@ from pathlib import Path
 from typing import IO
 
 from ports import free_port
+from warm_python import python
 
 from fault_table.process import Process
 from fault_table.project import Pad, home_of, write_project
@@ -150,7 +150,7 @@ def _lines(path: Path) -> list[dict[str, object]]:
 
 def mmrs(*arguments: str) -> str:
     """Run a command of ours that must succeed; return what it printed."""
-    command = [sys.executable, "-m", "mmrs_core", *arguments]
+    command = [python(), "-m", "mmrs_core", *arguments]
     done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=120)
     assert done.returncode == 0, f"{arguments}: {done.stdout}{done.stderr}"
     return done.stdout

@@ -12,6 +12,7 @@ from math import dist
 from pathlib import Path
 
 from ports import free_endpoint
+from warm_python import FREEZE
 
 from fault_table.fleet import GENERATED, Fleet, wait_for
 from fault_table.project import OUT, TOUR, Pad
@@ -121,7 +122,7 @@ def peer(folder: Path, number: int, response: str, ends: str) -> Outcome:
         ):
             outcome.problems.append(f"does not end as wanted: {ends}")
         outcome.answered, outcome.rested = answer.seconds, vehicle.autopilot.time - since.time
-        lease = LEASE_SECONDS if number == signal.SIGSTOP else 0.0
+        lease = LEASE_SECONDS if number == FREEZE else 0.0
         limit = within(max(5.0, PEER_SECONDS * fleet.speedup) + lease * fleet.speedup, fleet.speedup)
         if outcome.answered is None or outcome.answered > limit:
             outcome.problems.append(f"answered after {outcome.answered}, not {limit} s")
@@ -184,7 +185,7 @@ JOURNEYS = (
     Journey("battery changed", partial(new_battery, response="RETURN", moment=AUTO)),
     Journey("killed and resumed", partial(killed_and_resumed, response="RETURN", moment=AUTO)),
     Journey("peer killed", partial(peer, number=signal.SIGKILL, response="RETURN", ends="home")),
-    Journey("peer frozen", partial(peer, number=signal.SIGSTOP, response="LAND", ends="here")),
+    Journey("peer frozen", partial(peer, number=FREEZE, response="LAND", ends="here")),
     Journey("bus cut for 20 s", _split("bus-cut@45+20", 60.0, "")),
     Journey("bus cut for good", _split("bus-cut@45", 5.0, "PEER_LOST")),
     Journey("poor bus", _split("bus-loss=0.3,bus-delay=0.5~0.5,bus-duplicate=0.3,seed=7", 60.0, "")),

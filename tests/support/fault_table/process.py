@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import signal
 import subprocess
-import sys
 import threading
 from collections.abc import Sequence
 from pathlib import Path
 from typing import IO
+
+from warm_python import python
 
 
 class Process:
@@ -22,7 +22,7 @@ class Process:
         """Start it in a folder; `into`: where it says what it says; None: here."""
         self.said: list[str] = []
         self._popen = subprocess.Popen(
-            [sys.executable, "-W", "error", *arguments],
+            [python(), "-W", "error", *arguments],
             cwd=folder,
             stdin=subprocess.DEVNULL,
             stdout=subprocess.DEVNULL,
@@ -53,7 +53,6 @@ class Process:
         """Make sure that it has ended."""
         if self.running():
             self._popen.kill()
-            self.signal(signal.SIGCONT)
         self._popen.wait()
         self._reader.join()
 

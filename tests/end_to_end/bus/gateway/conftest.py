@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import subprocess
-import sys
 import time
 from contextlib import suppress
 
@@ -12,6 +11,7 @@ import pytest
 from full_pipes import full_pipe
 from gateway_client import RunningGateway
 from waiting_pair import waiting_pair
+from warm_python import python
 
 from mmrs_core import pipeline
 from mmrs_core.languages.reading import read_model
@@ -34,7 +34,7 @@ def behaviour(tmp_path_factory):
 @pytest.fixture
 def gateway(behaviour, ends, tmp_path):
     """Return a gateway for 'a' that runs, and of which nobody reads what it says."""
-    command = [sys.executable, "-m", "mmrs_core", "bus", "gateway", str(behaviour), "--robot", "a"]
+    command = [python(), "-m", "mmrs_core", "bus", "gateway", str(behaviour), "--robot", "a"]
     command += ["--log", str(tmp_path / "logs"), "--listen", f"tcp/127.0.0.1:{ends.ports['a']}"]
     file = tmp_path / "logs" / "gateway.json"
     with full_pipe() as (_, unread), subprocess.Popen(command, stderr=unread) as process:

@@ -10,6 +10,7 @@ from contextlib import suppress
 
 import pytest
 from stalls import Stalls
+from warm_python import FREEZE
 
 from mmrs_runtime.bus.gateway.server import Gateway
 
@@ -93,7 +94,7 @@ def test_a_gateway_that_is_killed_is_a_lost_peer(gateway, client, seconds_until_
 
 @pytest.mark.thorough
 def test_a_gateway_that_is_frozen_is_a_lost_peer(gateway, client, seconds_until_lost):
-    assert seconds_until_lost(lambda: os.kill(gateway.process.pid, signal.SIGSTOP)) < 1.5 * LEASE
+    assert seconds_until_lost(lambda: os.kill(gateway.process.pid, FREEZE)) < 1.5 * LEASE
 
 
 def test_a_gateway_ends_when_it_is_interrupted(gateway, client):
