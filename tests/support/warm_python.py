@@ -222,6 +222,9 @@ def become(said: list[str], fds: list[int]) -> None:
     os.environ.clear()
     os.environ.update(each.split("=", 1) for each in variables)
     sys.path[:0] = filter(None, os.environ.get("PYTHONPATH", "").split(os.pathsep))
+    sys.stdin = open(0, closefd=False)  # noqa: SIM115
+    sys.stdout = open(1, "w", closefd=False)  # noqa: SIM115
+    sys.stderr = open(2, "w", errors="backslashreplace", buffering=1, closefd=False)  # noqa: SIM115
     run(arguments)
 
 
