@@ -6,7 +6,6 @@ from contextlib import contextmanager
 from dataclasses import replace
 
 from mmrs_auv.kinds import AUV_KIND
-from mmrs_auv.manual import ARDUSUB_MANUAL
 from mmrs_auv.names import AUV_MOVEMENT
 from patience import until
 from ports import free_port
@@ -15,6 +14,7 @@ from mmrs_core.behaviour.program import BEHAVIOUR, Heading, MoveTarget
 from mmrs_core.contributions.vehicles import Live, VehicleInput
 from mmrs_core.scene import Capability, Device, DeviceAction, Frame, Part, RobotType
 from mmrs_core.testing.programs import move, program, robot_program
+from mmrs_mavlink.plugin.manual import ARDUSUB_MANUAL
 from mmrs_mavlink.sitl import Settings, SimulatedVehicle
 from mmrs_runtime.engine.clocks import RealClock
 

@@ -103,11 +103,10 @@ def mmrs_map_symbols() -> tuple[MapSymbol, ...]:
 
 @hookimpl
 def mmrs_vehicles() -> tuple[VehicleFactory, ...]:
-    """Contribute what drives underwater vehicles: over their buses, or by a pilot's sticks."""
+    """Contribute backends for underwater vehicles on their CAN buses, real or simulated."""
     from mmrs_auv.backend import CAN, CAN_SIM
-    from mmrs_auv.manual import ARDUSUB_MANUAL
 
-    return (CAN, CAN_SIM, ARDUSUB_MANUAL)
+    return (CAN, CAN_SIM)
 
 
 @hookimpl

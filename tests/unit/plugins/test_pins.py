@@ -17,6 +17,7 @@ PLUGINS = {
     "rover": "",
     "solar": "",
     "dronecan": "",
+    "flyaq": "",
     "imc": "",
     "moos": "",
 }

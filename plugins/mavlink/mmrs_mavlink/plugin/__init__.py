@@ -25,8 +25,9 @@ def mmrs_targets() -> Iterable[Target]:
 def mmrs_vehicles() -> Iterable[VehicleFactory]:
     """Contribute vehicles at the ends of MAVLink links."""
     from mmrs_mavlink.plugin.backend import MAVLINK
+    from mmrs_mavlink.plugin.manual import ARDUSUB_MANUAL
 
-    return (MAVLINK,)
+    return (MAVLINK, ARDUSUB_MANUAL)
 
 
 @hookimpl

@@ -7,7 +7,6 @@ from contextlib import ExitStack
 
 import pytest
 from dives_by_hand import SPEEDUP, connected, dive, given, sub
-from mmrs_auv.manual import ARDUSUB_MANUAL
 from patience import until
 from ports import free_port
 
@@ -15,6 +14,7 @@ from mmrs_core.behaviour.program import MoveTarget
 from mmrs_core.contributions.vehicles import Live
 from mmrs_core.errors import UnsupportedError
 from mmrs_core.testing.programs import move
+from mmrs_mavlink.plugin.manual import ARDUSUB_MANUAL
 from mmrs_mavlink.sitl import Settings, SimulatedVehicle
 from mmrs_runtime.engine.clocks import RealClock
 

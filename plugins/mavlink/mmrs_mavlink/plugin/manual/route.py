@@ -6,7 +6,7 @@ from collections import deque
 from collections.abc import Sequence
 from math import inf
 
-from mmrs_auv.manual.helm import Goal, Helm
+from mmrs_mavlink.plugin.manual.helm import Goal, Helm
 
 
 class Route:

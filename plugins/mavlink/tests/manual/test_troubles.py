@@ -5,13 +5,13 @@ from __future__ import annotations
 import pytest
 from dives_by_hand import DEVICE_ACTION, sub
 from mavlink_peer import linked
-from mmrs_auv.manual.autopilot import DEPTH_HOLD, TOLD, Autopilot
-from mmrs_auv.manual.troubles import LINK_PATIENCE
 from patience import until
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from mmrs_core.behaviour.program import Action
 from mmrs_core.scene import Policy
+from mmrs_mavlink.plugin.manual.autopilot import DEPTH_HOLD, TOLD, Autopilot
+from mmrs_mavlink.plugin.manual.troubles import LINK_PATIENCE
 from mmrs_mavlink.services.commands import command
 
 pytestmark = pytest.mark.real_time("vessels")

@@ -14,7 +14,7 @@ NAME = "ardusub-manual"
 
 
 def _connect(given: VehicleInput) -> Vehicle:
-    from mmrs_auv.manual.connecting import connect
+    from mmrs_mavlink.plugin.manual.connecting import connect
 
     return connect(given)
 

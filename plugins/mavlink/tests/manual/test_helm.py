@@ -7,8 +7,9 @@ from math import cos, hypot, radians, sin
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from mmrs_auv.manual.autopilot import manual_control
-from mmrs_auv.manual.helm import Goal, Helm, Sticks
+
+from mmrs_mavlink.plugin.manual.autopilot import manual_control
+from mmrs_mavlink.plugin.manual.helm import Goal, Helm, Sticks
 
 pytestmark = pytest.mark.real_time("vessels")
 

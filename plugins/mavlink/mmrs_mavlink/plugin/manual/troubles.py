@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from math import inf
 
-from mmrs_auv.manual.autopilot import STALL, Autopilot
 from mmrs_core.contributions.execution import Fault
 from mmrs_core.scene import Policy
+from mmrs_mavlink.plugin.manual.autopilot import STALL, Autopilot
 from mmrs_runtime import faults
 from mmrs_runtime.policies import UNDECLARED_AFTER, patience
 

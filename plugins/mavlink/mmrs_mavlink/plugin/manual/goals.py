@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterator
 from math import atan2, degrees
 
-from mmrs_auv.manual.helm import Goal, Helm
 from mmrs_core.behaviour.program import Move
 from mmrs_core.generation.plan_moves import MOVES, above_surface, seconds_of_hold
 from mmrs_core.mavlink.context import VehicleContext
 from mmrs_core.transformation.kinds import before_target
+from mmrs_mavlink.plugin.manual.helm import Goal, Helm
 
 
 def refusals(context: VehicleContext) -> Iterator[str]:

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from mmrs_auv.manual.goals import refusals
-from mmrs_auv.manual.robot import ManualRobot
 from mmrs_core.contributions.targets import TargetInput
 from mmrs_core.contributions.vehicles import Live, VehicleInput
 from mmrs_core.errors import LinkLostError, UnsupportedError
@@ -12,6 +10,8 @@ from mmrs_mavlink.links.link import Link
 from mmrs_mavlink.links.ports import split_system
 from mmrs_mavlink.links.radios import Radios
 from mmrs_mavlink.options import FIRST_PORT, PORT_STEP
+from mmrs_mavlink.plugin.manual.goals import refusals
+from mmrs_mavlink.plugin.manual.robot import ManualRobot
 from mmrs_runtime import faults
 from mmrs_runtime.engine.clocks import FollowingClock
 

@@ -5,15 +5,6 @@ from __future__ import annotations
 import threading
 from collections.abc import Mapping, Sequence
 
-from auv_vessel.decision.helm import UNHEARD
-from mmrs_auv.manual.autopilot import DEPTH_HOLD, SURFACE, Autopilot
-from mmrs_auv.manual.equipment import carry_out
-from mmrs_auv.manual.goals import goal_of
-from mmrs_auv.manual.helm import Helm
-from mmrs_auv.manual.keeping import keeper_of
-from mmrs_auv.manual.route import Route
-from mmrs_auv.manual.troubles import LINK_PATIENCE, Troubles
-from mmrs_auv.manual.ways import Ways
 from mmrs_core.behaviour.program import DEVICE_ACTION, Action, Move
 from mmrs_core.contributions.execution import Fault, RobotState
 from mmrs_core.contributions.vehicles import Live, VehicleInput
@@ -21,10 +12,21 @@ from mmrs_core.errors import UnreachableError
 from mmrs_core.mavlink.context import VehicleContext
 from mmrs_core.scene import Position
 from mmrs_mavlink.links.link import Link
+from mmrs_mavlink.plugin.manual.autopilot import DEPTH_HOLD, SURFACE, Autopilot
+from mmrs_mavlink.plugin.manual.equipment import carry_out
+from mmrs_mavlink.plugin.manual.goals import goal_of
+from mmrs_mavlink.plugin.manual.helm import Helm
+from mmrs_mavlink.plugin.manual.keeping import keeper_of
+from mmrs_mavlink.plugin.manual.route import Route
+from mmrs_mavlink.plugin.manual.troubles import LINK_PATIENCE, Troubles
+from mmrs_mavlink.plugin.manual.ways import Ways
 from mmrs_runtime import faults
 from mmrs_runtime.controllers.box_entries import PROCESS
 from mmrs_runtime.policies import NOTHING, OVERTAKES, response_to
 from mmrs_runtime.vehicle import Vehicle
+
+UNANSWERED = 60.0
+"""Seconds of silence after which a commanded vehicle is no longer waited for."""
 
 PERIOD = 0.1
 """Seconds from one message of the sticks to the next; ArduSub gives up after three."""
@@ -188,7 +190,7 @@ class ManualRobot(Vehicle):
     def watched(self, now: float) -> bool:
         """Return whether the vehicle holds by thrust, so that somebody must stay."""
         off = self._troubles.event in OFF
-        return self._response in STAYS and not off and self._ready and self._autopilot.silent <= UNHEARD
+        return self._response in STAYS and not off and self._ready and self._autopilot.silent <= UNANSWERED
 
     def undone(self, now: float) -> str:
         """Return why it has stopped without doing what it was told."""
@@ -360,7 +362,7 @@ class ManualRobot(Vehicle):
         return self._response in STAYS and self._autopilot.mode == DEPTH_HOLD and held
 
     def _silent(self) -> bool:
-        return self._autopilot.silent > UNHEARD
+        return self._autopilot.silent > UNANSWERED
 
     def _find(self, response: str, now: float) -> None:
         """Go round forbidden areas and obstacles to home or to an emergency area, then come up."""

@@ -6,11 +6,11 @@ from math import hypot
 
 import pytest
 from dives_by_hand import sub
-from mmrs_auv.manual.autopilot import TOLD
 from patience import until
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from mmrs_core.scene import Area, AreaUse
+from mmrs_mavlink.plugin.manual.autopilot import TOLD
 from mmrs_mavlink.services.commands import command
 
 pytestmark = pytest.mark.real_time("vessels")
