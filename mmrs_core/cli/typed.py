@@ -14,7 +14,7 @@ EVERYBODY = "all"
 
 
 def typed_lines() -> queue.SimpleQueue[str]:
-    """Return what is typed, line by line, as it comes; nothing where nobody can type."""
+    """Return what is typed, line by line, as it comes; nothing where no one can type."""
     lines: queue.SimpleQueue[str] = queue.SimpleQueue()
 
     def read() -> None:

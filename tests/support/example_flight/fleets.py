@@ -286,8 +286,8 @@ class Px4(Installed):
         home, where = self._homes[number], self._own_folder(number)
         environment = {
             "PX4_SIM_MODEL": "sihsim_quadx",
-            "PX4_HOME_LAT": f"{home.latitude:.7f}",
-            "PX4_HOME_LON": f"{home.longitude:.7f}",
+            "PX4_HOME_LAT": str(round(home.latitude * 1e7)),
+            "PX4_HOME_LON": str(round(home.longitude * 1e7)),
             "PX4_HOME_ALT": str(ALTITUDE),
             "PX4_SIM_SPEED_FACTOR": f"{self.speedup:g}",
         }

@@ -24,7 +24,7 @@ from mmrs_mavlink.sitl.settings import PX4, Settings
 from mmrs_mavlink.sitl.sticks import Sticks
 
 EQUATOR, SQUARED_ECCENTRICITY = 6_378_137.0, 6.694_379_990_14e-3
-"""Of the WGS 84 ellipsoid: metres, and none."""
+"""The WGS 84 ellipsoid; its equatorial radius in metres."""
 
 NEAR_GROUND = 0.05
 
@@ -66,7 +66,7 @@ class Autopilot:
         item: current mission item. held: seconds at its position. finished: whether the mission is over.
         jumps_made: number of jumps by DO_JUMP item.
         pending: mission item whose completion is not yet reported; None: none.
-        return_path: positions on the way to the return point. breadcrumbs: positions for SmartRTL.
+        return_path: positions to pass on a return. breadcrumbs: positions for SmartRTL.
         located: whether it has a position. arming_fault: failed pre-arm check; empty: none.
         obstacle: metres, and degrees clockwise from its nose.
         breached: whether it is outside its fence. forced_breach: whether an injected fault says so.

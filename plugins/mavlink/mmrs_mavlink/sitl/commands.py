@@ -18,7 +18,7 @@ DENIED = int(mavlink.MAV_RESULT_DENIED)
 FAILED = int(mavlink.MAV_RESULT_FAILED)
 UNSUPPORTED = int(mavlink.MAV_RESULT_UNSUPPORTED)
 NOT_NOW = int(mavlink.MAV_RESULT_TEMPORARILY_REJECTED)
-"""What a PX4 answers in the place of FAILED (``Commander.cpp``)."""
+"""A PX4's answer instead of FAILED (``Commander.cpp``)."""
 
 FORCE_DISARM = 21_196
 AUTONOMOUS = frozenset({"auto", "return", "smart_return"})

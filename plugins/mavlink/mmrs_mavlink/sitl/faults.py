@@ -215,4 +215,4 @@ def _not_negative(number: float) -> float:
 
 
 _CONVERSIONS: Mapping[str, Callable[[str], object]] = {"str": str, "float": _number, "int": _command}
-"""By annotation of a parameter."""
+"""Conversions of values, by annotation of the parameter."""

@@ -30,7 +30,7 @@ OTHERS = frozenset(
     | {1000, 1001, 2000, 2001, 2500, 2501, 42600, 530, 531}
 )
 LAST_NAVIGATION = 95
-"""Items with higher commands are executed on the way to the next one."""
+"""Items with higher commands are executed during the flight to the next one."""
 
 KNOWN = {MISSION: (PLACED - FENCES - {5100}) | OTHERS, FENCE: FENCES, RALLY: frozenset({5100})}
 

@@ -49,7 +49,7 @@ MODES: Mapping[str, Mapping[str, int]] = {
         "guided": _px4(6),
     },
 }
-"""By kind of ArduPilot vehicle, and for PX4: ``guided`` is its OFFBOARD, ``loiter`` its Hold."""
+"""Numbers of modes by kind of vehicle, and of PX4: its OFFBOARD is ``guided``, its Hold is ``loiter``."""
 
 BLIND = frozenset({"stabilize", "alt_hold", "manual", "land", "surface"})
 """Modes that need no position."""

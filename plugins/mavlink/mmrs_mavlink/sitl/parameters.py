@@ -132,7 +132,7 @@ def defaults(settings: Settings) -> dict[str, float]:
 def encoded(name: str, value: float, firmware: str) -> tuple[float, int]:
     """Return a parameter as PARAM_VALUE carries it, and its MAV_PARAM_TYPE.
 
-    ArduPilot sends every number as a float; PX4 puts the bytes of an integer in the place of one.
+    ArduPilot sends every number as a float; PX4 puts the bytes of an integer into that float.
     """
     if not _is_whole(name, firmware):
         return value, int(mavlink.MAV_PARAM_TYPE_REAL32)

@@ -22,17 +22,17 @@ DISARM = "disarm"
 Answers = Mapping[int, tuple[str, ...]]
 
 ON_LINK_LOSS: Answers = {1: ("loiter",), 2: ("return", "land"), 3: ("land",), 5: (DISARM,), 6: (DISARM,)}
-"""By NAV_DLL_ACT."""
+"""Answers by NAV_DLL_ACT."""
 
 EXEMPT = {"auto": 1, "loiter": 2, "take_off": 2, "return": 2, "guided": 4}
-"""By mode, the bit of COM_DLL_EXCEPT that exempts it."""
+"""Bits of COM_DLL_EXCEPT that exempt a mode."""
 
 ON_BREACH: Answers = {2: ("loiter",), 3: ("return", "land"), 4: (DISARM,), 5: ("land",)}
-"""By GF_ACTION; 1 only warns."""
+"""Answers by GF_ACTION; 1 only warns."""
 
 ON_CRITICAL: Answers = {1: ("return", "land"), 2: ("land",), 3: ("return", "land")}
 ON_EMERGENCY: Answers = {1: ("return", "land"), 2: ("land",), 3: ("land",)}
-"""By COM_LOW_BAT_ACT, for a critical and for a nearly empty battery."""
+"""Answers by COM_LOW_BAT_ACT to a critical and to a nearly empty battery."""
 
 ON_SETPOINT_LOSS: Answers = {
     0: ("poshold",),
@@ -44,7 +44,7 @@ ON_SETPOINT_LOSS: Answers = {
     6: (DISARM,),
     7: (DISARM,),
 }
-"""By COM_OBL_RC_ACT."""
+"""Answers by COM_OBL_RC_ACT."""
 
 
 def watch(pilot: Autopilot, seconds: float) -> None:
