@@ -27,6 +27,11 @@ class Bench:
         self.pilot = Autopilot(Settings(**{"ready": 0.5, "boot": 0.2, **settings}))
         self.wait(1.0)
 
+    @property
+    def last_text(self) -> str:
+        """Return the last STATUSTEXT."""
+        return self.pilot.said[-1][2]
+
     def command(self, number: int, *params: float) -> int:
         """Return the MAV_RESULT of a command."""
         return execute(self.pilot, number, (*params, *[0.0] * 7)[:7])

@@ -1,4 +1,4 @@
-"""What the vehicle answers by itself, as its parameters say."""
+"""Failsafes of an ArduPilot, as its parameters configure them."""
 
 from __future__ import annotations
 
@@ -7,109 +7,113 @@ from simulated import Bench
 
 from mmrs_mavlink.sitl.commands import steer
 
+BOX = ((40.0, -10.0), (40.0, 10.0), (60.0, 10.0), (60.0, -10.0))
+PLACES = {"copter": (30.0, 0.0, 12.0), "rover": (5.0, 0.0, 0.0), "sub": (5.0, 0.0, -5.0)}
 
-def out(place=(30.0, 0.0, 12.0), **settings) -> Bench:
-    bench = Bench(**settings)
+
+def out(kind: str = "copter", **parameters: float) -> Bench:
+    """Return a vehicle away from home, in GUIDED."""
+    bench, place = Bench(kind=kind, parameters=parameters), PLACES[kind]
     if bench.pilot.flies:
         bench.fly_up(place[2])
     else:
         bench.mode("guided")
         bench.command(400, 1)
     steer(bench.pilot, place, None)
-    assert bench.wait_for(
-        lambda: bench.pilot.body.distance_to(place) < bench.pilot.parameters.get("WP_RADIUS", 0.1)
-    )
+    near = bench.pilot.parameters.get("WP_RADIUS", 0.1)
+    assert bench.wait_for(lambda: bench.pilot.body.distance_to(place) < near)
     return bench
 
 
-def silent(bench: Bench, seconds: float = 12.0) -> str:
-    """Return the mode after the ground was not heard for a while."""
+def without_link(bench: Bench, seconds: float = 12.0) -> str:
+    """Return the mode after that time without a heartbeat."""
     bench.wait_for(lambda: False, seconds, heard=False)
     return bench.pilot.mode_name
 
 
 @pytest.mark.parametrize(
-    ("enabled", "mode"),
-    [(0, "guided"), (1, "return"), (3, "smart_return"), (4, "smart_return"), (5, "land"), (7, "brake")],
+    ("kind", "parameters", "mode"),
+    [
+        ("copter", {"FS_GCS_ENABLE": 0}, "guided"),
+        ("copter", {"FS_GCS_ENABLE": 1}, "return"),
+        ("copter", {"FS_GCS_ENABLE": 3}, "smart_return"),
+        ("copter", {"FS_GCS_ENABLE": 4}, "smart_return"),
+        ("copter", {"FS_GCS_ENABLE": 5}, "land"),
+        ("copter", {"FS_GCS_ENABLE": 7}, "brake"),
+        ("rover", {"FS_GCS_ENABLE": 0, "FS_ACTION": 1}, "guided"),
+        ("rover", {"FS_GCS_ENABLE": 1, "FS_ACTION": 1}, "return"),
+        ("rover", {"FS_GCS_ENABLE": 1, "FS_ACTION": 2}, "brake"),
+        ("rover", {"FS_GCS_ENABLE": 1, "FS_ACTION": 0}, "guided"),
+        ("rover", {"FS_GCS_ENABLE": 1, "FS_ACTION": 6}, "loiter"),
+        ("sub", {"FS_GCS_ENABLE": 1}, "guided"),
+        ("sub", {"FS_GCS_ENABLE": 3}, "alt_hold"),
+        ("sub", {"FS_GCS_ENABLE": 4}, "surface"),
+    ],
 )
-def test_a_copter_answers_a_silent_ground_station_as_it_is_set_up(enabled, mode):
-    assert silent(out(parameters={"FS_GCS_ENABLE": enabled})) == mode
+def test_a_lost_link_is_answered_as_configured(kind, parameters, mode):
+    assert without_link(out(kind, **parameters)) == mode
 
 
-def test_it_waits_for_as_long_as_it_is_set_up_to():
-    bench = out(parameters={"FS_GCS_ENABLE": 5, "FS_GCS_TIMEOUT": 20.0})
-    assert silent(bench, 19.0) == "guided"
-    assert silent(bench, 2.0) == "land"
-
-
-def test_a_ground_station_that_comes_back_changes_no_mode():
-    bench = out(parameters={"FS_GCS_ENABLE": 7})
-    silent(bench)
-    bench.wait(2.0)
-    assert bench.pilot.mode_name == "brake"
-    assert bench.pilot.said[-1][2] == "GCS Failsafe Cleared"
-
-
-def test_a_ground_station_that_was_never_there_is_not_missed():
-    bench = Bench(parameters={"FS_GCS_ENABLE": 1})
-    bench.fly_up(10.0)
-    bench.pilot.last_heartbeat = None
-    assert silent(bench) == "guided"
-
-
-@pytest.mark.parametrize(
-    ("enabled", "action", "mode"),
-    [(0, 1, "guided"), (1, 1, "return"), (1, 2, "brake"), (1, 0, "guided"), (1, 6, "loiter")],
-)
-def test_a_rover_heeds_its_action_only_where_it_heeds_the_ground_station(enabled, action, mode):
-    given = {"FS_GCS_ENABLE": enabled, "FS_ACTION": action}
-    assert silent(out((5.0, 0.0, 0.0), kind="rover", parameters=given)) == mode
-
-
-@pytest.mark.parametrize(("enabled", "mode"), [(1, "guided"), (3, "alt_hold"), (4, "surface")])
-def test_a_sub_comes_up_if_it_is_set_up_to(enabled, mode):
-    given = {"FS_GCS_ENABLE": enabled}
-    assert silent(out((5.0, 0.0, -5.0), kind="sub", parameters=given)) == mode
-
-
-@pytest.mark.parametrize(("options", "mode"), [(16, "return"), (18, "auto")])
-def test_a_copter_may_go_on_with_its_mission_when_its_ground_station_is_silent(options, mode):
-    bench = out(parameters={"FS_GCS_ENABLE": 1, "FS_OPTIONS": options})
-    bench.load(bench.item(16, (500.0, 0.0, 12.0)))
-    bench.mode("auto")
-    assert silent(bench) == mode
-    assert bench.pilot.said[-1][2] == (
-        "GCS Failsafe - Continuing Auto Mode" if mode == "auto" else "GCS Failsafe"
-    )
-
-
-def test_a_sub_says_in_words_of_its_own_that_it_hears_no_ground_station():
-    bench = out((5.0, 0.0, -5.0), kind="sub", parameters={"FS_GCS_ENABLE": 4})
-    silent(bench)
-    bench.wait(2.0)
-    assert [text for _, _, text in bench.pilot.said][-1] == "MYGCS: 255, heartbeat lost"
-
-
-@pytest.mark.parametrize(
-    ("kind", "action", "mode"), [("rover", 1, "return"), ("rover", 2, "brake"), ("sub", 3, "surface")]
-)
-def test_actions_for_a_low_battery_mean_something_else_to_others_than_copters(kind, action, mode):
-    given = {"BATT_FS_LOW_ACT": action, "BATT_LOW_MAH": 1500.0, "BATT_LOW_VOLT": 0.0}
-    bench = out((5.0, 0.0, -5.0 if kind == "sub" else 0.0), kind=kind, parameters=given)
-    bench.pilot.battery.change(0.29)
-    bench.wait(11.0)
-    assert bench.pilot.mode_name == mode
-
-
-def test_a_sub_may_stop_its_thrust():
-    bench = out((5.0, 0.0, -5.0), kind="sub", parameters={"FS_GCS_ENABLE": 2})
-    silent(bench)
+def test_a_submarine_disarms_if_so_configured():
+    bench = out("sub", FS_GCS_ENABLE=2)
+    without_link(bench)
     assert not bench.pilot.armed
 
 
-@pytest.mark.parametrize(("action", "mode"), [(0, "guided"), (1, "land"), (2, "return"), (3, "smart_return")])
-def test_a_low_battery_is_answered_after_its_time(action, mode):
-    bench = out(parameters={"BATT_FS_LOW_ACT": action, "BATT_LOW_MAH": 1500.0, "BATT_LOW_VOLT": 0.0})
+@pytest.mark.parametrize(("parameter", "link_timeout"), [(20.0, 0.0), (5.0, 20.0)])
+def test_the_link_failsafe_waits_for_its_timeout_and_for_that_of_the_network(parameter, link_timeout):
+    bench = out(FS_GCS_ENABLE=5, FS_GCS_TIMEOUT=parameter)
+    bench.pilot.link_timeout = link_timeout
+    assert without_link(bench, 19.0) == "guided"
+    assert without_link(bench, 2.0) == "land"
+
+
+def test_a_restored_link_changes_no_mode():
+    bench = out(FS_GCS_ENABLE=7)
+    without_link(bench)
+    bench.wait(2.0)
+    assert bench.pilot.mode_name == "brake"
+    assert bench.last_text == "GCS Failsafe Cleared"
+
+
+def test_a_ground_station_that_was_never_connected_is_not_missed():
+    bench = out(FS_GCS_ENABLE=1)
+    bench.pilot.last_heartbeat = None
+    assert without_link(bench) == "guided"
+
+
+@pytest.mark.parametrize(
+    ("options", "mode", "text"),
+    [(16, "return", "GCS Failsafe"), (18, "auto", "GCS Failsafe - Continuing Auto Mode")],
+)
+def test_a_mission_continues_without_a_link_if_fs_options_say_so(options, mode, text):
+    bench = out(FS_GCS_ENABLE=1, FS_OPTIONS=options)
+    bench.load(bench.item(16, (500.0, 0.0, 12.0)))
+    bench.mode("auto")
+    assert (without_link(bench), bench.last_text) == (mode, text)
+
+
+def test_a_submarine_reports_a_lost_link_in_its_own_words():
+    bench = out("sub", FS_GCS_ENABLE=4)
+    without_link(bench)
+    bench.wait(2.0)
+    assert bench.last_text == "MYGCS: 255, heartbeat lost"
+
+
+@pytest.mark.parametrize(
+    ("kind", "action", "mode"),
+    [
+        ("copter", 0, "guided"),
+        ("copter", 1, "land"),
+        ("copter", 2, "return"),
+        ("copter", 3, "smart_return"),
+        ("rover", 1, "return"),
+        ("rover", 2, "brake"),
+        ("sub", 3, "surface"),
+    ],
+)
+def test_a_low_battery_is_answered_after_its_timer(kind, action, mode):
+    bench = out(kind, BATT_FS_LOW_ACT=action, BATT_LOW_MAH=1500.0, BATT_LOW_VOLT=0.0)
     bench.pilot.battery.change(0.29)
     bench.wait(9.0)
     assert bench.pilot.mode_name == "guided"
@@ -118,23 +122,19 @@ def test_a_low_battery_is_answered_after_its_time(action, mode):
     assert any(text.startswith("Battery 1 is low") for _, _, text in bench.pilot.said)
 
 
-def test_a_critical_battery_is_answered_over_a_low_one():
-    given = {"BATT_FS_LOW_ACT": 2, "BATT_LOW_MAH": 1500.0, "BATT_FS_CRT_ACT": 1, "BATT_CRT_MAH": 1000.0}
-    bench = out(parameters=given)
-    bench.pilot.battery.change(0.28)
-    bench.wait(12.0)
-    assert bench.pilot.mode_name == "return"
-    bench.pilot.battery.change(0.15)
-    bench.wait(12.0)
-    assert bench.pilot.mode_name == "land"
+def test_a_critical_battery_takes_precedence_over_a_low_one():
+    bench = out(BATT_FS_LOW_ACT=2, BATT_LOW_MAH=1500.0, BATT_FS_CRT_ACT=1, BATT_CRT_MAH=1000.0)
+    for level, mode in ((0.28, "return"), (0.15, "land")):
+        bench.pilot.battery.change(level)
+        bench.wait(12.0)
+        assert bench.pilot.mode_name == mode
 
 
 @pytest.mark.parametrize(("action", "mode"), [(0, "guided"), (1, "return"), (2, "land"), (4, "brake")])
-def test_a_fence_is_answered_as_it_is_set_up(action, mode):
-    bench = out(parameters={"FENCE_ENABLE": 1, "FENCE_ACTION": action, "FENCE_RADIUS": 50.0})
+def test_a_breached_fence_is_answered_as_configured(action, mode):
+    bench = out(FENCE_ENABLE=1, FENCE_ACTION=action, FENCE_RADIUS=50.0)
     steer(bench.pilot, (60.0, 0.0, 12.0), None)
-    bench.wait_for(lambda: bench.pilot.breached, 20.0)
-    assert bench.pilot.breached
+    assert bench.wait_for(lambda: bench.pilot.breached, 20.0)
     assert bench.pilot.mode_name == mode
 
 
@@ -143,19 +143,20 @@ def polygon(bench: Bench, command: int, *corners: tuple[float, float]) -> None:
     bench.pilot.stores[1] = [bench.item(command, (*corner, 0.0), count) for corner in corners]
 
 
-BOX = ((40.0, -10.0), (40.0, 10.0), (60.0, 10.0), (60.0, -10.0))
-
-
-def test_an_area_to_stay_out_of_is_noticed_when_it_is_entered():
-    bench = out(parameters={"FENCE_ENABLE": 1, "FENCE_ACTION": 4})
-    polygon(bench, 5002, *BOX)
+@pytest.mark.parametrize("circle", [False, True])
+def test_an_excluded_area_is_detected_on_entry(circle):
+    bench = out(FENCE_ENABLE=1, FENCE_ACTION=4)
+    if circle:
+        bench.pilot.stores[1] = [bench.item(5004, (50.0, 0.0, 0.0), 10.0)]
+    else:
+        polygon(bench, 5002, *BOX)
     steer(bench.pilot, (80.0, 0.0, 12.0), None)
     assert bench.wait_for(lambda: bench.pilot.breached, 30.0)
     assert 40.0 <= bench.pilot.body.position[0] <= 47.0
     assert bench.pilot.mode_name == "brake"
 
 
-def test_a_fence_that_is_off_is_not_heeded():
+def test_a_disabled_fence_is_ignored():
     bench = out()
     polygon(bench, 5002, *BOX)
     steer(bench.pilot, (50.0, 0.0, 12.0), None)
@@ -163,17 +164,17 @@ def test_a_fence_that_is_off_is_not_heeded():
     assert not bench.pilot.breached
 
 
-def test_what_a_fence_forbids_is_no_place_to_be_armed():
+def test_a_vehicle_outside_its_fence_refuses_to_arm():
     bench = Bench(parameters={"FENCE_ENABLE": 1})
     polygon(bench, 5001, *BOX)
     bench.mode("guided")
     assert bench.command(400, 1) != 0
-    assert bench.pilot.said[-1][2] == "Arm: vehicle outside Polygon fence"
+    assert bench.last_text == "Arm: vehicle outside Polygon fence"
 
 
-@pytest.mark.parametrize(("heeded", "breached"), [(7, True), (4, False)])
-def test_a_fence_of_polygons_only_has_no_ceiling(heeded, breached):
-    bench = out((0.0, 0.0, 12.0), parameters={"FENCE_ENABLE": 1, "FENCE_TYPE": heeded, "FENCE_ACTION": 0})
+@pytest.mark.parametrize(("enabled", "breached"), [(7, True), (4, False)])
+def test_a_fence_of_polygons_only_has_no_ceiling(enabled, breached):
+    bench = out(FENCE_ENABLE=1, FENCE_TYPE=enabled, FENCE_ACTION=0)
     steer(bench.pilot, (0.0, 0.0, 110.0), None)
     bench.wait(60.0)
     assert bench.pilot.breached == breached
@@ -181,16 +182,9 @@ def test_a_fence_of_polygons_only_has_no_ceiling(heeded, breached):
 
 @pytest.mark.parametrize(("action", "mode"), [(0, "guided"), (1, "land"), (2, "alt_hold")])
 def test_a_lost_position_is_answered_after_a_second(action, mode):
-    bench = out(parameters={"FS_EKF_ACTION": action})
+    bench = out(FS_EKF_ACTION=action)
     bench.pilot.located = False
     bench.wait(0.9)
     assert bench.pilot.mode_name == "guided"
     bench.wait(0.3)
     assert bench.pilot.mode_name == mode
-
-
-def test_it_is_patient_with_networks_that_do_not_become_faster_with_its_time():
-    bench = out(parameters={"FS_GCS_ENABLE": 5})
-    bench.pilot.link_timeout = 40.0
-    assert silent(bench, 39.0) == "guided"
-    assert silent(bench, 2.0) == "land"

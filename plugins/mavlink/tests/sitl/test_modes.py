@@ -1,4 +1,4 @@
-"""What the vehicle does in its modes, and which it lets nobody enter."""
+"""Flight modes: what a vehicle does in them, which it refuses, and its home."""
 
 from __future__ import annotations
 
@@ -12,21 +12,34 @@ from simulated import Bench
 from mmrs_mavlink.sitl.commands import steer
 
 OUT = (40.0, 30.0, 12.0)
+OUTSIDE_THE_LIMIT = (200.0, 0.0, 10.0)
 
 
 def out(**settings) -> Bench:
+    """Return a copter away from home."""
     bench = Bench(**settings)
     bench.fly_up(12.0)
-    steer(bench.pilot, OUT, None)
-    assert bench.wait_for(lambda: bench.pilot.body.distance_to(OUT) < 0.1)
+    go(bench, OUT)
     return bench
 
 
-def rally(bench: Bench, place) -> None:
-    bench.pilot.stores[2] = [replace(bench.item(5100, place), frame=3)]
+def go(bench: Bench, place) -> None:
+    steer(bench.pilot, place, None)
+    assert bench.wait_for(lambda: bench.pilot.body.distance_to(place) < 0.1)
 
 
-def test_its_metres_are_those_of_the_ellipsoid():
+def returned(bench: Bench, mode: str = "return") -> tuple[float, float]:
+    """Return where a vehicle lands after a return."""
+    bench.mode(mode)
+    assert bench.wait_for(lambda: not bench.pilot.armed)
+    return bench.pilot.body.position[:2]
+
+
+def highest(bench: Bench) -> float:
+    return max(point[3] for point in bench.pilot.track)
+
+
+def test_metres_are_those_of_the_ellipsoid():
     bench = Bench()
     latitude, longitude = bench.pilot.degrees_at((1000.0, -2000.0, 0.0))
     azimuth, _, length = Geod(ellps="WGS84").inv(13.35, 42.37, longitude, latitude)
@@ -35,80 +48,65 @@ def test_its_metres_are_those_of_the_ellipsoid():
     assert bench.pilot.local(latitude, longitude, 0.0) == pytest.approx((1000.0, -2000.0, 0.0))
 
 
-def test_guided_goes_where_it_is_steered_and_looks_where_it_is_told():
+def test_guided_follows_positions_and_headings():
     bench = out()
     steer(bench.pilot, OUT, 200.0)
     bench.wait(5.0)
     assert bench.pilot.body.heading == pytest.approx(200.0)
 
 
-def test_return_climbs_comes_home_and_lands():
-    bench = out()
-    bench.mode("return")
-    assert bench.wait_for(lambda: not bench.pilot.armed)
-    assert hypot(*bench.pilot.body.position[:2]) < 1.5
-    assert max(point[3] for point in bench.pilot.track) == pytest.approx(15.0, abs=0.6)
+@pytest.mark.parametrize(
+    ("parameters", "height", "speed"), [({}, 15.0, 5.0), ({"WP_SPD": 3.0, "RTL_ALT_M": 20.0}, 20.0, 3.0)]
+)
+def test_return_climbs_flies_home_and_lands_by_older_and_newer_parameters(parameters, height, speed):
+    bench = out(parameters=parameters)
+    assert hypot(*returned(bench)) < 1.5
+    assert highest(bench) == pytest.approx(height, abs=0.6)
+    assert bench.pilot.usual_speed() == speed
 
 
-def test_a_copter_heeds_the_newer_names_of_its_speed_and_height():
-    bench = out(parameters={"WP_SPD": 3.0, "RTL_ALT_M": 20.0})
-    bench.mode("return")
-    assert bench.wait_for(lambda: not bench.pilot.armed)
-    assert max(point[3] for point in bench.pilot.track) == pytest.approx(20.0, abs=0.6)
-    assert bench.pilot.usual_speed() == 3.0
-
-
-def test_return_goes_to_the_nearest_of_home_and_the_rally_points():
-    bench = out()
-    rally(bench, (45.0, 40.0, 10.0))
-    bench.mode("return")
-    assert bench.wait_for(lambda: not bench.pilot.armed)
-    assert hypot(bench.pilot.body.position[0] - 45.0, bench.pilot.body.position[1] - 40.0) < 1.5
-
-
-@pytest.mark.parametrize(("with_home", "north"), [(1.0, 0.0), (0.0, 200.0)])
-def test_home_counts_among_the_havens_or_not(with_home, north):
+@pytest.mark.parametrize(
+    ("with_home", "rally", "goal"),
+    [
+        (1.0, (45.0, 40.0, 10.0), (45.0, 40.0)),
+        (1.0, OUTSIDE_THE_LIMIT, (0.0, 0.0)),
+        (0.0, OUTSIDE_THE_LIMIT, (200.0, 0.0)),
+    ],
+)
+def test_return_goes_to_the_nearest_of_home_and_the_rally_points(with_home, rally, goal):
     bench = out(parameters={"RALLY_INCL_HOME": with_home})
-    rally(bench, (200.0, 0.0, 10.0))
-    bench.mode("return")
-    assert bench.wait_for(lambda: not bench.pilot.armed)
-    assert bench.pilot.body.position[0] == pytest.approx(north, abs=1.5)
+    bench.pilot.stores[2] = [replace(bench.item(5100, rally), frame=3)]
+    assert returned(bench) == pytest.approx(goal, abs=1.5)
 
 
-def test_smart_return_goes_back_by_the_way_it_came():
+def test_smart_return_retraces_its_path():
     bench = out()
-    steer(bench.pilot, (0.0, 60.0, 12.0), None)
-    assert bench.wait_for(lambda: bench.pilot.body.distance_to((0.0, 60.0, 12.0)) < 0.1)
+    go(bench, (0.0, 60.0, 12.0))
     since = bench.pilot.time
-    bench.mode("smart_return")
-    assert bench.wait_for(lambda: not bench.pilot.armed)
-    way = [point for point in bench.pilot.track if point[0] > since]
-    assert min(hypot(point[1] - OUT[0], point[2] - OUT[1]) for point in way) < 2.0
-    assert hypot(*bench.pilot.body.position[:2]) < 1.5
+    assert hypot(*returned(bench, "smart_return")) < 1.5
+    path = [point for point in bench.pilot.track if point[0] > since]
+    assert min(hypot(point[1] - OUT[0], point[2] - OUT[1]) for point in path) < 2.0
 
 
-def test_brake_and_loiter_stand_still():
-    for mode in ("brake", "loiter"):
-        bench = out()
-        steer(bench.pilot, (0.0, 0.0, 12.0), None)
-        bench.wait(3.0)
-        bench.mode(mode)
-        bench.wait(5.0)
-        assert bench.pilot.body.pace == 0.0
-
-
-def test_modes_that_need_a_position_are_refused_without_one():
+@pytest.mark.parametrize("mode", ["brake", "loiter"])
+def test_a_vehicle_stops(mode):
     bench = out()
+    steer(bench.pilot, (0.0, 0.0, 12.0), None)
+    bench.wait(3.0)
+    bench.mode(mode)
+    bench.wait(5.0)
+    assert bench.pilot.body.pace == 0.0
+
+
+def test_modes_are_refused_without_the_position_or_mission_that_they_need():
+    bench = out()
+    assert bench.mode("auto") != 0
     bench.pilot.located = False
     assert bench.mode("return") != 0
     assert bench.mode("alt_hold") == 0
 
 
-def test_auto_is_refused_without_a_mission():
-    assert out().mode("auto") != 0
-
-
-def test_it_disarms_where_it_stands_about():
+def test_an_idle_vehicle_disarms():
     bench = Bench(disarm_delay=10.0)
     bench.mode("guided")
     bench.command(400, 1)
@@ -116,7 +114,7 @@ def test_it_disarms_where_it_stands_about():
     assert bench.wait_for(lambda: not bench.pilot.armed, 2.0)
 
 
-def test_it_is_not_disarmed_in_the_air_but_by_force():
+def test_a_vehicle_disarms_in_the_air_only_by_force():
     bench = out()
     assert bench.command(400, 0) != 0
     assert bench.command(400, 0, 21_196) == 0
@@ -124,15 +122,15 @@ def test_it_is_not_disarmed_in_the_air_but_by_force():
     assert bench.pilot.body.position[2] == 0.0
 
 
-def test_it_cannot_be_armed_in_auto_unless_a_parameter_allows_it():
-    for options, result in ((0.0, 4), (1.0, 0)):
-        bench = Bench(parameters={"AUTO_OPTIONS": options})
-        bench.load(bench.item(22, (0.0, 0.0, 10.0)))
-        bench.mode("auto")
-        assert bench.command(400, 1) == result
+@pytest.mark.parametrize(("options", "result"), [(0.0, 4), (1.0, 0)])
+def test_a_vehicle_arms_in_auto_only_if_configured(options, result):
+    bench = Bench(parameters={"AUTO_OPTIONS": options})
+    bench.load(bench.item(22, (0.0, 0.0, 10.0)))
+    bench.mode("auto")
+    assert bench.command(400, 1) == result
 
 
-def test_home_is_where_it_is_armed():
+def test_home_is_where_a_vehicle_arms():
     bench = out()
     bench.mode("land")
     assert bench.wait_for(lambda: not bench.pilot.armed)
@@ -141,7 +139,7 @@ def test_home_is_where_it_is_armed():
     assert bench.pilot.home[:2] == bench.pilot.degrees()
 
 
-def test_a_home_that_it_was_told_stays_until_it_starts_anew_and_heights_count_from_there():
+def test_a_home_that_was_set_stays_until_a_restart_and_altitudes_count_from_it():
     bench = Bench()
     bench.pilot.body.position = (72.0, 0.0, 0.0)
     assert bench.command(179, 0, 0, 0, 0, 42.37, 13.35, 714.0) == 0
@@ -164,7 +162,7 @@ def test_a_rover_neither_takes_off_nor_lands():
     assert bench.wait_for(lambda: bench.pilot.body.distance_to((10.0, 0.0, 0.0)) < 2.0)
 
 
-def test_a_sub_dives_and_surfaces():
+def test_a_submarine_dives_and_surfaces():
     bench = Bench(kind="sub")
     bench.mode("guided")
     assert bench.command(400, 1) == 0
@@ -174,10 +172,9 @@ def test_a_sub_dives_and_surfaces():
     assert bench.wait_for(lambda: bench.pilot.body.position[2] > -0.1)
 
 
-def test_the_home_of_a_submarine_stays_at_the_surface_wherever_it_is_armed_or_starts_anew():
+def test_the_home_of_a_submarine_is_at_the_surface():
     bench = Bench(kind="sub")
     bench.pilot.body.rest_at(-3.0)
-    bench.pilot.arm()
-    armed = bench.pilot.home[2]
-    bench.pilot.restart()
-    assert (armed, bench.pilot.home[2]) == (bench.pilot.settings.altitude, bench.pilot.settings.altitude)
+    for change in (bench.pilot.arm, bench.pilot.restart):
+        change()
+        assert bench.pilot.home[2] == bench.pilot.settings.altitude

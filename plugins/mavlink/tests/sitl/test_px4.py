@@ -1,4 +1,4 @@
-"""What sets PX4 apart, as its documentation says."""
+"""PX4: OFFBOARD, failsafes with their hold, rally points, missions and parameters."""
 
 from __future__ import annotations
 
@@ -13,7 +13,8 @@ from mmrs_mavlink.sitl.items import Item, kept
 from mmrs_mavlink.sitl.parameters import decoded, encoded
 from mmrs_mavlink.sitl.settings import Settings
 
-OFFBOARD, MISSION, LOITER = (6, 0), (4, 4), (4, 3)
+OFFBOARD, MISSION, POSITION, RETURN = (6, 0), (4, 4), (3, 0), (4, 5)
+HERE = (0.0, 0.0, 10.0)
 INT32 = 6
 
 
@@ -27,8 +28,15 @@ def stream(bench: Bench, place, seconds: float, rate: float = 10.0) -> None:
         bench.wait(1.0 / rate)
 
 
+def without_link(bench: Bench, seconds: float) -> str:
+    """Return the mode after that time without a heartbeat."""
+    bench.wait_for(lambda: False, seconds, heard=False)
+    return bench.pilot.mode_name
+
+
 @pytest.fixture
 def bench():
+    """Return a vehicle in the air."""
     bench = Bench(firmware="px4")
     assert bench.command(400, 1) == 0
     assert bench.command(22, 0, 0, 0, 0, 0, 0, 720.0 + 10.0) == 0
@@ -36,84 +44,67 @@ def bench():
     return bench
 
 
-def test_take_off_takes_a_height_above_the_sea_and_ends_in_hold(bench):
+@pytest.fixture
+def offboard(bench):
+    stream(bench, HERE, 1.5)
+    assert switch(bench, OFFBOARD) == 0
+    return bench
+
+
+def test_take_off_takes_an_altitude_above_the_sea_and_ends_in_hold(bench):
     assert bench.pilot.body.position[2] == pytest.approx(10.0, abs=0.4)
     assert [number for _, number in bench.pilot.modes] == [4 << 16 | 2 << 24, 4 << 16 | 3 << 24]
 
 
-def test_offboard_is_refused_without_set_points(bench):
+@pytest.mark.parametrize("seconds", [0.0, 4.0])
+def test_offboard_is_refused_without_set_points_or_at_a_low_rate(bench, seconds):
+    stream(bench, HERE, seconds, rate=1.0)
     assert switch(bench, OFFBOARD) != 0
 
 
-def test_offboard_is_refused_with_set_points_that_come_too_seldom(bench):
-    stream(bench, (0.0, 0.0, 10.0), 4.0, rate=1.0)
-    assert switch(bench, OFFBOARD) != 0
+def test_offboard_follows_a_stream_of_set_points(offboard):
+    stream(offboard, (0.0, 20.0, 10.0), 10.0)
+    assert offboard.pilot.body.distance_to((0.0, 20.0, 10.0)) < 0.2
 
 
-def test_offboard_follows_a_stream_of_set_points(bench):
-    stream(bench, (0.0, 0.0, 10.0), 1.5)
-    assert switch(bench, OFFBOARD) == 0
-    stream(bench, (0.0, 20.0, 10.0), 10.0)
-    assert bench.pilot.body.distance_to((0.0, 20.0, 10.0)) < 0.2
+def test_offboard_ends_with_its_stream_and_resumes_with_it(offboard):
+    offboard.wait(0.8)
+    assert offboard.pilot.mode_name == "guided"
+    offboard.wait(0.5)
+    assert offboard.pilot.mode_name == "poshold"
+    stream(offboard, HERE, 1.5)
+    assert offboard.pilot.mode_name == "guided"
 
 
-def test_offboard_is_left_when_the_stream_ends(bench):
-    stream(bench, (0.0, 0.0, 10.0), 1.5)
-    switch(bench, OFFBOARD)
-    bench.wait(0.8)
-    assert bench.pilot.mode_name == "guided"
-    bench.wait(0.5)
-    assert bench.pilot.mode_name == "poshold"
-
-
-def test_offboard_comes_back_by_itself_with_the_stream(bench):
-    stream(bench, (0.0, 0.0, 10.0), 1.5)
-    switch(bench, OFFBOARD)
-    bench.wait(1.3)
-    assert bench.pilot.mode_name == "poshold"
-    stream(bench, (0.0, 0.0, 10.0), 1.5)
-    assert bench.pilot.mode_name == "guided"
-
-
-def unheard(bench: Bench, seconds: float) -> str:
-    """Let time pass in which no ground station is heard; return the mode then."""
-    bench.wait_for(lambda: False, seconds, heard=False)
-    return bench.pilot.mode_name
-
-
-def test_it_holds_for_a_while_before_it_returns_since_nobody_is_heard(bench):
-    bench.pilot.parameters |= {"NAV_DLL_ACT": 2, "COM_OF_LOSS_T": 60.0}
-    stream(bench, (0.0, 0.0, 10.0), 1.5)
-    switch(bench, OFFBOARD)
-    assert unheard(bench, 9.5) == "guided"
-    assert unheard(bench, 1.0) == "loiter"
-    assert unheard(bench, 4.0) == "loiter"
-    assert unheard(bench, 1.0) == "return"
-    assert [text for _, _, text in bench.pilot.said[-3:]] == [
+def test_a_lost_link_is_answered_after_a_hold(offboard):
+    offboard.pilot.parameters |= {"NAV_DLL_ACT": 2, "COM_OF_LOSS_T": 60.0}
+    modes = [without_link(offboard, seconds) for seconds in (9.5, 1.0, 4.0, 1.0)]
+    assert modes == ["guided", "loiter", "loiter", "return"]
+    offboard.wait(1.0)
+    assert [text for _, _, text in offboard.pilot.said[-4:]] == [
         "Connection to ground station lost",
         "Failsafe activated, entering Hold for 5 seconds",
         "Failsafe activated",
+        "GCS connection regained",
     ]
 
 
-def test_where_its_owner_exempts_a_mode_it_goes_on_although_it_hears_nobody(bench):
-    bench.pilot.parameters |= {"NAV_DLL_ACT": 2, "COM_OF_LOSS_T": 60.0, "COM_DLL_EXCEPT": 4}
-    stream(bench, (0.0, 0.0, 10.0), 1.5)
-    switch(bench, OFFBOARD)
-    assert unheard(bench, 20.0) == "guided"
+def test_an_exempt_mode_continues_without_a_link(offboard):
+    offboard.pilot.parameters |= {"NAV_DLL_ACT": 2, "COM_OF_LOSS_T": 60.0, "COM_DLL_EXCEPT": 4}
+    assert without_link(offboard, 20.0) == "guided"
 
 
-def test_whoever_gives_it_another_mode_while_it_holds_has_it(bench):
+def test_a_mode_change_during_the_hold_cancels_the_failsafe(bench):
     bench.pilot.parameters["NAV_DLL_ACT"] = 2
-    switch(bench, (3, 0))
-    assert unheard(bench, 10.5) == "loiter"
-    switch(bench, (3, 0))
-    assert unheard(bench, 10.0) == "poshold"
+    switch(bench, POSITION)
+    assert without_link(bench, 10.5) == "loiter"
+    switch(bench, POSITION)
+    assert without_link(bench, 10.0) == "poshold"
 
 
-def test_what_it_held_for_is_forgotten_once_it_is_disarmed(bench):
+def test_disarming_cancels_the_failsafe(bench):
     bench.pilot.parameters["NAV_DLL_ACT"] = 2
-    assert unheard(bench, 10.5) == "loiter"
+    assert without_link(bench, 10.5) == "loiter"
     bench.command(400, 0, 21196)
     bench.wait(0.2)
     assert bench.command(400, 1) == 0
@@ -121,43 +112,57 @@ def test_what_it_held_for_is_forgotten_once_it_is_disarmed(bench):
     assert bench.pilot.mode_name == "loiter"
 
 
-def test_out_of_its_fence_it_does_what_it_is_told_for_that(bench):
-    bench.pilot.parameters |= {"GF_ACTION": 5, "GF_MAX_HOR_DIST": 15.0, "COM_FAIL_ACT_T": 0.0}
-    stream(bench, (0.0, 0.0, 10.0), 1.5)
-    switch(bench, OFFBOARD)
-    stream(bench, (0.0, 30.0, 10.0), 8.0)
+def test_a_breached_fence_is_answered_as_configured(offboard):
+    offboard.pilot.parameters |= {"GF_ACTION": 5, "GF_MAX_HOR_DIST": 15.0, "COM_FAIL_ACT_T": 0.0}
+    stream(offboard, (0.0, 30.0, 10.0), 8.0)
+    assert offboard.pilot.mode_name == "land"
+    assert "Geofence: approaching or outside geofence" in [text for _, _, text in offboard.pilot.said]
+
+
+def test_a_lost_position_is_answered_at_once(bench):
+    bench.pilot.located = False
+    bench.wait(1.5)
     assert bench.pilot.mode_name == "land"
-    assert "Geofence: approaching or outside geofence" in [text for _, _, text in bench.pilot.said]
+
+
+@pytest.mark.parametrize(
+    ("action", "level", "mode"), [(0, 0.06, "loiter"), (3, 0.06, "return"), (3, 0.04, "land")]
+)
+def test_a_critical_or_nearly_empty_battery_is_answered_as_configured(bench, action, level, mode):
+    bench.pilot.parameters |= {"COM_LOW_BAT_ACT": action, "COM_FAIL_ACT_T": 0.0}
+    bench.pilot.battery.change(level)
+    bench.wait(1.0)
+    assert (bench.pilot.mode_name, bench.pilot.failsafe is None) == (mode, False)
 
 
 @pytest.mark.parametrize(("kind", "east"), [(0, 0.0), (1, 30.0)])
-def test_it_returns_to_a_rally_point_where_it_is_told_to_rather_than_home(bench, kind, east):
+def test_return_goes_home_or_to_a_rally_point_as_configured(bench, kind, east):
     bench.pilot.parameters |= {"RTL_TYPE": kind, "RTL_RETURN_ALT": 10.0}
     bench.pilot.stores[2] = [bench.item(5100, (0.0, 30.0, 0.0))]
-    switch(bench, (4, 5))
+    switch(bench, RETURN)
     assert bench.wait_for(lambda: not bench.pilot.armed, 120.0)
     assert bench.pilot.body.position[1] == pytest.approx(east, abs=1.0)
 
 
-def test_a_mission_begins_with_its_first_item(bench):
+def test_a_mission_begins_with_item_0(bench):
     bench.pilot.stores[0] = [bench.item(16, (0.0, 20.0, 10.0), 1.0), bench.item(17, (10.0, 20.0, 10.0))]
     assert switch(bench, MISSION) == 0
     assert bench.wait_for(lambda: bench.pilot.item == 1, 30.0)
     assert [item for _, item in bench.pilot.visited] == [0]
 
 
-def test_whole_numbers_travel_as_their_bytes():
+def test_integers_are_sent_as_their_bytes():
     value, kind = encoded("NAV_DLL_ACT", 2.0, "px4")
     assert (struct.unpack("<i", struct.pack("<f", value))[0], kind) == (2, INT32)
     assert decoded("NAV_DLL_ACT", value, INT32, "px4") == 2.0
     assert encoded("BATT_FS_LOW_ACT", 2.0, "ardupilot") == (2.0, INT32)
 
 
-def test_items_are_kept_as_they_came():
+def test_items_are_stored_as_received():
     item = Item(6, 16, (1.5, 0.0, 0.0, math.nan), 1, 2, 3.14159)
     assert kept(item, 0, "px4") is item
 
 
-def test_only_copters_fly_it():
+def test_px4_is_for_copters_only():
     with pytest.raises(ValueError, match="not a firmware for a rover"):
         Settings("rover", firmware="px4")

@@ -1,4 +1,4 @@
-"""An underwater vehicle goes by its pilot's sticks, and disarms when nobody moves them any more."""
+"""Manual control of an underwater vehicle, which disarms when it stops."""
 
 from __future__ import annotations
 
@@ -37,28 +37,21 @@ def armed(**options):
 @pytest.mark.parametrize(
     ("mode", "result"), [("alt_hold", "ACCEPTED"), ("manual", "ACCEPTED"), ("guided", "FAILED")]
 )
-def test_what_goes_by_hand_is_armed_without_a_position(mode, result):
+def test_only_manual_modes_arm_without_a_position(mode, result):
     pilot = sub(mode, located=True)
     pilot.located = False
     assert execute(pilot, ARM, (1.0, *[0.0] * 6)) == getattr(mavlink, f"MAV_RESULT_{result}")
 
 
-def test_a_stick_ahead_moves_it_where_it_looks():
+@pytest.mark.parametrize(("heading", "x", "y", "east"), [(90.0, 500, 0, 5.0), (0.0, 0, 1000, 10.0)])
+def test_sticks_move_a_vehicle_forward_and_to_the_right(heading, x, y, east):
     pilot = armed()
-    pilot.body.heading = 90.0
-    drive(pilot, 10.0, x=500)
-    north, east, up = pilot.body.position
-    assert east == pytest.approx(0.5 * FULL_SPEED * 10.0, abs=0.5)
-    assert (north, up) == pytest.approx((0.0, 0.0), abs=1e-6)
+    pilot.body.heading = heading
+    drive(pilot, 10.0, x=x, y=y)
+    assert pilot.body.position == pytest.approx((0.0, east * FULL_SPEED, 0.0), abs=0.7)
 
 
-def test_a_stick_aside_moves_it_to_the_right():
-    pilot = armed()
-    drive(pilot, 10.0, y=1000)
-    assert pilot.body.position[:2] == pytest.approx((0.0, 10.0 * FULL_SPEED), abs=1.0)
-
-
-def test_it_dives_and_stays_at_its_depth_where_the_stick_is_let_go():
+def test_a_vehicle_dives_and_holds_its_depth_at_neutral_sticks():
     pilot = armed()
     drive(pilot, 8.0, z=0)
     depth = -pilot.body.position[2]
@@ -67,20 +60,20 @@ def test_it_dives_and_stays_at_its_depth_where_the_stick_is_let_go():
     assert -pilot.body.position[2] == pytest.approx(depth, abs=0.2)
 
 
-def test_it_does_not_come_out_of_the_water():
+def test_a_vehicle_does_not_leave_the_water():
     pilot = armed()
     drive(pilot, 4.0, z=0)
     drive(pilot, 60.0, z=1000)
     assert -0.3 <= pilot.body.position[2] <= 1e-6
 
 
-def test_a_turn_is_as_fast_as_the_stick_says():
+def test_a_turn_is_proportional_to_its_stick():
     pilot = armed()
     drive(pilot, 2.0, r=-500)
     assert pilot.body.heading == pytest.approx(360.0 - FULL_TURN, abs=3.0)
 
 
-def test_it_disarms_when_nobody_moves_the_sticks_any_more():
+def test_a_vehicle_disarms_without_manual_control():
     pilot = armed()
     drive(pilot, 2.0, x=1000)
     advance(pilot, 2.5)
@@ -89,7 +82,7 @@ def test_it_disarms_when_nobody_moves_the_sticks_any_more():
     assert not pilot.armed
 
 
-def test_other_kinds_heed_no_sticks():
+def test_other_kinds_ignore_sticks():
     pilot = Autopilot(Settings(kind="rover", ready=0.0, boot=0.0))
     pilot.arm()
     drive(pilot, 5.0, x=1000)

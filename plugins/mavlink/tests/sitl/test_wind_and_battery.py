@@ -1,4 +1,4 @@
-"""Wind over ground and in the air, and what a battery gives."""
+"""Wind and battery."""
 
 from __future__ import annotations
 
@@ -10,12 +10,12 @@ from mmrs_mavlink.sitl.body import Body, wind_of
 from mmrs_mavlink.sitl.commands import steer
 
 
-def test_wind_comes_from_where_it_is_said_to():
+def test_wind_blows_from_its_origin():
     assert wind_of(5.0, 270.0) == pytest.approx((0.0, 5.0, 0.0))
 
 
 def flown(wind: tuple[float, float], metres: float = 100.0, speed: float = 5.0) -> Bench:
-    """Return a vehicle that has flown so far to the west."""
+    """Return a copter that has flown to the west."""
     bench = Bench(wind=wind)
     bench.fly_up(10.0)
     bench.command(178, 1, speed)
@@ -36,18 +36,18 @@ def test_a_strong_head_wind_slows_it_down():
     assert storm.pilot.time > calm.pilot.time + 10.0
 
 
-def test_a_side_wind_does_not_take_it_off_its_way():
+def test_a_side_wind_causes_no_cross_track_error():
     bench = flown((10.0, 0.0))
     assert max(abs(point[1]) for point in bench.pilot.track) < 0.05
 
 
-def test_a_wind_that_is_too_strong_blows_it_away():
+def test_too_strong_a_wind_carries_a_vehicle_away():
     body = Body(position=(0.0, 0.0, 10.0), target=(0.0, 0.0, 10.0), wind=wind_of(25.0, 0.0))
     body.advance(10.0)
     assert body.position[0] < -40.0
 
 
-def test_without_a_position_it_drifts_with_the_wind():
+def test_a_copter_without_a_position_drifts_with_the_wind():
     bench = Bench(wind=(4.0, 0.0))
     bench.fly_up(10.0)
     bench.pilot.located = False
@@ -56,7 +56,7 @@ def test_without_a_position_it_drifts_with_the_wind():
     assert bench.pilot.body.position[0] == pytest.approx(-75.0, abs=10.0)
 
 
-def test_a_battery_lasts_for_its_seconds_of_hovering():
+def test_a_battery_lasts_for_its_hover_time():
     bench = Bench(energy=120.0)
     bench.fly_up(10.0)
     bench.mode("loiter")
@@ -65,7 +65,7 @@ def test_a_battery_lasts_for_its_seconds_of_hovering():
     assert bench.pilot.time - began == pytest.approx(114.0, abs=4.0)
 
 
-def test_an_empty_battery_brings_it_down_the_hard_way():
+def test_a_copter_falls_with_an_empty_battery():
     bench = Bench(energy=30.0)
     bench.fly_up(20.0)
     assert bench.wait_for(lambda: not bench.pilot.armed, 60.0)
@@ -73,12 +73,12 @@ def test_an_empty_battery_brings_it_down_the_hard_way():
     assert "motors stop" in bench.pilot.said[-1][2]
 
 
-def test_a_battery_does_not_become_full_on_the_ground_unless_it_is_charged():
-    for recharge, level in ((0.0, 0.5), (60.0, 1.0)):
-        bench = Bench(recharge=recharge)
-        bench.pilot.battery.change(0.5)
-        bench.wait(31.0)
-        assert bench.pilot.energy == pytest.approx(level)
+@pytest.mark.parametrize(("recharge", "level"), [(0.0, 0.5), (60.0, 1.0)])
+def test_a_battery_recharges_on_the_ground_if_configured(recharge, level):
+    bench = Bench(recharge=recharge)
+    bench.pilot.battery.change(0.5)
+    bench.wait(31.0)
+    assert bench.pilot.energy == pytest.approx(level)
 
 
 def test_voltage_falls_with_use_and_under_load():
