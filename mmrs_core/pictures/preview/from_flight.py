@@ -16,8 +16,7 @@ from mmrs_core.pictures.figures import clock, length
 from mmrs_core.pictures.flights.away import away_of, without
 from mmrs_core.pictures.flights.photos import SIMULATED, UNCONFIRMED, Shot, shots_in
 from mmrs_core.pictures.flights.planned import Planned, legs_of
-from mmrs_core.pictures.flights.stretches import Piece, stretches_of
-from mmrs_core.pictures.flights.thinning import pieces, thinned
+from mmrs_core.pictures.flights.tracks import Piece, pieces, stretches_of, thinned
 from mmrs_core.pictures.flights.values import Flight, Flown
 from mmrs_core.pictures.preview.from_run import (
     bars_of_records,

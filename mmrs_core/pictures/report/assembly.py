@@ -18,7 +18,7 @@ from mmrs_core.pictures.flights.fixes import Zero, zero_of
 from mmrs_core.pictures.flights.photos import shots_in
 from mmrs_core.pictures.flights.planned import Planned, PlannedLeg, legs_of
 from mmrs_core.pictures.flights.positions import Locator
-from mmrs_core.pictures.flights.thinning import pieces
+from mmrs_core.pictures.flights.tracks import pieces
 from mmrs_core.pictures.flights.values import Flight, Flown
 from mmrs_core.pictures.report.deviations import deviation_of
 from mmrs_core.pictures.report.distances import approaches_of, in_motion, separations_of

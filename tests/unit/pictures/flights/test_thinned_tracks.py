@@ -7,8 +7,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from mmrs_core.pictures.flights import thinning
-from mmrs_core.pictures.flights.thinning import pieces, thinned
+from mmrs_core.pictures.flights import tracks
+from mmrs_core.pictures.flights.tracks import pieces, thinned
 from mmrs_core.pictures.flights.values import NOWHERE, Track
 
 
@@ -64,7 +64,7 @@ def test_a_jump_in_no_time_keeps_both_places():
 
 
 def test_the_tolerance_grows_until_few_points_are_left_and_is_told(monkeypatch):
-    monkeypatch.setattr(thinning, "MOST_POINTS", 50)
+    monkeypatch.setattr(tracks, "MOST_POINTS", 50)
     noise = np.random.default_rng(7).normal(0.0, 1.0, (500, 3))
     whole = track(range(500), noise)
     thin, tolerance = thinned(whole, 0.2)
