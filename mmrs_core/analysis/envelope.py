@@ -205,7 +205,6 @@ def _held_against(wind: float, held: float, robot: RobotProgram, hovers: int) ->
 
 
 def _hovers(states: States) -> int | None:
-    """Return the first move that ends off the ground; None if there is none."""
     off = [move for move, after in states.after.items() if after != {GROUNDED}]
     return off[0] if off else None
 

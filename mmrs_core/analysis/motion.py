@@ -93,7 +93,6 @@ def motion_of(input: CheckInput, robot: RobotProgram) -> Motion:
 def _pass(
     input: CheckInput, robot: RobotProgram, index: int, place: Whereabouts, motion: Motion
 ) -> Whereabouts:
-    """Add what a move does from one place to the motion; return where it leaves the robot."""
     move = robot.moves[index]
     kind = move_kind_of(input, move)
     if kind is None:

@@ -204,7 +204,6 @@ def _occupations(
 
 
 def _gone(robot: RobotProgram, move: int, times: Times) -> Span:
-    """Return when a robot leaves after a move."""
     transition = robot.transitions.get(move)
     if transition is None:
         return Span(inf, inf)

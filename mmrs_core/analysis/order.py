@@ -75,7 +75,6 @@ def _unite(known: Over, more: Mapping[str, int]) -> None:
 
 
 def _common(paths: list[Over]) -> Over:
-    """Return what is over on every path."""
     if not paths:
         return {}
     first, *others = paths

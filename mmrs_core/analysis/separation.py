@@ -69,7 +69,6 @@ def _run(input: CheckInput) -> Iterator[Verdict]:
 
 
 def _excuses(excused: Mapping[tuple[str, str], float]) -> str:
-    """Return which robots are excused, and in what; empty if none is."""
     if not excused:
         return ""
     pairs = ", ".join(f"{one} and {other} ({apart:.2f} m)" for (one, other), apart in excused.items())
@@ -169,7 +168,6 @@ def _box(occupation: Occupation) -> tuple[float, float, float, float]:
 
 
 def _worst(encounters: Iterable[Encounter]) -> list[Encounter]:
-    """Return, for each two robots, the encounter that says most: a decided one, then the nearest."""
     worst: dict[tuple[str, str], Encounter] = {}
     for encounter in encounters:
         pair = (encounter.one.robot, encounter.other.robot)

@@ -194,7 +194,6 @@ class _Walk:
         return Running(min(waited, whole), running.before, running.since)
 
     def _awaited(self, slot: str) -> str:
-        """Return a slot with the robots that activate it."""
         activations = self.times.dependencies.activations_of((self.robot.id, slot))
         givers = dict.fromkeys(each.at[0] for each in activations)
         return f"'{slot}' from {' or '.join(givers)}" if givers else f"'{slot}'"

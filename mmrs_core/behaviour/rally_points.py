@@ -78,7 +78,6 @@ def _clearance(robot: RobotProgram, program: Program, types: Mapping[str, RobotT
 
 
 def _heights(program: Program) -> tuple[float, float]:
-    """Return the lowest and the highest altitude of moves, homes and origin, metres."""
     homes = [robot.home for robot in program.robots]
     targets = [move.target.position for robot in program.robots for move in robot.moves if move.target]
     heights = [0.0, *(place[2] for place in (*homes, *targets) if place is not None)]

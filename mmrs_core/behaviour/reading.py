@@ -266,7 +266,6 @@ class _Reading:
 
 
 def _flowing(robot: bl.Robot) -> set[bl.Move | None]:
-    """Return the moves that the robot may enter or leave without a stop."""
     return {
         move
         for transition in robot.moveTransitions

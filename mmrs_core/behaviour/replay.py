@@ -121,7 +121,6 @@ def replay(program: Program, records: Iterable[StepRecord], *, partial: bool = F
 
 
 def _order_complaints(records: tuple[StepRecord, ...]) -> Iterable[Complaint]:
-    """Yield what is wrong with counters and clocks, one robot at a time."""
     last: dict[str, StepRecord] = {}
     for record in records:
         before = last.get(record.robot)
@@ -144,7 +143,6 @@ def _order_fault(before: StepRecord | None, record: StepRecord, run: str) -> str
 
 
 def _replayed(run: _Replay, records: tuple[StepRecord, ...]) -> Iterable[Complaint]:
-    """Advance along the records; yield the first complaint, if any."""
     for record in records:
         robot = run.robots.get(record.robot)
         if robot is None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from mmrs_core.diagnostics import Severity
@@ -53,3 +53,7 @@ class Constraint:
     def expected(self) -> str:
         """What must hold, in the form of messages: the title without its capital and full stop."""
         return self.title[:1].lower() + self.title[1:].removesuffix(".")
+
+    def also(self, *others: tuple[str, Name]) -> tuple[Constraint, ...]:
+        """Return this constraint, and the same on other metaclasses, each with a code of its own."""
+        return (self, *(replace(self, code=code, metaclass=metaclass) for code, metaclass in others))

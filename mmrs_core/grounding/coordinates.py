@@ -142,7 +142,6 @@ def _projected(local: LocalFrame, crs: str, placed: Sequence[Element]) -> dict[E
 def _in_crs(
     degrees: NDArray[np.float64], source: str, target: str
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Return latitudes and longitudes, given as (n, 2) in one crs, in another."""
     if source.strip().lower() == target.strip().lower():
         return degrees[:, 0], degrees[:, 1]
     from pyproj import Transformer

@@ -77,7 +77,6 @@ def _robot_plan(
 def _with_signals(
     steps: Mapping[str, tuple[Step, ...]], signals: Mapping[str, tuple[str, str]]
 ) -> dict[str, tuple[Step, ...]]:
-    """Add each signal that another robot waits for, right after the share that gives it."""
     receivers: dict[str, list[str]] = {}
     for robot, mine in steps.items():
         for step in mine:
@@ -93,7 +92,6 @@ def _with_signals(
 
 
 def _end_of(steps: Sequence[Step], job: str) -> int:
-    """Return the index of the step with which a robot's share of a job ends."""
     return max(i for i, step in enumerate(steps) if isinstance(step, Serve | Branch) and step.task == job)
 
 
@@ -107,7 +105,6 @@ def _inserted(steps: Sequence[Step], signals: Iterable[tuple[int, Signal]]) -> t
 def _spans(
     scene: Scene, steps: Mapping[str, tuple[Step, ...]], schedule: Schedule
 ) -> dict[str, tuple[float, float]]:
-    """Return when each task begins and ends, control tasks included."""
     spans: dict[str, tuple[float, float]] = {}
     for mine in steps.values():
         for serve in _serves(mine):
@@ -154,7 +151,6 @@ def why_idle(team: Team, robot: str) -> str:
 
 
 def _reason(team: Team, task: str, robot: str) -> str:
-    """Return why a task is not the robot's."""
     if robot not in team.able(task):
         return team.refusals.get((task, robot), "it cannot do the task")
     if team.sharers(task) == 1 and len(team.able(task)) > 1 and team.whole(task):

@@ -163,7 +163,6 @@ def _closed(scene: Scene, robot: Robot, altitude: float) -> BaseGeometry:
 
 
 def _worth(target: tuple[Polygon, ...], closed: BaseGeometry) -> tuple[Polygon, ...]:
-    """Return the target without tiny unreachable pockets between closed areas."""
     whole = sum(piece.area for piece in target)
     pockets = [Polygon(hole) for part in parts(closed) for hole in part.interiors]
     walled = [piece for piece in target if any(pocket.covers(piece) for pocket in pockets)]

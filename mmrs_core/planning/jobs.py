@@ -147,7 +147,6 @@ class _Graph:
             raise InfeasibleError(reasons[0], reasons)
 
     def _reachable(self, name: str) -> frozenset[str]:
-        """Return the task and all that comes after it."""
         if name not in self._reach:
             after = (self._reachable(edge.after) for edge in self.out[name])
             self._reach[name] = frozenset({name}).union(*after)

@@ -124,7 +124,6 @@ def _stops(leg: LevelLeg, length: float) -> Iterator[_Stop]:
 
 
 def _trimmed(stops: Sequence[_Stop]) -> Sequence[_Stop]:
-    """Return the stops from the first to the last with an action."""
     acting = [i for i, stop in enumerate(stops) if stop.acts]
     return stops[acting[0] : acting[-1] + 1]
 
@@ -159,7 +158,6 @@ def _run_in(spot: Place, distance: float, clear: Clear) -> list[_Stop]:
 
 
 def _joined(stops: Sequence[_Stop]) -> Swath:
-    """Return the swath from stop to stop, with points only where it turns."""
     at = [stop.at for stop in stops]
     bends = [_bends(*three) for three in zip(at, at[1:], at[2:], strict=False)]
     points = [place for place, kept in zip(at, [True, *bends, True], strict=False) if kept]

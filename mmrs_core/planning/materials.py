@@ -135,7 +135,6 @@ def layout_of(work: Work, pilot: Pilot, robots: int, *, coarsest: float = 0.0, f
 def _gathered(
     parts: Sequence[Stroke], seconds: Sequence[float], target: float
 ) -> Iterator[tuple[Stroke, ...]]:
-    """Yield runs of parts that take about so long each."""
     run: list[Stroke] = []
     spent = 0.0
     for part, each in zip(parts, seconds, strict=True):
@@ -174,7 +173,6 @@ def lay_out(task: str, work: Work, layout: Layout, pilot: Pilot, *, backwards: b
 def _of_portions(
     portions: Sequence[Sequence[Stroke]], pilot: Pilot, *, soonest: bool = False
 ) -> tuple[tuple[float, float], ...]:
-    """Return (begin, end) of each portion."""
     parts = [part for portion in portions for part in portion]
     spans = iter(paced(parts, pilot, soonest=soonest))
     own = [[next(spans) for _ in portion] for portion in portions]
@@ -276,7 +274,6 @@ def shortages(material: Material, pilot: Pilot) -> list[float]:
 
 
 def _sortie_seconds(material: Material, pilot: Pilot, index: int) -> float:
-    """Return the seconds of a sortie for one portion."""
     approach = material.approach(index)
     routes = [pilot.travel.leave(approach.via[0])]
     routes += [pilot.travel.hop(one, two) for one, two in pairwise(approach.via)]

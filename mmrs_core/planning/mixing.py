@@ -12,7 +12,7 @@ from mmrs_core.errors import UnreachableError
 from mmrs_core.planning.materials import Layout, Material, lay_out
 from mmrs_core.planning.omissions import amount_left_out
 from mmrs_core.planning.remainders import Remainders, Turn
-from mmrs_core.planning.sharing import CLOSE, Candidate, Sharing, share_out
+from mmrs_core.planning.sharing import CLOSE, ShareCandidate, Sharing, share_out
 from mmrs_core.planning.sorties import Pilot
 from mmrs_core.scene import Work
 
@@ -114,7 +114,7 @@ class Mixture:
 
 def share_mixed(
     mixture: Mixture,
-    groups: Sequence[Sequence[Candidate]],
+    groups: Sequence[Sequence[ShareCandidate]],
     *,
     everyone: bool = False,
     record: bool = False,
@@ -155,7 +155,7 @@ def mixes(sizes: tuple[int, ...], robots: int) -> list[tuple[int, ...]]:
     return found[:_MIXES]
 
 
-_Group: TypeAlias = tuple[int, Sequence[Candidate]]
+_Group: TypeAlias = tuple[int, Sequence[ShareCandidate]]
 
 
 class _Mixing:
@@ -173,7 +173,7 @@ class _Mixing:
         found = [self._balanced(candidates, groups, runs, ahead=ahead) for ahead in (True, False)]
         return min((each for each in found if each), key=lambda each: each.back, default=None)
 
-    def _of_rest(self, sort: int, group: Sequence[Candidate], runs: Runs) -> list[Candidate]:
+    def _of_rest(self, sort: int, group: Sequence[ShareCandidate], runs: Runs) -> list[ShareCandidate]:
         found = []
         for each in group:
             name = each.pilot.robot.name
@@ -184,7 +184,7 @@ class _Mixing:
         return found if len(found) == len(group) or not self._everyone else []
 
     def _balanced(
-        self, candidates: Sequence[Candidate], groups: Sequence[_Group], runs: Runs, *, ahead: bool
+        self, candidates: Sequence[ShareCandidate], groups: Sequence[_Group], runs: Runs, *, ahead: bool
     ) -> Sharing | None:
         """Return the sharing in which the first group takes as many portions as all end early with."""
         (sort, _), *others = groups
@@ -217,7 +217,7 @@ class _Mixing:
         sort, group = groups[0]
         return len(self._mixture.rest(sort, runs).layout.portions) >= (len(group) if self._everyone else 1)
 
-    def _alone(self, candidates: Sequence[Candidate], first: int, size: int) -> Sharing | None:
+    def _alone(self, candidates: Sequence[ShareCandidate], first: int, size: int) -> Sharing | None:
         """Return how one group shares a run of its portions."""
         count = len(candidates[0].forwards)
         last = first + size - 1

@@ -93,7 +93,6 @@ def uncovered(coverage: Coverage) -> BaseGeometry:
 
 
 def _near(scene: Scene, robot: Robot, at: Position) -> str:
-    """Return the names of what a robot keeps away from at a place."""
     names = [
         f"'{area.name}'"
         for area in scene.kept_from(robot)

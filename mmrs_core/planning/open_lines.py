@@ -129,7 +129,6 @@ def _middle(line: Sequence[Position], stretch: tuple[float, float]) -> Position:
 
 
 def _walls_around(at: Position, pockets: Iterable[tuple[Polygon, tuple[str, ...]]]) -> tuple[str, ...]:
-    """Return the names of the areas that close in a place; empty where it can be reached."""
     return next((walls for pocket, walls in pockets if pocket.covers(Point(at[:2]))), ())
 
 

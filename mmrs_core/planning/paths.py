@@ -89,7 +89,6 @@ class Space:
         return found
 
     def _search(self, start: Position, goal: Position) -> tuple[Position, ...] | str:
-        """Return the route, or why there is none."""
         for end, name in ((start, "start"), (goal, "goal")):
             inside = self.blockers((end,))
             if inside:

@@ -54,7 +54,6 @@ def _cost(made: Plan) -> tuple[float, float]:
 
 
 def _plan_asking(teams: Iterable[Team], wanted: Mapping[str, int], jobs: Sequence[Job], seed: int) -> Plan:
-    """Return the plan of the first team that is not short where tasks want so many robots."""
     shortage = InfeasibleError("no plan")
     for each in teams:
         try:
@@ -110,7 +109,6 @@ def _plan_with(team: Team, jobs: Sequence[Job], seed: int) -> Plan:
 
 
 def _unasked_returns(team: Team, told: Team, made: Plan) -> Iterator[str]:
-    """Yield the active robots that return home unasked, to keep apart."""
     before = {robot.name: robot.return_home for robot in team.scene.robots}
     returning = {robot.name for robot in told.scene.robots if robot.return_home and not before[robot.name]}
     names = [each.robot for each in made.robots if each.robot in returning and each.steps]
@@ -153,7 +151,6 @@ def _plan_of(team: Team, jobs: Sequence[Job], seed: int, *, in_turns: bool = Fal
 
 
 def _shared_choices(scene: Scene, jobs: Sequence[Job]) -> list[str]:
-    """Return why tasks between a Fork with conditions and its Join cannot be shared as wanted."""
     wanted = {task.name: task.wanted or 1 for task in scene.tasks}
     return [
         f"task '{task}' wants {wanted[task]} robots, but fork '{job.name}' is one robot's work"
@@ -165,7 +162,6 @@ def _shared_choices(scene: Scene, jobs: Sequence[Job]) -> list[str]:
 
 
 def _planned(team: Team, jobs: Sequence[Job], decisions: Decisions) -> Plan | None:
-    """Return the plan of decisions; None if they lead to none, or times are broken."""
     found = schedule(team, jobs, decisions, record=True)
     if isinstance(found, Shortfall) or broken_times(team, found.spans):
         return None
@@ -173,7 +169,6 @@ def _planned(team: Team, jobs: Sequence[Job], decisions: Decisions) -> Plan | No
 
 
 def _refuse(reasons: Sequence[str], what: str) -> None:
-    """Raise an InfeasibleError with all reasons, if there are any."""
     if reasons:
         raise InfeasibleError(_words(what, reasons), reasons)
 

@@ -168,7 +168,6 @@ def _overlap(one: Floats, two: Floats, spare: float) -> NDArray[np.bool_]:
 
 
 def _pairs(one: TimedTrack, two: TimedTrack, least: float) -> tuple[Indices, Indices]:
-    """Return indices of pieces whose boxes come within a distance."""
     reach = least + max(one.radii.max(initial=0.0) + two.radii.max(initial=0.0), 0.0)
     tree = shapely.STRtree(_boxes(two, 0.0))
     i, j = tree.query(_boxes(one, reach))

@@ -80,7 +80,6 @@ class Remainders:
         return frozenset(found)
 
     def _bare(self, sort: int, before: Sequence[Turn]) -> Iterator[int]:
-        """Yield the parts under which some ground is not yet covered."""
         for part in range(len(self.parts[sort])):
             covering = tuple(
                 (turn.sort, other)

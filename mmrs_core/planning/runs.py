@@ -54,7 +54,6 @@ class PortionRun:
         self._add(state, begin, ready)
 
     def _add(self, state: State, first: int, ready: Ready) -> None:
-        """Add the sortie that begins with a portion, if there is one."""
         pilot, material = self._pilot, self.material
         need = material.seconds(first, first) + pilot.exit_seconds(material.last(first))
         there = pilot.reach(state, material.approach(first), need, ready, material.task)
@@ -79,7 +78,6 @@ class PortionRun:
         return _largest(first, last, returns) if returns(first) else first - 1
 
     def _extend(self) -> bool:
-        """Add one more sortie; return whether there is one."""
         if self._stuck or not self._sorties or self._end == len(self.material) - 1:
             return False
         full = self._sorties[-1]
@@ -90,7 +88,6 @@ class PortionRun:
 
     @property
     def _end(self) -> int:
-        """The last portion that some sortie gets to."""
         return max(sortie.last for sortie in self._sorties)
 
     def can_do(self, portion: int) -> bool:

@@ -11,7 +11,7 @@ from mmrs_core.planning.choices import carry_out
 from mmrs_core.planning.jobs import Job
 from mmrs_core.planning.mixing import mixes, share_mixed
 from mmrs_core.planning.runs import PortionRun
-from mmrs_core.planning.sharing import Candidate, Sharing, share_out
+from mmrs_core.planning.sharing import ShareCandidate, Sharing, share_out
 from mmrs_core.planning.states import Ready, State
 from mmrs_core.planning.team import Team
 from mmrs_core.planning.turns import JobResult, States, TurnShare, in_turns, turn_of
@@ -155,7 +155,6 @@ class _Scheduling:
         return self._chosen(job) if job.choice is not None else self._shared(job)
 
     def _shared(self, job: Job) -> JobResult | None:
-        """Share a task out as well as can be."""
         if self._decisions.in_turns:
             tried = [self._in_turns(each) for each in self._sharings(job)]
             return min((each for each in tried if each is not None), key=lambda each: each.back, default=None)
@@ -225,7 +224,6 @@ class _Scheduling:
         return group if isinstance(group, tuple) else tuple(self._team.pilots)
 
     def _sharings(self, job: Job) -> Iterator[Sharing]:
-        """Yield the best sharing of a task for each choice of robots."""
         task = self._tasks[job.name]
         for group in self._team.groups[job.name]:
             candidates = self._candidates(job, task, group)
@@ -241,7 +239,7 @@ class _Scheduling:
                 if found is not None:
                     yield found
 
-    def _candidates(self, job: Job, task: Task, group: Sequence[str]) -> list[Candidate]:
+    def _candidates(self, job: Job, task: Task, group: Sequence[str]) -> list[ShareCandidate]:
         """Return the robots of a group, those first that are first back from the first portion."""
         found = []
         for name in group:
@@ -251,13 +249,13 @@ class _Scheduling:
             pilot, state = self._team.pilots[name], self._states[name]
             ready = self._ready(job, name, task.earliest)
             run = PortionRun(pilot, forwards, state, 0, ready, record=False)
-            each = Candidate(pilot, state, ready, forwards, self._team.backwards(job.name, name))
+            each = ShareCandidate(pilot, state, ready, forwards, self._team.backwards(job.name, name))
             found.append((run.back(0), each))
         return [each for _, each in sorted(found, key=lambda pair: pair[0])]
 
     def _choices_of(
-        self, task: Task, candidates: Sequence[Candidate]
-    ) -> Iterator[tuple[Sequence[Candidate], bool]]:
+        self, task: Task, candidates: Sequence[ShareCandidate]
+    ) -> Iterator[tuple[Sequence[ShareCandidate], bool]]:
         """Yield the groups to be tried, and whether each robot in them must have a share."""
         decided = self._decisions.groups.get(task.name)
         if isinstance(decided, tuple):
@@ -279,8 +277,8 @@ class _Scheduling:
         yield from ((candidates[:size], False) for size in sorted(sizes) if size)
 
     def _mixes_of(
-        self, task: Task, groups: Sequence[Sequence[Candidate]]
-    ) -> Iterator[Sequence[Sequence[Candidate]]]:
+        self, task: Task, groups: Sequence[Sequence[ShareCandidate]]
+    ) -> Iterator[Sequence[Sequence[ShareCandidate]]]:
         """Yield, by sort, the robots to be tried together, of two sorts at least."""
         decided = self._decisions.groups.get(task.name)
         if isinstance(decided, tuple):

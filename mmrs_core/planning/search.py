@@ -127,7 +127,6 @@ def _slightly_less(cost: Cost) -> Cost:
 
 
 def _first_order(team: Team, jobs: Sequence[Job]) -> tuple[str, ...]:
-    """Return the jobs by priority, then by how long what comes after them is, longest first."""
     tails = _tails(team, jobs)
     priority = {task.name: task.priority for task in team.scene.tasks}
     ranked = {job.name: max((priority[name] for name in job.tasks()), default=0) for job in jobs}
@@ -207,7 +206,6 @@ def robot_counts(team: Team, jobs: Sequence[Job]) -> list[Mapping[str, int]]:
 
 
 def _uniform_counts(most: Mapping[str, int]) -> list[Mapping[str, int]]:
-    """Return one number for one task, and for all, as far as they allow."""
     single = [{name: count} for name, largest in most.items() for count in range(1, largest + 1)]
     alike = [
         {name: min(count, largest) for name, largest in most.items()}
@@ -217,7 +215,6 @@ def _uniform_counts(most: Mapping[str, int]) -> list[Mapping[str, int]]:
 
 
 def _open_tasks(team: Team, jobs: Sequence[Job]) -> list[str]:
-    """Return the names of the tasks whose number of robots is for the planner to choose."""
     return [
         job.name
         for job in jobs

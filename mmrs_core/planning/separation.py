@@ -178,7 +178,6 @@ def earliest_conflict(tracks: Mapping[str, TimedTrack], least: float) -> Conflic
 
 
 def _neighbours(tracks: Mapping[str, TimedTrack], least: float) -> Iterator[tuple[str, str]]:
-    """Yield the pairs of tracks whose boxes come within a distance."""
     names = [name for name, track in tracks.items() if len(track.times)]
     boxes = np.array([tracks[name].box() for name in names]).reshape(-1, 2, 3)
     low, high = boxes[:, 0], boxes[:, 1]

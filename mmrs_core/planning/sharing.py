@@ -18,7 +18,7 @@ CLOSE = 4e-3
 
 
 @dataclass(frozen=True, slots=True)
-class Candidate:
+class ShareCandidate:
     """A robot that may take a share.
 
     Attributes:
@@ -40,7 +40,7 @@ class Candidate:
 class Share:
     """A run of portions for one robot, begin to end in the run's own direction."""
 
-    candidate: Candidate
+    candidate: ShareCandidate
     run: PortionRun
     end: int
 
@@ -59,7 +59,7 @@ class Sharing:
 
 
 def share_out(
-    candidates: Sequence[Candidate], *, everyone: bool = False, record: bool = False
+    candidates: Sequence[ShareCandidate], *, everyone: bool = False, record: bool = False
 ) -> Sharing | None:
     """Return the best way found to share out a work; None if these robots cannot do it.
 
@@ -79,7 +79,7 @@ def share_out(
     return best
 
 
-def _orders(candidates: Sequence[Candidate]) -> list[tuple[Candidate, ...]]:
+def _orders(candidates: Sequence[ShareCandidate]) -> list[tuple[ShareCandidate, ...]]:
     """Return orders worth a try: all of few robots, else by where along the work they are nearest."""
     if len(candidates) <= 2:
         return list(permutations(candidates))
@@ -87,7 +87,7 @@ def _orders(candidates: Sequence[Candidate]) -> list[tuple[Candidate, ...]]:
     return [along, along[::-1]]
 
 
-def _nearest_portion(candidate: Candidate) -> int:
+def _nearest_portion(candidate: ShareCandidate) -> int:
     here, material = candidate.state.at, candidate.forwards
     return min(range(len(material)), key=lambda i: dist(here, material.first(i)))
 
@@ -95,7 +95,7 @@ def _nearest_portion(candidate: Candidate) -> int:
 class _Filling:
     """Fills robots with portions in one order, remembering their runs."""
 
-    def __init__(self, order: Sequence[Candidate], everyone: bool, record: bool) -> None:
+    def __init__(self, order: Sequence[ShareCandidate], everyone: bool, record: bool) -> None:
         self._order, self._everyone, self._record = order, everyone, record
         self._runs: dict[tuple[int, int], PortionRun] = {}
         self._count = len(order[0].forwards)
@@ -152,7 +152,6 @@ class _Filling:
         return self._runs[place, begin]
 
     def _turned(self, share: Share) -> Share:
-        """Return the share done backwards if that is quicker."""
         each = share.candidate
         if each.backwards is None:
             return share

@@ -78,7 +78,6 @@ def cells(target: shapely.Geometry, free: shapely.Geometry) -> list[list[Cell]]:
 
 
 def _slab(left: float, right: float, rooms: list[Band], needs: list[Band]) -> list[Cell]:
-    """Return the cells of a slab, upwards."""
     found: list[Band | None] = [None] * len(rooms)
     alone: list[Cell] = []
     for need in needs:

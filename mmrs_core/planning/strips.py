@@ -85,7 +85,6 @@ def _groups(pieces: Sequence[BaseGeometry], gap: float) -> Iterator[BaseGeometry
 def _chains_of(
     target: BaseGeometry, width: float, blocked: BaseGeometry, shift: float | None
 ) -> Iterator[list[Cell]]:
-    """Yield the rows of cells, each for one swath, strip by strip."""
     left, bottom, right, top = shapely.bounds(target).tolist()
     for low, high in _levels(bottom, top, width, shift):
         strip = shapely.box(left - 1.0, low, right + 1.0, high)

@@ -161,7 +161,6 @@ def _points_between(points: tuple[Position, ...], begin: float, end: float) -> t
 
 
 def _at(points: tuple[Position, ...], where: float) -> Position:
-    """Return the position at an arc length."""
     done = 0.0
     for one, two in pairwise(points):
         step = dist(one, two)

@@ -65,7 +65,6 @@ def _plane(points: ArrayLike) -> Plane:
 
 
 def _corners(first: Plane, last: Plane) -> list[complex]:
-    """Return the outermost ends in four directions, without repeats."""
     ends = np.concatenate([first, last])
     along = np.stack([ends.real + ends.imag, ends.real - ends.imag])
     picks = dict.fromkeys(int(i) for row in along for i in (np.argmin(row), np.argmax(row)))

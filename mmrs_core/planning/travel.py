@@ -65,7 +65,6 @@ class Spaces:
         return self._spaces[key]
 
     def _homes_kept_from(self, robot: Robot) -> Iterator[Area]:
-        """Yield others' homes as small areas."""
         if self._from_homes is None:
             return
         safety = max(0.0, self._from_homes - robot.clearance)
@@ -211,13 +210,11 @@ class Travel:
         return best
 
     def _launch_heights(self, other: Position) -> list[float]:
-        """Return heights above home worth a try, the preferred one first."""
         first = self._within(other[2]) if self._altitude is None else self._altitude
         rest = [self._within(height) for height in (other[2], other[2] / 2, other[2] / 4, -inf, inf)]
         return list(dict.fromkeys(height for height in (first, *rest) if height < inf))
 
     def _above_home(self, height: float) -> tuple[Position, str]:
-        """Return the position above home, and what blocks the climb there."""
         home = self.robot.home
         above = (home[0], home[1], height)
         near = self.space.blockers((home, above))

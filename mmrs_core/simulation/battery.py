@@ -90,7 +90,6 @@ class SimulatedBattery:
         return leg.charge_at(time) - self._needs(leg.position(time), leg.start != leg.finish, flow)
 
     def _response_needs(self, here: Position, moving: bool, flow: Flow) -> float:
-        """Return the seconds at mean power that the response takes from there."""
         path = self._escapes.straight(self._response, here)
         way = response_stretches(path, self._kinematics, flow, moving=moving)
         return sum([each.seconds * each.rate for each in way])

@@ -164,7 +164,6 @@ def inputs_of(
 
 
 def _policies(robot_type: RobotType, kinds: Mapping[Name, RobotKind]) -> tuple[Policy, ...]:
-    """Return the policies of a robot type, then those of its kind."""
     kind = robot_kind_of(robot_type, kinds)
     return in_precedence(robot_type=robot_type.policies, kind=kind.policies if kind else None)
 

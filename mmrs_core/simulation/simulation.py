@@ -154,7 +154,6 @@ class SimulatedRobot(Vehicle):
         return True
 
     def _next_event(self, now: float, flow: Flow) -> float:
-        """Return when the movement ends or something goes wrong."""
         if self._fault is not None:
             return now
         if self._legs[-1].end <= now:
@@ -309,7 +308,6 @@ class SimulatedRobot(Vehicle):
 
     @property
     def _state(self) -> str:
-        """Return the state that moves' needs are about."""
         if not self._kinematics.launches:
             return "moving"
         return "grounded" if self._grounded else "airborne"

@@ -42,7 +42,7 @@ TOLD = {
         program.Program,
         program.RobotProgram,
         program.Move,
-        program.Target,
+        program.MoveTarget,
         program.Heading,
         program.Action,
         program.Transition,

@@ -48,7 +48,6 @@ def _nearer_already(robot: Element, models: ModelSet) -> Iterator[Finding]:
 
 
 def _before(robot: Element) -> _Before:
-    """Return, by move, those that lead to it."""
     before: dict[Element, list[Element]] = {}
     for transition in children(robot, "moveTransitions"):
         origin = child(transition, "from")
@@ -59,7 +58,6 @@ def _before(robot: Element) -> _Before:
 
 
 def _target(move: Element, models: ModelSet) -> _Around | None:
-    """Return where the target of a move is; None where that is not known."""
     target = child(move, "target")
     expected = child(target, "expectedAt") if target is not None else None
     place = expected if expected is not None else target

@@ -217,22 +217,14 @@ CONSTRAINTS = (
         _type,
         "add the robot type to the project's robots folder",
     ),
-    Constraint(
+    *Constraint(
         "MML012",
         "Unknowns are accepted by the names of checks.",
         (MISSION, "Mission"),
         _accepted,
         "name a check, such as clearance",
         Severity.WARNING,
-    ),
-    Constraint(
-        "BL049",
-        "Unknowns are accepted by the names of checks.",
-        (BEHAVIOUR, "Behaviour"),
-        _accepted,
-        "name a check, such as clearance",
-        Severity.WARNING,
-    ),
+    ).also(("BL049", (BEHAVIOUR, "Behaviour"))),
     Constraint(
         "MML064",
         "Every task has a robot with the devices and actions that it asks for.",

@@ -112,35 +112,37 @@ _CIRCLE_HINT = "let one of them count from the origin: leave out its reference"
 _ALTITUDE_HINT = "give the origin an altitude, or set altitudeReference to ORIGIN"
 
 CONSTRAINTS = (
-    Constraint("MML001", "The coordinate reference system is known.", (MISSION, "Mission"), _crs, _CRS_HINT),
-    Constraint(
+    *Constraint(
+        "MML001", "The coordinate reference system is known.", (MISSION, "Mission"), _crs, _CRS_HINT
+    ).also(("CTX001", (CONTEXT, "Context")), ("BL016", (BEHAVIOUR, "Behaviour"))),
+    *Constraint(
         "MML020",
         "Latitudes and longitudes are on the Earth.",
         (MISSION, "GeoCoordinate"),
         _on_earth,
         "latitude comes first, in degrees north; longitude in degrees east",
-    ),
-    Constraint(
+    ).also(("BL017", (BEHAVIOUR, "GeoCoordinate"))),
+    *Constraint(
         "MML021",
         "A coordinate has an altitude or a depth, not both.",
         (MISSION, "GeoCoordinate"),
         _altitude_or_depth,
         "keep depth for what is below the surface, altitude for what is above",
-    ),
-    Constraint(
+    ).also(("BL018", (BEHAVIOUR, "GeoCoordinate"))),
+    *Constraint(
         "MML022",
         "Where coordinates have altitudes, the origin has one.",
         (MISSION, "Mission"),
         _altitude_of_origin,
         _ALTITUDE_HINT,
-    ),
-    Constraint(
+    ).also(("BL019", (BEHAVIOUR, "Behaviour"))),
+    *Constraint(
         "MML023",
         "Relative coordinates do not count from themselves.",
         (MISSION, "Mission"),
         _circles,
         _CIRCLE_HINT,
-    ),
+    ).also(("BL020", (BEHAVIOUR, "Behaviour"))),
     Constraint(
         "MML024",
         "A mission with a relative origin has relative coordinates only.",
@@ -161,38 +163,6 @@ CONSTRAINTS = (
         (MISSION, "RelativeCoordinate"),
         _somewhere,
         "refer to a coordinate of these models, or leave the reference out",
-    ),
-    Constraint("CTX001", "The coordinate reference system is known.", (CONTEXT, "Context"), _crs, _CRS_HINT),
-    Constraint(
-        "BL016", "The coordinate reference system is known.", (BEHAVIOUR, "Behaviour"), _crs, _CRS_HINT
-    ),
-    Constraint(
-        "BL017",
-        "Latitudes and longitudes are on the Earth.",
-        (BEHAVIOUR, "GeoCoordinate"),
-        _on_earth,
-        "latitude comes first, in degrees north; longitude in degrees east",
-    ),
-    Constraint(
-        "BL018",
-        "A coordinate has an altitude or a depth, not both.",
-        (BEHAVIOUR, "GeoCoordinate"),
-        _altitude_or_depth,
-        "keep depth for what is below the surface, altitude for what is above",
-    ),
-    Constraint(
-        "BL019",
-        "Where coordinates have altitudes, the origin has one.",
-        (BEHAVIOUR, "Behaviour"),
-        _altitude_of_origin,
-        _ALTITUDE_HINT,
-    ),
-    Constraint(
-        "BL020",
-        "Relative coordinates do not count from themselves.",
-        (BEHAVIOUR, "Behaviour"),
-        _circles,
-        _CIRCLE_HINT,
     ),
     Constraint(
         "BL021",

@@ -74,7 +74,6 @@ def _left(
 def _shortest_cycle(
     start: Node, knot: frozenset[Node], after: Mapping[Node, Collection[Node]]
 ) -> tuple[Node, ...]:
-    """Return a shortest cycle through a node of a knot."""
     came_from: dict[Node, Node] = {}
     pending = deque([start])
     while start not in came_from:

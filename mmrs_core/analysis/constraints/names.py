@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 
 from mmrs_core.analysis.constraints.findings import (
     BEHAVIOUR,
@@ -22,51 +22,16 @@ from mmrs_core.languages.modelset import ModelSet
 from mmrs_core.languages.naming import unreadable
 
 
-def _tasks(mission: Element, models: ModelSet) -> Iterator[Finding]:
-    yield from repeats(children(mission, "tasks"), "name", "the name")
+def _unique(
+    *features: str, key: str = "name", word: str = "name"
+) -> Callable[[Element, ModelSet], Iterator[Finding]]:
+    """Return what finds elements in features of an owner whose key is already taken."""
 
+    def check(owner: Element, models: ModelSet) -> Iterator[Finding]:
+        elements = (each for feature in features for each in children(owner, feature))
+        yield from repeats(elements, key, f"the {word}")
 
-def _team(team: Element, models: ModelSet) -> Iterator[Finding]:
-    yield from repeats(children(team, "robots"), "name", "the name")
-
-
-def _areas(context: Element, models: ModelSet) -> Iterator[Finding]:
-    features = ("forbiddenAreas", "obstacles", "emergencyAreas", "elements")
-    areas = [area for feature in features for area in children(context, feature)]
-    yield from repeats(areas, "name", "the name")
-
-
-def _devices(robot: Element, models: ModelSet) -> Iterator[Finding]:
-    yield from repeats(children(robot, "devices"), "id", "the identifier")
-
-
-def _actions(device: Element, models: ModelSet) -> Iterator[Finding]:
-    yield from repeats(children(device, "supportedActions"), "name", "the name")
-
-
-def _properties(device: Element, models: ModelSet) -> Iterator[Finding]:
-    yield from repeats(children(device, "properties"), "name", "the key")
-
-
-def _parameters(action: Element, models: ModelSet) -> Iterator[Finding]:
-    yield from repeats(children(action, "parameters"), "key", "the key")
-
-
-def _robots(behaviour: Element, models: ModelSet) -> Iterator[Finding]:
-    yield from repeats(children(behaviour, "robots"), "id", "the identifier")
-
-
-def _slots(robot: Element, models: ModelSet) -> Iterator[Finding]:
-    yield from repeats(children(robot, "slots"), "name", "the name")
-
-
-def _moves(robot: Element, models: ModelSet) -> Iterator[Finding]:
-    yield from repeats(children(robot, "moves"), "name", "the name")
-
-
-def _values(action: Element, models: ModelSet) -> Iterator[Finding]:
-    yield from repeats(children(action, "parameters"), "key", "the key")
-    yield from repeats(children(action, "payload"), "key", "the key")
+    return check
 
 
 def _policies(owner: Element, models: ModelSet) -> Iterator[Finding]:
@@ -127,8 +92,10 @@ _GIVE = "write a name or identifier with something to see"
 
 
 CONSTRAINTS = (
-    Constraint("MML002", "Tasks have different names.", (MISSION, "Mission"), _tasks, _RENAME),
-    Constraint("MML003", "Robots of a team have different names.", (MISSION, "Team"), _team, _RENAME),
+    Constraint("MML002", "Tasks have different names.", (MISSION, "Mission"), _unique("tasks"), _RENAME),
+    Constraint(
+        "MML003", "Robots of a team have different names.", (MISSION, "Team"), _unique("robots"), _RENAME
+    ),
     Constraint(
         "MML008",
         "A mission has one policy for an event.",
@@ -147,7 +114,7 @@ CONSTRAINTS = (
         "CTX002",
         "Areas and elements of a context have different names.",
         (CONTEXT, "Context"),
-        _areas,
+        _unique("forbiddenAreas", "obstacles", "emergencyAreas", "elements"),
         _RENAME,
         Severity.WARNING,
     ),
@@ -155,7 +122,7 @@ CONSTRAINTS = (
         "RL002",
         "Devices of a robot have different identifiers.",
         (ROBOT, "Robot"),
-        _devices,
+        _unique("devices", key="id", word="identifier"),
         "give each its own identifier",
     ),
     Constraint(
@@ -165,19 +132,25 @@ CONSTRAINTS = (
         _legible_type,
         _READABLE,
     ),
-    Constraint("RL003", "Actions of a device have different names.", (ROBOT, "Device"), _actions, _RENAME),
+    Constraint(
+        "RL003",
+        "Actions of a device have different names.",
+        (ROBOT, "Device"),
+        _unique("supportedActions"),
+        _RENAME,
+    ),
     Constraint(
         "RL004",
         "Parameters of an action have different keys.",
         (ROBOT, "SupportedAction"),
-        _parameters,
+        _unique("parameters", key="key", word="key"),
         "give each its own key",
     ),
     Constraint(
         "RL005",
         "Properties of a device have different keys.",
         (ROBOT, "Device"),
-        _properties,
+        _unique("properties", word="key"),
         "keep one value for each key",
     ),
     Constraint(
@@ -187,20 +160,24 @@ CONSTRAINTS = (
         _policies,
         _ONE_POLICY,
     ),
-    Constraint("BL010", "Slots of a robot have different names.", (BEHAVIOUR, "Robot"), _slots, _RENAME),
+    Constraint(
+        "BL010", "Slots of a robot have different names.", (BEHAVIOUR, "Robot"), _unique("slots"), _RENAME
+    ),
     Constraint(
         "BL014",
         "Robots of a behaviour have different identifiers.",
         (BEHAVIOUR, "Behaviour"),
-        _robots,
+        _unique("robots", key="id", word="identifier"),
         "give each its own identifier",
     ),
-    Constraint("BL015", "Moves of a robot have different names.", (BEHAVIOUR, "Robot"), _moves, _RENAME),
+    Constraint(
+        "BL015", "Moves of a robot have different names.", (BEHAVIOUR, "Robot"), _unique("moves"), _RENAME
+    ),
     Constraint(
         "BL032",
         "An action gives each parameter one value.",
         (BEHAVIOUR, "Action"),
-        _values,
+        _unique("parameters", "payload", key="key", word="key"),
         "keep one value for each key",
     ),
     Constraint(

@@ -17,7 +17,6 @@ from mmrs_core.contributions.constraints import Constraint, Finding
 from mmrs_core.grounding.features import number
 from mmrs_core.languages.element import Element
 from mmrs_core.languages.modelset import ModelSet
-from mmrs_core.scene import Name
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,219 +56,194 @@ def _positive(*features: str) -> _Range:
     return _Range(features, low=0.0, without_low=True)
 
 
-def _constraint(code: str, title: str, metaclass: Name, check: _Range, hint: str) -> Constraint:
-    return Constraint(code, title, metaclass, check, hint)
-
-
 CONSTRAINTS = (
-    _constraint(
+    *Constraint(
         "MML005",
         "The reserve is a part of the whole: at least 0 and less than 1.",
         (MISSION, "Mission"),
         _Range(("reserve",), low=0.0, high=1.0, without_high=True),
         "write 0.2 for a reserve of twenty per cent",
-    ),
-    _constraint(
+    ).also(("BL046", (BEHAVIOUR, "Behaviour"))),
+    Constraint(
         "MML006",
         "Position error and separation of a mission are not negative.",
         (MISSION, "Mission"),
         _at_least_zero("positionError", "minimumSeparation"),
         "give the distance in metres, or leave it out",
     ),
-    _constraint(
+    Constraint(
         "MML009",
         "The largest gap of a mission is more than 0.",
         (MISSION, "Mission"),
         _positive("largestGap"),
         "give the distance in metres, or leave it out",
     ),
-    _constraint(
+    *Constraint(
         "MML007",
         "The payload of a robot is not negative.",
         (MISSION, "Robot"),
         _at_least_zero("payload"),
         "give the weight in kilograms, 0 for none",
-    ),
-    _constraint(
+    ).also(("BL026", (BEHAVIOUR, "Robot"))),
+    *Constraint(
         "MML010",
         "The depth of a coordinate is not negative.",
         (MISSION, "GeoCoordinate"),
         _at_least_zero("depth"),
         "depth counts down from the surface; use altitude for what is above it",
-    ),
-    _constraint(
+    ).also(("BL028", (BEHAVIOUR, "GeoCoordinate"))),
+    Constraint(
         "MML060",
         "A task does not begin before the mission.",
         (MISSION, "Task"),
         _at_least_zero("earliestStart"),
         "earliestStart counts seconds from the mission's start",
     ),
-    _constraint(
+    Constraint(
         "MML061",
         "A task has some time: its deadline and its longest duration are more than 0.",
         (MISSION, "Task"),
         _positive("deadline", "maxDuration"),
         "give the time in seconds, or leave it out where there is no limit",
     ),
-    _constraint(
+    Constraint(
         "MML062",
         "The robotsWanted of a task is at least 1.",
         (MISSION, "Task"),
         _Range(("robotsWanted",), low=1.0),
         "leave robotsWanted out to let as many robots share the task as help",
     ),
-    _constraint(
+    Constraint(
         "CTX005",
         "The safety distance of an area is not negative.",
         (CONTEXT, "Area"),
         _at_least_zero("safetyDistance"),
         "draw the area smaller if robots may come into it",
     ),
-    _constraint(
+    Constraint(
         "CTX011",
         "Wind, current and sunshine are not negative.",
         (CONTEXT, "Environment"),
         _at_least_zero("windSpeed", "currentSpeed", "irradiance"),
         "give wind and current a direction turned by 180 degrees instead; without sun the irradiance is 0",
     ),
-    _constraint(
+    Constraint(
         "CTX012",
         "Directions of wind and current lie between 0 and 360 degrees.",
         (CONTEXT, "Environment"),
         _Range(("windDirection", "currentDirection"), low=0.0, high=360.0),
         "count degrees clockwise from north: 90 is east",
     ),
-    _constraint(
+    Constraint(
         "CTX013",
         "The temperature is above absolute zero.",
         (CONTEXT, "Environment"),
         _Range(("temperature",), low=-273.15),
         "give the temperature in degrees Celsius",
     ),
-    _constraint(
+    Constraint(
         "CTX014",
         "The density of the water is that of some water.",
         (CONTEXT, "Environment"),
         _Range(("waterDensity",), low=900.0, high=1300.0),
         "give it in kilograms per cubic metre: 1000 for fresh water, about 1025 for sea water",
     ),
-    _constraint(
+    Constraint(
         "RL006",
         "The dimensions and the weight of a robot are more than 0.",
         (ROBOT, "Size"),
         _positive("width", "length", "height", "weight"),
         "clearances follow from the dimensions; give them in metres, and the weight in kilograms",
     ),
-    _constraint(
+    Constraint(
         "RL007",
         "A battery has a capacity and a voltage.",
         (ROBOT, "Battery"),
         _positive("capacity", "voltage"),
         "capacity is in milliampere-hours, voltage in volts; a wired robot has no batteries",
     ),
-    _constraint(
+    Constraint(
         "RL008",
         "The recharge time of a battery is not negative.",
         (ROBOT, "Battery"),
         _at_least_zero("rechargeTime"),
         "leave rechargeTime out where the battery cannot be recharged during a mission",
     ),
-    _constraint(
+    Constraint(
         "RL010",
         "The payload that figures hold for is not negative.",
         (ROBOT, "MovementCapability"),
         _at_least_zero("payloadWeight"),
         "give the weight in kilograms, 0 for none",
     ),
-    _constraint(
+    Constraint(
         "RL011",
         "Lifetime, acceleration and rates of a movement are more than 0.",
         (ROBOT, "MovementCapability"),
         _positive("lifetime", "maxAcceleration", "maxClimbRate", "maxDescentRate", "maxTurnRate"),
         "leave out what is not known",
     ),
-    _constraint(
+    Constraint(
         "RL012",
         "The largest payload is not negative.",
         (ROBOT, "Robot"),
         _at_least_zero("maxPayload"),
         "give the weight in kilograms; leave it out where the robot carries nothing",
     ),
-    _constraint(
+    Constraint(
         "RL013",
         "Range, data rate, frequency and pressure of a robot are more than 0.",
         (ROBOT, "Robot"),
         _positive("communicationRange", "dataRate", "radioFrequency", "maxOperatingPressure"),
         "leave out what is not known",
     ),
-    _constraint(
+    Constraint(
         "RL014",
         "Action durations are not negative.",
         (ROBOT, "SupportedAction"),
         _at_least_zero("duration"),
         "give the duration in seconds, 0 for an instant",
     ),
-    _constraint(
+    Constraint(
         "RL015",
         "The delay of a policy is not negative.",
         (ROBOT, "Policy"),
         _at_least_zero("after"),
         "give the delay in seconds, 0 for at once",
     ),
-    _constraint(
-        "BL046",
-        "The reserve is a part of the whole: at least 0 and less than 1.",
-        (BEHAVIOUR, "Behaviour"),
-        _Range(("reserve",), low=0.0, high=1.0, without_high=True),
-        "write 0.2 for a reserve of twenty per cent",
-    ),
-    _constraint(
+    Constraint(
         "BL047",
         "Position error and separation of a behaviour are not negative.",
         (BEHAVIOUR, "Behaviour"),
         _at_least_zero("positionError", "minimumSeparation"),
         "give the distance in metres, or leave it out",
     ),
-    _constraint(
+    Constraint(
         "BL023",
         "The duration of a hold is not negative.",
         (BEHAVIOUR, "HoldPosition"),
         _at_least_zero("duration"),
         "give the duration in seconds",
     ),
-    _constraint(
+    Constraint(
         "BL024",
         "The distance from a target is not negative.",
         (BEHAVIOUR, "GoTo"),
         _at_least_zero("distance"),
         "give the distance in metres, 0 for the target itself",
     ),
-    _constraint(
+    Constraint(
         "BL025",
         "A commanded speed is more than 0.",
         (BEHAVIOUR, "GoTo"),
         _positive("speed"),
         "leave the speed out to go by the travel mode",
     ),
-    _constraint(
-        "BL026",
-        "The payload of a robot is not negative.",
-        (BEHAVIOUR, "Robot"),
-        _at_least_zero("payload"),
-        "give the weight in kilograms, 0 for none",
-    ),
-    _constraint(
+    Constraint(
         "BL027",
         "The tolerance of an object's place is not negative.",
         (BEHAVIOUR, "ObjectTarget"),
         _at_least_zero("tolerance"),
         "leave it out where it is not known",
-    ),
-    _constraint(
-        "BL028",
-        "The depth of a coordinate is not negative.",
-        (BEHAVIOUR, "GeoCoordinate"),
-        _at_least_zero("depth"),
-        "depth counts down from the surface; use altitude for what is above it",
     ),
 )

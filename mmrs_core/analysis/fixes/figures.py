@@ -23,7 +23,6 @@ def exchanged(one: str, other: str) -> Callable[[Wrong], Iterator[Edit]]:
 
 
 def _places_exchanged(wrong: Wrong) -> Iterator[Edit]:
-    """Exchange latitude and longitude in every place of an element."""
     for tag in wrong.tag.everything():
         yield from exchanged("latitude", "longitude")(replace(wrong, tag=tag))
 
@@ -94,7 +93,6 @@ def _dependency(wrong: Wrong) -> Iterator[Edit]:
 
 
 def _circle(wrong: Wrong) -> Iterator[Edit]:
-    """Take away a dependency of a task on itself."""
     tag = wrong.tag
     same = tag.attribute("from") is not None and _text(tag, "from") == _text(tag, "to")
     if tag.name == "taskDependencies" and same and not referred_to("taskDependencies", wrong.markup):

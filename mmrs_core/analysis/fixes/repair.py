@@ -263,7 +263,6 @@ def _markup(file: Path, texts: Mapping[Path, bytes]) -> Markup | None:
 
 
 def _element(model: Model, path: str) -> Element | None:
-    """Return the first element with that path."""
     for number, root in enumerate(model.roots):
         element: Element | None = root
         for step in _STEP.finditer(below_root(path, number)):
@@ -335,7 +334,6 @@ def _stays(fault: Diagnostic, after: Diagnosis) -> bool:
 
 
 def _on_lines(faults: Iterable[Diagnostic], lines: Container[tuple[str, int]]) -> int:
-    """Return how many faults of reading are on some lines."""
     return sum(_is_reading(each) and (each.place.file, each.place.line) in lines for each in faults)
 
 

@@ -91,7 +91,6 @@ def _is_written_inside(feature: Feature) -> bool:
 
 
 def _free(tag: Tag, metaclass: Metaclass, wanted: Callable[[Feature], bool]) -> list[str]:
-    """Return the features of a kind that the tag could still have."""
     given = tag.content_names()
     found = (each for each in metaclass.features if each.stored and wanted(each))
     return [each.name for each in found if each.many or each.name not in given]
@@ -126,7 +125,6 @@ def _class(wrong: Wrong, ns_uri: str, name: str) -> str | None:
 
 
 def _metamodels(wrong: Wrong) -> Iterator[Edit]:
-    """Correct the nsURI of a declaration."""
     known = [package.ns_uri for package in wrong.registry.packages if package.ns_uri]
     for tag in wrong.markup.root.everything():
         for attribute in tag.attributes:
@@ -143,7 +141,6 @@ def _same_version(one: str, other: str) -> bool:
 
 
 def _prefixes(wrong: Wrong) -> Iterator[Edit]:
-    """Declare a prefix that one metamodel only has."""
     declared = wrong.tag.prefixes()
     for tag in (wrong.tag, *wrong.children):
         for name in _TYPES:

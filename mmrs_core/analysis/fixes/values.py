@@ -24,7 +24,6 @@ _ALIASES = {"wgs84": "EPSG:4326", "gps": "EPSG:4326", "etrs89": "EPSG:4258", "na
 
 
 def _value(wrong: Wrong) -> Iterator[Edit]:
-    """Write a value as its type wants it."""
     if wrong.element is None:
         return
     for name, feature in metaclass_of(wrong.element).by_name.items():
@@ -113,7 +112,6 @@ def _typed(tag: Tag, general: Metaclass, wrong: Wrong) -> Iterator[Edit]:
 
 
 def _system(wrong: Wrong) -> Iterator[Edit]:
-    """Name a coordinate reference system by its EPSG code."""
     attribute = wrong.tag.attribute("crs")
     if attribute is None:
         return

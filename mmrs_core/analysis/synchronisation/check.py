@@ -42,14 +42,12 @@ def verdicts_of(input: CheckInput, *, limit: int = LIMIT) -> Iterator[Verdict]:
 
 
 def _names(group: Network) -> str:
-    """Return the robots of a group, as the beginning of a message."""
     names = [net.robot for net in group.nets]
     shown = names if len(names) <= MOST_NAMES else [*names[:MOST_NAMES], f"{len(names) - MOST_NAMES} more"]
     return f"{', '.join(shown)}: "
 
 
 def _of_group(program: Program, network: Network, limit: int, names: str) -> Iterator[Verdict]:
-    """Yield the verdicts on robots that share slots, and share none with others."""
     orphaned = [
         verdict
         for slot in sorted(network.awaited - network.givers.keys())

@@ -124,7 +124,6 @@ def groups_of(network: Network) -> tuple[Network, ...]:
 
 
 def _part(network: Network, group: Sequence[int]) -> Network:
-    """Return what is left of a network with some of its nets."""
     renumbered = {old: new for new, old in enumerate(group)}
     robots = {network.nets[old].robot for old in group}
     return Network(

@@ -166,7 +166,6 @@ def _paths(network: Network, certain: frozenset[SlotId], inactive: set[SlotId]) 
 
 
 def _path(net: Net, inactive: set[SlotId]) -> tuple[int, ...]:
-    """Return a shortest path to a wait for one of the inactive slots, or else to Stop."""
     came: dict[int, int] = {0: -1}
     pending = [0]
     ends: list[int] = []

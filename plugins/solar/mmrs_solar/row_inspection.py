@@ -78,7 +78,6 @@ def row_inspection_work(task: Task, robot: Robot, scene: Scene) -> Work:
 
 
 def _stroke(part: Part, how: Pass, start: Position, end: Position) -> Stroke:
-    """Return the stroke from where the robot turns before it records."""
     begin = between(start, end, how.lead_in / dist(start, end))
     length = dist(begin, end)
     actions = (

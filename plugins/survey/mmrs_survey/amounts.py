@@ -42,7 +42,6 @@ def amount_over(least: float, most: float = inf) -> _Check:
 
 
 def _amount(task: Element, models: ModelSet, positions: _Positions) -> float:
-    """Return about how many photos or samples a task takes; 0 where that is not known, inf for too many."""
     if is_kind(task, *names.PHOTO_GRID_TASK):
         seen = _spacing(task, models)
         return _area(task, positions) / seen.width / seen.length if seen is not None else 0.0
