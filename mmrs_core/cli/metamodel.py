@@ -15,7 +15,7 @@ from mmrs_core.cli.tables import table
 from mmrs_core.errors import UnreadableError
 from mmrs_core.generation.stubs.write import write_stubs
 from mmrs_core.languages.evolution.differences import differences, ways_between
-from mmrs_core.languages.evolution.effects import Verdict
+from mmrs_core.languages.evolution.effects import Effect
 from mmrs_core.languages.evolution.versions import pairs_of, version_of
 from mmrs_core.languages.metamodels.export import export_metamodels
 from mmrs_core.languages.metamodels.gathering import registry_of_files
@@ -82,7 +82,7 @@ def diff(
     chain = [step for way in ways.values() for step in way]
     found = differences(*versions, ways)
     files = tuple(pairs_of(*versions).files())
-    loads = all(each.verdict is not Verdict.INCOMPATIBLE for each in found)
+    loads = all(each.verdict is not Effect.INCOMPATIBLE for each in found)
     if json:
         compared = [{"old": before, "new": after} for before, after in files]
         told = {"old_models_load": loads, "differences": found, "migrations": len(chain)}

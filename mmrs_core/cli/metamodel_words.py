@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 from mmrs_core.cli.output import counted
-from mmrs_core.languages.evolution.effects import Difference, Verdict
+from mmrs_core.languages.evolution.effects import Difference, Effect
 from mmrs_core.languages.evolution.migration import Migration
 
 _SIGNS = {"added": "+", "removed": "-", "changed": "~"}
-_COLOURS = {Verdict.COMPATIBLE: "32", Verdict.MEANING: "33", Verdict.INCOMPATIBLE: "31"}
+_COLOURS = {Effect.COMPATIBLE: "32", Effect.MEANING: "33", Effect.INCOMPATIBLE: "31"}
 
 
 def difference_lines(found: Sequence[Difference]) -> Iterator[tuple[str, str]]:
@@ -25,8 +25,8 @@ def verdict_line(found: Sequence[Difference], chain: Sequence[Migration]) -> str
     >>> verdict_line([], [])
     'nothing differs for models: old models load'
     """
-    bad = sum(each.verdict is Verdict.INCOMPATIBLE for each in found)
-    doubtful = sum(each.verdict is Verdict.MEANING for each in found)
+    bad = sum(each.verdict is Effect.INCOMPATIBLE for each in found)
+    doubtful = sum(each.verdict is Effect.MEANING for each in found)
     way = f", by {counted(len(chain), 'migration')}" if chain else ""
     if bad:
         unless = "; a function of a migration may see to it" if any(step.rewrite for step in chain) else ""

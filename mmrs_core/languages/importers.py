@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, slots=True)
-class Candidate:
+class Recognition:
     """A file that an importer recognises.
 
     Attributes:
@@ -47,9 +47,9 @@ class Importer:
 
     Attributes:
         name: the tool's models in messages, such as "Kite planner 3".
-        recognise: (data, file, registry, stored) to a `Candidate`; None for any file that is not entirely of
+        recognise: (data, file, registry, stored) to a `Recognition`; None for a file that is not entirely of
             the tool. `stored`: whether the file exists, so that metamodels may lie next to it.
-        prepare: (candidate, file, registry) to a `Candidate` ready to be converted; raises UnreadableError
+        prepare: (candidate, file, registry) to a `Recognition` ready to be converted; raises UnreadableError
             with a code if the file cannot be imported.
         convert: (candidates, registry, known, notes) to one `Imported` for each candidate. The candidates
             belong together; `known` are elements of other files that they may name, such as robot types;
@@ -60,9 +60,9 @@ class Importer:
     """
 
     name: str
-    recognise: Callable[[bytes, str, Registry, bool], Candidate | None]
-    prepare: Callable[[Candidate, str, Registry], Candidate]
-    convert: Callable[[Sequence[Candidate], Registry, Sequence[Element], bool], Sequence[Imported]]
+    recognise: Callable[[bytes, str, Registry, bool], Recognition | None]
+    prepare: Callable[[Recognition, str, Registry], Recognition]
+    convert: Callable[[Sequence[Recognition], Registry, Sequence[Element], bool], Sequence[Imported]]
     covers: Callable[[str], bool]
     advice: str = ""
     notes: bool = True
@@ -73,7 +73,7 @@ class ForeignFile:
     """A file, the importer that reads it, and what that needs."""
 
     importer: Importer
-    candidate: Candidate
+    candidate: Recognition
 
 
 def is_importable(path: Path, registry: Registry) -> bool:

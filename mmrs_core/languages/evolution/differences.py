@@ -6,7 +6,13 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
 from types import MappingProxyType
 
-from mmrs_core.languages.evolution.effects import Difference, Verdict, changed, feature_differences, refused
+from mmrs_core.languages.evolution.effects import (
+    Difference,
+    Effect,
+    changed,
+    feature_differences,
+    refused,
+)
 from mmrs_core.languages.evolution.migration import Migration, Renaming, chains
 from mmrs_core.languages.evolution.versions import Version, pairs_of
 from mmrs_core.languages.metaclass import Enumeration, Feature, Metaclass, Package
@@ -53,12 +59,12 @@ class _Comparison:
             yield from self._names(before, now)
         for package in self._pairs.gone:
             if package in self._old.packages:
-                yield Difference("removed", package.name, Verdict.INCOMPATIBLE, "the package", _NO_CLASS)
+                yield Difference("removed", package.name, Effect.INCOMPATIBLE, "the package", _NO_CLASS)
             else:  # what referred to it has changed, and is told there
                 words = f"the metamodel {package.ns_uri}, to which nothing refers any more"
-                yield Difference("removed", package.name, Verdict.COMPATIBLE, words)
+                yield Difference("removed", package.name, Effect.COMPATIBLE, words)
         for package in self._pairs.come:
-            yield Difference("added", package.name, Verdict.COMPATIBLE, "the package")
+            yield Difference("added", package.name, Effect.COMPATIBLE, "the package")
         for before, now in self._pairs.same:
             lead = "" if now in self._new.packages else f"{now.name}:"
             for each in (*self._classes(before, now), *_enumerations(before, now)):
@@ -74,7 +80,7 @@ class _Comparison:
             return
         words = f"its nsURI was {old.ns_uri}, is {new.ns_uri}"
         if old.ns_uri in self._ways:
-            yield changed(new.name, words, Verdict.COMPATIBLE, "a migration leads there")
+            yield changed(new.name, words, Effect.COMPATIBLE, "a migration leads there")
         else:
             yield refused(new.name, words, "older models name the older one, and no migration leads there")
 
@@ -83,14 +89,14 @@ class _Comparison:
         known = {kind.name for kind in new.metaclasses}
         for name, kind in images.items():
             if name not in known:
-                verdict = Verdict.COMPATIBLE if kind.abstract else Verdict.INCOMPATIBLE
+                verdict = Effect.COMPATIBLE if kind.abstract else Effect.INCOMPATIBLE
                 reason = "" if kind.abstract else f"{_NO_CLASS}{_renamed(kind, new, images)}"
                 yield Difference("removed", kind.name, verdict, "the class", reason)
         for kind in new.metaclasses:
             if kind.name in images:
                 yield from self._class(images[kind.name], kind)
             else:
-                yield Difference("added", kind.name, Verdict.COMPATIBLE, "the class")
+                yield Difference("added", kind.name, Effect.COMPATIBLE, "the class")
 
     def _class(self, old: Metaclass, new: Metaclass) -> Iterator[Difference]:
         if new.abstract and not old.abstract:
@@ -118,9 +124,9 @@ class _Comparison:
     def _gone(self, old: Metaclass, new: Metaclass, feature: Feature, words: str) -> Difference:
         what = f"{old.name}.{feature.name}"
         if any(what in step.dropped for step in self._steps):
-            return Difference("removed", what, Verdict.MEANING, words, _DROPPED)
+            return Difference("removed", what, Effect.MEANING, words, _DROPPED)
         reason = _NO_FEATURE + self._renamed_to(feature, old, new)
-        return Difference("removed", what, Verdict.INCOMPATIBLE, words, reason)
+        return Difference("removed", what, Effect.INCOMPATIBLE, words, reason)
 
     def _renamed_to(self, feature: Feature, old: Metaclass, new: Metaclass) -> str:
         """Return a guess at the new name of a feature, if one of the same type appeared in its place."""
@@ -143,7 +149,7 @@ class _Comparison:
                 continue
             words = "the feature" if own else f"the feature, inherited from {feature.owner.name}"
             lacking = feature.required and (feature.many or feature.default is None)
-            verdict = Verdict.INCOMPATIBLE if lacking else Verdict.COMPATIBLE
+            verdict = Effect.INCOMPATIBLE if lacking else Effect.COMPATIBLE
             reason = "it is required, and older models do not have it" if lacking else ""
             yield Difference("added", f"{new.name}.{feature.name}", verdict, words, reason)
 
@@ -163,10 +169,10 @@ def _enumerations(old: Package, new: Package) -> Iterator[Difference]:
         if kind.name in now:
             yield from _literals(kind, now[kind.name])
         else:
-            yield Difference("removed", kind.name, Verdict.COMPATIBLE, "the enumeration")
+            yield Difference("removed", kind.name, Effect.COMPATIBLE, "the enumeration")
     before = {kind.name for kind in old.enumerations}
     for name in (kind.name for kind in new.enumerations if kind.name not in before):
-        yield Difference("added", name, Verdict.COMPATIBLE, "the enumeration")
+        yield Difference("added", name, Effect.COMPATIBLE, "the enumeration")
 
 
 def _literals(old: Enumeration, new: Enumeration) -> Iterator[Difference]:
@@ -174,6 +180,6 @@ def _literals(old: Enumeration, new: Enumeration) -> Iterator[Difference]:
     after = {each.literal for each in new.literals}
     for literal in (each.literal for each in old.literals if each.literal not in after):
         reason = "older models may say it"
-        yield Difference("removed", f"{old.name}.{literal}", Verdict.INCOMPATIBLE, "the literal", reason)
+        yield Difference("removed", f"{old.name}.{literal}", Effect.INCOMPATIBLE, "the literal", reason)
     for literal in (each.literal for each in new.literals if each.literal not in before):
-        yield Difference("added", f"{new.name}.{literal}", Verdict.COMPATIBLE, "the literal")
+        yield Difference("added", f"{new.name}.{literal}", Effect.COMPATIBLE, "the literal")

@@ -10,7 +10,7 @@ from mmrs_core.languages.datatypes import ECORE, XML_TYPES, DataType
 from mmrs_core.languages.metaclass import Enumeration, Feature, Metaclass
 
 
-class Verdict(Enum):
+class Effect(Enum):
     """Whether older models still load."""
 
     COMPATIBLE = "compatible"
@@ -32,19 +32,19 @@ class Difference:
 
     sort: str
     what: str
-    verdict: Verdict
+    verdict: Effect
     words: str
     reason: str = ""
 
 
-def changed(what: str, words: str, verdict: Verdict = Verdict.COMPATIBLE, reason: str = "") -> Difference:
+def changed(what: str, words: str, verdict: Effect = Effect.COMPATIBLE, reason: str = "") -> Difference:
     """Return a change of something that both versions have."""
     return Difference("changed", what, verdict, words, reason)
 
 
 def refused(what: str, words: str, reason: str) -> Difference:
     """Return a change by which older models do not load any more."""
-    return Difference("changed", what, Verdict.INCOMPATIBLE, words, reason)
+    return Difference("changed", what, Effect.INCOMPATIBLE, words, reason)
 
 
 Image = Callable[[tuple[str, str]], tuple[str, str]]
@@ -184,7 +184,7 @@ def _defaults(what: str, old: Feature, new: Feature) -> Iterator[Difference]:
     if old.is_reference or old.many or new.many or _same(old.default, new.default):
         return
     words = f"its default was {_shown(old)}, is {_shown(new)}"
-    yield changed(what, words, Verdict.MEANING, "older models that leave it out mean something else now")
+    yield changed(what, words, Effect.MEANING, "older models that leave it out mean something else now")
 
 
 def _same(ours: object, theirs: object) -> bool:
@@ -209,10 +209,10 @@ def _flags(what: str, old: Feature, new: Feature) -> Iterator[Difference]:
     if new.many and new.keys and not (old.keys and set(old.keys) <= set(new.keys)):
         yield refused(what, f"tells its elements apart by {', '.join(new.keys)} now", "two may be alike")
     if old.stored and not new.stored:
-        yield changed(what, "is not written any more", Verdict.MEANING, "it is lost when a model is saved")
+        yield changed(what, "is not written any more", Effect.MEANING, "it is lost when a model is saved")
     if old.unsettable and not new.unsettable:
         yield changed(
-            what, "cannot be unset any more", Verdict.MEANING, "a stated default now counts as unset"
+            what, "cannot be unset any more", Effect.MEANING, "a stated default now counts as unset"
         )
     yield from _other_ends(what, old, new)
 
@@ -228,7 +228,7 @@ def _other_ends(what: str, old: Feature, new: Feature) -> Iterator[Difference]:
             yield refused(what, words, "older models may contradict it")
     elif before is not None and now is None and _has(new, before.name):
         reason = "older models may state one of the two only"
-        yield changed(what, f"has {before.name} as its other end no longer", Verdict.MEANING, reason)
+        yield changed(what, f"has {before.name} as its other end no longer", Effect.MEANING, reason)
 
 
 def _has(feature: Feature, name: str) -> bool:

@@ -41,7 +41,7 @@ _WORD = re.compile(r"\S+")
 
 
 @dataclass(slots=True, eq=False)
-class Node:
+class EcoreNode:
     """An element that declares classes.
 
     Attributes:
@@ -53,13 +53,13 @@ class Node:
     tag: str
     line: int
     attributes: Mapping[str, str]
-    children: Sequence[Node] = ()
+    children: Sequence[EcoreNode] = ()
 
     def get(self, name: str, usual: str = "") -> str:
         """Return the value of an attribute."""
         return self.attributes.get(name, usual)
 
-    def all(self, tag: str) -> Iterator[Node]:
+    def all(self, tag: str) -> Iterator[EcoreNode]:
         """Yield the elements of that name directly inside it."""
         return (child for child in self.children if child.tag == tag)
 
@@ -79,9 +79,9 @@ class EcoreFile:
             UnreadableError: if it is not well-formed, holds no package, or something in it has no nsURI.
         """
         self.name = name
-        self.roots: list[Node | None] = []
-        self._ids: dict[str, Node] = {}
-        self._steps: dict[int, dict[str, Node]] = {}
+        self.roots: list[EcoreNode | None] = []
+        self._ids: dict[str, EcoreNode] = {}
+        self._steps: dict[int, dict[str, EcoreNode]] = {}
         document = Document(data, name)
         listener = _Listener(document, self.roots, self._ids)
         document.parse(listener, counts_depth=True)
@@ -92,7 +92,7 @@ class EcoreFile:
             if not node.get("nsURI") or not node.get("name"):
                 self.refuse(node, f"{'nsURI' if node.get('name') else 'name'} is missing")
 
-    def packages(self) -> Iterator[tuple[Node, int, str]]:
+    def packages(self) -> Iterator[tuple[EcoreNode, int, str]]:
         """Yield the packages, outer ones first, with the number of their root and the outer one's nsURI."""
         pending = [(node, index, "") for index, node in enumerate(self.roots) if node is not None][::-1]
         while pending:
@@ -108,18 +108,18 @@ class EcoreFile:
 
     def documents(self) -> Iterator[str]:
         """Yield the other documents that it refers to."""
-        pending: list[Node] = [node for node in self.roots if node is not None]
+        pending: list[EcoreNode] = [node for node in self.roots if node is not None]
         while pending:
             node = pending.pop(0)
             words = [uri for name in _LINKS for uri in words_of(node.get(name))]
             yield from (document for uri in (*words, node.get("href")) if (document := document_of(uri)))
             pending += node.children
 
-    def refuse(self, node: Node, reason: str) -> NoReturn:
+    def refuse(self, node: EcoreNode, reason: str) -> NoReturn:
         """Raise the error for an element."""
         raise UnreadableError(f"{self.name}:{node.line}: {node.tag}: {reason}")
 
-    def uris(self, node: Node, name: str) -> list[str]:
+    def uris(self, node: EcoreNode, name: str) -> list[str]:
         """Return what a reference leads to; EMF writes what is in other files as an element of its own.
 
         Raises:
@@ -159,7 +159,7 @@ class EcoreFile:
             names.append(node.get("name"))
         return [top, *names]
 
-    def _inside(self, node: Node) -> dict[str, Node]:
+    def _inside(self, node: EcoreNode) -> dict[str, EcoreNode]:
         """Return the elements directly inside another by the steps that lead to them."""
         if id(node) not in self._steps:
             steps = self._steps[id(node)] = {}
@@ -187,12 +187,12 @@ class EcoreFile:
 class _Listener:
     """Keeps the elements that declare classes, and skips all others."""
 
-    def __init__(self, document: Document, roots: list[Node | None], ids: dict[str, Node]) -> None:
+    def __init__(self, document: Document, roots: list[EcoreNode | None], ids: dict[str, EcoreNode]) -> None:
         self.line = 0
         self._document = document
         self._roots = roots
         self._ids = ids
-        self._open: list[Node] = []
+        self._open: list[EcoreNode] = []
         self._depth = 0
         self._passed = 0
         self._text: list[str] | None = None
@@ -250,14 +250,14 @@ class _Listener:
         if self._text is not None and self._passed == 1:
             self._text.append(text)
 
-    def _enter(self, node: Node | None) -> None:
+    def _enter(self, node: EcoreNode | None) -> None:
         if node is None:
             self._passed = 1
         else:
             self._depth += 1
             self._open.append(node)
 
-    def _node(self, tag: str, attributes: list[str]) -> Node:
+    def _node(self, tag: str, attributes: list[str]) -> EcoreNode:
         found: dict[str, str] = {}
         identifier = ""
         for name, value in zip(attributes[::2], attributes[1::2], strict=True):
@@ -272,7 +272,7 @@ class _Listener:
                 identifier = value
             elif " " not in name:
                 self._refuse_unknown(name)
-        node = Node(tag, self._document.line, found or _NOTHING)
+        node = EcoreNode(tag, self._document.line, found or _NOTHING)
         if identifier:
             self._ids.setdefault(identifier, node)
         return node

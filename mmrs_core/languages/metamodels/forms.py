@@ -13,7 +13,7 @@ from typing import NoReturn
 
 from mmrs_core.errors import UnreadableError
 from mmrs_core.languages.datatypes import ECORE, builtin_type, shown
-from mmrs_core.languages.metamodels.ecore_file import FLAGS, WHOLE, Node
+from mmrs_core.languages.metamodels.ecore_file import FLAGS, WHOLE, EcoreNode
 from mmrs_core.languages.metamodels.locating import Address, Directory, Located
 from mmrs_core.languages.xmi.escapes import in_attribute
 from mmrs_core.languages.xmi.events import XMI, XSI
@@ -55,11 +55,11 @@ class Forms:
         literals: AbstractSet[str],
     ) -> None:
         """Take the packages to be loaded, and the names that features and literals cannot have in pyecore."""
-        self.targets: list[tuple[Address, str, Located, Node]] = []
+        self.targets: list[tuple[Address, str, Located, EcoreNode]] = []
         self.supertypes: dict[Address, tuple[Address, ...]] = {}
         self.keys: dict[Address, tuple[Address, ...]] = {}
         self.names: dict[str, str] = {}
-        self.nodes: dict[Address, tuple[Located, Node]] = {}
+        self.nodes: dict[Address, tuple[Located, EcoreNode]] = {}
         self._directory = directory
         self._located = {id(entry.node): entry for entry in located if entry.node is not None}
         self._reserved = {"eStructuralFeatures": features, "eLiterals": literals}
@@ -82,7 +82,7 @@ class Forms:
         usual = {} if "nsPrefix" in node.attributes else {"nsPrefix": entry.name}
         yield self._begin(tag, node, entry, "EPackage", usual)
         yield from _annotations(node)
-        seen: dict[str, Node] = {}
+        seen: dict[str, EcoreNode] = {}
         for each in node.all("eClassifiers"):
             kind, name = _kind(each, entry, ("EClass", "EEnum", "EDataType")), _needed(each, entry)
             if name in seen:
@@ -96,7 +96,7 @@ class Forms:
                 yield from self._package(self._located[id(inner)], "eSubpackages")
         yield f"</{tag}>\n"
 
-    def _EClass(self, node: Node, entry: Located) -> Iterator[str]:  # noqa: N802  # named like Ecore's class
+    def _EClass(self, node: EcoreNode, entry: Located) -> Iterator[str]:  # noqa: N802  # named like Ecore's class
         supertypes = self._links(node, entry, "eSuperTypes")
         for generic in node.all("eGenericSuperTypes"):  # without its arguments
             supertypes += self._links(generic, entry, "eClassifier")
@@ -111,7 +111,7 @@ class Forms:
             yield from self._feature(each, node, entry)
         yield "</eClassifiers>\n"
 
-    def _EEnum(self, node: Node, entry: Located) -> Iterator[str]:  # noqa: N802
+    def _EEnum(self, node: EcoreNode, entry: Located) -> Iterator[str]:  # noqa: N802
         yield self._begin("eClassifiers", node, entry, "EEnum", {})
         yield from _annotations(node)
         for each in node.all("eLiterals"):
@@ -120,13 +120,13 @@ class Forms:
             yield from (*_annotations(each), "</eLiterals>\n")
         yield "</eClassifiers>\n"
 
-    def _EDataType(self, node: Node, entry: Located) -> Iterator[str]:  # noqa: N802
+    def _EDataType(self, node: EcoreNode, entry: Located) -> Iterator[str]:  # noqa: N802
         usual = {} if "serializable" in node.attributes else {"serializable": "true"}
         more = ({"instanceClassName": _java_class(node)} if _java_class(node) else {}) | usual
         yield self._begin("eClassifiers", node, entry, "EDataType", more)
         yield from (*_annotations(node), "</eClassifiers>\n")
 
-    def _feature(self, node: Node, owner: Node, entry: Located) -> Iterator[str]:
+    def _feature(self, node: EcoreNode, owner: EcoreNode, entry: Located) -> Iterator[str]:
         kind, name = _kind(node, entry, ("EAttribute", "EReference")), _needed(node, entry)
         address = (entry.ns_uri, owner.get("name"), name)
         self.nodes[address] = (entry, node)
@@ -143,7 +143,7 @@ class Forms:
         yield self._begin("eStructuralFeatures", node, entry, kind, more)
         yield from (*_annotations(node), "</eStructuralFeatures>\n")
 
-    def _type(self, node: Node, owner: Node, entry: Located, is_reference: bool) -> Address | None:
+    def _type(self, node: EcoreNode, owner: EcoreNode, entry: Located, is_reference: bool) -> Address | None:
         """Return the type of a feature: of a generic one, what is left of it without its arguments.
 
         None where the file says nothing of it, as descriptions of old dialects do.
@@ -160,7 +160,7 @@ class Forms:
             generic = self._bound(generic, owner, entry)
         return anything if seen else None
 
-    def _bound(self, generic: Node, owner: Node, entry: Located) -> Node | None:
+    def _bound(self, generic: EcoreNode, owner: EcoreNode, entry: Located) -> EcoreNode | None:
         """Return the first bound of the type parameter that a generic type names."""
         assert entry.file is not None
         for uri in entry.file.uris(generic, "eTypeParameter"):
@@ -173,18 +173,18 @@ class Forms:
             return next(parameters[names[-1]].all("eBounds"), None)
         return None
 
-    def _links(self, node: Node, entry: Located, name: str, wanted: int = 1) -> list[Address]:
+    def _links(self, node: EcoreNode, entry: Located, name: str, wanted: int = 1) -> list[Address]:
         assert entry.file is not None
         found = entry.file.uris(node, name)
         return [self._directory.find(uri, entry, node, wanted, name) for uri in found]
 
-    def _token(self, address: Address, kind: str, entry: Located, node: Node) -> str:
+    def _token(self, address: Address, kind: str, entry: Located, node: EcoreNode) -> str:
         if (address, kind) not in self._tokens:
             self._tokens[address, kind] = f"k{len(self.targets)}"
             self.targets.append((address, kind, entry, node))
         return self._tokens[address, kind]
 
-    def _begin(self, tag: str, node: Node, entry: Located, kind: str, more: dict[str, str]) -> str:
+    def _begin(self, tag: str, node: EcoreNode, entry: Located, kind: str, more: dict[str, str]) -> str:
         """Return the begin of an element; `more` is what is worked out, or not as the file has it."""
         found = {name: node.attributes[name] for name in _ATTRIBUTES[kind] if name in node.attributes} | more
         for name, value in found.items():
@@ -197,7 +197,7 @@ class Forms:
         return f"<{tag}{kinds}{stated}>\n"
 
 
-def _annotations(node: Node) -> Iterator[str]:
+def _annotations(node: EcoreNode) -> Iterator[str]:
     """Yield the annotations of an element, with their details only."""
     for each in node.all("eAnnotations"):
         yield f'<eAnnotations source="{in_attribute(each.get("source"))}">'
@@ -207,7 +207,7 @@ def _annotations(node: Node) -> Iterator[str]:
         yield "</eAnnotations>\n"
 
 
-def _sound(name: str, value: str, node: Node, entry: Located) -> str:
+def _sound(name: str, value: str, node: EcoreNode, entry: Located) -> str:
     """Return a flag or a number in the notation that pyecore reads.
 
     EMF takes ``TRUE`` and ``+1``; the bound -2 (unspecified) means one value.
@@ -237,18 +237,18 @@ def _default(text: str, target: Address | None) -> str:
         return text
 
 
-def _java_class(node: Node) -> str:
+def _java_class(node: EcoreNode) -> str:
     return node.get("instanceClassName") or node.get("instanceTypeName")
 
 
-def _kind(node: Node, entry: Located, known: tuple[str, ...]) -> str:
+def _kind(node: EcoreNode, entry: Located, known: tuple[str, ...]) -> str:
     space, _, kind = node.get("xsi:type").rpartition(" ")
     if space != ECORE or kind not in known:
         _refuse(entry, node, f"{kind or 'no xsi:type'}: no kind of {_WORDS[node.tag]} ({', '.join(known)})")
     return kind
 
 
-def _needed(node: Node, entry: Located) -> str:
+def _needed(node: EcoreNode, entry: Located) -> str:
     name = node.get("name")
     if not name and node.get("href"):
         _refuse(entry, node, f"{shown(node.get('href'))}: in another file, which is not supported")
@@ -257,6 +257,6 @@ def _needed(node: Node, entry: Located) -> str:
     return name
 
 
-def _refuse(entry: Located, node: Node, reason: str) -> NoReturn:
+def _refuse(entry: Located, node: EcoreNode, reason: str) -> NoReturn:
     assert entry.file is not None
     entry.file.refuse(node, reason)

@@ -19,7 +19,7 @@ from pyecore.resources.xmi import XMIResource
 from mmrs_core.errors import MmrsError, PluginError
 from mmrs_core.languages.datatypes import ECORE, XML_TYPES, declared_type
 from mmrs_core.languages.metaclass import Package
-from mmrs_core.languages.metamodels.ecore_file import Node
+from mmrs_core.languages.metamodels.ecore_file import EcoreNode
 from mmrs_core.languages.metamodels.ecore_itself import built_in
 from mmrs_core.languages.metamodels.forms import Forms
 from mmrs_core.languages.metamodels.locating import Address, Directory, Located, located_in
@@ -39,7 +39,7 @@ _ONE_AT_A_TIME = RLock()
 
 
 @dataclass(frozen=True, slots=True)
-class Loaded:
+class LoadedPackages:
     """What was loaded.
 
     Attributes:
@@ -48,10 +48,10 @@ class Loaded:
     """
 
     packages: Mapping[str, ecore.EPackage]
-    nodes: Mapping[Address, tuple[Located, Node]] = field(default_factory=dict)
+    nodes: Mapping[Address, tuple[Located, EcoreNode]] = field(default_factory=dict)
 
 
-def load(located: Sequence[Located], known: Iterable[Package], *, lenient: bool = False) -> Loaded:
+def load(located: Sequence[Located], known: Iterable[Package], *, lenient: bool = False) -> LoadedPackages:
     """Load packages with pyecore.
 
     Args:
@@ -67,7 +67,7 @@ def load(located: Sequence[Located], known: Iterable[Package], *, lenient: bool 
     given = {entry.ns_uri: _given(entry) for entry in located if entry.file is None}
     files = [entry for entry in located if entry.file is not None]
     if not files:
-        return Loaded(given)
+        return LoadedPackages(given)
     forms = Forms(Directory(located, packages, lenient), files, _RESERVED, _OF_ENUMERATIONS)
     text = forms.document()
     _check_inheritance(forms)
@@ -88,7 +88,7 @@ def load(located: Sequence[Located], known: Iterable[Package], *, lenient: bool 
         finally:
             finder.forget()
     _give_files(files, resource.contents)
-    return Loaded({**given, **finder.packages}, forms.nodes)
+    return LoadedPackages({**given, **finder.packages}, forms.nodes)
 
 
 def load_alone(path: Path) -> list[Any]:
@@ -218,10 +218,10 @@ class _Finder:
         self._outside[address] = made
         return made
 
-    def _where(self, node: Node) -> str:
+    def _where(self, node: EcoreNode) -> str:
         return next(".".join(known[1:]) for known, (_, each) in self._forms.nodes.items() if each is node)
 
-    def _no_such(self, address: Address, node: Node) -> str:
+    def _no_such(self, address: Address, node: EcoreNode) -> str:
         ns_uri, name = address[:2]
         where = self._where(node)
         if len(address) == 3:

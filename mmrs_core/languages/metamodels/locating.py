@@ -12,7 +12,7 @@ from urllib.parse import unquote
 from mmrs_core.errors import PluginError, UnreadableError
 from mmrs_core.languages.datatypes import ECORE, XML_TYPES, shown
 from mmrs_core.languages.metaclass import Package
-from mmrs_core.languages.metamodels.ecore_file import EcoreFile, Node, read_ecore
+from mmrs_core.languages.metamodels.ecore_file import EcoreFile, EcoreNode, read_ecore
 from mmrs_core.languages.references.hrefs import real_path
 
 _OF_ECLIPSE = {
@@ -43,9 +43,9 @@ class Located:
     root: int = 0
     path: Path | None = None
     file: EcoreFile | None = None
-    node: Node | None = None
+    node: EcoreNode | None = None
 
-    def refuse(self, reason: str, node: Node | None = None, between: str = ": ") -> NoReturn:
+    def refuse(self, reason: str, node: EcoreNode | None = None, between: str = ": ") -> NoReturn:
         """Raise the error for something in it, with the position of the element, if one is given."""
         place = (
             f"{self.file.name}:{node.line}" if self.file is not None and node is not None else self.provider
@@ -115,7 +115,7 @@ class Directory:
         if entry.path is not None and not entry.parent:
             self._roots.setdefault(entry.path, {})[entry.root] = entry.ns_uri
 
-    def find(self, uri: str, referrer: Located, node: Node, wanted: int, name: str) -> Address:
+    def find(self, uri: str, referrer: Located, node: EcoreNode, wanted: int, name: str) -> Address:
         """Return what a URI means.
 
         Args:
@@ -151,7 +151,7 @@ class Directory:
         return (ns_uri, *names[-wanted:])
 
     def document(
-        self, document: str, referrer: Located, uri: str, node: Node | None = None
+        self, document: str, referrer: Located, uri: str, node: EcoreNode | None = None
     ) -> tuple[str, Path | None]:
         """Return the nsURI of the first package of the document that a name means, and its file.
 

@@ -15,7 +15,7 @@ from mmrs_core.languages.datatypes import BUILT_IN, ECORE, DataType, builtin_typ
 from mmrs_core.languages.element import Element
 from mmrs_core.languages.metaclass import MAP_ENTRY, Enumeration, Feature, Metaclass, Package
 from mmrs_core.languages.metamodels.ecore_itself import built_in
-from mmrs_core.languages.metamodels.loading import Loaded, epackage_of, load
+from mmrs_core.languages.metamodels.loading import LoadedPackages, epackage_of, load
 from mmrs_core.languages.metamodels.locating import Address, Located, located_in
 from mmrs_core.languages.metamodels.values import data_type, default_of, documentation_of, enumeration_of
 from mmrs_core.languages.naming import nearest, python_name
@@ -68,7 +68,7 @@ def itself() -> tuple[Package, ...]:
     """Return Ecore and EMF's types of XML, as far as models may hold them; always the same packages."""
     found = {package.nsURI: package for package in built_in()}
     located = [entry for package in found.values() for entry in _flat(package, None, "core")]
-    return _Shapes((), Loaded(found)).packages(located)
+    return _Shapes((), LoadedPackages(found)).packages(located)
 
 
 def _flat(package: Any, given: object, provider: str, parent: str = "") -> Iterable[Located]:
@@ -86,7 +86,7 @@ def _flat(package: Any, given: object, provider: str, parent: str = "") -> Itera
 class _Shapes:
     """Packages whose metaclasses are derived from EClasses."""
 
-    def __init__(self, known: tuple[Package, ...], loaded: Loaded) -> None:
+    def __init__(self, known: tuple[Package, ...], loaded: LoadedPackages) -> None:
         """Take packages that stand already and share their classes, and those to be made."""
         self._loaded = loaded
         self._metaclasses: dict[Address, Metaclass] = {}

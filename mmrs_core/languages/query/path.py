@@ -49,7 +49,7 @@ Selector = int | Condition
 
 
 @dataclass(frozen=True, slots=True)
-class Step:
+class PathStep:
     """One step of a path.
 
     Attributes:
@@ -65,7 +65,7 @@ class Step:
     text: str = ""
 
 
-def parse_path(text: str) -> tuple[Step, ...]:
+def parse_path(text: str) -> tuple[PathStep, ...]:
     """Return the steps of a path; none for the roots themselves, of which ``/1`` is the second.
 
     Raises:
@@ -80,25 +80,25 @@ def parse_path(text: str) -> tuple[Step, ...]:
     return _steps(text)
 
 
-def _fragment(root: str, steps: str, text: str) -> tuple[Step, ...]:
+def _fragment(root: str, steps: str, text: str) -> tuple[PathStep, ...]:
     """Return the steps of a fragment as EMF writes it, such as ``//@tasks.0/@shell.1``."""
-    found = [Step(Axis.ROOT, root or "0", (), f"/{root}")]
+    found = [PathStep(Axis.ROOT, root or "0", (), f"/{root}")]
     for match in re.finditer(r"/@[^/]+", steps):
         step = _FRAGMENT_STEP.fullmatch(match.group())
         upto = f"/{root}{steps[: match.end()]}"
         if step is None:
             raise ValueError(f"{upto}: not a step such as /@tasks.0")
         selectors = (int(step["index"]),) if step["index"] else ()
-        found.append(Step(Axis.FEATURE, step["name"], selectors, upto))
+        found.append(PathStep(Axis.FEATURE, step["name"], selectors, upto))
     return tuple(found)
 
 
-def _steps(text: str) -> tuple[Step, ...]:
-    steps: list[Step] = []
+def _steps(text: str) -> tuple[PathStep, ...]:
+    steps: list[PathStep] = []
     position = 0
     root = _ROOT.match(text)
     if root is not None:
-        steps.append(Step(Axis.ROOT, root["number"], (), root.group()))
+        steps.append(PathStep(Axis.ROOT, root["number"], (), root.group()))
         position = root.end()
     while position < len(text):
         lead = _STEP.match(text, position)
@@ -109,13 +109,13 @@ def _steps(text: str) -> tuple[Step, ...]:
         if name is None:
             raise ValueError(_broken(text, position, "expected a name here"))
         below = lead is not None and lead.group() == "//"
-        step = Step(Axis.BELOW if below else Axis.FEATURE, _bare(name.group()))
+        step = PathStep(Axis.BELOW if below else Axis.FEATURE, _bare(name.group()))
         step, position = _with_selectors(step, text, name.end())
         steps.append(replace(step, text=text[:position]))
     return tuple(steps)
 
 
-def _with_selectors(step: Step, text: str, position: int) -> tuple[Step, int]:
+def _with_selectors(step: PathStep, text: str, position: int) -> tuple[PathStep, int]:
     selectors: list[Selector] = []
     while text.startswith("[", position):
         if match := _INDEX.match(text, position):

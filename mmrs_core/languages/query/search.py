@@ -9,7 +9,7 @@ from mmrs_core.languages.element import Element, Unknown, descendants, get, hold
 from mmrs_core.languages.metaclass import Feature, Metaclass
 from mmrs_core.languages.naming import nearest
 from mmrs_core.languages.query.conditions import known_features, meets
-from mmrs_core.languages.query.path import Axis, Condition, Step, parse_path
+from mmrs_core.languages.query.path import Axis, Condition, PathStep, parse_path
 
 
 class NothingFoundError(ValueError):
@@ -58,7 +58,7 @@ def find(roots: Sequence[Element], text: str) -> tuple[Match, ...]:
     return found
 
 
-def _led(step: Step, found: Sequence[Match], roots: Sequence[Element]) -> list[tuple[Match, ...]]:
+def _led(step: PathStep, found: Sequence[Match], roots: Sequence[Element]) -> list[tuple[Match, ...]]:
     """Return what a step leads to, a group for each place that it starts from."""
     if step.axis is Axis.ROOT:
         number = int(step.name)
@@ -73,7 +73,7 @@ def _led(step: Step, found: Sequence[Match], roots: Sequence[Element]) -> list[t
     return _followed(step, elements)
 
 
-def _followed(step: Step, elements: Sequence[Element]) -> list[tuple[Match, ...]]:
+def _followed(step: PathStep, elements: Sequence[Element]) -> list[tuple[Match, ...]]:
     known = known_features(elements)
     if step.name != "*" and step.name not in known:
         whose = type(elements[0]).__name__ if len({type(e) for e in elements}) == 1 else "any of them"
@@ -97,7 +97,7 @@ def _values(element: Element, name: str) -> Iterator[Match]:
                 yield Match(each, element, tail, feature)
 
 
-def _below(step: Step, elements: Sequence[Element], roots: Sequence[Element]) -> Iterator[Match]:
+def _below(step: PathStep, elements: Sequence[Element], roots: Sequence[Element]) -> Iterator[Match]:
     everything = [element for root in roots for element in (root, *descendants(root))]
     prefix, _, name = step.name.rpartition(":")
     known = {kind.name for element in everything for kind in _kinds(element)}
@@ -129,14 +129,14 @@ def _kinds(element: Element) -> Iterator[Metaclass]:
         pending.extend(kind.supertypes)
 
 
-def _selected(step: Step, groups: Iterable[tuple[Match, ...]]) -> Iterator[Match]:
+def _selected(step: PathStep, groups: Iterable[tuple[Match, ...]]) -> Iterator[Match]:
     kept = list(groups)
     for selector in step.selectors:
         kept = _at(step, selector, kept) if isinstance(selector, int) else _meeting(step, selector, kept)
     return iter({m.key: m for group in kept for m in group}.values())
 
 
-def _at(step: Step, index: int, groups: list[tuple[Match, ...]]) -> list[tuple[Match, ...]]:
+def _at(step: PathStep, index: int, groups: list[tuple[Match, ...]]) -> list[tuple[Match, ...]]:
     long = [group for group in groups if -len(group) <= index < len(group)]
     if not long:
         most = max((len(group) for group in groups), default=0)
@@ -145,7 +145,9 @@ def _at(step: Step, index: int, groups: list[tuple[Match, ...]]) -> list[tuple[M
     return [(group[index],) for group in long]
 
 
-def _meeting(step: Step, condition: Condition, groups: list[tuple[Match, ...]]) -> list[tuple[Match, ...]]:
+def _meeting(
+    step: PathStep, condition: Condition, groups: list[tuple[Match, ...]]
+) -> list[tuple[Match, ...]]:
     elements = [match.value for group in groups for match in group if isinstance(match.value, Element)]
     if not elements and any(groups):
         raise ValueError(f"{step.text}: values have no features to ask for")

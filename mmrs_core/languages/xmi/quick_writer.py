@@ -19,7 +19,7 @@ from mmrs_core.languages.registry import Registry
 from mmrs_core.languages.source import Source
 from mmrs_core.languages.values.real import LARGEST_SINGLE, render_single
 from mmrs_core.languages.xmi.escapes import NO_XML, in_attribute
-from mmrs_core.languages.xmi.writer import Job, Row, XmiWriter
+from mmrs_core.languages.xmi.writer import Job, SiblingRow, XmiWriter
 
 DEEPEST_CALL = 50
 """Elements that stand deeper than this are not written by functions that call each other."""
@@ -220,7 +220,7 @@ class QuickWriter(XmiWriter):
         self._places = Positions(roots, home, UnusualError)
         self._surroundings = Surroundings(self._lines.append, home, self._places, self._tables, self._slowly)
 
-    def _row(self, row: Row, jobs: list[Job]) -> None:
+    def _row(self, row: SiblingRow, jobs: list[Job]) -> None:
         """Write elements until one needs the careful way; leave what follows it as jobs."""
         table, depth = self._tables[row.feature], row.depth
         for child in row.values:
@@ -243,7 +243,7 @@ class QuickWriter(XmiWriter):
 
     def _slowly(self, owner: Element, feature: Feature, child: Element, depth: int) -> None:
         jobs: list[Job] = []
-        self._child(Row(owner, feature, iter(()), depth), child, jobs)
+        self._child(SiblingRow(owner, feature, iter(()), depth), child, jobs)
         self._run(jobs)
         self._notice(feature, child.__class__)
 

@@ -22,7 +22,7 @@ _UNFIT = re.compile(r"[^\w.-]", re.ASCII)
 _Attributes = list[tuple[str, str]]
 
 
-class Row(NamedTuple):
+class SiblingRow(NamedTuple):
     """What is left to be written of the elements in a containment feature."""
 
     owner: Element
@@ -31,7 +31,7 @@ class Row(NamedTuple):
     depth: int
 
 
-Job = str | Row
+Job = str | SiblingRow
 """What is left to be done: a text to be added, or elements to be written."""
 
 
@@ -89,14 +89,14 @@ class XmiWriter:
             else:
                 self._row(job, jobs)
 
-    def _row(self, row: Row, jobs: list[Job]) -> None:
+    def _row(self, row: SiblingRow, jobs: list[Job]) -> None:
         """Write the next element of a row, and leave what follows as jobs."""
         for value in row.values:
             jobs.append(row)
             self._child(row, value, jobs)
             return
 
-    def _child(self, row: Row, value: object, jobs: list[Job]) -> None:
+    def _child(self, row: SiblingRow, value: object, jobs: list[Job]) -> None:
         element, feature, _, depth = row
         if not isinstance(value, Element):
             raise ValueError(f"{_where(element, feature)}: {value!r} is not an element")
@@ -167,7 +167,7 @@ class XmiWriter:
             if not feature.is_reference:
                 self._values(element, feature, values, depth, attributes, children)
             elif feature.containment:
-                children.append(Row(element, feature, iter(values), depth))
+                children.append(SiblingRow(element, feature, iter(values), depth))
             else:
                 self._references(element, feature, values, depth, attributes, children)
         return attributes, children

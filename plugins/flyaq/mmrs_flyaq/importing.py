@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from mmrs_core.errors import PluginError, UnreadableError
-from mmrs_core.languages.importers import Candidate, Imported, Importer
+from mmrs_core.languages.importers import Imported, Importer, Recognition
 
 if TYPE_CHECKING:
     from mmrs_core.languages.element import Element
@@ -37,7 +37,7 @@ def importer_of(name: str, mapping: Path) -> Importer:
     )
 
 
-def recognised_in(candidate: Candidate) -> Recognised | None:
+def recognised_in(candidate: Recognition) -> Recognised | None:
     """Return what an importer of this plug-in recognised; None if another plug-in's importer did."""
     from mmrs_flyaq.recognition import Recognised
 
@@ -55,14 +55,14 @@ def _dialect(name: str, mapping: Path) -> DialectMapping:
 
 def _recognise(
     name: str, mapping: Path, data: bytes, file: str, registry: Registry, stored: bool
-) -> Candidate | None:
+) -> Recognition | None:
     from mmrs_flyaq.recognition import recognised
 
     found = recognised(data, file, _dialect(name, mapping), registry)
-    return Candidate(replace(found, stored=stored), found.is_guess) if found is not None else None
+    return Recognition(replace(found, stored=stored), found.is_guess) if found is not None else None
 
 
-def _prepare(name: str, mapping: Path, candidate: Candidate, file: str, registry: Registry) -> Candidate:
+def _prepare(name: str, mapping: Path, candidate: Recognition, file: str, registry: Registry) -> Recognition:
     from mmrs_flyaq.rules.mapping_file import read_mapping
 
     found = recognised_in(candidate)
@@ -77,7 +77,7 @@ def _prepare(name: str, mapping: Path, candidate: Candidate, file: str, registry
 
 
 def _convert(
-    name: str, candidates: Sequence[Candidate], registry: Registry, known: Sequence[Element], notes: bool
+    name: str, candidates: Sequence[Recognition], registry: Registry, known: Sequence[Element], notes: bool
 ) -> Sequence[Imported]:
     from mmrs_flyaq.in_memory import migrated
 

@@ -10,10 +10,9 @@ from mmrs_core.languages.element import Element, container_of, descendants, is_k
 from mmrs_core.languages.importers import Imported
 from mmrs_core.languages.registry import Registry
 from mmrs_flyaq.building.robot_types import RobotTypes
-from mmrs_flyaq.findings import Category, Finding, Group, grouped
+from mmrs_flyaq.findings import Category, Finding, Group, Record, grouped
 from mmrs_flyaq.migrate import build, settle
 from mmrs_flyaq.recognition import Recognised
-from mmrs_flyaq.recording import Record
 from mmrs_flyaq.rules.rules_file import ROBOT_TYPE
 from mmrs_flyaq.sources.nodes import SourceNode
 

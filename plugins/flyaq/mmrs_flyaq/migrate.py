@@ -13,16 +13,14 @@ from mmrs_flyaq.building.builder import Builder
 from mmrs_flyaq.building.circling import draw_ring
 from mmrs_flyaq.building.linking import Linker
 from mmrs_flyaq.building.robot_types import RobotTypes
-from mmrs_flyaq.findings import Finding
+from mmrs_flyaq.findings import Finding, Record
 from mmrs_flyaq.outputs import Made, Output, outputs_of
 from mmrs_flyaq.recognition import adopt
-from mmrs_flyaq.recording import Record
 from mmrs_flyaq.rules.mapping import DialectMapping
 from mmrs_flyaq.rules.rules_file import ROBOT_TYPE
 from mmrs_flyaq.sources.documents import Opened, open_document
-from mmrs_flyaq.sources.metamodels import metamodels_for, structure_of
+from mmrs_flyaq.sources.metamodels import Reader, metamodels_for, structure_of
 from mmrs_flyaq.sources.nodes import SourceDocument
-from mmrs_flyaq.sources.reading import Reader
 from mmrs_flyaq.sources.structure import Structure
 
 

@@ -10,7 +10,7 @@ from metamodel_edits import EDITS, ZOO, edited
 from mmrs_core.diagnostics import has_errors
 from mmrs_core.languages.conformance import check_conformance
 from mmrs_core.languages.evolution.differences import differences
-from mmrs_core.languages.evolution.effects import Verdict
+from mmrs_core.languages.evolution.effects import Effect
 from mmrs_core.languages.evolution.versions import version_of
 from mmrs_core.languages.reading import read_text
 from mmrs_core.languages.registry import core_registry
@@ -28,7 +28,7 @@ def old_models_load_where_that_is_said(folder, data):
     file = folder / "new.ecore"
     file.write_text(edited(*names), encoding="utf-8")
     old, new = version_of(str(ZOO), core_registry()), version_of(str(file), core_registry())
-    if any(each.verdict is Verdict.INCOMPATIBLE for each in differences(old, new)):
+    if any(each.verdict is Effect.INCOMPATIBLE for each in differences(old, new)):
         return  # two edits of one part
     root = data.draw(instances_of(old.registry, "urn:test:zoo"))
     text = to_xmi([root], old.registry)

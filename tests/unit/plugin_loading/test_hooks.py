@@ -24,7 +24,7 @@ from mmrs_core.hookspecs import hookimpl
 from mmrs_core.languages import behaviour as bl
 from mmrs_core.languages.classes import ElementClass
 from mmrs_core.languages.evolution.migration import Migration
-from mmrs_core.languages.importers import Candidate, Imported, Importer
+from mmrs_core.languages.importers import Imported, Importer, Recognition
 from mmrs_core.languages.reading import read_text
 from mmrs_core.languages.registry import MetamodelSource
 from mmrs_core.plugins import language, load_plugins
@@ -105,7 +105,7 @@ def test_hook_mmrs_migrations():
 
 def test_hook_mmrs_importers():
     def recognise(data, file, registry, stored):
-        return Candidate(data.decode()) if data.startswith(b"kite ") else None
+        return Recognition(data.decode()) if data.startswith(b"kite ") else None
 
     def convert(candidates, registry, known, notes):
         names = (each.content.split()[1] for each in candidates)

@@ -4,11 +4,9 @@ from __future__ import annotations
 
 from mmrs_core.grounding.features import text as text_of
 from mmrs_core.languages.element import Element, metaclass_of
-from mmrs_flyaq.building.converting import number_in, put, scaled
-from mmrs_flyaq.building.drafts import Draft, placed
+from mmrs_flyaq.building.drafts import Draft, number_in, placed, put, scaled
 from mmrs_flyaq.building.robot_types import RobotTypes
-from mmrs_flyaq.findings import Category
-from mmrs_flyaq.recording import Record
+from mmrs_flyaq.findings import Category, Record
 from mmrs_flyaq.rules.mapping import Constant, DeviceLookup, Use
 from mmrs_flyaq.rules.paths import FeaturePath, Keep, reach
 from mmrs_flyaq.rules.sense import NUMBER, WORD

@@ -8,12 +8,9 @@ from mmrs_core.languages.element import Element, metaclass_of
 from mmrs_core.languages.registry import Registry
 from mmrs_flyaq.building.attributes import Attributes, is_given
 from mmrs_flyaq.building.borders import border_around, without_repeats
-from mmrs_flyaq.building.converting import put
-from mmrs_flyaq.building.copying import copied
-from mmrs_flyaq.building.drafts import Draft, placed
+from mmrs_flyaq.building.drafts import Draft, copied, placed, put
 from mmrs_flyaq.building.robot_types import RobotTypes
-from mmrs_flyaq.findings import Category
-from mmrs_flyaq.recording import Record
+from mmrs_flyaq.findings import Category, Record
 from mmrs_flyaq.rules.mapping import DialectMapping, Rule, Use
 from mmrs_flyaq.rules.paths import reach
 from mmrs_flyaq.rules.values import said

@@ -14,10 +14,9 @@ from mmrs_core.languages.element import (
     root_of,
 )
 from mmrs_core.languages.registry import Registry
+from mmrs_flyaq.building.circling import set_heading
 from mmrs_flyaq.building.drafts import Draft, placed
-from mmrs_flyaq.building.headings import set_heading
-from mmrs_flyaq.findings import Category
-from mmrs_flyaq.recording import Record
+from mmrs_flyaq.findings import Category, Record
 from mmrs_flyaq.rules.mapping import Counterpart, Rule, Use
 from mmrs_flyaq.rules.paths import FeaturePath, reach
 from mmrs_flyaq.sources.nodes import Link, SourceNode, Text

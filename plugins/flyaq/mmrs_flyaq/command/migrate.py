@@ -69,8 +69,7 @@ def migrate(
     from mmrs_core.cli.session import Session
     from mmrs_core.diagnostics import in_order
     from mmrs_flyaq.command.projects import read_sources, write_outputs
-    from mmrs_flyaq.command.verdicts import verdicts_on
-    from mmrs_flyaq.command.words import migration_lines, verdict_lines
+    from mmrs_flyaq.command.report import migration_lines, verdict_lines, verdicts_on
 
     session = Session(Settings())
     migration = read_sources(session, files, output, mapping, metamodels or (), types or ())

@@ -11,15 +11,13 @@ from pathlib import Path
 from mmrs_core.errors import UnreadableError
 from mmrs_core.languages.registry import Registry
 from mmrs_core.languages.xmi.events import read_bytes
-from mmrs_flyaq.rules.classes import Classes
 from mmrs_flyaq.rules.mapping import DialectMapping
-from mmrs_flyaq.rules.notation import declared_structure
+from mmrs_flyaq.rules.paths import Classes
 from mmrs_flyaq.rules.rules_file import read_rules
-from mmrs_flyaq.rules.toml_places import TooMuchError, line_of, parsed
-from mmrs_flyaq.rules.toml_tables import Table
+from mmrs_flyaq.rules.toml_tables import Table, TooMuchError, line_of, parsed
 from mmrs_flyaq.sources.documents import KnownDocument
 from mmrs_flyaq.sources.metamodels import Dialect
-from mmrs_flyaq.sources.structure import Structure
+from mmrs_flyaq.sources.structure import Structure, declared_structure
 
 LARGEST = 4 * 1024 * 1024
 

@@ -7,9 +7,8 @@ from dataclasses import replace
 from typing import cast
 
 from mmrs_core.languages.metaclass import Metaclass
-from mmrs_flyaq.rules.classes import Classes
 from mmrs_flyaq.rules.mapping import Also, Bearing, Constant, Counterpart, Make, Use
-from mmrs_flyaq.rules.paths import FeaturePath, parse_path, path_from
+from mmrs_flyaq.rules.paths import Classes, FeaturePath, parse_path, path_from
 from mmrs_flyaq.rules.toml_tables import Table
 from mmrs_flyaq.rules.values import misfit
 

@@ -1,9 +1,9 @@
-"""What a file is: models of a dialect, one of its metamodels, or something that holds nothing to migrate."""
+"""Source files, in XMI or JSON, as documents of nodes."""
 
 from __future__ import annotations
 
 from codecs import BOM_UTF8, BOM_UTF16_BE, BOM_UTF16_LE
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -13,10 +13,181 @@ from mmrs_core.languages.json_form import is_json
 from mmrs_core.languages.json_form.tree import Node as Object
 from mmrs_core.languages.json_form.tree import Tree
 from mmrs_core.languages.metamodels.ecore_file import EcoreFile
-from mmrs_core.languages.xmi.events import read_bytes
-from mmrs_flyaq.sources.from_json import CLASS, node_of, text_in
-from mmrs_flyaq.sources.from_xmi import parse_xmi
-from mmrs_flyaq.sources.nodes import SourceDocument
+from mmrs_core.languages.xmi.events import XMI, XSI, Document, read_bytes
+from mmrs_flyaq.sources.nodes import (
+    DEEPEST_NESTING,
+    STRAY,
+    Claim,
+    Link,
+    SourceDocument,
+    SourceNode,
+    Text,
+    too_deep,
+)
+
+_LOCATION = f"{XSI} schemaLocation"
+_TYPES = (f"{XSI} type", f"{XMI} type")
+_ID = f"{XMI} id"
+_OF_THE_FORMAT = (f"{XMI} ", f"{XSI} ")
+_WRAPPER = f"{XMI} XMI"
+
+
+def parse_xmi(data: bytes, file: str) -> SourceDocument:
+    """Return the elements of an XMI file, whatever language it is in.
+
+    Raises:
+        UnreadableError: if it is not well-formed, has a DOCTYPE, or nests deeper than 100 levels.
+    """
+    document = Document(data, file)
+    listener = _Listener(document)
+    document.parse(listener)
+    return SourceDocument(file, tuple(listener.roots), tuple(listener.locations), listener.ids)
+
+
+class _Listener:
+    def __init__(self, document: Document) -> None:
+        self._document = document
+        self.roots: list[SourceNode] = []
+        self.locations: list[tuple[str, str]] = []
+        self.ids: dict[str, SourceNode] = {}
+        self._open: list[SourceNode] = []
+        self._words: list[str] = []
+        self._wrapped = False
+
+    def start(self, tag: str, attributes: list[str]) -> None:
+        if len(self._open) >= DEEPEST_NESTING:
+            raise too_deep(self._document.file, self._document.line)
+        self._keep_stray(self._said())
+        named = dict(zip(attributes[::2], attributes[1::2], strict=True))
+        places = named.get(_LOCATION, "").split()
+        self.locations += zip(places[::2], places[1::2], strict=False)
+        if tag == _WRAPPER and not self._open:
+            self._wrapped = True
+            return
+        self._begin(tag, named)
+
+    def _begin(self, tag: str, attributes: dict[str, str]) -> None:
+        ns_uri, _, name = tag.rpartition(" ")
+        node = SourceNode(self._document.file, self._document.line)
+        if self._open:
+            node.claim = self._claim(attributes)
+            self._open[-1].add(name, node)
+        else:
+            node.claim = Claim(ns_uri, name)
+            self.roots.append(node)
+        self._open.append(node)
+        for key, text in attributes.items():
+            if key == _ID:
+                self.ids.setdefault(text, node)
+            elif not key.startswith(_OF_THE_FORMAT):
+                node.add(key, Text(text, self._document.line))
+
+    def _claim(self, attributes: dict[str, str]) -> Claim | None:
+        kind = next((attributes[key] for key in _TYPES if key in attributes), "")
+        prefix, _, name = kind.rpartition(":")
+        return Claim(self._document.namespaces.uri(prefix) or prefix, name) if name else None
+
+    def end(self, tag: str) -> None:
+        if not self._open:
+            return
+        node, words, inner = self._open[-1], self._said(), len(self._open) > 1
+        if inner and not node.values and node.claim is None and words:
+            _instead(node, Text(words, node.line))
+        else:
+            self._keep_stray(words)
+            if inner and node.claim is None and node.text("href"):
+                _instead(node, Link(node.text("href"), node.line))
+        self._open.pop()
+
+    def text(self, text: str) -> None:
+        self._words.append(text)
+
+    def _said(self) -> str:
+        """Return the text since the last tag."""
+        words = "".join(self._words).strip()
+        self._words.clear()
+        return words
+
+    def _keep_stray(self, words: str) -> None:
+        if words and self._open:
+            self._open[-1].add(STRAY, Text(words, self._document.line))
+
+
+def _instead(node: SourceNode, value: Text | Link) -> None:
+    """Let an element that only spells out a value or a reference be that value."""
+    assert node.parent is not None  # the root is never replaced
+    node.parent.values[node.feature][node.index] = value
+
+
+CLASS = "eClass"
+REFERENCE = "$ref"
+NAMESPACES = "@ns"
+
+
+def node_of(tree: Tree, value: Object) -> SourceNode:
+    """Return the element that an object describes.
+
+    Raises:
+        UnreadableError: if it nests deeper than 100 levels.
+    """
+    return _Reader(tree, _namespaces(value)).node(value, 0)
+
+
+def text_in(value: Object, key: str) -> str:
+    """Return the text of a member, or an empty one where it is missing or something else."""
+    found = value.members.get(key)
+    return found if isinstance(found, str) else ""
+
+
+def claim_of(text: str, namespaces: Mapping[str, str]) -> Claim | None:
+    """Return the class that a text names; None for an empty one.
+
+    >>> claim_of("shop://Order", {"shop": "http://shop"})
+    Claim(document='http://shop', name='Order')
+    >>> claim_of("file:/C:/models/shop.ecore#//Order", {}).document
+    'file:/C:/models/shop.ecore'
+    """
+    document, _, name = text.rpartition("//")
+    if not name:
+        return None
+    if document.endswith(":"):
+        return Claim(namespaces.get(document[:-1], document[:-1]), name)
+    return Claim(document.removesuffix("#"), name)
+
+
+def _namespaces(value: Object) -> dict[str, str]:
+    declared = value.members.get(NAMESPACES)
+    members = declared.members if isinstance(declared, Object) else {}
+    return {prefix: uri for prefix, uri in members.items() if isinstance(uri, str)}
+
+
+class _Reader:
+    def __init__(self, tree: Tree, namespaces: Mapping[str, str]) -> None:
+        self._tree = tree
+        self._namespaces = namespaces
+
+    def node(self, value: Object, depth: int) -> SourceNode:
+        if depth > DEEPEST_NESTING:
+            raise too_deep(self._tree.file, value.line)
+        node = SourceNode(self._tree.file, value.line, claim_of(text_in(value, CLASS), self._namespaces))
+        for key, member in value.members.items():
+            if key not in (CLASS, NAMESPACES):
+                self._add(node, key, member, self._tree.line_of(value, key), depth)
+        return node
+
+    def _add(self, node: SourceNode, key: str, value: object, line: int, depth: int) -> None:
+        match value:
+            case list():
+                for item in value:
+                    self._add(node, key, item, line, depth + 1)
+            case Object() if REFERENCE in value.members:
+                node.add(key, Link(text_in(value, REFERENCE), value.line))
+            case Object():
+                node.add(key, self.node(value, depth + 1))
+            case bool():
+                node.add(key, Text("true" if value else "false", line))
+            case str():
+                node.add(key, Text(str(value), line))
 
 
 @dataclass(frozen=True, slots=True)

@@ -3,7 +3,7 @@
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from mmrs_flyaq.building.shapes import border_of
+from mmrs_flyaq.building.borders import border_of
 from shapely.geometry import LinearRing, Point, Polygon
 
 ROUNDS = settings(max_examples=150, deadline=None, derandomize=True)

@@ -3,7 +3,7 @@
 from math import cos, radians
 
 import pytest
-from mmrs_flyaq.building.shapes import METRES_PER_DEGREE, border_of
+from mmrs_flyaq.building.borders import METRES_PER_DEGREE, border_of
 from shapely.geometry import Point, Polygon
 
 

@@ -1,8 +1,7 @@
 """What a file says, before anybody asks what it means."""
 
 import pytest
-from mmrs_flyaq.sources.from_json import node_of
-from mmrs_flyaq.sources.from_xmi import parse_xmi
+from mmrs_flyaq.sources.documents import node_of, parse_xmi
 from mmrs_flyaq.sources.nodes import Claim, Link, Text
 
 from mmrs_core.errors import UnreadableError

@@ -1,8 +1,7 @@
 """Paths lead from an element to a feature inside it, and make what is missing on their way."""
 
 import pytest
-from mmrs_flyaq.rules.classes import Classes
-from mmrs_flyaq.rules.paths import path_from, reach
+from mmrs_flyaq.rules.paths import Classes, path_from, reach
 
 ROBOT = ("urn:mmrs:robot:1.0", "Robot")
 LANGUAGES = {

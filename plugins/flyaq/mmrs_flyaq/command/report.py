@@ -1,4 +1,4 @@
-"""Whether migrated models are valid, with what their folders held already: as ``mmrs validate`` says it."""
+"""The report of a migration: what became of each file and value, and whether the result is valid."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from typing import TypeVar
 
 from mmrs_core.analysis.fixes.repair import Diagnosis
 from mmrs_core.cli.diagnosing import Subject, diagnosed_parts
+from mmrs_core.cli.output import counted
 from mmrs_core.cli.session import Session
 from mmrs_core.diagnostics import Diagnostic, has_errors
 from mmrs_core.errors import InvalidModelError, UnreadableError
@@ -16,6 +17,8 @@ from mmrs_core.languages import behaviour, robot
 from mmrs_core.languages.codes import is_refusal
 from mmrs_core.languages.element import Element
 from mmrs_core.languages.modelset import context_in, model_in, robot_files_in
+from mmrs_flyaq.findings import Category, Finding, grouped
+from mmrs_flyaq.migrate import Migration
 
 Root = TypeVar("Root", bound=Element)
 
@@ -100,3 +103,61 @@ def _with_rest(folder: Path, files: Iterable[Path]) -> list[Path]:
 
 def _of(roots: Iterable[Element], kind: type[Root]) -> list[Root]:
     return [root for root in roots if isinstance(root, kind)]
+
+
+_WORDS = {
+    Category.LOST: "not carried over",
+    Category.DOUBTFUL: "doubtful: look at it",
+    Category.CHANGED: "changed in meaning or unit",
+    Category.DEFAULTED: "defaulted, because the source does not say it",
+}
+
+
+def migration_lines(migration: Migration, project: Path) -> Iterator[str]:
+    """Yield the report of a migration; every finding is in it."""
+    for source in migration.sources:
+        found = ", ".join(str(file) for file in source.metamodels.values())
+        yield f"{source.file}: {source.what}" + (f" (by {found})" if found else "")
+    groups = grouped(migration.findings)
+    for category in Category:
+        own = [group for group in groups if group.category is category]
+        if own:
+            yield ""
+            yield f"{_WORDS[category]} ({counted(sum(len(group.findings) for group in own), 'value')}):"
+            for group in own:
+                yield f"  {group.reason}"
+                yield from (f"    {line}" for line in _places(group.findings))
+    yield ""
+    for output in migration.outputs:
+        yield f"written: {project / output.path} (from {', '.join(output.sources)})"
+
+
+def verdict_lines(verdicts: Sequence[Verdict]) -> Iterator[str]:
+    """Yield whether what was written is valid, and what a behaviour still needs to be run.
+
+    Of valid robot types beside a behaviour, the line of the behaviour says enough.
+    """
+    judged = {verdict.path.parent for verdict in verdicts if not verdict.alone}
+    for verdict in verdicts:
+        if verdict.alone and verdict.valid and verdict.path in judged:
+            continue
+        for name in verdict.missing:
+            yield (
+                f"{verdict.path}: to simulate or generate it, the robot type {name!r} is needed: migrate the"
+                f" file that describes it into {verdict.path.parent}, too, write"
+                f" {verdict.path.parent / 'robots' / name}.xmi, or say by --type which type is meant"
+            )
+        yield f"{verdict.path}: {verdict.word}{', with no mission beside it yet' * verdict.alone}"
+    if not verdicts:
+        yield "nothing to migrate, nothing written"
+
+
+def _places(findings: Iterable[Finding]) -> Iterator[str]:
+    """Yield where something happened, and to what; the same thing once for all its lines in a file."""
+    lines: dict[tuple[str, str], list[Finding]] = {}
+    for finding in findings:
+        lines.setdefault((finding.place.file, finding.subject), []).append(finding)
+    for (file, subject), same in lines.items():
+        where = ",".join(str(finding.place.line) for finding in same)
+        path = same[0].place.path if len(same) == 1 and same[0].place.path != "/" else ""
+        yield f"{file}:{where}: {subject}" + (f", {path}" if path else "")
