@@ -62,13 +62,20 @@ def kinematics_for(
     """Return the kinematics that follow from a robot type's own figures.
 
     Cruise is the travel mode's share of the largest speed, never under the smallest. Against the flow a
-    robot goes over ground at its largest speed less the flow's; no more is commanded on any path, so that
-    every path takes as long either way. The mean power is what empties the batteries in the lifetime;
-    against the flow it grows by (flow / largest speed)². Robot kinds add their limits of height.
+    robot goes over ground at its largest speed less the flow's; no higher speed is commanded, so that a leg
+    takes as long in any direction. The mean power is what empties the batteries in the lifetime; against the
+    flow it grows by (flow / largest speed)². Robot kinds add their limits of height.
 
     Args:
+        robot: with its type and payload.
+        scene: with the environment and the reserve.
+        floor: height above the origin, in metres, below which the robot does not go.
+        ceiling: height above the origin, in metres, above which it does not go.
+        launch: seconds that launching takes beside the climb.
+        recovery: seconds that landing takes beside the descent.
+        launches: whether the robot climbs from its home before it travels, and descends onto it at the end.
         flow: name of the environment's attribute with the speed of the wind or current that the robot
-            travels in; empty: none.
+            travels in, such as ``windSpeed``; empty: none.
 
     Raises:
         InfeasibleError: if the type has no capability for the robot's payload, or cannot go against the
