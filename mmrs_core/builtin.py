@@ -14,7 +14,6 @@ if TYPE_CHECKING:
     from mmrs_core.contributions.fixes import Fix
     from mmrs_core.contributions.rules import MoveKind, RobotKind
     from mmrs_core.contributions.vehicles import VehicleFactory
-    from mmrs_core.contributions.wiring import DeviceWiring
 
 
 @hookimpl
@@ -55,14 +54,6 @@ def mmrs_checks() -> Iterable[Check]:
     from mmrs_core.analysis.checks import CHECKS
 
     return CHECKS
-
-
-@hookimpl
-def mmrs_device_actions() -> Iterable[DeviceWiring]:
-    """Contribute how cameras, servos, relays and other devices are wired."""
-    from mmrs_core.mavlink.wiring import WIRINGS
-
-    return tuple(WIRINGS.values())
 
 
 @hookimpl

@@ -19,11 +19,11 @@ if TYPE_CHECKING:
     from mmrs_core.contributions.constraints import Constraint
     from mmrs_core.contributions.execution import Condition
     from mmrs_core.contributions.fixes import Fix
+    from mmrs_core.contributions.hooks import Hook
     from mmrs_core.contributions.rules import MoveKind, RobotKind, Rule
     from mmrs_core.contributions.symbols import MapSymbol
     from mmrs_core.contributions.targets import Target
     from mmrs_core.contributions.vehicles import VehicleFactory
-    from mmrs_core.contributions.wiring import DeviceWiring
     from mmrs_core.languages.classes import ElementClass
     from mmrs_core.languages.evolution.migration import Migration
     from mmrs_core.languages.importers import Importer
@@ -88,11 +88,6 @@ def mmrs_checks() -> Iterable[Check]:  # type: ignore[empty-body]
 
 
 @hookspec
-def mmrs_device_actions() -> Iterable[DeviceWiring]:  # type: ignore[empty-body]
-    """Contribute how actions of devices become MAVLink commands; one wiring for a device property."""
-
-
-@hookspec
 def mmrs_targets() -> Iterable[Target]:  # type: ignore[empty-body]
     """Contribute what code can be generated for; names are unique over all plug-ins."""
 
@@ -110,6 +105,11 @@ def mmrs_conditions() -> Iterable[Condition]:  # type: ignore[empty-body]
 @hookspec
 def mmrs_map_symbols() -> Iterable[MapSymbol]:  # type: ignore[empty-body]
     """Contribute how elements look on maps; one symbol for a metaclass."""
+
+
+@hookspec
+def mmrs_hooks() -> Iterable[Hook]:  # type: ignore[empty-body]
+    """Specify hooks for other plug-ins to implement; names are unique over all plug-ins and the core."""
 
 
 @hookspec

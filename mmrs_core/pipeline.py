@@ -215,7 +215,7 @@ def render(
         robot_kinds=contributions.robot_kinds,
         move_kinds=contributions.move_kinds,
         areas=place.areas or (),
-        device_actions=contributions.device_actions,
+        extensions=contributions.extensions,
         environment=place.environment or {},
     )
     provider = contributions.distribution_of("targets", chosen)
@@ -241,7 +241,7 @@ def capabilities(target: str | None, contributions: Contributions) -> dict[str, 
     tried = probes(contributions.languages.metaclass(*name).ancestry for name in added)
     names = sorted(contributions.targets) if target is None else [target]
     chosen = {name: _named("target", name, contributions.targets) for name in names}
-    return {name: capabilities_of(each, tried) for name, each in chosen.items()}
+    return {name: capabilities_of(each, contributions, tried) for name, each in chosen.items()}
 
 
 def write(files: Iterable[GeneratedFile], directory: Path) -> tuple[Path, ...]:
@@ -336,7 +336,7 @@ def inputs_of(
         options=options or {},
         environment=place.environment or {},
         areas=place.areas or (),
-        device_actions=contributions.device_actions,
+        extensions=contributions.extensions,
     )
     return {id: each for id, each in found.items() if robots is None or id in robots}
 

@@ -13,6 +13,7 @@ import pluggy
 
 from mmrs_core import builtin, hookspecs
 from mmrs_core.contributions.guard import guarded
+from mmrs_core.contributions.hooks import Hook
 from mmrs_core.contributions.registry import Contributions, called
 from mmrs_core.errors import PluginError
 
@@ -33,18 +34,17 @@ _KINDS: Mapping[str, str] = {
     "robot_kinds": "contributions.rules.RobotKind",
     "move_kinds": "contributions.rules.MoveKind",
     "checks": "contributions.checks.Check",
-    "device_actions": "contributions.wiring.DeviceWiring",
     "targets": "contributions.targets.Target",
     "vehicles": "contributions.vehicles.VehicleFactory",
     "conditions": "contributions.execution.Condition",
     "map_symbols": "contributions.symbols.MapSymbol",
+    "hooks": "contributions.hooks.Hook",
     "commands": "contributions.commands.Command",
 }
 """What each sort of contribution is, within this package."""
 _GONE: Mapping[str, str] = {
     "mmrs_dialects": "implement 'mmrs_importers'",
     "mmrs_backends": "implement 'mmrs_vehicles'",
-    "mmrs_codecs": "name what opens drives by '--drives MODULE:FUNCTION' of 'python -m auv_vessel'",
 }
 """Hooks of earlier versions, and what takes their place."""
 
@@ -110,10 +110,12 @@ def load_plugins(
             )
         _register(manager, name, distribution, plugin)
         distributions[name] = distribution
+    hooks = _specified(manager, distributions)
+    _refuse_unknown(manager, distributions)
 
     @cache
     def declared(sort: str) -> tuple[tuple[str, Any], ...]:
-        return tuple(_declared(manager, distributions, sort))
+        return tuple(_declared(manager, distributions, sort, hooks.get(sort)))
 
     contributions = Contributions(declared, distributions, quiet_migration=quiet_migration)
     return Plugins(contributions, distributions, manager)
@@ -164,16 +166,53 @@ def _register(manager: pluggy.PluginManager, name: str, distribution: str, plugi
             raise PluginError(f"{whose}: hook '{gone}' is gone: {instead}")
     try:
         manager.register(plugin, name)
-        manager.check_pending()
     except (ValueError, pluggy.PluginValidationError) as error:
         raise PluginError(f"plug-in '{name}' of distribution '{distribution}': {error}") from error
 
 
+def _specified(manager: pluggy.PluginManager, distributions: Mapping[str, str]) -> dict[str, Hook]:
+    """Add the hooks that plug-ins specify; return them by what they declare, such as ``kite_lines``."""
+    found: dict[str, Hook] = {}
+    for name, hook in _declared(manager, distributions, "hooks"):
+        source = f"plug-in '{name}' of distribution '{distributions[name]}'"
+        if hook.sort in _KINDS or hook.sort in found:
+            raise PluginError(f"{source}: hook '{hook.name}' is specified already")
+
+        @hookspecs.hookspec
+        def declare() -> Iterable[object]:  # type: ignore[empty-body]
+            pass
+
+        try:
+            manager.add_hookspecs(type("Specified", (), {hook.name: staticmethod(declare)}))
+        except pluggy.PluginValidationError as error:
+            whose = manager.get_name(error.plugin) or ""
+            raise PluginError(
+                f"plug-in '{whose}' of distribution '{distributions.get(whose)}': {error}"
+            ) from error
+        found[hook.sort] = hook
+    return found
+
+
+def _refuse_unknown(manager: pluggy.PluginManager, distributions: Mapping[str, str]) -> None:
+    """Raise PluginError for an implementation of a hook that neither the core nor a plug-in specifies."""
+    for name, distribution in distributions.items():
+        plugin = manager.get_plugin(name)
+        for caller in manager.get_hookcallers(plugin) or ():
+            own = (each for each in caller.get_hookimpls() if each.plugin is plugin)
+            if not caller.has_spec() and not any(each.optionalhook for each in own):
+                source = f"plug-in '{name}' of distribution '{distribution}'"
+                raise PluginError(
+                    f"{source}: unknown hook '{caller.name}': install the plug-in that specifies it, or"
+                    " implement it with 'hookimpl(optionalhook=True)'"
+                )
+
+
 def _declared(
-    manager: pluggy.PluginManager, distributions: Mapping[str, str], sort: str
+    manager: pluggy.PluginManager, distributions: Mapping[str, str], sort: str, specified: Hook | None = None
 ) -> Iterator[tuple[str, Any]]:
+    """Yield what plug-ins declare by a hook; `specified`: None for one of the core's."""
     hook = getattr(manager.hook, f"mmrs_{sort}")
-    kind = _kind(sort)
+    kind = _kind(sort, specified)
     for implementation in sorted(hook.get_hookimpls(), key=lambda each: each.plugin_name):
         name = implementation.plugin_name
         try:
@@ -188,11 +227,14 @@ def _declared(
                 raise PluginError(
                     f"{source}: mmrs_{sort} gives a {type(item).__name__}, not a {kind.__name__}"
                 )
-            yield name, item if name == "core" else guarded(item, f"{source}: {called(sort, item)}")
+            shown = getattr(item, specified.key) if specified is not None else None
+            yield name, item if name == "core" else guarded(item, f"{source}: {called(sort, item, shown)}")
 
 
-def _kind(sort: str) -> type:
+def _kind(sort: str, specified: Hook | None = None) -> type:
     """Return what a hook declares; imported now, since no command needs every sort."""
-    module, _, name = _KINDS[sort].rpartition(".")
-    kind: type = getattr(import_module(f"mmrs_core.{module}"), name)
+    module, _, name = (
+        specified.descriptor.partition(":") if specified else f"mmrs_core.{_KINDS[sort]}".rpartition(".")
+    )
+    kind: type = getattr(import_module(module), name)
     return kind

@@ -7,12 +7,11 @@ from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 
 from mmrs_core.behaviour.box_files import black_boxes
-from mmrs_core.behaviour.program import Program, RobotProgram
+from mmrs_core.behaviour.program import Program
 from mmrs_core.cli.protection import ProtectedError
 from mmrs_core.contributions.execution import Sample
-from mmrs_core.contributions.rules import RobotKind
-from mmrs_core.mavlink.vehicles import vehicle_class
-from mmrs_core.pictures.flights.fixes import zero_of
+from mmrs_core.contributions.rules import RobotKind, robot_kind_of
+from mmrs_core.pictures.flights.fixes import Zero, zero_of
 from mmrs_core.pictures.flights.gathering import SIMULATION
 from mmrs_core.resources import named
 from mmrs_core.scene import Name, RobotType
@@ -63,19 +62,18 @@ def write_boxes(
         if track := run.tracks.get(robot.id):
             path = folder / box_name(robot.id)
             robot_type = types.get(robot.type_name)
-            vehicle = vehicle_class(robot, robot_type, kinds)
-            lines = _lines(name, robot, track, program, vehicle.name if vehicle is not None else "")
+            kind = robot_kind_of(robot_type, kinds) if robot_type is not None else None
+            zero = zero_of(robot, program, robot_type, kinds=kinds)
+            lines = _lines(name, robot.id, track, zero, kind.vehicle if kind is not None else "")
             with named(path):
                 path.write_text("".join(f"{line}\n" for line in lines), encoding="utf-8")
             written.append(path)
     return tuple(written)
 
 
-def _lines(
-    run: str, robot: RobotProgram, track: Sequence[Sample], program: Program, vehicle: str
-) -> Iterator[str]:
-    zero, full = zero_of(robot, program, None, vehicle), track[0].energy
-    common = {"run": run, "robot": robot.id}
+def _lines(run: str, robot: str, track: Sequence[Sample], zero: Zero, vehicle: str) -> Iterator[str]:
+    full = track[0].energy
+    common = {"run": run, "robot": robot}
 
     def line(time: float, kind: str, **content: object) -> str:
         whole = {**common, "time": round(time, 6), "wall": "", "kind": kind, **content}

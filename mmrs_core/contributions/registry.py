@@ -6,6 +6,7 @@ import re
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
+from operator import attrgetter
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from mmrs_core.contributions.commands import CORE_COMMANDS, Command
@@ -16,11 +17,11 @@ if TYPE_CHECKING:
     from mmrs_core.contributions.constraints import Constraint
     from mmrs_core.contributions.execution import Condition
     from mmrs_core.contributions.fixes import Fix
+    from mmrs_core.contributions.hooks import Extensions, Hook
     from mmrs_core.contributions.rules import MoveKind, RobotKind, Rule
     from mmrs_core.contributions.symbols import MapSymbol
     from mmrs_core.contributions.targets import Target
     from mmrs_core.contributions.vehicles import VehicleFactory
-    from mmrs_core.contributions.wiring import DeviceWiring
     from mmrs_core.languages.classes import ElementClass
     from mmrs_core.languages.evolution.migration import Migration
     from mmrs_core.languages.importers import Importer
@@ -46,11 +47,11 @@ _SHOWN: Mapping[str, Callable[[Any], object]] = {
     "robot_kinds": lambda kind: kind.name,
     "move_kinds": lambda kind: "#//".join(kind.metaclass),
     "checks": lambda check: check.name,
-    "device_actions": lambda wiring: wiring.property,
     "targets": lambda target: target.name,
     "vehicles": lambda vehicle: vehicle.name,
     "conditions": lambda condition: condition.identifier,
     "map_symbols": lambda symbol: "#//".join(symbol.metaclass),
+    "hooks": lambda hook: hook.name,
     "commands": lambda command: command.name,
 }
 
@@ -168,9 +169,14 @@ class Contributions:
         return tuple(self._by("checks", lambda check: check.name).values())
 
     @cached_property
-    def device_actions(self) -> Mapping[str, DeviceWiring]:
-        """Return how devices are wired, by the property that says so."""
-        return self._by("device_actions", lambda wiring: wiring.property)
+    def hooks(self) -> Mapping[str, Hook]:
+        """Return the hooks that plug-ins specify, by name."""
+        return self._by("hooks", lambda hook: hook.name)
+
+    @cached_property
+    def extensions(self) -> Extensions:
+        """Return what plug-ins contribute by the hooks of plug-ins."""
+        return {hook.sort: self._by(hook.sort, attrgetter(hook.key)) for hook in self.hooks.values()}
 
     @cached_property
     def targets(self) -> Mapping[str, Target]:
@@ -202,9 +208,11 @@ class Contributions:
 
     def catalogue(self) -> tuple[Contribution, ...]:
         """Return who contributed what, sorted by plug-in, sort and name."""
+        of_plugins: Mapping[str, Callable[[Any], object]]
+        of_plugins = {hook.sort: attrgetter(hook.key) for hook in self.hooks.values()}
         found = (
             Contribution(plugin, sort, str(shown(item)))
-            for sort, shown in _SHOWN.items()
+            for sort, shown in {**_SHOWN, **of_plugins}.items()
             for plugin, item in self._declared(sort)
         )
         return tuple(sorted(found, key=lambda each: (each.plugin, each.sort, each.name)))
@@ -223,7 +231,7 @@ class Contributions:
         Raises:
             PluginError: if a plug-in is broken, or two conflict.
         """
-        for sort in ("languages", *_SHOWN):
+        for sort in ("languages", *_SHOWN, "extensions"):
             getattr(self, sort)
 
     def _whose(self, plugin: str) -> str:
@@ -253,9 +261,9 @@ class Contributions:
         return by_key(sort, self._declared(sort), key)
 
 
-def called(sort: str, item: object) -> str:
-    """Return what messages call a descriptor, such as ``rule 'wave'``."""
-    return f"{_singular(sort)} '{_SHOWN[sort](item)}'"
+def called(sort: str, item: object, shown: str | None = None) -> str:
+    """Return what messages call a descriptor, such as ``rule 'wave'``; `shown`: its key, else the core's."""
+    return f"{_singular(sort)} '{_SHOWN[sort](item) if shown is None else shown}'"
 
 
 def _singular(sort: str) -> str:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal, TypeAlias
 
 if TYPE_CHECKING:
     from mmrs_core.behaviour.program import Move
@@ -26,6 +26,10 @@ if TYPE_CHECKING:
         Value,
         Work,
     )
+
+
+Medium: TypeAlias = Literal["ground", "air", "water"]
+"""What robots move in. Heights of robots in water count from the water surface, those of others from home."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -96,8 +100,9 @@ class RobotKind:
         policies: response by event, where the models say nothing; one for each event.
         barrier: the area that robots of a type keep out of because of an element of the context, such as
             water that is too deep for them; None where the element does not hinder them.
-        vehicle: class of vehicle that carries it out there, as ``mmrs sitl --kind`` names it; empty where
-            none of these does: targets and backends then refuse its robots by the name of the kind.
+        vehicle: class of vehicle that carries it, by a word that targets and backends know; they refuse the
+            robots of a kind whose vehicle they do not know, by the name of the kind. Empty: no vehicle.
+        medium: what it moves in.
     """
 
     name: str
@@ -109,6 +114,7 @@ class RobotKind:
     policies: Mapping[PolicyEvent, PolicyResponse] = field(default_factory=dict)
     barrier: Callable[[RobotType, Part], Area | None] | None = None
     vehicle: str = ""
+    medium: Medium = "ground"
 
 
 @dataclass(frozen=True, slots=True)

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Literal
 
 if TYPE_CHECKING:
     from mmrs_core.behaviour.program import Program
+    from mmrs_core.contributions.hooks import Extensions
     from mmrs_core.contributions.rules import MoveKind, RobotKind
-    from mmrs_core.contributions.wiring import Wirings
     from mmrs_core.scene import Area, Name, RobotType
 
 
@@ -38,7 +38,7 @@ class TargetInput:
     Attributes:
         types: robot types by name.
         areas: of the context as drawn, empty where no context was given.
-        device_actions: how devices are wired, by property; a target for MAVLink knows the core's anyway.
+        extensions: what plug-ins contribute by hooks of plug-ins, by `Hook.sort`, then by key.
         environment: weather and water, by attribute name, as far as the context states them.
     """
 
@@ -47,7 +47,7 @@ class TargetInput:
     robot_kinds: Mapping[Name, RobotKind]
     move_kinds: Mapping[Name, MoveKind]
     areas: tuple[Area, ...] = ()
-    device_actions: Wirings = field(default_factory=dict)
+    extensions: Extensions = field(default_factory=dict)
     environment: Mapping[str, float] = field(default_factory=dict)
 
 

@@ -12,10 +12,10 @@ from typing import TYPE_CHECKING, Protocol, runtime_checkable
 from mmrs_runtime.engine.connecting import Live as Live
 
 if TYPE_CHECKING:
-    from mmrs_core.behaviour.program import Program, RobotProgram
+    from mmrs_core.behaviour.program import Action, Program, RobotProgram
     from mmrs_core.contributions.execution import Sample
+    from mmrs_core.contributions.hooks import Extensions
     from mmrs_core.contributions.rules import MoveKind, RobotKind
-    from mmrs_core.contributions.wiring import Wirings
     from mmrs_core.scene import Area, Name, Policy, RobotType
     from mmrs_runtime.vehicle import Vehicle
 
@@ -43,7 +43,7 @@ class VehicleInput:
         policies: of the robot, in the order in which they go: the first for an event counts.
         areas: of the context as drawn; empty where none was given.
         live: of a run in real time; None in simulated time.
-        device_actions: how devices are wired, by property.
+        extensions: what plug-ins contribute by hooks of plug-ins, by `Hook.sort`, then by key.
         types: of all robots, by name, as far as they are known.
     """
 
@@ -57,7 +57,7 @@ class VehicleInput:
     policies: tuple[Policy, ...] = ()
     areas: tuple[Area, ...] = ()
     live: Live | None = None
-    device_actions: Wirings = field(default_factory=dict)
+    extensions: Extensions = field(default_factory=dict)
     types: Mapping[str, RobotType] = field(default_factory=dict)
 
 
@@ -78,6 +78,8 @@ class VehicleFactory:
         check: yields what is wrong with the options of its robots and with the links of all robots, each by
             robot, as far as the command line alone shows it, such as ``--connect udp: is no address``. Raises
             OSError where a file that they name cannot be read.
+        takes_photo: whether an action of a device takes one photo, by what the robot's type states; None
+            where the type does not state it for these vehicles.
     """
 
     name: str
@@ -85,3 +87,4 @@ class VehicleFactory:
     connect: Callable[[VehicleInput], Vehicle]
     simulated: bool = False
     check: Check = lambda options, links: ()
+    takes_photo: Callable[[Action, RobotType], bool | None] = lambda action, robot_type: None

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Collection, Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
 from mmrs_core.behaviour.earth import degrees_of, metres
 from mmrs_core.behaviour.program import Move, RobotProgram
 from mmrs_core.behaviour.travel import speed_of
+from mmrs_core.contributions.rules import Medium, robot_kind_of
+from mmrs_core.contributions.targets import TargetInput
 from mmrs_core.errors import UnsupportedError
 from mmrs_core.scene import Frame, Point, Position, RobotType
 
@@ -44,17 +46,29 @@ class RobotContext:
     Attributes:
         type: None where it was not given.
         zero: height of the robot's own zero above the origin, metres: its home, or the water surface.
+        medium: what it moves in.
     """
 
     robot: RobotProgram
     type: RobotType | None
     frame: Frame
     zero: float
+    medium: Medium = "ground"
 
     @cached_property
     def degrees(self) -> Degrees:
         """Return what knows latitudes and longitudes of its home, and of where its moves lead and look."""
         return Degrees(self.frame, _points(self.robot))
+
+    @property
+    def flies(self) -> bool:
+        """Return whether the robot moves in the air."""
+        return self.medium == "air"
+
+    @property
+    def dives(self) -> bool:
+        """Return whether the robot moves in water."""
+        return self.medium == "water"
 
     def height(self, position: Position) -> float:
         """Return a position's height above the robot's own zero, metres."""
@@ -68,6 +82,40 @@ class RobotContext:
     def label(self, move: Move) -> str:
         """Return how messages name a move of the robot."""
         return f"robot '{self.robot.id}', move '{move.id}'"
+
+
+def context_of(robot: RobotProgram, input: TargetInput) -> RobotContext:
+    """Return the context of a robot."""
+    medium, frame = medium_of(robot, input), input.program.frame
+    home = robot.home[2] if robot.home is not None else 0.0
+    zero = frame.surface if medium == "water" else home
+    return RobotContext(robot, input.types.get(robot.type_name), frame, zero, medium)
+
+
+def medium_of(robot: RobotProgram, input: TargetInput) -> Medium:
+    """Return what a robot moves in: by the kind of its type, else by its moves."""
+    type = input.types.get(robot.type_name)
+    kind = robot_kind_of(type, input.robot_kinds) if type is not None else None
+    if kind is not None:
+        return kind.medium
+    known = (input.move_kinds.get(move.metaclasses[0]) for move in robot.moves)
+    return "air" if any(each is not None and each.leaves == "airborne" for each in known) else "ground"
+
+
+def uncarried(robot: RobotProgram, input: TargetInput, vehicles: Collection[str]) -> str:
+    """Return why no vehicle of these classes carries a robot; empty where its kind names one of them.
+
+    A robot of unknown type or kind is not refused.
+    """
+    type = input.types.get(robot.type_name)
+    kind = robot_kind_of(type, input.robot_kinds) if type is not None else None
+    if kind is None or kind.vehicle in vehicles:
+        return ""
+    named = f"names vehicle '{kind.vehicle}'" if kind.vehicle else "names no vehicle"
+    known = ", ".join(sorted(vehicles))
+    return (
+        f"robot '{robot.id}': is of kind '{kind.name}', which {named}; known are {known} (RobotKind.vehicle)"
+    )
 
 
 def homeless(robot: RobotProgram) -> str:

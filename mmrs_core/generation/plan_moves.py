@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import TYPE_CHECKING, Literal, TypeAlias
+from collections.abc import Collection, Mapping
+from typing import Literal, TypeAlias
 
 from mmrs_core.behaviour.earth import metres
-from mmrs_core.behaviour.program import BEHAVIOUR, Action, Move
+from mmrs_core.behaviour.program import BEHAVIOUR, Action, Move, RobotProgram
+from mmrs_core.contributions.targets import TargetInput
+from mmrs_core.errors import UnsupportedError
+from mmrs_core.generation import context as robots
+from mmrs_core.generation.context import RobotContext, medium_of, uncarried
 from mmrs_core.scene import Name, Position, RobotType
-
-if TYPE_CHECKING:
-    from mmrs_core.mavlink.context import VehicleContext
 
 Sort: TypeAlias = Literal["start", "stop", "go", "hold", "turn"]
 
@@ -23,7 +24,6 @@ MOVES: Mapping[Name, Sort] = {
 }
 """Moves by their own metaclass: one that extends it may move otherwise, and is not known."""
 
-
 SLOWEST, FASTEST = 0.01, 100.0
 """Metres per second between which speeds mean something to vehicles of others."""
 
@@ -31,14 +31,30 @@ DEEPEST = 11_000.0
 """Metres: no sea is deeper."""
 
 
+def vehicleless(robot: RobotProgram, input: TargetInput, vehicles: Collection[str]) -> str:
+    """Return why no vehicle of these classes carries a robot; empty where one does, and if it flies."""
+    return "" if medium_of(robot, input) == "air" else uncarried(robot, input, vehicles)
+
+
+def context_of(robot: RobotProgram, input: TargetInput, vehicles: Collection[str]) -> RobotContext:
+    """Return the context of a robot.
+
+    Raises:
+        UnsupportedError: no vehicle of these classes carries it.
+    """
+    if why := vehicleless(robot, input, vehicles):
+        raise UnsupportedError(why)
+    return robots.context_of(robot, input)
+
+
 def writable_speed(speed: float) -> float:
     """Return the nearest speed that means something, metres per second."""
     return min(FASTEST, max(SLOWEST, speed))
 
 
-def above_surface(position: Position, context: VehicleContext) -> float:
+def above_surface(position: Position, context: RobotContext) -> float:
     """Return how far a position is above the surface, metres; one of a robot that stays on it never is."""
-    return metres(position[2] - context.frame.surface) if context.vehicle.dives else 0.0
+    return metres(position[2] - context.frame.surface) if context.dives else 0.0
 
 
 def seconds_of_hold(move: Move) -> float:

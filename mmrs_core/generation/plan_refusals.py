@@ -4,14 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 from mmrs_core.behaviour.program import Move, MoveTarget, RobotProgram
+from mmrs_core.generation.context import RobotContext
 from mmrs_core.generation.plan_moves import DEEPEST, FASTEST, MOVES, SLOWEST, above_surface
 from mmrs_core.scene import Policy
-
-if TYPE_CHECKING:
-    from mmrs_core.mavlink.context import VehicleContext
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,7 +26,7 @@ class Wording:
     policy: str
 
 
-def of_policies(robot: RobotProgram, context: VehicleContext, wording: Wording) -> Iterator[str]:
+def of_policies(robot: RobotProgram, context: RobotContext, wording: Wording) -> Iterator[str]:
     """Yield the policies of a robot and of its type."""
     of_type = context.type.policies if context.type is not None else ()
     for policy in dict.fromkeys((*robot.policies, *of_type)):
@@ -42,7 +39,7 @@ def of_policy(policy: Policy, wording: Wording) -> str:
     return f"policy {policy.event}{after}: {policy.response}, which only {wording.policy} can do"
 
 
-def of_movement(move: Move, context: VehicleContext, wording: Wording) -> Iterator[str]:
+def of_movement(move: Move, context: RobotContext, wording: Wording) -> Iterator[str]:
     """Yield why a movement is refused, whatever is done before and after it."""
     known = MOVES.get(move.metaclasses[0])
     if known is None:
@@ -64,10 +61,10 @@ def _of_speed(speed: float | None) -> Iterator[str]:
         yield f"its speed of {speed:g} m/s is not from {SLOWEST:g} to {FASTEST:g}"
 
 
-def _of_target(target: MoveTarget, context: VehicleContext, wording: Wording) -> Iterator[str]:
+def _of_target(target: MoveTarget, context: RobotContext, wording: Wording) -> Iterator[str]:
     if target.description is not None:
         yield f"object '{target.description}', {wording.object}"
-    if target.position is not None and not context.vehicle.flies:
+    if target.position is not None and not context.flies:
         above = above_surface(target.position, context)
         if above > 1e-6:
             yield f"leads {above:g} m above the surface"

@@ -7,9 +7,9 @@ from dataclasses import dataclass, field, replace
 
 from mmrs_core.behaviour.program import Program
 from mmrs_core.contributions.execution import Condition, Sample
+from mmrs_core.contributions.hooks import Extensions
 from mmrs_core.contributions.rules import MoveKind, RobotKind, robot_kind_of
 from mmrs_core.contributions.vehicles import Recorder, VehicleFactory, VehicleInput
-from mmrs_core.contributions.wiring import Wirings
 from mmrs_core.errors import UnsupportedError, UsageError
 from mmrs_core.languages.collector import collector_at_rest
 from mmrs_core.languages.naming import nearest
@@ -134,7 +134,7 @@ def inputs_of(
     options: Mapping[str, str],
     environment: Mapping[str, float],
     areas: tuple[Area, ...],
-    device_actions: Wirings | None = None,
+    extensions: Extensions | None = None,
 ) -> dict[str, VehicleInput]:
     """Return what the backend of each robot may use; see `simulate` for the arguments.
 
@@ -157,7 +157,7 @@ def inputs_of(
             options_for(robot.id, options),
             policies,
             areas,
-            device_actions=device_actions or {},
+            extensions=extensions or {},
             types=types,
         )
     return found

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
+from functools import cache
 
 from mmrs_core.behaviour.program import (
     BEHAVIOUR,
@@ -15,7 +16,9 @@ from mmrs_core.behaviour.program import (
     RobotProgram,
     Transition,
 )
+from mmrs_core.contributions.registry import Contributions
 from mmrs_core.contributions.targets import TargetInput
+from mmrs_core.plugins import load_plugins
 from mmrs_core.scene import (
     Area,
     AreaUse,
@@ -179,4 +182,13 @@ def areas() -> tuple[Area, ...]:
 def target_input(program: Program, types: Iterable[RobotType] | None = None) -> TargetInput:
     """Return what a target gets for a behaviour among `areas`; its type is `quad` unless others are given."""
     given = (quad(),) if types is None else types
-    return TargetInput(program, {each.name: each for each in given}, {}, {}, areas())
+    kinds = installed()
+    return TargetInput(
+        program, {each.name: each for each in given}, kinds.robot_kinds, kinds.move_kinds, areas()
+    )
+
+
+@cache
+def installed() -> Contributions:
+    """Return what the installed plug-ins contribute."""
+    return load_plugins().contributions

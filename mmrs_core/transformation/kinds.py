@@ -253,7 +253,7 @@ PLAIN_ROBOT = RobotKind(
         "LOG_FAILED": "HOLD",
         "GROUND_LOST": "CONTINUE",
     },
-    vehicle="rover",
+    vehicle="ground",
 )
 
 _Seconds = Callable[["Move", tuple[Position, ...], Kinematics, str], tuple[float, float]]

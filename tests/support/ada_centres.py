@@ -40,6 +40,7 @@ from mmrs_core.behaviour.replay import ReplayResult, replay
 from mmrs_core.contributions.targets import TargetInput
 from mmrs_core.generation.render import render
 from mmrs_core.scene import RobotType
+from mmrs_core.testing.programs import installed
 
 Meddle: TypeAlias = "Callable[[World, subprocess.Popen[str]], None]"
 
@@ -55,7 +56,9 @@ FLAGS = ("-gnat2012", "-gnatwa", "-gnatwe")
 def write(behaviour: Program, folder: Path, type: RobotType | None = None) -> Path:
     """Write the decision centres of a behaviour; return the folder of the first robot."""
     kind = type or diver()
-    files = render(ADA, TargetInput(behaviour, {kind.name: kind}, {}, {}))
+    files = render(
+        ADA, TargetInput(behaviour, {kind.name: kind}, installed().robot_kinds, installed().move_kinds)
+    )
     for file in files:
         path = folder / file.path
         path.parent.mkdir(parents=True, exist_ok=True)

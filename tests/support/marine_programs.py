@@ -15,7 +15,7 @@ from mmrs_core.contributions.targets import TargetInput
 from mmrs_core.errors import UnsupportedError
 from mmrs_core.generation.render import render
 from mmrs_core.scene import Capability, Device, DeviceAction, Frame, Part, RobotType
-from mmrs_core.testing.programs import feedback, move, program, robot_program
+from mmrs_core.testing.programs import feedback, installed, move, program, robot_program
 from mmrs_core.testing.small_programs import notify
 
 SEA = Frame("EPSG:4326", 41.18, -8.7, 0.0, "MSL", surface=-2.0)
@@ -75,7 +75,12 @@ def given(swimmer: Callable[..., RobotType]) -> Callable[..., TargetInput]:
         robots = [each for each in parts if isinstance(each, RobotProgram)]
         options = {"home": (0.0, 0.0, SEA.surface), "type_name": "Diver", **options}
         made = [robot_program("naiad", moves, **options)] if moves else []  # type: ignore[arg-type]
-        return TargetInput(program(*made, *robots, frame=frame), {"Diver": type or swimmer()}, {}, {})
+        return TargetInput(
+            program(*made, *robots, frame=frame),
+            {"Diver": type or swimmer()},
+            installed().robot_kinds,
+            installed().move_kinds,
+        )
 
     return make
 

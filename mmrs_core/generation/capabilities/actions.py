@@ -6,7 +6,6 @@ from collections.abc import Iterator, Mapping
 from dataclasses import replace
 
 from mmrs_core.behaviour.program import BEHAVIOUR
-from mmrs_core.contributions.wiring import DeviceWiring, Wired
 from mmrs_core.generation.capabilities.probes import (
     ALPHA,
     BETA,
@@ -33,13 +32,8 @@ WIRINGS: Mapping[str, Mapping[str, str]] = {
     "a trigger by distance (mavlink.trigger)": {"mavlink.trigger": "5", "mavlink.trigger.act": "start"},
     "a winch (mavlink.winch)": {"mavlink.winch": "1", "mavlink.winch.act": "length 5"},
     "a gimbal (mavlink.gimbal.ACTION)": {"mavlink.gimbal": "1", "mavlink.gimbal.act": "-90 0"},
-    "a wiring of a plug-in": {"probe.device": ""},
     "no wiring": {},
 }
-
-_PLUGIN = DeviceWiring(
-    "probe.device", "a wiring of a plug-in", lambda action, device: Wired(183, (9.0, 1900.0))
-)
 
 
 def of_actions() -> Iterator[Probe]:
@@ -49,7 +43,7 @@ def of_actions() -> Iterator[Probe]:
             kind_of("copter"),
             devices={"device": replace(kind_of("copter").devices["device"], properties=properties)},
         )
-        base = replace(plain(), types={"Kind": type}, device_actions={"probe.device": _PLUGIN})
+        base = replace(plain(), types={"Kind": type})
         act = action("DeviceAction", name="act", device="device")
         yield Probe("device action", f"DeviceAction: {words}", with_move(base, "a", after=(act,)), base)
     servo = kind_of("copter", mavlink__servo="9", mavlink__servo__act="1900")

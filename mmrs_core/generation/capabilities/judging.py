@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import chain
 from typing import Literal, TypeAlias
 
+from mmrs_core.contributions.registry import Contributions
 from mmrs_core.contributions.targets import Target, TargetInput
 from mmrs_core.errors import UnsupportedError
 from mmrs_core.generation.capabilities import actions, behaviours, moves, policies
@@ -62,15 +63,27 @@ def probes(more_moves: Iterable[Metaclasses] = ()) -> tuple[Probe, ...]:
     )
 
 
-def capabilities_of(target: Target, tried: Iterable[Probe] | None = None) -> tuple[Capability, ...]:
+def capabilities_of(
+    target: Target, contributions: Contributions, tried: Iterable[Probe] | None = None
+) -> tuple[Capability, ...]:
     """Return what a target does with each element; by default with each that `probes` gives."""
     trial = Trial(target)
-    return tuple(trial.judged(probe) for probe in suited(probes() if tried is None else tried, target))
+    known = suited(probes() if tried is None else tried, target, contributions)
+    return tuple(trial.judged(probe) for probe in known)
 
 
-def suited(tried: Iterable[Probe], target: Target) -> tuple[Probe, ...]:
+def suited(tried: Iterable[Probe], target: Target, contributions: Contributions) -> tuple[Probe, ...]:
     """Return the probes as they are tried with a target: with drones, or with underwater vehicles."""
-    return tuple(under_water(probe) if target.tried_with == "sub" else probe for probe in tried)
+    made = (under_water(probe) if target.tried_with == "sub" else probe for probe in tried)
+    moves = contributions.move_kinds
+    kinds = {name: replace(kind, policies={}) for name, kind in contributions.robot_kinds.items()}
+
+    def with_kinds(input: TargetInput) -> TargetInput:
+        return replace(input, robot_kinds=kinds, move_kinds=moves)
+
+    return tuple(
+        replace(probe, given=with_kinds(probe.given), without=with_kinds(probe.without)) for probe in made
+    )
 
 
 class Trial:

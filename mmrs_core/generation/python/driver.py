@@ -9,7 +9,6 @@ from typing import Any, ClassVar, Generic, Literal, TypeVar
 
 from mmrs_core.behaviour.program import Action, Heading, Move, RobotProgram
 from mmrs_core.contributions.targets import FileSpec, TargetInput
-from mmrs_core.contributions.wiring import Unwired
 from mmrs_core.generation.context import RobotContext
 from mmrs_core.generation.escaping import Call
 from mmrs_core.generation.python.moves import MOVEMENTS, look_of, unturnable
@@ -56,8 +55,8 @@ class PythonDriver(ABC, Generic[C]):
         """Return the word for a robot's vehicle."""
 
     @abstractmethod
-    def device(self, action: Action, context: C) -> Call | Unwired:
-        """Return how a device does something, or why it cannot."""
+    def device(self, action: Action, context: C) -> Call | str:
+        """Return how a device carries out an action, or the reason why it cannot."""
 
     def look(self, heading: Heading, context: C) -> Call | None:
         """Return how a device is pointed; None where it cannot be, and `unseen` says why."""

@@ -18,7 +18,6 @@ from mmrs_core.behaviour.program import (
     MoveTarget,
 )
 from mmrs_core.contributions.rules import most_specific
-from mmrs_core.contributions.wiring import Unwired
 from mmrs_core.generation.context import RobotContext
 from mmrs_core.generation.escaping import Call
 from mmrs_core.scene import Name, Position
@@ -48,7 +47,7 @@ def action_of(action: Action, context: RobotContext, driver: Driver) -> Call:
     if not action.is_a(DEVICE_ACTION):
         return Call("NoEffect", (action.name, f"{action.metaclasses[0][1]} is not known to this target"))
     found = driver.device(action, context)
-    return Call("NoEffect", (action.name, found.reason)) if isinstance(found, Unwired) else found
+    return Call("NoEffect", (action.name, found)) if isinstance(found, str) else found
 
 
 def losses_of(move: Move, context: RobotContext, driver: Driver) -> Iterator[str]:
@@ -69,8 +68,8 @@ def action_losses(move: Move, context: RobotContext, driver: Driver) -> Iterator
     for action in (*move.before, *move.after):
         if action.is_a(DEVICE_ACTION):
             found = driver.device(action, context)
-            if isinstance(found, Unwired):
-                yield f"{context.label(move)}: action '{action.name}': {found.reason}"
+            if isinstance(found, str):
+                yield f"{context.label(move)}: action '{action.name}': {found}"
         elif not (action.is_a(NOTIFY) or action.is_a(FEEDBACK)):
             kind = action.metaclasses[0][1]
             yield f"{context.label(move)}: action {kind} is not known to this target"

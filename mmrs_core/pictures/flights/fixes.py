@@ -14,9 +14,8 @@ import numpy as np
 
 from mmrs_core.behaviour.earth import WGS84
 from mmrs_core.behaviour.program import Program, RobotProgram
-from mmrs_core.contributions.rules import RobotKind
+from mmrs_core.contributions.rules import RobotKind, robot_kind_of
 from mmrs_core.geometry.frames import Floats, LocalFrame
-from mmrs_core.mavlink.vehicles import VEHICLES, vehicle_class
 from mmrs_core.pictures.flights.values import Flags, Track
 from mmrs_core.scene import Frame, Name, Position, RobotType
 from mmrs_runtime.records.entries import Entry, number_of
@@ -147,11 +146,12 @@ def zero_of(
     Args:
         robot_type: None where it is not known.
         vehicle: what the black box says that it was; empty where it says nothing.
-        kinds: of robots, by metaclass; without them, the type's metaclasses tell what carries it.
+        kinds: of robots, by metaclass.
     """
     home = robot.home if robot.home is not None else (0.0, 0.0, 0.0)
-    known = VEHICLES.get(vehicle) if vehicle else vehicle_class(robot, robot_type, kinds)
-    dives = known is not None and known.dives
+    kind = robot_kind_of(robot_type, kinds) if robot_type is not None and not vehicle else None
+    known = (kind,) if kind is not None else [each for each in kinds.values() if each.vehicle == vehicle]
+    dives = any(each.medium == "water" for each in known)
     return Zero(program.frame, home, program.frame.surface if dives else home[2])
 
 

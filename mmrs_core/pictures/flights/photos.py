@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
 
 from mmrs_core.behaviour.program import Action, Move, Program, RobotProgram
 from mmrs_core.contributions.rules import RobotKind
-from mmrs_core.mavlink.wiring import DIGICAM_CONTROL, IMAGE_START_CAPTURE, Unwired, Wired, wiring_of
+from mmrs_core.contributions.vehicles import VehicleFactory
 from mmrs_core.pictures.flights.fixes import Zero, zero_of
 from mmrs_core.pictures.flights.values import Flight, Flown
 from mmrs_core.scene import Name, Position, RobotType
@@ -46,26 +46,33 @@ def shots_in(
     flight: Flight,
     types: Mapping[str, RobotType],
     kinds: Mapping[Name, RobotKind] = MappingProxyType({}),
+    vehicles: Iterable[VehicleFactory] = (),
 ) -> dict[str, tuple[Shot, ...]]:
     """Return all photos of a flight, by robot; types by name, as far as known, kinds by metaclass."""
+    known = tuple(vehicles)
     return {
         robot.id: shots_of(
             robot,
             flown := flight.robots[robot.id],
             zero_of(robot, program, types.get(robot.type_name), flown.vehicle, kinds),
             types.get(robot.type_name),
+            known,
         )
         for robot in program.robots
     }
 
 
 def shots_of(
-    robot: RobotProgram, flown: Flown, zero: Zero, robot_type: RobotType | None = None
+    robot: RobotProgram,
+    flown: Flown,
+    zero: Zero,
+    robot_type: RobotType | None = None,
+    vehicles: Iterable[VehicleFactory] = (),
 ) -> tuple[Shot, ...]:
     """Return all photos of a robot by time, each order matched with the nearest confirmation."""
     taken = [*_taken(flown, zero)]
     shots: list[Shot] = []
-    for time, move in _orders(robot, flown, robot_type):
+    for time, move in _orders(robot, flown, robot_type, tuple(vehicles)):
         near = min(taken, key=lambda shot: abs(shot.time - time), default=None)
         if near is not None and abs(near.time - time) <= _MATCHING:
             taken.remove(near)
@@ -76,14 +83,13 @@ def shots_of(
     return tuple(sorted([*shots, *taken], key=lambda shot: shot.time))
 
 
-def takes_photo(action: Action, robot_type: RobotType | None) -> bool:
-    """Return whether an action takes one photo: by how its device is wired, else by its name."""
+def takes_photo(action: Action, robot_type: RobotType | None, vehicles: Iterable[VehicleFactory]) -> bool:
+    """Return whether an action takes one photo: by its device on these vehicles, else by its name."""
     if not action.device:
         return False
-    wiring = wiring_of(action, robot_type)
-    if isinstance(wiring, Wired):
-        return wiring.command in (IMAGE_START_CAPTURE, DIGICAM_CONTROL)
-    return isinstance(wiring, Unwired) and bool(_LIKE_PHOTO.search(action.name))
+    found = (each.takes_photo(action, robot_type) for each in vehicles) if robot_type is not None else ()
+    known = [taken for taken in found if taken is not None]
+    return any(known) if known else bool(_LIKE_PHOTO.search(action.name))
 
 
 def _devices_confirm(flown: Flown) -> bool:
@@ -102,10 +108,12 @@ def _taken(flown: Flown, zero: Zero) -> Iterator[Shot]:
         yield Shot(entry.time, at, TAKEN, None if index is None else int(index))
 
 
-def _orders(robot: RobotProgram, flown: Flown, robot_type: RobotType | None) -> Iterator[tuple[float, Move]]:
+def _orders(
+    robot: RobotProgram, flown: Flown, robot_type: RobotType | None, vehicles: tuple[VehicleFactory, ...]
+) -> Iterator[tuple[float, Move]]:
     moves = {move.id: move for move in robot.moves}
     for record in flown.records:
         if record.label == "act":
             move = moves[record.move]
-            if takes_photo(move.action(record.detail), robot_type):
+            if takes_photo(move.action(record.detail), robot_type, vehicles):
                 yield record.time, move

@@ -57,7 +57,8 @@ def picture_of_flight(
         elements,
     )
     kinds = contributed.move_kinds
-    shots = shots_in(program, flight, place.types, contributed.robot_kinds)
+    vehicles = contributed.vehicles.values()
+    shots = shots_in(program, flight, place.types, contributed.robot_kinds, vehicles)
     shown = [_Shown(robot, flight.robots[robot.id], kinds, shots[robot.id]) for robot in program.robots]
     robots = tuple(each.over(picture) for each, picture in zip(shown, plan.robots, strict=True))
     coarsest = max(each.tolerance for each in shown) if shown else 0.0

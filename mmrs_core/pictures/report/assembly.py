@@ -13,6 +13,7 @@ import numpy as np
 from mmrs_core.behaviour.program import Program, RobotProgram
 from mmrs_core.behaviour.replay import ReplayResult, replay
 from mmrs_core.contributions.rules import MoveKind, RobotKind
+from mmrs_core.contributions.vehicles import VehicleFactory
 from mmrs_core.pictures.flights.away import AWAY
 from mmrs_core.pictures.flights.fixes import Zero, zero_of
 from mmrs_core.pictures.flights.photos import shots_in
@@ -49,6 +50,7 @@ class Given:
 
     Attributes:
         kinds: of moves, by metaclass. robot_kinds: of robots, by metaclass.
+        vehicles: that robots may have had.
     """
 
     program: Program
@@ -57,6 +59,7 @@ class Given:
     planned: Planned
     kinds: Mapping[Name, MoveKind]
     robot_kinds: Mapping[Name, RobotKind] = field(default_factory=dict)
+    vehicles: tuple[VehicleFactory, ...] = ()
 
     def legs(self) -> dict[str, tuple[PlannedLeg, ...]]:
         """Return the moves that each robot began, with their planned paths."""
@@ -170,7 +173,8 @@ def _separations(
 
 
 def _photos(given: Given, places: Locator) -> Iterator[PhotoReport]:
-    for robot, shots in shots_in(given.program, given.flight, given.place.types, given.robot_kinds).items():
+    found = shots_in(given.program, given.flight, given.place.types, given.robot_kinds, given.vehicles)
+    for robot, shots in found.items():
         for shot in shots:
             where = places.of(shot.at) if shot.at is not None else None
             yield PhotoReport(robot, shot.time, shot.state, shot.index, shot.task, shot.move, where)

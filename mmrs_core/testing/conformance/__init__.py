@@ -10,7 +10,6 @@ _MODULES = (
     "checks",
     "constraints",
     "declared",
-    "device_wirings",
     "fixes",
     "metamodels",
     "missions",
@@ -25,7 +24,6 @@ pytest.register_assert_rewrite(*(f"{__name__}.{module}" for module in _MODULES))
 
 from mmrs_core.testing.conformance.checks import CheckCase, CheckConformance  # noqa: E402
 from mmrs_core.testing.conformance.constraints import Case, ConstraintConformance  # noqa: E402
-from mmrs_core.testing.conformance.device_wirings import DeviceWiringConformance  # noqa: E402
 from mmrs_core.testing.conformance.fixes import FixCase, FixConformance  # noqa: E402
 from mmrs_core.testing.conformance.metamodels import MetamodelConformance  # noqa: E402
 from mmrs_core.testing.conformance.missions import MissionConformance  # noqa: E402
@@ -41,7 +39,6 @@ __all__ = [
     "CheckCase",
     "CheckConformance",
     "ConstraintConformance",
-    "DeviceWiringConformance",
     "FixCase",
     "FixConformance",
     "MetamodelConformance",

@@ -41,11 +41,13 @@ class Conformance:
         plugin: the module or object with its hooks.
         name: of its entry point; matters only where it is looked for among the installed plug-ins.
         more_metamodels: those that tests need beside the plug-in's own.
+        more_sorts: as `SORTS`, for hooks of plug-ins.
     """
 
     plugin: ClassVar[object]
     name: ClassVar[str] = "tested"
     more_metamodels: ClassVar[Iterable[MetamodelSource]] = ()
+    more_sorts: ClassVar[tuple[str, ...]] = ()
 
     @pytest.fixture(scope="class")
     @classmethod

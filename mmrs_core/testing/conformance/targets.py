@@ -15,7 +15,7 @@ from mmrs_core.generation.capabilities.judging import capabilities_of, probes, s
 from mmrs_core.generation.manifest import manifest_in
 from mmrs_core.generation.render import render
 from mmrs_core.testing.conformance.declared import Conformance, declared
-from mmrs_core.testing.programs import target_input, two_drones
+from mmrs_core.testing.programs import installed, target_input, two_drones
 
 UNHEARD_OF = (("urn:mmrs:testing:nowhere:1.0", "Somersault"), ("urn:mmrs:behaviour:1.0", "Move"))
 
@@ -92,11 +92,12 @@ class TargetConformance(Conformance):
 
         A refusal is about something that the behaviour without it is not refused for.
         """
-        rows = capabilities_of(target)
+        contributions = installed()
+        rows = capabilities_of(target, contributions)
         kept = [row.element for row in rows if row.verdict in ("expressed", "no difference")]
         for begin in target.capabilities:
             assert any(element.startswith(begin) for element in kept), begin
-        for probe, row in zip(suited(probes(), target), rows, strict=True):
+        for probe, row in zip(suited(probes(), target, contributions), rows, strict=True):
             refused = row.verdict in ("lossy", "refused")
             assert bool(tuple(target.refusals(probe.given))) is refused, row.element
 

@@ -96,4 +96,5 @@ AUV_KIND = RobotKind(
         "GROUND_LOST": "CONTINUE",
     },
     vehicle="sub",
+    medium="water",
 )

@@ -18,3 +18,6 @@ INSPECT_OBJECT_TASK = (AUV_TASKS, "InspectObjectTask")
 ALIGN_TASK = (AUV_TASKS, "AlignTask")
 FOLLOW_PIPELINE_TASK = (AUV_TASKS, "FollowPipelineTask")
 SURFACE_TASK = (AUV_TASKS, "SurfaceTask")
+
+VEHICLES = ("ground", "rover", "sub")
+"""Classes of vehicles that the targets of this plug-in look at; they refuse those that do not dive."""

@@ -8,6 +8,7 @@ from math import ceil, dist, radians
 
 from mmrs_core.behaviour.earth import metres
 from mmrs_core.behaviour.program import DEVICE_ACTION, Action, Move
+from mmrs_core.generation.context import RobotContext
 from mmrs_core.generation.escaping import file_stems
 from mmrs_core.generation.plan_moves import (
     DEEPEST,
@@ -17,7 +18,6 @@ from mmrs_core.generation.plan_moves import (
     seconds_of_hold,
     writable_speed,
 )
-from mmrs_core.mavlink.context import VehicleContext
 from mmrs_core.scene import Position
 from mmrs_core.transformation.kinds import before_target
 from mmrs_imc.messages import (
@@ -66,7 +66,7 @@ class Plan:
     faults: tuple[tuple[Move, str], ...]
 
 
-def plan_of(context: VehicleContext, name: str, stem: str) -> Plan:
+def plan_of(context: RobotContext, name: str, stem: str) -> Plan:
     """Return the plan of a robot.
 
     What plans cannot express is left out, but never so that a vehicle goes on where it should wait: a
@@ -102,7 +102,7 @@ def plan_of(context: VehicleContext, name: str, stem: str) -> Plan:
 class _Walk:
     """Goes through a robot's moves from its start to where they end, or come round again."""
 
-    def __init__(self, context: VehicleContext) -> None:
+    def __init__(self, context: RobotContext) -> None:
         self.maneuvers: list[Maneuver] = []
         self.faults: list[tuple[Move, str]] = []
         self._context = context
@@ -158,7 +158,7 @@ class _Walk:
         """Stay for whole seconds; 0 is without end. At the surface that is what finds the position."""
         seconds = min(seconds, LONGEST)
         speed = self._slowly()
-        if seconds and self._depth() == 0.0 and self._context.vehicle.dives:
+        if seconds and self._depth() == 0.0 and self._context.dives:
             flags = FROM_HERE | WAIT_AT_SURFACE | KEEP_STATION
             limits = {"timeout": min(LONGEST, seconds + GRACE), "flags": flags}
             self._add(id, move, "PopUp", {**limits, "duration": seconds, "radius": RADIUS, "speed": speed})

@@ -7,12 +7,14 @@ from collections.abc import Iterator
 from mmrs_core.behaviour.earth import LOCAL
 from mmrs_core.behaviour.program import DEVICE_ACTION, Action, Move, RobotProgram, Transition
 from mmrs_core.contributions.targets import TargetInput
-from mmrs_core.generation.context import homeless
-from mmrs_core.generation.plan_moves import seconds_of_hold
+from mmrs_core.generation.context import RobotContext, homeless
+from mmrs_core.generation.plan_moves import context_of, seconds_of_hold, vehicleless
 from mmrs_core.generation.plan_refusals import Wording, of_movement, of_policies, of_policy
-from mmrs_core.mavlink.context import VehicleContext, context_of, vehicleless
 from mmrs_imc.plans import LONGEST, plan_of
 from mmrs_imc.wiring import set_by
+
+VEHICLES = ("ground", "rover", "sub")
+"""Classes of vehicles that these plans are for."""
 
 WORDING = Wording(
     turn="which no manoeuvre of IMC does",
@@ -33,11 +35,11 @@ def refusals(input: TargetInput) -> Iterator[str]:
 def _of_robot(robot: RobotProgram, input: TargetInput) -> Iterator[str]:
     if robot.home is None:
         yield homeless(robot)
-    if unknown := vehicleless(robot, input):
+    if unknown := vehicleless(robot, input, VEHICLES):
         yield unknown
         return
-    context = context_of(robot, input)
-    if context.vehicle.flies:
+    context = context_of(robot, input, VEHICLES)
+    if context.flies:
         yield f"robot '{robot.id}': flies, and heights of these plans count down from the water surface"
     else:
         plan = plan_of(context, input.program.name, robot.id)
@@ -53,7 +55,7 @@ def _of_robot(robot: RobotProgram, input: TargetInput) -> Iterator[str]:
             yield f"{context.label(move)}: {why}"
 
 
-def _of_move(move: Move, context: VehicleContext) -> Iterator[str]:
+def _of_move(move: Move, context: RobotContext) -> Iterator[str]:
     yield from of_movement(move, context, WORDING)
     if seconds_of_hold(move) > LONGEST:
         yield f"holds for {seconds_of_hold(move):g} s, of {LONGEST:,} at most"
@@ -61,7 +63,7 @@ def _of_move(move: Move, context: VehicleContext) -> Iterator[str]:
         yield from _of_action(action, context)
 
 
-def _of_action(action: Action, context: VehicleContext) -> Iterator[str]:
+def _of_action(action: Action, context: RobotContext) -> Iterator[str]:
     if not action.is_a(DEVICE_ACTION):
         yield f"action {action.metaclasses[0][1]} has no form in a plan"
         return

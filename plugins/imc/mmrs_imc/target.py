@@ -15,14 +15,14 @@ from pathlib import Path
 from mmrs_core.behaviour.earth import LOCAL
 from mmrs_core.contributions.targets import FileSpec, Target, TargetInput, TracedStep
 from mmrs_core.errors import UnsupportedError
-from mmrs_core.generation.context import require_home
+from mmrs_core.generation.context import RobotContext, require_home
 from mmrs_core.generation.escaping import file_stems
-from mmrs_core.mavlink.context import VehicleContext, context_of
+from mmrs_core.generation.plan_moves import context_of
 from mmrs_imc.capabilities import CAPABILITIES
 from mmrs_imc.messages import REQUEST, SET, Message, Value
 from mmrs_imc.packing import packet
 from mmrs_imc.plans import Plan, plan_of
-from mmrs_imc.refusals import refusals
+from mmrs_imc.refusals import VEHICLES, refusals
 
 
 def files(input: TargetInput) -> Iterator[FileSpec]:
@@ -36,8 +36,8 @@ def files(input: TargetInput) -> Iterator[FileSpec]:
     stems = file_stems([robot.id for robot in input.program.robots])
     for robot in input.program.robots:
         require_home(robot)
-        context = context_of(robot, input)
-        if context.vehicle.flies:
+        context = context_of(robot, input, VEHICLES)
+        if context.flies:
             raise UnsupportedError(f"robot '{robot.id}': flies")
         stem = stems[robot.id]
         plan = plan_of(context, input.program.name, stem)
@@ -49,7 +49,7 @@ def files(input: TargetInput) -> Iterator[FileSpec]:
         yield FileSpec(f"{stem}.json", "plan.json.jinja", {"plan": _shown(plan.message)})
 
 
-def _steps(context: VehicleContext, plan: Plan) -> Iterator[TracedStep]:
+def _steps(context: RobotContext, plan: Plan) -> Iterator[TracedStep]:
     for each in plan.maneuvers:
         move = each.move
         yield TracedStep(f"manoeuvre {each.id}", context.robot.id, move.id, move.task, move.rule)

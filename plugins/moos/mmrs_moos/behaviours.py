@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from mmrs_core.behaviour.travel import TRAVEL_MARGINS
-from mmrs_core.mavlink.context import VehicleContext
+from mmrs_core.generation.context import RobotContext
 from mmrs_moos.steps import TOLERANCE, Step
 from mmrs_moos.words import DEPLOY, DONE, STEP, text
 
@@ -23,7 +23,7 @@ class Behaviour:
     parameters: tuple[tuple[str, str], ...]
 
 
-def behaviours_of(step: Step, context: VehicleContext) -> Iterator[Behaviour]:
+def behaviours_of(step: Step, context: RobotContext) -> Iterator[Behaviour]:
     """Yield what a helm does in a step, all of it at once.
 
     A way ends at its place as seen from above; then the helm holds until the depth is right, too.
@@ -69,10 +69,10 @@ def behaviours_of(step: Step, context: VehicleContext) -> Iterator[Behaviour]:
     yield from _ends(step, name, turn, context)
 
 
-def _ends(step: Step, name: str, turn: list[tuple[str, str]], context: VehicleContext) -> Iterator[Behaviour]:
+def _ends(step: Step, name: str, turn: list[tuple[str, str]], context: RobotContext) -> Iterator[Behaviour]:
     """Yield what ends a step: a timer for each way on, which runs while its conditions are met."""
     met = [("condition", f"{variable} = {value}") for variable, value in step.waits]
-    if step.speed is not None and context.vehicle.dives:
+    if step.speed is not None and context.dives:
         low, high = step.depth - TOLERANCE, step.depth + TOLERANCE
         met += [("condition", f"NAV_DEPTH <= {text(high)}")]
         met += [("condition", f"NAV_DEPTH >= {text(low)}")] if low > 0.0 else []
@@ -96,10 +96,8 @@ def _ends(step: Step, name: str, turn: list[tuple[str, str]], context: VehicleCo
         )
 
 
-def _depth(
-    step: Step, name: str, turn: list[tuple[str, str]], context: VehicleContext
-) -> Iterator[Behaviour]:
-    if not context.vehicle.dives:
+def _depth(step: Step, name: str, turn: list[tuple[str, str]], context: RobotContext) -> Iterator[Behaviour]:
+    if not context.dives:
         return
     yield Behaviour(
         "BHV_ConstantDepth",
@@ -113,6 +111,6 @@ def _depth(
     )
 
 
-def _slow(context: VehicleContext) -> float:
+def _slow(context: RobotContext) -> float:
     type = context.type
     return type.capabilities[0].speed[1] / 2.0 if type is not None and type.capabilities else TOLERANCE

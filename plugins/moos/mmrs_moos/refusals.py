@@ -6,11 +6,14 @@ from collections.abc import Iterator, Mapping
 
 from mmrs_core.behaviour.program import Move, RobotProgram, Transition
 from mmrs_core.contributions.targets import TargetInput
-from mmrs_core.generation.context import homeless
+from mmrs_core.generation.context import RobotContext, homeless
 from mmrs_core.generation.escaping import file_stems
+from mmrs_core.generation.plan_moves import context_of, vehicleless
 from mmrs_core.generation.plan_refusals import Wording, of_movement, of_policies, of_policy
-from mmrs_core.mavlink.context import VehicleContext, context_of, vehicleless
 from mmrs_moos.steps import Variables, course_of, posts_of, variables_for
+
+VEHICLES = ("ground", "rover", "sub")
+"""Classes of vehicles that these plans are for."""
 
 WORDING = Wording(
     turn="which no behaviour of a helm does",
@@ -35,11 +38,11 @@ def refusals(input: TargetInput) -> Iterator[str]:
 def _of_robot(robot: RobotProgram, input: TargetInput, nodes: Mapping[str, str]) -> Iterator[str]:
     if robot.home is None:
         yield homeless(robot)
-    if unknown := vehicleless(robot, input):
+    if unknown := vehicleless(robot, input, VEHICLES):
         yield unknown
         return
-    context = context_of(robot, input)
-    if context.vehicle.flies:
+    context = context_of(robot, input, VEHICLES)
+    if context.flies:
         yield f"robot '{robot.id}': flies, and depths of a helm count down from the water surface"
         return
     variables = variables_for(context, input, nodes)
@@ -55,7 +58,7 @@ def _of_robot(robot: RobotProgram, input: TargetInput, nodes: Mapping[str, str])
         yield f"{context.label(move)}: {why}"
 
 
-def _of_move(move: Move, context: VehicleContext, variables: Variables) -> Iterator[str]:
+def _of_move(move: Move, context: RobotContext, variables: Variables) -> Iterator[str]:
     yield from of_movement(move, context, WORDING)
     for action in (*move.before, *move.after):
         posts = posts_of(action, context.type, variables)
@@ -63,7 +66,7 @@ def _of_move(move: Move, context: VehicleContext, variables: Variables) -> Itera
             yield posts
 
 
-def _rings(robot: RobotProgram, context: VehicleContext) -> Iterator[str]:
+def _rings(robot: RobotProgram, context: RobotContext) -> Iterator[str]:
     """Yield which moves lead back to one from which they come."""
     state: dict[int, str] = {}
     path: list[tuple[int, Iterator[int]]] = [(robot.start, iter(_ways(robot.transitions.get(robot.start))))]

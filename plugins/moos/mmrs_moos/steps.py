@@ -9,6 +9,7 @@ from math import ceil, dist
 from mmrs_core.behaviour.earth import metres
 from mmrs_core.behaviour.program import DEVICE_ACTION, FEEDBACK, Action, Move, SlotId
 from mmrs_core.contributions.targets import TargetInput
+from mmrs_core.generation.context import RobotContext
 from mmrs_core.generation.plan_moves import (
     DEEPEST,
     MOVES,
@@ -17,7 +18,6 @@ from mmrs_core.generation.plan_moves import (
     seconds_of_hold,
     writable_speed,
 )
-from mmrs_core.mavlink.context import VehicleContext
 from mmrs_core.scene import Position, RobotType
 from mmrs_core.transformation.kinds import before_target
 from mmrs_moos.words import MESSAGE, variables_of, words_of
@@ -81,7 +81,7 @@ class Variables:
     told: Mapping[tuple[SlotId, bool], tuple[str, str]]
 
 
-def variables_for(context: VehicleContext, input: TargetInput, nodes: Mapping[str, str]) -> Variables:
+def variables_for(context: RobotContext, input: TargetInput, nodes: Mapping[str, str]) -> Variables:
     """Return the variables of a robot; `nodes`: names of the communities of all robots."""
     robot = context.robot
     conditions = {each.condition for each in robot.transitions.values() if each.condition is not None}
@@ -111,7 +111,7 @@ class Course:
     faults: tuple[tuple[Move, str], ...]
 
 
-def course_of(context: VehicleContext, variables: Variables) -> Course:
+def course_of(context: RobotContext, variables: Variables) -> Course:
     """Return the steps of a robot, from its start on; of those that come after a choice, one way first."""
     walk = _Walk(context, variables)
     walk.go_through()
@@ -121,7 +121,7 @@ def course_of(context: VehicleContext, variables: Variables) -> Course:
 class _Walk:
     """Goes through a robot's moves, each once."""
 
-    def __init__(self, context: VehicleContext, variables: Variables) -> None:
+    def __init__(self, context: RobotContext, variables: Variables) -> None:
         self._context, self._variables = context, variables
         names = [move.id for move in context.robot.moves]
         self._words = words_of(names, "s_")

@@ -14,12 +14,12 @@ from pathlib import Path
 
 from mmrs_core.contributions.targets import FileSpec, Target, TargetInput, TracedStep
 from mmrs_core.errors import UnsupportedError
-from mmrs_core.generation.context import require_home
-from mmrs_core.mavlink.context import VehicleContext, context_of
+from mmrs_core.generation.context import RobotContext, require_home
+from mmrs_core.generation.plan_moves import context_of
 from mmrs_core.scene import Frame
 from mmrs_moos.behaviours import behaviours_of
 from mmrs_moos.capabilities import CAPABILITIES
-from mmrs_moos.refusals import nodes_of, refusals
+from mmrs_moos.refusals import VEHICLES, nodes_of, refusals
 from mmrs_moos.steps import Step, Variables, course_of, variables_for
 from mmrs_moos.words import text
 
@@ -33,8 +33,8 @@ def files(input: TargetInput) -> Iterator[FileSpec]:
     nodes = nodes_of(input)
     for robot in input.program.robots:
         require_home(robot)
-        context = context_of(robot, input)
-        if context.vehicle.flies:
+        context = context_of(robot, input, VEHICLES)
+        if context.flies:
             raise UnsupportedError(f"robot '{robot.id}': flies")
         variables = variables_for(context, input, nodes)
         yield FileSpec(
@@ -45,7 +45,7 @@ def files(input: TargetInput) -> Iterator[FileSpec]:
         )
 
 
-def _view(context: VehicleContext, variables: Variables, frame: Frame) -> dict[str, object]:
+def _view(context: RobotContext, variables: Variables, frame: Frame) -> dict[str, object]:
     steps = course_of(context, variables).steps
     return {
         "robot": context.robot.id,
@@ -57,7 +57,7 @@ def _view(context: VehicleContext, variables: Variables, frame: Frame) -> dict[s
     }
 
 
-def _shown(step: Step, context: VehicleContext) -> dict[str, object]:
+def _shown(step: Step, context: RobotContext) -> dict[str, object]:
     move = step.move
     return {
         "traced": TracedStep(f"step {step.id}", context.robot.id, move.id, move.task, move.rule),

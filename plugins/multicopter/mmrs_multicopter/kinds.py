@@ -105,6 +105,7 @@ MULTICOPTER_KIND = RobotKind(
         "GROUND_LOST": "CONTINUE",
     },
     vehicle="copter",
+    medium="air",
 )
 
 MOVE_KINDS = (

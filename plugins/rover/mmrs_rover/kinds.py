@@ -53,5 +53,7 @@ def turning_radius(robot_type: RobotType) -> float:
     return stated or 0.0
 
 
-ROVER_KIND = replace(PLAIN_ROBOT, name="rover", metaclass=ROVER, kinematics=kinematics, barrier=barrier)
+ROVER_KIND = replace(
+    PLAIN_ROBOT, name="rover", metaclass=ROVER, kinematics=kinematics, barrier=barrier, vehicle="rover"
+)
 """Like any robot that stays on its level it neither launches nor recovers; it answers faults alike."""

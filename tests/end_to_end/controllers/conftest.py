@@ -18,9 +18,9 @@ from mmrs_core.behaviour.log import read_logs
 from mmrs_core.behaviour.replay import ReplayResult, replay
 from mmrs_core.generation.render import render
 from mmrs_core.generation.writing import write
-from mmrs_core.mavlink.vehicles import vehicle_class
 from mmrs_core.testing.programs import target_input
 from mmrs_mavlink.plugin.controllers import MAVLINK_PYTHON
+from mmrs_mavlink.plugin.vehicles import vehicle_class
 from mmrs_mavlink.sitl import Settings, SimulatedVehicle
 
 PATIENCE = 60.0

@@ -6,7 +6,6 @@ from dataclasses import replace
 
 import pytest
 
-from mmrs_core.contributions.wiring import DeviceWiring, Wired
 from mmrs_core.generation.render import render
 from mmrs_core.scene import Device, DeviceAction, Policy
 from mmrs_core.testing.programs import (
@@ -20,6 +19,7 @@ from mmrs_core.testing.programs import (
     target_input,
 )
 from mmrs_mavlink.plugin.controllers import MAVLINK_PYTHON
+from mmrs_mavlink.wiring import DeviceWiring, Wired
 
 pytestmark = pytest.mark.real_time("controllers")
 
@@ -60,7 +60,7 @@ def heard(new_controllers, new_hangar, tmp_path_factory):
     acts = replace(ACTS, after=tuple(photo(name, "act") for name in WIRED))
     made = program(robot_program("alpha", [take_off("up", 5.0), acts, LAND]))
     given = target_input(made, [replace(quad(), devices=devices)])
-    files = render(MAVLINK_PYTHON, replace(given, device_actions={"kites.reel": REEL}))
+    files = render(MAVLINK_PYTHON, replace(given, extensions={"device_actions": {"kites.reel": REEL}}))
     controllers = new_controllers(tmp_path_factory.mktemp("devices"), made, files=files)
     with new_hangar() as hangar:
         vehicles, links = hangar(made)

@@ -15,10 +15,10 @@ from mmrs_core import pipeline
 from mmrs_core.behaviour.earth import degrees_of
 from mmrs_core.behaviour.program import Program
 from mmrs_core.languages.writing import write_model
-from mmrs_core.mavlink.vehicles import vehicle_class
 from mmrs_core.plugins import load_plugins
 from mmrs_core.resources import shipped
 from mmrs_core.scene import Area, AreaUse, Position
+from mmrs_mavlink.plugin.vehicles import vehicle_class
 
 EXAMPLE = "carbon-dioxide"
 SLACK = 0.05

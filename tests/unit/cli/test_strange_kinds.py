@@ -66,5 +66,8 @@ def test_a_kind_that_names_no_vehicle_is_refused_by_its_name(kites, capsys, monk
     monkeypatch.chdir(tmp_path)
     assert run([command[0], str(kites), *command[1:]]) == 1
     said = capsys.readouterr().err
-    assert "robot 'left': is of kind 'kite', which names no vehicle; known are copter, rover, sub" in said
+    assert (
+        "robot 'left': is of kind 'kite', which names no vehicle; known are copter, ground, rover, sub"
+        in said
+    )
     assert [*tmp_path.glob("code"), *tmp_path.glob("logs/*.jsonl")] == []

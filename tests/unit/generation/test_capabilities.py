@@ -16,6 +16,7 @@ from mmrs_core.generation.capabilities.judging import capabilities_of, probes, s
 from mmrs_core.generation.capabilities.probes import MOVE, MULTICOPTER
 from mmrs_core.generation.render import render
 from mmrs_core.plugins import load_plugins
+from mmrs_core.testing.programs import installed
 from mmrs_mavlink.plugin.targets import TARGETS
 
 PROBES = probes()
@@ -86,7 +87,7 @@ MAKE_NO_DIFFERENCE["wpl"] = MAKE_NO_DIFFERENCE["qgc-plan"] | {"Robot.typeName"}
 @cache
 def table_of(name):
     """Return the table of a target, which takes seconds to make."""
-    return capabilities_of(BY_NAME[name], PROBES)
+    return capabilities_of(BY_NAME[name], installed(), PROBES)
 
 
 @pytest.fixture(scope="module")
@@ -184,7 +185,7 @@ def cards(tmp_path):
 
 
 def test_the_target_of_a_plugin_is_tried_in_the_same_way(cards):
-    table = {row.element: row for row in capabilities_of(cards)}
+    table = {row.element: row for row in capabilities_of(cards, installed())}
     assert (table["Land"].verdict, table["Land"].how) == ("expressed", "a line")
     assert (table["Feedback"].verdict, table["Feedback"].how) == ("lossy", "has actions")
     assert table["GoTo.speed"].verdict == "no difference"
@@ -192,7 +193,9 @@ def test_the_target_of_a_plugin_is_tried_in_the_same_way(cards):
 
 def test_moves_that_plugins_have_added_get_a_row(cards):
     spiral = (("urn:kites:1.0", "Spiral"), MOVE)
-    row = next(row for row in capabilities_of(cards, probes([spiral])) if "Spiral" in row.element)
+    row = next(
+        row for row in capabilities_of(cards, installed(), probes([spiral])) if "Spiral" in row.element
+    )
     assert (row.group, row.element) == ("move of a plug-in", "Spiral (urn:kites:1.0)")
 
 
@@ -201,13 +204,18 @@ def test_a_target_for_what_dives_is_tried_with_underwater_vehicles(cards):
         for robot in given.program.robots:
             yield from (each.kind for each in robot.moves if each.metaclasses[0][0] == MULTICOPTER)
 
-    flown = {row.element: row for row in capabilities_of(replace(cards, refusals=refusals))}
-    swum = {row.element: row for row in capabilities_of(replace(cards, refusals=refusals, tried_with="sub"))}
+    flown = {row.element: row for row in capabilities_of(replace(cards, refusals=refusals), installed())}
+    swum = {
+        row.element: row
+        for row in capabilities_of(replace(cards, refusals=refusals, tried_with="sub"), installed())
+    }
     assert list(swum) == list(flown)
     assert (flown["Robot.id"].verdict, swum["Robot.id"].verdict) == ("lossy", "no difference")
     assert {name for name, row in swum.items() if row.verdict == "lossy"} >= {"TakeOff", "Robot: a copter"}
     (probe,) = (
-        each for each in suited(PROBES, replace(cards, tried_with="sub")) if each.element == "GoTo.speed"
+        each
+        for each in suited(PROBES, replace(cards, tried_with="sub"), installed())
+        if each.element == "GoTo.speed"
     )
     assert [each.target.position[2] for each in probe.given.program.robots[0].moves if each.target] == [-20.0]
 
@@ -216,7 +224,8 @@ def test_a_target_that_writes_nothing_even_with_losses_refuses(cards):
     def files(given):
         raise UnsupportedError("no kite flies")
 
-    row = capabilities_of(replace(cards, files=files, refusals=lambda given: ["no kite flies"]))[0]
+    kites = replace(cards, files=files, refusals=lambda given: ["no kite flies"])
+    row = capabilities_of(kites, installed())[0]
     assert (row.verdict, row.how) == ("refused", "no kite flies")
 
 

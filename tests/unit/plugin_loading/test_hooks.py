@@ -3,6 +3,7 @@
 import inspect
 import re
 import sys
+from dataclasses import replace
 from importlib.metadata import EntryPoint
 from pathlib import Path
 
@@ -14,11 +15,11 @@ from mmrs_core.contributions.commands import Command
 from mmrs_core.contributions.constraints import Constraint
 from mmrs_core.contributions.execution import Condition
 from mmrs_core.contributions.fixes import Fix
+from mmrs_core.contributions.hooks import Hook
 from mmrs_core.contributions.rules import MoveKind, RobotKind, Rule
 from mmrs_core.contributions.symbols import MapSymbol
 from mmrs_core.contributions.targets import Target
 from mmrs_core.contributions.vehicles import VehicleFactory
-from mmrs_core.contributions.wiring import DeviceWiring
 from mmrs_core.errors import PluginError
 from mmrs_core.hookspecs import hookimpl
 from mmrs_core.languages import behaviour as bl
@@ -149,9 +150,48 @@ def test_hook_mmrs_checks():
     assert check in contributions_with("mmrs_checks", check).checks
 
 
-def test_hook_mmrs_device_actions():
-    wiring = DeviceWiring("kite.reel", "reels in", unused)
-    assert contributions_with("mmrs_device_actions", wiring).device_actions["kite.reel"] == wiring
+KNOTS = Hook("mmrs_knots", "How to knot", "mmrs_core.contributions.execution:Condition", "identifier")
+
+
+def test_hook_mmrs_hooks():
+    knot = Condition("reef", unused)
+    makers, users = plugin_with("mmrs_hooks", lambda: [KNOTS]), plugin_with("mmrs_knots", lambda: [knot])
+    found = load_plugins(only_core=True, extra={"users": users, "weavers": makers}).contributions
+    assert found.hooks == {"mmrs_knots": KNOTS}
+    assert found.extensions == {"knots": {"reef": knot}}
+    assert ("users", "knots", "reef") in {(e.plugin, e.sort, e.name) for e in found.catalogue()}
+
+
+@pytest.mark.parametrize("known", [True, False])
+def test_a_hook_that_no_plug_in_specifies_is_refused_unless_it_is_optional(known):
+    implementation = hookimpl(optionalhook=known)(lambda: ())
+    plugin = type("Plugin", (), {"mmrs_knots": staticmethod(implementation)})()
+    if known:
+        assert load_plugins(only_core=True, extra={"kites": plugin}).contributions.extensions == {}
+        return
+    with pytest.raises(PluginError, match=r"plug-in 'kites' of .*: unknown hook 'mmrs_knots'"):
+        load_plugins(only_core=True, extra={"kites": plugin})
+
+
+@pytest.mark.parametrize(
+    ("declared", "message"),
+    [
+        (["bow"], "mmrs_knots gives a str, not a Condition"),
+        ([Condition("reef", unused), Condition("reef", unused)], "knot 'reef': contributed twice by 'users'"),
+    ],
+)
+def test_what_a_plug_ins_hook_declares_is_checked_like_the_cores(declared, message):
+    makers, users = plugin_with("mmrs_hooks", lambda: [KNOTS]), plugin_with("mmrs_knots", lambda: declared)
+    found = load_plugins(only_core=True, extra={"users": users, "weavers": makers}).contributions
+    with pytest.raises(PluginError, match=message):
+        _ = found.extensions
+
+
+@pytest.mark.parametrize("name", ["mmrs_rules", "mmrs_knots"])
+def test_a_hook_is_specified_once(name):
+    makers = plugin_with("mmrs_hooks", lambda: [KNOTS, replace(KNOTS, name=name)])
+    with pytest.raises(PluginError, match=rf"'weavers' of .*: hook '{name}' is specified already"):
+        load_plugins(only_core=True, extra={"weavers": makers})
 
 
 def test_hook_mmrs_targets(tmp_path):
@@ -300,10 +340,7 @@ def test_catalogue_says_who_contributed_what():
     assert ("kites", rule) in declared("rules")
 
 
-@pytest.mark.parametrize(
-    ("gone", "instead"), [("mmrs_backends", "'mmrs_vehicles'"), ("mmrs_codecs", "'--drives MODULE:FUNCTION'")]
-)
-def test_a_hook_that_is_gone_is_told_with_what_takes_its_place(gone, instead):
-    plugin = plugin_with(gone, lambda: ())
-    with pytest.raises(PluginError, match=rf"plug-in 'kites' of .*: hook '{gone}' is gone: .*{instead}"):
+def test_a_hook_that_is_gone_is_told_with_what_takes_its_place():
+    plugin = plugin_with("mmrs_backends", lambda: ())
+    with pytest.raises(PluginError, match=r"'kites' of .*: hook 'mmrs_backends' is gone: .*'mmrs_vehicles'"):
         load_plugins(only_core=True, extra={"kites": plugin})

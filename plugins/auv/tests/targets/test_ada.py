@@ -23,7 +23,7 @@ from mmrs_core.errors import UnsupportedError
 from mmrs_core.generation.render import render
 from mmrs_core.scene import Policy
 from mmrs_core.testing.conformance.missions import run_command
-from mmrs_core.testing.programs import feedback, move
+from mmrs_core.testing.programs import feedback, installed, move
 from mmrs_core.testing.small_programs import notify
 
 NASTY = ('"; end Build; --', "é\n🦑\x7f\t", "'" * 70_000)
@@ -39,7 +39,7 @@ def compiler():
 
 def input_of(behaviour, type=None):
     kind = type or diver()
-    return TargetInput(behaviour, {kind.name: kind}, {}, {})
+    return TargetInput(behaviour, {kind.name: kind}, installed().robot_kinds, installed().move_kinds)
 
 
 def bound_by(policy):

@@ -16,8 +16,8 @@ from mmrs_core.cli.session import Session, Stages
 from mmrs_core.cli.settings import Settings as CliSettings
 from mmrs_core.errors import UnsupportedError
 from mmrs_core.languages.modelset import model_in
-from mmrs_core.mavlink.vehicles import class_of_type, uncarried, vehicle_class
 from mmrs_core.scene import RobotType
+from mmrs_mavlink.plugin.vehicles import class_of_type, uncarried, vehicle_class
 from mmrs_mavlink.sitl.battery import load_at
 from mmrs_mavlink.sitl.parameters import defaults
 from mmrs_mavlink.sitl.settings import Settings

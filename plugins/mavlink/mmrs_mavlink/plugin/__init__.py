@@ -6,11 +6,13 @@ from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
 from mmrs_core.contributions.commands import Command
+from mmrs_core.contributions.hooks import Hook
 from mmrs_core.hookspecs import hookimpl
 
 if TYPE_CHECKING:
     from mmrs_core.contributions.targets import Target
     from mmrs_core.contributions.vehicles import VehicleFactory
+    from mmrs_mavlink.wiring import DeviceWiring
 
 
 @hookimpl
@@ -34,3 +36,24 @@ def mmrs_vehicles() -> Iterable[VehicleFactory]:
 def mmrs_commands() -> Iterable[Command]:
     """Contribute simulated vehicles at the ends of MAVLink links."""
     return (Command("sitl", "Start simulated MAVLink vehicles.", "mmrs_mavlink.commands.sitl:app"),)
+
+
+@hookimpl
+def mmrs_hooks() -> Iterable[Hook]:
+    """Specify what other plug-ins may add to vehicles on MAVLink."""
+    return (
+        Hook(
+            "mmrs_device_actions",
+            "How actions of devices become MAVLink commands",
+            "mmrs_mavlink.wiring:DeviceWiring",
+            "property",
+        ),
+    )
+
+
+@hookimpl
+def mmrs_device_actions() -> Iterable[DeviceWiring]:
+    """Contribute how cameras, servos, relays and other devices are wired."""
+    from mmrs_mavlink.plugin.devices import WIRINGS
+
+    return tuple(WIRINGS.values())

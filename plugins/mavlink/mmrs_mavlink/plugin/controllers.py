@@ -12,24 +12,24 @@ from mmrs_core.behaviour.program import Action, Heading, Move, RobotProgram
 from mmrs_core.behaviour.rally_points import RallyPoints, rally_points_of
 from mmrs_core.behaviour.travel import capability_of, travel_margins_of
 from mmrs_core.contributions.targets import TargetInput
-from mmrs_core.contributions.wiring import Sampled, Unwired, Wired
 from mmrs_core.generation.context import require_home
 from mmrs_core.generation.escaping import Call, Constant
 from mmrs_core.generation.python import MOVEMENTS, PythonDriver, go_to, place_of, python_target
 from mmrs_core.generation.python.moves import look_of, number_of, unturnable
 from mmrs_core.generation.python.program import program_of
 from mmrs_core.generation.safety import areas_of, policies_of
-from mmrs_core.mavlink.context import VehicleContext, context_of, neighbours_of, vehicleless
-from mmrs_core.mavlink.vehicles import PX4, autopilot_of
 from mmrs_core.scene import Name, Point, Policy
 from mmrs_mavlink import program as words
 from mmrs_mavlink.options import FIRST_PORT, PORT_STEP
 from mmrs_mavlink.plugin.capabilities import OF_CONTROLLERS
+from mmrs_mavlink.plugin.context import VehicleContext, context_of, neighbours_of, vehicleless
 from mmrs_mavlink.plugin.escapes import Escape, escapes_of, straight_lines_are_clear
 from mmrs_mavlink.plugin.fencing import Fence, fence_faults, fences_of
 from mmrs_mavlink.plugin.headings import NO_TURNING, gimbal_of, on_gimbal, turns_to
 from mmrs_mavlink.plugin.places import MULTICOPTER, templates_of
 from mmrs_mavlink.plugin.runs import Run, runs_of
+from mmrs_mavlink.plugin.vehicles import PX4, autopilot_of
+from mmrs_mavlink.wiring import Sampled, Wired
 
 TAKE_OFF = (MULTICOPTER, "TakeOff")
 
@@ -86,14 +86,14 @@ class MavlinkPython(PythonDriver[VehicleContext]):
         """Return ``copter``, ``sub`` or ``rover``."""
         return context.vehicle.name
 
-    def device(self, action: Action, context: VehicleContext) -> Call | Unwired:
+    def device(self, action: Action, context: VehicleContext) -> Call | str:
         """Return a command, or a value that is measured."""
         wiring = context.wiring(action)
         if isinstance(wiring, Wired):
             return _operate(action, wiring)
         if isinstance(wiring, Sampled):
             return Call("Measure", (action.device, action.name, wiring.value, wiring.seconds))
-        return wiring
+        return wiring.reason
 
     def look(self, heading: Heading, context: VehicleContext) -> Call | None:
         """Return how a device or a gimbal is pointed."""

@@ -15,10 +15,10 @@ from mmrs_core.behaviour.travel import capability_of
 from mmrs_core.contributions.targets import TargetInput
 from mmrs_core.errors import UnreachableError
 from mmrs_core.generation.safety import areas_of, clearance_of
-from mmrs_core.mavlink.context import VehicleContext, context_of
 from mmrs_core.planning.layers import Rates
 from mmrs_core.planning.paths import Space
 from mmrs_core.scene import AreaUse, Point, Position
+from mmrs_mavlink.plugin.context import VehicleContext, context_of
 from mmrs_mavlink.plugin.places import MULTICOPTER
 
 AT_HOME = ((BEHAVIOUR, "Start"), (BEHAVIOUR, "Recharge"))

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from mmrs_core.behaviour.program import Heading
 from mmrs_core.generation.python.moves import properties_of
-from mmrs_core.mavlink.context import VehicleContext
-from mmrs_core.mavlink.vehicles import ROVER
+from mmrs_mavlink.plugin.context import VehicleContext
+from mmrs_mavlink.plugin.vehicles import ROVER
 
 GIMBAL = "mavlink.gimbal"
 NO_TURNING = f"no ground vehicle turns to a heading on command; give the device a {GIMBAL}"

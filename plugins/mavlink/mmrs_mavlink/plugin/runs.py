@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from math import acos, degrees, hypot
 
 from mmrs_core.behaviour.program import BEHAVIOUR, Move, RobotProgram, Transition
-from mmrs_core.mavlink.context import VehicleContext
 from mmrs_core.scene import Position
+from mmrs_mavlink.plugin.context import VehicleContext
 
 SHORTEST = 3
 """Runs of fewer moves are stepped: uploading them gains nothing."""

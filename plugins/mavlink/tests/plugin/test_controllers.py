@@ -11,7 +11,6 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from mmrs_core.behaviour.program import Heading, MoveTarget, Transition
-from mmrs_core.contributions.wiring import DeviceWiring, Wired
 from mmrs_core.errors import UnsupportedError
 from mmrs_core.generation.render import render
 from mmrs_core.generation.writing import write
@@ -32,6 +31,7 @@ from mmrs_core.testing.programs import (
 )
 from mmrs_mavlink.plugin.controllers import MAVLINK_PYTHON
 from mmrs_mavlink.plugin.plans.qgc import QGC_PLAN
+from mmrs_mavlink.wiring import DeviceWiring, Wired
 
 HOSTILE = [
     '"; import os; os.mkdir("canary"); "',
@@ -316,7 +316,7 @@ def test_a_wiring_of_a_plugin_reaches_controllers_and_missions():
     pulls = replace(go_to("a", (0.0, 9.0, 5.0)), after=(photo("reel", "pull"),))
     made = program(robot_program("alpha", [take_off("up", 5.0), pulls, LAND]))
     given = target_input(made, [replace(quad(), devices={"reel": reel})])
-    given = replace(given, device_actions={"kites.reel": wiring})
+    given = replace(given, extensions={"device_actions": {"kites.reel": wiring}})
     source = render(MAVLINK_PYTHON, given)[0].content.decode()
     operate = (
         'Operate("reel", "pull", MAV_CMD_DO_SET_SERVO, (9.0,), 2.0, more=((MAV_CMD_DO_REPEAT_SERVO, ()),))'

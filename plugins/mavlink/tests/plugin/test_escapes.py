@@ -18,6 +18,7 @@ from mmrs_core.scene import Area, AreaUse, Policy
 from mmrs_core.testing.programs import (
     LAND,
     go_to,
+    installed,
     move,
     program,
     robot_program,
@@ -112,7 +113,9 @@ def carbon_dioxide() -> TargetInput:
     behaviour, _ = pipeline.transform(scene, pipeline.plan(scene), contributions)
     place = pipeline.place_of_scene(scene)
     planned = pipeline.program_of(behaviour, contributions)
-    return TargetInput(planned, place.types, {}, {}, place.areas or ())
+    return TargetInput(
+        planned, place.types, installed().robot_kinds, installed().move_kinds, place.areas or ()
+    )
 
 
 def test_ways_out_of_the_carbon_dioxide_mission_are_short_and_clear():

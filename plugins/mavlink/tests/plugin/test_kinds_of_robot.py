@@ -10,7 +10,6 @@ import pytest
 from mmrs_core.behaviour.earth import degrees_of
 from mmrs_core.errors import UnsupportedError
 from mmrs_core.generation.render import render
-from mmrs_core.mavlink.vehicles import VEHICLES, vehicle_class
 from mmrs_core.scene import Frame
 from mmrs_core.testing.programs import (
     LAND,
@@ -26,6 +25,7 @@ from mmrs_core.transformation.kinds import PLAIN_ROBOT
 from mmrs_mavlink.plugin.controllers import MAVLINK_PYTHON
 from mmrs_mavlink.plugin.plans.qgc import QGC_PLAN
 from mmrs_mavlink.plugin.plans.wpl import WPL
+from mmrs_mavlink.plugin.vehicles import GROUND, VEHICLES, vehicle_class
 from mmrs_mavlink.sitl.__main__ import parser_of_arguments
 
 KITE = ("urn:kites:1.0", "Kite")
@@ -54,7 +54,9 @@ def test_a_robot_that_no_vehicle_carries_is_refused_by_the_name_of_its_kind(targ
     with pytest.raises(UnsupportedError) as error:
         render(target, flown(vehicle), allow_lossy=lossy)
     said = " ".join((str(error.value), *error.value.elements))
-    assert f"robot 'alpha': is of kind 'kite', which names {named}; known are copter, rover, sub" in said
+    assert (
+        f"robot 'alpha': is of kind 'kite', which names {named}; known are copter, ground, rover, sub" in said
+    )
 
 
 def test_a_robot_is_what_its_kind_says():
@@ -66,7 +68,7 @@ def test_a_robot_is_what_its_kind_says():
 
 def test_every_kind_that_is_installed_names_its_vehicle(contributions):
     installed = contributions.robot_kinds
-    assert {each.name: each.vehicle in VEHICLES for each in installed.values()} == dict.fromkeys(
+    assert {each.name: each.vehicle in (*VEHICLES, GROUND) for each in installed.values()} == dict.fromkeys(
         (each.name for each in installed.values()), True
     )
 

@@ -5,7 +5,6 @@ from dataclasses import replace
 import pytest
 
 from mmrs_core.behaviour.program import Program
-from mmrs_core.contributions.wiring import DeviceWiring, Wired
 from mmrs_core.generation.render import render
 from mmrs_core.scene import Device, DeviceAction
 from mmrs_core.testing.programs import (
@@ -19,6 +18,7 @@ from mmrs_core.testing.programs import (
     target_input,
 )
 from mmrs_mavlink.plugin.controllers import MAVLINK_PYTHON, command_name, robot_of
+from mmrs_mavlink.wiring import DeviceWiring, Wired
 
 REEL = Device("reel", {"pull": DeviceAction("pull", 2.0)}, {"kites.reel": "9"})
 REELS = DeviceWiring("kites.reel", "reels", lambda action, device: Wired(183, (9.0,), more=((31_999, ()),)))
@@ -34,7 +34,8 @@ def reeling() -> Program:
 
 def given(made: Program):
     return replace(
-        target_input(made, [replace(quad(), devices={"reel": REEL})]), device_actions={"kites.reel": REELS}
+        target_input(made, [replace(quad(), devices={"reel": REEL})]),
+        extensions={"device_actions": {"kites.reel": REELS}},
     )
 
 

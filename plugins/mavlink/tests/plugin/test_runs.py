@@ -5,9 +5,9 @@ from dataclasses import replace
 import pytest
 
 from mmrs_core.behaviour.program import Heading, MoveTarget, Transition
-from mmrs_core.mavlink.context import context_of
 from mmrs_core.scene import Frame
 from mmrs_core.testing.programs import L_AQUILA, go_to, photo, program, robot_program, target_input
+from mmrs_mavlink.plugin.context import context_of
 from mmrs_mavlink.plugin.runs import runs_of
 
 EAST = [(float(10 * index), 0.0, 20.0) for index in range(1, 6)]

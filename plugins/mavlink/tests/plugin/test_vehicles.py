@@ -8,8 +8,6 @@ from mmrs_core.analysis.clearance import RADIUS
 from mmrs_core.behaviour.earth import degrees_of, metres, sea_level_of
 from mmrs_core.behaviour.travel import TRAVEL_MARGINS, speed_of, travel_margins_of
 from mmrs_core.errors import UnsupportedError
-from mmrs_core.mavlink.context import context_of
-from mmrs_core.mavlink.vehicles import COPTER, ROVER, SUB, vehicle_class
 from mmrs_core.scene import Capability, Frame
 from mmrs_core.testing.programs import (
     L_AQUILA,
@@ -22,8 +20,10 @@ from mmrs_core.testing.programs import (
     target_input,
 )
 from mmrs_core.transformation.fluid import LEAST_CUT
+from mmrs_mavlink.plugin.context import context_of
 from mmrs_mavlink.plugin.controllers import MAVLINK_PYTHON
 from mmrs_mavlink.plugin.plans.wpl import WPL
+from mmrs_mavlink.plugin.vehicles import COPTER, ROVER, SUB, vehicle_class
 
 DIVER = replace(
     quad(),

@@ -4,11 +4,11 @@ from dataclasses import replace
 
 import pytest
 
-from mmrs_core.contributions.wiring import DeviceWiring, Sampled, Unwired, Wired
 from mmrs_core.errors import PluginError
-from mmrs_core.mavlink.wiring import wiring_of
 from mmrs_core.scene import Device, DeviceAction
 from mmrs_core.testing.programs import photo, quad
+from mmrs_mavlink.plugin.wiring import wiring_of
+from mmrs_mavlink.wiring import DeviceWiring, Sampled, Unwired, Wired
 
 
 def wired(action: str = "takePhoto", **properties: str):
@@ -66,7 +66,7 @@ def test_a_value_is_sampled_by_its_name():
     ("properties", "reason"),
     [
         ({}, "no property that says how it is wired"),
-        ({"mavlink.camera": "front"}, "mavlink.camera is no whole number"),
+        ({"mavlink.camera": "front"}, "mavlink.camera is not a whole number"),
         ({"mavlink.servo": "9"}, "neither parameter pwm nor property"),
         ({"mavlink.command.takePhoto": "photo"}, "no command number"),
         ({"mavlink.command.takePhoto": "1 2 3 4 5 6 7 8 9"}, "more than seven"),
@@ -215,7 +215,9 @@ def test_a_command_whose_numbers_no_frame_holds_is_not_wired(words, why):
 def test_a_plugin_that_returns_no_wiring_is_named(found):
     wirings = {"k.reel": DeviceWiring("k.reel", "wrong", lambda action, device: found)}
     device = Device("d", {}, {"k.reel": ""})
-    with pytest.raises(PluginError, match=r"k.reel.*returns .* for action 'takePhoto', which is no wiring"):
+    with pytest.raises(
+        PluginError, match=r"k.reel.*returns .* for action 'takePhoto', which is not a wiring"
+    ):
         wiring_of(photo("d"), replace(quad(), devices={"d": device}), wirings)
 
 

@@ -122,14 +122,17 @@ def test_time_that_goes_back_stands_still_and_is_counted():
     assert fixes.turned == 2
 
 
+DIVER = replace(PLAIN_ROBOT, name="ray", metaclass=("urn:rays:1.0", "Ray"), vehicle="ray", medium="water")
+
+
 def test_heights_under_water_count_from_the_surface():
     behaviour = program(robot_program("Ann", UP, home=HOME), frame=replace(L_AQUILA, surface=2.0))
-    assert zero_of(behaviour.robots[0], behaviour, None, "sub").up == 2.0
-    assert zero_of(behaviour.robots[0], behaviour, None, "copter").up == 7.0
+    kinds = {DIVER.metaclass: DIVER, PLAIN_ROBOT.metaclass: PLAIN_ROBOT}
+    assert zero_of(behaviour.robots[0], behaviour, None, DIVER.vehicle, kinds).up == 2.0
+    assert zero_of(behaviour.robots[0], behaviour, None, PLAIN_ROBOT.vehicle, kinds).up == 7.0
 
 
 def test_heights_of_a_robot_whose_box_is_silent_count_as_its_kind_says():
     behaviour = program(robot_program("Ann", UP, home=HOME), frame=replace(L_AQUILA, surface=2.0))
-    diver = replace(PLAIN_ROBOT, name="ray", metaclass=("urn:rays:1.0", "Ray"), vehicle="sub")
-    ray = replace(quad(), metaclasses=(diver.metaclass, PLAIN_ROBOT.metaclass))
-    assert zero_of(behaviour.robots[0], behaviour, ray, kinds={diver.metaclass: diver}).up == 2.0
+    ray = replace(quad(), metaclasses=(DIVER.metaclass, PLAIN_ROBOT.metaclass))
+    assert zero_of(behaviour.robots[0], behaviour, ray, kinds={DIVER.metaclass: DIVER}).up == 2.0

@@ -28,8 +28,8 @@ from mmrs_core.behaviour.program import (
 )
 from mmrs_core.behaviour.travel import capability_of, cruise_of
 from mmrs_core.contributions.targets import TracedStep
+from mmrs_core.generation.context import RobotContext
 from mmrs_core.generation.plan_moves import seconds_of
-from mmrs_core.mavlink.context import VehicleContext
 from mmrs_core.scene import Part, Policy, Position
 from mmrs_runtime.conditions import BATTERY, DETECTED, FOUND, is_standard
 from mmrs_runtime.faults import DEVICE_SILENT
@@ -50,7 +50,7 @@ class Mission:
     """A robot's behaviour as its decision centre holds it."""
 
     def __init__(
-        self, context: VehicleContext, program: Program, policies: Sequence[Policy], step: float
+        self, context: RobotContext, program: Program, policies: Sequence[Policy], step: float
     ) -> None:
         """Hold it.
 

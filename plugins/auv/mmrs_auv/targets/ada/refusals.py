@@ -5,14 +5,15 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from math import isfinite
 
+from mmrs_auv.names import VEHICLES
 from mmrs_auv.sayable import parameter_of, unturnable
 from mmrs_auv.sheets import action_number
 from mmrs_auv.targets.ada.bus import can_be_said, depth_step_of
 from mmrs_auv.targets.ada.policies import declared, obstacles_to
 from mmrs_core.behaviour.program import BEHAVIOUR, DEVICE_ACTION, FEEDBACK, NOTIFY, Action, Move, RobotProgram
 from mmrs_core.contributions.targets import TargetInput
-from mmrs_core.generation.plan_moves import MOVES, above_surface
-from mmrs_core.mavlink.context import VehicleContext, context_of, vehicleless
+from mmrs_core.generation.context import RobotContext
+from mmrs_core.generation.plan_moves import MOVES, above_surface, context_of, vehicleless
 from mmrs_core.scene import Name, Policy
 
 SORTS: Mapping[Name, str] = {**MOVES, (BEHAVIOUR, "Recharge"): "charge"}
@@ -25,11 +26,11 @@ STEPS = 65_535
 def refusals(input: TargetInput) -> Iterator[str]:
     """Yield each thing that the decision centre cannot do, with robot and move."""
     for robot in input.program.robots:
-        if unknown := vehicleless(robot, input):
+        if unknown := vehicleless(robot, input, VEHICLES):
             yield f"{unknown}: --allow-lossy leaves it out beside others"
             continue
-        context = context_of(robot, input)
-        if not context.vehicle.dives:
+        context = context_of(robot, input, VEHICLES)
+        if not context.dives:
             yield f"robot '{robot.id}': is no underwater vehicle: --allow-lossy leaves it out beside others"
             continue
         for policy in declared(robot, input):
@@ -47,10 +48,10 @@ def refusals(input: TargetInput) -> Iterator[str]:
 
 def is_diver(robot: RobotProgram, input: TargetInput) -> bool:
     """Return whether a robot is an underwater vehicle."""
-    return not vehicleless(robot, input) and context_of(robot, input).vehicle.dives
+    return not vehicleless(robot, input, VEHICLES) and context_of(robot, input, VEHICLES).dives
 
 
-def of_movement(move: Move, context: VehicleContext, step: float = 0.0) -> Iterator[str]:
+def of_movement(move: Move, context: RobotContext, step: float = 0.0) -> Iterator[str]:
     """Yield why a movement cannot be made at all.
 
     Args:
@@ -96,7 +97,7 @@ def _numbers(move: Move) -> Iterator[tuple[str, float]]:
         yield "tolerance", move.target.tolerance or 0.0
 
 
-def of_action(action: Action, context: VehicleContext) -> Iterator[str]:
+def of_action(action: Action, context: RobotContext) -> Iterator[str]:
     """Yield why an action cannot be done."""
     if action.is_a(NOTIFY) or action.is_a(FEEDBACK):
         return
@@ -113,7 +114,7 @@ def of_action(action: Action, context: VehicleContext) -> Iterator[str]:
             yield f"{field.lower()} {told:g} of device '{action.device}' is more than its bus can say"
 
 
-def _of_move(move: Move, context: VehicleContext, step: float) -> Iterator[str]:
+def _of_move(move: Move, context: RobotContext, step: float) -> Iterator[str]:
     yield from of_movement(move, context, step)
     sort = SORTS.get(move.metaclasses[0])
     if sort == "go" and move.target is not None and move.target.position is not None:

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from mmrs_auv.names import VEHICLES
 from mmrs_auv.targets.ada import literals, tables
 from mmrs_auv.targets.ada.bus import catalogue, depth_step_of
 from mmrs_auv.targets.ada.capabilities import CAPABILITIES
@@ -17,7 +18,7 @@ from mmrs_auv.targets.places import templates_of
 from mmrs_core.contributions.targets import FileSpec, Target, TargetInput
 from mmrs_core.errors import UnsupportedError
 from mmrs_core.generation.escaping import file_stems
-from mmrs_core.mavlink.context import context_of
+from mmrs_core.generation.plan_moves import context_of
 
 TEMPLATES = templates_of("ada")
 NO_VEHICLE = "no robot is an underwater vehicle"
@@ -41,7 +42,7 @@ def files(input: TargetInput) -> Iterator[FileSpec]:
     stems = file_stems([robot.id for robot in robots])
     yield FileSpec("README.md", "README.md.jinja", {"robots": list(stems.items()), "tables": tables.view()})
     for robot in robots:
-        context = context_of(robot, input)
+        context = context_of(robot, input, VEHICLES)
         mission = Mission(context, input.program, declared(robot, input), depth_step_of(robot, input))
         folder = f"robot-{stems[robot.id]}"
         for name in OWN:

@@ -13,6 +13,7 @@ from auv_vessel.body.thrust import MOST_AHEAD, curve_of
 from auv_vessel.refusals import MOST_POWER
 from auv_vessel.sheet import Sheet
 from auv_vessel.wire.catalogue import EMERGENCIES, STATUS_PERIOD, layout_of, messages_of
+from mmrs_auv.names import VEHICLES
 from mmrs_auv.sheets import is_vehicle, sheet_of
 from mmrs_auv.targets.can_c.bus import codec_of
 from mmrs_auv.targets.can_c.words import block, number
@@ -21,8 +22,7 @@ from mmrs_core.behaviour.program import BEHAVIOUR, RobotProgram
 from mmrs_core.contributions.targets import FileSpec, Target, TargetInput, TracedStep
 from mmrs_core.errors import UnsupportedError
 from mmrs_core.generation.escaping import file_stems
-from mmrs_core.generation.plan_moves import MOVES
-from mmrs_core.mavlink.context import vehicleless
+from mmrs_core.generation.plan_moves import MOVES, vehicleless
 
 SHARED = "drives"
 """Folder of what the drives of all vehicles share."""
@@ -86,7 +86,7 @@ def files_of(sheets: Mapping[str, Sheet]) -> Iterator[FileSpec]:
 def refusals(input: TargetInput) -> Iterator[str]:
     """Yield which robots have no thrusters on a bus, and which moves nobody knows."""
     for robot in input.program.robots:
-        if unknown := vehicleless(robot, input):
+        if unknown := vehicleless(robot, input, VEHICLES):
             yield unknown
             continue
         try:
@@ -103,7 +103,7 @@ def _sheet(robot: RobotProgram, input: TargetInput) -> Sheet:
     if type is None:
         why = f"type '{robot.type_name}' is not known"
         raise UnsupportedError(f"robot '{robot.id}': {why}", (why,))
-    if unknown := vehicleless(robot, input):
+    if unknown := vehicleless(robot, input, VEHICLES):
         raise UnsupportedError(unknown)
     if not is_vehicle(type):
         why = "is no underwater vehicle"

@@ -10,18 +10,18 @@ from collections.abc import Iterable, Iterator
 from dataclasses import replace
 
 from auv_vessel.sheet import Sheet, to_json
+from mmrs_auv.names import VEHICLES
 from mmrs_auv.sayable import Bus, parameter_of, unturnable
 from mmrs_auv.sheets import is_vehicle, sheet_of
 from mmrs_auv.targets.can_python.capabilities import CAPABILITIES
 from mmrs_auv.targets.places import templates_of
 from mmrs_core.behaviour.program import Action, Heading, RobotProgram
 from mmrs_core.contributions.targets import FileSpec, TargetInput
-from mmrs_core.contributions.wiring import Unwired
 from mmrs_core.errors import UnsupportedError
 from mmrs_core.generation.context import RobotContext, require_home
 from mmrs_core.generation.escaping import Call
+from mmrs_core.generation.plan_moves import vehicleless
 from mmrs_core.generation.python import PythonDriver, python_target
-from mmrs_core.mavlink.context import vehicleless
 from mmrs_core.scene import Policy
 
 
@@ -40,24 +40,24 @@ class CanPython(PythonDriver[RobotContext]):
         """Return that a robot is no underwater vehicle."""
         type = input.types.get(robot.type_name)
         if type is not None and is_vehicle(type):
-            return vehicleless(robot, input)
-        return vehicleless(robot, input) or f"robot '{robot.id}': is no underwater vehicle"
+            return vehicleless(robot, input, VEHICLES)
+        return vehicleless(robot, input, VEHICLES) or f"robot '{robot.id}': is no underwater vehicle"
 
     def context(self, robot: RobotProgram, input: TargetInput) -> RobotContext:
         """Return what there is to know of a robot."""
         frame = replace(input.program.frame, latitude=None, longitude=None)
-        return RobotContext(robot, input.types.get(robot.type_name), frame, frame.surface)
+        return RobotContext(robot, input.types.get(robot.type_name), frame, frame.surface, "water")
 
     def vehicle(self, context: RobotContext) -> str:
         """Return ``sub``."""
         return "sub"
 
-    def device(self, action: Action, context: RobotContext) -> Call | Unwired:
+    def device(self, action: Action, context: RobotContext) -> Call | str:
         """Return an action by its number at the device."""
         device = context.type.devices.get(action.device) if context.type is not None else None
         known = device.actions.get(action.name) if device is not None else None
         if device is None or known is None:
-            return Unwired(f"device {action.device!r} does not support {action.name!r}")
+            return f"device {action.device!r} does not support {action.name!r}"
         number = list(device.actions).index(action.name)
         given = (number, parameter_of(action), known.duration)
         return Call("Operate", (action.device, action.name, *given))

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 
+from mmrs_core.behaviour.program import Action
 from mmrs_core.contributions.vehicles import VehicleFactory, VehicleInput
 from mmrs_core.errors import UsageError
+from mmrs_core.scene import RobotType
 from mmrs_mavlink.plugin.backend.options import link_options
 from mmrs_runtime.vehicle import Vehicle
 
@@ -26,9 +28,16 @@ def _check(options: Mapping[str, Mapping[str, str]], links: Mapping[str, str]) -
     return faults_of(options, links)
 
 
+def _takes_photo(action: Action, type: RobotType) -> bool | None:
+    from mmrs_mavlink.plugin.wiring import takes_photo
+
+    return takes_photo(action, type)
+
+
 MAVLINK = VehicleFactory(
     "mavlink",
     "ArduPilot and PX4 vehicles over MAVLink 2: serial, UDP or TCP, in real time",
     _connect,
     check=_check,
+    takes_photo=_takes_photo,
 )

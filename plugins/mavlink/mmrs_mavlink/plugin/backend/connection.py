@@ -15,7 +15,6 @@ from mmrs_core.contributions.vehicles import Live, VehicleInput
 from mmrs_core.errors import LinkLostError, UnsupportedError, UsageError
 from mmrs_core.generation.python.moves import action_of
 from mmrs_core.generation.python.program import built, objects_in
-from mmrs_core.mavlink.context import VehicleContext, context_of
 from mmrs_mavlink import program as words
 from mmrs_mavlink.driving.equipment import Equipment, Guard, Radio
 from mmrs_mavlink.driving.threaded import ThreadedVehicle
@@ -28,6 +27,7 @@ from mmrs_mavlink.links.signing import Signer, signer_for
 from mmrs_mavlink.options import FIRST_PORT, PORT_STEP
 from mmrs_mavlink.plugin.backend.options import LinkOptions, link_options
 from mmrs_mavlink.plugin.backend.whereabouts import Ground
+from mmrs_mavlink.plugin.context import VehicleContext, context_of
 from mmrs_mavlink.plugin.controllers import DRIVER, MAVLINK_PYTHON, robot_of
 from mmrs_mavlink.program import Action, Robot
 from mmrs_mavlink.services.satellites import attended
@@ -72,7 +72,7 @@ def connect(given: VehicleInput, live: Live) -> ThreadedVehicle:
     options = link_options(given.options)
     types = {**given.types, given.type.name: given.type}
     input = TargetInput(given.program, types, given.robot_kinds, given.move_kinds)
-    input = replace(input, areas=given.areas, device_actions=given.device_actions)
+    input = replace(input, areas=given.areas, extensions=given.extensions)
     _refuse(given, input, options)
     program = robot_of(given.robot, input)
     fleet = _fleet(live, options, given.program)

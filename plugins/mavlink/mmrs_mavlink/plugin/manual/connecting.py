@@ -5,11 +5,11 @@ from __future__ import annotations
 from mmrs_core.contributions.targets import TargetInput
 from mmrs_core.contributions.vehicles import Live, VehicleInput
 from mmrs_core.errors import LinkLostError, UnsupportedError
-from mmrs_core.mavlink.context import context_of
 from mmrs_mavlink.links.link import Link
 from mmrs_mavlink.links.ports import split_system
 from mmrs_mavlink.links.radios import Radios
 from mmrs_mavlink.options import FIRST_PORT, PORT_STEP
+from mmrs_mavlink.plugin.context import context_of
 from mmrs_mavlink.plugin.manual.goals import refusals
 from mmrs_mavlink.plugin.manual.robot import ManualRobot
 from mmrs_runtime import faults
@@ -33,8 +33,9 @@ def connect(given: VehicleInput) -> ManualRobot:
     if given.live is None:
         raise UnsupportedError("backend 'ardusub-manual': drives robots in real time; 'mmrs run' does that")
     types = {**given.types, given.type.name: given.type}
-    wirings = given.device_actions
-    input = TargetInput(given.program, types, given.robot_kinds, given.move_kinds, device_actions=wirings)
+    input = TargetInput(
+        given.program, types, given.robot_kinds, given.move_kinds, extensions=given.extensions
+    )
     context = context_of(given.robot, input)
     found = list(refusals(context))
     if found:

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from mmrs_core.behaviour.program import Action
-from mmrs_core.contributions.wiring import Wired
 from mmrs_core.generation.plan_moves import seconds_of
-from mmrs_core.mavlink.context import VehicleContext
+from mmrs_mavlink.plugin.context import VehicleContext
 from mmrs_mavlink.plugin.manual.autopilot import Autopilot
+from mmrs_mavlink.wiring import Wired
 from mmrs_runtime import faults
 
 

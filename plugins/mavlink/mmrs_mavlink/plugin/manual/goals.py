@@ -7,14 +7,14 @@ from math import atan2, degrees
 
 from mmrs_core.behaviour.program import Move
 from mmrs_core.generation.plan_moves import MOVES, above_surface, seconds_of_hold
-from mmrs_core.mavlink.context import VehicleContext
 from mmrs_core.transformation.kinds import before_target
+from mmrs_mavlink.plugin.context import VehicleContext
 from mmrs_mavlink.plugin.manual.helm import Goal, Helm
 
 
 def refusals(context: VehicleContext) -> Iterator[str]:
     """Yield what a robot cannot be driven to do by hand, with its moves."""
-    if not context.vehicle.dives:
+    if not context.dives:
         yield f"robot '{context.robot.id}': is no underwater vehicle"
     if context.robot.home is None:
         yield f"robot '{context.robot.id}': its home is not known, and the way is reckoned from there"

@@ -9,9 +9,9 @@ from mmrs_core.behaviour.program import DEVICE_ACTION, Action, Move
 from mmrs_core.contributions.execution import Fault, RobotState
 from mmrs_core.contributions.vehicles import Live, VehicleInput
 from mmrs_core.errors import UnreachableError
-from mmrs_core.mavlink.context import VehicleContext
 from mmrs_core.scene import Position
 from mmrs_mavlink.links.link import Link
+from mmrs_mavlink.plugin.context import VehicleContext
 from mmrs_mavlink.plugin.manual.autopilot import DEPTH_HOLD, SURFACE, Autopilot
 from mmrs_mavlink.plugin.manual.equipment import carry_out
 from mmrs_mavlink.plugin.manual.goals import goal_of

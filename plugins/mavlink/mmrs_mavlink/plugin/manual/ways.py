@@ -6,11 +6,11 @@ from collections.abc import Sequence
 from math import hypot
 
 from mmrs_core.contributions.vehicles import VehicleInput
-from mmrs_core.mavlink.context import VehicleContext
 from mmrs_core.scene import Position
 from mmrs_core.simulation.escape import Escapes
 from mmrs_core.simulation.known import kinematics_of
 from mmrs_core.transformation.kinds import before_target
+from mmrs_mavlink.plugin.context import VehicleContext
 from mmrs_mavlink.plugin.manual.helm import Goal
 
 AT_HOME = 2.0

@@ -10,8 +10,8 @@ from collections.abc import Iterator
 
 from mmrs_core.behaviour.program import RobotProgram
 from mmrs_core.contributions.targets import TargetInput
-from mmrs_core.mavlink.context import VehicleContext, context_of
 from mmrs_core.scene import Position
+from mmrs_mavlink.plugin.context import VehicleContext, context_of
 
 AT_THE_SURFACE = -0.01
 """Metres: the least that ArduSub tells from no height at all, as it counts in centimetres."""

@@ -7,16 +7,16 @@ from math import atan2, ceil, degrees, dist
 
 from mmrs_core.behaviour.program import BEHAVIOUR, DEVICE_ACTION, Action, Move
 from mmrs_core.behaviour.travel import TRAVEL_MARGINS
-from mmrs_core.contributions.wiring import Wired
 from mmrs_core.generation.python.moves import mount_of, number_of
-from mmrs_core.mavlink.context import VehicleContext
-from mmrs_core.mavlink.vehicles import COPTER, PX4, ROVER, autopilot_of
 from mmrs_core.scene import Name, Position
+from mmrs_mavlink.plugin.context import VehicleContext
 from mmrs_mavlink.plugin.headings import gimbal_of, on_gimbal, turns_to
 from mmrs_mavlink.plugin.plans import items as cmd
 from mmrs_mavlink.plugin.plans.items import Item
 from mmrs_mavlink.plugin.plans.px4 import unknown_in
 from mmrs_mavlink.plugin.runs import CORNER_SECONDS
+from mmrs_mavlink.plugin.vehicles import COPTER, PX4, ROVER, autopilot_of
+from mmrs_mavlink.wiring import Wired
 
 MULTICOPTER = "urn:mmrs:multicopter:1.0"
 ORIGIN = (0.0, 0.0, 0.0)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from mmrs_core.contributions.wiring import Wired
+from mmrs_mavlink.wiring import Wired
 
 KNOWN = frozenset(
     {

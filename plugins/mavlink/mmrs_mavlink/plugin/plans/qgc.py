@@ -7,13 +7,13 @@ from math import isnan
 
 from mmrs_core.behaviour.travel import capability_of
 from mmrs_core.contributions.targets import FileSpec, Target, TargetInput
-from mmrs_core.mavlink.context import VehicleContext
-from mmrs_core.mavlink.vehicles import AUTOPILOTS, autopilot_of
 from mmrs_mavlink.plugin.capabilities import OF_MISSIONS
+from mmrs_mavlink.plugin.context import VehicleContext
 from mmrs_mavlink.plugin.places import templates_of
 from mmrs_mavlink.plugin.plans.items import Row
 from mmrs_mavlink.plugin.plans.refusals import refusals
 from mmrs_mavlink.plugin.plans.surroundings import Mission, missions_of
+from mmrs_mavlink.plugin.vehicles import AUTOPILOTS, autopilot_of
 
 TEMPLATES = templates_of("qgc-plan")
 HEIGHT_ABOVE_HOME = 1

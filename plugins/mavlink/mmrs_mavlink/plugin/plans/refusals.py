@@ -8,18 +8,18 @@ from dataclasses import replace
 from mmrs_core.behaviour.earth import LOCAL, at_a_pole, sea_level_of
 from mmrs_core.behaviour.program import DEVICE_ACTION, Action, Move, RobotProgram
 from mmrs_core.contributions.targets import TargetInput
-from mmrs_core.contributions.wiring import Sampled, Unwired
 from mmrs_core.generation.context import homeless
 from mmrs_core.generation.python.moves import losses_of, mount_of, objects_of
 from mmrs_core.generation.safety import explicit, policies_of
-from mmrs_core.mavlink.context import VehicleContext, context_of, vehicleless
-from mmrs_core.mavlink.vehicles import PX4, autopilot_fault, autopilot_of
 from mmrs_core.scene import Policy
+from mmrs_mavlink.plugin.context import VehicleContext, context_of, vehicleless
 from mmrs_mavlink.plugin.controllers import DRIVER
 from mmrs_mavlink.plugin.headings import on_gimbal
 from mmrs_mavlink.plugin.plans.diving import above_water
 from mmrs_mavlink.plugin.plans.flight import flown
 from mmrs_mavlink.plugin.plans.px4 import unknown_in
+from mmrs_mavlink.plugin.vehicles import PX4, autopilot_fault, autopilot_of
+from mmrs_mavlink.wiring import Sampled, Unwired
 
 
 def refusals(input: TargetInput) -> Iterator[str]:

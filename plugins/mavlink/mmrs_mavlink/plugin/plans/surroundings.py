@@ -12,8 +12,8 @@ from mmrs_core.behaviour.rally_points import rally_points_of
 from mmrs_core.contributions.targets import TargetInput
 from mmrs_core.generation.context import require_home
 from mmrs_core.generation.escaping import file_stems
-from mmrs_core.mavlink.context import VehicleContext, context_of
 from mmrs_core.scene import Point
+from mmrs_mavlink.plugin.context import VehicleContext, context_of
 from mmrs_mavlink.plugin.escapes import escapes_of
 from mmrs_mavlink.plugin.fencing import fences_of
 from mmrs_mavlink.plugin.plans.diving import zero_of

@@ -71,6 +71,9 @@ CLASSES: Mapping[Name, VehicleClass] = {
 }
 
 
+GROUND = "ground"
+"""What the core calls the vehicles of robots that no plug-in knows better: rovers carry them."""
+
 VEHICLES: Mapping[str, VehicleClass] = {each.name: each for each in CLASSES.values()}
 
 
@@ -87,15 +90,19 @@ def vehicle_class(
 def class_of_type(type: RobotType, kinds: Mapping[Name, RobotKind]) -> VehicleClass | None:
     """Return what robots of a type are, whatever they do; None where their kind names no vehicle."""
     kind = robot_kind_of(type, kinds)
-    return VEHICLES.get(kind.vehicle) if kind is not None else _by_metaclass(type)
+    return _carrying(kind.vehicle) if kind is not None else _by_metaclass(type)
+
+
+def _carrying(word: str) -> VehicleClass | None:
+    return ROVER if word == GROUND else VEHICLES.get(word)
 
 
 def uncarried(robot: str, type: RobotType | None, kinds: Mapping[Name, RobotKind]) -> str:
     """Return why no vehicle carries a robot, with the name of its kind; empty where one does."""
     kind = robot_kind_of(type, kinds) if type is not None else None
-    if kind is None or kind.vehicle in VEHICLES:
+    if kind is None or _carrying(kind.vehicle) is not None:
         return ""
-    known = ", ".join(sorted(VEHICLES))
+    known = ", ".join(sorted((*VEHICLES, GROUND)))
     named = f"names vehicle '{kind.vehicle}'" if kind.vehicle else "names no vehicle"
     return f"robot '{robot}': is of kind '{kind.name}', which {named}; known are {known} (RobotKind.vehicle)"
 

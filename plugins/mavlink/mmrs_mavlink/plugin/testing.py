@@ -1,4 +1,4 @@
-"""Laws for wirings of devices."""
+"""The conformance class for device wirings of plug-ins."""
 
 from __future__ import annotations
 
@@ -7,14 +7,14 @@ from dataclasses import replace
 from typing import ClassVar
 
 from mmrs_core.behaviour.program import Action
-from mmrs_core.contributions.wiring import DeviceWiring, Unwired, Wiring
 from mmrs_core.generation.render import render
-from mmrs_core.mavlink.wiring import wiring_of
 from mmrs_core.plugins import load_plugins
 from mmrs_core.scene import Device
 from mmrs_core.testing.conformance.declared import Conformance, declared
 from mmrs_core.testing.programs import go_to, program, quad, robot_program, take_off, target_input
 from mmrs_core.testing.small_programs import use
+from mmrs_mavlink.plugin.wiring import wiring_of
+from mmrs_mavlink.wiring import DeviceWiring, Unwired, Wiring
 
 
 class DeviceWiringConformance(Conformance):
@@ -24,6 +24,7 @@ class DeviceWiringConformance(Conformance):
         devices: by the wiring's property, a device that has it, with the name of an action that it can do.
     """
 
+    more_sorts = ("device_action",)
     devices: ClassVar[Mapping[str, tuple[Device, str]]] = {}
 
     def test_there_is_a_device_for_each_wiring_and_no_other(self) -> None:
@@ -61,7 +62,9 @@ class DeviceWiringConformance(Conformance):
         acts = replace(go_to("a", (0.0, 9.0, 5.0)), after=(use(device.id, name),))
         type = replace(quad(), devices={device.id: device})
         given = target_input(program(robot_program("alpha", [take_off("up", 5.0), acts])), [type])
-        files = render(target, replace(given, device_actions={device_action.property: device_action}))
+        files = render(
+            target, replace(given, extensions={"device_actions": {device_action.property: device_action}})
+        )
         assert f'"{device.id}", "{name}", ' in " ".join(files[0].content.decode("utf-8").split())
 
     @staticmethod

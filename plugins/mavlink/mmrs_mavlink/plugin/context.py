@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from mmrs_core.behaviour.program import Action, RobotProgram
+from mmrs_core.contributions.rules import Medium
 from mmrs_core.contributions.targets import TargetInput
-from mmrs_core.contributions.wiring import Wiring, Wirings
 from mmrs_core.errors import UnsupportedError
 from mmrs_core.generation.context import RobotContext
-from mmrs_core.mavlink.vehicles import VehicleClass, uncarried, vehicle_class
-from mmrs_core.mavlink.wiring import wiring_of
 from mmrs_core.scene import Position
+from mmrs_mavlink.plugin.vehicles import ROVER, VehicleClass, uncarried, vehicle_class
+from mmrs_mavlink.plugin.wiring import wiring_of
+from mmrs_mavlink.wiring import Wiring, Wirings
 
 
 @dataclass(frozen=True)
@@ -22,8 +23,8 @@ class VehicleContext(RobotContext):
         wirings: those of plug-ins.
     """
 
-    vehicle: VehicleClass
-    wirings: Wirings
+    vehicle: VehicleClass = ROVER
+    wirings: Wirings = field(default_factory=dict)
 
     def wiring(self, action: Action) -> Wiring:
         """Return how a device action of the robot is carried out."""
@@ -43,7 +44,10 @@ def context_of(robot: RobotProgram, input: TargetInput) -> VehicleContext:
     frame = input.program.frame
     home = robot.home[2] if robot.home is not None else 0.0
     zero = frame.surface if vehicle.dives else home
-    return VehicleContext(robot, type, frame, zero, vehicle, input.device_actions)
+    medium: Medium = "air" if vehicle.flies else "water" if vehicle.dives else "ground"
+    return VehicleContext(
+        robot, type, frame, zero, medium, vehicle, input.extensions.get("device_actions", {})
+    )
 
 
 def vehicleless(robot: RobotProgram, input: TargetInput) -> str:
