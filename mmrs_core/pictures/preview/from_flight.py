@@ -4,30 +4,28 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
-from itertools import pairwise, zip_longest
+from itertools import pairwise
 from math import dist
 
-import numpy as np
-
-from mmrs_core.behaviour.program import BEHAVIOUR, Move, Program, RobotProgram
+from mmrs_core.behaviour.program import BEHAVIOUR, Program, RobotProgram
 from mmrs_core.contributions.registry import Contributions
 from mmrs_core.contributions.rules import MoveKind
 from mmrs_core.pictures.figures import clock, length
 from mmrs_core.pictures.flights.away import away_of, without
 from mmrs_core.pictures.flights.photos import SIMULATED, UNCONFIRMED, Shot, shots_in
 from mmrs_core.pictures.flights.planned import Planned, legs_of
-from mmrs_core.pictures.flights.tracks import Piece, pieces, stretches_of, thinned
+from mmrs_core.pictures.flights.tracks import pieces, stretches_of, thinned
 from mmrs_core.pictures.flights.values import Flight, Flown
 from mmrs_core.pictures.preview.from_run import (
     bars_of_records,
     handovers_of,
-    kind_of_leg,
+    legs_of_records,
     picture_of_run,
+    reach_of,
 )
 from mmrs_core.pictures.preview.picture import Arm, Bar, Leg, Mark, Picture, RobotPicture
 from mmrs_core.pipeline import Place
-from mmrs_core.scene import Name, Part, Position
-from mmrs_runtime.records.steps import StepRecord
+from mmrs_core.scene import Name, Part
 
 _HOLD = (BEHAVIOUR, "HoldPosition")
 _STILL = 0.3
@@ -104,12 +102,21 @@ class _Shown:
     def over(self, plan: RobotPicture) -> RobotPicture:
         """Return the robot's picture over that of its plan."""
         flown = self._flown
-        legs = sorted((*self._legs(), *self._between_moves()), key=lambda leg: leg.begin)
+        legs = legs_of_records(
+            self._moves,
+            flown.records,
+            self._track,
+            self._kinds,
+            end=flown.end,
+            still=_STILL,
+            holding=_STAYING,
+            away=self._away,
+        )
         way = sum(dist(a, b) for piece in pieces(self._track) for a, b in pairwise(piece.tolist()))
         known = (("distance", length(way)),) if len(self._track.times) else (("distance", "unknown"),)
         return replace(
             plan,
-            legs=tuple(legs),
+            legs=tuple(sorted((*legs, *self._between_moves()), key=lambda leg: leg.begin)),
             bars=tuple(sorted(self._bars(), key=lambda bar: bar.begin)),
             heights=tuple(zip(self._track.times.tolist(), self._track.positions[:, 2].tolist(), strict=True)),
             planned=tuple(leg.points for leg in plan.legs if not leg.stays),
@@ -123,33 +130,6 @@ class _Shown:
             ),
         )
 
-    def _legs(self) -> Iterator[Leg]:
-        records = self._flown.records
-        acts = _acts(records)
-        for begin, after in zip_longest(records, records[1:]):
-            if begin.label != "begin":
-                continue
-            move = self._moves[begin.move]
-            end = after.time if after is not None else self._flown.end
-            acted = (self._flown.track.at(time) for time in acts.get((move.id, begin.seq), ()))
-            yield from self._leg(move, begin.time, end, tuple(each for each in acted if each is not None))
-
-    def _leg(self, move: Move, begin: float, end: float, acted: tuple[Position, ...]) -> Iterator[Leg]:
-        kind, moves = kind_of_leg(move, self._kinds), f"move {move.id}"
-        for times, points in self._pieces(begin, end):
-            reach = _reach(points)
-            if move.is_a(_HOLD) and reach < _STAYING:
-                yield Leg("hold", points[:1], times[0], times[-1], move.task, actions=acted, moves=moves)
-            elif reach > _STILL or acted:
-                yield Leg(
-                    kind, points, times[0], times[-1], move.task, actions=acted, moves=moves, times=times
-                )
-            acted = ()
-
-    def _pieces(self, begin: float, end: float) -> Iterator[Piece]:
-        for since, until in without((begin, end), self._away):
-            yield from stretches_of(self._track, since, until)
-
     def _between_moves(self) -> Iterator[Leg]:
         """Yield the stretches that belong to no move: those of policies, operators and autopilots."""
         records = self._flown.records
@@ -158,7 +138,7 @@ class _Shown:
         since = 0.0
         for begin, end in (*busy, (self._flown.end, self._flown.end)):
             for times, points in stretches_of(self._track, since, begin):
-                if _reach(points) > _LONGEST_UNNAMED:
+                if reach_of(points) > _LONGEST_UNNAMED:
                     note = "off-plan"
                     yield Leg("response", points, times[0], times[-1], note=note, times=times)
             since = max(since, end)
@@ -198,25 +178,3 @@ class _Shown:
 def _moves_done(program: RobotProgram, flown: Flown) -> str:
     done = len({record.move for record in flown.records if record.label == "end"})
     return f"{done} of {len(program.moves)}"
-
-
-def _acts(records: Iterable[StepRecord]) -> dict[tuple[str, int], list[float]]:
-    """Return when device actions were done, by move and the number of the step that began it."""
-    acts: dict[tuple[str, int], list[float]] = {}
-    before: list[float] = []
-    begun: tuple[str, int] | None = None
-    for record in records:
-        if record.label == "begin":
-            begun = (record.move, record.seq)
-            acts[begun] = before
-        elif record.label == "act":
-            after = begun is not None and record.detail.startswith("post")
-            (acts[begun] if after and begun else before).append(record.time)
-        elif record.label in ("take", "choose"):
-            before = []
-    return acts
-
-
-def _reach(points: Sequence[Position]) -> float:
-    """Return the diagonal of the box around points, metres."""
-    return float(np.linalg.norm(np.ptp(np.asarray(points), axis=0)))

@@ -2,17 +2,21 @@
 
 from __future__ import annotations
 
-from bisect import bisect_left, bisect_right
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
-from itertools import pairwise
+from itertools import pairwise, zip_longest
 from math import dist
+
+import numpy as np
 
 from mmrs_core.behaviour.program import BEHAVIOUR, Move, Program, RobotProgram
 from mmrs_core.contributions.execution import Sample
 from mmrs_core.contributions.rules import MoveKind, most_specific
 from mmrs_core.contributions.symbols import MapSymbol
 from mmrs_core.pictures.figures import clock, length
+from mmrs_core.pictures.flights.away import Stretch, without
+from mmrs_core.pictures.flights.tracks import stretches_of
+from mmrs_core.pictures.flights.values import Track
 from mmrs_core.pictures.preview.features import elements_of, origin_of, symbol_of_robot, zones_of
 from mmrs_core.pictures.preview.picture import Bar, Handover, Leg, Picture, RobotPicture
 from mmrs_core.pipeline import Place
@@ -77,51 +81,89 @@ def _robot(
 ) -> RobotPicture:
     moves = {move.id: move for move in robot.moves}
     end = records[-1].time if records else 0.0
-    way = _Track(track)
-    flown = sum(dist(a, b) for a, b in pairwise(way.positions))
+    flown = sum(dist(a.position, b.position) for a, b in pairwise(track))
     return RobotPicture(
         name=robot.id,
         type_name=robot.type_name,
-        home=robot.home or (way.positions or [(0.0, 0.0, 0.0)])[0],
-        legs=tuple(_legs(moves, records, way, kinds)),
+        home=robot.home or (track[0].position if track else (0.0, 0.0, 0.0)),
+        legs=tuple(
+            legs_of_records(
+                moves, records, track_of(track), kinds, end=end, still=_STANDSTILL, holding=_STANDSTILL
+            )
+        ),
         bars=tuple(bars_of_records(moves, records, kinds)),
         heights=tuple((sample.time, sample.up) for sample in track),
         summary=(("moves", str(len(robot.moves))), ("distance", length(flown)), ("time", clock(end))),
     )
 
 
-def _legs(
+def track_of(samples: Sequence[Sample]) -> Track:
+    """Return the track of a simulated robot; without gaps."""
+    return Track(
+        np.array([sample.time for sample in samples], dtype=np.float64),
+        np.array([sample.position for sample in samples], dtype=np.float64).reshape(-1, 3),
+        np.full(len(samples), np.nan),
+        np.zeros(len(samples), dtype=bool),
+    )
+
+
+def legs_of_records(
     moves: Mapping[str, Move],
     records: Sequence[StepRecord],
-    track: _Track,
+    track: Track,
     kinds: Mapping[Name, MoveKind],
+    *,
+    end: float,
+    still: float,
+    holding: float,
+    away: Sequence[Stretch] = (),
 ) -> Iterator[Leg]:
-    acts: dict[str, list[float]] = {}
-    for record in records:
-        if record.label == "act":
-            acts.setdefault(record.move, []).append(record.time)
-    for begin, end in movements(records):
-        points, times = track.between(begin.time, end.time)
+    """Yield where and when a robot carried out its moves.
+
+    Args:
+        end: of what is known of it, seconds.
+        still: metres within which a robot that does nothing is not shown.
+        holding: metres within which a robot that is to hold its position holds it.
+        away: when it did something else.
+    """
+    acts = _acts(records)
+    for begin, after in zip_longest(records, records[1:]):
+        if begin.label != "begin":
+            continue
         move = moves[begin.move]
-        if not points:
-            continue
-        done = tuple(track.at(time) for time in acts.get(move.id, ()))
-        stays = sum(dist(a, b) for a, b in pairwise(points)) < _STANDSTILL
-        if stays and not done and (move.is_a(_RECHARGE) or not move.is_a(_HOLD)):
-            continue
-        kind = "hold" if stays and move.is_a(_HOLD) else kind_of_leg(move, kinds)
-        way = points[:1] if stays else points
-        paced = () if stays else times
-        yield Leg(
-            kind, way, begin.time, end.time, move.task, actions=done, moves=f"move {move.id}", times=paced
-        )
+        kind, words = kind_of_leg(move, kinds), f"move {move.id}"
+        positions = (track.at(time) for time in acts.get((move.id, begin.seq), ()))
+        acted = tuple(position for position in positions if position is not None)
+        for since, until in without((begin.time, after.time if after is not None else end), away):
+            for times, points in stretches_of(track, since, until):
+                first, last, reach = times[0], times[-1], reach_of(points)
+                if move.is_a(_HOLD) and reach < holding:
+                    yield Leg("hold", points[:1], first, last, move.task, actions=acted, moves=words)
+                elif reach > still or acted:
+                    yield Leg(kind, points, first, last, move.task, actions=acted, moves=words, times=times)
+                acted = ()
 
 
-def movements(records: Sequence[StepRecord]) -> Iterator[tuple[StepRecord, StepRecord]]:
-    """Yield every begin of a move with the step after it."""
-    for record, following in pairwise(records):
+def reach_of(points: Sequence[Position]) -> float:
+    """Return the diagonal of the box around points, metres."""
+    return float(np.linalg.norm(np.ptp(np.asarray(points), axis=0)))
+
+
+def _acts(records: Iterable[StepRecord]) -> dict[tuple[str, int], list[float]]:
+    """Return when device actions were done, by move and the number of the step that began it."""
+    acts: dict[tuple[str, int], list[float]] = {}
+    before: list[float] = []
+    begun: tuple[str, int] | None = None
+    for record in records:
         if record.label == "begin":
-            yield record, following
+            begun = (record.move, record.seq)
+            acts[begun] = before
+        elif record.label == "act":
+            after = begun is not None and record.detail.startswith("post")
+            (acts[begun] if after and begun else before).append(record.time)
+        elif record.label in ("take", "choose"):
+            before = []
+    return acts
 
 
 def kind_of_leg(move: Move, kinds: Mapping[Name, MoveKind]) -> str:
@@ -184,40 +226,3 @@ def _waits(
             transition = robot.transitions.get(index[record.move])
             if record.label == "take" and transition is not None and record.time > before.time:
                 yield from ((robot.id, slot, before.time, record.time) for slot in transition.waits)
-
-
-class _Track:
-    """The way of a robot, asked for by time.
-
-    Attributes:
-        positions: all corners of the way.
-    """
-
-    def __init__(self, samples: Sequence[Sample]) -> None:
-        self._times = [sample.time for sample in samples]
-        self.positions: list[Position] = [sample.position for sample in samples]
-
-    def between(self, begin: float, end: float) -> tuple[tuple[Position, ...], tuple[float, ...]]:
-        """Return the corners from begin to end, first and last interpolated, and when it was there.
-
-        Both are empty where nothing is known.
-        """
-        if not self.positions:
-            return (), ()
-        inside = slice(bisect_right(self._times, begin), bisect_left(self._times, end))
-        corners = (self.at(begin), *self.positions[inside], self.at(end))
-        return corners, (begin, *self._times[inside], end)
-
-    def at(self, time: float) -> Position:
-        """Return where the robot was; before the first sample and after the last it stood still."""
-        after = bisect_left(self._times, time)
-        if after == 0 or after == len(self._times):
-            return self.positions[min(after, len(self._times) - 1)]
-        since, until = self._times[after - 1], self._times[after]
-        part = (time - since) / (until - since)
-        one, two = self.positions[after - 1], self.positions[after]
-        return (
-            one[0] + part * (two[0] - one[0]),
-            one[1] + part * (two[1] - one[1]),
-            one[2] + part * (two[2] - one[2]),
-        )
