@@ -92,7 +92,7 @@ class Fence:
         """Return how tight it is, in words."""
         return (
             f"the fence around '{self.area}' is {self.kept:.1f} m from it, although {self.wanted:.1f} m must"
-            " be kept: its way leads so near"
+            " be kept: its path leads so near"
         )
 
 
