@@ -1,4 +1,4 @@
-"""Faults as people write them."""
+"""Faults on a schedule, and by typed lines."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ def vehicle():
         ("A:refuse-arming=PreArm: x", ScheduledFault("A", "refuse-arming", ("PreArm: x",))),
     ],
 )
-def test_a_fault_says_whom_what_when_and_for_how_long(text, fault):
+def test_a_fault_names_robot_values_begin_and_duration(text, fault):
     assert scheduled(text) == fault
 
 
@@ -41,7 +41,7 @@ def test_a_fault_says_whom_what_when_and_for_how_long(text, fault):
         ("", "not "),
     ],
 )
-def test_what_is_no_fault_is_refused(text, complaint):
+def test_a_malformed_fault_is_refused(text, complaint):
     with pytest.raises(ValueError, match=complaint):
         scheduled(text)
 
@@ -57,7 +57,7 @@ def test_time_counts_from_the_first_arming(vehicle):
     assert vehicle.autopilot.located
 
 
-def test_a_line_makes_and_mends_faults(vehicle):
+def test_a_line_injects_and_clears_faults(vehicle):
     assert inject("Drone1 obstacle 4 90", [("Drone1", vehicle)]) == ("Drone1",)
     assert vehicle.autopilot.obstacle == (4.0, 90.0)
     assert inject("all mend obstacle", [("Drone1", vehicle)]) == ("Drone1",)
@@ -65,7 +65,7 @@ def test_a_line_makes_and_mends_faults(vehicle):
 
 
 @pytest.mark.parametrize("line", ["Quad 1 battery 0.1", "  Quad 1   battery 0.1 "])
-def test_a_line_may_name_a_robot_whose_name_has_blanks(vehicle, line):
+def test_a_robot_name_can_contain_spaces(vehicle, line):
     vehicles = [(name, vehicle) for name in ("Quad", "Quad 12", "Quad 1")]
     assert inject(line, vehicles) == ("Quad 1",)
     assert vehicle.autopilot.energy == pytest.approx(0.1)
@@ -80,7 +80,7 @@ def test_a_line_may_name_a_robot_whose_name_has_blanks(vehicle, line):
         ("Drone1 gps", "unknown fault"),
     ],
 )
-def test_a_line_that_says_nothing_is_refused(vehicle, line, complaint):
+def test_a_malformed_line_is_refused(vehicle, line, complaint):
     with pytest.raises(ValueError, match=complaint):
         inject(line, [("Drone1", vehicle)])
 

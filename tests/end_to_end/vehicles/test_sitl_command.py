@@ -15,6 +15,7 @@ from ports import free_port
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 from warm_python import python
 
+from mmrs_core.cli import run
 from mmrs_core.resources import shipped
 
 pytestmark = pytest.mark.real_time("faults")
@@ -31,8 +32,8 @@ def finish(process: subprocess.Popen[str], typed: str | None = None) -> tuple[in
     return process.returncode, out, said
 
 
-def heard_at(port: int, seconds: float = 20.0) -> set[int]:
-    """Return the systems that speak to a port."""
+def systems_at(port: int, seconds: float = 20.0) -> set[int]:
+    """Return the systems that send to a port."""
     codec, systems = mavlink.MAVLink(None), set()
     codec.robust_parsing = True
     until = time.monotonic() + seconds
@@ -57,7 +58,7 @@ def test_a_project_gets_a_vehicle_for_each_robot_at_its_home():
         f"{robot}=udpin:127.0.0.1:{port + number}@{number + 1}"
         for number, robot in enumerate(("Alba", "Brezza", "Cirro"))
     ]
-    assert heard_at(port + 1) == {2}
+    assert systems_at(port + 1) == {2}
     code, out, said = finish(process, "quit\n")
     assert code == 0, said
     assert out.count("0.0 s in motion") == 3
@@ -68,12 +69,12 @@ def test_vehicles_without_a_model_may_share_a_port():
     port = free_port()
     process = start("--count", "2", "--port", str(port), "--port-step", "0", "--kind", "rover")
     assert process.stdout.readline().count(f":{port}@") == 2
-    assert heard_at(port)
+    assert systems_at(port)
     assert finish(process, "quit\n")[0] == 0
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
-def test_an_interrupt_ends_it_with_what_each_vehicle_did(number):
+def test_an_interrupt_ends_it_with_the_summaries(number):
     process = start("--port", str(free_port()))
     process.stdout.readline()
     process.send_signal(number)
@@ -83,15 +84,15 @@ def test_an_interrupt_ends_it_with_what_each_vehicle_did(number):
     assert "Traceback" not in said
 
 
-def test_it_ends_by_itself_and_tells_all_as_json():
+def test_it_ends_on_time_with_its_result_as_json():
     code, out, said = finish(start("--port", str(free_port()), "--for", "1", "--speedup", "5", "--json"))
     assert code == 0, said
-    told = json.loads(out)
-    assert told["connect"][-2:] == ["--speedup", "5"]
-    assert told["vehicles"]["Vehicle1"]["armed"] is False
+    result = json.loads(out)
+    assert result["connect"][-2:] == ["--speedup", "5"]
+    assert result["vehicles"]["Vehicle1"]["armed"] is False
 
 
-def test_lines_make_faults_and_tell_what_is_wrong_with_a_line():
+def test_typed_lines_inject_faults_and_report_errors():
     process = start("--port", str(free_port()))
     process.stdout.readline()
     code, _, said = finish(process, "Vehicle1 gps-lost\nall battery 0.2\nDrone9 gps-lost\nstatus\nquit\n")
@@ -110,25 +111,26 @@ def test_lines_make_faults_and_tell_what_is_wrong_with_a_line():
         (["--kind", "plane"], "unknown vehicle type"),
         (["--parameter", "RTL_ALT"], "not NAME=NUMBER"),
         (["--speedup", "0"], "speedup"),
-        (("--host", "nowhere.invalid"), "nowhere.invalid: cannot be resolved"),
-        (("--fault", "battery=2"), "--fault battery 2: 2 is not from 0 to 1"),
-        (("--fault", "slow-upload=-3"), "-3 is negative"),
-        (("--fault", "obstacle=nan"), "'nan' is not a finite number"),
-        (("--home", "91,0"), "--home 91,0: not a position"),
+        (["--host", "nowhere.invalid"], "nowhere.invalid: cannot be resolved"),
+        (["--fault", "battery=2"], "--fault battery 2: 2 is not from 0 to 1"),
+        (["--fault", "slow-upload=-3"], "-3 is negative"),
+        (["--fault", "obstacle=nan"], "'nan' is not a finite number"),
+        (["--home", "91,0"], "--home 91,0: not a position"),
         (("carbon-dioxide", "--kind", "rover"), "--kind: not allowed with 'carbon-dioxide'"),
     ],
 )
-def test_a_wrong_command_line_is_a_usage_error(arguments, complaint):
-    code, out, said = finish(start("--port", str(free_port()), "--for", "0.1", *arguments))
-    assert (code, out) == (2, "")
-    assert complaint in said
+def test_a_wrong_command_line_is_a_usage_error(arguments, complaint, capsys):
+    assert run(["sitl", "--for", "0.1", *arguments]) == 2
+    printed = capsys.readouterr()
+    assert printed.out == ""
+    assert complaint in printed.err
 
 
 IN_A_TERMINAL = "import os, pty, sys; sys.exit(os.waitstatus_to_exitcode(pty.spawn(sys.argv[1:])))"
 
 
-def test_it_goes_on_in_the_background_of_a_terminal():
-    """A process in the background that reads from its terminal is stopped, unless it sees to that."""
+def test_it_runs_in_the_background_of_a_terminal():
+    """A background process that reads from its terminal is stopped unless it ignores SIGTTIN."""
     command = f"{sys.executable} -m mmrs_core sitl --port {free_port()} --for 2 & wait %1"
     shell = [sys.executable, "-c", IN_A_TERMINAL, "bash", "--norc", "-i", "-c", command]
     with subprocess.Popen(shell, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True) as process:
@@ -140,13 +142,12 @@ def test_it_goes_on_in_the_background_of_a_terminal():
     assert process.returncode == 0
 
 
-def test_faults_are_listed():
-    code, out, _ = finish(start("--fault", "list"))
-    assert code == 0
+def test_faults_are_listed(capsys):
+    assert run(["sitl", "--fault", "list"]) == 0
+    out = capsys.readouterr().out
     assert "gps-lost\n" in out
     assert "restart  (one-shot)\n" in out
 
 
-def test_a_mission_without_a_place_on_earth_is_refused(tmp_path):
-    code, _, said = finish(start(str(tmp_path)))
-    assert code == 3, said
+def test_a_folder_without_a_mission_is_refused(tmp_path):
+    assert run(["sitl", str(tmp_path)]) == 3

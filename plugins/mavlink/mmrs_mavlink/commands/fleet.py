@@ -63,20 +63,20 @@ class Fleet:
         sights: objects that photos can show, from the mission's origin.
     """
 
-    port: int
-    step: int
-    host: str
-    ground: str
-    speedup: float
-    loss: float
-    delay: float
-    seed: int
-    firmware: str
-    wind: str
-    gusts: str
-    energy: float | None
-    recharge: float | None
-    parameters: tuple[str, ...]
+    port: int = 14_550
+    step: int = 10
+    host: str = "127.0.0.1"
+    ground: str = ""
+    speedup: float = 1.0
+    loss: float = 0.0
+    delay: float = 0.0
+    seed: int = 0
+    firmware: str = "ardupilot"
+    wind: str = "0,0"
+    gusts: str = "0"
+    energy: float | None = None
+    recharge: float | None = None
+    parameters: tuple[str, ...] = ()
     sights: tuple[Sight, ...] = ()
 
     def vehicles(self, members: Sequence[Member]) -> tuple[tuple[str, SimulatedVehicle], ...]:

@@ -46,6 +46,7 @@ class Rehearsal:
         try:
             plan = [checked(text, vehicles) for text in faults]
         except ValueError as error:
+            self._close()
             raise typer.BadParameter(f"--fault {error}") from error
         self._schedules = {
             name: Schedule(vehicle, [fault for fault in plan if fault.robot in ("", name)])
@@ -73,8 +74,7 @@ class Rehearsal:
             host.stop()
             for number, handler in before.items():
                 signal.signal(number, handler)
-            for _, vehicle in self._vehicles:
-                vehicle.close()
+            self._close()
         for name, vehicle in self._vehicles if not quiet else ():
             say(f"'{name}': {summary_line(vehicle)}")
         return 0 if ended else INTERRUPTED
@@ -82,6 +82,10 @@ class Rehearsal:
     def summaries(self) -> dict[str, Mapping[str, object]]:
         """Return what each vehicle has done."""
         return {name: summary_of(vehicle) for name, vehicle in self._vehicles}
+
+    def _close(self) -> None:
+        for _, vehicle in self._vehicles:
+            vehicle.close()
 
     def _stop(self, number: int, frame: FrameType | None) -> None:
         self._stopped = True
