@@ -105,7 +105,7 @@ def ports(given: argparse.Namespace) -> list[int]:
 def be_vehicles(given: argparse.Namespace) -> None:
     from mmrs_mavlink.sitl import Host, Settings, SimulatedVehicle
     from mmrs_mavlink.sitl.commands import execute
-    from mmrs_mavlink.sitl.items import Item
+    from mmrs_mavlink.sitl.items import StoredItem
     from mmrs_mavlink.sitl.simulation import advance
 
     vehicles = []
@@ -114,8 +114,8 @@ def be_vehicles(given: argparse.Namespace) -> None:
         vehicle = SimulatedVehicle(port, settings)
         pilot = vehicle.autopilot
         places = [pilot.degrees_at(place) for place in ((0, 0, 0), (80, 0, 0), (80, 80, 0), (0, 80, 0))]
-        items = [Item(3, 16, (0.0,) * 4, round(a * 1e7), round(b * 1e7), 20.0) for a, b in places]
-        pilot.stores[0] = [items[0], *items, Item(2, 177, (1.0, -1.0, 0.0, 0.0), 0, 0, 0.0)]
+        items = [StoredItem(3, 16, (0.0,) * 4, round(a * 1e7), round(b * 1e7), 20.0) for a, b in places]
+        pilot.stores[0] = [items[0], *items, StoredItem(2, 177, (1.0, -1.0, 0.0, 0.0), 0, 0, 0.0)]
         advance(pilot, 3.0)
         for command, params in ((176, (1, 4)), (400, (1,)), (22, (0, 0, 0, 0, 0, 0, 20))):
             assert execute(pilot, command, (*params, *[0.0] * 7)[:7]) == 0

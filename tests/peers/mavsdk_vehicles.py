@@ -25,7 +25,7 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from mmrs_mavlink.commands.rehearsal import summary_of
 from mmrs_mavlink.sitl.commands import arming_refusal, execute
-from mmrs_mavlink.sitl.items import Item
+from mmrs_mavlink.sitl.items import StoredItem
 from mmrs_mavlink.sitl.settings import Settings
 from mmrs_mavlink.sitl.streams import Streams
 from mmrs_mavlink.sitl.vehicle import Host, SimulatedVehicle
@@ -140,7 +140,7 @@ class MavsdkVehicle(SimulatedVehicle):
 
     def _on_load(self, items) -> None:
         self.autopilot.stores[0] = [
-            Item(
+            StoredItem(
                 each.frame,
                 each.command,
                 (each.param1, each.param2, each.param3, each.param4),

@@ -17,7 +17,7 @@ from mavlink_peer import ARDUPILOT, PX4, heartbeat
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from mmrs_mavlink.links.retries import Retries
-from mmrs_mavlink.sitl.items import Item
+from mmrs_mavlink.sitl.items import StoredItem
 from mmrs_mavlink.sitl.px4_transfers import Px4Transfers
 from mmrs_mavlink.sitl.radio import packed
 from mmrs_mavlink.sitl.transfers import ArduPilotTransfers
@@ -63,7 +63,7 @@ class VirtualLink:
 
     def __init__(self, firmware: str, air: Air, seed: int, *, old: bool = False) -> None:
         self.clock, self.retries = VirtualClock(), Retries()
-        self.stores: dict[int, list[Item]] = {kind: [] for kind in (0, 1, 2)}
+        self.stores: dict[int, list[StoredItem]] = {kind: [] for kind in (0, 1, 2)}
         self.said: list[str] = []
         self.sent = 0
         self._air, self._old, self._random = air, old, random.Random(seed)

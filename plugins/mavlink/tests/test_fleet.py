@@ -7,7 +7,7 @@ import typer
 
 from mmrs_core.cli.settings import Settings
 from mmrs_core.resources import shipped
-from mmrs_mavlink.commands.fleet import Fleet, members_of, plain_members
+from mmrs_mavlink.commands.fleet import SimulatedFleet, members_of, plain_members
 
 TWO = plain_members(2, "42.37,13.35", "copter")
 
@@ -21,7 +21,7 @@ def members():
 
 
 def settings_of(member, **options):
-    ((_, vehicle),) = Fleet(**options).vehicles([member])
+    ((_, vehicle),) = SimulatedFleet(**options).vehicles([member])
     vehicle.close()
     return vehicle.autopilot.settings
 
@@ -47,7 +47,7 @@ def test_vehicles_without_a_model_stand_side_by_side():
 
 @pytest.mark.parametrize(("speedup", "end"), [(1.0, "=udpin:127.0.0.1:14560@2"), (5.0, "--speedup 5")])
 def test_the_arguments_are_those_of_controllers_and_of_mmrs_run(speedup, end):
-    assert " ".join(Fleet(speedup=speedup).arguments(TWO)).endswith(end)
+    assert " ".join(SimulatedFleet(speedup=speedup).arguments(TWO)).endswith(end)
 
 
 @pytest.mark.parametrize(
@@ -62,10 +62,10 @@ def test_the_arguments_are_those_of_controllers_and_of_mmrs_run(speedup, end):
 )
 def test_invalid_options_are_refused(options, complaint):
     with pytest.raises(typer.BadParameter, match=complaint):
-        Fleet(**options).vehicles(TWO)
+        SimulatedFleet(**options).vehicles(TWO)
 
 
 def test_a_ground_station_has_a_radio_of_its_own():
-    ((_, vehicle),) = Fleet(ground="14650").vehicles(TWO[:1])
+    ((_, vehicle),) = SimulatedFleet(ground="14650").vehicles(TWO[:1])
     assert len(vehicle.radios) == 2
     vehicle.close()

@@ -11,7 +11,7 @@ from shapely import Point, Polygon
 
 from fault_table.project import MEADOW, OUT, TOUR
 from mmrs_mavlink.sitl import SimulatedVehicle
-from mmrs_mavlink.sitl.autopilot import Autopilot
+from mmrs_mavlink.sitl.autopilot import SimulatedAutopilot
 from mmrs_mavlink.sitl.body import Vector
 
 NAMES = {
@@ -44,7 +44,7 @@ def _near(place: tuple[float, float, float]) -> Moment:
     )
 
 
-def _when(holds: Callable[[Autopilot], bool]) -> Moment:
+def _when(holds: Callable[[SimulatedAutopilot], bool]) -> Moment:
     return lambda vehicle: holds(vehicle.autopilot)
 
 

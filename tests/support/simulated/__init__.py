@@ -6,9 +6,9 @@ from collections.abc import Callable, Sequence
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from mmrs_mavlink.sitl.autopilot import Autopilot
+from mmrs_mavlink.sitl.autopilot import SimulatedAutopilot
 from mmrs_mavlink.sitl.commands import execute
-from mmrs_mavlink.sitl.items import Item
+from mmrs_mavlink.sitl.items import StoredItem
 from mmrs_mavlink.sitl.settings import Settings
 from mmrs_mavlink.sitl.simulation import advance
 
@@ -24,7 +24,7 @@ class Bench:
     """
 
     def __init__(self, **settings: object) -> None:
-        self.pilot = Autopilot(Settings(**{"ready": 0.5, "boot": 0.2, **settings}))
+        self.pilot = SimulatedAutopilot(Settings(**{"ready": 0.5, "boot": 0.2, **settings}))
         self.wait(1.0)
 
     @property
@@ -60,17 +60,17 @@ class Bench:
         assert self.command(mavlink.MAV_CMD_NAV_TAKEOFF, 0, 0, 0, 0, 0, 0, height) == 0
         assert self.wait_for(lambda: self.pilot.body.position[2] > height - 0.1)
 
-    def load(self, *items: Item) -> None:
+    def load(self, *items: StoredItem) -> None:
         """Put a mission on it, after a home item."""
         self.pilot.stores[0] = [self.item(16, (0.0, 0.0, 0.0)), *items]
 
-    def item(self, command: int, place: Place, *params: float) -> Item:
+    def item(self, command: int, place: Place, *params: float) -> StoredItem:
         """Return an item at metres north, east and up of home."""
         latitude, longitude = self.pilot.degrees_at(place)
         values = (*params, *[0.0] * 4)
-        return Item(3, command, values[:4], round(latitude * 1e7), round(longitude * 1e7), place[2])
+        return StoredItem(3, command, values[:4], round(latitude * 1e7), round(longitude * 1e7), place[2])
 
-    def go_to(self, *places: Place, hold: float = 0.0) -> Sequence[Item]:
+    def go_to(self, *places: Place, hold: float = 0.0) -> Sequence[StoredItem]:
         return [self.item(16, place, hold) for place in places]
 
     def closest_to(self, place: Place) -> float:

@@ -18,7 +18,7 @@ from mmrs_core.cli.output import say, tell
 from mmrs_core.cli.typed import typed_lines
 from mmrs_core.errors import InternalError
 from mmrs_mavlink.commands.schedule import Schedule, Vehicles, checked, inject
-from mmrs_mavlink.sitl.autopilot import Autopilot
+from mmrs_mavlink.sitl.autopilot import SimulatedAutopilot
 from mmrs_mavlink.sitl.faults import FAULTS
 from mmrs_mavlink.sitl.vehicle import Host, SimulatedVehicle
 
@@ -138,7 +138,7 @@ class Rehearsal:
             tell(f"{vehicle.autopilot.time:7.1f} s '{name}': {status_line(vehicle.autopilot)}")
 
 
-def status_line(pilot: Autopilot) -> str:
+def status_line(pilot: SimulatedAutopilot) -> str:
     """Return the present status of a vehicle."""
     north, east, up = pilot.body.position
     armed = "armed" if pilot.armed else "disarmed"
@@ -150,7 +150,7 @@ def status_line(pilot: Autopilot) -> str:
     )
 
 
-def _faults_of(pilot: Autopilot) -> Iterator[str]:
+def _faults_of(pilot: SimulatedAutopilot) -> Iterator[str]:
     if not pilot.located:
         yield "no position"
     if any(pilot.body.error):

@@ -8,7 +8,7 @@ from contextlib import nullcontext
 from dataclasses import dataclass
 
 from mmrs_core.cli.typed import EVERYBODY, addressed
-from mmrs_mavlink.sitl.autopilot import Autopilot
+from mmrs_mavlink.sitl.autopilot import SimulatedAutopilot
 from mmrs_mavlink.sitl.faults import FAULTS, Faults
 from mmrs_mavlink.sitl.vehicle import SimulatedVehicle
 
@@ -75,7 +75,7 @@ def checked(text: str, vehicles: Vehicles) -> ScheduledFault:
         raise ValueError(f"{text}: unknown robot '{fault.robot}'; known are {', '.join(names)}")
     for name, vehicle in vehicles:
         if fault.robot in ("", name):
-            pilot = Autopilot(vehicle.autopilot.settings)
+            pilot = SimulatedAutopilot(vehicle.autopilot.settings)
             trial = Faults(pilot, nullcontext(), watched=vehicle.faults.watched)
             trial.begin(fault.name, *fault.values)
     return fault

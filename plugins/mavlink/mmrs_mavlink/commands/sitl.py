@@ -147,13 +147,13 @@ def sitl(
     Example: mmrs sitl examples/carbon-dioxide --speedup 5 --fault 'Alba:gps-lost@60+20'
     """
     from mmrs_core.simulation.surroundings import sights_in
-    from mmrs_mavlink.commands.fleet import Fleet, members_of, plain_members
+    from mmrs_mavlink.commands.fleet import SimulatedFleet, members_of, plain_members
     from mmrs_mavlink.commands.rehearsal import Rehearsal, fault_list
 
     if fault == ["list"]:
         fault_list()
         return 0
-    fleet = Fleet(
+    fleet = SimulatedFleet(
         port=port,
         step=step,
         host=host,

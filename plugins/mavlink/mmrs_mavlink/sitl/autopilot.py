@@ -18,10 +18,10 @@ from mmrs_mavlink.sitl.battery import Battery
 from mmrs_mavlink.sitl.body import Body, Vector, wind_of
 from mmrs_mavlink.sitl.camera import Camera
 from mmrs_mavlink.sitl.gusts import Gusts
-from mmrs_mavlink.sitl.items import FENCE, MISSION, MOVING, RALLY, Item
+from mmrs_mavlink.sitl.items import FENCE, MISSION, MOVING, RALLY, StoredItem
 from mmrs_mavlink.sitl.modes import BLIND, first_mode, numbers
 from mmrs_mavlink.sitl.settings import PX4, Settings
-from mmrs_mavlink.sitl.sticks import Sticks
+from mmrs_mavlink.sitl.sticks import ManualControl
 
 EQUATOR, SQUARED_ECCENTRICITY = 6_378_137.0, 6.694_379_990_14e-3
 """The WGS 84 ellipsoid; its equatorial radius in metres."""
@@ -52,7 +52,7 @@ class Failsafe:
     until: float = 0.0
 
 
-class Autopilot:
+class SimulatedAutopilot:
     """The state of a vehicle; `control` moves it, `commands` executes its commands.
 
     Attributes:
@@ -90,7 +90,7 @@ class Autopilot:
         self.battery = Battery(settings.energy, settings.capacity)
         self.camera = Camera()
         self.parameters = parameters.defaults(settings)
-        self.stores: dict[int, list[Item]] = {MISSION: [], FENCE: [], RALLY: []}
+        self.stores: dict[int, list[StoredItem]] = {MISSION: [], FENCE: [], RALLY: []}
         self.time = self.booted = 0.0
         self.numbers = numbers(settings)
         self.mode_name = first_mode(settings)
@@ -121,7 +121,7 @@ class Autopilot:
         self.last_heartbeat: float | None = None
         self.setpoints: list[float] = []
         self.aimed = False
-        self.sticks: Sticks | None = None
+        self.sticks: ManualControl | None = None
         self.grounded_since = self.time
         self.home = self._here()
         self.home_set = False
@@ -230,7 +230,7 @@ class Autopilot:
         """Return an altitude above mean sea level, or else above home, in metres above the ground."""
         return height + (0.0 if above_sea else self.home[2]) - self.settings.altitude
 
-    def place_of(self, item: Item) -> Vector:
+    def place_of(self, item: StoredItem) -> Vector:
         """Return the position of an item; without coordinates, that of the vehicle at the item's altitude."""
         up = self.above_ground(item.z, above_sea=item.above_sea)
         if not (item.x or item.y):

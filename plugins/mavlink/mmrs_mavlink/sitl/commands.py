@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from mmrs_mavlink.sitl.autopilot import Autopilot
+from mmrs_mavlink.sitl.autopilot import SimulatedAutopilot
 from mmrs_mavlink.sitl.body import Vector
 from mmrs_mavlink.sitl.failsafes import outside_fence
 from mmrs_mavlink.sitl.items import MISSION
@@ -30,7 +30,7 @@ DEVICES = frozenset(
 Params = tuple[float, ...]
 
 
-def execute(pilot: Autopilot, number: int, params: Params) -> int:
+def execute(pilot: SimulatedAutopilot, number: int, params: Params) -> int:
     """Execute a command with its seven parameters; return its MAV_RESULT."""
     handler = _HANDLERS.get(number)
     if number in pilot.settings.refuse or (handler is None and number not in DEVICES):
@@ -41,7 +41,7 @@ def execute(pilot: Autopilot, number: int, params: Params) -> int:
     return NOT_NOW if result == FAILED and pilot.px4 else result
 
 
-def steer(pilot: Autopilot, target: Vector, heading: float | None) -> None:
+def steer(pilot: SimulatedAutopilot, target: Vector, heading: float | None) -> None:
     """Follow a set-point, if the mode is GUIDED (OFFBOARD) and a flying vehicle is in the air.
 
     The first set-point in ArduCopter's GUIDED resets the speed to its default.
@@ -56,7 +56,7 @@ def steer(pilot: Autopilot, target: Vector, heading: float | None) -> None:
             pilot.body.wanted_heading = heading
 
 
-def arming_refusal(pilot: Autopilot) -> str:
+def arming_refusal(pilot: SimulatedAutopilot) -> str:
     """Return why a vehicle refuses to arm; empty if it does not."""
     if pilot.arming_fault:
         return pilot.arming_fault
@@ -67,7 +67,7 @@ def arming_refusal(pilot: Autopilot) -> str:
     return "vehicle outside Polygon fence" if fenced and outside_fence(pilot) else ""
 
 
-def _arm(pilot: Autopilot, params: Params) -> int:
+def _arm(pilot: SimulatedAutopilot, params: Params) -> int:
     if params[0] == 0.0:
         if pilot.airborne and params[1] != FORCE_DISARM:
             return FAILED
@@ -84,7 +84,7 @@ def _arm(pilot: Autopilot, params: Params) -> int:
     return ACCEPTED
 
 
-def _take_off(pilot: Autopilot, params: Params) -> int:
+def _take_off(pilot: SimulatedAutopilot, params: Params) -> int:
     if not pilot.armed or not pilot.flies or pilot.airborne:
         return FAILED
     height = pilot.above_ground(params[6], above_sea=pilot.px4)
@@ -97,15 +97,15 @@ def _take_off(pilot: Autopilot, params: Params) -> int:
     return ACCEPTED
 
 
-def _enter(name: str) -> Callable[[Autopilot, Params], int]:
-    def handler(pilot: Autopilot, params: Params) -> int:
+def _enter(name: str) -> Callable[[SimulatedAutopilot, Params], int]:
+    def handler(pilot: SimulatedAutopilot, params: Params) -> int:
         pilot.enter(name)
         return ACCEPTED if pilot.mode_name == name else FAILED
 
     return handler
 
 
-def _speed(pilot: Autopilot, params: Params) -> int:
+def _speed(pilot: SimulatedAutopilot, params: Params) -> int:
     if params[1] <= 0.0:
         if not pilot.px4:
             return DENIED
@@ -123,7 +123,7 @@ def _speed(pilot: Autopilot, params: Params) -> int:
     return ACCEPTED
 
 
-def _yaw(pilot: Autopilot, params: Params) -> int:
+def _yaw(pilot: SimulatedAutopilot, params: Params) -> int:
     if pilot.mode_name != "guided":
         return FAILED
     turn = -params[0] if params[2] < 0 else params[0]
@@ -131,7 +131,7 @@ def _yaw(pilot: Autopilot, params: Params) -> int:
     return ACCEPTED
 
 
-def _set_current(pilot: Autopilot, params: Params) -> int:
+def _set_current(pilot: SimulatedAutopilot, params: Params) -> int:
     items = pilot.stores[MISSION]
     if not 0 <= params[0] < len(items):
         return DENIED
@@ -143,47 +143,47 @@ def _set_current(pilot: Autopilot, params: Params) -> int:
     return ACCEPTED
 
 
-def _start_mission(pilot: Autopilot, params: Params) -> int:
+def _start_mission(pilot: SimulatedAutopilot, params: Params) -> int:
     if params[0] or params[1] or not pilot.armed:
         return DENIED
     pilot.finished = False
     return pilot.set_mode(pilot.numbers["auto"])
 
 
-def _set_mode(pilot: Autopilot, params: Params) -> int:
+def _set_mode(pilot: SimulatedAutopilot, params: Params) -> int:
     return pilot.set_mode(int(params[1]) << 16 | int(params[2]) << 24 if pilot.px4 else int(params[1]))
 
 
-def _enable_fence(pilot: Autopilot, params: Params) -> int:
+def _enable_fence(pilot: SimulatedAutopilot, params: Params) -> int:
     pilot.parameters["FENCE_ENABLE"] = params[0]
     return ACCEPTED
 
 
-def _set_roi(pilot: Autopilot, params: Params) -> int:
+def _set_roi(pilot: SimulatedAutopilot, params: Params) -> int:
     pilot.roi = pilot.local(params[4], params[5], params[6]) if params[4] or params[5] else None
     return ACCEPTED
 
 
-def _clear_roi(pilot: Autopilot, params: Params) -> int:
+def _clear_roi(pilot: SimulatedAutopilot, params: Params) -> int:
     pilot.roi = None
     return ACCEPTED
 
 
-def _set_home(pilot: Autopilot, params: Params) -> int:
+def _set_home(pilot: SimulatedAutopilot, params: Params) -> int:
     here = (*pilot.degrees(), pilot.settings.altitude + pilot.body.position[2])
     pilot.home = here if params[0] == 1.0 else (params[4], params[5], params[6])
     pilot.home_set = True
     return ACCEPTED
 
 
-def _run_checks(pilot: Autopilot, params: Params) -> int:
+def _run_checks(pilot: SimulatedAutopilot, params: Params) -> int:
     why = arming_refusal(pilot)
     if why:
         pilot.say(mavlink.MAV_SEVERITY_CRITICAL, f"PreArm: {why}")
     return FAILED if pilot.armed else ACCEPTED
 
 
-_HANDLERS: Mapping[int, Callable[[Autopilot, Params], int]] = {
+_HANDLERS: Mapping[int, Callable[[SimulatedAutopilot, Params], int]] = {
     int(mavlink.MAV_CMD_COMPONENT_ARM_DISARM): _arm,
     int(mavlink.MAV_CMD_NAV_TAKEOFF): _take_off,
     int(mavlink.MAV_CMD_NAV_LAND): _enter("land"),

@@ -7,7 +7,7 @@ from math import hypot
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from mmrs_mavlink.sitl.autopilot import Autopilot, bearing
+from mmrs_mavlink.sitl.autopilot import SimulatedAutopilot, bearing
 from mmrs_mavlink.sitl.body import Vector
 from mmrs_mavlink.sitl.items import RALLY
 from mmrs_mavlink.sitl.missions import fly_mission
@@ -29,7 +29,7 @@ RALLY_POINT = 1
 """RTL_TYPE of a PX4 that returns to a rally point rather than home."""
 
 
-def decide(pilot: Autopilot, seconds: float) -> None:
+def decide(pilot: SimulatedAutopilot, seconds: float) -> None:
     """Set the next target of an armed vehicle."""
     if pilot.settings.kind == "sub" and pilot.mode_name in MANUAL:
         _follow_pilot(pilot, seconds)
@@ -37,7 +37,7 @@ def decide(pilot: Autopilot, seconds: float) -> None:
         _BY_MODE.get(pilot.mode_name, _hold)(pilot, seconds)
 
 
-def _follow_pilot(pilot: Autopilot, seconds: float) -> None:
+def _follow_pilot(pilot: SimulatedAutopilot, seconds: float) -> None:
     sticks = pilot.sticks
     if sticks is not None and pilot.time - sticks.time > max(PILOT_TIMEOUT, pilot.link_timeout):
         pilot.say(mavlink.MAV_SEVERITY_CRITICAL, "Lost manual control")
@@ -47,11 +47,11 @@ def _follow_pilot(pilot: Autopilot, seconds: float) -> None:
         follow_sticks(sticks, pilot.body, seconds)
 
 
-def _hold(pilot: Autopilot, seconds: float) -> None:
+def _hold(pilot: SimulatedAutopilot, seconds: float) -> None:
     pilot.body.target = pilot.body.onward = None
 
 
-def _guided(pilot: Autopilot, seconds: float) -> None:
+def _guided(pilot: SimulatedAutopilot, seconds: float) -> None:
     """Follow set-points; a rover stops within WP_RADIUS of one."""
     target = pilot.body.target
     if target is None or pilot.settings.kind != "rover":
@@ -60,13 +60,13 @@ def _guided(pilot: Autopilot, seconds: float) -> None:
         pilot.body.target = None
 
 
-def _take_off(pilot: Autopilot, seconds: float) -> None:
+def _take_off(pilot: SimulatedAutopilot, seconds: float) -> None:
     target = pilot.body.target
     if target is not None and pilot.body.distance_to(target) < CLIMBED:
         pilot.enter(*(("auto",) if pilot.parameters["COM_TAKEOFF_ACT"] == 1 else ()), "loiter")
 
 
-def _land(pilot: Autopilot, seconds: float) -> None:
+def _land(pilot: SimulatedAutopilot, seconds: float) -> None:
     body = pilot.body
     if not pilot.flies:
         _hold(pilot, seconds)
@@ -80,11 +80,11 @@ def _land(pilot: Autopilot, seconds: float) -> None:
         pilot.disarm()
 
 
-def _surface(pilot: Autopilot, seconds: float) -> None:
+def _surface(pilot: SimulatedAutopilot, seconds: float) -> None:
     pilot.body.target = (*pilot.body.position[:2], 0.0)
 
 
-def _return(pilot: Autopilot, seconds: float) -> None:
+def _return(pilot: SimulatedAutopilot, seconds: float) -> None:
     body, retraces = pilot.body, pilot.mode_name == "smart_return"
     if not pilot.return_path:
         crumbs = pilot.breadcrumbs
@@ -105,13 +105,13 @@ def _return(pilot: Autopilot, seconds: float) -> None:
         body.wanted_heading = wanted
 
 
-def _path_home(pilot: Autopilot) -> list[Vector]:
+def _path_home(pilot: SimulatedAutopilot) -> list[Vector]:
     here, goal = pilot.body.position, _return_point(pilot)
     height = max(here[2], goal[2] + _return_height(pilot)) if pilot.flies else here[2]
     return [(here[0], here[1], height), (goal[0], goal[1], height)]
 
 
-def _return_point(pilot: Autopilot) -> Vector:
+def _return_point(pilot: SimulatedAutopilot) -> Vector:
     """Return the nearest of home and the rally points that the parameters allow."""
     latitude, longitude, altitude = pilot.home
     home = pilot.local(latitude, longitude, altitude - pilot.settings.altitude)
@@ -130,14 +130,14 @@ def _distance(a: Vector, b: Vector) -> float:
     return hypot(a[0] - b[0], a[1] - b[1])
 
 
-def _return_height(pilot: Autopilot) -> float:
+def _return_height(pilot: SimulatedAutopilot) -> float:
     if "RTL_ALT_M" in pilot.parameters:
         return pilot.parameters["RTL_ALT_M"]
     centimetres = pilot.parameters.get("RTL_ALT")
     return pilot.parameters.get("RTL_RETURN_ALT", 15.0) if centimetres is None else centimetres / 100.0
 
 
-def _auto(pilot: Autopilot, seconds: float) -> None:
+def _auto(pilot: SimulatedAutopilot, seconds: float) -> None:
     required = fly_mission(pilot, seconds)
     if required == "land":
         _land(pilot, seconds)
@@ -145,7 +145,7 @@ def _auto(pilot: Autopilot, seconds: float) -> None:
         _return(pilot, seconds)
 
 
-_BY_MODE: Mapping[str, Callable[[Autopilot, float], None]] = {
+_BY_MODE: Mapping[str, Callable[[SimulatedAutopilot, float], None]] = {
     "auto": _auto,
     "guided": _guided,
     "take_off": _take_off,

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from mmrs_mavlink.sitl.autopilot import Autopilot
+from mmrs_mavlink.sitl.autopilot import SimulatedAutopilot
 from mmrs_mavlink.sitl.fences import inside_zones, watch_fence
 from mmrs_mavlink.sitl.modes import BLIND
 
@@ -59,7 +59,7 @@ CONTINUE_IN_AUTO = 2
 """Bit of a copter's FS_OPTIONS: a mission continues without a ground station."""
 
 
-def watch(pilot: Autopilot, seconds: float) -> None:
+def watch(pilot: SimulatedAutopilot, seconds: float) -> None:
     """Detect failures, and answer each once."""
     _watch_position(pilot, seconds)
     watch_fence(pilot, "FENCE_ENABLE", outside_fence, _answer_breach)
@@ -72,7 +72,7 @@ def watch(pilot: Autopilot, seconds: float) -> None:
         _watch_battery(pilot, "LOW", "low")
 
 
-def _watch_position(pilot: Autopilot, seconds: float) -> None:
+def _watch_position(pilot: SimulatedAutopilot, seconds: float) -> None:
     if pilot.located:
         pilot.failed.pop("position", None)
         pilot.failed.pop("ekf", None)
@@ -87,7 +87,7 @@ def _watch_position(pilot: Autopilot, seconds: float) -> None:
         pilot.say(CRITICAL, f"EKF Failsafe: changed to {pilot.mode_name.upper()} Mode")
 
 
-def _watch_link(pilot: Autopilot) -> None:
+def _watch_link(pilot: SimulatedAutopilot) -> None:
     if pilot.last_heartbeat is None:
         return
     limit = pilot.parameters["FS_GCS_TIMEOUT"] + pilot.parameters.get("FS_TIMEOUT", 0.0)
@@ -113,7 +113,7 @@ def _watch_link(pilot: Autopilot) -> None:
         _answer(pilot, ROVER_ACTIONS.get(int(pilot.parameters["FS_ACTION"]), ()))
 
 
-def _watch_battery(pilot: Autopilot, level: str, word: str) -> None:
+def _watch_battery(pilot: SimulatedAutopilot, level: str, word: str) -> None:
     volts, reserve = pilot.parameters[f"BATT_{level}_VOLT"], pilot.parameters[f"BATT_{level}_MAH"]
     left = pilot.parameters["BATT_CAPACITY"] - pilot.battery.used
     if not (pilot.battery.voltage < volts or left < reserve):
@@ -128,7 +128,7 @@ def _watch_battery(pilot: Autopilot, level: str, word: str) -> None:
     _answer(pilot, ON_BATTERY[pilot.settings.kind].get(int(pilot.parameters[f"BATT_FS_{level}_ACT"]), ()))
 
 
-def outside_fence(pilot: Autopilot) -> bool:
+def outside_fence(pilot: SimulatedAutopilot) -> bool:
     """Return whether a vehicle is outside the parts of its fence that FENCE_TYPE enables."""
     enabled = int(pilot.parameters["FENCE_TYPE"])
     north, east, up = pilot.body.position
@@ -139,13 +139,13 @@ def outside_fence(pilot: Autopilot) -> bool:
     return bool(enabled & 4) and not inside_zones(pilot)
 
 
-def _answer_breach(pilot: Autopilot) -> None:
+def _answer_breach(pilot: SimulatedAutopilot) -> None:
     pilot.say(mavlink.MAV_SEVERITY_NOTICE, "Polygon fence breached")
     if pilot.armed and pilot.parameters["FENCE_ENABLE"]:
         _answer(pilot, ON_BREACH[pilot.settings.kind].get(int(pilot.parameters["FENCE_ACTION"]), ()))
 
 
-def _answer(pilot: Autopilot, names: tuple[str, ...]) -> None:
+def _answer(pilot: SimulatedAutopilot, names: tuple[str, ...]) -> None:
     if (pilot.flies and not pilot.airborne and names) or names == (DISARM,):
         pilot.disarm()
     else:

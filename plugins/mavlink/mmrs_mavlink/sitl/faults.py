@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from inspect import signature
 from math import cos, isfinite, nan, radians, sin
 
-from mmrs_mavlink.sitl.autopilot import Autopilot
+from mmrs_mavlink.sitl.autopilot import SimulatedAutopilot
 from mmrs_mavlink.sitl.body import wind_of
 
 
@@ -23,7 +23,7 @@ class Faults:
     """
 
     def __init__(
-        self, pilot: Autopilot, lock: AbstractContextManager[object], *, watched: bool = False
+        self, pilot: SimulatedAutopilot, lock: AbstractContextManager[object], *, watched: bool = False
     ) -> None:
         """Create without a fault; `lock` is held while the time of the autopilot advances."""
         self.link_down = self.ground_down = self.send_down = False

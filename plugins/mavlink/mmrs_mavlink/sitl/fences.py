@@ -8,7 +8,7 @@ from math import dist
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from mmrs_mavlink.sitl.autopilot import Autopilot
+from mmrs_mavlink.sitl.autopilot import SimulatedAutopilot
 from mmrs_mavlink.sitl.items import FENCE
 
 FENCE_SECONDS = 1.0
@@ -42,14 +42,17 @@ class Zone:
         return (sum(_crosses(place, a, b) for a, b in edges) % 2 == 1) == self.inside
 
 
-def inside_zones(pilot: Autopilot) -> bool:
+def inside_zones(pilot: SimulatedAutopilot) -> bool:
     """Return whether the zones of its fence permit a vehicle's position."""
     place = pilot.body.position[:2]
     return all(zone.allows(place) for zone in _zones(pilot))
 
 
 def watch_fence(
-    pilot: Autopilot, switch: str, outside: Callable[[Autopilot], bool], answer: Callable[[Autopilot], None]
+    pilot: SimulatedAutopilot,
+    switch: str,
+    outside: Callable[[SimulatedAutopilot], bool],
+    answer: Callable[[SimulatedAutopilot], None],
 ) -> None:
     """Check the fence at intervals, and answer a breach once.
 
@@ -72,7 +75,7 @@ def watch_fence(
         pilot.breached = False
 
 
-def _zones(pilot: Autopilot) -> Sequence[Zone]:
+def _zones(pilot: SimulatedAutopilot) -> Sequence[Zone]:
     zones: list[Zone] = []
     corners: list[Point] = []
     for item in pilot.stores[FENCE]:

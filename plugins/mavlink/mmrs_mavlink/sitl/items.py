@@ -36,7 +36,7 @@ KNOWN = {MISSION: (PLACED - FENCES - {5100}) | OTHERS, FENCE: FENCES, RALLY: fro
 
 
 @dataclass(frozen=True, slots=True)
-class Item:
+class StoredItem:
     """An item as received: degrees times ten million, metres."""
 
     frame: int
@@ -57,7 +57,7 @@ class Item:
         return self.frame in ABOVE_SEA
 
 
-def fault_of(item: Item, kind: int = MISSION, firmware: str = ARDUPILOT) -> int:
+def fault_of(item: StoredItem, kind: int = MISSION, firmware: str = ARDUPILOT) -> int:
     """Return the MAV_MISSION_RESULT by which an item is refused; 0 if it is accepted."""
     refused = NOT_ON_PX4 if firmware == PX4 else frozenset()
     if item.command not in KNOWN.get(kind, frozenset()) - refused:
@@ -71,7 +71,7 @@ def fault_of(item: Item, kind: int = MISSION, firmware: str = ARDUPILOT) -> int:
     return 0
 
 
-def kept(item: Item, kind: int, firmware: str) -> Item:
+def kept(item: StoredItem, kind: int, firmware: str) -> StoredItem:
     """Return an item as it is stored.
 
     ArduPilot stores altitudes in centimetres, those of rally points in metres, holds in whole seconds, no

@@ -6,9 +6,9 @@ from collections.abc import Mapping
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from mmrs_mavlink.sitl.autopilot import CHANGE_SPEED, Autopilot, bearing
+from mmrs_mavlink.sitl.autopilot import CHANGE_SPEED, SimulatedAutopilot, bearing
 from mmrs_mavlink.sitl.body import CUT, Vector
-from mmrs_mavlink.sitl.items import MISSION, MOVING, Item
+from mmrs_mavlink.sitl.items import MISSION, MOVING, StoredItem
 
 CLOSE = 0.2
 MEASURED_RADIUS = 2.0
@@ -27,7 +27,7 @@ STOPPING = frozenset({20, 21, 22, 93, 112, 177})
 """Items before which the vehicle stops."""
 
 
-def fly_mission(pilot: Autopilot, seconds: float) -> str:
+def fly_mission(pilot: SimulatedAutopilot, seconds: float) -> str:
     """Execute the mission for that long; return ``land`` or ``return`` if an item requires that mode."""
     items = pilot.stores[MISSION]
     pilot.item = max(pilot.first_item, pilot.item)
@@ -42,13 +42,13 @@ def fly_mission(pilot: Autopilot, seconds: float) -> str:
     return ""
 
 
-def jump(pilot: Autopilot, number: int) -> None:
+def jump(pilot: SimulatedAutopilot, number: int) -> None:
     """Continue with another item."""
     pilot.item, pilot.held, pilot.finished = number, 0.0, False
     pilot.return_path = []
 
 
-def _complete(pilot: Autopilot, item: Item) -> bool:
+def _complete(pilot: SimulatedAutopilot, item: StoredItem) -> bool:
     """Continue with the next item; return whether there is one."""
     pilot.visited.append((pilot.time, pilot.item))
     if item.command not in UNREPORTED:
@@ -69,7 +69,7 @@ def _complete(pilot: Autopilot, item: Item) -> bool:
     return True
 
 
-def _execute(pilot: Autopilot, item: Item, seconds: float) -> bool:
+def _execute(pilot: SimulatedAutopilot, item: StoredItem, seconds: float) -> bool:
     """Execute an item for that long; return whether it is completed."""
     if item.command in MOVING:
         return _go(pilot, item, seconds)
@@ -90,7 +90,7 @@ def _execute(pilot: Autopilot, item: Item, seconds: float) -> bool:
     return True
 
 
-def _go(pilot: Autopilot, item: Item, seconds: float) -> bool:
+def _go(pilot: SimulatedAutopilot, item: StoredItem, seconds: float) -> bool:
     body, takes_off = pilot.body, item.command == mavlink.MAV_CMD_NAV_TAKEOFF
     if pilot.flies and not pilot.airborne and not takes_off:
         return False
@@ -114,7 +114,7 @@ def _radius(values: Mapping[str, float]) -> float:
     return next((values[name] * unit for name, unit in RADII if name in values), MEASURED_RADIUS)
 
 
-def _onward(pilot: Autopilot, item: Item) -> Vector | None:
+def _onward(pilot: SimulatedAutopilot, item: StoredItem) -> Vector | None:
     """Return the position after an item at which it does not stop; None if it stops."""
     if item.command not in (mavlink.MAV_CMD_NAV_WAYPOINT, 82) or item.params[0] >= 1.0:
         return None
@@ -126,14 +126,14 @@ def _onward(pilot: Autopilot, item: Item) -> Vector | None:
     return None
 
 
-def _hold_of(item: Item) -> float:
+def _hold_of(item: StoredItem) -> float:
     if item.command == mavlink.MAV_CMD_NAV_LOITER_UNLIM:
         return float("inf")
     turns = item.command == mavlink.MAV_CMD_NAV_LOITER_TURNS
     return item.params[0] * TURN_SECONDS if turns else item.params[0]
 
 
-def _arrives_to_land(pilot: Autopilot, item: Item) -> bool:
+def _arrives_to_land(pilot: SimulatedAutopilot, item: StoredItem) -> bool:
     """Fly above the position of a landing; return whether it is there."""
     if not (item.x or item.y) or pilot.held:
         return True

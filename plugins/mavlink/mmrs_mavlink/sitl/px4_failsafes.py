@@ -12,7 +12,7 @@ from math import hypot
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from mmrs_mavlink.sitl.autopilot import Autopilot, Failsafe
+from mmrs_mavlink.sitl.autopilot import Failsafe, SimulatedAutopilot
 from mmrs_mavlink.sitl.fences import inside_zones, watch_fence
 from mmrs_mavlink.sitl.modes import BLIND
 
@@ -47,7 +47,7 @@ ON_SETPOINT_LOSS: Answers = {
 """Answers by COM_OBL_RC_ACT."""
 
 
-def watch(pilot: Autopilot, seconds: float) -> None:
+def watch(pilot: SimulatedAutopilot, seconds: float) -> None:
     """Detect failures, and answer them."""
     _watch_position(pilot, seconds)
     watch_fence(pilot, "GF_ACTION", _outside, _answer_breach)
@@ -63,13 +63,13 @@ def watch(pilot: Autopilot, seconds: float) -> None:
     _end_hold(pilot)
 
 
-def _answer_breach(pilot: Autopilot) -> None:
+def _answer_breach(pilot: SimulatedAutopilot) -> None:
     pilot.say(CRITICAL, "Geofence: approaching or outside geofence")
     action = int(pilot.parameters["GF_ACTION"])
     _answer(pilot, ON_BREACH.get(action, ()), at_once=action == 2)
 
 
-def _watch_position(pilot: Autopilot, seconds: float) -> None:
+def _watch_position(pilot: SimulatedAutopilot, seconds: float) -> None:
     if pilot.located:
         pilot.failed.pop("position", None)
         return
@@ -79,13 +79,13 @@ def _watch_position(pilot: Autopilot, seconds: float) -> None:
         _answer(pilot, ("return", "land"), at_once=True)
 
 
-def _outside(pilot: Autopilot) -> bool:
+def _outside(pilot: SimulatedAutopilot) -> bool:
     north, east, up = pilot.body.position
     far, high = pilot.parameters["GF_MAX_HOR_DIST"], pilot.parameters["GF_MAX_VER_DIST"]
     return 0.0 < far < hypot(north, east) or 0.0 < high < up or not inside_zones(pilot)
 
 
-def _watch_link(pilot: Autopilot) -> None:
+def _watch_link(pilot: SimulatedAutopilot) -> None:
     if pilot.last_heartbeat is None:
         return
     if pilot.time - pilot.last_heartbeat < max(pilot.parameters["COM_DL_LOSS_T"], pilot.link_timeout):
@@ -99,7 +99,7 @@ def _watch_link(pilot: Autopilot) -> None:
             _answer(pilot, ON_LINK_LOSS.get(int(pilot.parameters["NAV_DLL_ACT"]), ()))
 
 
-def _watch_battery(pilot: Autopilot) -> None:
+def _watch_battery(pilot: SimulatedAutopilot) -> None:
     action = int(pilot.parameters["COM_LOW_BAT_ACT"])
     for name, text, answers in (
         ("BAT_LOW_THR", "Low battery", {}),
@@ -113,7 +113,7 @@ def _watch_battery(pilot: Autopilot) -> None:
             _answer(pilot, answers.get(action, ()))
 
 
-def _watch_stream(pilot: Autopilot) -> None:
+def _watch_stream(pilot: SimulatedAutopilot) -> None:
     """Leave OFFBOARD when set-points stop, and return to it when they resume."""
     if pilot.mode_name == "guided" and pilot.setpoints:
         if pilot.time - pilot.setpoints[-1] > max(pilot.parameters["COM_OF_LOSS_T"], pilot.link_timeout):
@@ -128,7 +128,7 @@ def _watch_stream(pilot: Autopilot) -> None:
             pilot.enter("guided")
 
 
-def _answer(pilot: Autopilot, names: tuple[str, ...], *, at_once: bool = False) -> None:
+def _answer(pilot: SimulatedAutopilot, names: tuple[str, ...], *, at_once: bool = False) -> None:
     """Enter the first possible one of these modes, after a hold unless `at_once`; none: continue."""
     if not names:
         return
@@ -146,12 +146,12 @@ def _answer(pilot: Autopilot, names: tuple[str, ...], *, at_once: bool = False) 
         _choose(pilot, *names)
 
 
-def _choose(pilot: Autopilot, *names: str) -> None:
+def _choose(pilot: SimulatedAutopilot, *names: str) -> None:
     pilot.enter(*names)
     pilot.failsafe = replace(pilot.failsafe or Failsafe(), mode=pilot.mode)
 
 
-def _end_hold(pilot: Autopilot) -> None:
+def _end_hold(pilot: SimulatedAutopilot) -> None:
     """Enter the chosen mode after the hold, unless another mode was set meanwhile."""
     failsafe = pilot.failsafe
     if failsafe is None or not failsafe.then:
@@ -165,5 +165,5 @@ def _end_hold(pilot: Autopilot) -> None:
         _choose(pilot, *failsafe.then)
 
 
-def _in_chosen_mode(pilot: Autopilot) -> bool:
+def _in_chosen_mode(pilot: SimulatedAutopilot) -> bool:
     return pilot.failsafe is not None and pilot.mode == pilot.failsafe.mode

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from enum import Enum, auto
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from mmrs_mavlink.sitl.items import MISSION, Item, fault_of, kept
+from mmrs_mavlink.sitl.items import MISSION, StoredItem, fault_of, kept
 from mmrs_mavlink.sitl.settings import PX4
-from mmrs_mavlink.sitl.transfers import Address, Message, Transfers, item_of
+from mmrs_mavlink.sitl.transfers import Address, Message, Say, Send, Stores, Transfers, item_of
 
 RETRY_SECONDS = 0.25
 TIMEOUT_SECONDS = 5.0
@@ -30,14 +29,11 @@ class Px4Transfers(Transfers):
     any other request aborts the transfer.
     """
 
-    def __init__(
-        self, stores: dict[int, list[Item]], send: Callable[[Message], None], say: Callable[[int, str], None]
-    ) -> None:
-        """Create without a transfer."""
+    def __init__(self, stores: Stores, send: Send, say: Say) -> None:
         super().__init__(stores, send, say)
         self._state = _State.IDLE
         self._kind, self._peer = MISSION, (0, 0)
-        self._items: list[Item] = []
+        self._items: list[StoredItem] = []
         self._seq = self._expected = 0
         self._asked = self._received = -1.0
 
@@ -91,7 +87,7 @@ class Px4Transfers(Transfers):
             if message.seq == self._seq:
                 self._keep(item_of(message))
 
-    def _keep(self, item: Item) -> None:
+    def _keep(self, item: StoredItem) -> None:
         if fault := fault_of(item, self._kind, PX4):
             self._state = _State.IDLE
             self._acknowledge(self._peer, fault, self._kind)
@@ -104,7 +100,7 @@ class Px4Transfers(Transfers):
         else:
             self._ask_next()
 
-    def _replace(self, items: list[Item]) -> None:
+    def _replace(self, items: list[StoredItem]) -> None:
         self.stores[self._kind] = list(items)
         self._acknowledge(self._peer, mavlink.MAV_MISSION_ACCEPTED, self._kind)
         self.finished(self._kind)

@@ -22,7 +22,7 @@ NEVER_ROUTED = frozenset({"RADIO", "RADIO_STATUS"})
 """Messages of a radio about itself."""
 
 
-class Radio:
+class SimulatedRadio:
     """Sends to one address, and receives from it.
 
     Attributes:
@@ -155,10 +155,10 @@ class Router:
     by which their target was received, and broadcasts to all by which any system was received.
     """
 
-    def __init__(self, system: int, *radios: Radio) -> None:
+    def __init__(self, system: int, *radios: SimulatedRadio) -> None:
         self.radios = radios
         self._own = (system, COMPONENT)
-        self._routes: dict[tuple[int, int], set[Radio]] = {}
+        self._routes: dict[tuple[int, int], set[SimulatedRadio]] = {}
 
     def send(self, message: Message) -> None:
         """Send a message to its target; one that was never received is sought by all radios."""
@@ -177,7 +177,7 @@ class Router:
                     other.relay(bytes(message.get_msgbuf()))
                 yield message
 
-    def _further(self, message: Message, source: tuple[int, int]) -> set[Radio]:
+    def _further(self, message: Message, source: tuple[int, int]) -> set[SimulatedRadio]:
         """Return the radios to which a message is forwarded."""
         if message.get_type() in NEVER_ROUTED:
             return set()
@@ -188,7 +188,7 @@ class Router:
             return set().union(*self._routes.values())
         return set() if (system, component) == self._own else self._towards(system, component)
 
-    def _towards(self, system: int, component: int) -> set[Radio]:
+    def _towards(self, system: int, component: int) -> set[SimulatedRadio]:
         """Return the radios by which a target was received."""
         found = [
             radios

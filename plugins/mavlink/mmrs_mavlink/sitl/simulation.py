@@ -7,7 +7,7 @@ from math import dist
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from mmrs_mavlink.sitl import failsafes, px4_failsafes
-from mmrs_mavlink.sitl.autopilot import Autopilot
+from mmrs_mavlink.sitl.autopilot import SimulatedAutopilot
 from mmrs_mavlink.sitl.battery import load_of
 from mmrs_mavlink.sitl.body import STILL
 from mmrs_mavlink.sitl.control import decide
@@ -23,7 +23,7 @@ CRUMB_METRES = 3.0
 FALL_SPEED = 10.0
 
 
-def advance(pilot: Autopilot, seconds: float) -> None:
+def advance(pilot: SimulatedAutopilot, seconds: float) -> None:
     """Simulate that many seconds."""
     watch = px4_failsafes.watch if pilot.px4 else failsafes.watch
     while seconds > 1e-9:
@@ -39,7 +39,7 @@ def advance(pilot: Autopilot, seconds: float) -> None:
             _idle(pilot, step)
 
 
-def _move(pilot: Autopilot, seconds: float) -> None:
+def _move(pilot: SimulatedAutopilot, seconds: float) -> None:
     body = pilot.body
     body.adrift = pilot.airborne and (not pilot.located or pilot.mode_name in MANUAL)
     _apply_gusts(pilot, seconds)
@@ -54,7 +54,7 @@ def _move(pilot: Autopilot, seconds: float) -> None:
     _record_track(pilot)
 
 
-def _apply_gusts(pilot: Autopilot, seconds: float) -> None:
+def _apply_gusts(pilot: SimulatedAutopilot, seconds: float) -> None:
     """Apply gusts to a vehicle in the air; one that drifts moves with the air itself."""
     if pilot.flies and pilot.airborne:
         pilot.gusts.advance(seconds)
@@ -65,7 +65,7 @@ def _apply_gusts(pilot: Autopilot, seconds: float) -> None:
         pilot.body.gust = pilot.body.push = STILL
 
 
-def _idle(pilot: Autopilot, seconds: float) -> None:
+def _idle(pilot: SimulatedAutopilot, seconds: float) -> None:
     pilot.battery.charge(seconds, pilot.settings.recharge)
     if pilot.airborne:
         north, east, up = pilot.body.position
@@ -79,7 +79,7 @@ def _idle(pilot: Autopilot, seconds: float) -> None:
         pilot.mode = pilot.numbers[pilot.mode_name]
 
 
-def _touch_ground(pilot: Autopilot) -> None:
+def _touch_ground(pilot: SimulatedAutopilot) -> None:
     target = pilot.body.target
     climbs = target is not None and target[2] > 0.0
     if pilot.body.position[2] < 0.0:
@@ -92,7 +92,7 @@ def _touch_ground(pilot: Autopilot) -> None:
         pilot.disarm()
 
 
-def _record_track(pilot: Autopilot) -> None:
+def _record_track(pilot: SimulatedAutopilot) -> None:
     position = pilot.body.position
     if not pilot.track or pilot.time - pilot.track[-1][0] >= TRACK_SECONDS - 1e-6:
         pilot.track.append((pilot.time, *pilot.body.place))

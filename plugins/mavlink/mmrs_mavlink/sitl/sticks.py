@@ -22,7 +22,7 @@ AHEAD = 60.0
 
 
 @dataclass(frozen=True, slots=True)
-class Sticks:
+class ManualControl:
     """Positions of the sticks, each from -1 to 1, and the time in seconds at which they were received."""
 
     time: float
@@ -32,17 +32,17 @@ class Sticks:
     turn: float
 
 
-def sticks_of(message: Any, time: float) -> Sticks:
+def sticks_of(message: Any, time: float) -> ManualControl:
     """Return the sticks of a MANUAL_CONTROL: ArduSub's z ranges from 0 to 1000, neutral at 500."""
     forward, sideways, turn = (_within(each / 1000.0) for each in (message.x, message.y, message.r))
-    return Sticks(time, forward, sideways, _within((message.z - 500) / 500.0), turn)
+    return ManualControl(time, forward, sideways, _within((message.z - 500) / 500.0), turn)
 
 
 def _within(part: float) -> float:
     return 0.0 if abs(part) < DEAD else max(-1.0, min(1.0, part))
 
 
-def follow_sticks(sticks: Sticks | None, body: Body, seconds: float) -> None:
+def follow_sticks(sticks: ManualControl | None, body: Body, seconds: float) -> None:
     """Move a body as the sticks command; None or neutral sticks stop it."""
     body.target = body.onward = None
     if sticks is None:

@@ -8,7 +8,7 @@ from typing import Any
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from mmrs_mavlink.sitl import telemetry
-from mmrs_mavlink.sitl.autopilot import Autopilot
+from mmrs_mavlink.sitl.autopilot import SimulatedAutopilot
 from mmrs_mavlink.sitl.camera import Photo
 from mmrs_mavlink.sitl.commands import ACCEPTED, FAILED, arming_refusal
 from mmrs_runtime.sights import seen
@@ -24,7 +24,7 @@ TEXT_BYTES = 50
 class Streams:
     """Sends the telemetry of one vehicle."""
 
-    def __init__(self, pilot: Autopilot, send: Callable[[Message], None]) -> None:
+    def __init__(self, pilot: SimulatedAutopilot, send: Callable[[Message], None]) -> None:
         self._pilot = pilot
         self._send = send
         self.begin()

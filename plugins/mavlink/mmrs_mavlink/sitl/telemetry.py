@@ -11,14 +11,14 @@ from typing import Any
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from mmrs_mavlink.sitl.autopilot import Autopilot
+from mmrs_mavlink.sitl.autopilot import SimulatedAutopilot
 from mmrs_mavlink.sitl.camera import Photo
 from mmrs_mavlink.sitl.commands import arming_refusal
 from mmrs_mavlink.sitl.items import MISSION
 from mmrs_mavlink.sitl.settings import PX4, Settings
 
 Message = Any
-Maker = Callable[[Autopilot], Message | None]
+Maker = Callable[[SimulatedAutopilot], Message | None]
 """Makes a message; None if a vehicle has nothing to report."""
 
 TYPES = {
@@ -64,7 +64,7 @@ def _zeros(kind: Callable[..., Message]) -> Mapping[str, int]:
     return {each.name: 0 for each in signature(kind).parameters.values() if each.default is each.empty}
 
 
-def milliseconds(pilot: Autopilot) -> int:
+def milliseconds(pilot: SimulatedAutopilot) -> int:
     """Return the milliseconds since boot."""
     return int(round(pilot.uptime * 1000) % 2**32)
 
@@ -73,7 +73,7 @@ def _scaled(latitude: float, longitude: float) -> dict[str, int]:
     return {"lat": round(latitude * 1e7), "lon": round(longitude * 1e7)}
 
 
-def _heartbeat(pilot: Autopilot) -> Message:
+def _heartbeat(pilot: SimulatedAutopilot) -> Message:
     armed = mavlink.MAV_MODE_FLAG_SAFETY_ARMED if pilot.armed else 0
     active = mavlink.MAV_STATE_ACTIVE if pilot.failsafe is None else mavlink.MAV_STATE_CRITICAL
     return message(
@@ -87,7 +87,7 @@ def _heartbeat(pilot: Autopilot) -> Message:
     )
 
 
-def _global_position(pilot: Autopilot) -> Message | None:
+def _global_position(pilot: SimulatedAutopilot) -> Message | None:
     """Return its position; without one, ArduPilot reports 0 degrees of both, and PX4 nothing."""
     if not pilot.initialised and pilot.px4:
         return None
@@ -106,7 +106,7 @@ def _global_position(pilot: Autopilot) -> Message | None:
     )
 
 
-def _local_position(pilot: Autopilot) -> Message | None:
+def _local_position(pilot: SimulatedAutopilot) -> Message | None:
     if not pilot.initialised:
         return None
     north, east, up = pilot.body.position
@@ -115,7 +115,7 @@ def _local_position(pilot: Autopilot) -> Message | None:
     return mavlink.MAVLink_local_position_ned_message(now, north, east, -up, v_north, v_east, -v_up)
 
 
-def _global_target(pilot: Autopilot) -> Message | None:
+def _global_target(pilot: SimulatedAutopilot) -> Message | None:
     """Return the target position; a PX4 reports none in OFFBOARD (``POSITION_TARGET_GLOBAL_INT.hpp``)."""
     target = pilot.body.target
     offboard = pilot.px4 and pilot.mode_name == "guided"
@@ -133,7 +133,7 @@ def _global_target(pilot: Autopilot) -> Message | None:
     )
 
 
-def _local_target(pilot: Autopilot) -> Message | None:
+def _local_target(pilot: SimulatedAutopilot) -> Message | None:
     target = pilot.body.target
     if target is None or pilot.mode_name not in STEERED:
         return None
@@ -148,12 +148,12 @@ def _local_target(pilot: Autopilot) -> Message | None:
     )
 
 
-def _attitude(pilot: Autopilot) -> Message:
+def _attitude(pilot: SimulatedAutopilot) -> Message:
     yaw = radians((pilot.body.heading + 180.0) % 360.0 - 180.0)
     return message("attitude", time_boot_ms=milliseconds(pilot), yaw=yaw)
 
 
-def _hud(pilot: Autopilot) -> Message:
+def _hud(pilot: SimulatedAutopilot) -> Message:
     body = pilot.body
     return message(
         "vfr_hud",
@@ -166,7 +166,7 @@ def _hud(pilot: Autopilot) -> Message:
     )
 
 
-def mission_current(pilot: Autopilot) -> Message:
+def mission_current(pilot: SimulatedAutopilot) -> Message:
     """Return the current mission item, and the state of the mission."""
     total = max(0, len(pilot.stores[MISSION]) - pilot.first_item)
     state = 4 if pilot.finished else 3 if pilot.mode_name == "auto" else 2
@@ -175,7 +175,7 @@ def mission_current(pilot: Autopilot) -> Message:
     )
 
 
-def _status(pilot: Autopilot) -> Message:
+def _status(pilot: SimulatedAutopilot) -> Message:
     """Return the health of its sensors, its pre-arm check and its battery."""
     health = SENSORS if pilot.located else SENSORS & ~GPS
     health |= BATTERY | (0 if pilot.breached else FENCE_BIT)
@@ -193,7 +193,7 @@ def _status(pilot: Autopilot) -> Message:
     )
 
 
-def _battery_status(pilot: Autopilot) -> Message | None:
+def _battery_status(pilot: SimulatedAutopilot) -> Message | None:
     if not pilot.settings.tells_battery:
         return None
     return message(
@@ -208,7 +208,7 @@ def _battery_status(pilot: Autopilot) -> Message | None:
     )
 
 
-def _landed(pilot: Autopilot) -> Message:
+def _landed(pilot: SimulatedAutopilot) -> Message:
     """Return whether it stands on the ground, which ArduSub and Rover do not report."""
     state = mavlink.MAV_LANDED_STATE_IN_AIR if pilot.airborne else mavlink.MAV_LANDED_STATE_ON_GROUND
     return message(
@@ -216,20 +216,20 @@ def _landed(pilot: Autopilot) -> Message:
     )
 
 
-def _ekf(pilot: Autopilot) -> Message:
+def _ekf(pilot: SimulatedAutopilot) -> Message:
     return message("ekf_status_report", flags=LOCATED if _has_position(pilot) else LOST)
 
 
-def _estimator(pilot: Autopilot) -> Message:
+def _estimator(pilot: SimulatedAutopilot) -> Message:
     flags = LOCATED if _has_position(pilot) else LOST
     return message("estimator_status", time_usec=milliseconds(pilot) * 1000, flags=flags)
 
 
-def _has_position(pilot: Autopilot) -> bool:
+def _has_position(pilot: SimulatedAutopilot) -> bool:
     return pilot.located and pilot.initialised
 
 
-def _satellites(pilot: Autopilot) -> Message:
+def _satellites(pilot: SimulatedAutopilot) -> Message:
     located = _has_position(pilot)
     return message(
         "gps_raw_int",
@@ -245,12 +245,12 @@ def _satellites(pilot: Autopilot) -> Message:
     )
 
 
-def _clocks(pilot: Autopilot) -> Message:
+def _clocks(pilot: SimulatedAutopilot) -> Message:
     now = round((time.time() + pilot.clock_error) * 1e6)
     return mavlink.MAVLink_system_time_message(now, milliseconds(pilot))
 
 
-def _fence(pilot: Autopilot) -> Message | None:
+def _fence(pilot: SimulatedAutopilot) -> Message | None:
     """Return whether it is outside its fence; None without a fence."""
     if not pilot.breached and not pilot.parameters.get("FENCE_ENABLE"):
         return None
@@ -258,18 +258,18 @@ def _fence(pilot: Autopilot) -> Message | None:
     return mavlink.MAVLink_fence_status_message(pilot.breached, pilot.breaches, kind, 0)
 
 
-def _wind(pilot: Autopilot) -> Message:
+def _wind(pilot: SimulatedAutopilot) -> Message:
     north, east, _ = pilot.body.air
     comes_from = degrees(atan2(-east, -north)) % 360.0
     return mavlink.MAVLink_wind_message(comes_from, hypot(north, east), 0.0)
 
 
-def _wind_estimate(pilot: Autopilot) -> Message:
+def _wind_estimate(pilot: SimulatedAutopilot) -> Message:
     north, east, _ = pilot.body.air
     return message("wind_cov", time_usec=milliseconds(pilot) * 1000, wind_x=north, wind_y=east)
 
 
-def _obstacle(pilot: Autopilot) -> Message | None:
+def _obstacle(pilot: SimulatedAutopilot) -> Message | None:
     if pilot.obstacle is None:
         return None
     distance, towards = pilot.obstacle
@@ -288,7 +288,7 @@ def _obstacle(pilot: Autopilot) -> Message | None:
     )
 
 
-def photo(pilot: Autopilot, taken: Photo) -> Message:
+def photo(pilot: SimulatedAutopilot, taken: Photo) -> Message:
     """Return the report of a photo: ArduPilot's message, or that of a camera for PX4."""
     latitude, longitude = (round(value * 1e7) for value in pilot.degrees_at(taken.place))
     above, up = pilot.settings.altitude + taken.place[2], taken.place[2]
@@ -319,7 +319,7 @@ def photo(pilot: Autopilot, taken: Photo) -> Message:
     )
 
 
-def _version(pilot: Autopilot) -> Message:
+def _version(pilot: SimulatedAutopilot) -> Message:
     """Return its capabilities; its version is 0, which no real autopilot has."""
     none = bytes(8)
     return message(
@@ -332,7 +332,7 @@ def _version(pilot: Autopilot) -> Message:
     )
 
 
-def _home(pilot: Autopilot) -> Message:
+def _home(pilot: SimulatedAutopilot) -> Message:
     latitude, longitude, above = pilot.home
     return message(
         "home_position",

@@ -8,12 +8,19 @@ from typing import Any
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from mmrs_mavlink.sitl.items import FENCE, MISSION, RALLY, Item, fault_of, kept
+from mmrs_mavlink.sitl.items import FENCE, MISSION, RALLY, StoredItem, fault_of, kept
 from mmrs_mavlink.sitl.settings import ARDUPILOT
 
 Message = Any
 Address = tuple[int, int]
 """MAVLink system and component."""
+
+Stores = dict[int, list[StoredItem]]
+"""Items by mission type."""
+
+Send = Callable[[Message], None]
+Say = Callable[[int, str], None]
+"""Sends a STATUSTEXT of a severity."""
 
 RETRY_SECONDS = 1.0
 TIMEOUT_SECONDS = 8.0
@@ -30,20 +37,11 @@ class Transfers:
         home: returns item 0 of a mission, which is ArduPilot's home; None: it is returned as uploaded.
     """
 
-    def __init__(
-        self, stores: dict[int, list[Item]], send: Callable[[Message], None], say: Callable[[int, str], None]
-    ) -> None:
-        """Create without a transfer.
-
-        Args:
-            stores: items by mission type.
-            send: sends a message.
-            say: sends a STATUSTEXT of a severity.
-        """
+    def __init__(self, stores: Stores, send: Send, say: Say) -> None:
         self.stores = stores
         self.busy = False
         self.finished: Callable[[int], None] = lambda kind: None
-        self.home: Callable[[], Item] | None = None
+        self.home: Callable[[], StoredItem] | None = None
         self._send, self._say = send, say
 
     def take(self, message: Message) -> None:
@@ -117,12 +115,12 @@ class Transfers:
         self._acknowledge(peer, mavlink.MAV_MISSION_ACCEPTED, kind)
 
 
-def item_of(message: Message) -> Item:
+def item_of(message: Message) -> StoredItem:
     """Return the item in a MISSION_ITEM or MISSION_ITEM_INT."""
     old = message.get_type() == "MISSION_ITEM"
     x, y = (round(message.x * 1e7), round(message.y * 1e7)) if old else (message.x, message.y)
     params = (message.param1, message.param2, message.param3, message.param4)
-    return Item(message.frame, message.command, params, x, y, message.z)
+    return StoredItem(message.frame, message.command, params, x, y, message.z)
 
 
 @dataclass
@@ -131,7 +129,7 @@ class _Upload:
 
     expected: int
     peer: Address
-    items: list[Item] = field(default_factory=list)
+    items: list[StoredItem] = field(default_factory=list)
     asked: float = -1.0
     since: float = -1.0
 
@@ -145,14 +143,7 @@ class ArduPilotTransfers(Transfers):
     upload.
     """
 
-    def __init__(
-        self,
-        stores: dict[int, list[Item]],
-        send: Callable[[Message], None],
-        say: Callable[[int, str], None],
-        *,
-        old: bool = False,
-    ) -> None:
+    def __init__(self, stores: Stores, send: Send, say: Say, *, old: bool = False) -> None:
         """Create without a transfer; `old`: on a MAVLink 1 port, which accepts missions only."""
         super().__init__(stores, send, say)
         self._old = old

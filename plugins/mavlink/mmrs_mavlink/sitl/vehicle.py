@@ -13,13 +13,13 @@ from typing import Any
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from mmrs_mavlink.sitl import telemetry
-from mmrs_mavlink.sitl.autopilot import Autopilot
+from mmrs_mavlink.sitl.autopilot import SimulatedAutopilot
 from mmrs_mavlink.sitl.commands import execute, steer
 from mmrs_mavlink.sitl.faults import Faults
-from mmrs_mavlink.sitl.items import MISSION, RALLY, Item
+from mmrs_mavlink.sitl.items import MISSION, RALLY, StoredItem
 from mmrs_mavlink.sitl.parameters import ParameterService
 from mmrs_mavlink.sitl.px4_transfers import Px4Transfers
-from mmrs_mavlink.sitl.radio import COMPONENT, Radio, Router
+from mmrs_mavlink.sitl.radio import COMPONENT, Router, SimulatedRadio
 from mmrs_mavlink.sitl.settings import Settings
 from mmrs_mavlink.sitl.simulation import advance
 from mmrs_mavlink.sitl.sticks import sticks_of
@@ -83,14 +83,14 @@ class SimulatedVehicle:
             ValueError: a host cannot be resolved.
         """
         given = settings or Settings()
-        self.autopilot = pilot = Autopilot(given)
+        self.autopilot = pilot = SimulatedAutopilot(given)
         self.speedup = speedup
         pilot.link_timeout = LINK_TIMEOUT * speedup
         self.received: list[tuple[float, str]] = []
         self.on_tick: Callable[[], None] = lambda: None
         self.lock = threading.RLock()
         self.faults = Faults(pilot, self.lock, watched=ground is not None)
-        self.radio = Radio(
+        self.radio = SimulatedRadio(
             (host, port),
             given.system,
             key=given.key,
@@ -103,7 +103,7 @@ class SimulatedVehicle:
         self.radio.down = lambda: self.faults.link_down or pilot.booting
         radios = [self.radio]
         if ground is not None:
-            radios.append(Radio(ground, given.system, key=given.key))
+            radios.append(SimulatedRadio(ground, given.system, key=given.key))
             radios[1].down = lambda: self.faults.ground_down or pilot.booting
         self._router = Router(given.system, *radios)
         self._transfers = self._made_transfers(given)
@@ -132,7 +132,7 @@ class SimulatedVehicle:
             radio.close()
 
     @property
-    def radios(self) -> Sequence[Radio]:
+    def radios(self) -> Sequence[SimulatedRadio]:
         """Return its radios."""
         return self._router.radios
 
@@ -260,9 +260,9 @@ class SimulatedVehicle:
         else:
             self._router.send(message)
 
-    def _home(self) -> Item:
+    def _home(self) -> StoredItem:
         latitude, longitude, above = self.autopilot.home
-        return Item(0, 16, (0.0, 0.0, 0.0, 0.0), round(latitude * 1e7), round(longitude * 1e7), above)
+        return StoredItem(0, 16, (0.0, 0.0, 0.0, 0.0), round(latitude * 1e7), round(longitude * 1e7), above)
 
     def _count_items(self, kind: int) -> None:
         name = {MISSION: "MIS_TOTAL", RALLY: "RALLY_TOTAL"}.get(kind)

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from pyproj import Geod
 
 from mmrs_mavlink import Geographic
-from mmrs_mavlink.sitl.autopilot import Autopilot
+from mmrs_mavlink.sitl.autopilot import SimulatedAutopilot
 from mmrs_mavlink.sitl.settings import Settings
 from mmrs_runtime.controllers.geodesy import between, distance
 
@@ -46,7 +46,7 @@ def test_a_part_of_a_way_is_as_far_along_and_on_the_map(latitude, longitude, azi
 
 @given(latitudes, longitudes, azimuths, lengths)
 def test_simulated_vehicles_know_their_places_anywhere(latitude, longitude, azimuth, metres):
-    pilot = Autopilot(Settings("copter", latitude, longitude))
+    pilot = SimulatedAutopilot(Settings("copter", latitude, longitude))
     there = beyond(latitude, longitude, azimuth, metres)
     assume(abs(there[0]) < 80.0)
     place = pilot.local(*there, 0.0)

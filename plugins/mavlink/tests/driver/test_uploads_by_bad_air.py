@@ -12,7 +12,7 @@ from virtual_link import Air, VirtualLink
 
 from mmrs_mavlink.services.items import FENCE, MISSION, NAMES, RALLY, Item
 from mmrs_mavlink.services.missions import upload, verify
-from mmrs_mavlink.sitl.items import Item as Kept
+from mmrs_mavlink.sitl.items import StoredItem
 from mmrs_runtime.faults import Refused
 
 FIRMWARES = ("ardupilot", "px4")
@@ -38,11 +38,11 @@ def plan(kind: int, number: int, mark: int) -> list[Item]:
     ]
 
 
-def old_plan(kind: int, number: int) -> list[Kept]:
-    return [Kept(3, each.command, each.params, each.x, each.y, 5.0) for each in plan(kind, number, 77)]
+def old_plan(kind: int, number: int) -> list[StoredItem]:
+    return [StoredItem(3, each.command, each.params, each.x, each.y, 5.0) for each in plan(kind, number, 77)]
 
 
-def places(items: Sequence[Item | Kept]) -> list[tuple[int, int]]:
+def places(items: Sequence[Item | StoredItem]) -> list[tuple[int, int]]:
     return [(item.x, item.y) for item in items]
 
 

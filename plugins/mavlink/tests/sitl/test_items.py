@@ -6,13 +6,13 @@ from math import nan
 
 import pytest
 
-from mmrs_mavlink.sitl.items import FENCE, RALLY, Item, fault_of, kept
+from mmrs_mavlink.sitl.items import FENCE, RALLY, StoredItem, fault_of, kept
 
 UNSUPPORTED_FRAME, UNSUPPORTED = 2, 3
 
 
-def item(command: int = 16, frame: int = 3, params=(0.0, 0.0, 0.0, 0.0), z: float = 20.0) -> Item:
-    return Item(frame, command, params, 423_700_000, 133_500_000, z)
+def item(command: int = 16, frame: int = 3, params=(0.0, 0.0, 0.0, 0.0), z: float = 20.0) -> StoredItem:
+    return StoredItem(frame, command, params, 423_700_000, 133_500_000, z)
 
 
 @pytest.mark.parametrize("frame", [0, 3, 5, 6, 10, 11])

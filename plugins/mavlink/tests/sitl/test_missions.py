@@ -8,7 +8,7 @@ from math import hypot
 import pytest
 from simulated import Bench
 
-from mmrs_mavlink.sitl.items import Item
+from mmrs_mavlink.sitl.items import StoredItem
 from mmrs_mavlink.sitl.telemetry import mission_current
 
 CORNER = (0.0, 60.0, 20.0)
@@ -17,8 +17,8 @@ LOITER, LAND, RETURN, SPEED, PHOTO, TRIGGER, JUMP = 17, 21, 20, 178, 203, 206, 1
 SET_CURRENT = 224
 
 
-def plain(command: int, *params: float, x: int = 0) -> Item:
-    return Item(2, command, (*params, *[0.0] * 4)[:4], x, 0, 0.0)
+def plain(command: int, *params: float, x: int = 0) -> StoredItem:
+    return StoredItem(2, command, (*params, *[0.0] * 4)[:4], x, 0, 0.0)
 
 
 @pytest.fixture
@@ -26,7 +26,7 @@ def bench():
     return Bench()
 
 
-def flown(bench: Bench, *items: Item, until: int, height: float = 20.0) -> Bench:
+def flown(bench: Bench, *items: StoredItem, until: int, height: float = 20.0) -> Bench:
     """Fly a mission from the air to the item with that number."""
     bench.load(*items)
     bench.fly_up(height)

@@ -9,7 +9,7 @@ import pytest
 from simulated import Bench
 
 from mmrs_mavlink.sitl.commands import steer
-from mmrs_mavlink.sitl.items import Item, kept
+from mmrs_mavlink.sitl.items import StoredItem, kept
 from mmrs_mavlink.sitl.parameters import decoded, encoded
 from mmrs_mavlink.sitl.settings import Settings
 
@@ -159,7 +159,7 @@ def test_integers_are_sent_as_their_bytes():
 
 
 def test_items_are_stored_as_received():
-    item = Item(6, 16, (1.5, 0.0, 0.0, math.nan), 1, 2, 3.14159)
+    item = StoredItem(6, 16, (1.5, 0.0, 0.0, math.nan), 1, 2, 3.14159)
     assert kept(item, 0, "px4") is item
 
 

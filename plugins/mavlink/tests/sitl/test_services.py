@@ -9,7 +9,7 @@ from collections import Counter
 import pytest
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from mmrs_mavlink.sitl.radio import Radio
+from mmrs_mavlink.sitl.radio import SimulatedRadio
 from mmrs_runtime.sights import Sight
 
 LONG = "a float with a very long name"
@@ -159,7 +159,7 @@ def test_detected_objects_are_reported_with_their_position_if_that_fits(ground):
 def test_a_lossy_link_loses_its_fraction_of_packets():
     sent = []
     for loss in (0.0, 0.5):
-        radio = Radio(("127.0.0.1", 9), 1, loss=loss, seed=3)
+        radio = SimulatedRadio(("127.0.0.1", 9), 1, loss=loss, seed=3)
         for _ in range(200):
             radio.send(mavlink.MAVLink_statustext_message(6, b"lost?"))
         sent.append(radio.sent)
@@ -172,7 +172,7 @@ def test_a_slow_link_delays_packets():
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as receiver:
         receiver.bind(("127.0.0.1", 0))
         receiver.settimeout(1.0)
-        radio = Radio(receiver.getsockname(), 1, delay=0.2)
+        radio = SimulatedRadio(receiver.getsockname(), 1, delay=0.2)
         began = time.monotonic()
         radio.send(mavlink.MAVLink_statustext_message(6, b"late"))
         while radio.sent == 0:

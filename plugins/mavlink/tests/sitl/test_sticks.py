@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from mmrs_mavlink.sitl.autopilot import Autopilot
+from mmrs_mavlink.sitl.autopilot import SimulatedAutopilot
 from mmrs_mavlink.sitl.commands import execute
 from mmrs_mavlink.sitl.settings import Settings
 from mmrs_mavlink.sitl.simulation import advance
@@ -15,7 +15,7 @@ ARM = mavlink.MAV_CMD_COMPONENT_ARM_DISARM
 
 
 def sub(mode="alt_hold", *, located=False):
-    pilot = Autopilot(Settings(kind="sub", ready=0.0, boot=0.0))
+    pilot = SimulatedAutopilot(Settings(kind="sub", ready=0.0, boot=0.0))
     pilot.located = located
     pilot.enter(mode)
     advance(pilot, 0.1)
@@ -83,7 +83,7 @@ def test_a_vehicle_disarms_without_manual_control():
 
 
 def test_other_kinds_ignore_sticks():
-    pilot = Autopilot(Settings(kind="rover", ready=0.0, boot=0.0))
+    pilot = SimulatedAutopilot(Settings(kind="rover", ready=0.0, boot=0.0))
     pilot.arm()
     drive(pilot, 5.0, x=1000)
     assert pilot.body.position == (0.0, 0.0, 0.0)

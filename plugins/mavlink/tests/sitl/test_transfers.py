@@ -5,11 +5,11 @@ from __future__ import annotations
 import pytest
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from mmrs_mavlink.sitl.items import Item
+from mmrs_mavlink.sitl.items import StoredItem
 from mmrs_mavlink.sitl.px4_transfers import Px4Transfers
 from mmrs_mavlink.sitl.transfers import ArduPilotTransfers
 
-OLD = [Item(3, 16, (0.0, 0.0, 0.0, 0.0), n, n, 1.0) for n in range(4)]
+OLD = [StoredItem(3, 16, (0.0, 0.0, 0.0, 0.0), n, n, 1.0) for n in range(4)]
 CANCELLED = mavlink.MAV_MISSION_OPERATION_CANCELLED
 
 
