@@ -1,4 +1,4 @@
-"""What a demonstration makes, and the screenful that tells of it."""
+"""Runs an example end to end, and summarises what it made."""
 
 from __future__ import annotations
 
@@ -161,7 +161,7 @@ def demonstrate(
         save(stages.transformed[0], behaviour, session.contributions)
     copied = copy_example(example, folder)
     files: list[tuple[str, Path, int]] = [
-        ("the mission, its place, and types of robot", folder / "mission.xmi", copied),
+        ("the mission, its place, and robot types", folder / "mission.xmi", copied),
         ("what each robot does, move by move", behaviour, 1),
     ]
     left_out: dict[str, tuple[str, ...]] = {}

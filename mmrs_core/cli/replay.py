@@ -26,7 +26,7 @@ from mmrs_runtime.semantics import Outcome
 
 if TYPE_CHECKING:
     from mmrs_core.behaviour.program import Program
-    from mmrs_core.pictures.flights.values import Flight
+    from mmrs_core.pictures.flights.flight import Flight
 
 
 def replay(

@@ -81,9 +81,7 @@ def flown(session: Session, loaded: Loaded, logs: Sequence[Path], assume: Sequen
     flight = read_flight(logs, program, place.types, contributions.robot_kinds)
     with progress("simulating the plan"):
         planned = planned_for(program, place, contributions, flight, answers(assume))
-    vehicles = tuple(contributions.vehicles.values())
-    kinds = contributions.robot_kinds
-    return Given(program, place, flight, planned, contributions.move_kinds, kinds, vehicles)
+    return Given(program, place, flight, planned, contributions)
 
 
 def read_files(logs: Sequence[Path]) -> tuple[Path, ...]:

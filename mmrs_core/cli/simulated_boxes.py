@@ -11,7 +11,7 @@ from mmrs_core.behaviour.program import Program
 from mmrs_core.cli.protection import ProtectedError
 from mmrs_core.contributions.execution import Sample
 from mmrs_core.contributions.rules import RobotKind, robot_kind_of
-from mmrs_core.pictures.flights.fixes import Zero, zero_of
+from mmrs_core.pictures.flights.fixes import Datum, datum_of
 from mmrs_core.pictures.flights.gathering import SIMULATION
 from mmrs_core.resources import named
 from mmrs_core.scene import Name, RobotType
@@ -63,15 +63,15 @@ def write_boxes(
             path = folder / box_name(robot.id)
             robot_type = types.get(robot.type_name)
             kind = robot_kind_of(robot_type, kinds) if robot_type is not None else None
-            zero = zero_of(robot, program, robot_type, kinds=kinds)
-            lines = _lines(name, robot.id, track, zero, kind.vehicle if kind is not None else "")
+            datum = datum_of(robot, program, robot_type, kinds=kinds)
+            lines = _lines(name, robot.id, track, datum, kind.vehicle if kind is not None else "")
             with named(path):
                 path.write_text("".join(f"{line}\n" for line in lines), encoding="utf-8")
             written.append(path)
     return tuple(written)
 
 
-def _lines(run: str, robot: str, track: Sequence[Sample], zero: Zero, vehicle: str) -> Iterator[str]:
+def _lines(run: str, robot: str, track: Sequence[Sample], datum: Datum, vehicle: str) -> Iterator[str]:
     full = track[0].energy
     common = {"run": run, "robot": robot}
 
@@ -82,7 +82,7 @@ def _lines(run: str, robot: str, track: Sequence[Sample], zero: Zero, vehicle: s
     yield line(0.0, "start", link=SIMULATION, vehicle=vehicle, firmware="", home=None, versions={})
     for sample in track:
         east, north, up = sample.position
-        place = {"north": north - zero.home[1], "east": east - zero.home[0], "height": up - zero.up}
+        place = {"north": north - datum.home[1], "east": east - datum.home[0], "height": up - datum.up}
         shown = {name: round(value, 3) for name, value in place.items()}
         left = None if not full or sample.energy is None or full == float("inf") else sample.energy / full
         rounded = None if left is None else round(left, 4)

@@ -6,7 +6,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from mmrs_core.pictures.flights.values import Flight, Flown, Track
+from mmrs_core.pictures.flights.flight import Flight, Flown
+from mmrs_core.pictures.flights.tracks import Track
 
 
 def track_of(points, energies=None, broken=()) -> Track:

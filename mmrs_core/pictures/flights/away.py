@@ -7,9 +7,9 @@ from collections.abc import Iterable, Sequence
 import numpy as np
 
 from mmrs_core.geometry.frames import Floats
-from mmrs_core.pictures.flights.nearest import nearest
+from mmrs_core.pictures.flights.flight import Flown
 from mmrs_core.pictures.flights.planned import PlannedLeg
-from mmrs_core.pictures.flights.values import Flown, Track
+from mmrs_core.pictures.flights.tracks import Track, nearest
 
 AWAY = frozenset({"RETURN", "LAND", "EMERGENCY_AREA", "SURFACE", "STOP_THRUST"})
 """Responses by which a robot leaves its path."""

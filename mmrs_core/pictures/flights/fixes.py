@@ -1,4 +1,4 @@
-"""Collects the fixes of one robot, and lays them into the local frame of the behaviour."""
+"""Collects the fixes of one robot, and converts them to the local frame of the behaviour."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from mmrs_core.behaviour.earth import WGS84
 from mmrs_core.behaviour.program import Program, RobotProgram
 from mmrs_core.contributions.rules import RobotKind, robot_kind_of
 from mmrs_core.geometry.frames import Floats, LocalFrame
-from mmrs_core.pictures.flights.values import Flags, Track
+from mmrs_core.pictures.flights.tracks import Flags, Track
 from mmrs_core.scene import Frame, Name, Position, RobotType
 from mmrs_runtime.records.entries import Entry, number_of
 
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from pyproj import Transformer
 
 SHORTEST_GAP = 3.0
-"""Seconds without a fix that are a gap at least."""
+"""Shortest gap: seconds without a fix."""
 _USUAL_TIMES = 5.0
 _ROW = 6
 
@@ -34,8 +34,8 @@ class Fixes:
     """Fixes so far.
 
     Attributes:
-        unplaced: how many had no place that can be used. turned: how many were older than one before.
-        astray: how many were left out because their time makes no sense among those around.
+        unplaced: how many had no usable position. turned: how many were older than one before.
+        astray: how many were left out because of an inconsistent time.
     """
 
     unplaced: int = 0
@@ -44,7 +44,7 @@ class Fixes:
     _values: array[float] = field(default_factory=lambda: array("d"))
 
     def add(self, entry: Entry) -> None:
-        """Take a fix; one without a usable place is counted."""
+        """Add a fix; one without a usable position is counted."""
         place = entry.content.get("place")
         found = spot_of(place) if isinstance(place, Mapping) else None
         if found is None:
@@ -55,17 +55,17 @@ class Fixes:
         row = (entry.time, on_earth, first, second, height, nan if energy is None else energy)
         self._values.extend(row)
 
-    def track(self, zero: Zero, *, exact: bool) -> Track:
-        """Return the track in the local frame; fixes that cannot be laid into it are counted.
+    def track(self, datum: Datum, *, exact: bool) -> Track:
+        """Return the track in the local frame; fixes outside of it are counted.
 
         Args:
-            zero: what places count from.
+            datum: the origin of the positions.
             exact: whether the robot went straight between fixes, however far apart.
         """
         every = np.frombuffer(self._values, dtype=np.float64).reshape(-1, _ROW)
         rows = every[_in_order(every[:, 0])]
         self.astray = len(every) - len(rows)
-        positions = zero.positions(rows[:, 1] > 0, rows[:, 2:5])
+        positions = datum.positions(rows[:, 1] > 0, rows[:, 2:5])
         placed = np.isfinite(positions).all(axis=1)
         self.unplaced += int(len(rows) - placed.sum())
         times: Floats = np.maximum.accumulate(rows[placed, 0]) if placed.any() else rows[placed, 0]
@@ -90,7 +90,7 @@ def _broken(times: Floats, exact: bool) -> Flags:
 
 
 def spot_of(place: Mapping[str, object]) -> tuple[bool, float, float, float] | None:
-    """Return whether a place is on the Earth, and its three figures; None where it is no place.
+    """Return whether a position is on the Earth, and its three figures; None where it is incomplete.
 
     They are latitude and longitude in degrees, or metres north and east of home; then the height.
     """
@@ -103,11 +103,11 @@ def spot_of(place: Mapping[str, object]) -> tuple[bool, float, float, float] | N
 
 
 @dataclass(frozen=True, slots=True)
-class Zero:
-    """What the places of one robot count from.
+class Datum:
+    """The origin of the positions that one robot reports.
 
     Attributes:
-        home: of the robot. up: height of its own zero above the origin, metres: home, or the water surface.
+        home: of the robot. up: of the altitude datum above the origin, metres: home, or the water surface.
     """
 
     frame: Frame
@@ -115,7 +115,7 @@ class Zero:
     up: float
 
     def positions(self, on_earth: np.typing.NDArray[np.bool_], figures: Floats) -> Floats:
-        """Return (n, 3) metres east, north, up; nan for what has no place in the frame."""
+        """Return (n, 3) metres east, north, up; nan for what has no position in the frame."""
         laid = np.full((len(figures), 3), nan)
         laid[:, 2] = figures[:, 2] + self.up
         local = ~on_earth
@@ -126,7 +126,7 @@ class Zero:
         return laid
 
     def position(self, place: object) -> Position | None:
-        """Return where a place is; None for what is no place, or has none in the frame."""
+        """Return a reported position in the frame; None where it is incomplete, or outside of the frame."""
         found = spot_of(place) if isinstance(place, Mapping) else None
         if found is None:
             return None
@@ -134,29 +134,29 @@ class Zero:
         return (east, north, up) if isfinite(east + north + up) else None
 
 
-def zero_of(
+def datum_of(
     robot: RobotProgram,
     program: Program,
     robot_type: RobotType | None,
     vehicle: str = "",
     kinds: Mapping[Name, RobotKind] = MappingProxyType({}),
-) -> Zero:
-    """Return what the places in the black box of a robot count from.
+) -> Datum:
+    """Return the origin of the positions in the black box of a robot.
 
     Args:
-        robot_type: None where it is not known.
-        vehicle: what the black box says that it was; empty where it says nothing.
+        robot_type: None where it is unknown.
+        vehicle: class of vehicle that the black box names; empty where it names none.
         kinds: of robots, by metaclass.
     """
     home = robot.home if robot.home is not None else (0.0, 0.0, 0.0)
     kind = robot_kind_of(robot_type, kinds) if robot_type is not None and not vehicle else None
     known = (kind,) if kind is not None else [each for each in kinds.values() if each.vehicle == vehicle]
     dives = any(each.medium == "water" for each in known)
-    return Zero(program.frame, home, program.frame.surface if dives else home[2])
+    return Datum(program.frame, home, program.frame.surface if dives else home[2])
 
 
 def _on_ground(degrees: Floats, frame: Frame) -> Floats:
-    """Return metres east and north; nan for degrees that are none."""
+    """Return metres east and north; nan for degrees out of range."""
     metres = np.full(degrees.shape, nan)
     sound = (np.abs(degrees[:, 0]) < 90) & (np.abs(degrees[:, 1]) <= 360)
     if not sound.any():

@@ -14,8 +14,8 @@ from mmrs_core.behaviour.program import Program, RobotProgram
 from mmrs_core.contributions.rules import RobotKind
 from mmrs_core.errors import InvalidModelError, UnreadableError
 from mmrs_core.pictures.flights.clocks import Readings, Shift, shifts_of
-from mmrs_core.pictures.flights.fixes import Fixes, Zero, zero_of
-from mmrs_core.pictures.flights.values import Flight, Flown
+from mmrs_core.pictures.flights.fixes import Datum, Fixes, datum_of
+from mmrs_core.pictures.flights.flight import Flight, Flown
 from mmrs_core.scene import Name, RobotType
 from mmrs_runtime.records.entries import Damage, Entry, number_of
 from mmrs_runtime.records.steps import StepRecord
@@ -138,7 +138,7 @@ def read_flight(
                 robot.id,
                 steps.get(robot.id, ()),
                 contents.get(robot.id, _Contents()),
-                zero_of(
+                datum_of(
                     robot,
                     program,
                     types.get(robot.type_name),
@@ -202,10 +202,10 @@ def _listed(unread: Sequence[Damage], count: int) -> Iterator[str]:
 
 
 def _flown(
-    robot: str, records: Sequence[StepRecord], contents: _Contents, zero: Zero, damages: list[str]
+    robot: str, records: Sequence[StepRecord], contents: _Contents, datum: Datum, damages: list[str]
 ) -> Flown:
     fixes = contents.fixes
-    track = fixes.track(zero, exact=contents.simulated)
+    track = fixes.track(datum, exact=contents.simulated)
     if fixes.unplaced:
         damages.append(f"{robot}: {fixes.unplaced} fixes have no place in the frame of the behaviour")
     if fixes.astray:

@@ -1,24 +1,23 @@
-"""Photos: those that were ordered, those that the vehicle confirmed, and where they were taken."""
+"""Photos: those that were commanded, those that the vehicle confirmed, and their positions."""
 
 from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
-from types import MappingProxyType
 
 from mmrs_core.behaviour.program import Action, Move, Program, RobotProgram
-from mmrs_core.contributions.rules import RobotKind
+from mmrs_core.contributions.registry import Contributions
 from mmrs_core.contributions.vehicles import VehicleFactory
-from mmrs_core.pictures.flights.fixes import Zero, zero_of
-from mmrs_core.pictures.flights.values import Flight, Flown
-from mmrs_core.scene import Name, Position, RobotType
+from mmrs_core.pictures.flights.fixes import Datum, datum_of
+from mmrs_core.pictures.flights.flight import Flight, Flown
+from mmrs_core.scene import Position, RobotType
 from mmrs_runtime.records.entries import number_of
 
 TAKEN, UNCONFIRMED, SIMULATED = "taken", "not confirmed", "simulated"
 _LIKE_PHOTO = re.compile(r"photo|picture|image|snap|capture", re.IGNORECASE)
 _MATCHING = 10.0
-"""Seconds that the confirmation of a photo may be from the step that ordered it."""
+"""Seconds between the step that commanded a photo and its confirmation, at most."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -26,11 +25,11 @@ class Shot:
     """A photo.
 
     Attributes:
-        time: when it was confirmed, else when its order was done; seconds of the run.
-        at: where the vehicle says that it was taken, else where the robot was; None where nobody knows.
+        time: of its confirmation, else of the step that commanded it; seconds of the run.
+        at: the position that the vehicle reported, else that of the robot; None where unknown.
         state: ``taken``, ``not confirmed``, or ``simulated``.
-        index: as the vehicle counts; None where it does not.
-        move, task: that it was ordered for; empty where nobody ordered it, as when a distance triggers.
+        index: the vehicle's own; None where it has none.
+        move, task: that it was commanded for; empty for others, such as those triggered by distance.
     """
 
     time: float
@@ -45,16 +44,15 @@ def shots_in(
     program: Program,
     flight: Flight,
     types: Mapping[str, RobotType],
-    kinds: Mapping[Name, RobotKind] = MappingProxyType({}),
-    vehicles: Iterable[VehicleFactory] = (),
+    contributions: Contributions,
 ) -> dict[str, tuple[Shot, ...]]:
-    """Return all photos of a flight, by robot; types by name, as far as known, kinds by metaclass."""
-    known = tuple(vehicles)
+    """Return all photos of a flight, by robot; types by name, as far as known."""
+    kinds, known = contributions.robot_kinds, tuple(contributions.vehicles.values())
     return {
         robot.id: shots_of(
             robot,
             flown := flight.robots[robot.id],
-            zero_of(robot, program, types.get(robot.type_name), flown.vehicle, kinds),
+            datum_of(robot, program, types.get(robot.type_name), flown.vehicle, kinds),
             types.get(robot.type_name),
             known,
         )
@@ -65,12 +63,12 @@ def shots_in(
 def shots_of(
     robot: RobotProgram,
     flown: Flown,
-    zero: Zero,
+    datum: Datum,
     robot_type: RobotType | None = None,
     vehicles: Iterable[VehicleFactory] = (),
 ) -> tuple[Shot, ...]:
-    """Return all photos of a robot by time, each order matched with the nearest confirmation."""
-    taken = [*_taken(flown, zero)]
+    """Return all photos of a robot by time, each commanded one matched with the nearest confirmation."""
+    taken = [*_taken(flown, datum)]
     shots: list[Shot] = []
     for time, move in _orders(robot, flown, robot_type, tuple(vehicles)):
         near = min(taken, key=lambda shot: abs(shot.time - time), default=None)
@@ -93,17 +91,17 @@ def takes_photo(action: Action, robot_type: RobotType | None, vehicles: Iterable
 
 
 def _devices_confirm(flown: Flown) -> bool:
-    """Return whether an action counts as done only once its device has said so, as on a CAN bus."""
+    """Return whether an action counts as done only once its device has reported so, as on a CAN bus."""
     return any(entry.content.get("confirms") is True for entry in flown.of_kind("start"))
 
 
-def _taken(flown: Flown, zero: Zero) -> Iterator[Shot]:
+def _taken(flown: Flown, datum: Datum) -> Iterator[Shot]:
     for entry in flown.of_kind("photo"):
         index = number_of(entry.content.get("index"))
         place = entry.content.get("place")
-        # Cameras that know no place say 0, 0.
+        # Cameras without a position report 0, 0.
         unknown = isinstance(place, dict) and not (place.get("latitude", 1) or place.get("longitude", 1))
-        at = None if unknown else zero.position(place)
+        at = None if unknown else datum.position(place)
         at = at if at is not None else flown.track.at(entry.time)
         yield Shot(entry.time, at, TAKEN, None if index is None else int(index))
 

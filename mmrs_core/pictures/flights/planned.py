@@ -11,7 +11,7 @@ from mmrs_core.contributions.execution import Condition, RobotState
 from mmrs_core.contributions.registry import Contributions
 from mmrs_core.contributions.rules import MoveKind, most_specific
 from mmrs_core.errors import MmrsError
-from mmrs_core.pictures.flights.values import Flight, Flown
+from mmrs_core.pictures.flights.flight import Flight, Flown
 from mmrs_core.pipeline import Place, conditions_for
 from mmrs_core.scene import Name, Position
 from mmrs_core.simulation.run import SimulatedRun, refuse_unasked, simulate

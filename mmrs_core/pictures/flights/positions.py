@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from mmrs_core.behaviour.program import Program
 from mmrs_core.geometry.frames import LocalFrame
-from mmrs_core.pictures.flights.values import Flight
+from mmrs_core.pictures.flights.flight import Flight
 from mmrs_core.scene import Frame, Position
 from mmrs_runtime.records.steps import merge
 

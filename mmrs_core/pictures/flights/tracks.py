@@ -1,23 +1,71 @@
-"""Cuts tracks into pieces without gaps, and thins them out for pictures, within a tolerance."""
+"""Tracks of robots: where they were when, in pieces without gaps, thinned out, and next to their paths."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import dataclass
+from itertools import pairwise
 from math import inf, sqrt
 from typing import TypeAlias
 
 import numpy as np
+from numpy.typing import NDArray
 
 from mmrs_core.geometry.frames import Floats
-from mmrs_core.pictures.flights.values import Track
 from mmrs_core.scene import Position
 
+Flags: TypeAlias = NDArray[np.bool_]
 Piece: TypeAlias = tuple[tuple[float, ...], tuple[Position, ...]]
 """Times and positions, as many."""
 TOLERANCE = 0.2
 """Metres by which a thinned track may be off at first."""
 MOST_POINTS = 6_000
 """Points of a track beyond which the tolerance is doubled."""
+_OFTEN = 0.5
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Track:
+    """Where a robot was when.
+
+    Attributes:
+        times: (n,) seconds of the run, never falling.
+        positions: (n, 3) metres east, north, up.
+        energies: (n,) fraction of the battery that is left, 0 to 1; nan where unknown.
+        broken: (n,) whether its position between that fix and the next is unknown; false for the last.
+            Between others it went straight.
+    """
+
+    times: Floats
+    positions: Floats
+    energies: Floats
+    broken: Flags
+
+    @property
+    def gaps(self) -> tuple[tuple[float, float], ...]:
+        """Return (since, until) of every gap."""
+        found = np.flatnonzero(self.broken)
+        return tuple((float(self.times[i]), float(self.times[i + 1])) for i in found)
+
+    def at(self, time: float) -> Position | None:
+        """Return where the robot was; None before the first fix, after the last, and in a gap.
+
+        Half a second is tolerated at the ends, the usual time between fixes.
+        """
+        if not len(self.times) or not self.times[0] - _OFTEN <= time <= self.times[-1] + _OFTEN:
+            return None
+        time = min(max(time, float(self.times[0])), float(self.times[-1]))
+        after = min(int(np.searchsorted(self.times, time, side="right")), len(self.times) - 1)
+        before = max(after - 1, 0)
+        since, until = self.times[before], self.times[after]
+        if self.broken[before] and since < time < until:
+            return None
+        part = (time - since) / (until - since) if until > since else 1.0
+        east, north, up = self.positions[before] * (1 - part) + self.positions[after] * part
+        return float(east), float(north), float(up)
+
+
+NOWHERE = Track(np.empty(0), np.empty((0, 3)), np.empty(0), np.empty(0, dtype=bool))
 
 
 def stretches_of(track: Track, begin: float, end: float) -> Iterator[Piece]:
@@ -131,3 +179,33 @@ def pieces(track: Track) -> list[Floats]:
         return []
     ends = np.flatnonzero(track.broken) + 1
     return list(np.split(track.positions, ends))
+
+
+def nearest(points: Floats, way: Floats) -> tuple[Floats, Floats]:
+    """Return the nearest point of a path to each point, (n, 3), and how far along it is, (n,) metres.
+
+    Args:
+        points: (n, 3), at least one.
+        way: (m, 3) corners, at least one.
+    """
+    best = np.broadcast_to(way[0], points.shape).copy()
+    least = np.linalg.norm(points - way[0], axis=1)
+    along_way = np.zeros(len(points))
+    behind = 0.0
+    for begin, end in pairwise(way):
+        leg = end - begin
+        length = float(np.linalg.norm(leg))
+        share = np.clip((points - begin) @ leg / length**2, 0.0, 1.0) if length > 0 else np.zeros(len(points))
+        foot = begin + share[:, None] * leg
+        distance = np.linalg.norm(points - foot, axis=1)
+        nearer = distance < least
+        best[nearer], least[nearer] = foot[nearer], distance[nearer]
+        along_way[nearer] = behind + share[nearer] * length
+        behind += length
+    return best, along_way
+
+
+def along(points: Floats, way: Floats) -> Floats:
+    """Return how far along a path each point is, (n,) from 0 to 1; 0 for a path without length."""
+    length = float(np.linalg.norm(np.diff(way, axis=0), axis=1).sum())
+    return nearest(points, way)[1] / length if length > 0 else np.zeros(len(points))

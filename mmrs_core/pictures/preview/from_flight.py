@@ -12,10 +12,10 @@ from mmrs_core.contributions.registry import Contributions
 from mmrs_core.contributions.rules import MoveKind
 from mmrs_core.pictures.figures import clock, length
 from mmrs_core.pictures.flights.away import away_of, without
+from mmrs_core.pictures.flights.flight import Flight, Flown
 from mmrs_core.pictures.flights.photos import SIMULATED, UNCONFIRMED, Shot, shots_in
 from mmrs_core.pictures.flights.planned import Planned, legs_of
 from mmrs_core.pictures.flights.tracks import pieces, stretches_of, thinned
-from mmrs_core.pictures.flights.values import Flight, Flown
 from mmrs_core.pictures.preview.from_run import (
     bars_of_records,
     handovers_of,
@@ -55,8 +55,7 @@ def picture_of_flight(
         elements,
     )
     kinds = contributed.move_kinds
-    vehicles = contributed.vehicles.values()
-    shots = shots_in(program, flight, place.types, contributed.robot_kinds, vehicles)
+    shots = shots_in(program, flight, place.types, contributed)
     shown = [_Shown(robot, flight.robots[robot.id], kinds, shots[robot.id]) for robot in program.robots]
     robots = tuple(each.over(picture) for each, picture in zip(shown, plan.robots, strict=True))
     coarsest = max(each.tolerance for each in shown) if shown else 0.0

@@ -15,8 +15,7 @@ from mmrs_core.contributions.rules import MoveKind, most_specific
 from mmrs_core.contributions.symbols import MapSymbol
 from mmrs_core.pictures.figures import clock, length
 from mmrs_core.pictures.flights.away import Stretch, without
-from mmrs_core.pictures.flights.tracks import stretches_of
-from mmrs_core.pictures.flights.values import Track
+from mmrs_core.pictures.flights.tracks import Track, stretches_of
 from mmrs_core.pictures.preview.features import elements_of, origin_of, symbol_of_robot, zones_of
 from mmrs_core.pictures.preview.picture import Bar, Handover, Leg, Picture, RobotPicture
 from mmrs_core.pipeline import Place

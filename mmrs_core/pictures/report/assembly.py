@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from itertools import pairwise
 from math import dist
 
@@ -12,21 +12,15 @@ import numpy as np
 
 from mmrs_core.behaviour.program import Program, RobotProgram
 from mmrs_core.behaviour.replay import ReplayResult, replay
-from mmrs_core.contributions.rules import MoveKind, RobotKind
-from mmrs_core.contributions.vehicles import VehicleFactory
+from mmrs_core.contributions.registry import Contributions
 from mmrs_core.pictures.flights.away import AWAY
-from mmrs_core.pictures.flights.fixes import Zero, zero_of
+from mmrs_core.pictures.flights.fixes import Datum, datum_of
+from mmrs_core.pictures.flights.flight import Flight, Flown
 from mmrs_core.pictures.flights.photos import shots_in
 from mmrs_core.pictures.flights.planned import Planned, PlannedLeg, legs_of
 from mmrs_core.pictures.flights.positions import Locator
 from mmrs_core.pictures.flights.tracks import pieces
-from mmrs_core.pictures.flights.values import Flight, Flown
-from mmrs_core.pictures.report.deviations import deviation_of
-from mmrs_core.pictures.report.distances import approaches_of, in_motion, separations_of
-from mmrs_core.pictures.report.energies import energy_of
-from mmrs_core.pictures.report.events import events_of, injected_by, readings_of, without_secrets
-from mmrs_core.pictures.report.tasks import task_reports
-from mmrs_core.pictures.report.values import (
+from mmrs_core.pictures.report.contents import (
     Approach,
     LinkReport,
     PhotoReport,
@@ -34,9 +28,13 @@ from mmrs_core.pictures.report.values import (
     RobotReport,
     Separation,
 )
+from mmrs_core.pictures.report.deviations import deviation_of
+from mmrs_core.pictures.report.distances import approaches_of, in_motion, separations_of
+from mmrs_core.pictures.report.energies import energy_of
+from mmrs_core.pictures.report.events import events_of, injected_by, readings_of, without_secrets
+from mmrs_core.pictures.report.tasks import task_reports
 from mmrs_core.pictures.report.visits import move_reports, wait_reports
 from mmrs_core.pipeline import Place
-from mmrs_core.scene import Name
 from mmrs_runtime.records.entries import number_of
 from mmrs_runtime.semantics import Outcome
 
@@ -46,25 +44,18 @@ _ACCEPTED = frozenset({"ACCEPTED", "IN_PROGRESS"})
 
 @dataclass(frozen=True, slots=True)
 class Given:
-    """All that a report is made of.
-
-    Attributes:
-        kinds: of moves, by metaclass. robot_kinds: of robots, by metaclass.
-        vehicles: that robots may have had.
-    """
+    """All that a report is made of."""
 
     program: Program
     place: Place
     flight: Flight
     planned: Planned
-    kinds: Mapping[Name, MoveKind]
-    robot_kinds: Mapping[Name, RobotKind] = field(default_factory=dict)
-    vehicles: tuple[VehicleFactory, ...] = ()
+    contributions: Contributions
 
     def legs(self) -> dict[str, tuple[PlannedLeg, ...]]:
         """Return the moves that each robot began, with their planned paths."""
         return {
-            robot.id: legs_of(robot, flown, self.kinds)
+            robot.id: legs_of(robot, flown, self.contributions.move_kinds)
             for robot in self.program.robots
             for flown in (self.flight.robots[robot.id],)
         }
@@ -102,7 +93,7 @@ def report_of(given: Given) -> Report:
         readings=tuple(
             reading
             for robot, flown in zip(program.robots, robots, strict=True)
-            for reading in readings_of(flown, _zero(given, robot), places.of)
+            for reading in readings_of(flown, _datum(given, robot), places.of)
         ),
         events=tuple(sorted((e for flown in robots for e in events_of(flown)), key=lambda e: e.time)),
         links=tuple(link for link in links if link is not None),
@@ -110,9 +101,9 @@ def report_of(given: Given) -> Report:
     )
 
 
-def _zero(given: Given, robot: RobotProgram) -> Zero:
+def _datum(given: Given, robot: RobotProgram) -> Datum:
     type, vehicle = given.place.types.get(robot.type_name), given.flight.robots[robot.id].vehicle
-    return zero_of(robot, given.program, type, vehicle, given.robot_kinds)
+    return datum_of(robot, given.program, type, vehicle, given.contributions.robot_kinds)
 
 
 def _robot(robot: RobotProgram, given: Given, judged: ReplayResult) -> RobotReport:
@@ -173,7 +164,7 @@ def _separations(
 
 
 def _photos(given: Given, places: Locator) -> Iterator[PhotoReport]:
-    found = shots_in(given.program, given.flight, given.place.types, given.robot_kinds, given.vehicles)
+    found = shots_in(given.program, given.flight, given.place.types, given.contributions)
     for robot, shots in found.items():
         for shot in shots:
             where = places.of(shot.at) if shot.at is not None else None

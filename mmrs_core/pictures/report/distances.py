@@ -12,10 +12,11 @@ from mmrs_core.analysis.distance import prism_distances
 from mmrs_core.behaviour.program import BEHAVIOUR
 from mmrs_core.geometry.frames import Floats
 from mmrs_core.pictures.flights.away import Stretch, without
+from mmrs_core.pictures.flights.flight import Flown
 from mmrs_core.pictures.flights.planned import PlannedLeg
 from mmrs_core.pictures.flights.positions import GeoPosition
-from mmrs_core.pictures.flights.values import Flags, Flown, Track
-from mmrs_core.pictures.report.values import Approach, Separation
+from mmrs_core.pictures.flights.tracks import Flags, Track
+from mmrs_core.pictures.report.contents import Approach, Separation
 from mmrs_core.scene import Area, AreaUse, Position
 
 _AT_ONCE = 512

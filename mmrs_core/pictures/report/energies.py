@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from mmrs_core.geometry.frames import Floats
-from mmrs_core.pictures.flights.values import Flown
-from mmrs_core.pictures.report.values import EnergyReport
+from mmrs_core.pictures.flights.flight import Flown
+from mmrs_core.pictures.report.contents import EnergyReport
 from mmrs_core.simulation.run import SimulatedRun
 
 _CHARGED = 0.05

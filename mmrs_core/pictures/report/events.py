@@ -6,10 +6,10 @@ import re
 from collections.abc import Callable, Iterator, Mapping
 
 from mmrs_core.pictures.figures import quantity
-from mmrs_core.pictures.flights.fixes import Zero
+from mmrs_core.pictures.flights.fixes import Datum
+from mmrs_core.pictures.flights.flight import Flown
 from mmrs_core.pictures.flights.positions import GeoPosition
-from mmrs_core.pictures.flights.values import Flown
-from mmrs_core.pictures.report.values import Event, Measurement
+from mmrs_core.pictures.report.contents import Event, Measurement
 from mmrs_core.scene import Position
 from mmrs_runtime.policies import NOTHING
 from mmrs_runtime.records.entries import Entry, number_of
@@ -30,12 +30,12 @@ def events_of(flown: Flown) -> tuple[Event, ...]:
 
 
 def readings_of(
-    flown: Flown, zero: Zero, place_of: Callable[[Position], GeoPosition]
+    flown: Flown, datum: Datum, place_of: Callable[[Position], GeoPosition]
 ) -> Iterator[Measurement]:
     """Yield what a robot has measured and reported, in order."""
     for entry in flown.entries:
         if entry.kind in ("measured", "reported"):
-            at = zero.position(entry.content.get("place"))
+            at = datum.position(entry.content.get("place"))
             at = at if at is not None else flown.track.at(entry.time)
             where = place_of(at) if at is not None else None
             name, content = _words(entry, "name"), _content(entry.content.get("content"))

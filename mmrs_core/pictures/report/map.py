@@ -14,7 +14,7 @@ from mmrs_core.pictures.preview.features import task_pictures
 from mmrs_core.pictures.preview.from_flight import picture_of_flight
 from mmrs_core.pictures.preview.picture import Picture
 from mmrs_core.pictures.report.assembly import Given
-from mmrs_core.pictures.report.values import Report, TaskStatus
+from mmrs_core.pictures.report.contents import Report, TaskStatus
 from mmrs_core.pipeline import check_models, ground, read_models
 from mmrs_core.scene import Part, Scene
 

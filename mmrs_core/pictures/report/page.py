@@ -20,10 +20,10 @@ from mmrs_core.pictures.preview.timeline import KEY_OF_FLIGHTS, timeline_of
 from mmrs_core.pictures.report import tables
 from mmrs_core.pictures.report.assembly import Given
 from mmrs_core.pictures.report.charts import battery_chart, cross_track_chart
+from mmrs_core.pictures.report.contents import Report, TaskStatus
 from mmrs_core.pictures.report.deviations import deviations_over_time
 from mmrs_core.pictures.report.energies import planned_levels
 from mmrs_core.pictures.report.tables import Section
-from mmrs_core.pictures.report.values import Report, TaskStatus
 from mmrs_core.pictures.report.wording import metres, nearness, percent, spoken
 from mmrs_runtime.policies import EVENTS
 

@@ -10,8 +10,8 @@ from typing import NamedTuple, TypeAlias
 from markupsafe import Markup
 
 from mmrs_core.pictures.figures import clock, quantity
+from mmrs_core.pictures.report.contents import Event, Nearness, Report, TaskReport, TaskStatus
 from mmrs_core.pictures.report.events import BY_PEOPLE
-from mmrs_core.pictures.report.values import Event, Nearness, Report, TaskReport, TaskStatus
 from mmrs_core.pictures.report.wording import (
     UNKNOWN,
     level,

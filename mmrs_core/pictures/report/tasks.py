@@ -8,10 +8,10 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from mmrs_core.behaviour.program import Move, Program
-from mmrs_core.pictures.flights.nearest import along
+from mmrs_core.pictures.flights.flight import Flight
 from mmrs_core.pictures.flights.planned import PlannedLeg
-from mmrs_core.pictures.flights.values import Flight, Track
-from mmrs_core.pictures.report.values import TaskReport, TaskStatus
+from mmrs_core.pictures.flights.tracks import Track, along
+from mmrs_core.pictures.report.contents import TaskReport, TaskStatus
 from mmrs_core.pictures.report.visits import Visit, visits_of
 from mmrs_core.simulation.run import SimulatedRun
 from mmrs_runtime.records.steps import StepRecord

@@ -6,8 +6,8 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from mmrs_core.behaviour.program import Program, RobotProgram, SlotId
-from mmrs_core.pictures.flights.values import Flight
-from mmrs_core.pictures.report.values import MoveReport, WaitReport
+from mmrs_core.pictures.flights.flight import Flight
+from mmrs_core.pictures.report.contents import MoveReport, WaitReport
 from mmrs_core.simulation.run import SimulatedRun
 from mmrs_runtime.records.steps import StepRecord
 

@@ -7,7 +7,7 @@ import re
 from mmrs_core.contributions.checks import AT_LIMIT
 from mmrs_core.pictures.figures import clock, energy, length
 from mmrs_core.pictures.flights.positions import GeoPosition
-from mmrs_core.pictures.report.values import Nearness
+from mmrs_core.pictures.report.contents import Nearness
 from mmrs_runtime.policies import EVENTS, RESPONSES
 
 UNKNOWN = "unknown"

@@ -6,8 +6,8 @@ import pytest
 
 from mmrs_core.behaviour.program import Transition
 from mmrs_core.contributions.execution import Condition, RobotState
+from mmrs_core.pictures.flights.flight import Flight, Flown
 from mmrs_core.pictures.flights.planned import choosing_as
-from mmrs_core.pictures.flights.values import Flight, Flown
 from mmrs_core.testing.programs import move, program, robot_program
 from mmrs_runtime.records.steps import StepRecord
 

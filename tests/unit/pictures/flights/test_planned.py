@@ -8,8 +8,9 @@ import numpy as np
 import pytest
 
 from mmrs_core.behaviour.program import MoveTarget
+from mmrs_core.pictures.flights.flight import Flown
 from mmrs_core.pictures.flights.planned import legs_of
-from mmrs_core.pictures.flights.values import NOWHERE, Flown, Track
+from mmrs_core.pictures.flights.tracks import NOWHERE, Track
 from mmrs_core.testing.programs import go_to, robot_program, take_off
 from mmrs_runtime.records.steps import StepRecord
 

@@ -8,8 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from mmrs_core.pictures.flights import tracks
-from mmrs_core.pictures.flights.tracks import pieces, thinned
-from mmrs_core.pictures.flights.values import NOWHERE, Track
+from mmrs_core.pictures.flights.tracks import NOWHERE, Track, pieces, thinned
 
 
 def track(times, positions, broken=()):

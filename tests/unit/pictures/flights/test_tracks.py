@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from mmrs_core.behaviour.earth import degrees_of
-from mmrs_core.pictures.flights.fixes import Fixes, Zero, zero_of
+from mmrs_core.pictures.flights.fixes import Datum, Fixes, datum_of
 from mmrs_core.scene import Frame
 from mmrs_core.testing.programs import L_AQUILA, program, quad, robot_program, take_off
 from mmrs_core.transformation.kinds import PLAIN_ROBOT
@@ -30,7 +30,7 @@ def track_of(entries, frame=L_AQUILA, *, exact=False):
     fixes = Fixes()
     for entry in entries:
         fixes.add(entry)
-    return fixes, fixes.track(Zero(frame, HOME, HOME[2]), exact=exact)
+    return fixes, fixes.track(Datum(frame, HOME, HOME[2]), exact=exact)
 
 
 def test_places_near_home_count_from_home():
@@ -128,11 +128,11 @@ DIVER = replace(PLAIN_ROBOT, name="ray", metaclass=("urn:rays:1.0", "Ray"), vehi
 def test_heights_under_water_count_from_the_surface():
     behaviour = program(robot_program("Ann", UP, home=HOME), frame=replace(L_AQUILA, surface=2.0))
     kinds = {DIVER.metaclass: DIVER, PLAIN_ROBOT.metaclass: PLAIN_ROBOT}
-    assert zero_of(behaviour.robots[0], behaviour, None, DIVER.vehicle, kinds).up == 2.0
-    assert zero_of(behaviour.robots[0], behaviour, None, PLAIN_ROBOT.vehicle, kinds).up == 7.0
+    assert datum_of(behaviour.robots[0], behaviour, None, DIVER.vehicle, kinds).up == 2.0
+    assert datum_of(behaviour.robots[0], behaviour, None, PLAIN_ROBOT.vehicle, kinds).up == 7.0
 
 
 def test_heights_of_a_robot_whose_box_is_silent_count_as_its_kind_says():
     behaviour = program(robot_program("Ann", UP, home=HOME), frame=replace(L_AQUILA, surface=2.0))
     ray = replace(quad(), metaclasses=(DIVER.metaclass, PLAIN_ROBOT.metaclass))
-    assert zero_of(behaviour.robots[0], behaviour, ray, kinds={DIVER.metaclass: DIVER}).up == 2.0
+    assert datum_of(behaviour.robots[0], behaviour, ray, kinds={DIVER.metaclass: DIVER}).up == 2.0

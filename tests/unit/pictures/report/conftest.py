@@ -7,7 +7,7 @@ from functools import partial
 import pytest
 from flights_by_hand import flight_as, track_of
 
-from mmrs_core.pictures.flights.values import Flight, Flown
+from mmrs_core.pictures.flights.flight import Flight, Flown
 from mmrs_runtime.records.entries import Entry
 from mmrs_runtime.records.steps import StepRecord
 

@@ -11,9 +11,9 @@ from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 from shapely.geometry import LineString, Point
 
-from mmrs_core.pictures.flights.nearest import along, nearest
 from mmrs_core.pictures.flights.planned import PlannedLeg
 from mmrs_core.pictures.flights.positions import Locator
+from mmrs_core.pictures.flights.tracks import along, nearest
 from mmrs_core.pictures.report.charts import cross_track_chart
 from mmrs_core.pictures.report.deviations import deviation_of
 from mmrs_core.scene import Frame

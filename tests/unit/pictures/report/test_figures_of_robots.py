@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from mmrs_core.pictures.flights.fixes import zero_of
+from mmrs_core.pictures.flights.fixes import datum_of
 from mmrs_core.pictures.flights.photos import shots_of
 from mmrs_core.pictures.flights.positions import Locator
 from mmrs_core.pictures.report.assembly import link_of
@@ -113,8 +113,8 @@ def shots(behaviour, as_run, place):
     def found(*entries, **more):
         flown = replace(as_run().robots["alpha"], entries=entries, **more)
         kind = place.types["Quad"]
-        zero = zero_of(behaviour.robots[0], behaviour, kind)
-        return shots_of(behaviour.robots[0], flown, zero, kind)
+        datum = datum_of(behaviour.robots[0], behaviour, kind)
+        return shots_of(behaviour.robots[0], flown, datum, kind)
 
     return found
 
@@ -221,13 +221,13 @@ def test_a_flood_of_warnings_is_told_in_short(make):
 
 
 def test_measurements_and_reports_are_told_with_their_places(make, behaviour, place):
-    zero = zero_of(behaviour.robots[0], behaviour, place.types["Quad"])
+    datum = datum_of(behaviour.robots[0], behaviour, place.types["Quad"])
     entries = (
         make.entry(1.0, "measured", name="CO2", content={"device": "gas", "result": 412.5}, place=None),
         make.entry(2.0, "reported", name="state", content={"task": "photos"},
                    place={"north": 2.0, "east": 1.0, "height": 3.0}),
     )  # fmt: skip
-    first, second = readings_of(make.flown("alpha", entries=entries), zero, PLACES.of)
+    first, second = readings_of(make.flown("alpha", entries=entries), datum, PLACES.of)
     assert (first.name, first.content, first.where) == ("CO2", "device gas, result 412.5", None)
     assert (second.content, second.where.position) == ("task photos", (1.0, 2.0, 3.0))
 

@@ -19,7 +19,7 @@ def markup(behaviour, place, run, contributions, as_run, make):
     def made(*entries):
         flight = as_run(alpha={"entries": entries})
         planned = Planned(run)
-        given = Given(behaviour, place, flight, planned, contributions.move_kinds)
+        given = Given(behaviour, place, flight, planned, contributions)
         picture = picture_of_flight(behaviour, flight, planned, contributions, place)
         return page(report_of(given), given, picture)
 

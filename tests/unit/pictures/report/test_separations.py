@@ -7,9 +7,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from mmrs_core.pictures.flights.flight import Flown
 from mmrs_core.pictures.flights.planned import PlannedLeg
 from mmrs_core.pictures.flights.positions import Locator
-from mmrs_core.pictures.flights.values import Flown, Track
+from mmrs_core.pictures.flights.tracks import Track
 from mmrs_core.pictures.report.distances import in_motion, separations_of
 from mmrs_core.scene import Frame
 from mmrs_core.testing.programs import move

@@ -7,8 +7,8 @@ from dataclasses import replace
 import pytest
 
 from mmrs_core.pictures.flights.planned import legs_of
+from mmrs_core.pictures.report.contents import TaskStatus
 from mmrs_core.pictures.report.tasks import task_reports
-from mmrs_core.pictures.report.values import TaskStatus
 from mmrs_core.testing.programs import go_to, move, program, robot_program, take_off
 
 

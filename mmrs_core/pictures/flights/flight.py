@@ -4,64 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import TypeAlias
 
-import numpy as np
-from numpy.typing import NDArray
-
-from mmrs_core.geometry.frames import Floats
-from mmrs_core.scene import Position
+from mmrs_core.pictures.flights.tracks import NOWHERE, Track
 from mmrs_runtime.faults import TAKEN_OVER
 from mmrs_runtime.policies import EVENTS, NOTHING
 from mmrs_runtime.records.entries import Entry
 from mmrs_runtime.records.steps import StepRecord
-
-_OFTEN = 0.5
-Flags: TypeAlias = NDArray[np.bool_]
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Track:
-    """Where a robot was when.
-
-    Attributes:
-        times: (n,) seconds of the run, never falling.
-        positions: (n, 3) metres east, north, up.
-        energies: (n,) fraction of the battery that is left, 0 to 1; nan where unknown.
-        broken: (n,) whether its position between that fix and the next is unknown; false for the last.
-            Between others it went straight.
-    """
-
-    times: Floats
-    positions: Floats
-    energies: Floats
-    broken: Flags
-
-    @property
-    def gaps(self) -> tuple[tuple[float, float], ...]:
-        """Return (since, until) of every gap."""
-        found = np.flatnonzero(self.broken)
-        return tuple((float(self.times[i]), float(self.times[i + 1])) for i in found)
-
-    def at(self, time: float) -> Position | None:
-        """Return where the robot was; None before the first fix, after the last, and in a gap.
-
-        Half a second is tolerated at the ends, the usual time between fixes.
-        """
-        if not len(self.times) or not self.times[0] - _OFTEN <= time <= self.times[-1] + _OFTEN:
-            return None
-        time = min(max(time, float(self.times[0])), float(self.times[-1]))
-        after = min(int(np.searchsorted(self.times, time, side="right")), len(self.times) - 1)
-        before = max(after - 1, 0)
-        since, until = self.times[before], self.times[after]
-        if self.broken[before] and since < time < until:
-            return None
-        part = (time - since) / (until - since) if until > since else 1.0
-        east, north, up = self.positions[before] * (1 - part) + self.positions[after] * part
-        return float(east), float(north), float(up)
-
-
-NOWHERE = Track(np.empty(0), np.empty((0, 3)), np.empty(0), np.empty(0, dtype=bool))
 
 
 @dataclass(frozen=True, slots=True)
