@@ -10,6 +10,7 @@ from typing import Annotated, Any
 import typer
 
 from mmrs_core.cli.as_typed import take_as_typed
+from mmrs_core.cli.completion import COMPLETING, completed_words
 from mmrs_core.cli.output import say, tell
 from mmrs_core.cli.settings import DEBUG, NO_PLUGINS, QUIET_MIGRATION, Settings
 from mmrs_core.contributions.commands import Command
@@ -75,17 +76,17 @@ def app_for(arguments: Sequence[str], settings: Settings) -> typer.Typer:
     """
     app = typer.Typer(rich_markup_mode=None, help=_HELP, epilog=_EPILOG, no_args_is_help=True)
     app.callback()(_global_options)
-    called = next((argument for argument in arguments if not argument.startswith("-")), None)
-    completing = "_MMRS_COMPLETE" in os.environ  # the shell asks, and not by the arguments
+    words = completed_words() if COMPLETING in os.environ else arguments
+    called = next((word for word in words if not word.startswith("-")), None)
     for command in _COMMANDS:
-        if completing or command.name == called:
+        if command.name == called:
             app.command(command.name)(_imported(command))
         else:
             app.command(command.name, help=command.help)(_nothing)
     if called not in {command.name for command in (*_COMMANDS, *_GROUPS)}:
         _add_plugin_commands(app, settings, called)
     for group in _GROUPS:
-        if completing or group.name == called:
+        if group.name == called:
             app.add_typer(_imported(group), name=group.name)
         else:
             app.command(group.name, help=group.help)(_nothing)

@@ -18,6 +18,7 @@ import typer
 from mmrs_core.cli.behaviours import load_program
 from mmrs_core.cli.bus_access import Holder
 from mmrs_core.cli.buses import refuse_endpoints
+from mmrs_core.cli.completion import robot_names
 from mmrs_core.cli.output import counted, say, say_json, tell
 from mmrs_core.cli.parameters import Behaviour, behaviour_file
 from mmrs_core.cli.session import Session
@@ -147,7 +148,15 @@ def revoke(
 def gateway(
     call: typer.Context,
     behaviour: Behaviour,
-    robot: Annotated[str, typer.Option("--robot", metavar="NAME", help="Robot that the program represents.")],
+    robot: Annotated[
+        str,
+        typer.Option(
+            "--robot",
+            metavar="NAME",
+            help="Robot that the program represents.",
+            autocompletion=robot_names,
+        ),
+    ],
     listen: Listen = None,
     connect: Connect = None,
     config: Config = None,

@@ -8,6 +8,7 @@ from typing import Annotated, Any
 
 import typer
 
+from mmrs_core.cli.completion import running_robots
 from mmrs_core.cli.output import say, say_json
 from mmrs_core.cli.settings import Json
 from mmrs_core.errors import LinkLostError
@@ -24,7 +25,11 @@ def control(
     ],
     robots: Annotated[
         list[str] | None,
-        typer.Argument(metavar="ROBOT...", help="Robots to command. Default: all running robots."),
+        typer.Argument(
+            metavar="ROBOT...",
+            help="Robots to command. Default: all running robots.",
+            autocompletion=running_robots,
+        ),
     ] = None,
     log: Annotated[Path, typer.Option("--log", metavar="DIR", help="Folder of the run's logs.")] = Path(
         "logs"

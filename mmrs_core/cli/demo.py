@@ -7,6 +7,7 @@ from typing import Annotated
 
 import typer
 
+from mmrs_core.cli.completion import example_names
 from mmrs_core.cli.demonstration import demonstrate, travel_margins_of
 from mmrs_core.cli.output import say, say_json
 from mmrs_core.cli.session import Session, Stages
@@ -20,7 +21,10 @@ DEFAULT = "carbon-dioxide"
 def demo(
     call: typer.Context,
     example: Annotated[
-        str, typer.Argument(metavar="EXAMPLE", help="Name of the example. See --list.")
+        str,
+        typer.Argument(
+            metavar="EXAMPLE", help="Name of the example. See --list.", autocompletion=example_names
+        ),
     ] = DEFAULT,
     out: Annotated[
         Path, typer.Option("-o", "--output", "--out", metavar="DIR", help="Output folder.")

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from mmrs_core.cli.completion import generated_robots, generated_tasks
 from mmrs_core.cli.output import say, say_json, tell
 from mmrs_core.cli.settings import Json
 from mmrs_core.cli.tables import table
@@ -30,13 +31,25 @@ def explain(
         ),
     ] = ".",
     robot: Annotated[
-        str, typer.Option("--robot", metavar="ID", help="List the lines generated for this robot.")
+        str,
+        typer.Option(
+            "--robot",
+            metavar="ID",
+            help="List the lines generated for this robot.",
+            autocompletion=generated_robots,
+        ),
     ] = "",
     move: Annotated[
         str, typer.Option("--move", metavar="ID", help="List the lines generated for this move.")
     ] = "",
     task: Annotated[
-        str, typer.Option("--task", metavar="NAME", help="List the lines generated for this task.")
+        str,
+        typer.Option(
+            "--task",
+            metavar="NAME",
+            help="List the lines generated for this task.",
+            autocompletion=generated_tasks,
+        ),
     ] = "",
     json: Json = False,
 ) -> int:

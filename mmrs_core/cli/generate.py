@@ -12,6 +12,7 @@ import typer
 
 from mmrs_core.cli.behaviours import load_behaviour
 from mmrs_core.cli.capabilities import print_capabilities
+from mmrs_core.cli.completion import target_names
 from mmrs_core.cli.output import counted, say, say_json
 from mmrs_core.cli.parameters import Context, Robots, behaviour_file, robot_files
 from mmrs_core.cli.protection import refuse_inputs
@@ -32,7 +33,12 @@ def generate(
     ] = None,
     target: Annotated[
         str | None,
-        typer.Option("--target", metavar="NAME", help="Target to generate code for. See --list-targets."),
+        typer.Option(
+            "--target",
+            metavar="NAME",
+            help="Target to generate code for. See --list-targets.",
+            autocompletion=target_names,
+        ),
     ] = None,
     output: Annotated[
         Path | None, typer.Option("-o", "--output", metavar="DIR", help="Output folder.")

@@ -9,6 +9,7 @@ import typer
 
 from mmrs_core.cli.behaviours import load_behaviour
 from mmrs_core.cli.buses import BusOptions
+from mmrs_core.cli.completion import robot_names
 from mmrs_core.cli.flying import carry_out
 from mmrs_core.cli.output import say_json
 from mmrs_core.cli.parameters import Assume, Behaviour, Context, Robots, behaviour_file, robot_files
@@ -44,7 +45,10 @@ def run(
         ),
     ] = None,
     only: Annotated[
-        _Texts, typer.Option("--robot", metavar="ROBOT", help="Run only this robot. Repeatable.")
+        _Texts,
+        typer.Option(
+            "--robot", metavar="ROBOT", help="Run only this robot. Repeatable.", autocompletion=robot_names
+        ),
     ] = None,
     resume: Annotated[bool, typer.Option("--resume", help="Resume the run logged in --log.")] = False,
     name: Annotated[

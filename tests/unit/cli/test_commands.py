@@ -1,7 +1,10 @@
 """The command line as a user types it, in this process."""
 
 import json
+import os
+import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 import typer
@@ -64,16 +67,59 @@ def test_the_list_of_commands_says_what_each_command_says_of_itself(name):
     assert shown[0] == shown[1]
 
 
-@pytest.mark.parametrize(
-    ("words", "completed"),
-    [("mmrs val", "validate"), ("mmrs validate --dr", "--dry-run"), ("mmrs bus k", "keys")],
-)
-def test_a_shell_completes_commands_and_their_options(words, completed, capfd, monkeypatch):
+PARK = Path(__file__).parents[3] / "examples" / "carbon-dioxide"
+
+
+def completions(words, capfd, monkeypatch):
+    """Return what bash is answered, as its completion script asks."""
     monkeypatch.setenv("_MMRS_COMPLETE", "complete_bash")
     monkeypatch.setenv("COMP_WORDS", words)
     monkeypatch.setenv("COMP_CWORD", str(words.count(" ")))
-    assert run(["--no-plugins"]) == 0
-    assert capfd.readouterr().out.split() == [completed]
+    assert run([]) == 0
+    return capfd.readouterr().out.split()
+
+
+@pytest.mark.parametrize(
+    ("words", "completed"),
+    [
+        ("mmrs val", ["validate"]),
+        ("mmrs validate --dr", ["--dry-run"]),
+        ("mmrs bus k", ["keys"]),
+        ("mmrs demo ca", ["carbon-dioxide"]),
+        ("mmrs generate field --target mavl", ["mavlink-python"]),
+        (f"mmrs run {PARK} --robot ", ["Alba", "Brezza", "Cirro"]),
+        (f"mmrs bus gateway {PARK / 'mission.xmi'} --robot B", ["Brezza"]),
+        ("mmrs run nowhere --robot ", []),
+    ],
+)
+def test_a_shell_completes_commands_options_and_values(words, completed, capfd, monkeypatch):
+    assert completions(words, capfd, monkeypatch) == completed
+
+
+def test_a_shell_completes_robots_and_tasks_of_generated_files(capfd, monkeypatch, tmp_path):
+    assert run(["plan", str(PARK), "-o", str(tmp_path / "behaviour.xmi")]) == 0
+    types = ["--robots", str(PARK / "robots")]
+    behaviour, code = str(tmp_path / "behaviour.xmi"), tmp_path / "code"
+    assert run(["generate", behaviour, *types, "--target", "mavlink-python", "-o", str(code)]) == 0
+    capfd.readouterr()
+    assert completions(f"mmrs explain {code} --robot A", capfd, monkeypatch) == ["Alba"]
+    assert "west" in completions(f"mmrs explain {code} --task w", capfd, monkeypatch)[0]
+
+
+def test_a_shell_completes_robots_that_have_logs(capfd, monkeypatch, tmp_path):
+    (tmp_path / "a.jsonl").write_text('{"robot": "Alba", "seq": 0}\n')
+    (tmp_path / "b.jsonl").write_text("no log")
+    assert completions(f"mmrs control hold --log {tmp_path} ", capfd, monkeypatch) == ["Alba"]
+
+
+def test_completing_a_command_imports_no_other_command():
+    code = "import sys; from mmrs_core.cli import run; run([]); sys.exit('mmrs_core.cli.plan' in sys.modules)"
+    environment = os.environ | {
+        "_MMRS_COMPLETE": "complete_bash",
+        "COMP_WORDS": "mmrs val",
+        "COMP_CWORD": "1",
+    }
+    assert subprocess.run([sys.executable, "-c", code], env=environment, timeout=60).returncode == 0
 
 
 @pytest.mark.parametrize("group", ["", "plugin", "metamodel", "bus", "auv", "can"])
