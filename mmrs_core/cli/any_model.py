@@ -12,7 +12,7 @@ from mmrs_core.cli.output import tell
 from mmrs_core.errors import UnreadableError
 from mmrs_core.languages.foreign import ForeignModel, missing_from, read_any
 from mmrs_core.languages.importers import is_importable
-from mmrs_core.languages.missing import DISTRIBUTIONS, stem_of
+from mmrs_core.languages.missing import is_own
 from mmrs_core.languages.places import first_kind
 from mmrs_core.languages.registry import core_registry
 
@@ -80,7 +80,7 @@ def refuse_metamodel(file: Path) -> None:
 def _strange(found: ForeignModel) -> frozenset[str]:
     """Return the languages that nobody is known to bring."""
     missing = missing_from(found.model, found.registry, certainly=True)
-    return frozenset(ns_uri for ns_uri in missing if stem_of(ns_uri) not in DISTRIBUTIONS)
+    return frozenset(ns_uri for ns_uri in missing if not is_own(ns_uri))
 
 
 def is_foreign(session: Session, file: Path) -> bool:

@@ -277,7 +277,7 @@ def test_a_mission_whose_plug_in_is_missing_names_it_and_refuses_to_plan(json_pr
     project = EXAMPLES / "pool" if form == "xmi" else json_project
     output = json_project / f"plan.{form}"
     assert run(["plan", str(project), "-o", str(output), "--no-plugins"]) == 1
-    assert "install mmrs-auv, which brings urn:mmrs:auv:1.1" in capsys.readouterr().err
+    assert "install the one that provides urn:mmrs:auv:1.1, such as mmrs-auv" in capsys.readouterr().err
     assert not output.exists()
 
 

@@ -64,7 +64,7 @@ def test_the_fault_names_the_missing_language_and_what_is_kept(kept):
     fault = next(fault for fault in kept.diagnostics if fault.place.path == "/animals[1]")
     assert fault.message == "mate: leads into a Panel of urn:test:far:1.0, which is not installed: 'c0'"
     assert fault.hint == (
-        "a plug-in is missing: install the one that brings urn:test:far:1.0, "
+        "a plug-in is missing: install the one that provides urn:test:far:1.0, "
         "or write it ('mmrs plugin new'); the reference is kept as it is"
     )
 

@@ -170,7 +170,7 @@ STRANGER = (
 def test_an_element_of_a_missing_plug_in_names_what_is_missing(read_zoo):
     fault = only_fault(read_zoo(STRANGER))
     assert (fault.code, fault.message) == ("XMI001", "urn:other: no such metamodel, needed for Cat")
-    assert fault.hint.startswith("a plug-in is missing: install the one that brings urn:other, or")
+    assert fault.hint.startswith("a plug-in is missing: install the one that provides urn:other, or")
 
 
 def test_a_metamodel_unlike_any_installed_is_not_taken_for_a_slip_of_the_pen(core):
