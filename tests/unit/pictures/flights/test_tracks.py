@@ -73,41 +73,36 @@ def test_a_place_at_the_other_side_of_the_earth_does_not_hide_the_others():
     assert len(track.times) + fixes.unplaced == 2
 
 
-def test_between_two_fixes_a_robot_went_straight():
-    _, track = track_of([fix(0.0, local(0, 0, 0)), fix(2.0, local(10, 0, 4))])
-    assert track.at(0.5) == pytest.approx((100.0, -47.5, 8.0))
-
-
-def test_before_the_first_fix_and_after_the_last_nobody_knows():
+@pytest.mark.parametrize(
+    ("time", "expected"),
+    [
+        (0.4, None),
+        (0.6, (100.0, -50.0, 7.0)),
+        (1.25, (100.0, -47.5, 8.0)),
+        (2.0, (100.0, -40.0, 11.0)),
+        (2.4, (100.0, -40.0, 11.0)),
+        (2.6, None),
+    ],
+)
+def test_a_robot_went_straight_between_fixes_and_is_unknown_from_half_a_second_beyond(time, expected):
     _, track = track_of([fix(1.0, local(0, 0, 0)), fix(2.0, local(10, 0, 4))])
-    assert track.at(0.4) is None
-    assert track.at(2.6) is None
-    assert track.at(2.0) == pytest.approx((100.0, -40.0, 11.0))
+    assert track.at(time) == (None if expected is None else pytest.approx(expected))
 
 
-def test_half_a_second_beyond_the_ends_does_not_matter():
-    _, track = track_of([fix(1.0, local(0, 0, 0)), fix(2.0, local(10, 0, 4))])
-    assert track.at(0.6) == pytest.approx((100.0, -50.0, 7.0))
-    assert track.at(2.4) == pytest.approx((100.0, -40.0, 11.0))
-
-
-def test_in_a_gap_nobody_knows():
-    _, track = track_of([fix(time, local(time, 0, 0)) for time in (0.0, 1.0, 2.0, 10.0, 11.0)])
-    assert track.gaps == ((2.0, 10.0),)
-    assert track.at(5.0) is None
-    assert track.at(2.0) is not None
-    assert track.at(10.0) is not None
-
-
-def test_slow_telemetry_is_no_gap():
-    _, track = track_of([fix(10.0 * i, local(i, 0, 0)) for i in range(5)])
-    assert track.gaps == ()
-
-
-def test_a_simulation_has_no_gaps():
-    _, track = track_of([fix(t, local(t, 0, 0)) for t in (0.0, 1.0, 2.0, 500.0)], exact=True)
-    assert track.gaps == ()
-    assert track.at(251.0) is not None
+@pytest.mark.parametrize(
+    ("times", "exact", "gaps"),
+    [
+        ((0.0, 1.0, 2.0, 10.0, 11.0), False, ((2.0, 10.0),)),
+        ((0.0, 10.0, 20.0, 30.0, 40.0), False, ()),
+        ((0.0, 1.0, 2.0, 500.0), True, ()),
+    ],
+    ids=["lost", "slow telemetry", "simulation"],
+)
+def test_a_long_time_without_fixes_is_a_gap(times, exact, gaps):
+    _, track = track_of([fix(time, local(time, 0, 0)) for time in times], exact=exact)
+    assert track.gaps == gaps
+    assert all(track.at(time) is not None for time in times)
+    assert (track.at(5.0) is None) == bool(gaps)
 
 
 def test_a_fix_of_which_the_time_was_damaged_is_left_out_and_counted():

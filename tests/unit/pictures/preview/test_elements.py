@@ -6,13 +6,11 @@ import pytest
 from lxml import etree
 
 from mmrs_core.contributions.symbols import MapSymbol
-from mmrs_core.diagnostics import Place
-from mmrs_core.pictures.preview.features import elements_of, task_pictures
+from mmrs_core.pictures.preview.features import elements_of
 from mmrs_core.pictures.preview.map import map_of
 from mmrs_core.pictures.preview.page import page
 from mmrs_core.pictures.preview.projection import projection_of
-from mmrs_core.scene import Part, Task
-from mmrs_core.testing.scenes import sample_scene
+from mmrs_core.scene import Part
 
 SOLAR, RING = "urn:test:solar:1.0", ("urn:mmrs:mission:1.0", "Ring")
 GROUP, PANEL = (SOLAR, "PanelGroup"), (SOLAR, "Panel")
@@ -20,6 +18,7 @@ OF_GROUP = MapSymbol(GROUP, "panel group", "#123456", "P", ("rows", "tracking", 
 OF_PANEL = MapSymbol(PANEL, "panel", "#654321", "p")
 SHELL = ((0.0, 0.0, 0.0), (30.0, 0.0, 0.0), (30.0, 20.0, 0.0))
 FLAT = tuple(point[:2] for point in SHELL)
+POND = Part((RING,), {"points": SHELL})
 
 
 def part(kind, **attributes):
@@ -30,45 +29,19 @@ def of(*parts, symbols=()):
     return elements_of(parts, {symbol.metaclass: symbol for symbol in (OF_GROUP, *symbols)})
 
 
-def test_a_coordinate_is_a_mark():
-    (each,) = of(part(GROUP, name="a", position=(3.0, 4.0, 5.0)))
-    assert (each.name, each.marks, each.outlines, each.lines) == ("a", ((3.0, 4.0),), (), ())
-
-
-def test_a_shell_is_an_outline():
-    assert of(part(GROUP, shell=SHELL))[0].outlines == (FLAT,)
-
-
-def test_points_are_a_line():
-    assert of(part(GROUP, points=SHELL))[0].lines == (FLAT,)
-
-
-def test_other_lists_of_coordinates_are_a_mark_each():
-    assert of(part(GROUP, anchors=SHELL))[0].marks == FLAT
-
-
-def test_a_ring_is_an_outline():
-    inside = Part((RING,), {"points": SHELL})
-    assert of(part(GROUP, basin=inside, ponds=(inside,)))[0].outlines == (FLAT, FLAT)
-
-
 @pytest.mark.parametrize(
-    ("value", "point"),
+    ("attributes", "outlines", "lines", "marks"),
     [
-        ("field", (20.0, 20.0 / 3)),
-        (("no such", "edge"), (1.0, 2.0)),
-        ("/elements[7]", (1.0, 2.0)),
-        ("other", None),
+        ({"position": (3.0, 4.0, 5.0)}, (), (), ((3.0, 4.0),)),
+        ({"shell": SHELL}, (FLAT,), (), ()),
+        ({"points": SHELL}, (), (FLAT,), ()),
+        ({"anchors": SHELL}, (), (), FLAT),
+        ({"basin": POND, "ponds": (POND,)}, (FLAT, FLAT), (), ()),
     ],
 )
-def test_a_task_that_only_refers_to_an_element_is_drawn_there(value, point):
-    edge = replace(
-        part(PANEL, name="edge", position=(1.0, 2.0, 3.0)), place=Place("c.xmi", 9, "/elements[7]")
-    )
-    scene = replace(sample_scene(elements=(part(GROUP, name="field", shell=SHELL, panels=(edge,)),)))
-    task = Task("look", Part(((SOLAR, "LookTask"),), {"name": "field", "at": value}))
-    (picture,) = task_pictures(replace(scene, tasks=(task,)), {}, {}, {})
-    assert picture.point == (None if point is None else pytest.approx(point))
+def test_attributes_are_drawn_by_their_shape(attributes, outlines, lines, marks):
+    (each,) = of(part(GROUP, name="a", **attributes))
+    assert (each.name, each.outlines, each.lines, each.marks) == ("a", outlines, lines, marks)
 
 
 def test_what_it_contains_looks_as_its_own_metaclass_says():

@@ -26,12 +26,16 @@ def test_the_lowest_level_and_its_time_are_told(make):
     assert (found.planned, found.reserve) == (None, 0.2)
 
 
-def test_readings_that_waver_are_no_charges():
-    assert used(np.array([0.9, 0.89, 0.9, 0.88, 0.89, 0.87])) == pytest.approx(0.03)
-
-
-def test_a_change_of_battery_begins_anew():
-    assert used(np.array([1.0, 0.3, 0.99, 0.5])) == pytest.approx(0.7 + 0.49)
+@pytest.mark.parametrize(
+    ("levels", "expected"),
+    [
+        ([0.9, 0.89, 0.9, 0.88, 0.89, 0.87], 0.03),
+        ([1.0, 0.3, 0.99, 0.5], 0.7 + 0.49),
+    ],
+    ids=["wavering readings", "a replaced battery"],
+)
+def test_only_charges_begin_a_new_battery(levels, expected):
+    assert used(np.array(levels)) == pytest.approx(expected)
 
 
 def test_a_battery_that_charges_slowly_is_not_used_meanwhile():
@@ -63,15 +67,12 @@ def test_gaps_and_dropped_frames_of_a_link_are_told(make):
     assert (found.vehicle, found.by, found.dropped) == ("copter, PX4", "udp", {"unreadable": 4})
 
 
-@pytest.mark.parametrize("link", ["/dev/ttyUSB0,57600", "COM4,57600"])
-def test_a_serial_link_is_told_without_its_path(make, link):
+@pytest.mark.parametrize(
+    ("link", "kind"), [("/dev/ttyUSB0,57600", "serial"), ("COM4,57600", "serial"), ("can", "can")]
+)
+def test_a_link_is_named_by_its_kind_without_its_path(make, link, kind):
     found = link_of(make.flown("alpha", (), make.track([]), (make.entry(0.0, "start", link=link),)))
-    assert found.by == "serial"
-
-
-def test_a_bus_is_no_serial_link(make):
-    found = link_of(make.flown("alpha", (), make.track([]), (make.entry(0.0, "start", link="can"),)))
-    assert found.by == "can"
+    assert found.by == kind
 
 
 def test_commands_that_were_repeated_or_refused_are_counted(make):
@@ -177,20 +178,11 @@ def test_faults_decisions_orders_and_warnings_are_told_by_time(make):
     ]
 
 
-def crashed(make):
-    """Return a robot whose motors stopped on its way home."""
-    entries = (
-        make.entry(2.0, "decision", what="BATTERY_LOW", why="20 % is left", response="RETURN"),
-        make.entry(
-            4.0, "decision", what="MOTORS_OFF", why="RETURN cannot be carried out", response="NOTHING"
-        ),
-    )
-    return make.flown("alpha", make.records("alpha", (1.0, "begin", "a2", "")), entries=entries)
-
-
-def test_what_could_not_be_carried_out_is_a_fault(make):
-    told = [(e.kind, e.what, e.why) for e in events_of(crashed(make))]
-    assert told[1] == ("fault", "MOTORS_OFF", "RETURN cannot be carried out")
+def test_a_response_that_failed_is_a_fault(make):
+    failed = make.entry(4.0, "decision", what="MOTORS_OFF", why="RETURN failed", response="NOTHING")
+    records = make.records("alpha", (1.0, "begin", "a2", ""))
+    (event,) = events_of(make.flown("alpha", records, entries=(failed,)))
+    assert (event.kind, event.what, event.why) == ("fault", "MOTORS_OFF", "RETURN failed")
 
 
 @pytest.mark.parametrize("logged", ["MOTORS_OFF", "TAKEN_OVER"])
