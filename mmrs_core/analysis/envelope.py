@@ -18,6 +18,7 @@ from mmrs_core.analysis.verdicts import (
 )
 from mmrs_core.behaviour.program import RobotProgram
 from mmrs_core.contributions.checks import Check, CheckInput, Verdict
+from mmrs_core.contributions.rules import robot_kind_of
 from mmrs_core.scene import Part
 from mmrs_core.scene.attributes import number
 
@@ -172,8 +173,11 @@ TEMPERATURE_NAME = "temperature"
 
 
 def _judge_wind(input: CheckInput, robot: RobotProgram) -> Iterator[Verdict]:
-    """Check the wind against positionHold: every flight ends in a landing, in which it must hold."""
-    held = number(type_of(input, robot).part, "positionHold")
+    """Check the wind against what the robot holds: every flight ends in a landing, in which it must hold."""
+    robot_type = type_of(input, robot)
+    kind = robot_kind_of(robot_type, input.robot_kinds)
+    attribute = kind.position_hold if kind is not None else ""
+    held = number(robot_type.part, attribute)
     if held is None and not kinematics_of(input, robot).launches:
         yield not_checked(WIND_NAME, robot, "it does not fly")
         return
@@ -192,7 +196,7 @@ def _judge_wind(input: CheckInput, robot: RobotProgram) -> Iterator[Verdict]:
         yield not_checked(WIND_NAME, robot, f"the environment states no windSpeed{limit}")
     elif held is None:
         raise MissingFigureError(
-            f"{robot.id}: the positionHold of robot type '{robot.type_name}' is not given"
+            f"{robot.id}: the {attribute or 'wind limit'} of robot type '{robot.type_name}' is not given"
         )
     else:
         yield from judged(WIND_NAME, robot, "m/s", [_held_against(wind, held, robot, hovers)])
@@ -238,7 +242,7 @@ WIND = Check(
     name=WIND_NAME,
     title="The wind is not stronger than what flying robots can hold a position in.",
     run=for_each_robot(WIND_NAME, _judge_wind),
-    hint="wait for calmer weather, or choose a robot with a larger positionHold",
+    hint="wait for calmer weather, or choose a robot that holds its position in more wind",
 )
 TEMPERATURE = Check(
     name=TEMPERATURE_NAME,

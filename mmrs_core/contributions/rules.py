@@ -103,6 +103,8 @@ class RobotKind:
         vehicle: class of vehicle that carries it, by a word that targets and backends know; they refuse the
             robots of a kind whose vehicle they do not know, by the name of the kind. Empty: no vehicle.
         medium: what it moves in.
+        position_hold: attribute of robot types with the strongest wind in which they hold their position,
+            metres per second; empty: the wind does not matter to them.
     """
 
     name: str
@@ -115,6 +117,7 @@ class RobotKind:
     barrier: Callable[[RobotType, Part], Area | None] | None = None
     vehicle: str = ""
     medium: Medium = "ground"
+    position_hold: str = ""
 
 
 @dataclass(frozen=True, slots=True)

@@ -113,8 +113,7 @@ class Target:
         capabilities: how elements of the Behaviour Language are expressed, in a few words each, by the
             element as the table of capabilities names it, or by how its name begins: the longest
             counts. What is expressed, and what is not, is found by trying.
-        tried_with: the kind of robot that it is tried with: ``copter``, or ``sub`` where it is for
-            nothing that flies.
+        tried_with: what the robots that it is tried with move in.
     """
 
     name: str
@@ -124,4 +123,4 @@ class Target:
     refusals: Callable[[TargetInput], Iterable[str]]
     filters: Mapping[str, Callable[[object], str]] = field(default_factory=dict)
     capabilities: Mapping[str, str] = field(default_factory=dict)
-    tried_with: Literal["copter", "sub"] = "copter"
+    tried_with: Literal["air", "water"] = "air"

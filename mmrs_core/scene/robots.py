@@ -105,7 +105,7 @@ class Kinematics:
             takes to travel against the wind or current all the time.
         recharge: seconds from empty to full at home; None where impossible.
         launches: whether the robot climbs from its home before it travels and descends onto it
-            at the end (a drone does; an underwater vehicle or rover does not).
+            at the end.
         own_speed: largest speed through the air or the water that it moves in, metres per second;
             `fastest` is what is left of it against the wind or the current. None: nothing is lost.
         turning_radius: of its narrowest curve, metres; 0: it turns on the spot. Else it shunts where it

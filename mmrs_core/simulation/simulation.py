@@ -3,8 +3,9 @@
 A robot follows the path of each move at the commanded speed, in the time that the move kind declares;
 wind and current slow it down where it would have to be faster than it can. Its batteries fall by mean
 power and time, faster in a climb and against the wind (`mmrs_core.simulation.legs`); on the ground, a
-robot that flies takes nothing. Holding a position in more wind than the type's `positionHold` is a
-fault. An object of unknown position is taken to be where the robot looks for it. Where there are
+robot that flies takes nothing. Holding a position in more wind than the type states
+(`RobotKind.position_hold`)
+is a fault. An object of unknown position is taken to be where the robot looks for it. Where there are
 surroundings, a robot that flies detects what lies below it whenever one of its devices does something.
 """
 
@@ -18,7 +19,7 @@ from pathlib import Path
 from mmrs_core.behaviour.as_scene import robot_of
 from mmrs_core.behaviour.program import BEHAVIOUR, DEVICE_ACTION, Action, Heading, Move
 from mmrs_core.contributions.execution import Fault, RobotState, Sample
-from mmrs_core.contributions.rules import MoveKind
+from mmrs_core.contributions.rules import MoveKind, robot_kind_of
 from mmrs_core.contributions.vehicles import VehicleFactory, VehicleInput
 from mmrs_core.errors import InternalError, UsageError
 from mmrs_core.scene import Position
@@ -325,7 +326,8 @@ class SimulatedRobot(Vehicle):
         return self._stopped or (self._kinematics.launches and self._grounded)
 
     def _hold_against_wind(self, seconds: float) -> None:
-        limit = self._given.type.part.attributes.get("positionHold")
+        kind = robot_kind_of(self._given.type, self._given.robot_kinds)
+        limit = self._given.type.part.attributes.get(kind.position_hold) if kind is not None else None
         flow = hypot(*self._flow())
         if isinstance(limit, int | float) and self._kinematics.launches and seconds > 0.0 and flow > limit:
             self._fault = Fault("WIND", f"{flow:g} m/s, but the robot holds its position up to {limit:g} m/s")

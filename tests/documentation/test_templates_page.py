@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -9,11 +10,14 @@ import pytest
 from mmrs_core.contributions.targets import Target
 from mmrs_core.generation.capabilities.probes import plain
 from mmrs_core.plugins import load_plugins
-from mmrs_core.testing.programs import target_input, two_drones
+from mmrs_core.testing.programs import installed, target_input, two_drones
 
 PAGE = (Path(__file__).parents[2] / "docs" / "how-to" / "templates.md").read_text(encoding="utf-8")
 TARGETS = sorted(load_plugins().contributions.targets.values(), key=lambda target: target.name)
-INPUTS = {"copter": target_input(two_drones()), "sub": plain("sub")}
+INPUTS = {
+    "air": target_input(two_drones()),
+    "water": replace(plain("sub"), robot_kinds=installed().robot_kinds),
+}
 
 
 def row_of(target: Target, template: str) -> str:

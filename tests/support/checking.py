@@ -39,6 +39,7 @@ def kind(
         launch=lambda height: (),
         recover=lambda: (),
         travel=lambda route: (),
+        position_hold="positionHold",
     )
 
 

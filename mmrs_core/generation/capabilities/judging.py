@@ -74,7 +74,7 @@ def capabilities_of(
 
 def suited(tried: Iterable[Probe], target: Target, contributions: Contributions) -> tuple[Probe, ...]:
     """Return the probes as they are tried with a target: with drones, or with underwater vehicles."""
-    made = (under_water(probe) if target.tried_with == "sub" else probe for probe in tried)
+    made = (under_water(probe) if target.tried_with == "water" else probe for probe in tried)
     moves = contributions.move_kinds
     kinds = {name: replace(kind, policies={}) for name, kind in contributions.robot_kinds.items()}
 

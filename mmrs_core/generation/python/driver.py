@@ -40,7 +40,7 @@ class PythonDriver(ABC, Generic[C]):
     templates: ClassVar[Path]
     movements: ClassVar[Mapping[Name, Movement]] = MOVEMENTS
     capabilities: ClassVar[Mapping[str, str]] = {}
-    tried_with: ClassVar[Literal["copter", "sub"]] = "copter"
+    tried_with: ClassVar[Literal["air", "water"]] = "air"
 
     @abstractmethod
     def undriven(self, robot: RobotProgram, input: TargetInput) -> str:

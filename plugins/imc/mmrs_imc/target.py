@@ -73,5 +73,5 @@ IMC = Target(
     files=files,
     refusals=refusals,
     capabilities=CAPABILITIES,
-    tried_with="sub",
+    tried_with="water",
 )

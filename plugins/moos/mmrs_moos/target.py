@@ -82,5 +82,5 @@ MOOS = Target(
     refusals=refusals,
     filters={"bhv": text},
     capabilities=CAPABILITIES,
-    tried_with="sub",
+    tried_with="water",
 )

@@ -106,6 +106,7 @@ MULTICOPTER_KIND = RobotKind(
     },
     vehicle="copter",
     medium="air",
+    position_hold="positionHold",
 )
 
 MOVE_KINDS = (

@@ -207,14 +207,14 @@ def test_a_target_for_what_dives_is_tried_with_underwater_vehicles(cards):
     flown = {row.element: row for row in capabilities_of(replace(cards, refusals=refusals), installed())}
     swum = {
         row.element: row
-        for row in capabilities_of(replace(cards, refusals=refusals, tried_with="sub"), installed())
+        for row in capabilities_of(replace(cards, refusals=refusals, tried_with="water"), installed())
     }
     assert list(swum) == list(flown)
     assert (flown["Robot.id"].verdict, swum["Robot.id"].verdict) == ("lossy", "no difference")
     assert {name for name, row in swum.items() if row.verdict == "lossy"} >= {"TakeOff", "Robot: a copter"}
     (probe,) = (
         each
-        for each in suited(PROBES, replace(cards, tried_with="sub"), installed())
+        for each in suited(PROBES, replace(cards, tried_with="water"), installed())
         if each.element == "GoTo.speed"
     )
     assert [each.target.position[2] for each in probe.given.program.robots[0].moves if each.target] == [-20.0]

@@ -39,6 +39,7 @@ FLYER_KIND = RobotKind(
     _nothing,
     _nothing,
     straight_travel,
+    position_hold="positionHold",
 )
 FLYER_MOVES = (
     MoveKind(

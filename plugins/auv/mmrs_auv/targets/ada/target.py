@@ -66,5 +66,5 @@ ADA = Target(
     refusals=refusals,
     filters={"ada": literals.value, "ada_string": literals.string},
     capabilities=CAPABILITIES,
-    tried_with="sub",
+    tried_with="water",
 )

@@ -158,5 +158,5 @@ CAN_C = Target(
     refusals=refusals,
     filters={"block": block, "c": number},
     capabilities=CAPABILITIES,
-    tried_with="sub",
+    tried_with="water",
 )

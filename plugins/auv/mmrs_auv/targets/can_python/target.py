@@ -34,7 +34,7 @@ class CanPython(PythonDriver[RobotContext]):
     requires = ("auv-vessel", "mmrs-auv")
     templates = templates_of("can-python")
     capabilities = CAPABILITIES
-    tried_with = "sub"
+    tried_with = "water"
 
     def undriven(self, robot: RobotProgram, input: TargetInput) -> str:
         """Return that a robot is no underwater vehicle."""
