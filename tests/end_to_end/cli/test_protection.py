@@ -94,7 +94,7 @@ def test_demo_does_not_replace_models_that_are_no_copies_of_an_example(mmrs, poo
     file = pool / name
     file.write_text(file.read_text() + " " if file.exists() else "<mine/>")
     before = contents(pool)
-    code, _, err = mmrs("demo", "carbon-dioxide", "--out", pool)
+    code, _, err = mmrs("demo", "drone-and-rover", "--out", pool)
     assert code == 2
     assert name in err
     assert "choose another folder" in err

@@ -10,7 +10,7 @@ from mmrs_core.resources import shipped
 
 @pytest.fixture
 def mission(tmp_path):
-    return shutil.copytree(shipped("examples") / "carbon-dioxide", tmp_path / "mission")
+    return shutil.copytree(shipped("examples") / "drone-and-rover", tmp_path / "mission")
 
 
 def test_a_planned_behaviour_names_its_metamodels_where_they_lie(mmrs, mission, tmp_path):

@@ -113,15 +113,12 @@ def test_on_a_dark_day_the_mission_is_not_valid(copy, contributions):
     assert [fault.code for fault in faults] == ["SOL017", "SOL017", "SOL017"]
 
 
-def test_sunlight_that_nobody_knows_stands_against_the_behaviour_unless_accepted(copy, contributions):
+def test_sunlight_that_nobody_knows_stands_against_the_behaviour_unless_accepted(copy, park, contributions):
     folder = copy("context.xmi", ' irradiance="780.0"', "")
     models, faults = pipeline.valid_models(folder, contributions)
     assert faults == ()
-    scene = pipeline.expand(pipeline.ground(models), contributions)
-    behaviour, _ = pipeline.transform(scene, pipeline.plan(scene), contributions)
-    program = pipeline.program_of(behaviour, contributions)
-    verdicts = pipeline.verify(program, pipeline.place_of_scene(scene), contributions)
-    against = pipeline.refusals(verdicts, program)
+    place = pipeline.place_of_scene(pipeline.ground(models))
+    against = pipeline.refusals(pipeline.verify(park.program, place, contributions), park.program)
     assert {verdict.property for verdict in against} == {"irradiance"}
 
 

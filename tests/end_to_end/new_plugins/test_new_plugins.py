@@ -9,6 +9,7 @@ import sys
 from pathlib import Path
 
 import pytest
+from warm_python import python
 
 pytestmark = pytest.mark.long
 
@@ -41,7 +42,7 @@ def snake(kind):
 
 
 def mmrs(*arguments, cwd, site=None, code=0):
-    return run(sys.executable, "-m", "mmrs_core", *arguments, cwd=cwd, site=site, code=code)
+    return run(python(), "-m", "mmrs_core", *arguments, cwd=cwd, site=site, code=code)
 
 
 @pytest.fixture(scope="module")
