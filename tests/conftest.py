@@ -16,6 +16,7 @@ import shared
 AT_WORK_WITH_OTHERS = "PYTEST_XDIST_WORKER" in os.environ
 GROUPS = "groups.json"
 """What a worker writes for the scheduler, which sees names of tests, but not their markers."""
+THOROUGH = "thorough"
 GIVING_WAY = 10
 """Niceness of workers, and of the processes that they start, once they have no tests in real time left."""
 
@@ -33,7 +34,7 @@ def pytest_configure(config: pytest.Config) -> None:
     if not AT_WORK_WITH_OTHERS:
         config.add_cleanup(shared.open_folder())
     draw_the_same_examples_everywhere()
-    take_time_for_examples()
+    take_examples_by_profile(config)
     if AT_WORK_WITH_OTHERS and hasattr(os, "nice"):
         config.pluginmanager.register(Courtesy())
 
@@ -61,18 +62,22 @@ def draw_the_same_examples_everywhere() -> None:
     providers._get_local_constants = lambda: providers._local_constants
 
 
-def take_time_for_examples() -> None:
-    """Let an example take as long as it does where the machine is busy."""
+def take_examples_by_profile(config: pytest.Config) -> None:
+    """Draw few examples, or very many with ``-m thorough``; each may take as long as a busy machine needs."""
     from hypothesis import settings
 
-    settings.register_profile("unhurried", deadline=None)
-    settings.load_profile("unhurried")
+    settings.register_profile("fast", deadline=None, max_examples=50)
+    settings.register_profile("thorough", deadline=None, max_examples=2000)
+    settings.load_profile("thorough" if config.option.markexpr == THOROUGH else "fast")
 
 
+@pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
     """Give tests with full counts time enough; sort the tests of workers, and write down their groups."""
     for item in items:
-        if item.get_closest_marker("thorough") and not item.get_closest_marker("timeout"):
+        if config.option.markexpr == THOROUGH and hasattr(getattr(item, "obj", None), "hypothesis"):
+            item.add_marker(THOROUGH)
+        if item.get_closest_marker(THOROUGH) and not item.get_closest_marker("timeout"):
             item.add_marker(pytest.mark.timeout(3600))
     if AT_WORK_WITH_OTHERS:
         items.sort(key=rank)

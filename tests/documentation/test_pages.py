@@ -26,10 +26,11 @@ BLOCKS = {page: blocks_of((DOCS / page).read_text(encoding="utf-8"), page) for p
 @pytest.fixture(autouse=True)
 def unhurried():
     """Let properties on the pages take their time where the machine is busy."""
+    usual = settings.get_current_profile_name()
     settings.register_profile("pages", deadline=None, suppress_health_check=[HealthCheck.too_slow])
     settings.load_profile("pages")
     yield
-    settings.load_profile("unhurried")
+    settings.load_profile(usual)
 
 
 @pytest.mark.parametrize("page", [page for page in PAGES if BLOCKS[page]])
