@@ -13,8 +13,8 @@ from mmrs_core.errors import UnreadableError
 from mmrs_core.languages.foreign import ForeignModel, missing_from, read_any
 from mmrs_core.languages.importers import is_importable
 from mmrs_core.languages.missing import is_own
-from mmrs_core.languages.places import first_kind
 from mmrs_core.languages.registry import core_registry
+from mmrs_core.languages.schema_location import first_kind
 
 if TYPE_CHECKING:
     from mmrs_core.cli.session import Session

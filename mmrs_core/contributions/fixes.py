@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from mmrs_core.languages.json_form.markup import Member, Thing, inserted, taken_away, written
+from mmrs_core.languages.json_form.markup import JsonTag, Member, inserted, taken_away, written
 from mmrs_core.languages.json_form.stream import quoted
 from mmrs_core.languages.xmi.escapes import in_attribute
 
@@ -63,7 +63,7 @@ class Wrong:
 
 def _lines(tag: Tag) -> Iterator[int]:
     yield tag.line
-    if isinstance(tag, Thing):
+    if isinstance(tag, JsonTag):
         yield tag.lines[0]
         yield from (each.line for each in tag.attributes if isinstance(each, Member))
 
@@ -96,7 +96,7 @@ def with_name(attribute: Attribute, name: str) -> Edit:
 
 def renamed(tag: Tag, name: str) -> tuple[Edit, ...]:
     """Return what gives a tag another name, where it opens and where it closes."""
-    if isinstance(tag, Thing):
+    if isinstance(tag, JsonTag):
         return (Edit(*tag.key, quoted(name)[1:-1]),) if tag.key[0] >= 0 else ()
     size = len(tag.name.encode())
     opening = Edit(tag.begin + 1, tag.begin + 1 + size, name)
@@ -109,7 +109,7 @@ def renamed(tag: Tag, name: str) -> tuple[Edit, ...]:
 
 def with_attribute(tag: Tag, name: str, value: str, markup: Markup) -> Edit:
     """Return what adds an attribute to a tag, before those that it has."""
-    if isinstance(tag, Thing):
+    if isinstance(tag, JsonTag):
         begin, text = inserted(tag, name, value, markup.data)
         return Edit(begin, begin, text)
     place = tag.begin + 1 + len(tag.name.encode())
@@ -118,7 +118,7 @@ def with_attribute(tag: Tag, name: str, value: str, markup: Markup) -> Edit:
 
 def without(tag: Tag, markup: Markup) -> Edit:
     """Return the edit that removes a tag, with its line where nothing else stands there."""
-    if isinstance(tag, Thing):
+    if isinstance(tag, JsonTag):
         return Edit(*taken_away(tag), "")
     begin, end, data = tag.begin, tag.end, markup.data
     start = data.rfind(b"\n", 0, begin) + 1

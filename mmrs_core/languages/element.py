@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, NoReturn, SupportsIndex
 from mmrs_core.diagnostics import Place
 from mmrs_core.languages.metaclass import Enumeration, Feature, Metaclass
 from mmrs_core.languages.naming import nearest
-from mmrs_core.languages.source import Source
+from mmrs_core.languages.sources import Source
 
 _HIDDEN_STEP = re.compile(r"/@([^./\[]+)(?:\.([0-9]+))?")
 

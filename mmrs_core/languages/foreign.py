@@ -12,9 +12,9 @@ from mmrs_core.languages.element import Unknown
 from mmrs_core.languages.importers import is_importable
 from mmrs_core.languages.metamodels.gathering import beside, file_at, gathered
 from mmrs_core.languages.model import Model
-from mmrs_core.languages.places import first_kind, stated_places
 from mmrs_core.languages.reading import read_model
 from mmrs_core.languages.registry import Registry
+from mmrs_core.languages.schema_location import first_kind, stated_places
 from mmrs_core.languages.xmi.events import XMI, XSI
 
 _MOST_ROUNDS = 5

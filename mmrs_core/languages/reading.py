@@ -17,7 +17,7 @@ from mmrs_core.languages.references.documents import Draft
 from mmrs_core.languages.references.hrefs import real_path
 from mmrs_core.languages.references.resolution import resolve, tell_other_ends
 from mmrs_core.languages.registry import Registry
-from mmrs_core.languages.source import Source
+from mmrs_core.languages.sources import Source
 from mmrs_core.languages.xmi.events import Document, read_bytes
 from mmrs_core.languages.xmi.quick_reader import QuickReader
 

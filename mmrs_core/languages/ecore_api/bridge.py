@@ -16,7 +16,7 @@ from mmrs_core.languages.metaclass import Enumeration, Feature, Metaclass
 from mmrs_core.languages.model import Model
 from mmrs_core.languages.references.hrefs import real_path
 from mmrs_core.languages.registry import Registry
-from mmrs_core.languages.source import Source
+from mmrs_core.languages.sources import Source
 
 _RESERVED = frozenset((*dir(ecore.EObject), *vars(ecore.EObject())))
 """Names of features that pyecore's own attributes hide."""

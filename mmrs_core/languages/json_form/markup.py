@@ -35,7 +35,7 @@ class Member(Attribute):
 
 
 @dataclass(slots=True, eq=False)
-class Thing(Tag):
+class JsonTag(Tag):
     """An object, or a value in a list: as a tag is that is named like the feature.
 
     Attributes:
@@ -52,7 +52,7 @@ class Thing(Tag):
     slot: tuple[int, int] = (-1, -1)
     before: int = -1
     after: int = -1
-    languages: Thing | None = None
+    languages: JsonTag | None = None
 
     def prefixes(self) -> dict[str, str]:
         """Return the prefixes of languages, and that of the attributes that stand for ``$type``."""
@@ -76,7 +76,7 @@ class JsonMarkup(Markup):
         if top.kind != "{":
             raise UnreadableError(f"{file}: no model: its top is not an object")
         self.data = data
-        self.root: Tag = _things_of(data, top)
+        self.root: Tag = _tags_of(data, top)
 
     def at(self, path: str, line: int) -> Tag | None:
         """Return the object with that path, if it has that line; as for XMI."""
@@ -85,20 +85,20 @@ class JsonMarkup(Markup):
             for match in _STEP.finditer(below_root(path, number)):
                 same = tag.named(match[1]) if tag is not None else []
                 tag = same[int(match[2] or 0)] if int(match[2] or 0) < len(same) else None
-            if isinstance(tag, Thing) and tag.lines[0] <= line <= tag.lines[2]:
+            if isinstance(tag, JsonTag) and tag.lines[0] <= line <= tag.lines[2]:
                 return tag
         return None
 
 
-def inserted(thing: Thing, name: str, value: str, data: bytes) -> tuple[int, str]:
+def inserted(tag: JsonTag, name: str, value: str, data: bytes) -> tuple[int, str]:
     """Return where and as what an object gets another plain value, in front of those that it has.
 
     Args:
         name: as of an attribute in XMI: ``xsi:type``, ``xmlns:`` with a prefix, or a feature.
     """
-    place, key, text = thing, _KEYS.get(name, name), written(value, bare=name not in _KEYS)
-    if name.startswith("xmlns:") and thing.languages is not None:
-        place, key, text = thing.languages, name[6:], quoted(value)
+    place, key, text = tag, _KEYS.get(name, name), written(value, bare=name not in _KEYS)
+    if name.startswith("xmlns:") and tag.languages is not None:
+        place, key, text = tag.languages, name[6:], quoted(value)
     elif name.startswith("xmlns:"):
         key, text = LANGUAGES, f"{{{quoted(name[6:])}: {quoted(value)}}}"
     begin = place.inside
@@ -116,12 +116,12 @@ def written(value: str, *, bare: bool) -> str:
     return value if bare and _BARE.fullmatch(value) else quoted(value)
 
 
-def taken_away(thing: Thing) -> tuple[int, int]:
+def taken_away(tag: JsonTag) -> tuple[int, int]:
     """Return the bytes whose absence leaves a list or object without one of its values."""
-    begin, end = thing.slot
-    if thing.before >= 0:
-        return thing.before, end
-    return (begin, thing.after) if thing.after >= 0 else (begin, end)
+    begin, end = tag.slot
+    if tag.before >= 0:
+        return tag.before, end
+    return (begin, tag.after) if tag.after >= 0 else (begin, end)
 
 
 @dataclass(slots=True, eq=False)
@@ -165,26 +165,26 @@ def _tree_of(data: bytes) -> _Value:
     return top
 
 
-def _things_of(data: bytes, top: _Value) -> Thing:
-    root = _thing("", top, None, [top], 0)
+def _tags_of(data: bytes, top: _Value) -> JsonTag:
+    root = _tag("", top, None, [top], 0)
     jobs = [(top, root)]
     while jobs:
-        value, thing = jobs.pop()
-        thing.attributes = tuple(_attributes(data, value, thing))
+        value, tag = jobs.pop()
+        tag.attributes = tuple(_attributes(data, value, tag))
         for index, each in enumerate(value.inside):
             key = _key(data, each)
             if key == ROOTS and value is top:
-                thing.name = _WRAPPER
+                tag.name = _WRAPPER
             if key not in (LANGUAGES, PLACES):
-                jobs += _children(key, each, (value.inside, index), thing)
+                jobs += _children(key, each, (value.inside, index), tag)
     return root
 
 
-def _attributes(data: bytes, value: _Value, thing: Thing) -> Iterator[Attribute]:
+def _attributes(data: bytes, value: _Value, tag: JsonTag) -> Iterator[Attribute]:
     for index, each in enumerate(value.inside):
         key = _key(data, each)
-        if key == LANGUAGES and each.kind == "{" and thing.parent is None:
-            thing.languages = _thing(LANGUAGES, each, thing, value.inside, index)
+        if key == LANGUAGES and each.kind == "{" and tag.parent is None:
+            tag.languages = _tag(LANGUAGES, each, tag, value.inside, index)
             yield from (_member(f"xmlns:{_key(data, one)}", data, one) for one in each.inside)
         elif each.kind in '"b' and data[each.begin : each.end] != b"null":
             name = _NAMES.get(key, key[1:] if key.startswith("$$") else key)
@@ -192,8 +192,8 @@ def _attributes(data: bytes, value: _Value, thing: Thing) -> Iterator[Attribute]
 
 
 def _children(
-    key: str, value: _Value, place: tuple[Sequence[_Value], int], parent: Thing
-) -> Iterator[tuple[_Value, Thing]]:
+    key: str, value: _Value, place: tuple[Sequence[_Value], int], parent: JsonTag
+) -> Iterator[tuple[_Value, JsonTag]]:
     """Yield the objects of a member, and make them and the values of its list tags of its owner.
 
     Args:
@@ -202,16 +202,16 @@ def _children(
     around, start = place if value.kind == "{" else (value.inside, 0)
     name = "" if key == ROOTS else key[1:] if key.startswith("$$") else key
     for index, each in enumerate([value] if value.kind == "{" else value.inside, start):
-        thing = _thing(name, each, parent, around, index)
-        thing.key, thing.lines = value.key[:2], (value.key[2] or each.line, each.line, each.last)
-        parent.children.append(thing)
+        tag = _tag(name, each, parent, around, index)
+        tag.key, tag.lines = value.key[:2], (value.key[2] or each.line, each.line, each.last)
+        parent.children.append(tag)
         if each.kind == "{":
-            yield each, thing
+            yield each, tag
 
 
-def _thing(name: str, value: _Value, parent: Thing | None, around: Sequence[_Value], index: int) -> Thing:
+def _tag(name: str, value: _Value, parent: JsonTag | None, around: Sequence[_Value], index: int) -> JsonTag:
     quotes = 1 if value.kind in '{["' else 0
-    return Thing(
+    return JsonTag(
         name,
         value.line,
         value.begin,

@@ -38,7 +38,7 @@ _A_TYPE = "a:type"
 """Stands between two of them where the first would be taken for the type of the second, as XMI has it."""
 
 
-class Way(NamedTuple):
+class FeatureReader(NamedTuple):
     """How the members of one feature are read.
 
     Attributes:
@@ -54,12 +54,12 @@ class Way(NamedTuple):
     links: bool
 
 
-def ways_of(metaclass: Metaclass) -> Mapping[str, Way]:
+def feature_readers(metaclass: Metaclass) -> Mapping[str, FeatureReader]:
     """Return how the features of a class that has elements are read, by their keys."""
-    return {key_of(each.name): _way(metaclass, each) for each in metaclass.features}
+    return {key_of(each.name): _feature_reader(metaclass, each) for each in metaclass.features}
 
 
-def _way(metaclass: Metaclass, feature: Feature) -> Way:
+def _feature_reader(metaclass: Metaclass, feature: Feature) -> FeatureReader:
     assert metaclass.implementation is not None  # it has elements
     kind = feature.type
     text = number = None
@@ -68,7 +68,7 @@ def _way(metaclass: Metaclass, feature: Feature) -> Way:
         number = kind.parse if takes_numbers(kind) else None
     put = metaclass.implementation._mmrs_slots[feature.attribute].__set__
     links = feature.is_reference and not feature.containment
-    return Way(feature, put, (text, number, None, None, None), links)
+    return FeatureReader(feature, put, (text, number, None, None, None), links)
 
 
 class Members:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from mmrs_core.languages.element import Element, metaclass_of
 from mmrs_core.languages.json_form.beginnings import Beginnings, Begun, Types
-from mmrs_core.languages.json_form.members import Members, Way, ways_of
+from mmrs_core.languages.json_form.members import FeatureReader, Members, feature_readers
 from mmrs_core.languages.json_form.stream import (
     END,
     HEAD,
@@ -27,7 +27,7 @@ from mmrs_core.languages.metaclass import Feature, Metaclass
 from mmrs_core.languages.references.documents import Draft
 from mmrs_core.languages.registry import Registry
 
-_Ways = Mapping[str, Way]
+_Readers = Mapping[str, FeatureReader]
 
 
 @dataclass(slots=True)
@@ -37,7 +37,7 @@ class _Open:
     Attributes:
         element: that the object is, or that the list's elements go into.
         metaclass: of the element.
-        ways: how members of the object are read; of a list, none.
+        readers: how members of the object are read; of a list, none.
         feature: that the list's elements go into; None for an object.
         line: where the list stands.
         count: how many values of the list there were.
@@ -46,7 +46,7 @@ class _Open:
 
     element: Element
     metaclass: Metaclass
-    ways: _Ways
+    readers: _Readers
     feature: Feature | None = None
     line: int = 0
     count: int = 0
@@ -68,7 +68,7 @@ class JsonReader:
         self._types = Types(stream, draft, registry)
         self._beginnings = Beginnings(stream, self._events, draft, self._members, self._types)
         self.made: Mapping[int, Element] = self._beginnings.made
-        self._ways: dict[Metaclass, _Ways] = {}
+        self._readers: dict[Metaclass, _Readers] = {}
         self._open: list[_Open] = []
 
     def read(self) -> None:
@@ -145,10 +145,10 @@ class JsonReader:
         if element is None:
             return None
         metaclass = metaclass_of(element)
-        ways = self._ways.get(metaclass)
-        if ways is None:
-            ways = self._ways[metaclass] = ways_of(metaclass)
-        self._open.append(_Open(element, metaclass, ways, at_top=at_top))
+        readers = self._readers.get(metaclass)
+        if readers is None:
+            readers = self._readers[metaclass] = feature_readers(metaclass)
+        self._open.append(_Open(element, metaclass, readers, at_top=at_top))
         return following
 
     def _read_on(self, event: Event | None) -> None:
@@ -168,31 +168,31 @@ class JsonReader:
     def _members_of(self, top: _Open, event: Event) -> Event | None:
         """Read the members of an object, from an event on, until another object or list is open, or none."""
         # this runs for every member of a large file
-        element, ways, events, members, opened = (
+        element, readers, events, members, opened = (
             top.element,
-            top.ways,
+            top.readers,
             self._events,
             self._members,
             self._open,
         )
         while event[0] != END:
             sort, key, text, place, _ = event
-            way = ways.get(key)
-            if way is None:
+            reader = readers.get(key)
+            if reader is None:
                 members.other(element, top.metaclass, event, top.at_top)
-            elif (read := way.usual[sort]) is not None:
+            elif (read := reader.usual[sort]) is not None:
                 try:
-                    way.put(element, read(text))
+                    reader.put(element, read(text))
                 except ValueError as fault:
-                    members.unfit(element, way.feature, str(fault), place)
-            elif way.links and sort == TEXT:
-                members.link(element, way.feature, text, place)
-            elif way.feature.containment:
-                following = self._inside(top, way.feature, event)
+                    members.unfit(element, reader.feature, str(fault), place)
+            elif reader.links and sort == TEXT:
+                members.link(element, reader.feature, text, place)
+            elif reader.feature.containment:
+                following = self._inside(top, reader.feature, event)
                 if following is not None or opened[-1] is not top:
                     return following
             else:
-                members.feature(element, way.feature, event)
+                members.feature(element, reader.feature, event)
             event = next(events)
         opened.pop()
         return None

@@ -21,7 +21,7 @@ from mmrs_core.languages.metaclass import Feature, Metaclass
 from mmrs_core.languages.references.documents import Names
 from mmrs_core.languages.references.hidden import strayed
 from mmrs_core.languages.references.hrefs import relative_href
-from mmrs_core.languages.source import Source
+from mmrs_core.languages.sources import Source
 
 _ID = re.compile(r"[^\s#:%/][^\s#:%]*")
 

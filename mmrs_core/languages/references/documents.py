@@ -14,7 +14,7 @@ from mmrs_core.languages.datatypes import ECORE
 from mmrs_core.languages.element import Element, Unknown, contents, descendants, path_of
 from mmrs_core.languages.links import raw
 from mmrs_core.languages.metaclass import Feature, Metaclass
-from mmrs_core.languages.source import Source
+from mmrs_core.languages.sources import Source
 
 if TYPE_CHECKING:
     from mmrs_core.languages.importers import Importer

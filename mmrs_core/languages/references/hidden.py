@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator, Sequence
 
 from mmrs_core.languages.element import Element, Hidden, Unknown, descendants
 from mmrs_core.languages.references.documents import Draft
-from mmrs_core.languages.source import Source
+from mmrs_core.languages.sources import Source
 
 _LEAVE_UNKNOWN = frozenset(("XMI001", "XMI002", "XMI003", "XMI008", "XMI014", "XMI015"))
 """The faults that each unknown element goes with, one or the other."""

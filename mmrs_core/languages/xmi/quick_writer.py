@@ -16,7 +16,7 @@ from mmrs_core.languages.element import Element
 from mmrs_core.languages.metaclass import Enumeration, Feature, Metaclass
 from mmrs_core.languages.references.addresses import Positions
 from mmrs_core.languages.registry import Registry
-from mmrs_core.languages.source import Source
+from mmrs_core.languages.sources import Source
 from mmrs_core.languages.values.real import LARGEST_SINGLE, render_single
 from mmrs_core.languages.xmi.escapes import NO_XML, in_attribute
 from mmrs_core.languages.xmi.writer import Job, SiblingRow, XmiWriter

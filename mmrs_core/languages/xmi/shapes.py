@@ -19,7 +19,7 @@ from mmrs_core.languages.values.real import LARGEST_SINGLE, parse_single
 
 if TYPE_CHECKING:
     from mmrs_core.languages.element import Element
-    from mmrs_core.languages.source import Source
+    from mmrs_core.languages.sources import Source
 
     Frame = tuple[Element, Metaclass, Feature | None]
     Waiting = Callable[[Pending | tuple[Element, Feature, str, int]], None]

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 from mmrs_core.errors import UnreadableError
 from mmrs_core.languages.missing import is_near
-from mmrs_core.languages.places import first_kind_in_xmi
 from mmrs_core.languages.registry import Registry
+from mmrs_core.languages.schema_location import first_kind_in_xmi
 from mmrs_flyaq.rules.mapping import DialectMapping
 from mmrs_flyaq.sources.documents import Opened, first_letter, open_text
 from mmrs_flyaq.sources.nodes import Claim, SourceDocument, SourceNode

@@ -4,7 +4,7 @@ import shutil
 
 import pytest
 
-from mmrs_core.languages.places import stated_places
+from mmrs_core.languages.schema_location import stated_places
 from mmrs_core.resources import shipped
 
 

@@ -9,8 +9,8 @@ import pytest
 
 from mmrs_core.errors import UnreadableError
 from mmrs_core.languages.comparison.changes import changes_between
-from mmrs_core.languages.places import first_kind, stated_places
 from mmrs_core.languages.reading import read_text
+from mmrs_core.languages.schema_location import first_kind, stated_places
 from mmrs_core.languages.writing import to_json
 
 HEAD = '"$languages": {"zoo": "urn:test:zoo", "far": "urn:test:far"}, "$type": "zoo:Zoo", "name": "z"'
