@@ -36,7 +36,7 @@ from auv_vessel.sheet import Sheet
 from auv_vessel.wire.codec import Codec
 from auv_vessel.wire.database import database_of
 from auv_vessel.wire.frame import Frame
-from auv_vessel.wire.load import Heard, heard_load, load_of
+from auv_vessel.wire.load import MeasuredLoad, load_of, measured_load
 from auv_vessel.wire.ports import open_port
 
 FRAME = Frame(0x100, bytes(range(8)))
@@ -203,7 +203,7 @@ def busy(name: str, sheet: Sheet, seed: int) -> None:
     print(f"  stuff bits: {found.stuffing:.1f} on 100")
 
 
-def dive(sheet: Sheet, seed: int) -> Heard:
+def dive(sheet: Sheet, seed: int) -> MeasuredLoad:
     """Return how busy the bus was while a simulated vehicle went to three places and came up."""
     frames: list[tuple[float, Frame]] = []
     craft = Craft(sheet, Codec(sheet))
@@ -216,7 +216,7 @@ def dive(sheet: Sheet, seed: int) -> Heard:
         run.run(20.0)
     craft.surface()
     run.run(20.0)
-    found = heard_load(frames, sheet.bit_rate)
+    found = measured_load(frames, sheet.bit_rate)
     assert found is not None
     return found
 

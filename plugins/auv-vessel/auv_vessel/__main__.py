@@ -73,12 +73,10 @@ def _parser() -> argparse.ArgumentParser:
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
     parser.add_argument("part", choices=PARTS)
-    parser.add_argument(
-        "--sheet", type=Path, required=True, help="file that says what the vehicle is made of"
-    )
+    parser.add_argument("--sheet", type=Path, required=True, help="data of the vehicle (JSON)")
     parser.add_argument("--interface", default="socketcand", help="of python-can")
     parser.add_argument("--channel", default=CHANNEL, help="of that interface; CHANNEL@HOST:PORT of a hub")
-    parser.add_argument("--bit-rate", type=int, help="for adapters that have to be told")
+    parser.add_argument("--bit-rate", type=int, help="bit rate, for adapters that need it")
     parser.add_argument(
         "--clock", choices=("real", "bus"), default="real", help="bus: time as the vehicle tells it"
     )
@@ -86,7 +84,7 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument(
         "--surroundings",
         type=Path,
-        help="around the simulated vehicle; else still water, 100 m deep",
+        help="surroundings of the simulated vehicle. Default: still water, 100 m deep",
     )
     parser.add_argument(
         "--drives",

@@ -18,7 +18,7 @@ FIRST_SIGN = 30.0
 """Real seconds to wait for a vehicle's first sign, and until it knows where it is."""
 
 POSITION_LOST = 10.0
-"""Metres of uncertainty above which the place counts as lost (`Sheet.extra`: ``position.lost``)."""
+"""Metres of uncertainty above which the position counts as lost (`Sheet.extra`: ``position.lost``)."""
 
 FARTHEST_SEEN = 655.3
 """Metres from which on a range of the sonar says that it sees nothing."""
@@ -38,16 +38,16 @@ class State:
     """What is known of a vehicle: metres, metres per second, degrees, degrees per second.
 
     Attributes:
-        time: seconds, by a clock of whoever hears it that leaves out stalls of his own.
-        uncertainty: of the place, one sigma.
+        time: seconds, by a clock of the receiver that leaves out its own stalls.
+        uncertainty: of the position, one sigma.
         trusted: whether depth, attitude and heading may be relied on.
         age: seconds since the sensor controller said it; infinite: it never did.
-        charge: part of the battery that is left; None: not told yet. sonar: range ahead; None: nothing seen.
+        charge: remaining fraction of the battery; None: unknown. sonar: range ahead; None: nothing detected.
         goal: number of the goal of which `progress` tells (one of `catalogue.PROGRESS`).
         distance: left to it.
         emergency: why the dive was given up; None: it was not.
         devices: progress of each request.
-        silent: seconds since any node of the vehicle was heard.
+        silent: seconds since the last frame of any node of the vehicle.
         failed: numbers on the bus of the thrusters whose drives say that they have failed.
     """
 
@@ -80,7 +80,7 @@ class State:
 
 
 class Craft:
-    """A vehicle as its decision centre sees it: a node that says goals and device commands, and hears states.
+    """A vehicle as its decision centre sees it: a node that sends goals and commands, and receives states.
 
     All functions may be called from any thread and return at once. A goal is in force, and repeated, until
     the next one.
@@ -176,7 +176,7 @@ class Craft:
         """Search around a place; return the goal's number.
 
         Args:
-            heading: None: along a spiral outwards, facing where it goes; else a full turn on the spot.
+            heading: None: along a spiral outwards, facing ahead; otherwise a full turn on the spot.
         """
         return self._begin(Goal("SEARCH", north, east, depth, heading or 0.0, speed, heading is None))
 
@@ -185,7 +185,7 @@ class Craft:
         return self._begin(Goal("IDLE"))
 
     def operate(self, device: str, action: int, parameter: float = 0.0) -> int:
-        """Have a device do something; return the number of the request, under which its progress is told.
+        """Command a device; return the number of the request, under which its progress is reported.
 
         It is asked again until it says that it is done, or is asked for something else.
 
@@ -291,7 +291,7 @@ class Craft:
             return goal.number
 
     def _hear_drive(self, number: int, frame: Frame) -> None:
-        """Take note of whether a drive works; drives that talk are no sign that anybody steers."""
+        """Record whether a drive works; messages of drives do not show that the vehicle is steered."""
         with self._lock:
             found = self._codec.decode(frame)
             if found is not None and (found.values["Drive"] == "FAULT") is not (number in self._state.failed):

@@ -32,7 +32,7 @@ KEPT, NAMES = 9, 256
 """Detections that are kept of each object, and objects of which any are kept."""
 
 REPEATED = 60.0
-"""Seconds: who tells of times that lie farther back than this may have another clock, and is heard again."""
+"""Seconds: a sender whose times lie farther back may have another clock, and is accepted again."""
 
 _LOG = logging.getLogger(__name__)
 
@@ -47,7 +47,7 @@ class Detection:
         confidence: from 0 to 1: how often such a detection is right.
         north, east, depth: of the object's middle, metres.
         camera: one of `CAMERAS`.
-        robot: whose cameras saw it, the beginning of a long name; empty: nobody says.
+        robot: whose cameras detected it, the beginning of a long name; empty: not stated.
     """
 
     time: float
@@ -70,7 +70,7 @@ def from_datagram(data: bytes) -> Detection:
     """Return what a datagram tells.
 
     Raises:
-        ValueError: it is no detection; says why.
+        ValueError: it is not a detection; the message states why.
     """
     if len(data) > LONGEST:
         raise ValueError("too long")
@@ -108,17 +108,17 @@ def owner_of(robot: str) -> str:
 def _number(found: Mapping[str, object], key: str, low: float, high: float) -> float:
     value = found[key]
     if isinstance(value, bool) or not isinstance(value, int | float):
-        raise ValueError(f"{key} is no number")
+        raise ValueError(f"{key} is not a number")
     if not low <= value <= high:
         raise ValueError(f"{key} out of range")
     return float(value)
 
 
 class Detections:
-    """Listens to what cameras tell, and says where objects are.
+    """Receives the detections of cameras, and returns positions of objects.
 
     One detection alone moves nothing: an object counts as seen when `least` of its latest detections, each
-    at least as confident as asked, lie within `spread` of their median. Whoever can send to the port can
+    at least as confident as asked, lie within `spread` of their median. Every sender at the port can
     tell anything, so that it is opened on this computer only unless a host is given.
 
     Attributes:
@@ -214,7 +214,7 @@ class Detections:
         return {name: place for name, place in found if place is not None}
 
     def take(self, data: bytes) -> None:
-        """Take a datagram; what is no detection is counted in `bad`."""
+        """Take a datagram; one that is not a detection is counted in `bad`."""
         try:
             detection = from_datagram(data)
         except ValueError as error:
@@ -247,7 +247,7 @@ class Detections:
         """Return whether a detection repeats one that is kept, or is older than most of its camera's.
 
         A few that pretend to be of the future do not make all others late. Those of a camera whose clock
-        begins anew count once what it told before has been forgotten.
+        restarts counts again once its earlier detections have been forgotten.
         """
         others = [each for each in kept if each[1].camera == detection.camera]
         ahead = [(arrived, other.time - detection.time) for arrived, other in others]

@@ -27,7 +27,7 @@ class Goal:
 
     Attributes:
         mode: one of `catalogue.MODES`.
-        north, east, depth: metres. SURFACE and TURN take the place where they begin instead.
+        north, east, depth: metres. SURFACE and TURN start at the current position instead.
         heading: degrees, unless `along`.
         speed: metres per second at most; 0: as the vehicle likes.
         along: whether it faces the direction in which it goes, and any at its goal.

@@ -35,10 +35,10 @@ _NAMES = {each.id: each.name for each in (*COMMON, *BEATS)}
 
 
 class Senders:
-    """Watches the messages that one node says and hears.
+    """Watches the messages that one node sends and receives.
 
-    Two senders of one message are told from one that began anew, from frames that are lost, come twice or
-    come late: each counts on by itself, and both go on.
+    Two senders of one message are told from one that restarted, from frames that are lost, come twice or
+    come late: each counts independently, and both continue.
 
     Args:
         own: identifiers of what only this node says.
@@ -75,8 +75,8 @@ class Senders:
 class _Counter:
     """The counter of one message.
 
-    It follows one sender; frames that do not follow on are strays, which follow on by themselves if they are
-    another sender's, or that of the first which began anew.
+    It follows one sender; frames out of sequence are strays, which form a sequence of their own if they are
+    another sender's, or that of the first after a restart.
     """
 
     def __init__(self, data: bytes, now: float) -> None:
@@ -148,14 +148,14 @@ PERIOD = 0.1
 
 
 class Guard:
-    """A node, and what it hears that it should not.
+    """A node, and frames of others that only it may send.
 
-    When another node says what only this one is to say, or two others say the same message, it says so, has
-    the dive given up by the node's emergency message, which it repeats for ever in place of the node, and
-    lets its node hear one, too. A node that is not in the bus's database has no such message.
+    When another node sends a message of this one, or two others send the same message, it reports that,
+    aborts the dive by the node's emergency message, which it repeats without end in place of the node, and
+    passes one to its node, too. A node that is not in the bus's database has no such message.
 
     Args:
-        say: is told once which message it is.
+        say: receives once which message it is.
     """
 
     def __init__(self, node: Node, say: Callable[[str], None] = lambda text: None) -> None:
@@ -167,12 +167,12 @@ class Guard:
         self._said = 255
 
     def hear(self, frame: Frame, now: float) -> None:
-        """Let the node hear a frame."""
+        """Pass a frame to the node."""
         self.notice(frame, now)
         self._node.hear(frame, now)
 
     def notice(self, frame: Frame, now: float) -> None:
-        """Look at a frame that the node itself is not to hear."""
+        """Inspect a frame that the node itself does not receive."""
         self._senders.hear(frame, now)
         if self._senders.fault and not self._told:
             self._told, self._due = True, now

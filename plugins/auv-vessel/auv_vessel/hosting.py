@@ -19,7 +19,7 @@ CATCH_UP = 5
 """Ticks that a node in real time may be late before it lets them go; more than that was a stall."""
 
 BEHIND = 0.5
-"""Part of a period by which a node may be late before it first hears what waits for it."""
+"""Fraction of a period by which a node may be late before it first takes the frames that wait for it."""
 
 SEEN_BASE = 0x18FF0000
 """Extended identifiers by which hosts that go by the bus say that their node has done what was due at a time.
@@ -31,10 +31,10 @@ LAG = 2
 """Ticks of who leads by which others may be behind it."""
 
 PATIENCE = 2.0
-"""Seconds of real time for which simulated time waits for a part; it then counts as gone till it is heard."""
+"""Seconds of real time for which simulated time waits for a part; after that it counts as gone."""
 
 CLOCK_SILENT = 20.0
-"""Seconds of real time for which who goes by the bus waits to be told the time."""
+"""Seconds of real time for which a process on bus time waits for the time."""
 
 _LISTENING = 0.1
 
@@ -53,7 +53,7 @@ class Port(Protocol):
         ...
 
     def receive(self, timeout: float) -> Frame | None:
-        """Return the next frame, or None if there was none for so many seconds."""
+        """Return the next frame, or None if there was none for `seconds`."""
         ...
 
 
@@ -109,7 +109,7 @@ class Rehearsal:
     """Nodes on one bus in simulated time: the same nodes and faults always say the same.
 
     All nodes whose time has come tick; what they say is then delivered to all others in the order of the
-    bus (identifier, then order of the nodes), before time goes on.
+    bus (identifier, then order of the nodes), before time advances.
 
     Args:
         nodes: in the order in which they tick when their time comes together.
@@ -142,11 +142,11 @@ class Rehearsal:
         self._due[id(guard)] = self._time
 
     def kill(self, name: str) -> None:
-        """Let a node hear and say nothing any more, as a process that was killed."""
+        """Disconnect a node, like a process that was killed."""
         self._dead.add(name)
 
     def revive(self, name: str) -> None:
-        """Let a node that was killed hear and speak again, with what it knew."""
+        """Reconnect a node that was killed, in its former state."""
         self._dead.discard(name)
 
     def disturb(self, fault: WireFault) -> None:
@@ -222,7 +222,7 @@ class Awake:
     """A clock that leaves out stalls of this process.
 
     Who reads it often, and finds that very much has gone by, was stalled: what others said meanwhile still
-    waits to be heard, so that time does not count as their silence. All deadlines move by it.
+    waits to be received, so that time does not count as their silence. All deadlines move by it.
 
     Args:
         most: seconds from one reading to the next that count.
@@ -266,7 +266,7 @@ def serve(
         say: told which message of the bus has two senders (see `guard`), if one has.
 
     Raises:
-        ClockSilentError: nobody tells the time by which the node is to go.
+        ClockSilentError: no time is received, although the node follows bus time.
         Whatever the port raises when the bus is gone, and whatever the node raises: a process that fails is
         restarted from outside, and what depends on it meanwhile fails safe.
     """
@@ -307,7 +307,7 @@ def _serve_by_clock(
 
 
 def _catch_up(node: Node, port: Port, awake: Awake) -> None:
-    """Let a node that is late hear what waits for it, for a period at most, before it judges silence."""
+    """Let a late node take the frames that wait for it, for a period at most, before it judges silence."""
     until = awake.now() + node.period
     while (now := awake.now()) < until and (frame := port.receive(0.0)) is not None:
         node.hear(frame, now)
@@ -316,7 +316,7 @@ def _catch_up(node: Node, port: Port, awake: Awake) -> None:
 def _serve_leading(
     node: Node, port: Port, stop: threading.Event, speedup: float, late: Callable[[float], None] | None
 ) -> None:
-    """Tell time, and let it go on when it may and the others have kept up with it."""
+    """Send the time, and let it advance when it may and the others have kept up with it."""
     begin = time.monotonic()
     now, ticks = 0.0, 0
     seen: dict[int, float] = {}
@@ -358,7 +358,7 @@ def _serve_by_bus(node: Guard, port: Port, stop: threading.Event) -> None:
             if frame is not None:
                 node.hear(frame, now)
             if awake.now() - told_at > CLOCK_SILENT:
-                raise ClockSilentError(f"nobody has told the time for {CLOCK_SILENT:g} s")
+                raise ClockSilentError(f"no time received for {CLOCK_SILENT:g} s")
             continue
         node.notice(frame, now)
         now, told_at = told, awake.now()

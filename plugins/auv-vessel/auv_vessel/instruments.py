@@ -24,7 +24,7 @@ class Instruments:
         log_noise: of the Doppler log, metres per second. log_bias: constant error along each of its axes.
         log_least, log_most: altitudes between which it has the bottom, metres.
         fix_noise: metres along each axis. fix_depth: metres of the receiver up to which it has a fix.
-        start_noise: of the place where the vehicle is put into the water, metres along each axis.
+        start_noise: of the position where the vehicle is put into the water, metres along each axis.
     """
 
     pressure_noise: float = 60.0

@@ -12,7 +12,7 @@ from auv_vessel.wire.frame import Frame
 
 
 class Node(Protocol):
-    """A part that hears every frame of the others, and speaks when its time has come.
+    """A part that receives every frame of the others, and sends its own when due.
 
     Nodes do not read clocks, wait or block: hosts call them, in real or in simulated time.
 
@@ -37,16 +37,16 @@ def stopped_by_signals() -> threading.Event:
     """Return what SIGTERM and SIGINT set.
 
     A thread sets it: who waits for an event, or sets it, holds its lock now and then, and a signal that
-    comes just then would wait for that lock for ever.
+    comes just then would wait for that lock without end.
     """
     stop = threading.Event()
-    told: SimpleQueue[int] = SimpleQueue()
+    received: SimpleQueue[int] = SimpleQueue()
 
-    def heed() -> None:
-        told.get()
+    def wait() -> None:
+        received.get()
         stop.set()
 
-    threading.Thread(target=heed, name="signals", daemon=True).start()
+    threading.Thread(target=wait, name="signals", daemon=True).start()
     for sign in (signal.SIGTERM, signal.SIGINT):
-        signal.signal(sign, lambda number, _frame: told.put(number))
+        signal.signal(sign, lambda number, _frame: received.put(number))
     return stop

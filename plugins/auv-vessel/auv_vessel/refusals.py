@@ -35,7 +35,7 @@ class SheetError(ValueError):
     """A bus cannot be made of a vehicle's data.
 
     Attributes:
-        faults: one line for each, that begins with the place.
+        faults: one line for each, its place first.
     """
 
     def __init__(self, faults: Sequence[str]) -> None:
@@ -144,7 +144,7 @@ def _number(
     most: float | None = None,
 ) -> Iterator[str]:
     if isinstance(value, bool) or not isinstance(value, (int, float)) or not abs(value) <= float_info.max:
-        yield f"{what}: {value!r} is no finite number"
+        yield f"{what}: {value!r} is not a finite number"
     elif above is not None and value <= above:
         yield f"{what}: {value!r} is not above {above:g}"
     elif least is not None and value < least:
@@ -155,7 +155,7 @@ def _number(
 
 def _name(what: str, value: Any) -> Iterator[str]:
     if not isinstance(value, str) or not value.strip():
-        yield f"{what}: {value!r} is no name"
+        yield f"{what}: {value!r} is not a name"
     elif len(value) > LONGEST_NAME:
         yield f"{what}: {value!r} has more than {LONGEST_NAME} characters"
     elif odd := sorted({each for each in value if not each.isprintable() or each in '"\\'}):
@@ -191,7 +191,7 @@ _DEVICE = re.compile(r"device(0|[1-9][0-9]{0,8})\.seconds")
 
 
 def misnamed(sheet: Sheet) -> Iterator[str]:
-    """Yield a line for each name of a sheet's `extra` that nobody reads."""
+    """Yield a line for each unknown name in a sheet's `extra`."""
     devices = [f"device{number}.seconds" for number in range(len(sheet.devices))]
     for key in sheet.extra:
         found = _DEVICE.fullmatch(key) if isinstance(key, str) else None

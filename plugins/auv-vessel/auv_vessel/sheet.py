@@ -90,7 +90,7 @@ def from_json(text: str) -> Sheet:
     """Return the sheet of a file.
 
     Raises:
-        ValueError: the text is no sheet, or has names that no sheet has; lists these.
+        ValueError: the text is not a sheet, or has unknown names; lists these.
     """
     try:
         found = json.loads(text, object_pairs_hook=_once)
@@ -124,21 +124,21 @@ def _tuple(value: Any) -> Any:
 
 
 def _misshapen(found: Any) -> Iterator[str]:
-    """Yield what is no object or list where one is needed."""
+    """Yield whatever is not an object or list where one is needed."""
     if not isinstance(found, dict):
-        yield f"{found!r:.40} is no object"
+        yield f"{found!r:.40} is not an object"
         return
     for name, kind, word in (
-        ("thrusters", list, "list"),
-        ("devices", list, "list"),
-        ("extra", dict, "object"),
+        ("thrusters", list, "a list"),
+        ("devices", list, "a list"),
+        ("extra", dict, "an object"),
     ):
         if name in found and not isinstance(found[name], kind):
-            yield f"{name}: {found[name]!r:.40} is no {word}"
+            yield f"{name}: {found[name]!r:.40} is not {word}"
     rows = found.get("thrusters")
     for number, row in enumerate(rows if isinstance(rows, list) else ()):
         if not isinstance(row, dict):
-            yield f"thruster {number}: {row!r:.40} is no object"
+            yield f"thruster {number}: {row!r:.40} is not an object"
 
 
 def _misnamed(found: Mapping[str, Any], kind: type) -> Iterator[str]:

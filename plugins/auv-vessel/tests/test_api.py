@@ -10,7 +10,7 @@ from vessel_rig import Rig
 
 from auv_vessel.api import Craft
 from auv_vessel.decision.duties import ThrusterNews
-from auv_vessel.decision.helm import Watch
+from auv_vessel.decision.duty_control import Watch
 from auv_vessel.goals import Goal, goal_frames, goal_of, within_rating
 from auv_vessel.wire.codec import Codec, Received
 

@@ -68,12 +68,12 @@ def test_all_that_is_wrong_with_a_vehicle_is_listed(
     with pytest.raises(UnsupportedError) as caught:
         main(["dbc", str(path), "-o", str(tmp_path / "out.dbc")])
     assert caught.value.elements == (
-        "thruster 0 ('T1'): max_thrust: nan is no finite number",
+        "thruster 0 ('T1'): max_thrust: nan is not a finite number",
         "thruster 1 ('a\"b'): id: 'a\"b' has '\"'",
     )
     assert not (tmp_path / "out.dbc").exists()
     assert mmrs(["can", "dbc", str(path)]) == 1
-    assert "thruster 0 ('T1'): max_thrust: nan is no finite number" in capsys.readouterr().err
+    assert "thruster 0 ('T1'): max_thrust: nan is not a finite number" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize("text", ["", "{}", "[]", '{"thrusters": 1}', "\x00"])

@@ -88,10 +88,10 @@ def test_a_node_does_not_begin_with_a_misspelt_sheet(
 @pytest.mark.parametrize(
     ("key", "value", "said"),
     [
-        ("devices", "torpedo", "devices: 'torpedo' is no list"),
-        ("extra", [1.0], "extra: [1.0] is no object"),
-        ("thrusters", {}, "thrusters: {} is no list"),
-        ("thrusters", [7], "thruster 0: 7 is no object"),
+        ("devices", "torpedo", "devices: 'torpedo' is not a list"),
+        ("extra", [1.0], "extra: [1.0] is not an object"),
+        ("thrusters", {}, "thrusters: {} is not a list"),
+        ("thrusters", [7], "thruster 0: 7 is not an object"),
     ],
 )
 def test_what_has_another_shape_is_told_with_its_place(key: str, value: object, said: str) -> None:

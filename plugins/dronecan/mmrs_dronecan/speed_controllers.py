@@ -110,7 +110,7 @@ class SpeedControllers:
     def commands(self, thrusts: Sequence[float], enable: bool) -> list[Frame]:
         """Return the frames that ask for those newtons; not enabled: that no propeller turns.
 
-        None turns any more, either, once somebody else was found to command them.
+        Once another node was found to command the drives, none turns any more.
         """
         enable = enable and not self._company.rival
         raw = [self._raw(number, thrust) if enable else 0 for number, thrust in enumerate(thrusts)]
@@ -120,7 +120,7 @@ class SpeedControllers:
         return [frame for frames in said for frame in frames]
 
     def hear(self, frame: Frame) -> Status | None:
-        """Return what a frame tells of a thruster, or None."""
+        """Return the status of a thruster in a frame, or None."""
         self._company.notice(frame)
         if self._company.rival and self._most:
             self._condemned = (self._condemned + 1) % len(self._most)

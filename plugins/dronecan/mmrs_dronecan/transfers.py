@@ -117,7 +117,7 @@ class Company:
     """
 
     def __init__(self, node: int) -> None:
-        """Know nobody yet; `node` is the own identifier."""
+        """Start with no other node known; `node` is the own identifier."""
         self.rival = False
         self.ill: set[int] = set()
         self._node = node

@@ -17,7 +17,7 @@ from auv_vessel.movement.movement import Movement
 from auv_vessel.wire.catalogue import messages_of
 from auv_vessel.wire.codec import Codec
 from auv_vessel.wire.frame import Frame
-from auv_vessel.wire.load import heard_load, load_of
+from auv_vessel.wire.load import load_of, measured_load
 
 pytestmark = pytest.mark.real_time("vessels")
 
@@ -51,7 +51,7 @@ def test_every_message_is_said_as_often_as_declared(heard: list[tuple[float, Fra
 
 
 def test_the_bus_is_no_busier_than_designed(heard: list[tuple[float, Frame]]) -> None:
-    designed, found = load_of(SHEET), heard_load(heard, SHEET.bit_rate)
+    designed, found = load_of(SHEET), measured_load(heard, SHEET.bit_rate)
     assert found is not None
     assert 0.85 * designed.least <= found.mean <= designed.most
     assert found.peak <= 1.5 * designed.most

@@ -55,7 +55,7 @@ def befalling(sheet: Sheet, words: Sequence[str]) -> Act:
             left = _number(part, 1.0)
             return lambda vehicle: _charge(vehicle, left * sheet.battery)
     said = " ".join(words)
-    raise NoSuchFaultError(f"{said}: no such fault; there are {FAULTS}, and mend FAULT but for the last")
+    raise NoSuchFaultError(f"{said}: no such fault; known are {FAULTS}, and clear FAULT for all but the last")
 
 
 class Befallen:
@@ -67,15 +67,15 @@ class Befallen:
     def __init__(
         self, sheet: Sheet, vehicle: Vehicle, lines: SimpleQueue[str], say: Callable[[str], None]
     ) -> None:
-        """Host a vehicle; `say` is told why a line is none, and how the vehicle is where it is ``status``."""
+        """Host a vehicle; `say` receives errors of lines, and the answer to ``status``."""
         self._sheet, self._vehicle, self._lines, self._say = sheet, vehicle, lines, say
 
     def hear(self, frame: Frame, now: float) -> None:
-        """Let the vehicle hear."""
+        """Pass a frame to the vehicle."""
         self._vehicle.hear(frame, now)
 
     def tick(self, now: float) -> Sequence[Frame]:
-        """Let befall it what was typed, and go on."""
+        """Inject the faults that were typed, and advance the vehicle."""
         while not self._lines.empty():
             line = self._lines.get()
             try:

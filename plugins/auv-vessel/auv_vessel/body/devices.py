@@ -27,7 +27,7 @@ class Release:
     """What holds the drop weight.
 
     It is held by the supply of the drives: once they have had a valid command, and then none for
-    ``deadman.time`` of `Sheet.extra` (seconds; 5 if it does not say; 0: for ever) while deeper than half a
+    ``deadman.time`` of `Sheet.extra` (seconds; default 5; 0: without limit) while deeper than half a
     metre, it lets go.
 
     Attributes:
@@ -56,7 +56,7 @@ _SECONDS = 0.5
 
 @dataclass(frozen=True, slots=True)
 class Operation:
-    """What a device was told to do.
+    """A command to a device.
 
     Attributes:
         time: when, seconds.
@@ -122,14 +122,14 @@ class Devices:
 
 
 HELD = 0.5
-"""Seconds for which a motor goes on when its drive is silent: motor controllers without set-points stop."""
+"""Seconds after the last status of a drive until its motor stops: motor controllers need set-points."""
 
 
 class Outside:
     """What drives on the bus put out, as `ThrusterStatus` tells it."""
 
     def __init__(self, sheet: Sheet) -> None:
-        """Know of no thrust yet."""
+        """Start without thrust."""
         self._told = [(-inf, 0.0)] * len(sheet.thrusters)
 
     def hear(self, number: int, status: Received, now: float) -> None:

@@ -116,7 +116,7 @@ def over_ground(body: Body, state: State) -> Vector:
 
 
 def step(body: Body, state: State, thrusts: Sequence[Sequence[float]], duration: float) -> State:
-    """Return the state after so many seconds, in shorter steps if it tumbles or drag is very great.
+    """Return the state `seconds` later, in shorter steps if the hull tumbles or drag is very great.
 
     Args:
         thrusts: of all thrusters, newtons, at the beginning, in the middle and at the end.
@@ -284,7 +284,7 @@ def _thrust(body: Body, depth: float, down: Vector, thrusts: Sequence[float]) ->
 
 
 def _ground(body: Body, state: State, rows: Rows, extent: float, pressed: float) -> Six:
-    """Return what the bottom does to a hull pressed so many metres into it: spring, damper, friction."""
+    """Return the force of the bottom on a hull pressed `depth` metres into it: spring, damper, friction."""
     a, b, c = body.hull.half
     down = rows[2]
     x, y, z = down

@@ -56,7 +56,7 @@ class Hull:
 
     @property
     def inertia(self) -> Six:
-        """Of hull and water together: what a force or moment has to accelerate."""
+        """Inertia of hull and water together against a force or moment."""
         return _six([own + water for own, water in zip(self.rigid, self.added, strict=True)])
 
 
@@ -74,7 +74,7 @@ def hull_of(sheet: Sheet) -> Hull:
     at operating thrust overcome at the declared speed, if that makes a coefficient from 0.1 to 1.5, else the
     nearer of these. Linear drag equals quadratic drag at 0.1 m/s, at the hull's ends when it turns. The
     centre of buoyancy is a tenth of the height above the centre of gravity. Fins are taken to balance Munk's
-    moment, which turns a bare hull across its way; with ``munk`` 1, nothing does.
+    moment, which turns a bare hull across its course; with ``munk`` 1, nothing does.
 
     Raises:
         ValueError: a dimension, mass or coefficient can't be.
@@ -134,7 +134,7 @@ def added_mass(half: Vector, density: float) -> Six:
 
 
 def quadratic_drag(sheet: Sheet, half: Vector) -> Six:
-    """Return the drag of a hull by the square of speed, without what `Sheet.extra` says of it."""
+    """Return the quadratic drag of a hull, without the values of `Sheet.extra`."""
     a, b, c = half
     pressure = 0.5 * sheet.water_density
     ahead, across, down = (pressure * pi * one * other for one, other in ((b, c), (a, c), (a, b)))

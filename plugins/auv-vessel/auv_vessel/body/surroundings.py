@@ -22,7 +22,7 @@ class Thing:
 
     Attributes:
         kind: `GATE`, `BUOY` or `PATH`; others are not drawn.
-        name: that detections bear.
+        name: in detections.
         north, east, depth: metres, of the middle: of a gate's bar, of a buoy's sphere, of a path's strip.
         heading: degrees clockwise from north.
         colour: by its English name, such as "red", "orange", "yellow", "green".
@@ -90,7 +90,7 @@ def from_json(text: str) -> Surroundings:
     """Return the surroundings of a file.
 
     Raises:
-        ValueError: the text describes no surroundings; says what is wrong with it.
+        ValueError: the text describes no surroundings; the message states why.
     """
     try:
         found = json.loads(text)

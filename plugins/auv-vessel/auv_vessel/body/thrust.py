@@ -21,7 +21,7 @@ def watts_of(thruster: Thruster, thrust: float) -> float:
 def curve_of(thruster: Thruster) -> tuple[float, float, float]:
     """Return watts, newtons and exponent of what a thruster draws: watts * (thrust / newtons) ** exponent.
 
-    The curve is the power law through what its type says of operating and of peak thrust; through the former,
+    The curve is the power law through operating and peak thrust as its type states them; through the former,
     with the exponent 3/2 of an ideal propeller at rest, if peak thrust or power is no more than that.
     """
     operating, most = thruster.operating_thrust, thruster.max_thrust
@@ -69,7 +69,7 @@ class Propulsion:
 OFF, RUNS, WATCHDOG, FAULT = "OFF", "RUNS", "WATCHDOG", "FAULT"
 
 MOST_AHEAD = 127
-"""By how many the counter of a valid command is ahead of the last, at most."""
+"""Largest step of the counter from one valid command to the next."""
 
 _SOON = 1e-9  # seconds by which sums of periods may be off
 
@@ -80,7 +80,7 @@ class Drive:
     A command is valid if its check is right, which who decodes it sees to, and its counter is 1 to
     `MOST_AHEAD` ahead of the last one, modulo 256. Only valid commands are obeyed and keep the watchdog
     quiet. The first command of all, and the first after the watchdog stopped the thruster, are not obeyed:
-    they tell where the counter is. So a sender that repeats one frame for ever does nothing.
+    they only set the counter. So a sender that repeats one frame without end does nothing.
 
     Attributes:
         thrust: newtons that it puts out.

@@ -43,7 +43,7 @@ class Vehicle:
         drives: of the thrusters, in the order of their numbers.
         devices: what they did is in `devices.operations`.
         charge: joules that are left; without any, all is silent and the drop weight falls.
-        has_drives: whether it says what its thrusters' drives do.
+        has_drives: whether it contains the drives of its thrusters.
     """
 
     name = VEHICLE
@@ -62,14 +62,14 @@ class Vehicle:
     ) -> None:
         """Put a vehicle into the water, at rest over ground, level.
 
-        What `Sheet.extra` may say is told at `hull_of`, `Propulsion`, `Sensing`, `Devices`, `Release`,
+        The keys of `Sheet.extra` are documented at `hull_of`, `Propulsion`, `Sensing`, `Devices`, `Release`,
         `antenna_of` and `instruments_of`.
 
         Args:
             seed: of the noise and bias of its instruments.
             place: north, east and depth, metres; home if None. It begins no higher than it floats.
             heading: degrees; that of home if None.
-            without_drives: whether its thrusters' drives are other nodes, which say what they put out. Its
+            without_drives: whether its thrusters' drives are other nodes, which report their thrust. Its
                 own then only see to the drop weight.
 
         Raises:

@@ -62,7 +62,7 @@ class ThrustLimits:
         return low, high
 
     def used(self, thrusts: Array, period: float) -> None:
-        """Note that thrusters gave so much for so many seconds."""
+        """Account for the thrust that thrusters gave during `period` seconds."""
         square, operating = np.square(thrusts), np.square(self._operating)
         above = np.maximum(np.square(self._most) - operating, 1e-9)
         warming = np.where(square > operating, (square - operating) / above, square / operating - 1.0)
@@ -95,7 +95,7 @@ class Actuators:
     It gives none before a state was trusted. From the first wrench obeyed on it gives zero thrust, and says
     so to every drive, when no wrench that is complete and valid came in `failsafe.COMMANDS_SILENT`; and for
     good, having sent an emergency that releases the drop weight, when movement or the sensor controller are
-    gone, when the state is not to be trusted, when water is inside or nobody tells any more whether it is,
+    gone, when the state is not to be trusted, when water is inside or its reports have ended,
     when no thruster is left that pushes up or down, or when it is too deep. An emergency of any other node
     counts as its own.
 
@@ -150,7 +150,7 @@ class Actuators:
         self._due = {"Emergency": 0.0, "Reach": 0.0, "Beat": 0.0}
 
     def hear(self, frame: Frame, now: float) -> None:
-        """Take a wrench, what tells of danger, or the status of a thruster."""
+        """Take a wrench, a report of danger, or the status of a thruster."""
         if (status := self._drives.hear(frame)) is not None:
             self._watch.take(status, now)
             return
@@ -159,7 +159,7 @@ class Actuators:
             hearer(found, now)
 
     def tick(self, now: float) -> list[Frame]:
-        """Command every thruster; say what is due besides."""
+        """Command every thruster; send what else is due."""
         self._began = now if self._began is None else self._began
         if (reason := self._danger(now)) is not None:
             self._give_up(reason, now)
@@ -178,7 +178,7 @@ class Actuators:
         ]
 
     def _obeys(self, now: float) -> bool:
-        """Tell whether there is a wrench to be obeyed."""
+        """Return whether there is a valid wrench."""
         heard = self._wrench_at is not None and now - self._wrench_at <= failsafe.COMMANDS_SILENT
         self._dived = self._dived or (heard and self._enabled and self._trusted_at is not None)
         return heard and self._enabled and self._trusted_at is not None and self.emergency is None

@@ -19,7 +19,7 @@ STEERED = (0, 1, 2, 5)
 """Surge, sway, heave and yaw: what movement needs; roll and pitch right themselves."""
 
 WEIGHTS = (1.0, 1.0, 10.0, 3.0, 3.0, 10.0)
-"""Of what is missing of each degree when thrust is short: depth and heading go before speed."""
+"""Weights of the missing thrust in each degree when thrust is short: depth and heading come before speed."""
 
 TILT = 15.0
 """Degrees to which moments that nothing balances may tilt a vehicle."""
@@ -28,7 +28,7 @@ STRICTER = (2.0, 4.0, 8.0, 16.0, 32.0)
 """Factors of the weights of roll and pitch that are tried until it tilts no further."""
 
 TINY = 1e-6
-"""Weight of thrust itself, so that of all ways to a wrench the one with least thrust is taken."""
+"""Weight of thrust itself, so that the wrench is reached with the least thrust."""
 
 
 def bounded_least_squares(matrix: Array, wanted: Array, low: Array, high: Array, tiny: float = TINY) -> Array:
@@ -69,7 +69,7 @@ def bounded_least_squares(matrix: Array, wanted: Array, low: Array, high: Array,
 def _towards_least(
     hessian: Array, gradient: Array, x: Array, free: NDArray[np.bool_], low: Array, high: Array
 ) -> tuple[Array, bool]:
-    """Go to the least among what is free, as far as bounds allow; tell whether a bound stopped it."""
+    """Go to the least among what is free, as far as bounds allow; return whether a bound stopped it."""
     if not free.any():
         return x, False
     held = ~free
@@ -131,7 +131,7 @@ class Allocation:
         return wrench - self.matrix @ thrusts
 
     def served(self, working: Sequence[bool]) -> tuple[bool, ...]:
-        """Tell of each of `DEGREES` whether the thrusters that work can push along it alone.
+        """Return for each of `DEGREES` whether the thrusters that work can push along it alone.
 
         Of surge, sway, heave and yaw without pushing along another of these; of roll and pitch without
         pushing along any other.
@@ -156,7 +156,7 @@ def _unit(direction: Sequence[float]) -> Array:
 
 
 def _reached(matrix: Array) -> list[bool]:
-    """Tell of each row's direction whether columns add up to it alone."""
+    """Return for each row's direction whether columns add up to it alone."""
     if matrix.shape[1] == 0:
         return [False] * matrix.shape[0]
     onto = matrix @ np.linalg.pinv(matrix, rcond=1e-6)

@@ -82,7 +82,7 @@ class AttitudeFilter:
             self.rates = self.rates + RATE_GAIN_ALONE * residual / period
 
     def trusted(self, now: float) -> bool:
-        """Tell whether the attitude may be relied on."""
+        """Return whether the attitude may be relied on."""
         return self.attitude.trusted(now)
 
 

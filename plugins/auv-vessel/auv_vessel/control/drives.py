@@ -1,4 +1,4 @@
-"""Thrusters' drives as the actuator controller sees them: what they are told, and whether they do it."""
+"""Thrusters' drives as the actuator controller sees them: commands to them, and whether they follow."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ IDLES = 0.5
 
 @dataclass(frozen=True, slots=True)
 class Status:
-    """What a drive tells of its thruster.
+    """The status of a drive and its thruster.
 
     Attributes:
         number: of the thruster, from 0 in the order of the sheet.
@@ -41,7 +41,7 @@ class Status:
 
 
 class Drives(Protocol):
-    """How thrusters are told what to do, on whatever they hear; counters and parts of messages are kept."""
+    """The messages that command thrusters, on any bus; counters and parts of messages are kept here."""
 
     def commands(self, thrusts: Sequence[float], enable: bool) -> Sequence[Frame]:
         """Return the frames that ask for those newtons, in the order of thrusters; not enabled: for none.
@@ -51,7 +51,7 @@ class Drives(Protocol):
         ...
 
     def hear(self, frame: Frame) -> Status | None:
-        """Return what a frame tells of a thruster, or None if it tells nothing, or not yet all."""
+        """Return the status of a thruster in a frame; None if it has none, or not yet all of it."""
         ...
 
 
@@ -137,7 +137,7 @@ Opener: TypeAlias = Callable[[Sequence[Thruster], Mapping[str, str]], Drives]
 
 
 class ForeignDrives:
-    """Drives of somebody else's, which may hear of more thrusters than the vehicle has."""
+    """Third-party drives, which may report more thrusters than the vehicle has."""
 
     def __init__(self, sheet: Sheet, theirs: Drives) -> None:
         self._count = len(sheet.thrusters)
@@ -148,7 +148,7 @@ class ForeignDrives:
         return self._theirs.commands(thrusts, enable)
 
     def hear(self, frame: Frame) -> Status | None:
-        """Return what a frame tells of a thruster of this vehicle, or None."""
+        """Return the status in a frame of a thruster of this vehicle, or None."""
         found = self._theirs.hear(frame)
         return found if found is not None and 0 <= found.number < self._count else None
 

@@ -10,7 +10,7 @@ from __future__ import annotations
 from auv_vessel.wire.catalogue import BEAT_PERIOD, COMMAND_PERIOD, SENSOR_PERIOD
 
 COMMANDS_SILENT = 0.3
-"""Seconds without a wrench, complete and valid, after which thrust is zero; it goes on when one comes."""
+"""Seconds without a wrench, complete and valid, after which thrust is zero; the next one restores it."""
 
 COMMANDS_GONE = 2.0
 """Seconds without a wrench after which the actuator controller gives up the dive: emergency, weight gone."""

@@ -39,7 +39,7 @@ class Freeze:
         self._seen, self._equal = 2.0, 1.0
 
     def take(self, raw: float) -> bool:
-        """Take the next value; tell whether it is frozen."""
+        """Take the next value; return whether it is frozen."""
         if self._last is None:
             self._last = raw
             return False
@@ -73,7 +73,7 @@ class Freeze:
 
 
 class Drift:
-    """How far an instrument has gone from what another says of its rate, over the last seconds.
+    """How far an instrument has drifted from the rate that another measures, over the last seconds.
 
     Attributes:
         difference: of both, in the unit of the instrument.
@@ -90,14 +90,14 @@ class Drift:
         self.difference *= 1.0 - period / FORGETS
 
     def take(self, value: float, *, circle: float | None = None) -> None:
-        """Take a value of the instrument; one on a circle goes on from its end to its beginning."""
+        """Take a value of the instrument; one on a circle continues from its end to its beginning."""
         if self._last is not None:
             change = value - self._last - self._turned
             self.difference += change if circle is None else (change + circle / 2.0) % circle - circle / 2.0
         self._last, self._turned = value, 0.0
 
     def forget(self) -> None:
-        """Begin anew: the other instrument says nothing."""
+        """Restart: the other instrument gives no value."""
         self.difference, self._last, self._turned = 0.0, None, 0.0
 
 
@@ -122,7 +122,7 @@ class Channel:
     def judge(
         self, values: Sequence[float], now: float, *, residual: float = 0.0, allowed: float = 1.0
     ) -> bool:
-        """Tell whether a value may be believed.
+        """Return whether a value is plausible.
 
         Args:
             values: its numbers, raw.
@@ -145,5 +145,5 @@ class Channel:
         return float("inf") if self._good is None else now - self._good
 
     def trusted(self, now: float) -> bool:
-        """Tell whether there was a value lately that may be believed."""
+        """Return whether there was a plausible value lately."""
         return self.age(now) <= STALE

@@ -95,12 +95,12 @@ class Reckoning:
 
     @property
     def uncertainty(self) -> float:
-        """Metres, one sigma, in the direction in which the place is known least."""
+        """Metres, one sigma, in the direction in which the position is known least."""
         return float(np.sqrt(max(0.0, np.linalg.eigvalsh(self.covariance[:2, :2])[-1])))
 
     @property
     def compass_bias(self) -> float:
-        """By how much the compass says too much, radians."""
+        """Radians by which the compass reads too high."""
         return float(self.state[COMPASS])
 
     def log_bias(self) -> Array:
@@ -112,7 +112,7 @@ class Reckoning:
         return self.state[CURRENT_NORTH : CURRENT_EAST + 1].copy()
 
     def advance_over_ground(self, compass: float, ahead: float, aside: float, period: float) -> None:
-        """Go on by speed over ground as the log says it, its bias taken off here; compass in radians."""
+        """Advance by speed over ground from the log, corrected by its bias here; compass in radians."""
         heading = compass - self.compass_bias
         c, s = cos(heading), sin(heading)
         bias = self.state[LOG_AHEAD : LOG_ASIDE + 1]
@@ -126,7 +126,7 @@ class Reckoning:
         self._advance(change, north * period, east * period, noise, period)
 
     def advance_through_water(self, compass: float, ahead: float, aside: float, period: float) -> None:
-        """Go on by speed through the water, reckoned from thrust, and the current known so far."""
+        """Advance by speed through the water, reckoned from thrust, and the current known so far."""
         heading = compass - self.compass_bias
         c, s = cos(heading), sin(heading)
         north, east = c * ahead - s * aside, s * ahead + c * aside
@@ -156,7 +156,7 @@ class Reckoning:
         self._correct(seen, found, variance * np.eye(2))
 
     def fix(self, north: float, east: float) -> bool:
-        """Learn the place from a fix; one that cannot be is refused until others agree with it."""
+        """Correct the position by a fix; an implausible one is refused until others agree with it."""
         seen = np.eye(2, 7)
         place = np.array((north, east))
         found = place - self.state[:2]
@@ -174,7 +174,7 @@ class Reckoning:
         return True
 
     def _agreed(self, place: Array) -> bool:
-        """Tell whether fixes that were refused are near this one, so that it is reckoning that is wrong."""
+        """Return whether refused fixes are near this one, so that the reckoned position is wrong."""
         near = 5.0 * max(self._instruments.fix_noise, 1e-3) + 1.0
         self._refused = [each for each in self._refused if float(np.hypot(*(each - place))) < near]
         self._refused.append(place)
@@ -272,5 +272,5 @@ class Vertical:
         self.rate += LOG_GAIN * (rate - self.rate)
 
     def trusted(self, now: float) -> bool:
-        """Tell whether the depth may be relied on."""
+        """Return whether the depth may be relied on."""
         return self.pressure.trusted(now)

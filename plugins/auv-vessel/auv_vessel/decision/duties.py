@@ -40,7 +40,7 @@ class Duty(Protocol):
     """Something that a vehicle does."""
 
     def begin(self, craft: Craft, now: float) -> None:
-        """Begin, or go on after a pause."""
+        """Begin, or resume after a pause."""
         ...
 
     def done(self, craft: Craft, now: float) -> bool:
@@ -54,20 +54,20 @@ class Duty(Protocol):
 
 @dataclass(frozen=True, slots=True)
 class Look:
-    """A place that the front points at, metres; at an `angle` of 90 degrees the place is to starboard."""
+    """A position that the front points at, metres; at an `angle` of 90 degrees it is to starboard."""
 
     north: float
     east: float
     angle: float = 0.0
 
     def heading(self, north: float, east: float) -> float | None:
-        """Return the heading from a place, degrees; None where it is the place that is looked at."""
+        """Return the heading from a position, degrees; None at the position that is looked at."""
         away = (self.north - north, self.east - east)
         return None if hypot(*away) < 1e-6 else (degrees(atan2(away[1], away[0])) - self.angle) % 360.0
 
 
 class Ready:
-    """Know where the vehicle is, before it moves."""
+    """Start at the vehicle's position before it moves."""
 
     def begin(self, craft: Craft, now: float) -> None:
         """Begin; nothing moves."""
@@ -144,7 +144,7 @@ class Face:
 
 
 class Stay:
-    """Stay for so many seconds at the place of the last goal, or where the vehicle is if there was none."""
+    """Hold for `seconds` at the place of the last goal, or where the vehicle is if there was none."""
 
     def __init__(self, seconds: float, *, hold: bool = False) -> None:
         """Stay; `hold`: where the vehicle is when it begins."""
@@ -152,7 +152,7 @@ class Stay:
         self._since: float | None = None
 
     def begin(self, craft: Craft, now: float) -> None:
-        """Begin, or go on after a pause."""
+        """Begin, or resume after a pause."""
         if self._hold:
             craft.hold()
         elif self._left > 0.0:
@@ -185,7 +185,7 @@ class Finish:
 
 
 class Surface:
-    """Come up, and rest there without thrust, for whoever swims to the vehicle, unless it would sink."""
+    """Surface, and rest there without thrust for recovery, unless the vehicle would sink."""
 
     def __init__(self, afloat: float, *, floats: bool) -> None:
         """Come up; `afloat`: depth of the centre of gravity afloat, metres."""
@@ -208,7 +208,7 @@ class Charge:
     """Stay at the surface until the battery is full."""
 
     def __init__(self, seconds: float, charged: Callable[[], None] = lambda: None) -> None:
-        """Charge for so many seconds at least; then `charged` is called, as by whoever changes batteries."""
+        """Charge for at least `seconds`; then `charged` is called, as when batteries are changed."""
         self._seconds, self._charged = seconds, charged
         self._since: float | None = None
 
@@ -230,7 +230,7 @@ class Charge:
 
 
 class Use:
-    """Have a device do something."""
+    """Command a device."""
 
     def __init__(self, device: str, action: int, parameter: float = 0.0, patience: float = 30.0) -> None:
         """Do the action of that number; its parameter means what the device says. Seconds to wait."""
@@ -240,7 +240,7 @@ class Use:
         self._until = 0.0
 
     def begin(self, craft: Craft, now: float) -> None:
-        """Tell the device, once."""
+        """Command the device, once."""
         if self._request is None:
             self._request = craft.operate(self._device, self._action, self._parameter)
             self._until = now + self._patience
@@ -260,7 +260,7 @@ Sight = Callable[[str], "Vector | None"]
 
 
 class Seek:
-    """Go to an object, wherever it is seen within so many metres of where it is expected.
+    """Go to an object, where it is detected within `within` metres of its expected position.
 
     What looks the same and is farther away is passed by.
     """
@@ -282,7 +282,7 @@ class Seek:
             tolerance: None: it may be anywhere.
             sight: who sees it.
             way: how to get to it where it is; False: to where it is expected, to see it from there.
-            told: where somebody else has seen it, so that it is looked for there; None: nobody has.
+            told: where another robot has detected it, so that it is sought there first; None: unknown.
         """
         self._name, self._expected, self._tolerance = name, expected, tolerance
         self._sight, self._way = sight, way
@@ -293,7 +293,7 @@ class Seek:
         self._searching = False
 
     def begin(self, craft: Craft, now: float) -> None:
-        """Set out, or go on.
+        """Set out, or resume.
 
         Raises:
             FailureError: others have seen it farther from where it is expected than it may be.
@@ -355,10 +355,10 @@ class ThrusterNews:
         failed, before = self._craft.state().failed, self._failed
         self._failed = failed
         return tuple(
-            _told(self._thrusters[number].id, number in failed) for number in sorted(failed ^ before)
+            _news(self._thrusters[number].id, number in failed) for number in sorted(failed ^ before)
         )
 
 
-def _told(thruster: str, failed: bool) -> tuple[str, str]:
+def _news(thruster: str, failed: bool) -> tuple[str, str]:
     grave, what = ("ERROR", "has failed") if failed else ("NOTICE", "works again")
     return grave, f"thruster '{thruster}' {what}"

@@ -23,7 +23,7 @@ TOO_FAR, NEAR_ENOUGH = 0.25, 0.12
 """Metres from its goal from which on it heads there again, and within which it no longer does."""
 
 CLOSE, ALIGNED = 4.0, 0.7
-"""Metres from its goal within which it turns first, and the cosine to its way from which on it goes then."""
+"""Metres from its goal within which it turns first; cosine to its course above which it then sets off."""
 
 BACKWARDS, SLOWLY = 110.0, 0.25
 """Degrees from the bow beyond which, metres per second below which, it rather goes backwards."""
@@ -35,11 +35,11 @@ SEARCH_RADIUS, SEARCH_SPACING, SWEEP = 5.0, 1.5, 20.0
 class Guidance:
     """Guides a vehicle to one goal.
 
-    On the way to a place it keeps to the line from where it began, at a speed that lets it stop there.
+    To reach a goal it keeps to the line from where it began, at a speed that lets it stop there.
     A vehicle without thrust to the side heads where it has to go through the water, current allowed for.
 
     Attributes:
-        goal: with the place where it begins filled in, where its mode takes that.
+        goal: with its start position filled in, where its mode needs that.
         done: whether a search has been through all of its figure.
     """
 

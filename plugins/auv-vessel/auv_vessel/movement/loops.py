@@ -14,7 +14,7 @@ SPEED_GAIN, SPEED_INTEGRAL = 1.0, 0.25
 DEPTH_GAIN, RISE_GAIN, RISE_INTEGRAL = 0.5, 1.4, 0.35
 HEADING_GAIN, TURN_GAIN, TURN_INTEGRAL = 0.8, 2.5, 0.8
 TILT_GAIN, TILT_DAMPING = 2.0, 2.0
-"""Of loops: per second (P of an outer loop, P of an inner one), per second squared (I of an inner one)."""
+"""Gains of loops: per second (P of an outer and an inner loop), per second squared (I of an inner one)."""
 
 ERROR, TURN_ERROR = 0.25, 0.5
 """Metres per second, radians per second: errors beyond which integrals wait."""

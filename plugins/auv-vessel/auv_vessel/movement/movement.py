@@ -46,12 +46,12 @@ FARTHEST = 655.35
 
 
 class Movement:
-    """Brings the vehicle to where its goal is and keeps it there, and tells how far it is.
+    """Brings the vehicle to its goal and keeps it there, and reports its progress.
 
     It asks for no thrust without a goal, without a state that may be trusted, and after an emergency. When
     the decision centre falls silent it holds place and depth for a while, then surfaces by thrust, until a
-    goal is heard again. Once it is up in that way the dive has ended: it is given up by an emergency, so that
-    thrusters stay idle for whoever swims to the vehicle, and one that would sink lets go of its drop weight.
+    goal is received again. Once it has surfaced that way the dive has ended: an emergency aborts it, so that
+    thrusters stay idle for the recovery, and a vehicle that would sink lets go of its drop weight.
     While its height above the bottom is known it goes no deeper than leaves it clear.
 
     Attributes:
@@ -136,7 +136,7 @@ class Movement:
         return self._loops.wrench(aim, self.motion, self.period)
 
     def _deepest(self, now: float) -> float:
-        """Return the depth at which it is still clear of the bottom; infinity where nobody knows that."""
+        """Return the depth at which it is still clear of the bottom; infinity where that is unknown."""
         if now - self._bottom_at > ALTITUDE_SILENT:
             return float("inf")
         return max(self._bottom - self._clearance, self._abilities.afloat - 0.1)
@@ -155,7 +155,7 @@ class Movement:
         ]
 
     def _look_after_decision(self, now: float) -> None:
-        """Hold, then surface, while no goal is heard that was heard before."""
+        """Hold, then surface, while goals have ceased."""
         if self.goal is None:
             return
         silent = now - self._goal_at
@@ -196,7 +196,7 @@ class Movement:
         said = []
         if now + 1e-6 >= self._due["Progress"]:
             self._due["Progress"] = now + PROGRESS_PERIOD
-            said.append(self._told())
+            said.append(self._state_frame())
         if now + 1e-6 >= self._due["Beat"]:
             self._due["Beat"] = now + BEAT_PERIOD
             uptime = min(now - (self._began or 0.0), MOST_UPTIME)
@@ -205,7 +205,7 @@ class Movement:
             said.append(self._codec.encode("MovementBeat", State=state, Uptime=uptime, Reason=reason))
         return said
 
-    def _told(self) -> Frame:
+    def _state_frame(self) -> Frame:
         number = 0 if self.goal is None else self.goal.number
         if self._progress is None:
             return self._codec.encode("Progress", Goal=number, State="NONE", Distance=0.0)

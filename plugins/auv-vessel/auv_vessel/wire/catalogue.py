@@ -40,7 +40,7 @@ class Field:
     Attributes:
         bits: length; whether it has a sign.
         low, high: of the value; what lies outside is refused.
-        names: what values mean, where they are no quantities.
+        names: of values, where they are not quantities.
     """
 
     name: str

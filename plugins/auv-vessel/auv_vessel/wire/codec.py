@@ -35,7 +35,7 @@ class Received:
 
 
 class Codec:
-    """The messages of one vehicle, as one node says and hears them.
+    """The messages of one vehicle, as one node sends and receives them.
 
     Attributes:
         faults: frames with a known identifier that say nothing that can be believed, by message.

@@ -1,4 +1,4 @@
-"""The database (DBC) of a vehicle's bus, for everybody else's tools."""
+"""The database (DBC) of a vehicle's bus, for third-party tools."""
 
 from __future__ import annotations
 

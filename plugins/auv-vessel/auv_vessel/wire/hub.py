@@ -1,8 +1,8 @@
 """A bus for several processes of one machine: a hub that speaks the socketcand protocol.
 
-It passes every frame on to all others on its channel, in the order in which it comes. It is no CAN: there is
+It passes every frame on to all others on its channel, in the order in which it comes. Unlike CAN it knows
 no arbitration, no bit rate, no acknowledgement, no error frame and no bus-off; frames do not collide, and
-none is sent again. Loss, delay and corruption are what it is told to do.
+none is sent again. Loss, delay and corruption are configured.
 """
 
 from __future__ import annotations
@@ -21,19 +21,19 @@ from auv_vessel.wire.socketcand import CHANNEL, ECHO, HI, OK, error_word, frame_
 
 MOST_CLIENTS, MOST_BEHIND, MOST_WRONG, MOST_DELAYED = 256, 262_144, 100, 100_000
 """Clients; bytes that wait for a client that does not read, after which it misses frames; words that a client
-may say wrongly before it is sent away; frames on their way at a time."""
+may send wrongly before it is disconnected; frames in transit at a time."""
 
 MOST_RATE, _BURST = 8_000, 80
-"""Words of a client that are heard in a second, about the frames that a CAN of 1 Mbit/s carries, and at once.
+"""Words read from a client in a second, about the frames that a CAN of 1 Mbit/s carries, and at once.
 
-Who says more is read no faster: it has to wait, and nobody else has.
+A client that sends more is read no faster: it alone has to wait.
 """
 
 GREETING_SECONDS = 5.0
-"""How long a client has from its connection to ``rawmode``: one that never hears the bus takes no room."""
+"""Seconds from a client's connection to ``rawmode``: one that never joins the bus takes no room."""
 
 _SYSTEM_BUFFER = 65_536
-"""Bytes that the system keeps for a client besides: what a slow one hears is not older than need be."""
+"""Bytes that the system buffers for a client besides: a slow one receives nothing older than need be."""
 
 _HOLD = 0.03
 """Seconds between the answer to ``rawmode`` and the first frame: python-can's client reads them as one."""
@@ -43,11 +43,11 @@ Log = Callable[[float, str, Frame], None]
 
 @dataclass(frozen=True, slots=True)
 class Troubles:
-    """What becomes of frames on their way, for all who hear them alike.
+    """Faults of frames in transit, the same for all receivers.
 
     Attributes:
-        loss: part of the frames that nobody hears.
-        delay: seconds that each is on its way; they stay in order.
+        loss: fraction of frames to drop.
+        delay: latency of each frame, seconds; they stay in order.
         corruption: part of the frames with data in which one to three bits are wrong.
     """
 
@@ -128,7 +128,7 @@ class Hub:
         return True
 
     def leave(self, client: _Client) -> None:
-        """Forget a client; what it said is still on its way."""
+        """Forget a client; its frames in transit remain."""
         self._clients.discard(client)
 
     def take(self, sender: _Client, frame: Frame) -> None:
@@ -232,7 +232,7 @@ class _Client(asyncio.Protocol):
             self._hear_some()
 
     def _hear_some(self) -> None:
-        """Hear as many words as the client may say now; have it wait with the others, and say no more."""
+        """Read as many words as the client may send now; keep it waiting with the others."""
         loop = asyncio.get_running_loop()
         self._allowed = min(float(_BURST), self._allowed + (loop.time() - self._since) * MOST_RATE)
         self._since = loop.time()
@@ -253,7 +253,7 @@ class _Client(asyncio.Protocol):
             self._transport.resume_reading()
 
     def tell(self, word: bytes) -> bool:
-        """Say a frame to the client, if it listens; return False if it must miss it."""
+        """Send a frame to the client, if it reads; return False if it must miss it."""
         if not self._raw or self._transport is None or self._transport.is_closing():
             return True
         behind = self._transport.get_write_buffer_size() + len(self._held or b"")

@@ -1,4 +1,4 @@
-"""How busy a vehicle's bus is: as designed, and as it was heard."""
+"""The load of a vehicle's bus: as designed, and as measured."""
 
 from __future__ import annotations
 
@@ -108,8 +108,8 @@ class Load:
 
 
 @dataclass(frozen=True, slots=True)
-class Heard:
-    """How busy a bus was, by the stuff bits of the frames that were heard; parts of its time.
+class MeasuredLoad:
+    """The load of a bus, by the stuff bits of the frames received; fractions of its time.
 
     Attributes:
         mean: over all the time.
@@ -176,11 +176,13 @@ def _latest(number: int, messages: Sequence[Message], lengths: Sequence[int], ra
     return waiting + own
 
 
-def heard_load(frames: Iterable[tuple[float, Frame]], bit_rate: int, window: float = 0.1) -> Heard | None:
+def measured_load(
+    frames: Iterable[tuple[float, Frame]], bit_rate: int, window: float = 0.1
+) -> MeasuredLoad | None:
     """Return how busy a bus was.
 
     Args:
-        frames: with the times in seconds at which they were heard, in order.
+        frames: with the times in seconds at which they were received, in order.
         bit_rate: that the bus has or, if it is a hub, would have.
         window: seconds.
 
@@ -202,7 +204,7 @@ def heard_load(frames: Iterable[tuple[float, Frame]], bit_rate: int, window: flo
         return None
     whole = max(1, floor((last - first) / window + _ROUNDING))
     shares = sorted(windows.get(each, 0) / (bit_rate * window) for each in range(whole))
-    return Heard(
+    return MeasuredLoad(
         count, last - first, window, bits / bit_rate / (last - first),
         _part(shares, 0.5), _part(shares, 0.99), shares[-1], 100.0 * (bits - plain) / plain,
     )  # fmt: skip

@@ -34,7 +34,7 @@ UNTOLD = frozenset({"udp_multicast"})
 """Interfaces that give back what they send, indistinguishable from what others send."""
 
 ERRORS = {
-    "overrun": "frames that nobody took in time",
+    "overrun": "frames that were not taken in time",
     "refused": "frames that the interface did not take",
     "remote": "remote frames",
     "error": "error frames",
@@ -77,7 +77,7 @@ class Port:
 
         Args:
             echoes: whether what the interface says was not received is what this port itself has sent.
-            say: is told of each sort of error when it first happens, and of all when the port is closed.
+            say: receives each sort of error when it first happens, and all when the port is closed.
         """
         self._echoes, self._say = echoes, say
         self.errors: Counter[str] = Counter()
@@ -110,7 +110,7 @@ class Port:
             self._check()
 
     def receive(self, timeout: float) -> Frame | None:
-        """Return the next frame, or None if there was none for so many seconds.
+        """Return the next frame, or None if there was none for `seconds`.
 
         Raises:
             PortError: the bus is gone, and all that came from it was returned.
@@ -208,9 +208,9 @@ def open_port(
         interface: as python-can calls it: ``virtual`` (within this process), ``socketcand`` (a hub),
             ``socketcan``, or that of a vendor's adapter.
         channel: of that interface; for ``socketcand`` also ``CHANNEL@HOST:PORT``.
-        bit_rate: bits per second, for adapters that have to be told.
+        bit_rate: bits per second, for adapters that need it.
         patience: seconds to wait for a hub that is not there yet.
-        say: is told of errors of the bus, as by `Port`.
+        say: receives errors of the bus, as in `Port`.
         options: of python-can's interface, such as ``host`` and ``port`` for ``socketcand``.
 
     Raises:
@@ -246,7 +246,7 @@ def _bus_of_hub(channel: str, patience: float, options: dict[str, Any]) -> BusAB
     """Return a connection to a hub.
 
     python-can's client takes the hub's answer and frames that follow at once for one answer, and gives
-    up: it is then made anew.
+    up: it is then replaced.
     """
     from can import CanError
 
@@ -287,7 +287,7 @@ def _await_hub(host: str, port: int, patience: float) -> None:
 
 
 def _limit(bus: BusABC) -> None:
-    """Have a connection to a hub fail that takes nothing for `_SEND` seconds, rather than hold up a node."""
+    """Let a connection to a hub that takes nothing for `_SEND` seconds fail, rather than hold up a node."""
     connection = _connection(bus)
     if connection is not None:
         connection.settimeout(_SEND)
@@ -314,7 +314,7 @@ def _ended(bus: BusABC) -> bool:
 
 
 def _oddity(message: Message) -> str | None:
-    """Return what a message is if it is no data frame of classic CAN."""
+    """Return what a message is if it is not a data frame of classic CAN."""
     if message.is_error_frame:
         return "error"
     if message.is_remote_frame:

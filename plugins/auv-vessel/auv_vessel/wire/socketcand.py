@@ -1,4 +1,4 @@
-"""The words of the socketcand protocol, raw mode, as a hub hears and says them.
+"""The words of the socketcand protocol, raw mode, as a hub receives and sends them.
 
 A hub greets with ``< hi >``; a client answers ``< open CHANNEL >`` and ``< rawmode >``, each acknowledged
 by ``< ok >``; from then on ``< send ID LENGTH BYTES >`` of one becomes ``< frame ID TIME BYTES >`` of all

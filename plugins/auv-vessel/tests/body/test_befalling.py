@@ -61,7 +61,7 @@ def test_a_battery_is_as_full_as_is_typed(vehicle):
     ("line", "said"),
     [
         ("", "no such fault"),
-        ("flood", "flood: no such fault; there are thruster-dead THRUSTER"),
+        ("flood", "flood: no such fault; known are thruster-dead THRUSTER"),
         ("leak now", "no such fault"),
         ("mend battery", "no such fault"),
         ("thruster-dead 6", "6: no such thruster; there are T1, T2"),

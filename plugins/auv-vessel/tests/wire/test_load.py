@@ -11,7 +11,7 @@ from vessel_sheets import sheet
 
 from auv_vessel.wire.catalogue import EMERGENCIES, layout_of, messages_of
 from auv_vessel.wire.frame import Frame
-from auv_vessel.wire.load import heard_load, length_of, load_of, longest
+from auv_vessel.wire.load import length_of, load_of, longest, measured_load
 
 
 def test_load_is_the_sum_of_lengths_by_periods() -> None:
@@ -71,7 +71,7 @@ def test_no_message_is_over_later_than_told_on_a_simulated_bus(phases: list[floa
 def test_a_busy_tenth_of_a_second_is_found_among_quiet_ones() -> None:
     frame = Frame(0x555, b"\xaa" * 8)
     burst = [(1.02 + 0.001 * number, frame) for number in range(50)]
-    found = heard_load([(0.0, frame), *burst, (10.01, frame)], 500_000)
+    found = measured_load([(0.0, frame), *burst, (10.01, frame)], 500_000)
     assert found is not None
     bits = length_of(frame)
     assert found.peak == pytest.approx(50 * bits / 50_000)
@@ -80,7 +80,7 @@ def test_a_busy_tenth_of_a_second_is_found_among_quiet_ones() -> None:
 
 
 def test_frames_at_the_ends_of_windows_are_shared_out_evenly() -> None:
-    found = heard_load([(100.0 + number * 0.05, Frame(0x555, b"\xaa")) for number in range(2001)], 500_000)
+    found = measured_load([(100.0 + number * 0.05, Frame(0x555, b"\xaa")) for number in range(2001)], 500_000)
     assert found is not None
     assert (
         found.median
@@ -92,12 +92,12 @@ def test_frames_at_the_ends_of_windows_are_shared_out_evenly() -> None:
 
 @pytest.mark.parametrize("times", [[], [1.0], [1.0, 1.0]])
 def test_no_load_of_no_time(times: list[float]) -> None:
-    assert heard_load([(time, Frame(1, b"")) for time in times], 500_000) is None
+    assert measured_load([(time, Frame(1, b"")) for time in times], 500_000) is None
 
 
 def test_stuffing_is_that_of_the_frames_that_were_heard() -> None:
     plain, stuffed = (
-        heard_load([(0.0, Frame(id, data)), (1.0, Frame(id, data))], 500_000)
+        measured_load([(0.0, Frame(id, data)), (1.0, Frame(id, data))], 500_000)
         for id, data in ((0x555, b"\xaa" * 8), (0x000, bytes(8)))
     )
     assert plain is not None

@@ -138,7 +138,7 @@ def test_all_that_is_wrong_is_told_at_once() -> None:
 
 @pytest.mark.parametrize("make", [messages_of, database_of, dbc_of, Codec])
 def test_nothing_is_made_of_it(make: type) -> None:
-    with pytest.raises(SheetError, match="mass: nan is no finite number"):
+    with pytest.raises(SheetError, match="mass: nan is not a finite number"):
         make(sheet(mass=nan))
 
 

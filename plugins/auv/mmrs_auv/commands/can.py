@@ -209,7 +209,7 @@ def load(
 
     Example: mmrs can load examples/pool --robot Naiad --messages
     """
-    from auv_vessel.wire.load import heard_load, load_of
+    from auv_vessel.wire.load import load_of, measured_load
     from mmrs_auv.commands.watching import summary, table
 
     sheet = sheet_in(vehicle, robot)
@@ -217,7 +217,7 @@ def load(
     frames = _logged(log) if log is not None else None
     if frames is None and interface:
         frames = _listened(interface, channel, sheet.bit_rate, seconds)
-    found = None if frames is None else heard_load(frames, sheet.bit_rate)
+    found = None if frames is None else measured_load(frames, sheet.bit_rate)
     if frames is not None and found is None:
         raise LinkLostError("no frames at two different times: nothing was said")
     if json:

@@ -10,7 +10,7 @@ from auv_vessel.sheet import Sheet
 from auv_vessel.wire.catalogue import messages_of
 from auv_vessel.wire.codec import Codec, Received, Value
 from auv_vessel.wire.frame import Frame
-from auv_vessel.wire.load import Heard, Load
+from auv_vessel.wire.load import Load, MeasuredLoad
 from auv_vessel.wire.ports import Port
 
 
@@ -106,7 +106,7 @@ def table(designed: Load) -> Iterator[str]:
         yield f"{each.name:20} 0x{each.id:03X} {period:>8} {bits:>9} {latest:>9}"
 
 
-def summary(designed: Load, found: Heard | None) -> Iterator[str]:
+def summary(designed: Load, found: MeasuredLoad | None) -> Iterator[str]:
     """Yield how busy the bus is by design, and how busy it was if it was heard."""
     yield (
         f"by design: {designed.least:.1%} of the time without stuff bits, {designed.most:.1%} at most, "

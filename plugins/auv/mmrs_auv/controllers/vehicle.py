@@ -15,7 +15,7 @@ from auv_vessel.decision.duties import (
     Surface,
     ThrusterNews,
 )
-from auv_vessel.decision.helm import (
+from auv_vessel.decision.duty_control import (
     COMES_UP,
     CRASHED,
     LINK_LOST,
@@ -23,7 +23,7 @@ from auv_vessel.decision.helm import (
     POSITION_LOST,
     SILENT,
     UNHEARD,
-    Helm,
+    DutyControl,
     Watch,
 )
 from auv_vessel.movement.abilities import abilities_of
@@ -79,7 +79,7 @@ class CanVehicle(Vehicle):
         self._robot, self._sheet, self._craft, self._orders = robot, sheet, craft, orders
         self._box, self._note, self._say, self._fixed = box, notes_in(box), say, -inf
         self._seen = seen
-        self._helm, self._drives = Helm(craft), ThrusterNews(craft, sheet)
+        self._helm, self._drives = DutyControl(craft), ThrusterNews(craft, sheet)
         self._watch = Watch(craft, orders.reserve, self._after, clearance)
         self._afloat = float(abilities_of(sheet).afloat)
         self._response, self._instead = "", ""

@@ -13,7 +13,7 @@ from vessel_rig import Rig
 
 from auv_vessel.body.surroundings import Obstacle, Surroundings
 from auv_vessel.decision.duties import FailureError, Stay
-from auv_vessel.decision.helm import Helm
+from auv_vessel.decision.duty_control import DutyControl
 from auv_vessel.eyes import Detection, Detections, to_datagram
 from auv_vessel.hosting import WireFault
 from mmrs_runtime.controllers.state import State
@@ -187,7 +187,7 @@ def test_what_cannot_be_gone_on_with_after_a_halt_has_failed(dive):
             if now > 1.0:
                 raise FailureError(OBJECT_NOT_FOUND, "gone")
 
-    helm = Helm(dive().rig.craft)
+    helm = DutyControl(dive().rig.craft)
     helm.begin(Gone(99.0), 0.0)
     helm.pause(0.5)
     helm.resume(2.0)

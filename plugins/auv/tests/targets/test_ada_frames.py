@@ -38,7 +38,7 @@ from mmrs_auv.targets.places import templates_of
 from sample_vessels import heavy_sheet, pool_sheet, torpedo_sheet
 from vessel_sheets import sheet
 
-from auv_vessel.decision.helm import COMES_UP
+from auv_vessel.decision.duty_control import COMES_UP
 from auv_vessel.eyes import Detections
 from auv_vessel.wire.catalogue import EMERGENCIES, REASONS
 from auv_vessel.wire.codec import Codec

@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from math import inf, isfinite
 
-from auv_vessel.decision.helm import COMES_UP, NEVER_BORNE
+from auv_vessel.decision.duty_control import COMES_UP, NEVER_BORNE
 from mmrs_auv.kinds import AUV_KIND
 from mmrs_core.behaviour.program import RobotProgram
 from mmrs_core.contributions.targets import TargetInput

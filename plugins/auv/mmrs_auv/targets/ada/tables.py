@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from auv_vessel.api import FARTHEST_SEEN, FIRST_SIGN, OFTEN, POSITION_LOST, REQUESTS, SELDOM
 from auv_vessel.control.failsafe import HEALTH_SILENT
 from auv_vessel.decision.duties import AFLOAT, CHARGING, CHARGING_SPARE, FULL, STALE
-from auv_vessel.decision.helm import SILENT, UNHEARD
+from auv_vessel.decision.duty_control import SILENT, UNHEARD
 from auv_vessel.eyes import (
     CONFIDENCE,
     DEEPEST,

@@ -1,4 +1,4 @@
-"""Has a vehicle do one duty at a time, and says what goes wrong."""
+"""Carries out one duty of a vehicle at a time, and reports what goes wrong."""
 
 from __future__ import annotations
 
@@ -11,16 +11,16 @@ from auv_vessel.decision.duties import BATTERY_LOW, NO_PROGRESS, OBJECT_NOT_FOUN
 LINK_LOST, POSITION_LOST, OBSTACLE, CRASHED = "LINK_LOST", "POSITION_LOST", "OBSTACLE", "CRASHED"
 
 COMES_UP = frozenset({CRASHED, NO_PROGRESS, OBJECT_NOT_FOUND})
-"""What no policy is about: the vehicle comes up, since nobody would find it under water."""
+"""Faults that no policy covers: the vehicle surfaces, since it would not be found under water."""
 
 NEVER_BORNE = frozenset({LINK_LOST})
-"""Events at which it comes up although a policy says to go on: that is about radio, not its own bus."""
+"""Events at which it surfaces although a policy says CONTINUE: that is about radio, not its own bus."""
 
 SILENT = 2.0
 """Seconds of silence of the whole bus that count as loss."""
 
 UNHEARD = 60.0
-"""Seconds of silence after which nobody waits any more for a vehicle to do what it was told."""
+"""Seconds of silence after which a commanded vehicle is no longer waited for."""
 
 AT_REST = 0.1
 """Metres per second under which a vehicle counts as halted."""
@@ -30,7 +30,7 @@ class Watch:
     """Looks at what may go wrong with a vehicle, whatever it does.
 
     Attributes:
-        borne: events that are not told, since a policy says to go on.
+        borne: events that are not reported, since a policy is CONTINUE.
     """
 
     def __init__(
@@ -67,13 +67,13 @@ class Watch:
 
     def _events(self, state: State) -> dict[str, str]:
         if state.silent > STALE:
-            silent = f"nothing was heard on the bus for {state.silent:.1f} s"
+            silent = f"no messages received on the bus for {state.silent:.1f} s"
             return {LINK_LOST: silent} if state.silent > SILENT else {}
         found = {}
         if not state.trusted or state.age > STALE:
             found[POSITION_LOST] = "depth and heading are not known"
         elif state.position_lost:
-            found[POSITION_LOST] = f"the place is known to {state.uncertainty:.1f} m only"
+            found[POSITION_LOST] = f"the position is known to {state.uncertainty:.1f} m only"
         if state.charge is not None and state.charge < self._reserve:
             found[BATTERY_LOW] = f"{state.charge:.0%} are left"
         if state.sonar is not None and state.sonar < self._clearance:
@@ -81,11 +81,11 @@ class Watch:
         return found
 
 
-class Helm:
+class DutyControl:
     """Has a vehicle do one duty at a time.
 
     Attributes:
-        watch: that looks at the vehicle meanwhile; None: nobody does yet.
+        watch: of the vehicle meanwhile; None: none yet.
     """
 
     def __init__(self, craft: Craft) -> None:
@@ -114,7 +114,7 @@ class Helm:
         return watched or self._failure
 
     def bear(self, event: str) -> None:
-        """Go on although that went wrong: what failed counts as done."""
+        """Continue in spite of that fault: what failed counts as done."""
         if self._failure is not None and self._failure.event == event:
             self._failure, self._done = None, True
         elif self.watch is not None:
@@ -127,7 +127,7 @@ class Helm:
             self._craft.hold()
 
     def resume(self, now: float) -> None:
-        """Go on; idempotent."""
+        """Resume; idempotent."""
         if self._paused:
             self._paused = False
             if self._duty is not None and not self._done:
