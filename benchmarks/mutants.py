@@ -92,14 +92,19 @@ MUTANTS = (
         ("patience", "waits.py", "if end <= now), None)", "if end < now - 1.0), None)"),
         ("held-counts", "waits.py", "self.since + seconds", "self.since"),
         ("peers", "waits.py", "if gone | away != setters:", "if True:"),
-        ("taken-over", "answers.py", "if found.which == TAKEN_OVER:", "if False:"),
+        ("taken-over", "responses.py", "if found.which == TAKEN_OVER:", "if False:"),
         (
             "time-of-slots",
             "life.py",
             "self._slots.state(slot).lamport + 1 for",
             "self._slots.state(slot).lamport for",
         ),
-        ("condition-fault", "judging.py", "except FAILURES as error:", "except ZeroDivisionError as error:"),
+        (
+            "condition-fault",
+            "decisions.py",
+            "except FAILURES as error:",
+            "except ZeroDivisionError as error:",
+        ),
     ),
     *_mutants(
         "reader",
