@@ -1,4 +1,4 @@
-"""Lines that people type while a command runs."""
+"""Lines typed while a command runs."""
 
 from __future__ import annotations
 
@@ -9,16 +9,16 @@ import threading
 from collections.abc import Sequence
 from contextlib import suppress
 
-EVERYBODY = "all"
-"""Stands for every robot, where a line begins with a robot's name."""
+ALL_ROBOTS = "all"
+"""Addresses every robot, instead of a name."""
 
 
 def typed_lines() -> queue.SimpleQueue[str]:
-    """Return what is typed, line by line, as it comes; nothing where no one can type."""
+    """Return the queue of typed lines, which stays empty without a terminal or a pipe."""
     lines: queue.SimpleQueue[str] = queue.SimpleQueue()
 
     def read() -> None:
-        with suppress(OSError):  # in the background of a terminal nobody can type
+        with suppress(OSError):  # a background process cannot read from its terminal
             for line in sys.stdin:
                 lines.put(line)
 
@@ -41,11 +41,11 @@ def addressed(text: str, names: Sequence[str]) -> tuple[tuple[str, ...], str, tu
     Raises:
         ValueError: it names no robot, or nothing else.
     """
-    fitting = [name for name in (*names, EVERYBODY) if f"{text.strip()} ".startswith(f"{name} ")]
+    fitting = [name for name in (*names, ALL_ROBOTS) if f"{text.strip()} ".startswith(f"{name} ")]
     robot = max(fitting, key=len, default=None)
     words = text.split() if robot is None else [robot, *text.strip().removeprefix(robot).split()]
     if len(words) < 2:
         raise ValueError(f"{text.strip()}: neither ROBOT FAULT [VALUE…] nor ROBOT mend FAULT")
     if robot is None:
         raise ValueError(f"{words[0]}: unknown robot; known are {', '.join(names)}, and all")
-    return tuple(name for name in names if robot in (name, EVERYBODY)), words[1], tuple(words[2:])
+    return tuple(name for name in names if robot in (name, ALL_ROBOTS)), words[1], tuple(words[2:])

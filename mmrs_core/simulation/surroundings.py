@@ -1,4 +1,4 @@
-"""Surroundings of simulated vehicles: the file that lists the objects that they can detect."""
+"""Surroundings of simulated robots: the file that lists the objects that they can detect."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from mmrs_runtime.sights import Sight
 
 
 def sights_in(path: Path) -> tuple[Sight, ...]:
-    """Return the ``things`` in a file of surroundings, the format that simulated underwater vehicles take.
+    """Return the objects in a file of surroundings, which simulated vehicles of plug-ins read, too.
 
     Raises:
         UnreadableError: the file cannot be read, or is not of that format.

@@ -16,7 +16,7 @@ from auv_vessel.body.surroundings import Surroundings
 from auv_vessel.body.surroundings import to_json as surroundings_json
 from auv_vessel.sheet import Sheet, to_json
 from auv_vessel.wire.hub import Troubles
-from mmrs_core.cli.typed import EVERYBODY, addressed
+from mmrs_core.cli.typed import ALL_ROBOTS, addressed
 from mmrs_core.errors import LinkLostError
 
 PARTS = ("vehicle", "sensors", "actuators", "movement")
@@ -203,7 +203,7 @@ def _number(text: str) -> float:
 
 def _obey(line: str, berths: Mapping[str, Berth], say: Callable[[str], None]) -> None:
     if line in ("", "status"):
-        line = f"{EVERYBODY} status"
+        line = f"{ALL_ROBOTS} status"
     try:
         robots, what, values = addressed(line, list(berths))
         for robot in robots:

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Sequence
 from contextlib import nullcontext
 from dataclasses import dataclass
 
-from mmrs_core.cli.typed import EVERYBODY, addressed
+from mmrs_core.cli.typed import ALL_ROBOTS, addressed
 from mmrs_mavlink.sitl.autopilot import SimulatedAutopilot
 from mmrs_mavlink.sitl.faults import FAULTS, Faults
 from mmrs_mavlink.sitl.vehicle import SimulatedVehicle
@@ -59,7 +59,7 @@ def scheduled(text: str) -> ScheduledFault:
     if found["lasts"] and FAULTS[found["name"]].cleared_by is None:
         raise ValueError(f"{text}: {found['name']} is one-shot and cannot last")
     values = tuple(found["values"].split(",")) if found["values"] else ()
-    robot = "" if found["robot"] in (None, EVERYBODY) else found["robot"]
+    robot = "" if found["robot"] in (None, ALL_ROBOTS) else found["robot"]
     lasts = float(found["lasts"]) if found["lasts"] else None
     return ScheduledFault(robot, found["name"], values, float(found["begin"] or 0.0), lasts)
 
