@@ -42,27 +42,20 @@ def test_the_reserve_is_the_one_that_is_asked_for():
     assert verdict.margin == pytest.approx(99.0)
 
 
-def test_device_actions_count():
-    shooting = hold("h", 10.0, before=(use("camera", "shoot"),), after=(use("camera", "shoot"),))
-    type = rover(devices={"camera": {"shoot": 2.5}})
-    assert seconds(robot("a", [shooting]), type=type) == 15.0
-
-
 def test_an_action_that_the_type_does_not_know_leaves_endurance_unknown():
     verdict = finding("endurance", given(robot("a", [hold("h", 1.0, after=(use("camera", "shoot"),))])))
     assert verdict.status is Status.UNKNOWN
 
 
-def test_waiting_for_another_robot_counts():
-    waiting = robot("a", [hold("h", 10.0)], waits={"h": ["go"]})
-    slow = robot("b", [hold("n", 300.0, after=(notify("a.go"),))])
-    assert seconds(waiting, slow) == 300.0
+@pytest.mark.parametrize(("own", "other", "whole"), [(10.0, 300.0, 300.0), (100.0, 30.0, 100.0)])
+def test_waiting_for_another_robot_counts_as_long_as_it_takes(own, other, whole):
+    waiting = robot("a", [hold("h", own)], waits={"h": ["go"]})
+    assert seconds(waiting, robot("b", [hold("n", other, after=(notify("a.go"),))])) == whole
 
 
-def test_a_wait_that_is_over_before_it_begins_takes_no_time():
-    waiting = robot("a", [hold("h", 100.0)], waits={"h": ["go"]})
-    quick = robot("b", [hold("n", 30.0, after=(notify("a.go"),))])
-    assert seconds(waiting, quick) == 100.0
+def test_device_actions_count():
+    shooting = hold("h", 10.0, before=(use("camera", "shoot"),), after=(use("camera", "shoot"),))
+    assert seconds(robot("a", [shooting]), type=rover(devices={"camera": {"shoot": 2.5}})) == 15.0
 
 
 def test_a_robot_that_launches_may_wait_on_the_ground():
@@ -99,11 +92,8 @@ def sorties(*between, **more):
     )
 
 
-def test_a_recharge_begins_a_new_sortie():
+def test_a_recharge_begins_a_new_sortie_and_landing_alone_does_not():
     assert seconds(sorties(recharge("charge", 60.0)), **LAUNCHES) == 510.0
-
-
-def test_landing_alone_does_not_fill_the_batteries():
     verdict = finding("endurance", given(sorties(), **LAUNCHES))
     assert (verdict.status, verdict.move) == (Status.VIOLATED, "down again")
     assert verdict.margin == pytest.approx(800.0 - 510.0 - 410.0)
@@ -292,23 +282,28 @@ def test_the_quickest_of_several_activations_counts_for_the_earliest_and_a_certa
     assert times.slots["a", "go"] == (5.0, 20.0)
 
 
-def test_a_slot_that_may_be_missed_has_no_latest_activation():
-    waiting = robot("a", [hold("h", 1.0)], waits={"h": ["go"]})
-    other = robot("b", [hold("n", 2.0, after=(notify("a.go"), notify("a.go", active=False)))])
-    assert times_of(given(waiting, other)).slots["a", "go"] == (2.0, inf)
+GO, BACK = (notify("a.go"),), (notify("a.go", active=False),)
 
 
-def test_a_slot_that_is_taken_back_when_it_was_used_is_bounded():
-    waiting = robot("a", [hold("h", 1.0), hold("i", after=(notify("b.done"),))], waits={"h": ["go"]})
-    moves = [hold("n", 2.0, after=(notify("a.go"),)), hold("o", 2.0, after=(notify("a.go", active=False),))]
-    other = robot("b", moves, waits={"n": ["done"]})
-    assert times_of(given(waiting, other)).slots["a", "go"] == (2.0, 2.0)
-
-
-def test_a_slot_that_is_taken_back_before_it_is_first_set_is_bounded():
-    waiting = robot("a", [hold("h", 1.0)], waits={"h": ["go"]})
-    moves = [hold("n", 2.0, after=(notify("a.go", active=False),)), hold("o", 2.0, after=(notify("a.go"),))]
-    assert times_of(given(waiting, robot("b", moves))).slots["a", "go"] == (4.0, 4.0)
+@pytest.mark.parametrize(
+    ("moves", "waits", "times"),
+    [
+        pytest.param([hold("n", 2.0, after=(*GO, *BACK))], {}, (2.0, inf), id="may be missed"),
+        pytest.param(
+            [hold("n", 2.0, after=GO), hold("o", 2.0, after=BACK)],
+            {"n": ["done"]},
+            (2.0, 2.0),
+            id="reset after use",
+        ),
+        pytest.param(
+            [hold("n", 2.0, after=BACK), hold("o", 2.0, after=GO)], {}, (4.0, 4.0), id="reset before"
+        ),
+    ],
+)
+def test_a_slot_that_is_reset_has_a_latest_activation_unless_it_may_be_missed(moves, waits, times):
+    after = (notify("b.done"),) if waits else ()
+    waiting = robot("a", [hold("h", 1.0), hold("i", after=after)], waits={"h": ["go"]})
+    assert times_of(given(waiting, robot("b", moves, waits=waits))).slots["a", "go"] == times
 
 
 def test_a_move_that_no_run_comes_to_has_no_earliest_begin():

@@ -22,29 +22,23 @@ def flyer(**more):
     return kind(launches=True, **more)
 
 
-def test_the_largest_height_is_compared_with_the_ceiling():
-    verdict = finding("altitude", given(flight(10.0, (5.0, 0.0, 14.0)), robot_kind=flyer(ceiling=12.0)))
-    assert (verdict.status, verdict.move, verdict.unit) == (Status.VIOLATED, "over", "m")
-    assert verdict.margin == pytest.approx(-2.0)
+@pytest.mark.parametrize(
+    ("over", "limits", "status", "margin"),
+    [
+        pytest.param(14.0, {"ceiling": 12.0}, Status.VIOLATED, -2.0, id="above the ceiling"),
+        pytest.param(10.0, {"floor": 2.0, "ceiling": 30.0}, Status.SAFE, 8.0, id="take-off and landing"),
+        pytest.param(1.5, {"floor": 2.0}, Status.VIOLATED, -0.5, id="below the floor"),
+        pytest.param(10.0, {}, Status.NOT_CHECKED, None, id="no limits"),
+    ],
+)
+def test_altitudes_stay_between_floor_and_ceiling(over, limits, status, margin):
+    verdict = finding("altitude", given(flight(10.0, (5.0, 0.0, over)), robot_kind=flyer(**limits)))
+    assert verdict.status is status
+    assert verdict.margin == (None if margin is None else pytest.approx(margin))
+    assert (verdict.move, verdict.unit) == ("over", "m") or status is not Status.VIOLATED
 
 
-def test_take_off_and_landing_may_be_below_the_floor():
-    verdict = finding("altitude", given(flight(), robot_kind=flyer(floor=2.0, ceiling=30.0)))
-    assert verdict.status is Status.SAFE
-    assert verdict.margin == pytest.approx(8.0)
-
-
-def test_a_flight_below_the_floor_is_violated():
-    verdict = finding("altitude", given(flight(10.0, (5.0, 0.0, 1.5)), robot_kind=flyer(floor=2.0)))
-    assert (verdict.status, verdict.move) == (Status.VIOLATED, "over")
-    assert verdict.margin == pytest.approx(-0.5)
-
-
-def test_no_limits_of_height_are_not_checked():
-    assert finding("altitude", given(flight())).status is Status.NOT_CHECKED
-
-
-def test_a_kind_that_nobody_contributed_is_unknown():
+def test_an_unknown_robot_kind_is_unknown():
     verdict = finding("altitude", given(flight(), robot_kind=kind(FLYER)))
     assert verdict.status is Status.UNKNOWN
     assert "no plug-in provides a robot kind for type 'rover'" in verdict.message
@@ -58,20 +52,14 @@ def dive(depth, *, surface=0.0, type=None, robot_kind=None, density=None):
     )
 
 
-def test_pressure_follows_from_depth_and_density():
-    allowed = ATMOSPHERE + 1000.0 * GRAVITY * 12.0
-    deep = rover(attributes={"maxOperatingPressure": allowed})
-    verdict = finding("depth", dive(10.0, type=deep, density=1000.0))
-    assert (verdict.status, verdict.unit, verdict.move) == (Status.SAFE, "Pa", "down")
-    assert verdict.margin == pytest.approx(1000.0 * GRAVITY * 2.0)
-
-
-def test_depth_counts_from_the_surface():
-    allowed = ATMOSPHERE + 1000.0 * GRAVITY * 12.0
-    deep = rover(attributes={"maxOperatingPressure": allowed})
-    verdict = finding("depth", dive(10.0, surface=3.0, type=deep, density=1000.0))
-    assert verdict.status is Status.VIOLATED
-    assert verdict.margin == pytest.approx(-1000.0 * GRAVITY)
+@pytest.mark.parametrize(
+    ("surface", "status", "spare"), [(0.0, Status.SAFE, 2.0), (3.0, Status.VIOLATED, -1.0)]
+)
+def test_pressure_follows_from_density_and_the_depth_below_the_surface(surface, status, spare):
+    deep = rover(attributes={"maxOperatingPressure": ATMOSPHERE + 1000.0 * GRAVITY * 12.0})
+    verdict = finding("depth", dive(10.0, surface=surface, type=deep, density=1000.0))
+    assert (verdict.status, verdict.unit, verdict.move) == (status, "Pa", "down")
+    assert verdict.margin == pytest.approx(1000.0 * GRAVITY * spare)
 
 
 def test_a_dive_without_figures_is_unknown_and_says_which():
@@ -98,22 +86,11 @@ def test_a_robot_above_the_surface_is_not_checked_for_depth():
     assert finding("depth", given(robot("a", [AWAY]))).status is Status.NOT_CHECKED
 
 
-def test_range_is_the_largest_distance_from_home():
-    near = given(robot("a", [AWAY]), type=rover(attributes={"communicationRange": 60.0}))
-    verdict = finding("range", near)
-    assert (verdict.status, verdict.move) == (Status.SAFE, "away")
-    assert verdict.margin == pytest.approx(10.0)
-
-
-def test_out_of_range_is_violated():
-    far = given(robot("a", [AWAY]), type=rover(attributes={"communicationRange": 45.0}))
-    assert finding("range", far).margin == pytest.approx(-5.0)
-
-
-def test_an_unstated_range_is_unknown():
-    verdict = finding("range", given(robot("a", [AWAY])))
-    assert verdict.status is Status.UNKNOWN
-    assert verdict.message == "a: the communicationRange of robot type 'rover' is not given"
+@pytest.mark.parametrize(("reach", "status"), [(60.0, Status.SAFE), (45.0, Status.VIOLATED)])
+def test_range_is_the_largest_distance_from_home(reach, status):
+    made = given(robot("a", [AWAY]), type=rover(attributes={"communicationRange": reach}))
+    verdict = finding("range", made)
+    assert (verdict.status, verdict.move, verdict.margin) == (status, "away", pytest.approx(reach - 50.0))
 
 
 def test_payload_is_compared_with_what_the_type_carries():
@@ -199,27 +176,6 @@ def test_a_wind_in_which_no_robot_of_the_type_holds_is_violated_though_it_has_no
     assert (found[0].move, found[0].margin) == ("up", pytest.approx(-1.0))
 
 
-def test_wind_without_a_position_hold_is_unknown():
-    verdict = finding("wind", given(flight(), robot_kind=flyer(), environment={"windSpeed": 9.0}))
-    assert (verdict.status, verdict.message) == (
-        Status.UNKNOWN,
-        "a: the positionHold of robot type 'rover' is not given",
-    )
-
-
-def test_no_wind_stated_is_not_checked_and_says_what_the_robot_holds_against():
-    calm = given(flight(), robot_kind=flyer(), type=rover(attributes={"positionHold": 8.0}))
-    verdict = finding("wind", calm)
-    assert (verdict.status, verdict.message) == (
-        Status.NOT_CHECKED,
-        "a: the environment states no windSpeed, the robot holds against 8 m/s",
-    )
-
-
-def test_where_no_wind_is_stated_robots_on_the_ground_are_told_as_such():
-    assert finding("wind", given(robot("a", [AWAY]))).message == "a: it does not fly"
-
-
 def test_wind_does_not_concern_what_stays_on_the_ground():
     idle = given(robot("a", []), robot_kind=flyer(), environment={"windSpeed": 9.0})
     driving = given(robot("a", [AWAY]), environment={"windSpeed": 9.0})
@@ -239,20 +195,50 @@ def test_temperature_stays_within_the_operating_range(temperature, margin):
     assert verdict.status is (Status.SAFE if margin >= 0 else Status.VIOLATED)
 
 
-def test_temperature_without_an_operating_range_is_unknown():
-    verdict = finding("temperature", given(robot("a", []), environment={"temperature": 20.0}))
-    assert verdict.status is Status.UNKNOWN
+HOLDS = rover(attributes={"positionHold": 8.0})
+OPERATES = rover(attributes={"operatingTemperature": Part((), {"min": 0.0, "max": 40.0})})
+STANDS, WINDY = robot("a", []), {"windSpeed": 9.0}
 
 
-def test_no_temperature_stated_is_not_checked_and_says_where_the_robot_operates():
-    bounds = Part((), {"min": 0.0, "max": 40.0})
-    verdict = finding(
-        "temperature", given(robot("a", []), type=rover(attributes={"operatingTemperature": bounds}))
-    )
-    assert (verdict.status, verdict.message) == (
-        Status.NOT_CHECKED,
-        "a: the environment states no temperature, the robot operates from 0 to 40 °C",
-    )
+@pytest.mark.parametrize(
+    ("name", "made", "status", "words"),
+    [
+        (
+            "range",
+            given(robot("a", [AWAY])),
+            Status.UNKNOWN,
+            "the communicationRange of robot type 'rover' is not given",
+        ),
+        (
+            "wind",
+            given(flight(), robot_kind=flyer(), environment=WINDY),
+            Status.UNKNOWN,
+            "the positionHold of robot type 'rover' is not given",
+        ),
+        (
+            "wind",
+            given(flight(), robot_kind=flyer(), type=HOLDS),
+            Status.NOT_CHECKED,
+            "the environment states no windSpeed, the robot holds against 8 m/s",
+        ),
+        ("wind", given(robot("a", [AWAY])), Status.NOT_CHECKED, "it does not fly"),
+        (
+            "temperature",
+            given(STANDS, environment={"temperature": 20.0}),
+            Status.UNKNOWN,
+            "the operatingTemperature of robot type 'rover' is not given",
+        ),
+        (
+            "temperature",
+            given(STANDS, type=OPERATES),
+            Status.NOT_CHECKED,
+            "the environment states no temperature, the robot operates from 0 to 40 °C",
+        ),
+    ],
+)
+def test_what_is_missing_is_named(name, made, status, words):
+    verdict = finding(name, made)
+    assert (verdict.status, verdict.message) == (status, f"a: {words}")
 
 
 @pytest.mark.parametrize("name", ["altitude", "range", "endurance", "energy", "states", "clearance"])
