@@ -22,7 +22,7 @@ class GeneratedFile:
         path: relative, with forward slashes.
         content: its bytes.
         once: whether the file is the user's after it was first written: it is never overwritten.
-        asks: what it leaves to the user, each for people.
+        asks: what it leaves to the user, one message each.
     """
 
     path: str
@@ -56,7 +56,7 @@ class TracedStep:
     """Which move and task a place in a generated file serves.
 
     Attributes:
-        step: the place, such as ``item 4``, in the words of that kind of file.
+        step: position in the file, such as ``item 4``, in the terms of that kind of file.
         robot, move: identifiers.
         task, rule: as in the behaviour; may be empty.
     """
@@ -80,7 +80,7 @@ class FileSpec:
         source: a file outside that folder that is copied instead of the template; None: the template.
         view: what the template sees.
         trace: which step serves which move and task, for the manifest.
-        data: what the file holds, where it is no text; None: what the template makes.
+        data: content of a binary file; None: what the template makes.
         once, asks: as in `GeneratedFile`.
     """
 
@@ -100,7 +100,7 @@ class Target:
 
     Attributes:
         name: kebab-case, as in ``--target``.
-        description: one line for people.
+        description: one line.
         templates: folder of Jinja2 templates. Whatever a template writes must have passed a filter;
             a bare value is an error.
         files: what to render; paths must not collide. Raises UnsupportedError where nothing sensible

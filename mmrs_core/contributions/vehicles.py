@@ -1,4 +1,4 @@
-"""What makes the vehicles of a run, and what they are made from; `mmrs_runtime.vehicle` says what they are.
+"""What makes the vehicles of a run, and what they are made from; see `mmrs_runtime.vehicle` for these.
 
 Times are seconds of the run's clock throughout.
 """
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 @runtime_checkable
 class Recorder(Protocol):
-    """A vehicle that remembers the way of its robot, for pictures and people."""
+    """A vehicle that records the track of its robot."""
 
     @property
     def notes(self) -> Sequence[str]:
@@ -30,7 +30,7 @@ class Recorder(Protocol):
         ...
 
     def track(self) -> tuple[Sample, ...]:
-        """Return the way that the robot has come."""
+        """Return the robot's track."""
         ...
 
 
@@ -70,7 +70,7 @@ class VehicleFactory:
 
     Attributes:
         name: as in ``--backend``.
-        description: one line for people.
+        description: one line.
         connect: a vehicle for one robot. Raises LinkLostError where the robot does not answer,
             UnsupportedError for an option that it does not know and for what it cannot do.
         simulated: whether its time is simulated, so that a run jumps from event to event;

@@ -24,7 +24,7 @@ from mmrs_core.contributions.checks import Status
 
 ROOT = Path(__file__).parents[2]
 PAGE = ROOT / "docs" / "diagnostics.md"
-PLUGINS = {"mmrs-auv", "mmrs-multicopter", "mmrs-rover", "mmrs-solar", "mmrs-survey"}
+PLUGINS = {"mmrs-auv", "mmrs-mavlink", "mmrs-multicopter", "mmrs-rover", "mmrs-solar", "mmrs-survey"}
 CONFTEST = runpy.run_path(str(ROOT / "tests" / "unit" / "analysis" / "constraints" / "conftest.py"))
 
 

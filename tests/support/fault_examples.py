@@ -131,7 +131,8 @@ def plugin_examples() -> dict[str, Example]:
     for file in sorted((ROOT / "plugins").glob("*/tests/test_con*.py")):
         for kit in runpy.run_path(str(file)).values():
             if isinstance(kit, type) and issubclass(kit, ConstraintConformance) and hasattr(kit, "cases"):
-                registry = registry_with((*kit.plugin.mmrs_metamodels(), *kit.more_metamodels))
+                own = getattr(kit.plugin, "mmrs_metamodels", tuple)()
+                registry = registry_with((*own, *kit.more_metamodels))
                 for constraint in kit.plugin.mmrs_constraints():
                     case = kit.cases[constraint.code]
                     failing, passing = tuple(case.broken(registry)), tuple(case.kept(registry))

@@ -21,9 +21,6 @@ SHORTEST_LIFETIME = 60.0
 LOWEST_PRESSURE = 50_000.0
 """Pascals absolute, as at a height of 5.5 km; below it the unit is suspect."""
 
-OUTPUTS = ("mavlink.servo", "mavlink.relay", "mavlink.gripper", "mavlink.winch", "mavlink.value")
-"""Properties of devices that name an output of the autopilot, or a value that it publishes."""
-
 
 def _upside_down(interval: Element, models: ModelSet) -> Iterator[Finding]:
     low, high = number(interval, "min"), number(interval, "max")
@@ -121,16 +118,6 @@ def _way_back(policy: Element, models: ModelSet) -> Iterator[Finding]:
         yield finding(policy, f"{response} needs a position, and the robot has none")
 
 
-def _shared_output(robot: Element, models: ModelSet) -> Iterator[Finding]:
-    holders: dict[tuple[str, str], Element] = {}
-    for device in children(robot, "devices"):
-        for each in children(device, "properties"):
-            key, said = text(each, "name"), text(each, "value").strip()
-            first = holders.setdefault((key, said), device)
-            if key in OUTPUTS and first is not device:
-                yield finding(device, f"its {key} is {said}, which {called(first)} has already")
-
-
 CONSTRAINTS = (
     Constraint(
         "RL017",
@@ -223,13 +210,5 @@ CONSTRAINTS = (
         (ROBOT, "Policy"),
         _way_back,
         "let it land, surface, hold or stop its thrust",
-    ),
-    Constraint(
-        "RL030",
-        "Each output of an autopilot, and each value that it publishes, belongs to one device.",
-        (ROBOT, "Robot"),
-        _shared_output,
-        "give each device its own, or describe what they are together as one device",
-        Severity.WARNING,
     ),
 )

@@ -10,6 +10,7 @@ from mmrs_core.contributions.hooks import Hook
 from mmrs_core.hookspecs import hookimpl
 
 if TYPE_CHECKING:
+    from mmrs_core.contributions.constraints import Constraint
     from mmrs_core.contributions.targets import Target
     from mmrs_core.contributions.vehicles import VehicleFactory
     from mmrs_mavlink.wiring import DeviceWiring
@@ -21,6 +22,14 @@ def mmrs_targets() -> Iterable[Target]:
     from mmrs_mavlink.plugin.targets import TARGETS
 
     return TARGETS
+
+
+@hookimpl
+def mmrs_constraints() -> Iterable[Constraint]:
+    """Contribute what holds of devices on autopilots."""
+    from mmrs_mavlink.plugin.constraints import CONSTRAINTS
+
+    return CONSTRAINTS
 
 
 @hookimpl
