@@ -1,6 +1,10 @@
-"""What the installed plug-ins contribute, and the command line."""
+"""What the installed plug-ins contribute, the shipped mapping, and the command line."""
+
+from pathlib import Path
 
 import pytest
+from mmrs_flyaq.plugin import FLYAQ_2015
+from mmrs_flyaq.rules.mapping_file import read_mapping
 
 from mmrs_core.cli import run
 from mmrs_core.plugins import load_plugins
@@ -10,6 +14,22 @@ from mmrs_core.plugins import load_plugins
 def contributions():
     """Return what the installed plug-ins contribute."""
     return load_plugins().contributions
+
+
+@pytest.fixture(scope="session")
+def registry(contributions):
+    return contributions.languages
+
+
+@pytest.fixture(scope="session")
+def mapping(registry):
+    """Return the shipped mapping of FLYAQ 2015."""
+    return read_mapping(FLYAQ_2015, registry)
+
+
+@pytest.fixture(scope="session")
+def flyaq():
+    return Path(__file__).parent / "fixtures" / "flyaq"
 
 
 @pytest.fixture

@@ -14,9 +14,7 @@ from mmrs_core.testing.instances import instances_of
 from mmrs_core.testing.values import values_of
 
 LANGUAGES = ("urn:mmrs:mission:1.0", "urn:mmrs:robot:1.0", "urn:mmrs:behaviour:1.0", "urn:test:zoo")
-RELAXED = settings(
-    deadline=None, max_examples=50, suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large]
-)
+RELAXED = settings(deadline=None, suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large])
 
 
 def edit(data, root):
@@ -34,7 +32,10 @@ def edit(data, root):
         setattr(element, feature.attribute, data.draw(values_of(feature, None)))
 
 
-def changes_are_told_if_there_are_any(registry, data):
+@pytest.mark.thorough
+@RELAXED
+@given(data=st.data())
+def test_changes_are_told_if_there_are_any(registry, data):
     drawn = data.draw(st.sampled_from(LANGUAGES).flatmap(lambda ns_uri: instances_of(registry, ns_uri)))
     text = to_xmi([drawn], registry)
     one, other = (read_text(text, "a.xmi", registry).roots for _ in range(2))
@@ -46,17 +47,3 @@ def changes_are_told_if_there_are_any(registry, data):
         return
     assert bool(changes_between(one, other)) == differs
     assert bool(changes_between(other, one)) == differs
-
-
-@pytest.mark.thorough
-@RELAXED
-@given(data=st.data())
-def test_changes_are_told_if_there_are_any(registry, data):
-    changes_are_told_if_there_are_any(registry, data)
-
-
-@pytest.mark.thorough
-@settings(RELAXED, max_examples=2000)
-@given(data=st.data())
-def test_changes_are_told_if_there_are_any_in_many_models(registry, data):
-    changes_are_told_if_there_are_any(registry, data)

@@ -5,7 +5,6 @@ from __future__ import annotations
 import re
 from contextlib import contextmanager
 
-import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
@@ -23,9 +22,7 @@ from mmrs_core.testing.instances import drafts_of
 
 NEVER = 10**9
 LANGUAGES = ("urn:mmrs:mission:1.0", "urn:mmrs:robot:1.0", "urn:mmrs:behaviour:1.0", "urn:test:zoo")
-RELAXED = settings(
-    deadline=None, max_examples=50, suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large]
-)
+RELAXED = settings(deadline=None, suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large])
 JUNK = (
     *("", "x", "1_0", " 5 ", "5", "-0.0", "NaN", "nan", "inf", "1.5d", "1e400", "\u0663.5", "true", "True"),
     *("//@nope.3", "//@animals.0", "//@animals.0 //@animals.1", "//@animals.\u0661", "//@animals.-1", "/9"),
@@ -176,60 +173,27 @@ def replaced(draw, text, pattern, by):
     return f"{text[: match.start()]}{match.expand(by)}{text[match.end() :]}"
 
 
-def compiled_readers_agree(registry, data):
+@RELAXED
+@given(data=st.data())
+def test_compiled_readers_read_what_the_careful_one_reads(registry, data):
     text = data.draw(faulty_texts(registry))
     assert read(text, registry, 1) == read(text, registry, NEVER)
 
 
-def compiled_writers_agree(registry, data):
+@RELAXED
+@given(data=st.data())
+def test_compiled_writers_write_what_the_careful_one_writes(registry, data):
     roots = data.draw(forests(registry))
     with compiled_after(1):
         quickly = written(writer_for(roots, registry, None))
     assert quickly == written(XmiWriter(roots, registry, None))
 
 
-def compiled_rules_agree(registry, data):
+@RELAXED
+@given(data=st.data())
+def test_compiled_rules_find_what_the_careful_ones_find(registry, data):
     model = Model("a.xmi", data.draw(forests(registry)))
     with compiled_after(1):
         quickly = check_conformance(model, registry)
     with compiled_after(NEVER):
         assert quickly == check_conformance(model, registry)
-
-
-@RELAXED
-@given(data=st.data())
-def test_compiled_rules_find_what_the_careful_ones_find(registry, data):
-    compiled_rules_agree(registry, data)
-
-
-@RELAXED
-@given(data=st.data())
-def test_compiled_readers_read_what_the_careful_one_reads(registry, data):
-    compiled_readers_agree(registry, data)
-
-
-@RELAXED
-@given(data=st.data())
-def test_compiled_writers_write_what_the_careful_one_writes(registry, data):
-    compiled_writers_agree(registry, data)
-
-
-@pytest.mark.thorough
-@settings(RELAXED, max_examples=3000)
-@given(data=st.data())
-def test_compiled_readers_read_what_the_careful_one_reads_of_many_texts(registry, data):
-    compiled_readers_agree(registry, data)
-
-
-@pytest.mark.thorough
-@settings(RELAXED, max_examples=3000)
-@given(data=st.data())
-def test_compiled_writers_write_what_the_careful_one_writes_of_many_models(registry, data):
-    compiled_writers_agree(registry, data)
-
-
-@pytest.mark.thorough
-@settings(RELAXED, max_examples=3000)
-@given(data=st.data())
-def test_compiled_rules_find_what_the_careful_ones_find_in_many_models(registry, data):
-    compiled_rules_agree(registry, data)

@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from mmrs_core.errors import UnreadableError
-from mmrs_core.languages.json_form.markup import JsonMarkup, Member, Thing, inserted, taken_away
+from mmrs_core.languages.json_form.markup import JsonMarkup, JsonTag, Member, inserted, taken_away
 
 NAMES = st.text(st.characters(exclude_categories=["Cs"]), max_size=6).filter(lambda name: name[:1] != "$")
 PLAIN = st.one_of(st.booleans(), st.integers(), st.floats(allow_nan=False, allow_infinity=False), NAMES)
@@ -28,7 +28,7 @@ def text_of(value, layout):
 
 
 def things(markup):
-    return [each for each in markup.root.everything() if isinstance(each, Thing)]
+    return [each for each in markup.root.everything() if isinstance(each, JsonTag)]
 
 
 @given(OBJECTS, LAYOUTS)
@@ -70,7 +70,7 @@ def test_what_is_put_in_is_all_that_comes(value, layout, name, text):
     value.pop("new", None)
     data = text_of(value, layout)
     root = JsonMarkup(data, "m.json").root
-    assert isinstance(root, Thing)
+    assert isinstance(root, JsonTag)
     begin, words = inserted(root, name, text, data)
     after = json.loads(data[:begin] + words.encode() + data[begin:])
     (found,) = [after.pop(key) for key in ("new", "$type", "$languages") if key in after]

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from metamodel_edits import EDITS, ZOO, edited
@@ -18,14 +17,14 @@ from mmrs_core.languages.writing import to_xmi
 from mmrs_core.testing.instances import instances_of
 
 HARMLESS = [name for name, (_, _, verdict) in EDITS.items() if verdict != "incompatible"]
-RELAXED = settings(
-    deadline=None, max_examples=30, suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large]
-)
+RELAXED = settings(deadline=None, suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large])
 
 
-def old_models_load_where_that_is_said(folder, data):
+@RELAXED
+@given(data=st.data())
+def test_old_models_load_where_that_is_said(tmp_path_factory, data):
     names = data.draw(st.lists(st.sampled_from(HARMLESS), min_size=1, max_size=3, unique=True))
-    file = folder / "new.ecore"
+    file = tmp_path_factory.getbasetemp() / "new.ecore"
     file.write_text(edited(*names), encoding="utf-8")
     old, new = version_of(str(ZOO), core_registry()), version_of(str(file), core_registry())
     if any(each.verdict is Effect.INCOMPATIBLE for each in differences(old, new)):
@@ -34,16 +33,3 @@ def old_models_load_where_that_is_said(folder, data):
     text = to_xmi([root], old.registry)
     model = read_text(text, "old.xmi", new.registry)
     assert not has_errors((*model.diagnostics, *check_conformance(model, new.registry)))
-
-
-@RELAXED
-@given(data=st.data())
-def test_old_models_load_where_that_is_said(tmp_path_factory, data):
-    old_models_load_where_that_is_said(tmp_path_factory.getbasetemp(), data)
-
-
-@pytest.mark.thorough
-@settings(RELAXED, max_examples=800)
-@given(data=st.data())
-def test_old_models_load_where_that_is_said_of_many(tmp_path_factory, data):
-    old_models_load_where_that_is_said(tmp_path_factory.getbasetemp(), data)

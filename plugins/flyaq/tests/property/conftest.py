@@ -1,28 +1,9 @@
 """The shipped mapping, and what a migration says as plain text."""
 
-from pathlib import Path
-
 import pytest
 from mmrs_flyaq.migrate import migrate
-from mmrs_flyaq.plugin import FLYAQ_2015
-from mmrs_flyaq.rules.mapping_file import read_mapping
 
 from mmrs_core.languages.writing import to_xmi
-
-
-@pytest.fixture(scope="session")
-def fixtures():
-    return Path(__file__).parents[1] / "fixtures" / "flyaq"
-
-
-@pytest.fixture(scope="session")
-def registry(contributions):
-    return contributions.languages
-
-
-@pytest.fixture(scope="session")
-def mapping(registry):
-    return read_mapping(FLYAQ_2015, registry)
 
 
 @pytest.fixture(scope="session")

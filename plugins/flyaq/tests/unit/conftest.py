@@ -4,8 +4,6 @@ from pathlib import Path
 
 import pytest
 from mmrs_flyaq.migrate import migrate
-from mmrs_flyaq.plugin import FLYAQ_2015
-from mmrs_flyaq.rules.mapping_file import read_mapping
 
 from mmrs_core.languages.element import Element
 
@@ -13,24 +11,8 @@ FIXTURES = Path(__file__).parents[1] / "fixtures"
 
 
 @pytest.fixture(scope="session")
-def flyaq():
-    return FIXTURES / "flyaq"
-
-
-@pytest.fixture(scope="session")
 def dialects():
     return FIXTURES / "dialects"
-
-
-@pytest.fixture(scope="session")
-def registry(contributions):
-    return contributions.languages
-
-
-@pytest.fixture(scope="session")
-def mapping(registry):
-    """Return the shipped mapping of FLYAQ 2015."""
-    return read_mapping(FLYAQ_2015, registry)
 
 
 @pytest.fixture

@@ -31,10 +31,6 @@ def test_every_robot_type_of_a_list_is_a_model_of_its_own(migrated, flyaq):
     assert paths == ["robots/Wren.xmi", "robots/Heron.xmi"]
 
 
-def test_a_behaviour_is_no_list_although_it_holds_drones(what, flyaq):
-    assert what(flyaq / "round.json") == "a model"
-
-
 @pytest.mark.parametrize("text", ["3", '"x"', "null", " true"])
 def test_json_that_is_no_model_is_told_so(what, written, text):
     with pytest.raises(UnreadableError, match=r"x\.json:1: its root is neither an object"):
