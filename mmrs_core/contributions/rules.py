@@ -134,6 +134,8 @@ class MoveKind:
         needs: states, one of which the robot must be in before: ``grounded`` (where robots that
             launch begin), ``airborne``, ``moving`` (where all others are throughout).
         leaves: state it is in afterwards; None: as before.
+        manoeuvre: what a vehicle does to make the move: ``take_off`` to the end of its path, ``land`` at the
+            end of its path, or ``go_to`` its target along its path; empty for other moves.
     """
 
     metaclass: Name
@@ -141,6 +143,7 @@ class MoveKind:
     seconds: Callable[[Move, tuple[Position, ...], Kinematics, str], tuple[float, float]]
     needs: frozenset[str]
     leaves: str | None = None
+    manoeuvre: Literal["", "take_off", "land", "go_to"] = ""
 
 
 def most_specific(metaclasses: tuple[Name, ...], registered: Mapping[Name, object]) -> Name | None:

@@ -184,7 +184,12 @@ def target_input(program: Program, types: Iterable[RobotType] | None = None) -> 
     given = (quad(),) if types is None else types
     kinds = installed()
     return TargetInput(
-        program, {each.name: each for each in given}, kinds.robot_kinds, kinds.move_kinds, areas()
+        program,
+        {each.name: each for each in given},
+        kinds.robot_kinds,
+        kinds.move_kinds,
+        areas(),
+        kinds.extensions,
     )
 
 

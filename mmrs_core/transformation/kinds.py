@@ -269,5 +269,5 @@ MOVE_KINDS = (
     _on_the_spot("HoldPosition", declared_time),
     _on_the_spot("Recharge", declared_time, frozenset({"grounded", "moving"})),
     _on_the_spot("HeadTo", turning_time, AFLOAT),
-    MoveKind((BEHAVIOUR, "GoTo"), straight_path, path_seconds, AFLOAT),
+    MoveKind((BEHAVIOUR, "GoTo"), straight_path, path_seconds, AFLOAT, manoeuvre="go_to"),
 )

@@ -72,6 +72,7 @@ def test_every_field_of_what_is_declared_is_told():
     from mmrs_core.languages.classes import ElementClass
     from mmrs_core.languages.evolution.migration import Migration
     from mmrs_core.languages.importers import Importer
+    from mmrs_mavlink.profiles import VehicleProfile
     from mmrs_mavlink.wiring import DeviceWiring
 
     told = {
@@ -85,6 +86,7 @@ def test_every_field_of_what_is_declared_is_told():
         "mmrs_move_kinds": rules.MoveKind,
         "mmrs_checks": checks.Check,
         "mmrs_device_actions": DeviceWiring,
+        "mmrs_vehicle_profiles": VehicleProfile,
         "mmrs_targets": targets.Target,
         "mmrs_vehicles": vehicles.VehicleFactory,
         "mmrs_conditions": execution.Condition,

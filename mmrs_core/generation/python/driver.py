@@ -58,6 +58,10 @@ class PythonDriver(ABC, Generic[C]):
     def device(self, action: Action, context: C) -> Call | str:
         """Return how a device carries out an action, or the reason why it cannot."""
 
+    def movements_of(self, context: C) -> Mapping[Name, Movement]:
+        """Return what moves of a robot become, by metaclass; by default `movements`."""
+        return self.movements
+
     def look(self, heading: Heading, context: C) -> Call | None:
         """Return how a device is pointed; None where it cannot be, and `unseen` says why."""
         return look_of(heading, context)

@@ -32,10 +32,11 @@ LEGS = {"DIRECT": "direct", "HORIZONTAL_FIRST": "level first", "VERTICAL_FIRST":
 
 def movement_of(move: Move, context: RobotContext, driver: Driver) -> Call:
     """Return the movement of a move; ``Skip`` where the driver has none."""
-    known = most_specific(move.metaclasses, driver.movements)
+    movements = driver.movements_of(context)
+    known = most_specific(move.metaclasses, movements)
     if known is None:
         return Call("Skip", (f"{move.kind} is not known to this target",))
-    return driver.movements[known](move, context, driver)
+    return movements[known](move, context, driver)
 
 
 def action_of(action: Action, context: RobotContext, driver: Driver) -> Call:
@@ -53,7 +54,7 @@ def action_of(action: Action, context: RobotContext, driver: Driver) -> Call:
 def losses_of(move: Move, context: RobotContext, driver: Driver) -> Iterator[str]:
     """Yield what of a movement cannot be expressed."""
     label = context.label(move)
-    if most_specific(move.metaclasses, driver.movements) != move.metaclasses[0]:
+    if most_specific(move.metaclasses, driver.movements_of(context)) != move.metaclasses[0]:
         yield f"{label}: {move.kind} is not known to this target"
         return
     if move.metaclasses[0][1] == "GoTo" and context.speed(move) is None:

@@ -110,7 +110,7 @@ MULTICOPTER_KIND = RobotKind(
 )
 
 MOVE_KINDS = (
-    MoveKind(TAKE_OFF, take_off_path, take_off_seconds, frozenset({"grounded"}), "airborne"),
-    MoveKind(LAND, land_path, land_seconds, frozenset({"airborne"}), "grounded"),
-    MoveKind(GO_TO, trajectories.path, path_seconds, frozenset({"airborne"})),
+    MoveKind(TAKE_OFF, take_off_path, take_off_seconds, frozenset({"grounded"}), "airborne", "take_off"),
+    MoveKind(LAND, land_path, land_seconds, frozenset({"airborne"}), "grounded", "land"),
+    MoveKind(GO_TO, trajectories.path, path_seconds, frozenset({"airborne"}), manoeuvre="go_to"),
 )

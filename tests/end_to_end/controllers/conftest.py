@@ -19,8 +19,8 @@ from mmrs_core.behaviour.replay import ReplayResult, replay
 from mmrs_core.generation.render import render
 from mmrs_core.generation.writing import write
 from mmrs_core.testing.programs import target_input
+from mmrs_mavlink.plugin.context import context_of
 from mmrs_mavlink.plugin.controllers import MAVLINK_PYTHON
-from mmrs_mavlink.plugin.vehicles import vehicle_class
 from mmrs_mavlink.sitl import Settings, SimulatedVehicle
 
 PATIENCE = 60.0
@@ -96,7 +96,7 @@ def _open_hangar():
             if not program.frame.is_local:
                 ((latitude, longitude),) = degrees_of([robot.home[:2]], program.frame)
             port = free_port()
-            kind = vehicle_class(robot, types.get(robot.type_name), {}).name
+            kind = context_of(robot, target_input(program, types.values())).profile.driven_as
             given = Settings(kind, latitude, longitude, **settings)
             vehicle = SimulatedVehicle(port, given, speedup=speedup, loss=loss)
             vehicle.start()

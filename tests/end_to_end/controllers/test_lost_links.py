@@ -76,7 +76,7 @@ def test_the_vehicle_knows_the_response_of_the_wait_that_it_is_in(controllers, h
 
 @pytest.mark.parametrize("kind", ["copter", "sub", "rover"])
 def test_a_target_knows_what_each_kind_of_vehicle_can_do_by_itself(kind):
-    from mmrs_mavlink.plugin.vehicles import COPTER, ROVER, SUB
+    from mmrs_mavlink.profiles import PROFILES
 
-    (vehicle,) = (each for each in (COPTER, SUB, ROVER) if each.name == kind)
+    vehicle = next(each for each in PROFILES.values() if each.vehicle == kind)
     assert set(LINK_LOST[kind]) == vehicle.alone

@@ -14,11 +14,12 @@ from shapely import LineString, Polygon
 from mmrs_core import pipeline
 from mmrs_core.behaviour.earth import degrees_of
 from mmrs_core.behaviour.program import Program
+from mmrs_core.contributions.rules import robot_kind_of
 from mmrs_core.languages.writing import write_model
 from mmrs_core.plugins import load_plugins
 from mmrs_core.resources import shipped
 from mmrs_core.scene import Area, AreaUse, Position
-from mmrs_mavlink.plugin.vehicles import vehicle_class
+from mmrs_core.testing.programs import installed
 
 EXAMPLE = "carbon-dioxide"
 SLACK = 0.05
@@ -76,7 +77,8 @@ def margins(program: Program, place: pipeline.Place, robot_id: str, track: Track
         track: seconds, metres north, east and up of home; under water, up of the surface.
     """
     robot = next(each for each in program.robots if each.id == robot_id)
-    dives = vehicle_class(robot, place.types[robot.type_name], {}).dives
+    kind = robot_kind_of(place.types[robot.type_name], installed().robot_kinds)
+    dives = kind is not None and kind.medium == "water"
     zero = (*robot.home[:2], program.frame.surface if dives else robot.home[2])
     needed = place.types[robot.type_name].half_diagonal + program.position_error
     areas = [area for area in place.areas if area.use is not AreaUse.EMERGENCY]

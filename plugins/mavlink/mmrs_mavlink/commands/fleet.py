@@ -17,7 +17,7 @@ from mmrs_core.cli.settings import Settings as CliSettings
 from mmrs_core.errors import UnsupportedError
 from mmrs_core.languages.modelset import model_in
 from mmrs_core.scene import RobotType
-from mmrs_mavlink.plugin.vehicles import class_of_type, uncarried, vehicle_class
+from mmrs_mavlink.plugin.vehicles import profile_of, profile_of_type, uncarried
 from mmrs_mavlink.sitl.battery import load_at
 from mmrs_mavlink.sitl.parameters import defaults
 from mmrs_mavlink.sitl.settings import Settings
@@ -159,29 +159,31 @@ def members_of(settings: CliSettings, path: Path) -> list[Member]:
     """
     session = Session(settings)
     found = model_in(path, "behaviour") if path.is_dir() else path
-    kinds = session.contributions.robot_kinds
+    contributed = session.contributions
+    kinds, extensions = contributed.robot_kinds, contributed.extensions
     if found is not None and found.is_file() and is_behaviour(session, found):
         loaded = load_behaviour(session, found)
         frame, types = loaded.program.frame, loaded.place.types
         robots = [(each, each.id, types.get(each.type_name)) for each in loaded.program.robots]
-        classes = [vehicle_class(robot, type, kinds) for robot, _, type in robots]
+        moves = contributed.move_kinds
+        profiles = [profile_of(robot, type, kinds, moves, extensions) for robot, _, type in robots]
         crew = [(name, type, robot.home, robot.payload) for robot, name, type in robots]
     else:
         scene = Stages(session, path).grounded
         frame = scene.frame
-        classes = [class_of_type(each.type, kinds) for each in scene.robots]
+        profiles = [profile_of_type(each.type, kinds, extensions) for each in scene.robots]
         crew = [(each.name, each.type, each.home, each.payload) for each in scene.robots]
-    if unknown := [why for name, type, *_ in crew if (why := uncarried(name, type, kinds))]:
+    if unknown := [why for name, type, *_ in crew if (why := uncarried(name, type, kinds, extensions))]:
         raise UnsupportedError(f"{path}: no simulated vehicle for all of its robots", unknown)
     if homeless := [name for name, _, home, _ in crew if home is None]:
         raise UnsupportedError(f"{path}: no home for {', '.join(homeless)}")
     homes = [home[:2] for _, _, home, _ in crew if home is not None]
     return [
-        Member(name, vehicle.name, place, *_battery(payload, type), (north, east))
-        for (name, type, _, payload), vehicle, place, (east, north) in zip(
-            crew, classes, degrees_of(homes, frame), homes, strict=True
+        Member(name, profile.driven_as, place, *_battery(payload, type), (north, east))
+        for (name, type, _, payload), profile, place, (east, north) in zip(
+            crew, profiles, degrees_of(homes, frame), homes, strict=True
         )
-        if vehicle is not None
+        if profile is not None
     ]
 
 

@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from mmrs_core.contributions.constraints import Constraint
     from mmrs_core.contributions.targets import Target
     from mmrs_core.contributions.vehicles import VehicleFactory
+    from mmrs_mavlink.profiles import VehicleProfile
     from mmrs_mavlink.wiring import DeviceWiring
 
 
@@ -57,6 +58,11 @@ def mmrs_hooks() -> Iterable[Hook]:
             "mmrs_mavlink.wiring:DeviceWiring",
             "property",
         ),
+        Hook(
+            "mmrs_vehicle_profiles",
+            "What one autopilot does with one class of vehicle",
+            "mmrs_mavlink.profiles:VehicleProfile",
+        ),
     )
 
 
@@ -66,3 +72,11 @@ def mmrs_device_actions() -> Iterable[DeviceWiring]:
     from mmrs_mavlink.plugin.devices import WIRINGS
 
     return tuple(WIRINGS.values())
+
+
+@hookimpl
+def mmrs_vehicle_profiles() -> Iterable[VehicleProfile]:
+    """Contribute ArduCopter, ArduSub, Rover, and PX4's multicopter."""
+    from mmrs_mavlink.profiles import PROFILES
+
+    return tuple(PROFILES.values())

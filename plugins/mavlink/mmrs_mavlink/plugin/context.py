@@ -2,33 +2,46 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from mmrs_core.behaviour.program import Action, RobotProgram
-from mmrs_core.contributions.rules import Medium
+from mmrs_core.behaviour.program import Action, Move, RobotProgram
+from mmrs_core.contributions.rules import Medium, MoveKind
 from mmrs_core.contributions.targets import TargetInput
 from mmrs_core.errors import UnsupportedError
 from mmrs_core.generation.context import RobotContext
-from mmrs_core.scene import Position
-from mmrs_mavlink.plugin.vehicles import ROVER, VehicleClass, uncarried, vehicle_class
+from mmrs_core.scene import Name, Position
+from mmrs_mavlink.plugin.vehicles import manoeuvre_of, profile_of, uncarried
 from mmrs_mavlink.plugin.wiring import wiring_of
+from mmrs_mavlink.profiles import ARDUROVER, VehicleProfile
 from mmrs_mavlink.wiring import Wiring, Wirings
 
 
 @dataclass(frozen=True)
 class VehicleContext(RobotContext):
-    """One robot of a behaviour, and which vehicle carries it.
+    """One robot of a behaviour, and the profile of the vehicle that carries it.
 
     Attributes:
         wirings: those of plug-ins.
+        moves: kinds of moves, by metaclass.
     """
 
-    vehicle: VehicleClass = ROVER
+    profile: VehicleProfile = ARDUROVER
     wirings: Wirings = field(default_factory=dict)
+    moves: Mapping[Name, MoveKind] = field(default_factory=dict)
 
     def wiring(self, action: Action) -> Wiring:
         """Return how a device action of the robot is carried out."""
         return wiring_of(action, self.type, self.wirings)
+
+    def manoeuvre(self, move: Move) -> str:
+        """Return what the vehicle does to make a move; empty where the kind of the move does not state it."""
+        return manoeuvre_of(move.metaclasses[0], self.moves)
+
+    def climb(self, move: Move) -> float:
+        """Return how far a move climbs, metres; 0 for one that goes nowhere by itself."""
+        path = self.moves[move.metaclasses[0]].path(move, (0.0, 0.0, 0.0), None)
+        return path[-1][2] if path else 0.0
 
 
 def context_of(robot: RobotProgram, input: TargetInput) -> VehicleContext:
@@ -38,33 +51,34 @@ def context_of(robot: RobotProgram, input: TargetInput) -> VehicleContext:
         UnsupportedError: no vehicle carries the robot.
     """
     type = input.types.get(robot.type_name)
-    vehicle = vehicle_class(robot, type, input.robot_kinds)
-    if vehicle is None:
+    profile = _profile_of(robot, input)
+    if profile is None:
         raise UnsupportedError(vehicleless(robot, input))
     frame = input.program.frame
     home = robot.home[2] if robot.home is not None else 0.0
-    zero = frame.surface if vehicle.dives else home
-    medium: Medium = "air" if vehicle.flies else "water" if vehicle.dives else "ground"
-    return VehicleContext(
-        robot, type, frame, zero, medium, vehicle, input.extensions.get("device_actions", {})
-    )
+    zero = frame.surface if profile.dives else home
+    medium: Medium = "air" if profile.flies else "water" if profile.dives else "ground"
+    wirings = input.extensions.get("device_actions", {})
+    return VehicleContext(robot, type, frame, zero, medium, profile, wirings, input.move_kinds)
 
 
 def vehicleless(robot: RobotProgram, input: TargetInput) -> str:
     """Return why no vehicle carries a robot; empty where one does."""
-    return uncarried(robot.id, input.types.get(robot.type_name), input.robot_kinds)
+    return uncarried(robot.id, input.types.get(robot.type_name), input.robot_kinds, input.extensions)
 
 
 def neighbours_of(robot: RobotProgram, input: TargetInput) -> tuple[tuple[str, Position], ...]:
-    """Return the homes on the Earth of other robots with vehicles of the same kind, by robot."""
+    """Return the homes on the Earth of other robots with vehicles of the same profile, by robot."""
     if input.program.frame.is_local:
         return ()
-    kinds = {
-        each.id: vehicle_class(each, input.types.get(each.type_name), input.robot_kinds)
-        for each in input.program.robots
-    }
+    profiles = {each.id: _profile_of(each, input) for each in input.program.robots}
     return tuple(
         (each.id, each.home)
         for each in input.program.robots
-        if each.id != robot.id and each.home is not None and kinds[each.id] == kinds[robot.id]
+        if each.id != robot.id and each.home is not None and profiles[each.id] == profiles[robot.id]
     )
+
+
+def _profile_of(robot: RobotProgram, input: TargetInput) -> VehicleProfile | None:
+    type = input.types.get(robot.type_name)
+    return profile_of(robot, type, input.robot_kinds, input.move_kinds, input.extensions)

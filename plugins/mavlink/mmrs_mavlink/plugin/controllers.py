@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import Any
 
 from mmrs_core.behaviour.earth import degrees_of, metres
 from mmrs_core.behaviour.program import Action, Heading, Move, RobotProgram
@@ -15,7 +15,7 @@ from mmrs_core.contributions.targets import TargetInput
 from mmrs_core.generation.context import require_home
 from mmrs_core.generation.escaping import Call, Constant
 from mmrs_core.generation.python import MOVEMENTS, PythonDriver, go_to, place_of, python_target
-from mmrs_core.generation.python.moves import look_of, number_of, unturnable
+from mmrs_core.generation.python.moves import look_of, unturnable
 from mmrs_core.generation.python.program import program_of
 from mmrs_core.generation.safety import areas_of, policies_of
 from mmrs_core.scene import Name, Point, Policy
@@ -26,12 +26,11 @@ from mmrs_mavlink.plugin.context import VehicleContext, context_of, neighbours_o
 from mmrs_mavlink.plugin.escapes import Escape, escapes_of, straight_lines_are_clear
 from mmrs_mavlink.plugin.fencing import Fence, fence_faults, fences_of
 from mmrs_mavlink.plugin.headings import NO_TURNING, gimbal_of, on_gimbal, turns_to
-from mmrs_mavlink.plugin.places import MULTICOPTER, templates_of
+from mmrs_mavlink.plugin.places import templates_of
 from mmrs_mavlink.plugin.runs import Run, runs_of
-from mmrs_mavlink.plugin.vehicles import PX4, autopilot_of
+from mmrs_mavlink.plugin.vehicles import autopilot_of
+from mmrs_mavlink.profiles import PX4
 from mmrs_mavlink.wiring import Sampled, Wired
-
-TAKE_OFF = (MULTICOPTER, "TakeOff")
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,11 +50,15 @@ class _Protection:
 
 
 def _take_off(move: Move, context: VehicleContext, driver: object) -> Call:
-    return Call("TakeOff", (metres(number_of(move, "altitude")),))
+    return Call("TakeOff", (metres(context.climb(move)),))
 
 
 def _land(move: Move, context: VehicleContext, driver: object) -> Call:
     return Call("Land")
+
+
+MANOEUVRES: Mapping[str, Any] = {"take_off": _take_off, "land": _land, "go_to": go_to}
+"""Movements by `MoveKind.manoeuvre`."""
 
 
 class MavlinkPython(PythonDriver[VehicleContext]):
@@ -66,12 +69,6 @@ class MavlinkPython(PythonDriver[VehicleContext]):
     module = "mmrs_mavlink"
     requires = ("mmrs-mavlink",)
     templates = templates_of("mavlink-python")
-    movements: ClassVar[Mapping[Name, Any]] = {
-        **MOVEMENTS,
-        TAKE_OFF: _take_off,
-        (MULTICOPTER, "Land"): _land,
-        (MULTICOPTER, "GoTo"): go_to,
-    }
     capabilities = OF_CONTROLLERS
 
     def undriven(self, robot: RobotProgram, input: TargetInput) -> str:
@@ -84,7 +81,7 @@ class MavlinkPython(PythonDriver[VehicleContext]):
 
     def vehicle(self, context: VehicleContext) -> str:
         """Return ``copter``, ``sub`` or ``rover``."""
-        return context.vehicle.name
+        return context.profile.driven_as
 
     def device(self, action: Action, context: VehicleContext) -> Call | str:
         """Return a command, or a value that is measured."""
@@ -94,6 +91,11 @@ class MavlinkPython(PythonDriver[VehicleContext]):
         if isinstance(wiring, Sampled):
             return Call("Measure", (action.device, action.name, wiring.value, wiring.seconds))
         return wiring.reason
+
+    def movements_of(self, context: VehicleContext) -> Mapping[Name, Any]:
+        """Return what moves become: those of plug-ins by the manoeuvre that their kind states."""
+        known = {name: MANOEUVRES[kind.manoeuvre] for name, kind in context.moves.items() if kind.manoeuvre}
+        return {**known, **MOVEMENTS}
 
     def look(self, heading: Heading, context: VehicleContext) -> Call | None:
         """Return how a device or a gimbal is pointed."""
@@ -119,15 +121,15 @@ class MavlinkPython(PythonDriver[VehicleContext]):
 
     def unsaid(self, move: Move, context: VehicleContext) -> Iterator[str]:
         """Yield that a vehicle takes off to where it stands."""
-        if move.metaclasses[0] == TAKE_OFF and number_of(move, "altitude") <= 0:
-            yield f"takes off to {number_of(move, 'altitude'):g} m above the ground"
+        if context.manoeuvre(move) == "take_off" and context.climb(move) <= 0:
+            yield f"takes off to {context.climb(move):g} m above the ground"
 
     def unanswerable(self, policy: Policy, context: VehicleContext) -> str:
         """Return what a vehicle cannot do, or not by itself."""
-        vehicle, response = context.vehicle, policy.response
-        if policy.event == "LINK_LOST" and response not in vehicle.alone:
-            return f"no {vehicle.name} does {response} by itself"
-        return "" if response in vehicle.responses else f"no {vehicle.name} can answer it by {response}"
+        profile, response = context.profile, policy.response
+        if policy.event == "LINK_LOST" and response not in profile.alone:
+            return f"no {profile.vehicle} does {response} by itself"
+        return "" if response in profile.responses else f"no {profile.vehicle} can answer it by {response}"
 
     def refusals(self, context: VehicleContext, input: TargetInput) -> Iterable[str]:
         """Return what no geofence can keep."""
@@ -211,9 +213,8 @@ def _rehearsal(driver: MavlinkPython, input: TargetInput) -> Iterator[str]:
     driven = [robot for robot in input.program.robots if not driver.undriven(robot, input)]
     for number, robot in enumerate(driven):
         context = context_of(robot, input)
-        given = (
-            f"--port {FIRST_PORT + PORT_STEP * number} --system {number + 1} --kind {context.vehicle.name}"
-        )
+        port, kind = FIRST_PORT + PORT_STEP * number, context.profile.driven_as
+        given = f"--port {port} --system {number + 1} --kind {kind}"
         if autopilot_of(context.type) == PX4:
             given += f" --firmware {PX4}"
         if not frame.is_local:
@@ -253,7 +254,7 @@ def _endurance(context: VehicleContext) -> Iterator[tuple[str, object]]:
     if capability.lifetime is not None:
         yield "endurance", capability.lifetime
     yield "fastest", metres(capability.speed[1])
-    if context.vehicle.flies and capability.descent_rate is not None:
+    if context.flies and capability.descent_rate is not None:
         yield "descent", capability.descent_rate
 
 

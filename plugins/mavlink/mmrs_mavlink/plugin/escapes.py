@@ -19,7 +19,6 @@ from mmrs_core.planning.layers import Rates
 from mmrs_core.planning.paths import Space
 from mmrs_core.scene import AreaUse, Point, Position
 from mmrs_mavlink.plugin.context import VehicleContext, context_of
-from mmrs_mavlink.plugin.places import MULTICOPTER
 
 AT_HOME = ((BEHAVIOUR, "Start"), (BEHAVIOUR, "Recharge"))
 """Moves after which a robot is at home."""
@@ -114,12 +113,10 @@ def _end_of(index: int, move: Move, context: VehicleContext) -> Position | None:
     """Return where a move ends, metres; None where it does not say."""
     if move.target is not None:
         return move.target.position
-    home, altitude = context.robot.home, move.attributes.get("altitude")
-    climbs = move.metaclasses[0] == (MULTICOPTER, "TakeOff") and isinstance(altitude, int | float)
+    home, climbs = context.robot.home, context.manoeuvre(move) == "take_off"
     if home is None or not climbs or not _leaves_home(index, context):
         return None
-    assert isinstance(altitude, int | float)
-    return (home[0], home[1], home[2] + altitude)
+    return (home[0], home[1], home[2] + context.climb(move))
 
 
 def _leaves_home(index: int, context: VehicleContext) -> bool:

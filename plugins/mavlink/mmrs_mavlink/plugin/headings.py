@@ -5,7 +5,6 @@ from __future__ import annotations
 from mmrs_core.behaviour.program import Heading
 from mmrs_core.generation.python.moves import properties_of
 from mmrs_mavlink.plugin.context import VehicleContext
-from mmrs_mavlink.plugin.vehicles import ROVER
 
 GIMBAL = "mavlink.gimbal"
 NO_TURNING = f"no ground vehicle turns to a heading on command; give the device a {GIMBAL}"
@@ -22,7 +21,7 @@ def turns_to(heading: Heading, context: VehicleContext) -> bool:
     ArduPilot's Rover takes no heading: it ignores the yaw of position targets in GUIDED, and
     skips CONDITION_YAW in AUTO.
     """
-    return context.vehicle is not ROVER or on_gimbal(heading, context)
+    return context.profile.turns or on_gimbal(heading, context)
 
 
 def gimbal_of(heading: Heading, context: VehicleContext) -> int:

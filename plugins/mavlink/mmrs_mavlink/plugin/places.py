@@ -1,9 +1,7 @@
-"""Where the templates of this plug-in's targets are, and the language of the moves that it knows best."""
+"""Where the templates of this plug-in's targets are."""
 
 from importlib.resources import files
 from pathlib import Path
-
-MULTICOPTER = "urn:mmrs:multicopter:1.0"
 
 
 def templates_of(target: str) -> Path:

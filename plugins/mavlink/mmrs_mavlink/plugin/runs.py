@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from math import acos, degrees, hypot
 
-from mmrs_core.behaviour.program import BEHAVIOUR, Move, RobotProgram, Transition
+from mmrs_core.behaviour.program import Move, RobotProgram, Transition
 from mmrs_core.scene import Position
 from mmrs_mavlink.plugin.context import VehicleContext
 
@@ -18,8 +18,6 @@ CORNER_SECONDS = 1.0
 """Hold at corners. Measured on ArduCopter 4.7-dev in simulation, at cruise speed: a waypoint without a
 hold was passed at 1.65 to 1.69 m, one with a hold of a second at 0.02 to 0.07 m. No test repeats this:
 our own simulated vehicle cuts corners within a radius that it was given for that."""
-
-_GO_TO = ((BEHAVIOUR, "GoTo"), ("urn:mmrs:multicopter:1.0", "GoTo"))
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,7 +37,7 @@ def runs_of(context: VehicleContext) -> tuple[Run, ...]:
     if context.frame.is_local:
         return ()
     robot = context.robot
-    chained = {source: t.to for source, t in robot.transitions.items() if _chains(robot, source, t)}
+    chained = {source: t.to for source, t in robot.transitions.items() if _chains(context, source, t)}
     entered = set(chained.values())
     runs = []
     for first in range(len(robot.moves)):
@@ -57,18 +55,29 @@ def _chain(first: int, chained: Mapping[int, int]) -> tuple[int, ...]:
     return tuple(moves)
 
 
-def _chains(robot: RobotProgram, source: int, transition: Transition) -> bool:
+def _chains(context: VehicleContext, source: int, transition: Transition) -> bool:
     if not transition.fluid or transition.waits or transition.condition is not None:
         return False
+    robot = context.robot
     before, after = robot.moves[source], robot.moves[transition.to]
     alone = sum(transition.to in other.next_moves for other in robot.transitions.values()) == 1
-    return alone and _plain(before) and _plain(after) and not before.after and not after.before
+    plain = _plain(before, context) and _plain(after, context)
+    return alone and plain and not before.after and not after.before
 
 
-def _plain(move: Move) -> bool:
-    straight = move.metaclasses[0] in _GO_TO and move.attributes.get("trajectory", "DIRECT") == "DIRECT"
+def _plain(move: Move, context: VehicleContext) -> bool:
+    straight = context.manoeuvre(move) == "go_to" and _is_straight(move, context)
     coordinate = move.target is not None and move.target.position is not None
     return straight and coordinate and _is_coordinate(move) and move.distance == 0.0 and move.heading is None
+
+
+def _is_straight(move: Move, context: VehicleContext) -> bool:
+    """Return whether a move goes straight even to a target at another height."""
+    if move.target is None or move.target.position is None:
+        return False
+    east, north, up = move.target.position
+    path = context.moves[move.metaclasses[0]].path(move, (east - 10.0, north - 10.0, up - 10.0), None)
+    return path is not None and len(path) == 2
 
 
 def _is_coordinate(move: Move) -> bool:

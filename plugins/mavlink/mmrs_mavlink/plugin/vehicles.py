@@ -1,123 +1,89 @@
-"""Which MAVLink vehicle a robot is."""
+"""Which vehicle profile carries a robot."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping
 
 from mmrs_core.behaviour.program import RobotProgram
-from mmrs_core.contributions.rules import RobotKind, most_specific, robot_kind_of
+from mmrs_core.contributions.hooks import Extensions
+from mmrs_core.contributions.rules import MoveKind, RobotKind, robot_kind_of
 from mmrs_core.scene import Name, RobotType
-
-TAKE_OFF = ("urn:mmrs:multicopter:1.0", "TakeOff")
-
-
-@dataclass(frozen=True, slots=True)
-class VehicleClass:
-    """A sort of vehicle.
-
-    Attributes:
-        name: ``copter``, ``sub`` or ``rover``.
-        mav_type: number of MAV_TYPE.
-        flies: whether it takes off and lands.
-        dives: whether its heights count from the water surface.
-        alone: responses of policies that it can give by itself, when it no longer hears the ground.
-        more: those that it can only give when its controller asks for them.
-    """
-
-    name: str
-    mav_type: int
-    flies: bool = False
-    dives: bool = False
-    alone: frozenset[str] = frozenset()
-    more: frozenset[str] = frozenset()
-
-    @property
-    def responses(self) -> frozenset[str]:
-        """Return the responses of policies that it can give when its controller asks for them."""
-        return self.alone | self.more
-
-
-COPTER = VehicleClass(
-    "copter",
-    2,
-    flies=True,
-    alone=frozenset({"CONTINUE", "RETURN", "EMERGENCY_AREA", "LAND", "HOLD"}),
-)
-SUB = VehicleClass(
-    "sub",
-    12,
-    dives=True,
-    alone=frozenset({"CONTINUE", "STOP_THRUST", "HOLD", "SURFACE", "LAND", "RETURN"}),
-    more=frozenset({"EMERGENCY_AREA"}),
-)
-ROVER = VehicleClass(
-    "rover",
-    10,
-    alone=frozenset({"CONTINUE", "RETURN", "EMERGENCY_AREA", "HOLD", "LAND", "STOP_THRUST"}),
+from mmrs_mavlink.profiles import (
+    ARDUCOPTER,
+    ARDUPILOT,
+    ARDUROVER,
+    AUTOPILOTS,
+    PROFILES,
+    VehicleProfile,
 )
 
 AUTOPILOT = "mavlink.autopilot"
 """The property of a device that says which autopilot it is."""
 
-ARDUPILOT, PX4 = "ardupilot", "px4"
-AUTOPILOTS: Mapping[str, int] = {ARDUPILOT: 3, PX4: 12}
-"""Numbers of MAV_AUTOPILOT."""
 
-CLASSES: Mapping[Name, VehicleClass] = {
-    ("urn:mmrs:multicopter:1.0", "Drone"): COPTER,
-    ("urn:mmrs:auv:1.1", "AUVMovement"): SUB,
-    ("urn:mmrs:robot:1.0", "Robot"): ROVER,
-}
+def profile_of(
+    robot: RobotProgram,
+    type: RobotType | None,
+    kinds: Mapping[Name, RobotKind],
+    moves: Mapping[Name, MoveKind],
+    extensions: Extensions,
+) -> VehicleProfile | None:
+    """Return the profile that carries a robot: by its type, else by its moves; None: no profile does.
 
-
-GROUND = "ground"
-"""What the core calls the vehicles of robots that no plug-in knows better: rovers carry them."""
-
-VEHICLES: Mapping[str, VehicleClass] = {each.name: each for each in CLASSES.values()}
-
-
-def vehicle_class(
-    robot: RobotProgram, type: RobotType | None, kinds: Mapping[Name, RobotKind]
-) -> VehicleClass | None:
-    """Return what a robot is by its type, or, where that is missing, by what it does; None: no vehicle."""
-    found = class_of_type(type, kinds) if type is not None else ROVER
-    if found is not ROVER:
-        return found
-    return COPTER if any(move.is_a(TAKE_OFF) for move in robot.moves) else ROVER
+    Args:
+        robot: of a behaviour.
+        type: of the robot; None where it is unknown.
+        kinds: kinds of robots. moves: kinds of moves.
+        extensions: what plug-ins contribute, with their profiles.
+    """
+    if type is not None:
+        return profile_of_type(type, kinds, extensions)
+    takes_off = any(manoeuvre_of(move.metaclasses[0], moves) == "take_off" for move in robot.moves)
+    return ARDUCOPTER if takes_off else ARDUROVER
 
 
-def class_of_type(type: RobotType, kinds: Mapping[Name, RobotKind]) -> VehicleClass | None:
-    """Return what robots of a type are, whatever they do; None where their kind names no vehicle."""
+def profile_of_type(
+    type: RobotType, kinds: Mapping[Name, RobotKind], extensions: Extensions
+) -> VehicleProfile | None:
+    """Return the profile that carries robots of a type, whatever they do; None: no profile does.
+
+    Where no profile has the autopilot that the type names, that of another autopilot is returned.
+    """
     kind = robot_kind_of(type, kinds)
-    return _carrying(kind.vehicle) if kind is not None else _by_metaclass(type)
+    if kind is None:
+        return ARDUROVER
+    fitting = [each for each in profiles_in(extensions) if kind.vehicle in each.words]
+    own = (each for each in fitting if each.autopilot == autopilot_of(type))
+    return next(own, fitting[0] if fitting else None)
 
 
-def _carrying(word: str) -> VehicleClass | None:
-    return ROVER if word == GROUND else VEHICLES.get(word)
+def profiles_in(extensions: Extensions) -> Iterator[VehicleProfile]:
+    """Yield all profiles, by name."""
+    known = {**PROFILES, **extensions.get("vehicle_profiles", {})}
+    yield from (known[name] for name in sorted(known))
 
 
-def uncarried(robot: str, type: RobotType | None, kinds: Mapping[Name, RobotKind]) -> str:
-    """Return why no vehicle carries a robot, with the name of its kind; empty where one does."""
+def uncarried(
+    robot: str, type: RobotType | None, kinds: Mapping[Name, RobotKind], extensions: Extensions
+) -> str:
+    """Return why no profile carries a robot, with the name of its kind; empty where one does."""
     kind = robot_kind_of(type, kinds) if type is not None else None
-    if kind is None or _carrying(kind.vehicle) is not None:
+    words = sorted({word for each in profiles_in(extensions) for word in each.words})
+    if kind is None or kind.vehicle in words:
         return ""
-    known = ", ".join(sorted((*VEHICLES, GROUND)))
     named = f"names vehicle '{kind.vehicle}'" if kind.vehicle else "names no vehicle"
+    known = ", ".join(words)
     return f"robot '{robot}': is of kind '{kind.name}', which {named}; known are {known} (RobotKind.vehicle)"
 
 
-def _by_metaclass(type: RobotType) -> VehicleClass:
-    """Return what robots of a type are where the kinds of robot are not at hand."""
-    for metaclasses in (type.metaclasses, type.capability_metaclasses):
-        found = most_specific(metaclasses, CLASSES)
-        if found is not None and CLASSES[found] is not ROVER:
-            return CLASSES[found]
-    return ROVER
+def manoeuvre_of(metaclass: Name, moves: Mapping[Name, MoveKind]) -> str:
+    """Return what a vehicle does to make a move of a metaclass; empty where its kind does not state it."""
+    kind = moves.get(metaclass)
+    return kind.manoeuvre if kind is not None else ""
 
 
 def autopilots_in(type: RobotType | None) -> tuple[str, ...]:
-    """Return what the devices of a robot type say of its autopilot (``mavlink.autopilot``), sorted."""
+    """Return what the devices of a robot type state of its autopilot (``mavlink.autopilot``), sorted."""
     devices = type.devices.values() if type is not None else ()
     return tuple(
         sorted({device.properties[AUTOPILOT] for device in devices if AUTOPILOT in device.properties})
@@ -125,13 +91,13 @@ def autopilots_in(type: RobotType | None) -> tuple[str, ...]:
 
 
 def autopilot_of(type: RobotType | None) -> str:
-    """Return which autopilot robots of a type have; ArduPilot where the type does not say, or not clearly."""
+    """Return which autopilot robots of a type have; ArduPilot where the type does not state one clearly."""
     found = autopilots_in(type)
     return found[0] if len(found) == 1 and found[0] in AUTOPILOTS else ARDUPILOT
 
 
 def autopilot_fault(type: RobotType | None) -> str:
-    """Return what is wrong with what a type says of its autopilot; empty: nothing."""
+    """Return what is wrong with what a type states of its autopilot; empty: nothing."""
     found = autopilots_in(type)
     shown = ", ".join(map(repr, found))
     if len(found) > 1:

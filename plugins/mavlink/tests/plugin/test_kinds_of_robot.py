@@ -25,9 +25,11 @@ from mmrs_core.transformation.kinds import PLAIN_ROBOT
 from mmrs_mavlink.plugin.controllers import MAVLINK_PYTHON
 from mmrs_mavlink.plugin.plans.qgc import QGC_PLAN
 from mmrs_mavlink.plugin.plans.wpl import WPL
-from mmrs_mavlink.plugin.vehicles import GROUND, VEHICLES, vehicle_class
+from mmrs_mavlink.plugin.vehicles import profile_of_type
+from mmrs_mavlink.profiles import PROFILES
 from mmrs_mavlink.sitl.__main__ import parser_of_arguments
 
+WORDS = {word for profile in PROFILES.values() for word in profile.words}
 KITE = ("urn:kites:1.0", "Kite")
 KITES = replace(quad(), metaclasses=(KITE, ("urn:mmrs:robot:1.0", "Robot")))
 
@@ -60,15 +62,16 @@ def test_a_robot_that_no_vehicle_carries_is_refused_by_the_name_of_its_kind(targ
 
 
 def test_a_robot_is_what_its_kind_says():
-    robot = robot_program("alpha", [])
-    assert [vehicle_class(robot, KITES, kinds(name)) for name in VEHICLES] == list(VEHICLES.values())
+    for profile in PROFILES.values():
+        found = profile_of_type(KITES, kinds(profile.vehicle), {})
+        assert (found.vehicle, found.autopilot) == (profile.vehicle, "ardupilot")
     files = {each.path: each.content for each in render(MAVLINK_PYTHON, flown("copter"))}
     assert b'vehicle="copter"' in files["robot_alpha.py"]
 
 
 def test_every_kind_that_is_installed_names_its_vehicle(contributions):
     installed = contributions.robot_kinds
-    assert {each.name: each.vehicle in (*VEHICLES, GROUND) for each in installed.values()} == dict.fromkeys(
+    assert {each.name: each.vehicle in WORDS for each in installed.values()} == dict.fromkeys(
         (each.name for each in installed.values()), True
     )
 

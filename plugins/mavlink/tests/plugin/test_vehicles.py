@@ -23,7 +23,7 @@ from mmrs_core.transformation.fluid import LEAST_CUT
 from mmrs_mavlink.plugin.context import context_of
 from mmrs_mavlink.plugin.controllers import MAVLINK_PYTHON
 from mmrs_mavlink.plugin.plans.wpl import WPL
-from mmrs_mavlink.plugin.vehicles import COPTER, ROVER, SUB, vehicle_class
+from mmrs_mavlink.profiles import ARDUCOPTER, ARDUROVER, ARDUSUB, PX4_MULTICOPTER
 
 DIVER = replace(
     quad(),
@@ -33,17 +33,25 @@ DIVER = replace(
         ("urn:mmrs:robot:1.0", "MovementCapability"),
     ),
 )
+PX4 = quad(**{"mavlink.autopilot": "px4"})
 CRAWLER = replace(quad(), metaclasses=(("urn:mmrs:robot:1.0", "Robot"),))
 
 
-@pytest.mark.parametrize(("type", "expected"), [(quad(), COPTER), (DIVER, SUB), (CRAWLER, ROVER)])
+@pytest.mark.parametrize(
+    ("type", "expected"),
+    [(quad(), ARDUCOPTER), (PX4, PX4_MULTICOPTER), (DIVER, ARDUSUB), (CRAWLER, ARDUROVER)],
+)
 def test_the_type_says_which_vehicle_a_robot_is(type, expected):
-    assert vehicle_class(robot_program("a", []), type, {}) is expected
+    assert (
+        context_of(robot_program("a", []), target_input(program(), [replace(type, name="Quad")])).profile
+        == expected
+    )
 
 
 def test_without_a_type_what_takes_off_is_a_copter():
-    assert vehicle_class(robot_program("a", [take_off("up", 5.0)]), None, {}) is COPTER
-    assert vehicle_class(robot_program("a", []), None, {}) is ROVER
+    unknown = target_input(program(), [])
+    assert context_of(robot_program("a", [take_off("up", 5.0)]), unknown).profile == ARDUCOPTER
+    assert context_of(robot_program("a", []), unknown).profile == ARDUROVER
 
 
 @pytest.mark.parametrize(("mode", "speed"), [("SAFE", 4.0), ("NORMAL", 6.0), ("AGGRESSIVE", 8.0)])

@@ -20,18 +20,18 @@ AT_THE_SURFACE = -0.01
 def height_in(context: VehicleContext, position: Position) -> float:
     """Return a position's height in a mission, metres above home; below the surface for what dives."""
     height = context.height(position)
-    return min(height, AT_THE_SURFACE) if context.vehicle.dives else height
+    return min(height, AT_THE_SURFACE) if context.dives else height
 
 
 def zero_of(context: VehicleContext, home: Position) -> Position:
     """Return where the heights of a mission count from: home, or the surface above it."""
-    return (home[0], home[1], context.zero) if context.vehicle.dives else home
+    return (home[0], home[1], context.zero) if context.dives else home
 
 
 def above_water(robot: RobotProgram, input: TargetInput) -> Iterator[str]:
     """Yield what leads a vehicle that dives out of the water."""
     context = context_of(robot, input)
-    for move in robot.moves if context.vehicle.dives else ():
+    for move in robot.moves if context.dives else ():
         position = move.target.position if move.target is not None else None
         if position is not None and context.height(position) > 0.0:
             above = context.height(position)

@@ -15,10 +15,10 @@ from mmrs_mavlink.plugin.plans import items as cmd
 from mmrs_mavlink.plugin.plans.items import Item
 from mmrs_mavlink.plugin.plans.px4 import unknown_in
 from mmrs_mavlink.plugin.runs import CORNER_SECONDS
-from mmrs_mavlink.plugin.vehicles import COPTER, PX4, ROVER, autopilot_of
+from mmrs_mavlink.plugin.vehicles import autopilot_of
+from mmrs_mavlink.profiles import PX4
 from mmrs_mavlink.wiring import Wired
 
-MULTICOPTER = "urn:mmrs:multicopter:1.0"
 ORIGIN = (0.0, 0.0, 0.0)
 
 
@@ -74,14 +74,14 @@ class Flight:
         self._speed: float | None = None
         self._looking, self._gimbal = False, 0
         self._items: list[Item] = []
-        self._down = context.vehicle is COPTER
+        self._down = context.profile.flies
         self._px4 = autopilot_of(context.type) == PX4
 
     def perform(self, move: Move, *, fluid: bool) -> None:
         """Add a move with its actions; `fluid`: the robot does not stop at its end."""
         for action in move.before:
             self._act(action, move)
-        handler = _MOVES.get(move.metaclasses[0])
+        handler = _MOVES.get(move.metaclasses[0]) or _MANOEUVRES.get(self._context.manoeuvre(move))
         if handler is not None:
             handler(self, move, fluid)
         for action in move.after:
@@ -120,7 +120,7 @@ class Flight:
         """Climb straight up."""
         self._down = False
         east, north, _ = self._position
-        self._position = (east, north, self._context.zero + number_of(move, "altitude"))
+        self._position = (east, north, self._context.zero + self._context.climb(move))
         self._add(cmd.TAKE_OFF, move, here=True)
 
     def land(self, move: Move, fluid: bool) -> None:
@@ -131,7 +131,7 @@ class Flight:
         self._position = (east, north, self._context.zero)
         self._add(cmd.LAND, move, here=True)
         self.end_sortie()
-        self._down = self._context.vehicle is COPTER
+        self._down = self._context.profile.flies
 
     def go_to(self, move: Move, fluid: bool) -> None:
         """Go to the target, if its place is known."""
@@ -158,7 +158,7 @@ class Flight:
     def head_to(self, move: Move, fluid: bool) -> None:
         """Turn to something, if its place is known; a gimbal turns by itself."""
         heading = move.heading
-        if heading is None or self._context.vehicle is ROVER or on_gimbal(heading, self._context):
+        if heading is None or not self._context.profile.turns or on_gimbal(heading, self._context):
             self._look(move)
         elif heading.target.position is not None and not self._leaves_out(move, "turns on the ground"):
             aside = heading.angle_degrees + mount_of(heading, self._context)
@@ -217,9 +217,11 @@ def _bearing(a: Position, b: Position) -> float:
 
 _MOVES: Mapping[Name, Callable[[Flight, Move, bool], None]] = {
     (BEHAVIOUR, "GoTo"): Flight.go_to,
-    (MULTICOPTER, "GoTo"): Flight.go_to,
     (BEHAVIOUR, "HoldPosition"): Flight.hold,
     (BEHAVIOUR, "HeadTo"): Flight.head_to,
-    (MULTICOPTER, "TakeOff"): Flight.take_off,
-    (MULTICOPTER, "Land"): Flight.land,
+}
+_MANOEUVRES: Mapping[str, Callable[[Flight, Move, bool], None]] = {
+    "go_to": Flight.go_to,
+    "take_off": Flight.take_off,
+    "land": Flight.land,
 }

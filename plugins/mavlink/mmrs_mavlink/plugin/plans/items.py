@@ -13,7 +13,8 @@ from mmrs_core.contributions.targets import TracedStep
 from mmrs_core.scene import Position
 from mmrs_mavlink.plugin.context import VehicleContext
 from mmrs_mavlink.plugin.plans.diving import height_in
-from mmrs_mavlink.plugin.vehicles import PX4, autopilot_of
+from mmrs_mavlink.plugin.vehicles import autopilot_of
+from mmrs_mavlink.profiles import PX4
 
 WAYPOINT, LOITER_UNLIMITED, LOITER_TIME, LAND, TAKE_OFF = 16, 17, 19, 21, 22
 CONDITION_YAW, CHANGE_SPEED, ROI_LOCATION, ROI_NONE = 115, 178, 195, 197

@@ -13,7 +13,8 @@ from mmrs_mavlink.plugin.places import templates_of
 from mmrs_mavlink.plugin.plans.items import Row
 from mmrs_mavlink.plugin.plans.refusals import refusals
 from mmrs_mavlink.plugin.plans.surroundings import Mission, missions_of
-from mmrs_mavlink.plugin.vehicles import AUTOPILOTS, autopilot_of
+from mmrs_mavlink.plugin.vehicles import autopilot_of
+from mmrs_mavlink.profiles import AUTOPILOTS
 
 TEMPLATES = templates_of("qgc-plan")
 HEIGHT_ABOVE_HOME = 1
@@ -35,7 +36,7 @@ def view_of(mission: Mission) -> dict[str, object]:
     """Return what the template sees; heights are above home."""
     return {
         "firmware": AUTOPILOTS[autopilot_of(mission.context.type)],
-        "vehicle": mission.context.vehicle.mav_type,
+        "vehicle": mission.context.profile.mav_type,
         "speed": _usual_speed(mission.context),
         "height_above_home": HEIGHT_ABOVE_HOME,
         "home": list(mission.home),

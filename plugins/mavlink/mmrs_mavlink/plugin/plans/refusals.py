@@ -18,7 +18,8 @@ from mmrs_mavlink.plugin.headings import on_gimbal
 from mmrs_mavlink.plugin.plans.diving import above_water
 from mmrs_mavlink.plugin.plans.flight import flown
 from mmrs_mavlink.plugin.plans.px4 import unknown_in
-from mmrs_mavlink.plugin.vehicles import PX4, autopilot_fault, autopilot_of
+from mmrs_mavlink.plugin.vehicles import autopilot_fault, autopilot_of
+from mmrs_mavlink.profiles import PX4
 from mmrs_mavlink.wiring import Sampled, Unwired
 
 
@@ -76,7 +77,7 @@ def _of_robot(robot: RobotProgram, input: TargetInput) -> Iterator[str]:
 
 def _dives(robot: RobotProgram, input: TargetInput) -> bool:
     """Return whether a robot's heights count from the surface, wherever that is above the sea."""
-    return context_of(robot, input).vehicle.dives
+    return context_of(robot, input).dives
 
 
 def _coming_round(robot: RobotProgram, context: VehicleContext) -> Iterator[str]:
