@@ -3,7 +3,7 @@
 Every leg of every move counts, launching and landing included, and so does where a robot begins and
 ends. What must be kept is the area's safety distance, half the robot's diagonal and the position
 error, in all three dimensions. Emergency areas forbid nothing. Where a transition is fluid and the path
-turns, the robot may be off the corner by as much as it cuts it (`corners.py`).
+turns, the robot may be off the corner by as much as it cuts it (`cuts`).
 """
 
 from __future__ import annotations
@@ -156,8 +156,10 @@ Cut = tuple[Position, int, float]
 
 
 def cuts(input: CheckInput, robot: RobotProgram, motion: Motion) -> Iterator[Cut]:
-    """Yield the corners that a robot cuts.
+    """Yield the corners that a robot cuts since it passes them without a stop.
 
+    At a steady acceleration it passes within v² / 2a; an autopilot that counts positions as passed within
+    a radius lets it pass within that. The larger one is taken.
     A robot that needs room to turn keeps that room everywhere, and is counted by it alone.
     """
     legs: dict[int, list[MovePath]] = {}

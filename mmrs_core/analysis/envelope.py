@@ -1,4 +1,4 @@
-"""Between which heights robots move, and how deep they dive."""
+"""The operating envelope of robots: altitude, depth, radio range, wind and temperature."""
 
 from __future__ import annotations
 

@@ -30,7 +30,12 @@ in it, and from each other within which two homes are one place."""
 
 @dataclass(frozen=True, slots=True)
 class Column:
-    """What is straight over a robot's home, up to the transit height.
+    """What is straight over a robot's home, up to the transit altitude.
+
+    Homes may be nearer to each other than robots must keep in flight. Robots that stand at such homes are
+    excused, and so is one that rises or descends straight over its own while the other stands at its own,
+    as long as their distance is at least that of their homes. Nothing else is: neither two that rise side
+    by side, nor one that comes to another's home, nor any two whose homes are at one position.
 
     Attributes:
         home: the foot.

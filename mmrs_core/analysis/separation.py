@@ -7,7 +7,7 @@ violated where both are certainly there at one time, however uncertain times are
 other (see `passing`), and otherwise undecided.
 Times are those of the kinds of moves: where these reckon without wind and accelerations, so does this
 check, and only waits for each other are proof. Robots at homes that are nearer than that are excused as
-`columns` has it.
+`Column` has it.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Shares a task out among robots of different sorts, each of which has a work of its own for it."""
+"""Sharing of a task among groups of robots, each of which has a work of its own for it."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Where two robots' rides come near to each other, and when each of them may be there."""
+"""Where the rides of two robots come close to each other, and when each robot may be there."""
 
 from __future__ import annotations
 

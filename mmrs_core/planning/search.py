@@ -1,4 +1,4 @@
-"""Looks for decisions that let the last robot be back early: steps of a seeded local search."""
+"""A seeded local search for decisions with which the last robot is back early."""
 
 from __future__ import annotations
 
