@@ -83,7 +83,7 @@ def markup(stranger, folder_of, tmp_path):
 
 def test_a_stranger_s_element_is_drawn_with_its_outline_colour_icon_and_label(markup):
     root = etree.fromstring(markup.encode())
-    (outline,) = [e for e in root.iter() if e.get("class") == "thing area"]
+    (outline,) = [e for e in root.iter() if e.get("class") == "element area"]
     assert outline.get("stroke") == "#7a4b00"
     assert outline.get("d").count("L") == 2
     assert outline.findtext("{*}title") == "roof <west>: panel group, row count 6"
