@@ -238,7 +238,7 @@ def state(
     else:
         _say_states(shown, missing)
         if not shown and not missing:
-            tell(f"nobody has answered for mission {mission!r}, run {run!r}")
+            tell(f"no robot answered for mission {mission!r}, run {run!r}")
         for why in reasons(endpoints) if missing or not shown else ():
             tell(why)
     return LinkLostError.exit_code if missing or not shown else 0
@@ -293,7 +293,6 @@ def _readable() -> Iterator[None]:
 
 
 def _holder(text: str) -> Holder:
-
     name, separator, robots = text.partition("=")
     if name in ("observer", "authority"):
         raise typer.BadParameter(f"--robot {text}: there is a folder of that name anyway; say NAME=ROBOT")
@@ -325,7 +324,6 @@ def _refuse_doubles(holders: tuple[Holder, ...]) -> None:
 
 
 def _refuse_endpoints(listen: list[str] | None, connect: list[str] | None) -> None:
-
     refuse_endpoints("--listen", listen or ())
     refuse_endpoints("--connect", connect or ())
 
@@ -333,7 +331,6 @@ def _refuse_endpoints(listen: list[str] | None, connect: list[str] | None) -> No
 def _gateway(
     program: Program, robot: str, endpoints: Endpoints, run: str, folder: Path, port: int
 ) -> Gateway:
-
     names = [each.id for each in program.robots]
 
     def enter(recorded: Recorded | None) -> Node:

@@ -77,12 +77,10 @@ def control(
 def _replies(
     log: Path, order: str, robots: list[str], question: str, answer: bool, seconds: float
 ) -> Iterator[dict[str, Any]]:
-
     return give(log, order, robots, question=question, answer=answer, seconds=seconds)
 
 
 def _check(order: str, question: str, says: str) -> None:
-
     if order not in ORDERS:
         raise typer.BadParameter(f"{order}: is none of {', '.join(ORDERS)}")
     if order == ANSWER and (not question or says not in ("yes", "no")):

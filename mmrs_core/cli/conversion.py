@@ -110,7 +110,7 @@ def refuse_existing(targets: Sequence[Path], force: bool) -> None:
     """
     for target in targets:
         if target.exists() and not force:
-            raise ProtectedError(f"{target}: exists, and is not replaced; --force replaces it")
+            raise ProtectedError(f"{target}: already exists; use --force to overwrite")
 
 
 def refuse_imported(model: Model) -> None:

@@ -95,7 +95,6 @@ class _Asked:
 
 
 def _together(asked: _Asked, given: Sequence[Path], directory: Path) -> int:
-
     targets = targets_in(directory, given, asked.to)
     made, faults = converted_together(asked.session, targets, asked.metamodels, asked.exported)
     report(faults)
@@ -126,7 +125,6 @@ def _as_json(made: Converted) -> dict[str, object]:
 
 
 def _alone(asked: _Asked, source: Path, target: Path | None) -> int:
-
     found = read_foreign(asked.session, source, asked.metamodels)
     refuse_imported(found.model)
     faults = tuple(faults_in(found))

@@ -33,11 +33,11 @@ LOGS = "logs"
 
 @dataclass(frozen=True, slots=True)
 class Manner:
-    """How an example is shown, as the file demo.toml beside its mission says.
+    """How an example is shown, as the file demo.toml next to its mission states.
 
     Attributes:
-        also: a shorter name of it; may be empty.
-        backend: what moves the robots, in simulated time. own: by robot, what moves those that differ.
+        also: a shorter name; may be empty.
+        backend: of the robots, in simulated time. own: by robot, the backends that differ.
         options: of the backends; ``ROBOT:KEY`` is for that of one robot.
         targets: what is generated.
     """
@@ -50,10 +50,10 @@ class Manner:
 
 
 def travel_margins_of(folder: Path) -> Manner:
-    """Return how an example is shown; as usual where it does not say. ``{folder}`` is its own folder.
+    """Return how an example is shown, by default with a simulation. ``{folder}`` is its own folder.
 
     Raises:
-        UnreadableError: its file cannot be read.
+        UnreadableError: if its file cannot be read.
     """
     file = folder / MANNER
     if not file.is_file():
@@ -75,9 +75,9 @@ class Demonstration:
     """What was done and made.
 
     Attributes:
-        files: (what, path, how many files) in the order in which they were made.
-        left_out: by target, what it cannot express: its files go without, and its manifest says so.
-        backend: what moved the robots.
+        files: (description, path, number of files), in the order of their creation.
+        left_out: by target, the elements that it does not support, as its manifest records.
+        backend: of the robots.
     """
 
     stages: Stages
@@ -98,27 +98,27 @@ class Demonstration:
         return succeeded(self.run) and self.replayed.accepted
 
     def lines(self) -> Iterator[str]:
-        """Yield about a screenful: plan, safety, run, files."""
+        """Yield about a screenful: plan, safety, run and files."""
         yield from plan_lines(self.stages.scene, self.stages.plan)
-        yield "checked before anything was written:"
+        yield "Safety checks:"
         yield from verdict_table(self.stages.verdicts)
         outcome, *details = run_lines(self.run)
-        judged = "the logs replay" if self.replayed.accepted else "the logs do not replay"
+        judged = "logs verified" if self.replayed.accepted else "log check failed"
         backend = "" if self.backend == "simulation" else f" by {self.backend}"
         yield f"simulated{backend}: {outcome}; {judged}"
         if not succeeded(self.run):
             yield from details
         for target in sorted(set(self.left_out) - self._generated):
             yield f"not generated for {target}: {'; '.join(self.left_out[target][:_MOST_REASONS])}"
-        yield f"in {self.folder}:"
+        yield f"Output in {self.folder}:"
         for what, path, count in self.files:
             more = f" ({counted(count, 'file')})" if count > 1 else ""
             yield f"  {path.relative_to(self.folder).as_posix():<30} {what}{more}"
         told = shlex.join(["mmrs", "report", str(self.folder), str(self.folder / LOGS)])
-        yield f"to have it told as a flight is: {told}"
+        yield f"Flight report: {told}"
 
     def summary(self) -> Mapping[str, object]:
-        """Return the same as values."""
+        """Return the demonstration as JSON has it."""
         return {
             **plan_summary(self.stages.scene, self.stages.plan),
             "verdicts": self.stages.verdicts,
@@ -136,7 +136,7 @@ def demonstrate(
     manner: Manner = Manner(),
     others: Iterable[Path] = (),
 ) -> Demonstration:
-    """Take an example through all stages and leave it with everything that they make in a folder.
+    """Take an example through all stages, and write it and their results to a folder.
 
     Args:
         stages: of its mission.
@@ -161,8 +161,8 @@ def demonstrate(
         save(stages.transformed[0], behaviour, session.contributions)
     copied = copy_example(example, folder)
     files: list[tuple[str, Path, int]] = [
-        ("the mission, its place, and robot types", folder / "mission.xmi", copied),
-        ("what each robot does, move by move", behaviour, 1),
+        ("mission, context and robot types", folder / "mission.xmi", copied),
+        ("moves of each robot", behaviour, 1),
     ]
     left_out: dict[str, tuple[str, ...]] = {}
     for target in manner.targets:
@@ -171,16 +171,16 @@ def demonstrate(
             continue
         write(rendered, folder / "controllers" / target)
         lossy = (
-            f", without {counted(len(left_out[target]), 'thing')} it cannot express"
+            f", without {counted(len(left_out[target]), 'element')} it does not support"
             if left_out[target]
             else ""
         )
         files.append((f"code for {target}{lossy}", folder / "controllers" / target, len(rendered)))
     run = fly(session, program, place, {}, Chosen(manner.backend, manner.options, manner.own))
     logs = write_logs(run, program, folder / LOGS, place.types, session.contributions.robot_kinds)
-    files.append(("what each robot did", folder / LOGS, len(logs)))
+    files.append(("steps of each robot in the simulation", folder / LOGS, len(logs)))
     pictures = write_pictures(picture_of(stages), folder)
-    files += [("a page to look at", pictures[0], 1), ("the map alone", pictures[1], 1)]
+    files += [("map, timeline and altitude profile", pictures[0], 1), ("map", pictures[1], 1)]
     replayed = replay(program, read_logs([folder / LOGS]))
     backends = " and ".join(dict.fromkeys((manner.backend, *manner.own.values())))
     return Demonstration(stages, run, replayed, folder, tuple(files), left_out, backends)

@@ -106,7 +106,6 @@ def _models_in(folder: Path) -> dict[str, Path]:
 
 
 def _roots(session: Session, file: Path | None, metamodels: Sequence[Path] | None) -> tuple[Element, ...]:
-
     if file is None:
         return ()
     model = read_foreign(session, file, metamodels).model

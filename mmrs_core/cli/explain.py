@@ -116,7 +116,6 @@ def _facts(entry: Entry) -> Iterator[str]:
 
 
 def _places(folder: Path, robot: str, move: str, task: str, json: bool) -> int:
-
     found = places_of(folder, robot=robot, move=move, task=task)
     asked = " ".join(
         f"{name} '{value}'" for name, value in (("robot", robot), ("move", move), ("task", task)) if value
@@ -164,7 +163,6 @@ def _place_json(found: Found) -> dict[str, object]:
 
 
 def _entry_json(entry: Entry) -> dict[str, object]:
-
     return {
         **asdict(entry.step),
         "lines": [entry.first, entry.last] if entry.first else None,

@@ -34,15 +34,15 @@ def _names_of_checks(contributions: Contributions) -> Iterator[str]:
 
 
 def refuse_foreign(models: Iterable[Model]) -> None:
-    """Tell which models are those of another tool, whose files are not mended.
+    """Report models of another dialect, whose files are not fixed.
 
     Raises:
         ProtectedError: if all are.
     """
     models = tuple(models)
     refused = [
-        f"{model.file}: a model of {model.importer.name}, whose file is not mended; "
-        f"{model.importer.advice}, which can be mended"
+        f"{model.file}: a model of {model.importer.name}, which cannot be fixed; "
+        f"{model.importer.advice}, which can be fixed"
         for model in models
         if model.importer
     ]
@@ -64,11 +64,11 @@ def _lines(change: FileChange) -> Iterator[str]:
         yield line if line.endswith("\n") else f"{line}\n\\ No newline at end of file\n"
 
 
-def show(repair: Repair, mendable: Container[str]) -> None:
-    """Print the diff, what it mends, and what it cannot mend.
+def show(repair: Repair, fixable: Container[str]) -> None:
+    """Print the diff, the problems it fixes, and those it does not fix.
 
     Args:
-        mendable: codes that have a quick fix.
+        fixable: codes that have a quick fix.
     """
     for line in difference(repair.changes).splitlines():
         heading = line.startswith(("+++", "---"))
@@ -76,12 +76,12 @@ def show(repair: Repair, mendable: Container[str]) -> None:
     for proposal in repair.applied:
         say(f"{proposal.fault.place}: {proposal.title} [{proposal.fault.code}]")
     for proposal in repair.refused:
-        tell(f"{_where(proposal)}: not mended: {proposal.objection} [{proposal.fault.code}]")
+        tell(f"{_where(proposal)}: not fixed: {proposal.objection} [{proposal.fault.code}]")
     refused = {proposal.fault for proposal in repair.refused}
     foreign = {str(model.file) for model in repair.diagnosis.models if model.importer}
     for fault in repair.diagnosis.faults:
-        if fault.code in mendable and fault not in refused and fault.place.file not in foreign:
-            tell(f"{fault.place}: not mended: no single right answer is seen here [{fault.code}]")
+        if fault.code in fixable and fault not in refused and fault.place.file not in foreign:
+            tell(f"{fault.place}: not fixed: several fixes are possible [{fault.code}]")
 
 
 def _where(proposal: Proposal) -> str:
@@ -89,7 +89,7 @@ def _where(proposal: Proposal) -> str:
 
 
 def agreed(repair: Repair, *, yes: bool, dry_run: bool) -> bool:
-    """Return whether the changes are to be made: after asking, where somebody can be asked."""
+    """Return whether to make the changes; ask on a terminal."""
     if dry_run or not repair.changes:
         return False
     if yes:
@@ -109,5 +109,5 @@ def write(repair: Repair) -> None:
     """
     for change in repair.changes:
         if change.file.read_bytes() != change.before:
-            raise UnreadableError(f"{change.name}: changed meanwhile by somebody else; nothing is mended")
+            raise UnreadableError(f"{change.name}: was changed meanwhile; nothing was fixed")
     replace_files({change.file: change.after for change in repair.changes})

@@ -147,7 +147,6 @@ def _listed(written: tuple[Path, ...], folder: Path) -> list[str]:
 def _generate(
     session: Session, file: Path, order: _Order
 ) -> tuple[tuple[Path, ...], Manifest, tuple[str, ...]]:
-
     loaded = load_behaviour(session, file, context=order.context, robots=order.robots)
     program, place = loaded.program, loaded.place
     require_safe(program, verdicts_of(session, program, place), str(file))

@@ -78,7 +78,6 @@ def _enum(enumeration: Enumeration) -> _Branch:
 
 
 def _feature(feature: Feature) -> str:
-
     most = "*" if feature.most < 0 else str(feature.most)
     default = "" if feature.default is None else f" = {value_words(feature.default)}"
     how = "contains " if feature.containment else "→ " if feature.is_reference else ""

@@ -1,4 +1,4 @@
-"""Says what a plan holds, for people and as JSON."""
+"""A plan as lines for operators, and as JSON."""
 
 from __future__ import annotations
 
@@ -14,13 +14,13 @@ _WIDEST = 44
 
 
 def plan_lines(scene: Scene, plan: Plan) -> Iterator[str]:
-    """Yield who does what, how far, how long."""
+    """Yield the tasks, distance, time and energy of each robot, and notes."""
     at_work = sum(bool(robot.steps) for robot in plan.robots)
     yield (
         f"{scene.name or 'mission'}: {counted(len(scene.tasks), 'task')}, "
-        f"{counted(at_work, 'robot')} at work, done after {clock(plan.makespan)}"
+        f"{counted(at_work, 'active robot')}, mission time {clock(plan.makespan)}"
     )
-    head = ("robot", "type", "tasks", "way", "time", "energy", "sorties")
+    head = ("robot", "type", "tasks", "distance", "time", "energy", "sorties")
     yield from table(head, [_row(scene, robot) for robot in plan.robots], widest=_WIDEST)
     for robot in plan.robots:
         if robot.idle:
@@ -35,7 +35,7 @@ def plan_lines(scene: Scene, plan: Plan) -> Iterator[str]:
 
 
 def plan_summary(scene: Scene, plan: Plan) -> Mapping[str, object]:
-    """Return the same as values."""
+    """Return the plan as JSON has it."""
     return {
         "mission": scene.name,
         "makespan": plan.makespan,

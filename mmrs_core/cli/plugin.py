@@ -158,7 +158,6 @@ def _loaded(settings: Settings) -> tuple[_Found, str]:
 
 
 def _version(distribution: str) -> str:
-
     try:
         return version(distribution)
     except PackageNotFoundError:

@@ -65,7 +65,6 @@ def replay(
 
 
 def _say(result: ReplayResult, flight: Flight | None) -> None:
-
     verdict = "accepted" if result.accepted else "not what the behaviour says"
     say(f"{verdict}: {result.outcome.value} after {result.steps} steps and {clock(result.duration)}")
     for complaint in result.complaints:
@@ -82,7 +81,6 @@ def _say(result: ReplayResult, flight: Flight | None) -> None:
 
 
 def _say_steps(flight: Flight, program: Program) -> None:
-
     rows = [
         (clock(step.time), step.robot, place(step.where), step.words) for step in steps_of(flight, program)
     ]
@@ -91,7 +89,6 @@ def _say_steps(flight: Flight, program: Program) -> None:
 
 
 def _say_json(result: ReplayResult, flight: Flight | None, program: Program, *, steps: bool) -> None:
-
     told = plain(result)
     assert isinstance(told, dict)
     if flight is not None:

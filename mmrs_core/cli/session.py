@@ -112,7 +112,6 @@ class Stages:
 
     @cached_property
     def _valid(self) -> tuple[ModelSet, tuple[Diagnostic, ...]]:
-
         models, warnings = self.session.stage(
             "check",
             "checking the models",

@@ -82,7 +82,6 @@ def _say_as_json(file: Path, roots: Sequence[Element], matches: Sequence[Match] 
 
 
 def _say(matches: Sequence[Match], depth: int, with_paths: bool) -> None:
-
     for match in matches:
         lead = f"{match.path}: " if with_paths else ""
         if isinstance(match.value, Element):

@@ -198,7 +198,7 @@ def run_lines(run: SimulatedRun) -> Iterator[str]:
 def _energy_left(full: float | None, left: float | None) -> str:
     if full is None or left is None or full in (0.0, float("inf")):
         return ""
-    return f", {100 * left / full:.0f} % of the energy left"
+    return f", {100 * left / full:.0f} % energy remaining"
 
 
 def succeeded(run: SimulatedRun) -> bool:

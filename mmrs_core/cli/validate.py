@@ -86,27 +86,24 @@ def validate(
 
 
 def _exit_code(found: Diagnosis) -> int:
-
     if any(map(is_refusal, found.faults)):
         return UnreadableError.exit_code
     return 0 if _is_valid(found) else 1
 
 
 def _is_valid(found: Diagnosis) -> bool:
-
     return found.complete and not has_errors(found.faults)
 
 
 def _summary(project: Path, found: Diagnosis, repair: Repair | None, changed: bool) -> str:
     counts = _counts(found.faults)
-    mended = counted(len(repair.applied), "fault") if repair is not None and changed else ""
-    known = "not read wholly" if _exit_code(found) == UnreadableError.exit_code else "not valid"
+    mended = counted(len(repair.applied), "problem") if repair is not None and changed else ""
+    known = "incompletely read" if _exit_code(found) == UnreadableError.exit_code else "not valid"
     words = f"{project}: {'valid' if _is_valid(found) else known}" + (f" ({counts})" if counts else "")
-    return f"{words}; {mended} mended" if mended else words
+    return f"{words}; {mended} fixed" if mended else words
 
 
 def _counts(faults: tuple[Diagnostic, ...]) -> str:
-
     counts = [(severity, sum(fault.severity is severity for fault in faults)) for severity in Severity]
     return ", ".join(counted(count, severity.value) for severity, count in counts if count)
 
@@ -115,13 +112,12 @@ def _tell_of(proposals: tuple[Proposal, ...], project: Path, *, asked: bool) -> 
     if proposals and not asked:
         count = len(proposals)
         command = f"mmrs validate {quote(str(project))} --fix"
-        tell(f"{command}: mends {counted(count, 'fault')}, and shows how first")
+        tell(f"{counted(count, 'problem')} can be fixed with {command}")
 
 
 def _as_json(
     found: Diagnosis, proposals: tuple[Proposal, ...], repair: Repair | None, changed: bool
 ) -> dict[str, object]:
-
     told: dict[str, object] = {
         "valid": _is_valid(found),
         "diagnostics": found.faults,

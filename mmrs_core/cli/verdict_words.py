@@ -1,4 +1,4 @@
-"""Says what checks found, for people."""
+"""Verdicts as lines for operators."""
 
 from __future__ import annotations
 
@@ -13,16 +13,16 @@ _FOR_UNKNOWN = "give what is missing, or name the property in the mission's acce
 
 
 def hint_of(verdict: Verdict, checks: Iterable[Check]) -> str:
-    """Return how to mend what was found, or what to say where it cannot be known."""
+    """Return how to fix a violation, or how to accept an unknown property."""
     if verdict.status is Status.UNKNOWN:
         return _FOR_UNKNOWN
     return next((check.hint for check in checks if check.name == verdict.property), "")
 
 
 def verdict_line(verdict: Verdict) -> str:
-    """Return one verdict in one line: property, what was found, by how much.
+    """Return a verdict as one line: property, status, message and margin.
 
-    A message names robot, move and area itself; without one, they are told here.
+    A message names robot, move and area; without one, the line names them.
     """
     margin = _margin(verdict, "margin")
     told = [verdict.message] if verdict.message else [verdict.robot, verdict.move, verdict.area]

@@ -27,7 +27,7 @@ _MOST_TRIALS = 100
 _STEP = re.compile(r"/([^/\[\]]+)(?:\[([0-9]+)\])?")
 _MEMBER = re.compile(r"[^\[]*\[[0-9]+\]")
 _WITHHELD = "withheld-"
-_WORSE = "that would bring other errors"
+_WORSE = "the fix would cause other errors"
 
 
 @dataclass(frozen=True, slots=True)

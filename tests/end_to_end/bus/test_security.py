@@ -125,7 +125,7 @@ def test_an_observer_of_a_mission_that_nobody_flies_is_told_so(secured, capsys):
     asked = [*looking_on(secured[0], "--seconds", "0.5")]
     asked[2] = "another"
     assert run_command(asked, "mmrs") == 5
-    assert "nobody has answered for mission 'another', run 'run-0'" in capsys.readouterr().err
+    assert "no robot answered for mission 'another', run 'run-0'" in capsys.readouterr().err
 
 
 def test_keys_are_readable_by_their_owner_only_and_kept_when_a_robot_is_added(tmp_path, capsys):

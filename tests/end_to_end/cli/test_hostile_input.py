@@ -36,7 +36,7 @@ def folder(tmp_path):
 def test_what_is_no_model_ends_with_3(mmrs, folder, command, content):
     (folder / "mission.xmi").write_bytes(content)
     code, out, err = mmrs(command, folder)
-    told = f"{folder}: not read wholly (1 error)\n" if command == "validate" else ""
+    told = f"{folder}: incompletely read (1 error)\n" if command == "validate" else ""
     assert (code, out) == (3, told)
     assert "mission.xmi" in err
     assert "[FIL00" in err
@@ -65,7 +65,7 @@ def test_what_is_no_behaviour_ends_with_3(mmrs, folder, command, content):
 @pytest.mark.parametrize("command", ["validate", "plan", "check", "simulate", "preview", "show"])
 def test_a_missing_file_ends_with_3_and_is_named(mmrs, folder, command):
     code, out, err = mmrs(command, folder / "lost.xmi")
-    told = f"{folder / 'lost.xmi'}: not read wholly (1 error)\n" if command == "validate" else ""
+    told = f"{folder / 'lost.xmi'}: incompletely read (1 error)\n" if command == "validate" else ""
     assert (code, out) == (3, told)
     assert "lost.xmi" in err
 

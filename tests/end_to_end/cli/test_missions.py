@@ -27,7 +27,7 @@ def pool(tmp_path):
 def demonstrates(mmrs, tmp_path, example):
     code, out, err = mmrs("demo", example, "--out", tmp_path / "out")
     assert (code, err) == (0, "")
-    assert "the logs replay" in out
+    assert "logs verified" in out
     assert len(out.splitlines()) <= 45
     left = {path.relative_to(tmp_path / "out").as_posix() for path in (tmp_path / "out").rglob("*")}
     assert {"behaviour.xmi", "preview.html", "preview.svg", "controllers/mavlink-python"} <= left

@@ -26,7 +26,7 @@ def field(tmp_path, monkeypatch):
 def test_it_is_told_with_code_place_and_hint_beside_the_faults_of_other_files(field, mmrs):
     code, out, err = mmrs("validate", field)
     assert code == 3
-    assert out == "field: not read wholly (4 errors)\n"
+    assert out == "field: incompletely read (4 errors)\n"
     assert "context.xmi:" in err
     assert "colour: no feature of Context" in err
     assert "Mission 'm': team is missing" in err

@@ -46,7 +46,7 @@ def test_a_fault_whose_fix_sees_no_single_answer_is_told_with_its_place(project,
     file.write_text(text, encoding="utf-8")
     assert run(["validate", "dam", "--fix", "--yes"]) == 1
     told = capsys.readouterr().err
-    assert "dam/mission.json:11: not mended: no single right answer is seen here [MML004]" in told
+    assert "dam/mission.json:11: not fixed: several fixes are possible [MML004]" in told
 
 
 def test_a_file_that_somebody_changed_meanwhile_is_left_alone(tmp_path):
@@ -55,7 +55,7 @@ def test_a_file_that_somebody_changed_meanwhile_is_left_alone(tmp_path):
     other.write_bytes(b"b")
     repair = repair_of(one, other)
     other.write_bytes(b"theirs")
-    with pytest.raises(UnreadableError, match=r"b\.xmi: changed meanwhile"):
+    with pytest.raises(UnreadableError, match=r"b\.xmi: was changed meanwhile"):
         write(repair)
     assert (one.read_bytes(), other.read_bytes()) == (b"a", b"theirs")
 

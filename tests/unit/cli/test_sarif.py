@@ -175,7 +175,7 @@ def test_a_dry_run_changes_nothing(spoilt):
 def test_a_fix_changes_the_file_when_told_to(spoilt, capsys):
     assert run(["validate", "the dam", "--fix", "--yes"]) == 0
     assert spoilt.read_bytes() == (EXAMPLES / "mixed-team" / "mission.xmi").read_bytes()
-    assert "1 fault mended" in capsys.readouterr().out
+    assert "1 problem fixed" in capsys.readouterr().out
 
 
 def test_json_tells_what_was_mended_and_how(spoilt, capsys):
@@ -189,4 +189,4 @@ def test_json_tells_what_was_mended_and_how(spoilt, capsys):
 
 def test_faults_with_a_fix_are_announced(spoilt, capsys):
     assert run(["validate", "the dam"]) == 1
-    assert "mmrs validate 'the dam' --fix: mends 1 fault" in capsys.readouterr().err
+    assert "1 problem can be fixed with mmrs validate 'the dam' --fix" in capsys.readouterr().err

@@ -48,7 +48,7 @@ def test_what_was_checked_of_some_robots_only_says_both():
 
 def test_a_plan_is_told_robot_by_robot(scene, plan):
     lines = list(plan_lines(scene, plan))
-    assert lines[0] == "two drones: 3 tasks, 2 robots at work, done after 1:12"
+    assert lines[0] == "two drones: 3 tasks, 2 active robots, mission time 1:12"
     assert lines[2].split() == ["Alba", "quad", "field", "170", "m", "0:50", "10.0", "Wh", "1"]
     assert lines[3].split()[-3:] == ["not", "known", "1"]
     assert lines[4] == "  note: terrain is taken as flat"

@@ -97,9 +97,7 @@ def write_outputs(
     refuse_inputs(contents, sources)
     for file, data in contents.items():
         if not force and file.exists() and file.read_bytes() != data:
-            raise ProtectedError(
-                f"{file}: says something else already, and is not replaced; --force replaces it"
-            )
+            raise ProtectedError(f"{file}: has other content; use --force to overwrite")
     for file, data in contents.items():
         file.parent.mkdir(parents=True, exist_ok=True)
         replace_file(file, data)

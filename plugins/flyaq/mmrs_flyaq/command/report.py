@@ -46,7 +46,7 @@ class Verdict:
     @property
     def word(self) -> str:
         """The verdict, as ``mmrs validate`` words it."""
-        known = "not valid" if self.is_read else "not read wholly"
+        known = "not valid" if self.is_read else "incompletely read"
         return "valid" if self.valid else known
 
     @property

@@ -176,7 +176,7 @@ def test_a_folder_that_cannot_be_judged_is_not_called_valid(mmrs, project):
     (project / "context.json").write_text("{}")
     code, out, err = mmrs("migrate", FLYAQ / "orchard-mission.json", "-o", project)
     assert code == mmrs("validate", project)[0] == 3
-    assert out.endswith(f"{project}: not read wholly\n")
+    assert out.endswith(f"{project}: incompletely read\n")
     assert "has both context.xmi and context.json" in err
 
 
