@@ -10,8 +10,15 @@ import typer
 from mmrs_core.cli.behaviours import load_behaviour
 from mmrs_core.cli.output import say, say_json
 from mmrs_core.cli.parameters import Behaviour, Context, Robots, behaviour_file, robot_files
-from mmrs_core.cli.reports import STANDARD_OUTPUT, Sarif, refuse_two_outputs
-from mmrs_core.cli.sarif import as_faults, refusals_in, subject_of, write_sarif
+from mmrs_core.cli.sarif import (
+    STANDARD_OUTPUT,
+    Sarif,
+    as_faults,
+    refusals_in,
+    refuse_two_outputs,
+    subject_of,
+    write_sarif,
+)
 from mmrs_core.cli.session import Session, verdicts_of
 from mmrs_core.cli.settings import Json, settings_of
 from mmrs_core.cli.verdict_words import hint_of, verdict_line, verdict_table

@@ -4,18 +4,20 @@ from __future__ import annotations
 
 import os
 import shlex
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Annotated
+
+import typer
 
 from mmrs_core.cli.any_model import is_mistake, read_foreign
 from mmrs_core.cli.protection import ProtectedError, refuse_inputs
-from mmrs_core.cli.schema_places import places_in
 from mmrs_core.diagnostics import Diagnostic, in_order
 from mmrs_core.errors import InvalidModelError, UnreadableError, UnsupportedError
 from mmrs_core.languages.foreign import kept_places
+from mmrs_core.languages.metamodels.export import exported_names, schema_locations
 from mmrs_core.languages.metamodels.gathering import gathered
 from mmrs_core.languages.reading import Reading
 from mmrs_core.languages.writing import to_json, to_xmi
@@ -224,3 +226,28 @@ def text_of(
         return write(roots, registry, schema_location=places, file=target)
     except ValueError as fault:
         raise UnsupportedError(f"{source}: {fault}") from None
+
+
+SchemaLocation = Annotated[
+    Path | None,
+    typer.Option(
+        "--schema-location",
+        metavar="DIR",
+        help="Folder written by 'mmrs metamodel export', recorded as xsi:schemaLocation for Eclipse.",
+    ),
+]
+
+
+def places_in(directory: Path | None, registry: Registry, file: Path) -> Mapping[str, str]:
+    """Return where a model in a file finds the metamodels of a folder, by nsURI; nothing without a folder.
+
+    Raises:
+        UnreadableError: if not all metamodels were exported to that folder.
+    """
+    if directory is None:
+        return {}
+    for name in exported_names(registry).values():
+        if not (directory / name).is_file():
+            message = f"{directory}: no {name} in this folder; 'mmrs metamodel export {directory}' writes it"
+            raise UnreadableError(message)
+    return schema_locations(registry, directory, file)

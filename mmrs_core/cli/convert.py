@@ -13,6 +13,7 @@ from mmrs_core.cli.any_model import Metamodels, faults_in, is_mistake, read_fore
 from mmrs_core.cli.conversion import (
     Converted,
     Form,
+    SchemaLocation,
     converted_together,
     form_of,
     is_followed,
@@ -26,7 +27,6 @@ from mmrs_core.cli.conversion import (
 from mmrs_core.cli.output import counted, report, say, say_file, say_json, tell
 from mmrs_core.cli.protection import files_of, refuse_inputs
 from mmrs_core.cli.replacing import replace_files
-from mmrs_core.cli.schema_places import SchemaLocation
 from mmrs_core.cli.session import Session
 from mmrs_core.cli.settings import Json, settings_of
 from mmrs_core.errors import InvalidModelError

@@ -10,9 +10,8 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from mmrs_core.cli.completion import generated_robots, generated_tasks
-from mmrs_core.cli.output import say, say_json, tell
+from mmrs_core.cli.output import say, say_json, table, tell
 from mmrs_core.cli.settings import Json
-from mmrs_core.cli.tables import table
 from mmrs_core.errors import MmrsError
 from mmrs_core.generation.explaining import Explanation, Found, places_of
 

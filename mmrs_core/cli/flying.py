@@ -11,7 +11,6 @@ import typer
 
 from mmrs_core.behaviour.program import FEEDBACK, Action, Program
 from mmrs_core.cli.behaviours import Loaded
-from mmrs_core.cli.bus_faults import bus_faults
 from mmrs_core.cli.buses import bus_for
 from mmrs_core.cli.observers import ObserverThread
 from mmrs_core.cli.output import say, tell
@@ -25,16 +24,19 @@ from mmrs_core.cli.run_options import (
     stop_response,
 )
 from mmrs_core.cli.session import Session
+from mmrs_core.contributions.execution import Clock
 from mmrs_core.pictures.figures import clock
 from mmrs_core.pipeline import backend_for, conditions_for, inputs_of
 from mmrs_core.simulation.live import live_run_for, run_live
+from mmrs_runtime.bus.carriers.carrier import Carrier
 from mmrs_runtime.bus.program_bus import begin_all
 from mmrs_runtime.control import Taken
-from mmrs_runtime.engine.clocks import RealClock
+from mmrs_runtime.engine.clocks import FollowingClock, RealClock
 from mmrs_runtime.engine.live import exit_code
 from mmrs_runtime.engine.order_sources import Status, receive_orders, stopping
 from mmrs_runtime.engine.orders import Orders
 from mmrs_runtime.engine.terms import Ending
+from mmrs_runtime.injection import Rehearsal, injections
 from mmrs_runtime.records.log import LogWriter
 from mmrs_runtime.records.steps import StepRecord, log_name
 from mmrs_runtime.screen import unfailing
@@ -192,3 +194,32 @@ def _actions_of(program: Program) -> dict[tuple[str, str, str], Action]:
         for when, actions in (("pre", move.before), ("post", move.after))
         for index, action in enumerate(actions)
     }
+
+
+def bus_faults(
+    text: str, program: Program, shared: bool, clock: Clock, stack: ExitStack
+) -> Callable[[Carrier], Carrier]:
+    """Return what puts the faults of the bus in front of its carrier, and begin them at their times.
+
+    Args:
+        text: as in ``--inject``.
+        program: of all robots.
+        shared: whether there are robots in other processes.
+        clock: of the run.
+        stack: ends the faults.
+
+    Raises:
+        typer.BadParameter: if a fault makes no sense.
+    """
+    if "bus-" not in text:
+        return lambda carrier: carrier
+
+    robots = [robot.id for robot in program.robots]
+    try:
+        faults = injections([text], {robot: robot for robot in robots}, alone=not shared)
+    except ValueError as error:
+        raise typer.BadParameter(f"--inject {error}") from error
+    rehearsal = Rehearsal(faults.of_bus(), FollowingClock(clock), lambda line: None)
+    stack.callback(rehearsal.close)
+    rehearsal.start()
+    return lambda carrier: rehearsal.wrap_carrier(carrier, robots)

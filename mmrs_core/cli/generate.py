@@ -3,26 +3,28 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from mmrs_core.cli.behaviours import load_behaviour
-from mmrs_core.cli.capabilities import print_capabilities
 from mmrs_core.cli.completion import target_names
-from mmrs_core.cli.output import counted, say, say_json
+from mmrs_core.cli.output import counted, say, say_json, table
 from mmrs_core.cli.parameters import Context, Robots, behaviour_file, robot_files
 from mmrs_core.cli.protection import refuse_inputs
 from mmrs_core.cli.session import Session, require_safe, verdicts_of
 from mmrs_core.cli.settings import Json, settings_of
-from mmrs_core.cli.tables import table
 from mmrs_core.generation.deployment import fetch
 from mmrs_core.generation.manifest import Manifest, manifest_in
 from mmrs_core.generation.writing import write
-from mmrs_core.pipeline import render
+from mmrs_core.pipeline import capabilities, render
+
+if TYPE_CHECKING:
+    from mmrs_core.cli.session import Session
+    from mmrs_core.generation.capabilities.judging import Capability
 
 
 def generate(
@@ -179,3 +181,55 @@ def _list_targets(session: Session, json: bool) -> int:
         for line in table(("target", "description"), [(each.name, each.description) for each in targets]):
             say(line)
     return 0
+
+
+WIDEST = 96
+
+
+def print_capabilities(session: Session, target: str | None, json: bool) -> int:
+    """Print what a target can express, or every target where None is named; return the exit code.
+
+    Raises:
+        UsageError: there is no such target.
+    """
+    contributions = session.contributions
+    tables = session.stage("capabilities", "trying", lambda: capabilities(target, contributions))
+    if json:
+        say_json({"targets": {name: [_row(each) for each in rows] for name, rows in tables.items()}})
+        return 0
+    for name, rows in tables.items():
+        say(f"{name}: {contributions.targets[name].description}")
+        for line in table(("what", "", "how, or why not"), list(_cells(rows)), widest=WIDEST):
+            say(line)
+    return 0
+
+
+def policy_lines(rows: Iterable[Capability]) -> Iterator[tuple[str, str, str]]:
+    """Yield policies in few lines: what, verdict, responses; those together that fare alike."""
+    responses: dict[tuple[str, str, str], list[str]] = {}
+    for row in rows:
+        event, _, response = row.element.partition(": ")
+        responses.setdefault((row.group, event, row.verdict), []).append(response)
+    events: dict[tuple[str, str, str], list[str]] = {}
+    for (group, event, verdict), some in responses.items():
+        events.setdefault((group, verdict, ", ".join(some)), []).append(event)
+    count = len({event for _, event, _ in responses})
+    for (group, verdict, words), names in events.items():
+        yield f"{group}: {'any fault' if len(names) == count else ', '.join(names)}", verdict, words
+
+
+def _cells(rows: Sequence[Capability]) -> Iterator[tuple[str, str, str]]:
+    policies = [row for row in rows if is_policy(row)]
+    for row in rows:
+        if not is_policy(row):
+            yield row.element, row.verdict, row.how
+    yield from policy_lines(policies)
+
+
+def is_policy(row: Capability) -> bool:
+    """Return whether a row is about a policy of a robot."""
+    return row.group.startswith("policy")
+
+
+def _row(row: Capability) -> dict[str, str]:
+    return {"group": row.group, "element": row.element, "verdict": row.verdict, "how": row.how}

@@ -2,20 +2,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
-from mmrs_core.cli.metamodel_words import difference_lines, verdict_line
-from mmrs_core.cli.output import counted, say, say_json
+from mmrs_core.cli.output import counted, say, say_json, table
 from mmrs_core.cli.replacing import replace_files
 from mmrs_core.cli.settings import Json, settings_of
-from mmrs_core.cli.tables import table
 from mmrs_core.errors import UnreadableError
 from mmrs_core.generation.stubs.write import write_stubs
 from mmrs_core.languages.evolution.differences import differences, ways_between
-from mmrs_core.languages.evolution.effects import Effect
+from mmrs_core.languages.evolution.effects import Difference, Effect
+from mmrs_core.languages.evolution.migration import Migration
 from mmrs_core.languages.evolution.versions import pairs_of, version_of
 from mmrs_core.languages.metamodels.export import export_metamodels
 from mmrs_core.languages.metamodels.gathering import registry_of_files
@@ -154,3 +154,31 @@ def _written(paths: tuple[Path, ...] | list[Path], json: bool) -> int:
         for path in paths:
             say(f"  {path}")
     return 0
+
+
+_SIGNS = {"added": "+", "removed": "-", "changed": "~"}
+_COLOURS = {Effect.COMPATIBLE: "32", Effect.MEANING: "33", Effect.INCOMPATIBLE: "31"}
+
+
+def difference_lines(found: Sequence[Difference]) -> Iterator[tuple[str, str]]:
+    """Yield a line for each difference, with its colour."""
+    for each in found:
+        verdict = f"{each.verdict.value}: {each.reason}" if each.reason else each.verdict.value
+        yield f"{_SIGNS[each.sort]} {each.what}: {each.words} ({verdict})", _COLOURS[each.verdict]
+
+
+def verdict_line(found: Sequence[Difference], chain: Sequence[Migration]) -> str:
+    """Return whether old models still load.
+
+    >>> verdict_line([], [])
+    'nothing differs for models: old models load'
+    """
+    bad = sum(each.verdict is Effect.INCOMPATIBLE for each in found)
+    doubtful = sum(each.verdict is Effect.MEANING for each in found)
+    way = f", by {counted(len(chain), 'migration')}" if chain else ""
+    if bad:
+        unless = "; a function of a migration may see to it" if any(step.rewrite for step in chain) else ""
+        return f"{counted(bad, 'incompatible change')}: not all old models load{way}{unless}"
+    if doubtful:
+        return f"old models load{way}, but {counted(doubtful, 'change')} may give them another meaning"
+    return f"old models load{way}" if found else "nothing differs for models: old models load"

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
-from mmrs_core.cli.output import counted
-from mmrs_core.cli.tables import table
+from mmrs_core.cli.output import counted, table
 from mmrs_core.pictures.figures import clock, energy, length
 from mmrs_core.scene import Branch, Plan, RobotPlan, Scene, Serve, Step
 

@@ -13,11 +13,10 @@ from mmrs_core.behaviour.replay import ReplayResult
 from mmrs_core.behaviour.replay import replay as replayed
 from mmrs_core.cli.behaviours import load_program
 from mmrs_core.cli.encoding import plain
-from mmrs_core.cli.output import counted, say, say_json, tell
+from mmrs_core.cli.output import counted, say, say_json, table, tell
 from mmrs_core.cli.parameters import Behaviour, behaviour_file
 from mmrs_core.cli.session import Session
 from mmrs_core.cli.settings import Json, settings_of
-from mmrs_core.cli.tables import table
 from mmrs_core.pictures.figures import clock
 from mmrs_core.pictures.flights.gathering import read_flight
 from mmrs_core.pictures.flights.positions import steps_of

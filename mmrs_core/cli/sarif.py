@@ -8,11 +8,12 @@ from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from importlib.metadata import version
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Annotated
+
+import typer
 
 from mmrs_core.cli.catalogue import Entry, catalogue_of
 from mmrs_core.cli.output import say_json
-from mmrs_core.cli.reports import STANDARD_OUTPUT
 from mmrs_core.cli.sarif_places import ROOT, Places
 from mmrs_core.cli.verdict_words import hint_of, verdict_line
 from mmrs_core.diagnostics import Diagnostic, Severity
@@ -176,3 +177,21 @@ def write_sarif(
         say_json(log)
     else:
         replace_file(file, (json.dumps(log, ensure_ascii=False, indent=2) + "\n").encode())
+
+
+STANDARD_OUTPUT = Path("-")
+
+Sarif = Annotated[
+    Path | None,
+    typer.Option("--sarif", metavar="FILE", help="Write diagnostics as SARIF 2.1.0 (- for stdout)."),
+]
+
+
+def refuse_two_outputs(sarif: Path | None, other: bool) -> None:
+    """Do nothing unless SARIF and something else are both to be the whole of standard output.
+
+    Raises:
+        typer.BadParameter: if they are.
+    """
+    if sarif == STANDARD_OUTPUT and other:
+        raise typer.BadParameter("--sarif - is the whole of standard output; name a file instead")

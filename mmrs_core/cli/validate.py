@@ -14,8 +14,7 @@ from mmrs_core.cli.fixing import agreed, difference, refuse_foreign, repairer_fo
 from mmrs_core.cli.metamodel_tree import validate_metamodel
 from mmrs_core.cli.output import counted, report, say, say_json, tell
 from mmrs_core.cli.parameters import Context, Project, Robots, robot_files, without_mission
-from mmrs_core.cli.reports import STANDARD_OUTPUT, Sarif, refuse_two_outputs
-from mmrs_core.cli.sarif import subject_of, write_sarif
+from mmrs_core.cli.sarif import STANDARD_OUTPUT, Sarif, refuse_two_outputs, subject_of, write_sarif
 from mmrs_core.cli.session import Session
 from mmrs_core.cli.settings import Json, settings_of
 from mmrs_core.diagnostics import Diagnostic, Severity, has_errors

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import groupby
 
-from mmrs_core.cli.capabilities import is_policy, policy_lines
+from mmrs_core.cli.generate import is_policy, policy_lines
 from mmrs_core.generation.capabilities.judging import VERDICTS, Capability
 
 _PREFACE = """\

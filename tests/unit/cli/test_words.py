@@ -2,8 +2,8 @@
 
 from pathlib import Path
 
+from mmrs_core.cli.output import table
 from mmrs_core.cli.plan_words import plan_lines, plan_summary
-from mmrs_core.cli.tables import table
 from mmrs_core.cli.tree_words import title_of
 from mmrs_core.cli.verdict_words import verdict_line, verdict_table
 from mmrs_core.contributions.checks import Status, Verdict
