@@ -19,5 +19,8 @@ ALIGN_TASK = (AUV_TASKS, "AlignTask")
 FOLLOW_PIPELINE_TASK = (AUV_TASKS, "FollowPipelineTask")
 SURFACE_TASK = (AUV_TASKS, "SurfaceTask")
 
+SWATH, APERTURE, RANGE = SONAR_KEYS = ("sonar.swath", "sonar.aperture", "sonar.range")
+"""Device properties with the figures of a sonar."""
+
 VEHICLES = ("ground", "rover", "sub")
 """Classes of vehicles that the targets of this plug-in look at; they refuse those that do not dive."""

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from mmrs_auv.names import IN_WATER_SIZE
-from mmrs_auv.tasks.surveys import SONAR_KEYS
+from mmrs_auv.names import IN_WATER_SIZE, SONAR_KEYS
 from mmrs_core.contributions.constraints import Constraint, Finding
 from mmrs_core.diagnostics import Severity
 from mmrs_core.grounding.features import children, number, text

@@ -13,7 +13,7 @@ from dataclasses import replace
 from itertools import pairwise
 from math import dist, inf, radians, sqrt, tan
 
-from mmrs_auv.names import DEPTH_HOLD_SURVEY_TASK
+from mmrs_auv.names import APERTURE, DEPTH_HOLD_SURVEY_TASK, RANGE, SONAR_KEYS, SWATH
 from mmrs_core.contributions.rules import Rule
 from mmrs_core.errors import InfeasibleError
 from mmrs_core.planning.coverage import Sweep, work_over
@@ -44,10 +44,6 @@ def recorded(part: Part, robot: Robot, stroke: Stroke) -> Stroke:
 
 def _length(stroke: Stroke) -> float:
     return sum(dist(one, other) for one, other in pairwise(stroke.points))
-
-
-SWATH, APERTURE, RANGE = "sonar.swath", "sonar.aperture", "sonar.range"
-SONAR_KEYS = (SWATH, APERTURE, RANGE)
 
 
 def swath_at(properties: Mapping[str, str], height: float | None) -> float | None:
