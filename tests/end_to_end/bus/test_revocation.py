@@ -8,7 +8,7 @@ from datetime import UTC, datetime
 import pytest
 
 from mmrs_core.cli.bus_certificates import revoke
-from mmrs_runtime.bus.carriers import certificates as renewing
+from mmrs_runtime.bus.carriers import renewal
 from mmrs_runtime.bus.carriers import over_zenoh
 from mmrs_runtime.bus.watching import Unwelcome
 
@@ -21,7 +21,7 @@ LONG_ENOUGH = 1.5
 def told(ends, monkeypatch):
     """Return what processes tell, which have certificates and look all the time for changes."""
     lines = []
-    monkeypatch.setattr(renewing, "LOOK_SECONDS", 0.05)
+    monkeypatch.setattr(renewal, "LOOK_SECONDS", 0.05)
     monkeypatch.setattr(over_zenoh, "tell_people", lines.append)
     ends.certify()
     return lines
