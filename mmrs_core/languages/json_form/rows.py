@@ -11,6 +11,7 @@ from mmrs_core.languages.element import Element
 from mmrs_core.languages.json_form.stream import key_of, quoted
 from mmrs_core.languages.json_form.values import EXACT, is_character
 from mmrs_core.languages.metaclass import Enumeration, Feature, Metaclass
+from mmrs_core.languages.values.codecs import render_boolean
 from mmrs_core.languages.values.real import (
     LARGEST_SINGLE,
     render_real,
@@ -19,7 +20,6 @@ from mmrs_core.languages.values.real import (
     render_single,
 )
 from mmrs_core.languages.values.texts import LAST_UNIT
-from mmrs_core.languages.values.truth import render_boolean
 
 _Text = Callable[[Any], str | None]  # it is asked about values of one class only
 """The text of a value; None where that takes more care."""

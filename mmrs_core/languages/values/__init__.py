@@ -1,1 +1,1 @@
-"""How values of attributes are written as text and read back, as EMF does it: one module a kind."""
+"""How attribute values are written as text and read back, as EMF does it."""

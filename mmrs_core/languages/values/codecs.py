@@ -1,13 +1,77 @@
-"""How the values of each Java class are read and written, and those of EMF's XML types."""
+"""How values of each Java class, and of EMF's XML types, are read and written; bytes and truth values too."""
 
 from __future__ import annotations
 
+import re
+from base64 import b64decode, b64encode
 from collections.abc import Callable
 from datetime import datetime
 from decimal import Decimal
 from typing import NamedTuple
 
-from mmrs_core.languages.values import binary, dates, exact, real, texts, truth
+from mmrs_core.languages.values import dates, exact, real, texts
+from mmrs_core.languages.values.texts import collapsed, shown
+
+_HEXADECIMAL = re.compile("[0-9a-fA-F]*")
+_BLANKS = re.compile("[ \t\n\r]+")
+
+
+def parse_bytes(text: str) -> bytes:
+    """Read hexadecimal digits as EMF does: the last, if it has no partner, is a byte of its own."""
+    if not _HEXADECIMAL.fullmatch(text):
+        raise ValueError(f"{shown(text)}: not bytes in hexadecimal digits")
+    return bytes.fromhex(f"{text[:-1]}0{text[-1]}" if len(text) % 2 else text)
+
+
+def parse_schema_bytes(text: str) -> bytes:
+    """Read hexadecimal digits as XML Schema part 2 has them, section 3.2.15."""
+    digits = collapsed(text)
+    if len(digits) % 2:
+        raise ValueError(f"{shown(text)}: an odd number of hexadecimal digits")
+    return parse_bytes(digits)
+
+
+def render_bytes(value: object) -> str:
+    """Write bytes in hexadecimal digits."""
+    return bytes(value).hex().upper()  # type: ignore[call-overload,no-any-return]  # accepts() vouches for it
+
+
+def parse_base64(text: str) -> bytes:
+    """Read bytes in base 64; blanks may stand anywhere."""
+    digits = _BLANKS.sub("", text)
+    try:
+        value = b64decode(digits, validate=True)
+    except ValueError:
+        raise ValueError(f"{shown(text)}: not bytes in base 64") from None
+    if render_base64(value) != digits:
+        raise ValueError(f"{shown(text)}: bits behind the last byte in base 64")
+    return value
+
+
+def render_base64(value: object) -> str:
+    """Write bytes in base 64."""
+    return b64encode(bytes(value)).decode()  # type: ignore[call-overload]  # accepts() vouches for it
+
+
+def parse_boolean(text: str) -> bool:
+    """Read a truth value, in any case of letters, as EMF does."""
+    word = text.lower()
+    if word not in ("true", "false"):
+        raise ValueError(f"{shown(text)}: not true or false")
+    return word == "true"
+
+
+def parse_schema_boolean(text: str) -> bool:
+    """Read a truth value as XML Schema part 2 has it, section 3.2.2."""
+    word = collapsed(text)
+    if word not in ("true", "false", "1", "0"):
+        raise ValueError(f"{shown(text)}: not true, false, 1 or 0")
+    return word in ("true", "1")
+
+
+def render_boolean(value: object) -> str:
+    """Write a truth value."""
+    return "true" if value else "false"
 
 
 class Codec(NamedTuple):
@@ -35,7 +99,7 @@ def _whole(bits: int | None, default: object = None) -> Codec:
 
 
 def _truth(default: object = None) -> Codec:
-    return Codec(bool, truth.parse_boolean, truth.render_boolean, default)
+    return Codec(bool, parse_boolean, render_boolean, default)
 
 
 _TEXT = Codec(str, str, str)
@@ -62,7 +126,7 @@ _BY_JAVA_CLASS: dict[str, Codec] = {
     "java.math.BigDecimal": Codec(Decimal, exact.parse_decimal, exact.render_decimal),
     "char": _CHARACTER._replace(default="\0"),
     "java.lang.Character": _CHARACTER,
-    "byte[]": Codec(bytes, binary.parse_bytes, binary.render_bytes),
+    "byte[]": Codec(bytes, parse_bytes, render_bytes),
     "java.util.Date": Codec(datetime, dates.parse_date, dates.render_date, doubt=dates.doubt_of_date),
     "java.lang.Object": Codec(str, texts.parse_java_object, texts.render_java_object),
     "java.lang.Class": Codec(
@@ -72,8 +136,8 @@ _BY_JAVA_CLASS: dict[str, Codec] = {
 
 _WORDS = Codec(str, texts.collapsed, texts.render_collapsed)
 _XML_CODECS = {
-    "Base64Binary": Codec(bytes, binary.parse_base64, binary.render_base64),
-    "HexBinary": Codec(bytes, binary.parse_schema_bytes, binary.render_bytes),
+    "Base64Binary": Codec(bytes, parse_base64, render_base64),
+    "HexBinary": Codec(bytes, parse_schema_bytes, render_bytes),
     **dict.fromkeys(
         ("Token", "Language", "Name", "NCName", "ID", "IDREF", "IDREFS", "IDREFSBase", "ENTITY", "ENTITIES"),
         _WORDS,
@@ -82,7 +146,7 @@ _XML_CODECS = {
     **dict.fromkeys(("QName", "NOTATION"), Codec(str, texts.parse_qualified, texts.render_qualified)),
 }
 _SCHEMA_CODECS: dict[str, Codec] = {
-    "boolean": Codec(bool, truth.parse_schema_boolean, truth.render_boolean),
+    "boolean": Codec(bool, parse_schema_boolean, render_boolean),
     "double": Codec(float, real.parse_schema_real, real.render_schema_real),
     "float": Codec(float, real.parse_schema_single, real.render_schema_single),
     "java.math.BigDecimal": Codec(Decimal, exact.parse_schema_decimal, exact.render_schema_decimal),

@@ -8,8 +8,7 @@ from datetime import UTC, datetime
 import pytest
 
 from mmrs_core.cli.bus_certificates import revoke
-from mmrs_runtime.bus.carriers import renewal
-from mmrs_runtime.bus.carriers import over_zenoh
+from mmrs_runtime.bus.carriers import over_zenoh, renewal
 from mmrs_runtime.bus.watching import Unwelcome
 
 pytestmark = pytest.mark.real_time("buses")

@@ -2,7 +2,7 @@ from __future__ import annotations
 
 import pytest
 
-from mmrs_core.languages.values.binary import parse_base64, parse_bytes, parse_schema_bytes
+from mmrs_core.languages.values.codecs import parse_base64, parse_bytes, parse_schema_bytes
 from mmrs_core.languages.values.texts import (
     described,
     doubt_of_class,
