@@ -189,7 +189,7 @@ def test_which_of_two_vehicles_is_meant_must_be_said(controllers, one_radio):
     url, vehicles = one_radio([(42.37, 13.35), (42.37, 13.3501)])
     code, said = made.run("fleet.py", "--speedup", "20", "--connect", url)
     assert code == 1
-    assert "vehicles with the system ids 1 and 2 vehicles on this link: name one, as URL@" in said
+    assert "vehicles with the system ids 1 and 2 on this link: name one, as URL@" in said
     assert not any(vehicle.autopilot.stores[0] or vehicle.autopilot.armed for vehicle in vehicles)
 
 

@@ -140,7 +140,7 @@ def test_a_changed_battery_lets_a_run_go_on_where_it_stopped(fleet):
     before = len(vehicle.autopilot.track)
     second = flown.start("--resume")
     assert second.end(PATIENCE) == 0, second.said
-    assert any(line.startswith("'a': goes on with ") for line in second.said)
+    assert any(line.startswith("'a': continues with ") for line in second.said)
     assert any(line.get("what") == "resume" for line in flown.box("a"))
     assert judged(flown) is Outcome.SUCCESS
     again = vehicle.autopilot.track[before:]

@@ -139,9 +139,7 @@ class Link:
         others = sorted(each for each in self._radio.heard - {self.system} if not self._radio.claimed(each))
         if not self._wanted and others:
             shown = " and ".join(map(str, sorted([self.system, *others])))
-            return (
-                f"vehicles with the system ids {shown} vehicles on this link: name one, as URL@{self.system}"
-            )
+            return f"vehicles with the system ids {shown} on this link: name one, as URL@{self.system}"
         return ""
 
     def strangers(self) -> str:

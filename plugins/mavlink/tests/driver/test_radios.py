@@ -106,7 +106,7 @@ def test_without_a_system_two_vehicles_on_one_link_are_told():
         assert link.doubt() == ""
         wire.beat(system=7)
         eventually(link.doubt)
-        assert "system ids 1 and 7 vehicles on this link: name one, as URL@1" in link.doubt()
+        assert "system ids 1 and 7 on this link: name one, as URL@1" in link.doubt()
 
 
 def test_with_a_system_another_vehicle_is_only_counted():

@@ -26,7 +26,7 @@ def test_what_it_does_by_itself_is_told():
         assert "FS_LEAK_ENABLE = 1: water inside: warn" in driven.said
         (line,) = (each for each in driven.said if each.startswith("FS_PILOT_INPUT"))
         assert line.startswith(
-            "FS_PILOT_INPUT = 1: no sticks any more: warn (beware: nothing stops its motors"
+            "FS_PILOT_INPUT = 1: no sticks any more: warn (warning: nothing stops its motors"
         )
 
 
@@ -56,7 +56,7 @@ def test_what_is_no_submarine_is_told_nothing():
 def test_which_of_two_vehicles_is_meant_has_to_be_said():
     port = free_port()
     subs = [(port, Settings(kind="sub", system=number)) for number in (1, 2)]
-    assert "say which, as URL@" in refused(f"udpin:127.0.0.1:{port}", *subs)
+    assert "name one, as URL@" in refused(f"udpin:127.0.0.1:{port}", *subs)
 
 
 def test_a_vehicle_whose_motors_run_already_is_somebody_elses():
