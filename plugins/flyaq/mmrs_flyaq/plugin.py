@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from mmrs_core.contributions.commands import Command
 from mmrs_core.hookspecs import hookimpl
-from mmrs_core.languages.importers import Importer
+
+if TYPE_CHECKING:
+    from mmrs_core.languages.importers import Importer
 
 FLYAQ_2015 = Path(__file__).parent / "migrations" / "flyaq-2015.toml"
 
