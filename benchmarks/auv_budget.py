@@ -25,7 +25,7 @@ from datetime import date
 from pathlib import Path
 
 from mmrs_auv.commands.modelled import sheets_in
-from mmrs_auv.rehearsal import Berth
+from mmrs_auv.rehearsal import VehicleProcesses
 
 from auv_vessel.body.surroundings import BUOY, Surroundings, Thing, from_json, to_json
 
@@ -94,7 +94,7 @@ def measure(setting: Setting, folder: Path, seconds: float) -> None:
         words += ["--backend-option", "clock=bus"]
         for number, (robot, sheet) in enumerate(sheets_in(project).items()):
             berth = stack.enter_context(
-                Berth(sheet, folder / robot, surroundings=setting.around, seed=number)
+                VehicleProcesses(sheet, folder / robot, surroundings=setting.around, seed=number)
             )
             ids |= {f"{robot}: {part}": id for part, id in berth.ids.items()}
             words += ["--connect", f"{robot}={berth.channel}"]

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from dives import diver
 from mmrs_auv.kinds import AUV_KIND
-from mmrs_auv.rehearsal import Berth
+from mmrs_auv.rehearsal import VehicleProcesses
 from mmrs_auv.targets.can_python.target import CAN_PYTHON
 from warm_python import python
 
@@ -32,7 +32,7 @@ SPEED = 0.5
 
 
 def interpreted(
-    behaviour: Program, berth: Berth, contributions: Contributions, folder: Path, **options: str
+    behaviour: Program, berth: VehicleProcesses, contributions: Contributions, folder: Path, **options: str
 ) -> LiveRun:
     """Return a dive by the interpreter that keeps its logs in `logs`."""
     live_run = live_run_for(
@@ -50,7 +50,7 @@ def interpreted(
     return replace(live_run, clock=RealClock(SPEED), folder=folder / "logs", links={"naiad": berth.channel})
 
 
-def dive_by_code(behaviour: Program, berth: Berth, folder: Path, *words: str) -> None:
+def dive_by_code(behaviour: Program, berth: VehicleProcesses, folder: Path, *words: str) -> None:
     """Generate code in `code`, run it to its end, and have it keep its logs in `logs`."""
     kinds = {kind.metaclass: kind for kind in MOVE_KINDS}
     given = TargetInput(behaviour, {diver().name: diver()}, {AUV_KIND.metaclass: AUV_KIND}, kinds)

@@ -35,7 +35,7 @@ STALE = 1.0
 
 
 class Whereabouts:
-    """Hears places and poses; one thread may hear while another asks."""
+    """Receives positions and poses; one thread may receive while another asks."""
 
     def __init__(self, codec: Codec) -> None:
         self._codec = codec
@@ -72,11 +72,11 @@ class Whereabouts:
         )
 
     def now(self) -> float:
-        """Return the time as the vehicle tells it; as this computer does, where nobody tells."""
+        """Return the time of the vehicle's clock; that of this computer where no time is received."""
         return time.time() if self._clock is None else self._clock
 
     def listen(self, port: Port, stop: threading.Event) -> None:
-        """Hear a bus until told to stop; raises what the port does when the bus is gone."""
+        """Read a bus until stopped; raises the port's errors when the bus is gone."""
         while not stop.is_set():
             if (frame := port.receive(0.1)) is not None:
                 self.hear(frame)
@@ -124,13 +124,9 @@ def _parser() -> argparse.ArgumentParser:
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
     parser.add_argument("part", choices=(FRAMES, *CAMERAS))
-    parser.add_argument(
-        "--sheet", type=Path, required=True, help="file that says what the vehicle is made of"
-    )
-    parser.add_argument(
-        "--surroundings", type=Path, required=True, help="file that says what things there are to see"
-    )
-    parser.add_argument("--memory", help="name of the shared memory; else that of the vehicle")
+    parser.add_argument("--sheet", type=Path, required=True, help="data of the vehicle (JSON)")
+    parser.add_argument("--surroundings", type=Path, required=True, help="objects to detect (JSON)")
+    parser.add_argument("--memory", help="name of the shared memory. Default: the name of the vehicle")
     parser.add_argument("--to", type=_address, default=("127.0.0.1", 29600), help="HOST:PORT of who decides")
     for camera in CAMERAS:
         parser.add_argument(

@@ -53,7 +53,7 @@ class Camera:
     """Two identical pinhole cameras side by side whose pictures are rectified.
 
     Attributes:
-        name: one of `eyes.CAMERAS`; says which way it looks.
+        name: one of `eyes.CAMERAS`, which states where it points.
         position: of the middle between both, metres forward, to starboard and down of the centre of gravity.
         baseline: metres from one to the other.
         focal: pixels. width, height: of a picture, pixels.

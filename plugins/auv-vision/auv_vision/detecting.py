@@ -50,7 +50,7 @@ def disparities(
     """Return by how many columns a part of the left picture may be further left in the right one.
 
     There is more than one where several things look the same; none where nothing is alike. Up to half of the
-    part may lie outside the right picture, which goes on there as it is at its rim.
+    part may lie outside the right picture, which continues there as at its rim.
 
     Args:
         left: shares of colours, as of `segments.View`; right: of the other eye.
@@ -104,7 +104,7 @@ class Sought:
     """Something to look out for.
 
     Attributes:
-        kind: `surroundings.GATE`, `BUOY` or `PATH`. name: that detections bear.
+        kind: `surroundings.GATE`, `BUOY` or `PATH`. name: in detections.
         colour: one of `water.TOLD_APART`; things of others are not seen.
         size: metres, as of `surroundings.Thing`.
         place: north, east, depth where it is expected: tells things apart that look the same; None: unknown.
@@ -152,7 +152,7 @@ def unseen(camera: Camera, sought: Iterable[Sought]) -> list[str]:
     found = []
     for each in sought:
         if each.kind not in (GATE, BUOY, PATH):
-            found.append(f"{each.name!r} is never seen: nobody knows what a {each.kind!r} looks like")
+            found.append(f"{each.name!r} is never detected: unknown shape of a {each.kind!r}")
         elif each.kind in kinds and each.colour not in TOLD_APART:
             apart = ", ".join(TOLD_APART)
             found.append(f"{each.name!r} is never seen: {each.colour} is none of {apart}")
@@ -328,14 +328,14 @@ def _box(segment: Segment, margin: int) -> tuple[int, int, int, int]:
 def detections_of(
     sightings: Iterable[Sighting], camera: Camera, pose: Pose, time: float, robot: str = ""
 ) -> list[Detection]:
-    """Return what is told of sightings; each name at most once, the surest first.
+    """Return the detections of sightings; each name at most once, the surest first.
 
     Args:
         sightings: in the camera's pictures.
         camera: of the vehicle.
         pose: where the vehicle believed to be when the pictures were taken, at `time`.
         time: seconds of the vehicle's clock.
-        robot: whose camera it is; empty: that is not told.
+        robot: whose camera it is; empty: not stated.
     """
     found: dict[str, Detection] = {}
     for each in sorted(sightings, key=lambda each: -each.confidence):

@@ -1,4 +1,4 @@
-"""The three processes: one has pictures taken, two look at them and tell what they see."""
+"""The three processes: one captures pictures, two look at them and send detections."""
 
 from __future__ import annotations
 
@@ -16,10 +16,10 @@ from auv_vision.sources import Adjusted, Source
 from auv_vision.water import POOL, Water
 
 WAIT, AGAIN = 0.01, 1.0
-"""Seconds between two looks for new pictures, and without any until the memory is opened anew."""
+"""Seconds between two looks for new pictures, and without any until the memory is opened again."""
 
 SIGNAL_SECONDS = 0.5
-"""How long a wait lasts at most before a signal is heeded that came just before it, and did not end it."""
+"""Longest wait before a signal is handled that came just before the wait, and did not end it."""
 
 PATIENCE = 3.0
 """Seconds that something may be amiss before it is said."""
@@ -58,7 +58,7 @@ def handle(
 ) -> None:
     """Put pairs of all cameras into shared memory, so many each second, until a source has no more.
 
-    Pairs bear the pose that the vehicle believed in when they were taken, and none where it knows none;
+    Pairs carry the pose that the vehicle reported when they were taken, and none where it knows none;
     that, and the end of a film, is said.
 
     Args:
@@ -68,8 +68,8 @@ def handle(
         SourceError: a camera is gone.
     """
     lost = Notice(
-        "frames: the bus does not tell where the vehicle is, or that it is not sure: nothing counts as seen",
-        "frames: the bus tells where the vehicle is",
+        "frames: no certain position of the vehicle on the bus: nothing counts as detected",
+        "frames: position of the vehicle received",
     )
     adjusted = {name: Adjusted(camera) for name, camera in cameras.items()}
     begin, taken = time.monotonic(), 0
@@ -102,9 +102,9 @@ def watch(
     water: Water = POOL,
     robot: str = "",
 ) -> int:
-    """Tell what is seen in pairs of one camera, by UDP, until told to stop; return how many were looked at.
+    """Send the detections in pairs of one camera, by UDP, until stopped; return how many were looked at.
 
-    Only the newest pair counts. Pairs without a pose are left out, since nobody could say where things are.
+    Only the newest pair counts. Pairs without a pose are left out, since their objects have no positions.
     """
     looked = 0
     heard = seen = time.monotonic()

@@ -73,7 +73,7 @@ class Renderer:
         return np.clip(canvas, 0.0, 255.0).astype(np.uint8)
 
     def _noise(self, shape: tuple[int, ...]) -> Numbers:
-        """Return noise of each pixel: another part of a store each time, since drawing it anew takes long."""
+        """Return noise of each pixel: another part of a store each time, since drawing it takes long."""
         size = int(np.prod(shape))
         if self._store.size < size + _OFFSETS:
             amount = np.float32(self._conditions.noise)

@@ -39,7 +39,7 @@ _TRIES: Final = 4
 
 
 class MemoryTakenError(OSError):
-    """The memory is somebody else's, or none of ours."""
+    """The memory belongs to another program."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -226,7 +226,7 @@ def _check(number: int, data: bytes) -> int:
 
 
 def _made(name: str, size: int) -> SharedMemory:
-    """Make memory, in the place of what a process that is gone has left."""
+    """Make memory, in place of memory that a process which is gone has left."""
     try:
         return SharedMemory(name, create=True, size=size)
     except FileExistsError:
@@ -287,7 +287,7 @@ def _owner(memory: SharedMemory) -> tuple[int, int] | None:
 def _beginning(process: int) -> int | None:
     """Return when a process began, as the system counts it; None: it has ended.
 
-    Another process may have got its number since, and one that was killed keeps its own until somebody asks
+    Another process may have got its number since, and one that was killed keeps its own until its parent asks
     how it ended. Where the system does not tell, 0 stands for all that live.
     """
     try:

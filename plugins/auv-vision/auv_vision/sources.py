@@ -45,7 +45,7 @@ class Source(Protocol):
 
 
 class Simulated:
-    """Draws what a camera sees from where the vehicle is told to be."""
+    """Draws what a camera sees from the reported position of the vehicle."""
 
     def __init__(self, renderer: Renderer, camera: Camera) -> None:
         self._renderer, self._camera = renderer, camera
@@ -61,7 +61,7 @@ class Simulated:
 class Captured:
     """Reads a film or cameras as OpenCV opens them.
 
-    One capture has both eyes side by side in each picture; two captures have one eye each. Films go on as
+    One capture has both eyes side by side in each picture; two captures have one eye each. Films run as
     time does: pictures between two pairs are left out.
     """
 
@@ -69,7 +69,7 @@ class Captured:
         """Open a film by its path, a camera by its number or device, or two cameras as in ``0,1``.
 
         Raises:
-            SourceError: it cannot be opened, or its pictures are no pairs.
+            SourceError: it cannot be opened, or its pictures are not pairs.
         """
         cameras = _cameras(text)
         self._text, self._ends = text, not cameras
@@ -158,7 +158,7 @@ def opened(text: str, camera: Camera, simulated: Callable[[], Renderer]) -> Sour
     """Return the source that ``simulated``, a film's path or cameras stand for.
 
     Raises:
-        SourceError: it cannot be opened, or its pictures are no pairs.
+        SourceError: it cannot be opened, or its pictures are not pairs.
     """
     return Simulated(simulated(), camera) if text == SIMULATED else Captured(text)
 
@@ -186,7 +186,7 @@ def _size(capture: cv2.VideoCapture) -> tuple[int, int]:
 
 
 def _check_sizes(text: str, sizes: Sequence[tuple[int, int]]) -> None:
-    """Raise SourceError for pictures that are no pair: of one eye only, of different sizes, too small."""
+    """Raise SourceError for pictures that are not a pair: of one eye only, of different sizes, too small."""
     width, height = sizes[0]
     if len(set(sizes)) > 1:
         raise SourceError(f"{text}: pictures of {width}x{height} and of {sizes[1][0]}x{sizes[1][1]} pixels")

@@ -28,7 +28,7 @@ TOLD_APART = ("red", "orange", "yellow", "green")
 
 @dataclass(frozen=True, slots=True)
 class Water:
-    """What water does to light on its way to an eye.
+    """How water changes light between a thing and an eye.
 
     Attributes:
         attenuation: of blue, green and red, per metre.

@@ -135,7 +135,7 @@ def test_what_a_camera_never_sees_is_said() -> None:
     )
     sought = sought_in(Surroundings(things=things))
     apart = "is none of red, orange, yellow, green"
-    board = "'board' is never seen: nobody knows what a 'torpedo' looks like"
+    board = "'board' is never detected: unknown shape of a 'torpedo'"
     assert unseen(FRONT, sought) == [f"'blue buoy' is never seen: blue {apart}", board]
     assert unseen(BOTTOM, sought) == [f"'grey path' is never seen: grey {apart}", board]
 

@@ -1,4 +1,4 @@
-"""How underwater vehicles move: between the surface and the depth that their parts bear."""
+"""How underwater vehicles move: between the surface and the depth that their parts are rated for."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ def kinematics(robot: Robot, scene: Scene) -> Kinematics:
     """Return what an underwater vehicle can do: between the surface and its largest depth.
 
     Raises:
-        InfeasibleError: the type says nothing of the depth that it bears, or not for that payload.
+        InfeasibleError: the type defines no rated depth, or not for that payload.
     """
     density = scene.environment.get("waterDensity", SEA_WATER)
     surface = scene.frame.surface
@@ -34,7 +34,7 @@ def kinematics(robot: Robot, scene: Scene) -> Kinematics:
 
 
 def largest_depth(robot_type: RobotType, payload: float, density: float) -> float:
-    """Return the depth in metres that every thruster and the hull bear, in water of that density.
+    """Return the depth in metres that every thruster and the hull withstand, in water of that density.
 
     Raises:
         InfeasibleError: neither thrusters nor hull have a figure, or none holds for that payload.
@@ -44,7 +44,7 @@ def largest_depth(robot_type: RobotType, payload: float, density: float) -> floa
     if isinstance(pressure, (int, float)):
         limits.append((float(pressure) - ATMOSPHERE) / (density * GRAVITY))
     if not limits:
-        raise InfeasibleError(f"robot type '{robot_type.name}' does not say how deep it may go")
+        raise InfeasibleError(f"robot type '{robot_type.name}' defines no maximum depth")
     return max(0.0, min(limits))
 
 

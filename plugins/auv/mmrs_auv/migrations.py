@@ -33,7 +33,7 @@ def hold_thrusters(robot: Node, refer: Refer) -> None:
 
 
 def _held(thruster: Node, held: list[Node]) -> Node:
-    """Return the thruster among the held that says the same; else hold this one."""
+    """Return an equal thruster of the held ones; otherwise hold this one."""
     for each in held:
         if _same(each, thruster):
             return each

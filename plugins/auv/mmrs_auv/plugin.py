@@ -49,7 +49,7 @@ def mmrs_constraints() -> tuple[Constraint, ...]:
 
 @hookimpl
 def mmrs_fixes() -> tuple[Fix, ...]:
-    """Contribute what mends figures that are exchanged, and overlaps in per cent."""
+    """Contribute fixes of figures that are exchanged, and of overlaps in per cent."""
     from mmrs_auv.constraints.tasks import FIXES
 
     return FIXES

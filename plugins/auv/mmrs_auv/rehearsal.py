@@ -23,10 +23,10 @@ PARTS = ("vehicle", "sensors", "actuators", "movement")
 QUIT = frozenset({"quit", "exit"})
 HUB_SECONDS, END_SECONDS = 30.0, 10.0
 """Real seconds that a hub has to begin, and that processes have to end."""
-BUS_FAULTS = "cut, loss PART, delay SECONDS, corruption PART, and mend bus"
+BUS_FAULTS = "cut, loss PART, delay SECONDS, corruption PART, and clear bus"
 
 
-class Berth:
+class VehicleProcesses:
     """A simulated vehicle: a hub, and one process for each part.
 
     Attributes:
@@ -72,7 +72,7 @@ class Berth:
             self.close()
             raise
 
-    def __enter__(self) -> Berth:
+    def __enter__(self) -> VehicleProcesses:
         return self
 
     def __exit__(
@@ -95,7 +95,7 @@ class Berth:
 
         Args:
             words: as `befalling` takes them; or ``cut``, ``loss PART``, ``delay SECONDS`` and ``corruption
-                PART`` of the bus, which ``mend bus`` ends; or ``status``, which the vehicle answers.
+                PART`` of the bus, which ``clear bus`` ends; or ``status``, which the vehicle answers.
 
         Raises:
             ValueError: there is no such fault.
@@ -103,8 +103,8 @@ class Berth:
         match words:
             case ["cut"]:
                 self._tell("hub", "cut")
-            case ["mend", "bus"]:
-                self._tell("hub", "mend")
+            case ["clear", "bus"]:
+                self._tell("hub", "clear")
             case ["loss" | "delay" | "corruption" as what, amount]:
                 Troubles(**{what: _number(amount)})
                 self._tell("hub", " ".join(words))
@@ -118,7 +118,7 @@ class Berth:
                 self._tell("vehicle", " ".join(words))
 
     def close(self) -> None:
-        """End all of it; the hub once nobody speaks on it any more."""
+        """End all of it; the hub once no process sends on it any more."""
         hub = self._processes.get("hub")
         parts = [process for process in self._processes.values() if process is not hub]
         for group in (parts, [] if hub is None else [hub]):
@@ -157,14 +157,14 @@ class Berth:
 def _begun(
     words: Sequence[str], stdout: int | None = None, stderr: int | None = None
 ) -> subprocess.Popen[str]:
-    """Return a process that hears no interrupt of the terminal, for its end comes after that of others."""
+    """Return a process that receives no interrupt of the terminal, since it ends after others."""
     return subprocess.Popen(
         words, stdin=subprocess.PIPE, stdout=stdout, stderr=stderr, text=True, start_new_session=True
     )
 
 
 def keep(
-    berths: Mapping[str, Berth],
+    berths: Mapping[str, VehicleProcesses],
     until: float,
     stopped: list[int],
     lines: SimpleQueue[str],
@@ -175,12 +175,12 @@ def keep(
     Args:
         berths: by robot.
         until: by the monotonic clock.
-        stopped: filled by whoever wants an end.
-        lines: that are typed: ``ROBOT FAULT``, ``all FAULT``, ``ROBOT mend FAULT``, ``status``.
-        say: is told what comes of them.
+        stopped: filled to end the rehearsal.
+        lines: that are typed: ``ROBOT FAULT``, ``all FAULT``, ``ROBOT clear FAULT``, ``status``.
+        say: receives their answers.
 
     Raises:
-        LinkLostError: a part has ended by itself.
+        LinkLostError: a part has ended on its own.
     """
     while not stopped and time.monotonic() < until:
         for robot, berth in berths.items():
@@ -201,7 +201,7 @@ def _number(text: str) -> float:
         raise ValueError(f"{text} is not a number") from None
 
 
-def _obey(line: str, berths: Mapping[str, Berth], say: Callable[[str], None]) -> None:
+def _obey(line: str, berths: Mapping[str, VehicleProcesses], say: Callable[[str], None]) -> None:
     if line in ("", "status"):
         line = f"{ALL_ROBOTS} status"
     try:

@@ -15,10 +15,10 @@ ROUNDING = 1e-3
 
 
 class Bus:
-    """What a vehicle's bus can say of moves and actions."""
+    """Limits of a vehicle's bus to moves and actions."""
 
     def __init__(self, sheet: Sheet, surface: float) -> None:
-        """Know it; `surface`: height of the water surface above the mission's origin, metres."""
+        """Take the vehicle; `surface`: height of the water surface above the mission's origin, metres."""
         self._sheet, self._surface = sheet, surface
         self._layouts = {message.name: layout_of(message) for message in messages_of(sheet)}
 
@@ -70,7 +70,7 @@ def unturnable(device: str, type: RobotType | None) -> Iterator[str]:
     """Yield why a vehicle cannot turn so that a device of it points somewhere."""
     known = type.devices.get(device) if type is not None else None
     if known is not None and "mavlink.gimbal" in known.properties:
-        yield f"device '{device}' turns by itself, where only the vehicle can be turned"
+        yield f"device '{device}' turns on its own, where only the vehicle can be turned"
     if _yaw(device, type) is None:
         yield f"device '{device}': mount.yaw is no number"
 

@@ -45,7 +45,7 @@ def sheet_of(
         home: metres east, north and up of the mission's origin.
         surface: height of the water surface above the origin, metres.
         payload: that it carries, kilograms.
-        density: of the water, kilograms per cubic metre; None: nobody says.
+        density: of the water, kilograms per cubic metre; None: unknown.
         heading: at home, degrees.
 
     Raises:
@@ -103,7 +103,7 @@ def _missing(robot_type: RobotType, payload: float) -> Iterator[str]:
         return
     size = _part(robot_type.part, "size")
     if size is None or not size.is_a(IN_WATER_SIZE):
-        yield "size: no InWaterSize, which says what it weighs in water"
+        yield "size: no InWaterSize, which defines its weight in water"
     else:
         yield from (f"size: {feature}" for feature in HULL if _number(size, feature) is None)
     for name, device in robot_type.devices.items():
@@ -118,7 +118,7 @@ def _missing(robot_type: RobotType, payload: float) -> Iterator[str]:
         yield from (f"{label}: {figure}" for figure in FIGURES if _number(thruster, figure) is None)
         mounting = _part(thruster, "mounting")
         if mounting is None or not mounting.is_a(MOUNTING):
-            yield f"{label}: mounting, which says where it sits and which way it pushes"
+            yield f"{label}: mounting, which defines where it sits and which way it pushes"
         elif not any(_vector(mounting, PUSH)):
             yield f"{label}: mounting: {', '.join(PUSH)} are all 0"
 

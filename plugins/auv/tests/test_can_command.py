@@ -176,7 +176,7 @@ def test_load_by_design_from_a_log_and_as_json(
     assert main(["load", vehicle, "--log", str(log), "--messages"]) == 0
     told = capsys.readouterr().out
     assert "Thruster5Command     0x105    50 ms    87-105" in told
-    assert "as heard: " in told
+    assert "as measured: " in told
 
 
 @pytest.mark.parametrize(
@@ -214,7 +214,7 @@ def test_load_of_a_bus_that_is_listened_to(vehicle: str, capsys: pytest.CaptureF
         assert main(["load", vehicle, "--interface", "socketcand", "--channel", channel, "--for", "1"]) == 0
         stop.set()
         speaker.join()
-    assert "as heard: " in capsys.readouterr().out
+    assert "as measured: " in capsys.readouterr().out
 
 
 class HubProcess:
@@ -243,7 +243,7 @@ def test_the_hub_as_a_process(tmp_path: Path) -> None:
             assert hub.order("cut") == "loss 1, delay 0 s, corruption 0"
             said.say("< send 101 0 >< echo >")
             assert said.word() == "< echo >"
-            assert hub.order("mend") == "loss 0, delay 0 s, corruption 0"
+            assert hub.order("clear") == "loss 0, delay 0 s, corruption 0"
             assert hub.order("delay 0.05") == "loss 0, delay 0.05 s, corruption 0"
             assert hub.order("loss 7").startswith("loss 7: loss 7.0 is not 0 to 1")
             assert hub.order("explode").startswith("explode: expected loss PART")
@@ -290,4 +290,4 @@ def test_it_ends_by_itself_and_warns_where_others_can_reach_it(capsys: pytest.Ca
     assert mmrs(["can", "hub", "--port", "0", "--host", "0.0.0.0", "--for", "0.2"]) == 0
     told = capsys.readouterr()
     assert "0 frames" in told.out
-    assert "whoever reaches 0.0.0.0 can say anything on this bus" in told.err
+    assert "every computer that reaches 0.0.0.0 can send on it" in told.err

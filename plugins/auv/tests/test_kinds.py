@@ -47,7 +47,7 @@ def test_a_hull_that_bears_less_than_the_atmosphere_keeps_to_the_surface(vehicle
 
 
 def test_a_type_that_says_nothing_of_depth_is_refused(vehicle, lake):
-    with pytest.raises(InfeasibleError, match="'Diver' does not say how deep it may go"):
+    with pytest.raises(InfeasibleError, match="'Diver' defines no maximum depth"):
         kinematics(vehicle(), lake())
 
 

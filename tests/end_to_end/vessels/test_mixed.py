@@ -13,7 +13,7 @@ from pathlib import Path
 
 import pytest
 from mmrs_auv.commands.modelled import sheets_in
-from mmrs_auv.rehearsal import Berth
+from mmrs_auv.rehearsal import VehicleProcesses
 from ports import free_endpoint, free_port
 
 from auv_vessel.body.surroundings import from_json
@@ -71,7 +71,9 @@ def reached(bay: Path, tmp_path: Path) -> Iterator[dict[str, list[str]]]:
         stack.enter_context(running(tmp_path, "sitl", *words, "--speedup", str(SPEED)))
         (sheet,) = sheets_in(bay).values()
         sees = from_json(around.read_text(encoding="utf-8"))
-        berth = stack.enter_context(Berth(sheet, tmp_path / "berth", surroundings=sees, speedup=SPEED))
+        berth = stack.enter_context(
+            VehicleProcesses(sheet, tmp_path / "berth", surroundings=sees, speedup=SPEED)
+        )
         given = ("--sheet", str(tmp_path / "berth/sheet.json"), "--surroundings", str(around))
         given += ("--memory", f"mixed-{os.getpid()}")
         for part, more in (

@@ -57,7 +57,7 @@ def test_no_thrust_in_time_when_the_bus_is_cut(tmp_path: Path) -> None:
         vehicle.kill("actuators")
         vehicle.order("cut")
         time.sleep(WATCHDOG + failsafe.MARGIN + BUSY)
-        vehicle.order("mend")
+        vehicle.order("clear")
         mended = time.monotonic()
         assert until(lambda: len(vehicle.ear.said("Thruster", mended)) >= 6, 5)
         drives = [said for _, said in vehicle.ear.said("Thruster", mended)]

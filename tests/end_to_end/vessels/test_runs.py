@@ -11,7 +11,7 @@ import pytest
 from dives import dive, diver, swim
 from dives_by_code import SPEED, dive_by_code, interpreted
 from mmrs_auv.controllers.connected import ConnectedVehicle
-from mmrs_auv.rehearsal import Berth
+from mmrs_auv.rehearsal import VehicleProcesses
 from mmrs_auv.sheets import sheet_of
 
 from auv_vessel.body.surroundings import Surroundings
@@ -34,7 +34,9 @@ def short_dive() -> Program:
 @pytest.fixture
 def berth(tmp_path: Path):
     sheet = sheet_of(diver(), "naiad", home=(0.0, 0.0, -0.5))
-    with Berth(sheet, tmp_path / "berth", surroundings=Surroundings(bottom=6.0), speedup=SPEED) as found:
+    with VehicleProcesses(
+        sheet, tmp_path / "berth", surroundings=Surroundings(bottom=6.0), speedup=SPEED
+    ) as found:
         yield found
 
 

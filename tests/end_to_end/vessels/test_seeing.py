@@ -16,7 +16,7 @@ from pathlib import Path
 import pytest
 from dives import dive, diver, swim
 from dives_by_code import SPEED, dive_by_code, interpreted
-from mmrs_auv.rehearsal import Berth
+from mmrs_auv.rehearsal import VehicleProcesses
 from mmrs_auv.sheets import sheet_of
 from ports import free_port
 
@@ -57,7 +57,7 @@ def told(name: str) -> Move:
 
 
 @contextmanager
-def eyes(folder: Path, berth: Berth, port: int) -> Iterator[None]:
+def eyes(folder: Path, berth: VehicleProcesses, port: int) -> Iterator[None]:
     """Run all three processes, whose memory is called after the folder."""
     file = folder / "surroundings.json"
     file.write_text(to_json(AROUND), encoding="utf-8")
@@ -76,13 +76,13 @@ def eyes(folder: Path, berth: Berth, port: int) -> Iterator[None]:
 
 
 @pytest.fixture
-def seen(tmp_path: Path) -> Iterator[tuple[Berth, int]]:
+def seen(tmp_path: Path) -> Iterator[tuple[VehicleProcesses, int]]:
     """Return a vehicle, and the port at which its eyes tell what they see."""
     port = free_port()
     sheet = sheet_of(diver(), "naiad", home=(0.0, 0.0, -0.5))
     with ExitStack() as stack:
         berth = stack.enter_context(
-            Berth(sheet, tmp_path / "berth", surroundings=AROUND, seed=5, speedup=SPEED)
+            VehicleProcesses(sheet, tmp_path / "berth", surroundings=AROUND, seed=5, speedup=SPEED)
         )
         stack.enter_context(eyes(tmp_path, berth, port))
         yield berth, port

@@ -92,13 +92,13 @@ def test_what_is_typed_happens():
             sitl.type("all thruster-dead 0", "Naiad: thruster-dead 0\n")
             assert until(lambda: "FAULT" in drives(ear), 20)
             sitl.type("status", "; thruster T1 dead\n")
-            sitl.type("Naiad mend thruster-dead T1", "Naiad: mend thruster-dead T1\n")
+            sitl.type("Naiad clear thruster-dead T1", "Naiad: clear thruster-dead T1\n")
             sitl.type("Naiad leak", "Naiad: leak\n")
             assert until(lambda: "LEAK" in reasons(ear), 20)
             sitl.type("Naiad cut", "Naiad: cut\n")
             cut = len(ear.heard) + 20
             assert not until(lambda: any(said.name == "Pressure" for _, said in ear.heard[cut:]), 0.5)
-            sitl.type("Naiad mend bus", "Naiad: mend bus\n")
+            sitl.type("Naiad clear bus", "Naiad: clear bus\n")
             assert until(lambda: any(said.name == "Pressure" for _, said in ear.heard[cut:]), 20)
         assert sitl.quit() == 0
         assert [line for line in sitl.lines if "incomplete message" in line or "bus is gone" in line] == []

@@ -22,7 +22,7 @@ class NoSuchFaultError(ValueError):
 
 
 def befalling(sheet: Sheet, words: Sequence[str]) -> Act:
-    """Return what some words do to a vehicle: one of `FAULTS`, or ``mend`` and a fault without its figure.
+    """Return what some words do to a vehicle: one of `FAULTS`, or ``clear`` and a fault without its figure.
 
     A thruster is named by its identifier or its number on the bus.
 
@@ -33,22 +33,22 @@ def befalling(sheet: Sheet, words: Sequence[str]) -> Act:
         case ["thruster-dead", _, *_]:
             number = _thruster(sheet, " ".join(words[1:]))
             return lambda vehicle: vehicle.faults.dead.add(number)
-        case ["mend", "thruster-dead", _, *_]:
+        case ["clear", "thruster-dead", _, *_]:
             number = _thruster(sheet, " ".join(words[2:]))
             return lambda vehicle: vehicle.faults.dead.discard(number)
         case ["frozen" | "silent" as what, name]:
             message = _message(name)
             return lambda vehicle: _instruments(vehicle, what).add(message)
-        case ["mend", "frozen" | "silent" as what, name]:
+        case ["clear", "frozen" | "silent" as what, name]:
             message = _message(name)
             return lambda vehicle: _instruments(vehicle, what).discard(message)
         case ["noisy", name, times]:
             message, amount = _message(name), _number(times, 1e6)
             return lambda vehicle: vehicle.faults.noisy.update({message: amount})
-        case ["mend", "noisy", name]:
+        case ["clear", "noisy", name]:
             message = _message(name)
             return lambda vehicle: _quieten(vehicle, message)
-        case ["leak"] | ["mend", "leak"]:
+        case ["leak"] | ["clear", "leak"]:
             leak = len(words) == 1
             return lambda vehicle: _leak(vehicle, leak)
         case ["battery", part]:

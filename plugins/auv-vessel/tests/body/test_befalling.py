@@ -39,7 +39,7 @@ def test_what_is_typed_befalls_the_vehicle_until_it_is_mended(vehicle, line, tol
     sound = status_of(SHEET, vehicle)
     assert befall(vehicle, line) == f"{sound}; {told}"
     fault, *rest = line.split()
-    assert befall(vehicle, " ".join(("mend", fault, *rest[:1]))) == sound
+    assert befall(vehicle, " ".join(("clear", fault, *rest[:1]))) == sound
 
 
 @pytest.mark.parametrize("line", ["thruster-dead rear port", "thruster-dead 'rear port'"])
@@ -48,7 +48,7 @@ def test_a_thruster_may_have_a_name_of_several_words(vehicle, line):
     sheet = replace(SHEET, thrusters=thrusters)
     befalling(sheet, line.split())(vehicle)
     assert status_of(sheet, vehicle).endswith("; thruster rear port dead")
-    befalling(sheet, f"mend {line}".split())(vehicle)
+    befalling(sheet, f"clear {line}".split())(vehicle)
     assert not vehicle.faults.dead
 
 
@@ -63,7 +63,7 @@ def test_a_battery_is_as_full_as_is_typed(vehicle):
         ("", "no such fault"),
         ("flood", "flood: no such fault; known are thruster-dead THRUSTER"),
         ("leak now", "no such fault"),
-        ("mend battery", "no such fault"),
+        ("clear battery", "no such fault"),
         ("thruster-dead 6", "6: no such thruster; there are T1, T2"),
         ("thruster-dead -1", "-1: no such thruster"),
         ("thruster-dead rear port", "rear port: no such thruster"),

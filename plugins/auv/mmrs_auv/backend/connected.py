@@ -21,7 +21,7 @@ from mmrs_runtime.injection.spec import OF_STATIONS, OF_VEHICLE
 from mmrs_runtime.records.blackbox import BlackBox, black_box_path
 from mmrs_runtime.records.steps import log_name
 
-SHARED = "faults made on purpose on CAN buses"
+SHARED = "injected faults of CAN buses"
 
 
 @dataclass(slots=True)
@@ -137,7 +137,7 @@ def _eyes(given: VehicleInput, options: Connecting) -> Detections | None:
     if not options.detections:
         if sought and options.objects != "expected":
             raise UnsupportedError(
-                f"robot '{given.robot.id}': nobody looks for objects: --backend-option detections=PORT, or "
+                f"robot '{given.robot.id}': objects are not detected: --backend-option detections=PORT, or "
                 "objects=expected",
                 sought,
             )

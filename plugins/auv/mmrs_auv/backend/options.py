@@ -25,9 +25,9 @@ class Rehearsing:
         current: of the water, metres per second to the north and to the east; None: as the surroundings, or
             the context, say.
         bottom: depth of the bottom, metres; 0: a little below the deepest place of the program.
-        surroundings: what is around the vehicles; it says how deep the bottom is, and whether there is
+        surroundings: of the vehicles; they define how deep the bottom is, and whether there is
             noise. None: nothing but water.
-        start: metres north and east of its home at which the vehicle is told to be put into the water.
+        start: metres north and east of its home, as reported, at which the vehicle is put into the water.
         heading: of the vehicle at first, degrees.
         objects: ``expected`` takes objects to be where they are expected; ``seen`` looks for them as
             eyes that never err, ``cameras`` in pictures of the simulated water.
@@ -51,14 +51,14 @@ class Connecting:
 
     Attributes:
         interface: of python-can. channel: of it, where ``--connect`` says none.
-        bit_rate: for adapters that have to be told; 0: they have not.
+        bit_rate: for adapters that need it; 0: default.
         patience: real seconds to wait for a vehicle's first sign.
         clock: ``real``, or ``bus``: as a simulated vehicle tells it; empty: by the speed-up of the run.
         objects: ``expected`` takes objects to be where they are expected.
-        detections: UDP port on which what cameras detect is told; 0: none.
+        detections: UDP port on which the detections of cameras are received; 0: none.
         clearance: metres ahead within which sonar must see nothing; 0: it may.
         home_tolerance: metres that a vehicle may be from its home at first.
-        inject: faults to be made on purpose.
+        inject: faults to inject.
     """
 
     interface: str = "socketcand"

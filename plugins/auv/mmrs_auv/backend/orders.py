@@ -47,10 +47,10 @@ class BehaviourOrders:
     """
 
     def __init__(self, given: VehicleInput, sheet: Sheet, waters: Waters, sight: Sight | None) -> None:
-        """Know them; without a `sight`, objects are where they are expected.
+        """Take what orders are made of; without a `sight`, objects are where they are expected.
 
         Raises:
-            UnsupportedError: moves or actions are of kinds that nobody knows, or more than the vehicle's bus
+            UnsupportedError: moves or actions are of unknown kinds, or more than the vehicle's bus
                 can say; lists all of them.
         """
         self.policies: Sequence[Policy] = (*given.robot.policies, *given.policies)
@@ -67,7 +67,7 @@ class BehaviourOrders:
         strange = tuple(self._strange())
         if strange:
             raise UnsupportedError(
-                f"robot '{given.robot.id}': what no underwater vehicle does, or nobody has told", strange
+                f"robot '{given.robot.id}': unknown to underwater vehicles, or not stated", strange
             )
 
     def duty(self, order: object, here: Vector, *, through: bool) -> Duty | Fault:
@@ -79,7 +79,7 @@ class BehaviourOrders:
         return found or Fault(DEVICE_SILENT, f"'{order.device}' does not do '{order.name}'")
 
     def reports(self, order: object) -> Mapping[str, object] | None:
-        """Return what an action reports, with its `name`; None: it is no report."""
+        """Return what an action reports, with its `name`; None: it does not report."""
         if not isinstance(order, Action) or order.is_a(DEVICE_ACTION):
             return None
         return {"name": order.name, **dict(order.parameters)}
@@ -88,12 +88,12 @@ class BehaviourOrders:
         """Take note of where another robot has detected an object."""
         self._told[name] = place
 
-    def refuge(self, response: str, here: Vector) -> Duty:
-        """Return the way home, or to an emergency area, round what is in the way."""
+    def escape(self, response: str, here: Vector) -> Duty:
+        """Return the path home, or to an emergency area, around what is in the way."""
         return self.way(self._escapes.clear(response, self.waters.above(here)))
 
     def back(self, passed: Sequence[str], begun: str, here: Vector) -> Duty:
-        """Return the way to where the last of the moves ended, round what is in the way.
+        """Return the path to where the last of the moves ended, around what is in the way.
 
         Raises:
             NoWayError: there is none.
@@ -173,7 +173,7 @@ class BehaviourOrders:
             aimed = replace(move, target=replace(target, position=self.waters.above(place)))
             path = kind.path(aimed, here, home)
             if path is None:
-                raise FailureError(NO_PROGRESS, f"no way to {place}")
+                raise FailureError(NO_PROGRESS, f"no path to {place}")
             return self._travel(aimed, path, through=False)
 
         expected = self.waters.below(target.position)
@@ -207,6 +207,6 @@ class BehaviourOrders:
             if kind.leaves in ("airborne", "grounded") or kind.needs == {"airborne"}:
                 yield f"move '{move.id}': {move.kind}"
             elif move.is_a(GO_TO) and (move.target is None or move.target.position is None):
-                yield f"move '{move.id}': nobody says where its object is expected"
+                yield f"move '{move.id}': the expected position of its object is unknown"
             facing = () if move.heading is None else unturnable(move.heading.device, self._given.type)
             yield from (f"move '{move.id}': {each}" for each in (*bus.refused(move), *facing))

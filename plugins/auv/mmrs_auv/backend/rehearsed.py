@@ -45,10 +45,10 @@ PICTURES = 0.5
 """Simulated seconds from one look of simulated cameras to the next."""
 
 LONGEST_SILENCE = 60.0
-"""Simulated seconds after which a vehicle that is not heard is left alone; its own parts bring it up."""
+"""Simulated seconds of silence after which a vehicle is left alone; its own parts bring it up."""
 
 BELOW = 5.0
-"""Metres from the deepest place of a program to the bottom, where nobody says how deep that is."""
+"""Metres from the deepest place of a program to the bottom, where its depth is unknown."""
 
 FARTHEST_SEEN, WIDTH, ABOVE = 6.0, 50.0, 3.0
 """What simulated cameras see: metres ahead, degrees to each side of the bow, metres below."""
@@ -165,14 +165,14 @@ def _is_in_sight(thing: Thing, north: float, east: float, depth: float, heading:
 
 
 def _put_in(sheet: Sheet, options: Rehearsing) -> Vector:
-    """Return where the vehicle truly is at first: near where it was told that it is."""
+    """Return where the vehicle truly is at first: near its reported position."""
     random, sigma = Random(options.seed), instruments_of(sheet).start_noise if options.noise else 0.0
     north, east, depth = sheet.home
     return (north + random.gauss(0.0, sigma), east + random.gauss(0.0, sigma), depth)
 
 
 class RehearsedRobot(CanVehicle):
-    """A simulated vehicle; it goes on as the run's time does.
+    """A simulated vehicle; it advances as the run's time does.
 
     Attributes:
         notes: what was taken for granted.
@@ -205,7 +205,7 @@ class RehearsedRobot(CanVehicle):
         return now + PACE
 
     def respond(self, response: str, now: float) -> None:
-        """Do what a response says, to its end: nobody asks again in simulated time."""
+        """Carry out a response to its end: in simulated time it is not polled."""
         if self._response == response:
             return
         super().respond(response, now)

@@ -83,14 +83,14 @@ def sitl(
 
     Each vehicle has its own virtual CAN bus. Prints the --connect arguments for 'mmrs run'. Type 'Thetis
     leak', 'all thruster-dead T1', 'Thetis frozen Pressure', 'Thetis battery 0.2' or 'Thetis cut' (its bus) to
-    inject a fault, 'Thetis mend leak' to clear it, 'status' to print the vehicles' state, 'quit' to stop.
+    inject a fault, 'Thetis clear leak' to clear it, 'status' to print the vehicles' state, 'quit' to stop.
 
     Example: mmrs auv sitl examples/pool-course --speedup 2
     """
     from auv_vessel.body.surroundings import Surroundings, from_json
     from mmrs_auv.backend.options import pair
     from mmrs_auv.commands.modelled import sheets_in
-    from mmrs_auv.rehearsal import Berth, keep
+    from mmrs_auv.rehearsal import VehicleProcesses, keep
 
     try:
         around = Surroundings(current=pair(current), bottom=bottom)
@@ -115,7 +115,7 @@ def sitl(
             if stopped:
                 return INTERRUPTED
             berths[robot] = stack.enter_context(
-                Berth(
+                VehicleProcesses(
                     sheet,
                     folder / str(count),
                     port=port + count,

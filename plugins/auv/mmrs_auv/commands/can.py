@@ -122,7 +122,7 @@ def hub(
 
     Forwards each frame to all other processes on the same channel, in order, over the socketcand protocol. It
     has no arbitration, bit rate, acknowledgement, error frames or bus-off. Type 'loss 0.2', 'delay 0.05',
-    'corruption 0.1' or 'cut' to inject faults, 'mend' to clear them, 'quit' to stop.
+    'corruption 0.1' or 'cut' to inject faults, 'clear' to clear them, 'quit' to stop.
 
     Example: mmrs can hub --loss 0.05 --log bus.log
     """
@@ -132,7 +132,7 @@ def hub(
 
     tell("no arbitration, no bit rate, no acknowledgement, no error frames, no bus-off (--help says more)")
     if not is_loopback(host):
-        tell(f"whoever reaches {host} can say anything on this bus: nobody is asked who they are")
+        tell(f"the bus is unauthenticated: every computer that reaches {host} can send on it")
     with _opened(log) as file:
         troubles = Troubles(loss, delay, corruption)
         spared = tells_time if simulated else lambda frame: False
@@ -162,7 +162,7 @@ def monitor(
 
     Example: mmrs can monitor examples/pool --robot Naiad --only Depth --only ActuatorsEmergency
     """
-    from mmrs_auv.commands.watching import Monitor, heard
+    from mmrs_auv.commands.watching import Monitor, received
 
     sheet = sheet_in(vehicle, robot)
     watched = Monitor(sheet)
@@ -172,7 +172,7 @@ def monitor(
         )
     with _connected(interface, channel, sheet.bit_rate) as port:
         try:
-            for time, frame in heard(port, seconds):
+            for time, frame in received(port, seconds):
                 line = watched.line(frame)
                 if not only or watched.name_of(frame) in only:
                     say(f"{time:10.3f} {line}")
@@ -229,10 +229,10 @@ def load(
 
 
 def _listened(interface: str, channel: str, bit_rate: int, seconds: float) -> list[tuple[float, Frame]]:
-    from mmrs_auv.commands.watching import heard
+    from mmrs_auv.commands.watching import received
 
     with _connected(interface, channel, bit_rate) as port:
-        return list(heard(port, seconds))
+        return list(received(port, seconds))
 
 
 def _logged(file: Path) -> list[tuple[float, Frame]]:
@@ -250,7 +250,7 @@ def _logged(file: Path) -> list[tuple[float, Frame]]:
     except OSError as error:
         raise UnreadableError(f"{file}: {error.strerror}") from error
     except Exception as error:  # python-can's readers raise whatever their format's library does
-        raise UnreadableError(f"{file}: is no log of a bus: {error}") from error
+        raise UnreadableError(f"{file}: not a log of a bus: {error}") from error
 
 
 @contextmanager

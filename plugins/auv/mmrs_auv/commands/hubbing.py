@@ -15,7 +15,7 @@ from auv_vessel.wire.frame import Frame
 from auv_vessel.wire.hub import Hub, Troubles, log_line
 from mmrs_core.errors import LinkLostError
 
-ORDERS = "loss PART, delay SECONDS, corruption PART, cut, mend, quit"
+ORDERS = "loss PART, delay SECONDS, corruption PART, cut, clear, quit"
 
 
 def run_hub(
@@ -31,8 +31,8 @@ def run_hub(
     """Run a hub; return it when it has ended.
 
     Args:
-        seconds: after which it ends by itself; 0: when it is told to, or interrupted.
-        say: is told where it listens, and what comes of lines that are typed.
+        seconds: after which it ends; 0: when it is ordered to, or interrupted.
+        say: receives where it listens, and the answers to lines that are typed.
         spared: which frames have no troubles.
 
     Raises:
@@ -87,12 +87,12 @@ async def _run(
 
 
 def _done(hub: Hub, usual: Troubles, line: str) -> str:
-    """Return what came of a line that somebody typed."""
+    """Return the answer to a line that was typed."""
     try:
         match line.split():
             case ["cut"]:
                 hub.troubles = replace(hub.troubles, loss=1.0)
-            case ["mend"]:
+            case ["clear"]:
                 hub.troubles = usual
             case ["loss" | "delay" | "corruption" as what, value]:
                 hub.troubles = replace(hub.troubles, **{what: float(value)})
@@ -105,7 +105,7 @@ def _done(hub: Hub, usual: Troubles, line: str) -> str:
 
 
 def _listen(heard: Callable[[str], object]) -> None:
-    """Have every line that is typed heard."""
+    """Carry out every line that is typed."""
 
     def read() -> None:
         with suppress(OSError, RuntimeError):  # in the background of a terminal, or when the hub has ended

@@ -87,7 +87,7 @@ def sheet_in(path: Path, robot: str) -> Sheet:
     """Return the data of a vehicle that a bus can be made of.
 
     Raises:
-        UnreadableError: the file cannot be read, or is no vehicle's data.
+        UnreadableError: the file cannot be read, or is not a vehicle's data.
         UnsupportedError: no bus can be made of it; lists why.
     """
     sheet = _read(path) if path.suffix == ".json" and path.is_file() else _modelled(path, robot)

@@ -19,7 +19,7 @@ class Monitor:
 
     Attributes:
         counts: frames by message; ``unknown``: of no message of this vehicle.
-        missed: frames by message that counters tell of but nobody heard.
+        missed: frames by message that are missing by their counters.
     """
 
     def __init__(self, sheet: Sheet) -> None:
@@ -83,8 +83,8 @@ class Monitor:
         return f"{value:.10g}{self._units[name, field]}"
 
 
-def heard(port: Port, seconds: float) -> Iterator[tuple[float, Frame]]:
-    """Yield what comes from a bus, with the time since the beginning; seconds 0: for ever.
+def received(port: Port, seconds: float) -> Iterator[tuple[float, Frame]]:
+    """Yield the frames of a bus, with the time since the beginning; seconds 0: without end.
 
     Raises:
         PortError: the bus is gone.
@@ -107,14 +107,14 @@ def table(designed: Load) -> Iterator[str]:
 
 
 def summary(designed: Load, found: MeasuredLoad | None) -> Iterator[str]:
-    """Yield how busy the bus is by design, and how busy it was if it was heard."""
+    """Yield the load of a bus by design, and as measured, if it was."""
     yield (
         f"by design: {designed.least:.1%} of the time without stuff bits, {designed.most:.1%} at most, "
         f"at {designed.bit_rate / 1000:g} kbit/s"
     )
     if found is not None:
         yield (
-            f"as heard: {found.mean:.1%} on average ({found.frames} frames in {found.seconds:.1f} s); "
+            f"as measured: {found.mean:.1%} on average ({found.frames} frames in {found.seconds:.1f} s); "
             f"in windows of {found.window * 1000:.0f} ms: median {found.median:.1%}, 99th percentile "
             f"{found.high:.1%}, most {found.peak:.1%}; {found.stuffing:.1f} stuff bits on 100"
         )

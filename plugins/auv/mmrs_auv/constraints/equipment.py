@@ -27,7 +27,7 @@ def _stays_down(size: Element, models: ModelSet) -> Iterator[Finding]:
     wet, drop = number(size, "weightInWater"), number(size, "dropWeight") or 0.0
     if wet is not None and wet - drop > 0.0:
         without = f", {wet - drop:g} kg without its drop weight of {drop:g} kg" if drop > 0.0 else ""
-        yield Finding(size, f"weightInWater is {wet:g} kg{without}: it does not come up by itself")
+        yield Finding(size, f"weightInWater is {wet:g} kg{without}: it does not surface on its own")
 
 
 def _no_ballast(size: Element, models: ModelSet) -> Iterator[Finding]:
@@ -50,8 +50,7 @@ def _unreadable(device: Element, models: ModelSet) -> Iterator[Finding]:
             hint = nearest(key, (KIND, *FIGURES))
             yield Finding(
                 each,
-                f"property '{key}' of device '{text(device, 'id')}' is read by nobody"
-                + (f"; {hint}" * bool(hint)),
+                f"unknown property '{key}' of device '{text(device, 'id')}'" + (f"; {hint}" * bool(hint)),
             )
 
 

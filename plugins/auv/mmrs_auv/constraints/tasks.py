@@ -53,7 +53,7 @@ def _swath_missing(task: Element, models: ModelSet) -> _Findings:
         if asked in ("", text(device, "id"))
     )
     if all(swath is None for swath in known):
-        yield Finding(task, f"swath of task '{label_of(task)}' is missing, and no device says what it covers")
+        yield Finding(task, f"swath of task '{label_of(task)}' is missing, and no device defines one")
 
 
 def _properties(device: Element) -> dict[str, str]:
@@ -119,7 +119,7 @@ def _name_shared(context: Element, models: ModelSet) -> _Findings:
     for pipeline in pipelines:
         name = label_of(pipeline)
         if not name:
-            yield Finding(pipeline, "pipeline has no name, tasks could not be told what it is")
+            yield Finding(pipeline, "pipeline has no name for tasks to refer to")
         elif counted[name] > 1:
             yield Finding(pipeline, f"pipeline '{name}' is one of {counted[name]} of that name")
 

@@ -46,7 +46,7 @@ THRUSTER_CONSTRAINTS = (
         "Some movement capability uses each thruster",
         VEHICLE,
         _unused,
-        "add it to the thrusters of the movement capability, or take it away",
+        "add it to the thrusters of the movement capability, or remove it",
         Severity.WARNING,
     ),
 )
@@ -206,7 +206,7 @@ MOUNTING_CONSTRAINTS = (
         "All thrusters of a movement capability are mounted, or none",
         AUV_MOVEMENT,
         _half_mounted,
-        "say of each thruster where it sits and which way it pushes",
+        "give each thruster a mounting: where it sits and which way it pushes",
         Severity.WARNING,
     ),
     Constraint(

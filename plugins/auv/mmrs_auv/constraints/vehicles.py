@@ -17,9 +17,9 @@ from mmrs_core.languages.modelset import ModelSet
 
 
 def too_deep(mission: Element, models: ModelSet) -> Iterator[Finding]:
-    """Yield the tasks deeper than every robot bears; none where the limit of one is not known.
+    """Yield the tasks deeper than the limit of every robot; none where the limit of one is not known.
 
-    Robots that are no underwater vehicles reach no depth at all, so a team without any is silent:
+    Robots other than underwater vehicles reach no depth at all, so a team without any is silent:
     other constraints and the planner tell it what it lacks.
     """
     team = children(child(mission, "team"), "robots") if child(mission, "team") is not None else ()
@@ -31,7 +31,7 @@ def too_deep(mission: Element, models: ModelSet) -> Iterator[Finding]:
         if depth > deepest + 1e-6:
             yield Finding(
                 task,
-                f"task '{label_of(task)}' is {depth:g} m deep, the team's vehicles bear {deepest:.1f} m",
+                f"task '{label_of(task)}' is {depth:g} m deep, the team is rated for {deepest:.1f} m",
             )
 
 
@@ -49,7 +49,7 @@ def _deepest(task: Element, ground: Ground) -> float:
 
 
 def _limit(robot_type: Element | None, models: ModelSet) -> float | None:
-    """Return the depth that a type bears: None for no underwater vehicle, inf where not known."""
+    """Return the rated depth of a type: None for other vehicles, inf where not known."""
     if robot_type is None:
         return inf
     movements = [
@@ -216,7 +216,7 @@ VEHICLE_CONSTRAINTS = (
     ),
     Constraint(
         "AUV004",
-        "Some robot of the team bears the depth of each task",
+        "Some robot of the team is rated for the depth of each task",
         MISSION,
         too_deep,
         "raise the task or add a robot that dives deeper",

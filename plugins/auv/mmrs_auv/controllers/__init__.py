@@ -72,10 +72,10 @@ __all__ = [
 
 @dataclass(frozen=True, slots=True)
 class Operate:
-    """Have a device do something, and wait until it says that it has.
+    """Command a device, and wait until it has finished.
 
     Attributes:
-        device: as in the vehicle's sheet. action: for people.
+        device: as in the vehicle's sheet. action: human-readable.
         number: of the action at the device. parameter: means what the device says.
         seconds: that it takes.
     """

@@ -111,7 +111,7 @@ class Reach:
     """How a vehicle is reached, and what is taken for granted then.
 
     Attributes:
-        interface, channel, bit_rate: of python-can; 0: adapters need not be told.
+        interface, channel, bit_rate: of python-can; 0: default of the adapter.
         clock: ``real``, or ``bus``: time as a simulated vehicle tells it; empty: as the run's clock goes.
         patience: real seconds to wait for its first sign, and until it knows where it is.
         home_tolerance: metres that it may be from its home at first.
@@ -128,7 +128,7 @@ class Reach:
 
 
 class ConnectedVehicle(CanVehicle):
-    """A vehicle on a bus of its own; a thread repeats its goals and hears it."""
+    """A vehicle on a bus of its own; a thread repeats its goals and receives its messages."""
 
     def __init__(
         self,
@@ -145,11 +145,11 @@ class ConnectedVehicle(CanVehicle):
         eyes: Detections | None,
         let_go: Callable[[], None],
     ) -> None:
-        """Say nothing but that nothing is to move, until the robot is to get ready.
+        """Send only that nothing is to move, until the robot is to get ready.
 
         Args:
             start: what its black box says first.
-            eyes: what its cameras tell; None: nobody looks for objects.
+            eyes: detections of its cameras; None: objects are not detected.
             let_go: called when it is let go of.
         """
         self._port, self._connection = reached
@@ -169,7 +169,7 @@ class ConnectedVehicle(CanVehicle):
         self._met = False
 
     def prepare(self, now: float) -> bool:
-        """Begin to wait until the vehicle is heard, knows where it is, and has told its battery."""
+        """Begin to wait until the vehicle has sent a known position and its battery."""
         self.done, self.trouble = False, None
         self._begun, self._until = now, now + self._reach.patience * self._clock.speedup
         self.note("start", self._start)
@@ -189,11 +189,11 @@ class ConnectedVehicle(CanVehicle):
         return again
 
     def watched(self, now: float) -> bool:
-        """Return whether somebody must stay with the vehicle; nobody can where the bus itself is gone."""
+        """Return whether the vehicle must be attended; it cannot be where the bus itself is gone."""
         return self._connection.failure is None and super().watched(now)
 
     def close(self) -> None:
-        """Let the last goal be heard, and fall silent; the vehicle then holds, and comes up."""
+        """Send the last goal, and fall silent; the vehicle then holds, and surfaces."""
         time.sleep(FAREWELL)
         self._connection.close()
         self._port.close()
@@ -216,11 +216,11 @@ class ConnectedVehicle(CanVehicle):
         if now < self._until:
             return None
         if state.age > self._reach.patience:
-            return Fault(LINK_LOST, "no vehicle is heard on its bus")
+            return Fault(LINK_LOST, "no messages of a vehicle received on its bus")
         return Fault(POSITION_LOST, "the vehicle does not know where it is")
 
     def _astray(self, north: float, east: float) -> Fault | None:
-        """Return that the vehicle is not where its program begins; one that goes on may be anywhere."""
+        """Return that the vehicle is not where its program begins; one that resumes may be anywhere."""
         home = self._sheet.home
         away = hypot(north - home[0], east - home[1])
         if self._live.resumed or away <= self._reach.home_tolerance:
@@ -245,7 +245,7 @@ def connected(
     """Return a robot on its bus.
 
     Args:
-        rehearsal: of faults that are made on purpose; None: there are none.
+        rehearsal: of injected faults; None: none.
 
     Raises:
         OSError: there is no bus.

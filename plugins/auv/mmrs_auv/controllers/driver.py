@@ -31,11 +31,11 @@ from mmrs_runtime.faults import LINK_LOST, Fault
 from mmrs_runtime.records.blackbox import BlackBox
 
 LEADS = ("GO_TO", "HOLD", "SEARCH")
-"""Goals that have a place; the others take the place where they begin."""
+"""Goals that have a position; the others start at the current one."""
 
 
 class DryCraft(Craft):
-    """Takes the time that a real vehicle needs, and does all that it is told."""
+    """Takes the time that a real vehicle needs, and carries out every goal."""
 
     def __init__(self, sheet: Sheet, now: Callable[[], float]) -> None:
         """Lie at home; `now` returns seconds."""
@@ -43,7 +43,7 @@ class DryCraft(Craft):
         self._clock, self._at, self._since = now, sheet.home, now()
 
     def operate(self, device: str, action: int, parameter: float = 0.0) -> int:
-        """Have a device do something at once."""
+        """Complete the action of a device at once."""
         request = super().operate(device, action, parameter)
         self._devices[request] = "REACHED"
         self._requests.pop(request, None)
@@ -118,7 +118,7 @@ class CanDriver(Driver):
     _given: Namespace
 
     def __init__(self, sheets: Mapping[str, Path]) -> None:
-        """Know the files of the vehicles' data, by robot."""
+        """Take the files of the vehicles' data, by robot."""
         self._sheets = sheets
         self._channels: Mapping[str, str] = {}
         self._ports: Mapping[str, int] = {}
@@ -128,13 +128,13 @@ class CanDriver(Driver):
         add = parser.add_argument
         add("--can", action="append", default=[], metavar="[ROBOT=]CHANNEL", help=f"default {CHANNEL}")
         add("--interface", default="socketcand", help="of python-can")
-        add("--bit-rate", type=int, help="for adapters that have to be told")
+        add("--bit-rate", type=int, help="bit rate, for adapters that need it")
         add("--detections", action="append", default=[], metavar="[ROBOT=]PORT", help=_DETECTIONS)
         add("--clearance", type=_metres, default=0.0, help="metres ahead within which sonar must see nothing")
         add("--clock", choices=("real", "bus"), help="bus: time as a simulated vehicle tells it")
 
     def settle(self, parser: ArgumentParser, robots: Sequence[Robot], given: Namespace) -> Mapping[str, str]:
-        """Keep which robot is on which bus, and who hears its cameras."""
+        """Keep which robot is on which bus, and which receives its cameras' detections."""
         ids = [robot.id for robot in robots]
         self._given = given
         self._channels = {**dict.fromkeys(ids, CHANNEL), **_by_robot(parser, "--can", ids, given.can)}
@@ -152,7 +152,7 @@ class CanDriver(Driver):
         self._outfit = outfit
 
     def connect(self, robot: Robot, live: Live, box: BlackBox) -> CanVehicle:
-        """Return a robot's vehicle, which need not have been heard yet.
+        """Return a robot's vehicle, which need not have sent a message yet.
 
         Raises:
             Fault: there is no such bus, or its cameras' port is taken.
@@ -227,7 +227,7 @@ class _DryVehicle(CanVehicle):
         self._start = start_of(robot, None, "python-can")
 
     def prepare(self, now: float) -> bool:
-        """Be ready."""
+        """Get ready."""
         self.note("start", self._start)
         return False
 
@@ -237,7 +237,7 @@ class _DryVehicle(CanVehicle):
             self._box.close()
 
 
-_DETECTIONS = "UDP port on which cameras tell where objects are, whatever objects.py says"
+_DETECTIONS = "UDP port for positions of objects from cameras; overrides objects.py"
 
 
 def _metres(text: str) -> float:
@@ -246,7 +246,7 @@ def _metres(text: str) -> float:
     except ValueError:
         found = -1.0
     if not 0.0 <= found < inf:
-        raise argparse.ArgumentTypeError(f"{text}: is no number from 0 on")
+        raise argparse.ArgumentTypeError(f"{text}: is not a number from 0 on")
     return found
 
 
@@ -268,7 +268,7 @@ def _ports(parser: ArgumentParser, robots: Sequence[str], texts: Sequence[str]) 
     found = _by_robot(parser, "--detections", robots, texts)
     for text in found.values():
         if not (text.isascii() and text.isdecimal() and len(text) < 6 and 0 < int(text) < 65_536):
-            parser.error(f"--detections {text}: is no port")
+            parser.error(f"--detections {text}: is not a port")
     if len(set(found.values())) < len(found):
         parser.error("--detections: each vehicle's cameras need a port of their own")
     return {robot: int(text) for robot, text in found.items()}

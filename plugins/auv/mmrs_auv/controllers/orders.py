@@ -12,11 +12,11 @@ from mmrs_runtime.policies import Policy
 from mmrs_runtime.records.blackbox import BlackBox
 from mmrs_runtime.vehicle import Fault, Position
 
-NO_WAY = "no way is known back to where its program was broken off"
+NO_WAY = "unknown path to where its program was interrupted"
 
 
 class NoWayError(Exception):
-    """Nobody knows a way that is clear."""
+    """No clear path is known."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,22 +71,22 @@ class Orders(Protocol):
         ...
 
     def reports(self, order: object) -> Mapping[str, object] | None:
-        """Return what an action reports, with its `name`; None: it is no report."""
+        """Return what an action reports, with its `name`; None: it does not report."""
         ...
 
     def learn(self, name: str, place: Vector) -> None:
         """Take note of where another robot has detected an object."""
         ...
 
-    def refuge(self, response: str, here: Vector) -> Duty:
+    def escape(self, response: str, here: Vector) -> Duty:
         """Return the way that RETURN or EMERGENCY_AREA leads from where the vehicle is."""
         ...
 
     def back(self, passed: Sequence[str], begun: str, here: Vector) -> Duty:
-        """Return the way to where the last of the moves ended that the robot has passed.
+        """Return the path to where the last of the moves ended that the robot has passed.
 
         Raises:
-            NoWayError: nobody knows one.
+            NoWayError: no path is known.
         """
         ...
 

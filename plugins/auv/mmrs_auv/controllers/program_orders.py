@@ -54,7 +54,7 @@ from mmrs_runtime.policies import AFTER, Policy, patience
 from mmrs_runtime.vehicle import Fault
 
 OFF_ITS_WAY = 5.0
-"""Metres that a vehicle may be from the way of its program when it is to go on."""
+"""Metres that a vehicle may be from the path of its program when it is to resume."""
 
 
 class ProgramOrders:
@@ -68,14 +68,14 @@ class ProgramOrders:
         state: Callable[[], State],
         sight: Sight | None = None,
     ) -> None:
-        """Know them.
+        """Take what orders are made of.
 
         Args:
             robot: whose program it is.
             sheet: data of its vehicle.
             locators: what finds objects, by description.
             state: returns what locators are asked with.
-            sight: where cameras see objects; None: nobody looks for them.
+            sight: where cameras detect objects; None: objects are not detected.
         """
         self.policies: Sequence[Policy] = robot.policies
         self.reserve = robot.reserve
@@ -98,24 +98,24 @@ class ProgramOrders:
         return Stay(0.0)
 
     def reports(self, order: object) -> Mapping[str, object] | None:
-        """Return what an action reports, with its `name`; None: it is no report."""
+        """Return what an action reports, with its `name`; None: it does not report."""
         return {"name": order.name, **dict(order.pairs)} if isinstance(order, Report) else None
 
     def learn(self, name: str, place: Vector) -> None:
         """Take note of where another robot has detected an object."""
         self._told[name] = place
 
-    def refuge(self, response: str, here: Vector) -> Duty:
-        """Return the way back that the robot has come, to where it comes up; it stays where it knows none."""
+    def escape(self, response: str, here: Vector) -> Duty:
+        """Return the robot's track, back to where it surfaces; it stays where it knows none."""
         above = self._above(here)
         places = [place for _, place in steps_back(self._robot, response, self._track, above)]
         return Travel([self._below(each) for each in places], self._robot.cruise or 0.0)
 
     def back(self, passed: Sequence[str], begun: str, here: Vector) -> Duty:
-        """Return the way to where the last of the moves ended, along the way that the robot came.
+        """Return the path to where the last of the moves ended, along the robot's track.
 
         Raises:
-            NoWayError: the vehicle is not on its way.
+            NoWayError: the vehicle is not on its path.
         """
         came = list(self._places(self._robot.home, _dive_of(self._steps, passed)))
         start, above = self._robot.home, self._above(here)
@@ -124,7 +124,7 @@ class ProgramOrders:
         gaps = [distance_to_leg(above, *leg) for leg in pairwise(way)] or [0.0]
         leg = max(range(len(gaps)), key=lambda each: (-round(gaps[each], 1), each))
         if gaps[leg] > OFF_ITS_WAY:
-            raise NoWayError(f"it is {gaps[leg]:.0f} m off its way: bring it home before it goes on")
+            raise NoWayError(f"it is {gaps[leg]:.0f} m off its path: bring it back to it before it resumes")
         left = came[leg:] if leg < len(came) else [*reversed(ahead[: leg - len(came)]), *came[-1:]]
         self._track = came
         return Travel([self._below(place) for _, place in left], self._robot.cruise or 0.0)
@@ -171,7 +171,7 @@ class ProgramOrders:
         if self._sight is None:
             return _Found(partial(self._finding, target), way)
         if target.expected is None:
-            why = f"object {target.description!r}: nobody knows where it is expected"
+            why = f"object {target.description!r}: unknown expected position"
             return _Fails(NotFound(OBJECT_NOT_FOUND, why))
         expected, told = self._below(target.expected), self._told.get(target.description)
         return Seek(
@@ -224,7 +224,7 @@ class ProgramOrders:
         return self._sheet.weight_in_water < 0.0
 
     def _bearing(self, look: Look | None) -> Bearing | None:
-        """Return where the front points; None where a device turns by itself, or nobody knows where to."""
+        """Return where the front points; None where a device turns on its own, or the target is unknown."""
         if look is None or look.gimbal:
             return None
         place = self._seen.get(look.at) if isinstance(look.at, Object) else look.at
@@ -274,7 +274,7 @@ class _Chain:
 
 
 class _Found:
-    """A duty that nobody knows before a function of the user has found where it leads."""
+    """A duty that is unknown until a function of the user has found its destination."""
 
     def __init__(self, find: Callable[[], Finding], then: Callable[[Place], Duty]) -> None:
         self._find, self._then = find, then

@@ -40,13 +40,13 @@ from mmrs_runtime.vehicle import Fault, Position, Vehicle
 STAYS, RESTS, FINDS = ("HOLD", "CONTINUE"), ("STOP_THRUST", NOTHING), ("RETURN", "EMERGENCY_AREA")
 HINDRANCES = (LINK_LOST, POSITION_LOST, NO_PROGRESS)
 AT_HOME = 5.0
-"""Metres from home that count as at home, where the place is not known better than that."""
+"""Metres from home that count as at home, where the position is not known better than that."""
 
 LATELY = 60.0
 """Seconds for which what a vehicle has told last counts as where it is."""
 
 MODES = {"IDLE": "off", "HOLD": "hold", "SURFACE": "surface"}
-"""What a goal in force is, as people are told; any other leads somewhere."""
+"""Human-readable names of goals in force; any other leads somewhere."""
 
 
 class CanVehicle(Vehicle):
@@ -67,7 +67,7 @@ class CanVehicle(Vehicle):
         """Drive a craft.
 
         Args:
-            robot: identifier, for people.
+            robot: identifier, human-readable.
             sheet: data of the vehicle.
             craft: on its bus.
             orders: what its program says.
@@ -122,7 +122,7 @@ class CanVehicle(Vehicle):
         return self._fault(found)
 
     def bear(self, now: float) -> bool:
-        """Go on although something went wrong that policies say to bear."""
+        """Continue although something went wrong that policies tolerate."""
         self._bears = True
         if self._silent_device is not None:
             self._silent_device = None
@@ -155,7 +155,7 @@ class CanVehicle(Vehicle):
         return self._state(now, self._craft.state())
 
     def respond(self, response: str, now: float) -> None:
-        """Do what a response says, or come up where that cannot be done; what it answers is told no more."""
+        """Carry out a response, or surface where that fails; its fault is reported no more."""
         if self.trouble is not None and self.trouble.which in OVERTAKES:
             self._answered.add(self.trouble.which)
             self._watch.borne.add(self.trouble.which)
@@ -182,7 +182,7 @@ class CanVehicle(Vehicle):
         self._helm.pause(now)
 
     def resume(self, now: float) -> None:
-        """Go on."""
+        """Resume."""
         self._helm.resume(now)
 
     def paused(self, now: float) -> bool:
@@ -191,22 +191,22 @@ class CanVehicle(Vehicle):
         return self._helm.halted
 
     def obeys(self, now: float) -> bool:
-        """Return whether the vehicle does what it was told by `respond`: its goal is in force."""
+        """Return whether the vehicle carries out the order of `respond`: its goal is in force."""
         state = self._craft.state()
         return self.reachable(now) and (
             state.progress != "NONE" or self._response in RESTS or self._at_rest()
         )
 
     def watched(self, now: float) -> bool:
-        """Return whether the vehicle holds by thrust, or is out of reach, so that somebody must stay."""
+        """Return whether the vehicle holds by thrust, or is out of reach, so that it must be attended."""
         return self._response in STAYS and not self._is_up()
 
     def undone(self, now: float) -> str:
-        """Return why it has stopped without doing what it was told."""
+        """Return why it has stopped without carrying out its order."""
         return self._instead
 
     def reachable(self, now: float) -> bool:
-        """Return whether the bus is heard."""
+        """Return whether messages are received on the bus."""
         return self._craft.state().silent <= SILENT
 
     def known(self, now: float) -> bool:
@@ -215,7 +215,7 @@ class CanVehicle(Vehicle):
 
     @property
     def comes_home(self) -> bool:
-        """Return that it knows the way back."""
+        """Return that it knows the path back."""
         return True
 
     def recover(self, passed: Sequence[str], begun: str, now: float) -> bool:
@@ -232,10 +232,10 @@ class CanVehicle(Vehicle):
         return True
 
     def hindrance(self, passed: Sequence[str], begun: str, now: float) -> str:
-        """Return why it cannot go on."""
+        """Return why it cannot resume."""
         state = self._craft.state()
         if state.silent > SILENT:
-            return "its vehicle is not heard"
+            return "no messages received from its vehicle"
         if state.emergency is not None:
             return f"its dive was given up: {state.emergency}"
         try:
@@ -245,7 +245,7 @@ class CanVehicle(Vehicle):
         return ""
 
     def away(self, now: float) -> str:
-        """Return how far it is from its home; empty at home, or where nobody has heard of it."""
+        """Return how far it is from its home; empty at home, or where its position is unknown."""
         state, home = self._craft.state(), self._sheet.home
         metres = hypot(state.north - home[0], state.east - home[1])
         return f"it is {metres:.0f} m from home" if state.age < LATELY and metres > AT_HOME else ""
@@ -257,7 +257,7 @@ class CanVehicle(Vehicle):
     def status(self) -> Mapping[str, object]:
         """Return what the vehicle has told last."""
         known = self._craft.state()
-        return status_of(self._told_by(known)) if known.age < LATELY else {}
+        return status_of(self._state_of(known)) if known.age < LATELY else {}
 
     def note(self, kind: str, content: Mapping[str, object]) -> None:
         """Keep something in the black box."""
@@ -269,7 +269,7 @@ class CanVehicle(Vehicle):
         if response in RESTS:
             return _Idle()
         if response in FINDS:
-            return _Then(self._orders.refuge(response, self._here()), self._surface())
+            return _Then(self._orders.escape(response, self._here()), self._surface())
         return self._surface()
 
     def _surface(self) -> Duty:
@@ -280,7 +280,7 @@ class CanVehicle(Vehicle):
         self._find()
         if self._box is not None and now - self._fixed >= FIX_SECONDS:
             self._fixed = now
-            fix(self._box, self._told_by(self._craft.state()))
+            fix(self._box, self._state_of(self._craft.state()))
         for grave, words in self._drives.news():
             self.note("text", {"severity": grave, "text": words})
             self._say(words)
@@ -294,7 +294,7 @@ class CanVehicle(Vehicle):
     def _state(self, now: float, known: State) -> KnownState:
         above = self._orders.waters.above
         energy = None if known.charge is None else known.charge * self._sheet.battery
-        told = self._told_by(known)
+        told = self._state_of(known)
         return KnownState(
             now,
             above(self._place),
@@ -307,7 +307,7 @@ class CanVehicle(Vehicle):
             own=told,
         )
 
-    def _told_by(self, known: State) -> Told:
+    def _state_of(self, known: State) -> Told:
         """Return what the vehicle tells, as black boxes and people have it: places count from its home."""
         mode = MODES.get(self._craft.goal.mode, "guided")
         return Told(
@@ -330,7 +330,7 @@ class CanVehicle(Vehicle):
         name, content = report["name"], {key: value for key, value in report.items() if key != "name"}
         self.reported = {"name": name, "content": content}
         self.note(
-            "reported", {"name": name, "content": content, "place": self._told_by(self._craft.state()).place}
+            "reported", {"name": name, "content": content, "place": self._state_of(self._craft.state()).place}
         )
         self._say(f"reported '{name}': {', '.join(f'{key} {value}' for key, value in content.items())}")
 
@@ -351,7 +351,7 @@ class CanVehicle(Vehicle):
         return response_to(event, self._orders.policies) == "CONTINUE"
 
     def _overtakes(self, found: FailureError) -> bool:
-        """Return whether something keeps the vehicle from the response that it was told; told once."""
+        """Return whether something keeps the vehicle from its ordered response; reported once."""
         if found.event == CRASHED:
             return not self._given_up
         if found.event in HINDRANCES and self._response in FINDS:

@@ -45,7 +45,7 @@ def inspect_work(task: Task, robot: Robot, scene: Scene) -> Work:
 
 
 def _ways(middle: Position, distance: float, views: int, first: float) -> Iterator[tuple[Position, ...]]:
-    """Yield the way to each place, from the one before; the first is a place alone."""
+    """Yield the path to each position, from the one before; the first is a position alone."""
     step = 2.0 * pi / views
     pieces = max(1, ceil(step / STEP))
     yield (_around(middle, distance, first),)
@@ -59,7 +59,7 @@ def _around(middle: Position, distance: float, bearing: float) -> Position:
 
 
 def align_work(task: Task, robot: Robot, scene: Scene) -> Work:
-    """Return the way up to an object from outside of where it may be, the hold there, and the way back.
+    """Return the path to an object from outside of where it may be, the hold there, and the path back.
 
     The second stroke ends the task where the robot's position is certain again, wherever the object
     was found.
@@ -90,12 +90,12 @@ def _leg(
         return stand_off(robot, scene, point, distance, distance + run_up)
     behind = radians(bearing) + pi
     leg = (_around(point, distance + run_up, behind), _around(point, distance, behind))
-    refuse_blocked(robot, scene, leg, "the way up to the object")
+    refuse_blocked(robot, scene, leg, "the approach to the object")
     return leg
 
 
 def align_moves(stroke: Stroke, robot: Robot) -> tuple[MoveSpec, ...]:
-    """Return the moves up to the object: go, face it, hold; a hold for the way back's end."""
+    """Return the moves to the object: go, face it, hold; a hold for the end of the path back."""
     if stroke.object is None or stroke.look is None:
         return (MoveSpec((BEHAVIOUR, "HoldPosition"), {"duration": 0.0}),)
     return (

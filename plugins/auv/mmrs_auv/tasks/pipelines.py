@@ -55,7 +55,7 @@ def _route(task: Part, scene: Scene) -> tuple[Position, ...]:
 
 
 def way_along(points: tuple[Position, ...], height: float, offset: float) -> tuple[Position, ...]:
-    """Return the way so many metres above a pipeline and to the right of it.
+    """Return the path `height` metres above a pipeline and `offset` metres to the right of it.
 
     Raises:
         InfeasibleError: it has no length, or bends too sharply for that.
@@ -67,7 +67,7 @@ def way_along(points: tuple[Position, ...], height: float, offset: float) -> tup
 
 
 def beside(line: tuple[Position, ...], offset: float) -> tuple[Position, ...]:
-    """Return a line so many metres to the right of another, as seen from above, at its heights.
+    """Return a line `metres` to the right of another, as seen from above, at its heights.
 
     Raises:
         InfeasibleError: the line bends too sharply for that.

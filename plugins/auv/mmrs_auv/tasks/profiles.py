@@ -17,20 +17,20 @@ from mmrs_core.scene import Part, Point, Position, Robot, Scene, Stroke, Task, W
 from mmrs_core.scene.attributes import number, position, positions
 
 MOST_WAVES = 5_000
-"""Times at most that one line goes down and up: more, nobody means."""
+"""Times at most that one line goes down and up."""
 
 
 def yo_yo_work(task: Task, robot: Robot, scene: Scene) -> Work:
     """Return one stroke along the line between two depths, no steeper than asked for.
 
-    It begins and ends at the upper depth, with all ways down and up equally long. Where it is too near
+    It begins and ends at the upper depth, with all legs down and up equally long. Where it is too near
     to something, there is one for each part of the line that keeps clear of that at all these depths.
     """
     part, surface = task.part, scene.frame.surface
     line = _level(positions(part, "points"))
     upper, lower, pitch = (_needed(part, name) for name in ("minDepth", "maxDepth", "pitch"))
     if not (0.0 <= upper < lower and 0.0 < pitch < 90.0):
-        raise InfeasibleError(f"no way leads from {upper:g} to {lower:g} m of depth at {pitch:g} degrees")
+        raise InfeasibleError(f"no profile from {upper:g} to {lower:g} m of depth at {pitch:g} degrees")
     length = sum(dist(a, b) for a, b in pairwise(line))
     wave = 2.0 * (lower - upper) / tan(radians(pitch))
     if length < wave * (1.0 - 1e-9):
@@ -60,7 +60,7 @@ def yo_yo_work(task: Task, robot: Robot, scene: Scene) -> Work:
 
 
 def _waves(line: tuple[Point, ...], wave: float, top: float, bottom: float) -> tuple[Position, ...]:
-    """Return the way down and up along a line, as often as so long waves fit."""
+    """Return the path down and up along a line, with as many waves as fit."""
     length = sum(dist(a, b) for a, b in pairwise(line))
     waves = floor(length / wave + 1e-9)
     return tuple(
@@ -97,7 +97,7 @@ def _level(points: tuple[Position, ...]) -> tuple[Point, ...]:
 
 
 def _drop(at: float, wave: float) -> float:
-    """Return how far down a way is after so many metres: 0 is up, 1 is down."""
+    """Return how far down a path is after `metres`: 0 is up, 1 is down."""
     share = at / wave % 1.0
     return 1.0 - abs(1.0 - 2.0 * share)
 
@@ -129,11 +129,11 @@ YO_YO_RULE = Rule("yo_yo", YO_YO_TASK, yo_yo_work)
 
 
 def surface_work(task: Task, robot: Robot, scene: Scene) -> Work:
-    """Return the place at the surface above the point, and how long to stay there."""
+    """Return the position at the surface above the point, and how long to stay there."""
     east, north, _ = position(task.part, "point")
     place = (east, north, scene.frame.surface)
     refuse_heights(robot, (place,))
-    refuse_blocked(robot, scene, (place,), "the place at the surface")
+    refuse_blocked(robot, scene, (place,), "the position at the surface")
     return Work(
         (Stroke((place,), hold=number(task.part, "duration") or 0.0),), divisible=False, rule="surface_fix"
     )

@@ -82,7 +82,7 @@ def swath_of(part: Part, robot_type: RobotType) -> float:
     found = swath_at(device.properties, height_of(number(part, "depth"), number(part, "bottomDepth")))
     if found is None:
         raise InfeasibleError(
-            f"device '{device.id}' does not say how wide a strip it covers there: "
+            f"device '{device.id}' does not define the width of the strip it covers there: "
             f"give a swath, or a bottomDepth and {SWATH}, {APERTURE} or {RANGE}"
         )
     return found

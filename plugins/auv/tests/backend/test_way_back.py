@@ -58,7 +58,7 @@ def test_whoever_runs_behaviours_knows_that_it_can_go_back(tmp_path: Path) -> No
 def test_it_is_refused_where_there_is_no_way(tmp_path: Path) -> None:
     robot, now = dived(tmp_path, block(-3.0, -3.0, 3.0, 3.0))
     said = robot.hindrance(("start", "first"), "second", now)
-    assert said.startswith("no way is known back to where its program was broken off: goal")
+    assert said.startswith("unknown path to where its program was interrupted: goal")
     assert "'wreck'" in said
     robot.recover(("start", "first"), "second", now)
     robot.look(now + 0.5)

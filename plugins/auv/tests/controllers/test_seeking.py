@@ -119,7 +119,7 @@ def test_it_may_be_no_farther_from_where_it_is_expected_than_the_mission_allows(
 
 
 def test_nobody_seeks_what_is_expected_nowhere(dive, eyes):
-    assert "nobody knows where it is expected" in dive(eyes).do(GoTo(Object("red buoy"))).reason
+    assert "unknown expected position" in dive(eyes).do(GoTo(Object("red buoy"))).reason
 
 
 def test_without_cameras_a_function_of_the_users_says_where_it_is(dive):

@@ -228,7 +228,7 @@ def test_robots_in_separate_programs_meet_by_zenoh(tmp_path: Path) -> None:
     [
         (("--detections", "4000"), "which robot"),
         (("--detections", "Nobody=4000"), "there is no robot 'Nobody'"),
-        (("--detections", "Pollux=0"), "--detections 0: is no port"),
+        (("--detections", "Pollux=0"), "--detections 0: is not a port"),
         (("--detections", "Pollux=4000", "--detections", "Caßtor '1'=4000"), "a port of their own"),
     ],
 )

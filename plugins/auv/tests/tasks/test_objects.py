@@ -85,7 +85,7 @@ def test_a_bearing_is_where_the_vehicle_looks_in_the_end(robot, scene, task, bea
 
 def test_a_side_that_is_blocked_is_refused_where_a_bearing_asks_for_it(robot, scene, task):
     blocked = scene((26.0, 0.0, 1.5))
-    with pytest.raises(InfeasibleError, match="the way up to the object comes"):
+    with pytest.raises(InfeasibleError, match="the approach to the object comes"):
         align_work(align(task, bearing=90.0), robot(), blocked)
     assert align_work(align(task), robot(), blocked).strokes
 

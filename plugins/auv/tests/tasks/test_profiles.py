@@ -63,7 +63,7 @@ def test_a_line_that_is_too_short_is_refused_with_what_it_takes(robot, scene, ta
 
 
 def test_depths_that_are_exchanged_are_refused(robot, scene, task):
-    with pytest.raises(InfeasibleError, match="no path leads from 8 to 2 m of depth"):
+    with pytest.raises(InfeasibleError, match="no profile from 8 to 2 m of depth"):
         yo_yo_work(yo_yo(task, minDepth=8.0, maxDepth=2.0), robot(), scene())
 
 

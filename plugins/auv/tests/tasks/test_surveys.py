@@ -48,7 +48,7 @@ def test_what_records_is_begun_and_ended_on_every_line(robot, scene, task):
 
 
 def test_a_survey_by_a_sonar_of_which_nothing_is_known_is_refused(robot, scene, task):
-    with pytest.raises(InfeasibleError, match="'sonar' does not say how wide a strip"):
+    with pytest.raises(InfeasibleError, match="'sonar' does not define the width of the strip"):
         survey_work(survey(task, deviceId="sonar"), robot(sonar="wide"), scene())
     with pytest.raises(InfeasibleError, match="no device whose properties describe a sonar"):
         survey_work(survey(task), robot({}), scene())
