@@ -139,7 +139,8 @@ def test_rendering_does_what_the_whole_table_says(name):
 
 def check_table(name, every):
     target = without_copies(BY_NAME[name])
-    for probe, row in list(zip(PROBES, table_of(name), strict=True))[::every]:
+    tried = suited(PROBES, target, installed())
+    for probe, row in list(zip(tried, table_of(name), strict=True))[::every]:
         assert outcome(target, probe.given) == row.verdict.replace("no difference", "expressed"), row
 
 
