@@ -109,14 +109,14 @@ def test_a_vehicle_whose_motors_run_is_not_taken_for_a_new_run(fleet):
     flown = fleet(Pad("a"))
     fly_by_hand(flown.vehicles["a"])
     assert flown.start().end(PATIENCE) == 1
-    assert "motors run already" in flown.process.said[-1]
+    assert "is armed already" in flown.process.said[-1]
     assert flown.vehicles["a"].autopilot.mode_name == "loiter"
     (step,) = flown.steps("a")
     assert (step["move"], step["label"], step["detail"]) == ("start", "fault", "REFUSED")
     start, decision = [line for line in flown.box("a") if line["kind"] in ("start", "decision")]
     assert (start["kind"], start["vehicle"]) == ("start", "copter")
     assert (decision["what"], decision["response"], decision["move"]) == ("REFUSED", "NOTHING", "start")
-    assert "motors run already" in decision["why"]
+    assert "is armed already" in decision["why"]
 
 
 def test_a_vehicle_that_was_never_heard_is_waited_for_again_in_the_same_folder(fleet):
