@@ -86,7 +86,7 @@ def test_what_is_typed_happens():
         assert f"Naiad={address}" in sitl.first_line()
         with open_port("socketcand", address) as port:
             ear = Ear(sheets_in(POOL)["Naiad"], port)
-            sitl.type("Nobody leak", "Nobody: no such robot; there are Naiad, and all\n")
+            sitl.type("Nobody leak", "Nobody: unknown robot; known are Naiad, and all\n")
             sitl.type("Naiad flood", "flood: no such fault; known are thruster-dead")
             sitl.type("Naiad loss 2", "loss 2.0 is not 0 to 1\n")
             sitl.type("all thruster-dead 0", "Naiad: thruster-dead 0\n")
