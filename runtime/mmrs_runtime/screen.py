@@ -7,6 +7,7 @@ import os
 import select
 import sys
 import threading
+from collections import deque
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager, redirect_stderr, suppress
 from typing import Any, TextIO
@@ -60,18 +61,30 @@ class _Unfailing:
         self._stream = stream
         self._lock = threading.RLock()
         self._left_out = 0
+        self._waiting: deque[str] = deque()
+        self._writing = False
 
     def write(self, words: str) -> int:
         with self._lock:
-            if self._left_out and self._takes(0.0):
-                lines, self._left_out = self._left_out, 0
-                self._put(f"(lines left out here, which were not read: {lines})\n")
-            for begin in range(0, len(words), ROOM):
-                if not self._takes(0.0 if self._left_out else PATIENCE_SECONDS):
-                    self._left_out += max(1, words.count("\n", begin))
-                    break
-                self._put(words[begin : begin + ROOM])
+            self._waiting.append(words)
+            # What a signal's handler says in the middle of a line follows that line.
+            while self._waiting and not self._writing:
+                self._writing = True
+                try:
+                    self._write(self._waiting.popleft())
+                finally:
+                    self._writing = False
         return len(words)
+
+    def _write(self, words: str) -> None:
+        if self._left_out and self._takes(0.0):
+            lines, self._left_out = self._left_out, 0
+            self._put(f"(lines left out here, which were not read: {lines})\n")
+        for begin in range(0, len(words), ROOM):
+            if not self._takes(0.0 if self._left_out else PATIENCE_SECONDS):
+                self._left_out += max(1, words.count("\n", begin))
+                break
+            self._put(words[begin : begin + ROOM])
 
     def flush(self) -> None:
         with suppress(OSError):
@@ -81,11 +94,12 @@ class _Unfailing:
         try:
             self._stream.write(words)
             self._stream.flush()
-        except RuntimeError:
-            # A signal's handler that says something while something else is being written is refused.
+        except (
+            RuntimeError
+        ):  # the stream is in use: a signal's handler interrupted what writes to it directly
             self._left_out += max(1, words.count("\n"))
         except OSError:
-            return  # nobody will ever read it
+            return  # the terminal may be gone
 
     def _takes(self, seconds: float) -> bool:
         """Return whether something can be written without a wait, now or within some seconds."""

@@ -76,3 +76,19 @@ def test_long_words_arrive_as_they_are_where_somebody_reads():
         say(words)
     with os.fdopen(reads) as heard:
         assert heard.read() == f"{words}\n"
+
+
+class Interrupted(io.StringIO):
+    """Says something else in the middle of its first line, as a signal's handler does."""
+
+    def write(self, words: str) -> int:
+        if "first" in words:
+            say("stopping")
+        return super().write(words)
+
+
+def test_what_a_signals_handler_says_in_the_middle_of_a_line_follows_that_line():
+    stream = Interrupted()
+    with redirect_stderr(stream), unfailing():
+        say("the first line")
+        assert stream.getvalue() == "the first line\nstopping\n"
