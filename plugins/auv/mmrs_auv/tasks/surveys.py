@@ -16,7 +16,6 @@ from math import dist, inf, radians, sqrt, tan
 from mmrs_auv.names import APERTURE, DEPTH_HOLD_SURVEY_TASK, RANGE, SONAR_KEYS, SWATH
 from mmrs_core.contributions.rules import Rule
 from mmrs_core.errors import InfeasibleError
-from mmrs_core.planning.coverage import Sweep, work_over
 from mmrs_core.planning.devices import carried, device_for, figure
 from mmrs_core.planning.positions import refuse_blocked, refuse_heights
 from mmrs_core.scene import ActionAt, Device, Part, Robot, RobotType, Scene, Stroke, Task, Work
@@ -110,6 +109,8 @@ RULE = "depth_hold_survey"
 
 def survey_work(task: Task, robot: Robot, scene: Scene) -> Work:
     """Return parallel lines at one depth whose swaths cover the area."""
+    from mmrs_core.planning.coverage import Sweep, work_over  # validating needs no planner
+
     part = task.part
     depth, overlap = number(part, "depth"), number(part, "overlap") or 0.0
     if depth is None:
