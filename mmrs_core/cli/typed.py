@@ -45,7 +45,7 @@ def addressed(text: str, names: Sequence[str]) -> tuple[tuple[str, ...], str, tu
     robot = max(fitting, key=len, default=None)
     words = text.split() if robot is None else [robot, *text.strip().removeprefix(robot).split()]
     if len(words) < 2:
-        raise ValueError(f"{text.strip()}: neither ROBOT FAULT [VALUE…] nor ROBOT mend FAULT")
+        raise ValueError(f"{text.strip()}: neither ROBOT FAULT [VALUE…] nor ROBOT clear FAULT")
     if robot is None:
         raise ValueError(f"{words[0]}: unknown robot; known are {', '.join(names)}, and all")
     return tuple(name for name in names if robot in (name, ALL_ROBOTS)), words[1], tuple(words[2:])

@@ -97,8 +97,8 @@ def program_of(robot: RobotProgram, input: TargetInput, driver: Driver, words: M
 def built(value: object, words: ModuleType) -> Any:
     """Return a value with every call in it made, with the words of a module.
 
-    >>> from mmrs_runtime.controllers import words
-    >>> built((Call("Hold", (3.0,)), "as it is"), words)
+    >>> from mmrs_runtime.controllers import vocabulary
+    >>> built((Call("Hold", (3.0,)), "as it is"), vocabulary)
     (Hold(seconds=3.0), 'as it is')
     """
     if isinstance(value, Constant):

@@ -60,7 +60,7 @@ def test_time_counts_from_the_first_arming(vehicle):
 def test_a_line_injects_and_clears_faults(vehicle):
     assert inject("Drone1 obstacle 4 90", [("Drone1", vehicle)]) == ("Drone1",)
     assert vehicle.autopilot.obstacle == (4.0, 90.0)
-    assert inject("all mend obstacle", [("Drone1", vehicle)]) == ("Drone1",)
+    assert inject("all clear obstacle", [("Drone1", vehicle)]) == ("Drone1",)
     assert vehicle.autopilot.obstacle is None
 
 

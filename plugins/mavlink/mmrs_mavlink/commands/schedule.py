@@ -82,7 +82,7 @@ def checked(text: str, vehicles: Vehicles) -> ScheduledFault:
 
 
 def inject(line: str, vehicles: Vehicles) -> tuple[str, ...]:
-    """Execute ``ROBOT FAULT [VALUE…]`` or ``ROBOT mend FAULT``, with ``all`` for every robot.
+    """Execute ``ROBOT FAULT [VALUE…]`` or ``ROBOT clear FAULT``, with ``all`` for every robot.
 
     Returns:
         The names of the robots.
@@ -92,7 +92,7 @@ def inject(line: str, vehicles: Vehicles) -> tuple[str, ...]:
     """
     wanted, what, values = addressed(line, [name for name, _ in vehicles])
     for _, vehicle in [each for each in vehicles if each[0] in wanted]:
-        if what == "mend" and len(values) == 1:
+        if what == "clear" and len(values) == 1:
             vehicle.faults.end(values[0])
         else:
             vehicle.faults.begin(what, *values)

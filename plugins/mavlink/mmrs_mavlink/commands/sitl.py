@@ -140,7 +140,7 @@ def sitl(
     """Start simulated MAVLink vehicles.
 
     Prints the --connect arguments for 'mmrs run' and generated controllers, and reports the vehicles' state
-    on a terminal. Type 'Drone1 gps-lost' or 'all battery 0.2' to inject a fault, 'Drone1 mend gps-lost' to
+    on a terminal. Type 'Drone1 gps-lost' or 'all battery 0.2' to inject a fault, 'Drone1 clear gps-lost' to
     clear it, 'quit' to stop. The autopilots are imitations: a real autopilot may still reject what works
     here.
 
