@@ -1,4 +1,4 @@
-"""The plug-in called core: what MMRS itself contributes, through the same hooks as everybody."""
+"""The plug-in called core: MMRS's own contributions, through the same hooks as those of plug-ins."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def mmrs_constraints() -> Iterable[Constraint]:
 
 @hookimpl
 def mmrs_fixes() -> Iterable[Fix]:
-    """Contribute what mends misspelt names and figures that can only be meant in one way."""
+    """Contribute fixes of misspelt names, and of figures with one possible meaning."""
     from mmrs_core.analysis.fixes import FIXES
 
     return FIXES
@@ -34,7 +34,7 @@ def mmrs_fixes() -> Iterable[Fix]:
 
 @hookimpl
 def mmrs_robot_kinds() -> Iterable[RobotKind]:
-    """Contribute the kind of robots that no plug-in knows better: they move on their own level."""
+    """Contribute the default robot kind: robots that move on their own level."""
     from mmrs_core.transformation.kinds import PLAIN_ROBOT
 
     return (PLAIN_ROBOT,)

@@ -1,4 +1,4 @@
-"""Faults of a user's model: what, where, and how to mend it."""
+"""Problems of a user's model: what, where, and how to fix them."""
 
 from __future__ import annotations
 
@@ -40,15 +40,15 @@ class Place:
 
 @dataclass(frozen=True, slots=True)
 class Diagnostic:
-    """One fault.
+    """One problem.
 
     Attributes:
         code: two or more capitals and three digits, such as ``MML014``; stable.
         severity: how much it matters.
-        message: lower case, no full stop, the culprit first; cut where it is longer than anybody reads.
-        place: where it stands.
-        hint: how to mend it; may be empty.
-        expected: what there ought to be instead; may be empty.
+        message: lower case, no full stop, the culprit first; truncated if it is too long to read.
+        place: its file and line.
+        hint: how to fix it; may be empty.
+        expected: the expected value or element; may be empty.
     """
 
     code: str

@@ -38,18 +38,18 @@ class MmrsError(Exception):
 
 
 class InternalError(MmrsError):
-    """A broken promise of our own code; the message says which one."""
+    """A broken promise of our own code; the message names it."""
 
 
 class UnreadableError(MmrsError):
     """An input that cannot be read as a model at all.
 
     Attributes:
-        code: of the fault, as diagnostics have it; empty where the input is no file of a model.
-        reason: what is wrong, without the place.
+        code: of the problem, as diagnostics have it; empty where the input is not a file of a model.
+        reason: the problem, without the place.
         file: in which it is, if there is a code.
-        line: counted from 1; 0 where it is not known.
-        diagnostics: this fault and those of other files that were to be read together with it, if any were.
+        line: counted from 1; 0 where unknown.
+        diagnostics: this problem and those of other files that were to be read together with it, if any were.
     """
 
     exit_code = 3
@@ -118,7 +118,7 @@ class UnsupportedError(MmrsError):
 
 
 class UsageError(UnsupportedError):
-    """A target, backend or option was asked for that nobody contributed, or that is for something else."""
+    """A target, backend or option was asked for that no plug-in provides, or that is for something else."""
 
     exit_code = 2
 

@@ -64,7 +64,7 @@ def mmrs_constraints() -> Iterable[Constraint]:  # type: ignore[empty-body]
 
 @hookspec
 def mmrs_fixes() -> Iterable[Fix]:  # type: ignore[empty-body]
-    """Contribute what mends faults in the one right way; one fix for a code."""
+    """Contribute fixes of problems with one right answer; one fix for a code."""
 
 
 @hookspec
@@ -119,9 +119,9 @@ def mmrs_commands() -> Iterable[Command]:  # type: ignore[empty-body]
 
 @hookspec
 def mmrs_stage_finished(stage: str, result: object) -> None:
-    """Observe that a stage of the pipeline has finished, with what it returned; what this raises is told."""
+    """Observe that a stage of the pipeline has finished, with its result; exceptions are reported."""
 
 
 @hookspec
 def mmrs_step_executed(record: StepRecord) -> None:
-    """Observe a step that the engine executes; what this raises is told, and ends nothing."""
+    """Observe a step that the engine executes; exceptions are reported, and end nothing."""

@@ -172,7 +172,7 @@ def verify(program: Program, place: Place, contributions: Contributions) -> tupl
 
 
 def refusals(verdicts: Iterable[Verdict], program: Program) -> tuple[Verdict, ...]:
-    """Return the verdicts that stand against a behaviour: violations, and unknowns nobody accepted."""
+    """Return the verdicts that make a behaviour unsafe: violations, and unknowns that were not accepted."""
     from mmrs_core.analysis.verdicts import refuses
 
     return refuses(verdicts, program.accepted_unknowns)
@@ -191,15 +191,15 @@ def render(
 
     Args:
         program: the behaviour.
-        place: where it happens.
+        place: its surroundings.
         target: its name.
         contributions: of the plug-ins.
         allow_lossy: leave out what the target cannot express; the manifest lists it.
-        templates: a folder of files that take the place of the targets' own.
+        templates: a folder of files that replace the targets' own.
 
     Raises:
         UsageError: if there is no such target.
-        UnsupportedError: if it cannot express what the behaviour holds.
+        UnsupportedError: if it cannot express all of the behaviour.
         UnreadableError: if there is no such folder of templates.
         MmrsError: if that folder holds something unknown or broken.
         PluginError: if the target is a plug-in's, and its templates are broken.
@@ -278,19 +278,19 @@ def simulate(
     assume: Mapping[str, bool] | None = None,
     observe: Callable[[StepRecord], None] | None = None,
 ) -> SimulatedRun:
-    """Return the simulated run of a behaviour, in still air and water unless the environment says otherwise.
+    """Return the simulated run of a behaviour, in still air and water unless the environment defines others.
 
     Args:
-        backend: name of what moves the robots; its time is simulated.
-        own_backends: by robot, that of those that are moved by another one.
+        backend: name of the robots' backend; its time is simulated.
+        own_backends: by robot, that of those with another one.
         options: of the backends; ``ROBOT:KEY`` is for that of one robot.
-        assume: fixed answers by condition identifier, which go before contributed conditions.
+        assume: fixed answers by condition identifier, which take precedence over contributed conditions.
         observe: called with each step before it has an effect, to write a log.
 
     Raises:
         UsageError: if there is no such backend, or it does not simulate or know an option, or no Choice asks
             for what is assumed.
-        UnsupportedError: if the behaviour holds what nobody contributed.
+        UnsupportedError: if the behaviour contains what no plug-in provides.
     """
     from mmrs_core.simulation.run import simulate as simulated
     from mmrs_runtime.engine.terms import Terms

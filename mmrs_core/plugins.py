@@ -63,11 +63,11 @@ class Plugins:
     _manager: pluggy.PluginManager = field(repr=False)
 
     def observe_stage(self, stage: str, result: object) -> Mapping[str, BaseException]:
-        """Tell every observer that a stage has finished; return what they raised, by who they are."""
+        """Notify every observer that a stage has finished; return their exceptions, by observer."""
         return self._observed("mmrs_stage_finished", stage=stage, result=result)
 
     def observe_step(self, record: StepRecord) -> Mapping[str, BaseException]:
-        """Tell every observer that a step was executed; return what they raised, by who they are."""
+        """Notify every observer that a step was executed; return their exceptions, by observer."""
         return self._observed("mmrs_step_executed", record=record)
 
     def _observed(self, hook: str, **seen: object) -> Mapping[str, BaseException]:

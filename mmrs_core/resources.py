@@ -27,7 +27,7 @@ def shipped(folder: str) -> Path:
 
 @contextmanager
 def named(path: Path) -> Iterator[None]:
-    """Have errors of the system name a file: what fails while one is written names none."""
+    """Let errors of the system name a file: what fails while one is written names none."""
     try:
         yield
     except OSError as error:

@@ -39,9 +39,9 @@ def read_foreign(
     metamodels: Sequence[Path] | None,
     unsaved: Mapping[Path, bytes] | None = None,
 ) -> ForeignModel:
-    """Return a model of any language; tell of metamodels that were found for it and of those not used.
+    """Return a model of any language; report metamodels that were found for it, and those not used.
 
-    Nothing is told of a file that might be, whose text stands in `unsaved`.
+    Nothing is reported of a file that might be one, whose text is in `unsaved`.
 
     Raises:
         UnreadableError: if the file or a metamodel that was named cannot be read.
@@ -78,7 +78,7 @@ def refuse_metamodel(file: Path) -> None:
 
 
 def _strange(found: ForeignModel) -> frozenset[str]:
-    """Return the languages that nobody is known to bring."""
+    """Return the languages that no installed plug-in provides."""
     missing = missing_from(found.model, found.registry, certainly=True)
     return frozenset(ns_uri for ns_uri in missing if not is_own(ns_uri))
 

@@ -16,7 +16,7 @@ _MAKERS: Mapping[object, Callable[[Any], object]] = {str: str, list[str]: str, P
 
 
 class AsTyped:
-    """How an argument or option gets its value, in the place of typer's own way."""
+    """How an argument or option gets its value, instead of typer's own conversion."""
 
     def __init__(self, make: Callable[[Any], object] | None, own: Callable[[], Any]) -> None:
         self._make = make
@@ -44,7 +44,7 @@ def _is_unreadable(path: Path) -> bool:
 
 
 def take_as_typed(command: Any, line: Sequence[str]) -> None:
-    """Have a command, and those in it that a command line names, take values as they were typed."""
+    """Let a command, and those in it that a command line names, take values as they were typed."""
     for parameter in command.get_params(typer.Context(command)):
         made = AsTyped(_MAKERS.get(parameter.type_descriptor.annotation), parameter.get_runtime_param)
         parameter.get_runtime_param = lambda made=made: made

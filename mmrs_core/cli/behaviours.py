@@ -1,4 +1,4 @@
-"""Reads a behaviour with the robot types and the place that belong to it."""
+"""Reads a behaviour with its robot types and its context."""
 
 from __future__ import annotations
 
@@ -93,16 +93,16 @@ def read_behaviour_files(
     robots: Sequence[Path] = (),
     unsaved: Mapping[Path, bytes] | None = None,
 ) -> BehaviourFiles:
-    """Return what the files hold.
+    """Return the contents of the files.
 
     Args:
         file: of the behaviour.
-        context: the place; else ``context.xmi`` in the behaviour's folder, if there is one.
-        robots: files of robot types; else ``robots/*.xmi`` in the behaviour's folder.
-        unsaved: texts to be read instead of what files hold, by real path.
+        context: the context. Default: ``context.xmi`` in the behaviour's folder, if there is one.
+        robots: files of robot types. Default: ``robots/*.xmi`` in the behaviour's folder.
+        unsaved: texts to be read instead of files' contents, by real path.
 
     Raises:
-        UnreadableError: if a file is missing or no model at all.
+        UnreadableError: if a file is missing or not a model at all.
     """
     place = context if context is not None else context_in(file.parent)
     types = tuple(robots) or robot_files_in(file.parent / "robots")
@@ -115,7 +115,7 @@ def read_behaviour_files(
 
 
 def _read_all(files: Sequence[Path], registry: Registry, unsaved: Mapping[Path, bytes] | None) -> list[Model]:
-    """Return what files hold; whether one or all of them cannot be read, everything is told at once.
+    """Return the contents of files; all problems are reported at once, even if several cannot be read.
 
     The last ones, which describe robot types, are read first: models of other tools are imported by these.
     """
@@ -189,10 +189,10 @@ def is_behaviour(session: Session, path: Path) -> bool:
 
 
 def load_program(session: Session, file: Path) -> Program:
-    """Return a behaviour by itself, valid by its metamodel and the constraints.
+    """Return a behaviour alone, valid by its metamodel and the constraints.
 
     Raises:
-        UnreadableError: if the file is missing or no model at all.
+        UnreadableError: if the file is missing or not a model at all.
         InvalidModelError: with all diagnostics, if any is an error.
     """
     return _valid(session, _as_files(file, [read_model(file, session.contributions.languages)]))[0]

@@ -247,8 +247,8 @@ def state(
 def _said(key: str, text: str) -> tuple[str, dict[str, dict[str, object]]]:
     """Return the robot that a key belongs to, and the state of its slots, by an answer.
 
-    Whoever answers with the name of another is known by the key alone, which certificates protect;
-    whoever answers something else shows no slots.
+    An answer with the name of another robot is identified by the key alone, which certificates protect;
+    any other answer shows no slots.
     """
     found = _object_in(text)
     name = found.get("robot")
@@ -274,7 +274,7 @@ _SHOWN = {"active", "writer"}
 
 @contextmanager
 def _needing(distribution: str) -> Iterator[None]:
-    """Say what to install where something that is imported here is missing."""
+    """Name the package to install where an import here is missing."""
     try:
         yield
     except ModuleNotFoundError as error:

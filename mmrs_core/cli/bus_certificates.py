@@ -25,7 +25,7 @@ from mmrs_core.cli.bus_access import Holder, configuration
 from mmrs_runtime.bus.carriers.revocation import REVOKED, serial_of, valid_name
 
 AUTHORITY = "authority"
-"""Stem of the files of whoever signs the certificates; its key belongs on no robot."""
+"""Stem of the authority's files, which sign the certificates; its key belongs on no robot."""
 
 OBSERVER = "observer"
 """Name of the certificate that may look on and may not speak for any robot."""
@@ -48,8 +48,8 @@ def make_keys(
     """Write an authority, and for each holder a folder with all that its process needs.
 
     An authority and valid certificates that are in the folder already are used again, so that a robot can be
-    added; configurations are written anew, since each lists all robots. Whoever gets another certificate than
-    before has the one before revoked.
+    added; configurations are rewritten, since each lists all robots. A holder's former certificate is revoked
+    when it gets another one.
 
     Args:
         folder: where to write; ``<holder>/`` within it goes to the holder's machine.
@@ -63,8 +63,8 @@ def make_keys(
 
     Raises:
         OSError: if something cannot be written.
-        ValueError: if the authority or the revocation list in the folder cannot be used, or somebody has a
-            valid certificate who is not named: nobody would let them in any more.
+        ValueError: if the authority or the revocation list in the folder cannot be used, or a holder with a
+            valid certificate is not named: it would no longer be admitted.
     """
     folder.mkdir(parents=True, exist_ok=True)
     everybody = (*holders, Holder(OBSERVER, ()))
@@ -156,7 +156,7 @@ def _authority(folder: Path) -> _Signer:
     if certificate.exists() and not revoked.exists():
         raise ValueError(
             f"{revoked}: missing; without it revoked certificates would be valid again. Restore it, or make"
-            " all keys anew in another folder"
+            " new keys in another folder"
         )
     found = load_pem_private_key(key.read_bytes(), None)
     if not isinstance(found, ec.EllipticCurvePrivateKey):
@@ -262,7 +262,7 @@ def _pem(key: ec.EllipticCurvePrivateKey) -> bytes:
 
 
 def _write(path: Path, content: bytes) -> None:
-    """Write a file that nobody else may read, whole or not at all."""
+    """Write a file that only its owner may read, whole or not at all."""
     part = path.with_suffix(".part")
     handle = os.open(part, os.O_WRONLY | os.O_CREAT | os.O_TRUNC, 0o600)
     try:

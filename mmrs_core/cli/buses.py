@@ -21,13 +21,13 @@ from mmrs_runtime.slots import LocalSlots
 
 @dataclass(frozen=True, slots=True)
 class BusOptions:
-    """What the command line says of the bus.
+    """Options of the bus.
 
     Attributes:
         used: whether robots of other processes are to be reached.
         listen, connect: endpoints, such as ``tcp/0.0.0.0:7447``.
         config: file of Zenoh's configuration.
-        sync: real seconds to wait for all robots, which then begin at one instant; None: they need not.
+        sync: real seconds to wait for all robots, which then begin at one instant; None: no wait.
     """
 
     used: bool = False
@@ -90,10 +90,10 @@ def bus_for(
 
 
 def refuse_endpoints(option: str, endpoints: Sequence[str]) -> None:
-    """Refuse what is no endpoint.
+    """Refuse invalid endpoints.
 
     Raises:
-        typer.BadParameter: if one of them is none.
+        typer.BadParameter: if one of them is invalid.
     """
     if why := first_fault(endpoints):
         raise typer.BadParameter(f"{option} {why}")

@@ -1,4 +1,4 @@
-"""Every diagnostic there is: what its code means, what is expected, and how to mend it."""
+"""Every diagnostic: the meaning of its code, the expectation, and its fix."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Turns models into their other form: one, or several that refer to each other and go on doing so."""
+"""Converts models to their other format: one, or several that refer to each other and still do afterwards."""
 
 from __future__ import annotations
 
@@ -127,7 +127,7 @@ def refuse_imported(model: Model) -> None:
 
 
 def refuse_links_outside(source: Path, target: Path, linked: Sequence[Path]) -> None:
-    """Do nothing, unless a model would refer to files where nobody follows: outside its new folder.
+    """Do nothing, unless a model would refer to files that are not there: outside its new folder.
 
     Args:
         source: the model.

@@ -78,7 +78,7 @@ def convert(
     if output is not None:
         return _together(asked, files, output)
     if len(files) > 2:
-        raise typer.BadParameter("several files are converted together by -o DIR, which says where to")
+        raise typer.BadParameter("several files are converted together with -o DIR, the output folder")
     return _alone(asked, files[0], files[1] if len(files) == 2 else None)
 
 
@@ -152,7 +152,7 @@ def _alone(asked: _Asked, source: Path, target: Path | None) -> int:
 
 
 def _tell_of_kept_links(found: ForeignModel, source: Path, target: Path) -> None:
-    """Say that links in what is kept as it is were not adjusted to another folder."""
+    """Report that links in unconverted parts were not adjusted to another folder."""
     if source.resolve().parent == target.resolve().parent:
         return
     if any(isinstance(each, Unknown) for each in found.model.elements()):

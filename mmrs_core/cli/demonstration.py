@@ -224,7 +224,7 @@ def require_copies(folder: Path, example: Path, others: Iterable[Path]) -> None:
     for file in _replaced_in(folder):
         if file.read_bytes() not in known:
             raise ProtectedError(
-                f"{file}: is no copy of an example, and is not replaced; choose another folder"
+                f"{file}: is not a copy of an example, and is not replaced; choose another folder"
             )
 
 

@@ -51,11 +51,11 @@ class Subject:
         return found[0]
 
     def diagnose(self, unsaved: Mapping[Path, bytes]) -> Diagnosis:
-        """Return all faults, with other texts for some files; a file that cannot be read is one of them.
+        """Return all problems, with other texts for some files; an unreadable file is one of them.
 
         Raises:
-            UnreadableError: if it is no file of a model that is missing or no model at all.
-            InvalidModelError: if the behaviour's file, as it is, holds no behaviour.
+            UnreadableError: if a file other than a model's is missing, or not a model at all.
+            InvalidModelError: if the behaviour's file, as it is, contains no behaviour.
         """
         ways = {
             _FOREIGN: self._alone,
@@ -86,7 +86,7 @@ class Subject:
         return _PARTS if is_part and all(is_part) else _MISSION
 
     def _alone(self, unsaved: Mapping[Path, bytes]) -> Diagnosis:
-        """Return the faults of a model by its metamodels only: nobody knows what else belongs to it."""
+        """Return the problems of a model by its metamodels only: its other files are unknown."""
         found = read_foreign(self.session, self.file, self.metamodels, unsaved)
         models = (found.model, *found.model.linked)
         breaches = (fault for each in models for fault in check_conformance(each, found.registry))

@@ -119,7 +119,7 @@ def _roots(session: Session, file: Path | None, metamodels: Sequence[Path] | Non
 
 
 _WHOLE = 60
-"""Characters of a value that are told whole."""
+"""Characters of a value that are printed in full."""
 _AROUND = 15
 """Characters told in front of and behind a difference."""
 _SIGNS = {Sort.ADDED: "+", Sort.REMOVED: "-", Sort.MOVED: ">", Sort.CHANGED: "~"}
@@ -127,7 +127,7 @@ _COLOURS = {Sort.ADDED: "32", Sort.REMOVED: "31", Sort.MOVED: "36", Sort.CHANGED
 
 
 def change_lines(changes: Sequence[Change]) -> Iterator[str]:
-    """Yield the lines that tell of changes: one for an element, and below it one for each of its values."""
+    """Yield the lines that describe changes: one for an element, and below it one for each of its values."""
     for (_, _, is_whole), group in groupby(changes, key=lambda c: (c.before, c.after, not c.feature)):
         listed = list(group)
         if is_whole:

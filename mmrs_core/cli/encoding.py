@@ -66,7 +66,7 @@ def _in_order(value: Iterable[object]) -> Iterable[object]:
 def _element(value: object) -> Plain:
     """Return a model element with the features that are set; references become fragment paths.
 
-    An element whose metamodel is not installed keeps its XML; what is inside it is told by its path.
+    An element whose metamodel is not installed keeps its XML; errors inside it name its path.
     """
     if not isinstance(value, Element):
         raise TypeError(f"{type(value).__name__}: no such value passes between stages")

@@ -59,7 +59,7 @@ class Result:
         return {"ending": self.ending, "logs": self.logs}
 
     def say(self) -> None:
-        """Print it for people."""
+        """Print it as text."""
         ending = self.ending
         say(f"{ending.outcome.value} after {clock(ending.time)}, {ending.steps} steps")
         for robot, fault in ending.faults.items():
@@ -69,7 +69,7 @@ class Result:
             unknown = robot in ending.unconfirmed
             happened = "is not known to have come down: look after it" if unknown else "has not gone on"
             happened = ending.came_down.get(robot, happened)
-            say(f"  '{robot}' {happened}; --resume goes on where it stopped")
+            say(f"  '{robot}' {happened}; --resume continues where it stopped")
         for waiting in ending.waiting:
             say(f"  {waiting}")
         for robot in ending.lost:

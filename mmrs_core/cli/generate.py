@@ -113,7 +113,7 @@ class _Order:
 
 
 _MANY = 20
-"""Files of a folder that are told one by one; of a larger folder, only how many there are."""
+"""Files of a folder that are listed one by one; of a larger folder, only their number."""
 
 
 def _tell_written(written: tuple[Path, ...], folder: Path, manifest: Manifest, asks: tuple[str, ...]) -> None:

@@ -28,7 +28,7 @@ def interrupted() -> bool:
 def interruptible(work: Callable[[], int]) -> int:
     """Return the exit code of some work; 130, after at most one line, if it was interrupted.
 
-    An interrupt becomes KeyboardInterrupt, so that whatever is open is closed on the way out. Interrupts
+    An interrupt becomes KeyboardInterrupt, so that whatever is open is closed during the exit. Interrupts
     that the process was started to ignore stay ignored. For the main thread.
     """
     if signal.getsignal(signal.SIGINT) is not signal.default_int_handler:
@@ -68,7 +68,7 @@ def _told_elsewhere(kind: type[BaseException], error: BaseException, traceback: 
 
 
 def _again_if_lost(unraisable: sys.UnraisableHookArgs) -> None:
-    """Interrupt once more where a callback swallowed it: Python goes on from there."""
+    """Interrupt once more where a callback swallowed it: Python continues from there."""
     if not isinstance(unraisable.exc_value, KeyboardInterrupt):
         sys.__unraisablehook__(unraisable)
         return

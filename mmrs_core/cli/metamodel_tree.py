@@ -33,7 +33,7 @@ def show_metamodel(call: typer.Context, file: Path, depth: int, json: bool) -> i
 
 
 def validate_metamodel(call: typer.Context, file: Path, json: bool) -> int:
-    """Say that models can be read by an .ecore file; errors as in `version_of` if they cannot."""
+    """Print that models can be read by an .ecore file; errors as in `version_of` if they cannot."""
     version = version_of(str(file), settings_of(call).plugins().contributions.languages)
     count = sum(len(package.metaclasses) for package in version.packages)
     if json:

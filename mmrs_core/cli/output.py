@@ -55,14 +55,14 @@ def _printable(character: str) -> str:
 
 
 def say(words: str = "", colour: str = "") -> None:
-    """Print one line of the result, whatever names are in it, in a colour where a person reads it.
+    """Print one line of the result, whatever names are in it, in a colour on a terminal.
 
     Args:
         words: the line.
         colour: a number of ANSI's, such as 31 for red.
 
     Raises:
-        typer.Exit: if nobody reads any more.
+        typer.Exit: if the reader has closed the pipe.
     """
     line = _unbroken(words)
     if colour and coloured(sys.stdout):
@@ -86,7 +86,7 @@ def say_file(text: bytes) -> None:
     """Print a file, byte for byte.
 
     Raises:
-        typer.Exit: if nobody reads any more.
+        typer.Exit: if the reader has closed the pipe.
     """
     sys.stdout.flush()
     try:

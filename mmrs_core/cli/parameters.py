@@ -58,7 +58,7 @@ def _files_of(path: Path) -> tuple[Path, ...]:
 
 
 def without_mission(project: Path) -> Path:
-    """Return the behaviour that stands in a folder without a mission; else the path itself."""
+    """Return the behaviour in a folder without a mission, otherwise the path."""
     from mmrs_core.languages.modelset import model_in
 
     alone = model_in(project, "behaviour") if model_in(project, "mission") is None else None

@@ -113,12 +113,12 @@ def require_writable(stages: Stages, file: Path, way_out: str = "") -> None:
 
     Args:
         stages: its models are read, if they were not yet.
-        file: what is to be written.
-        way_out: what the user can do instead of replacing a behaviour that somebody wrote by hand;
+        file: to be written.
+        way_out: what the user can do instead of replacing a hand-written behaviour;
             empty: it may be replaced.
 
     Raises:
-        ProtectedError: if the file is an input, lies among the types of robot, or was written by hand.
+        ProtectedError: if the file is an input, lies among the robot types, or was written by hand.
         InvalidModelError: if the mission is not valid.
     """
     mission = next(iter(files_of(stages.models.models)))

@@ -141,7 +141,7 @@ def _loaded(settings: Settings) -> tuple[_Found, str]:
     """Return the plug-ins that load, and how they conflict; empty if they do not.
 
     Raises:
-        PluginError: if one is broken by itself.
+        PluginError: if one is broken.
     """
     plugins = settings.plugins()
     found: _Found = {
@@ -194,7 +194,7 @@ def _follows(before: str, name: str) -> bool:
 
 
 def _list_broken(reason: str, json: bool) -> int:
-    """List the installed plug-ins by their entry points, each with whether it loads by itself."""
+    """List the installed plug-ins by their entry points, each with whether it loads alone."""
     entries = sorted(entry_points(group=GROUP), key=lambda entry: entry.name)
     states = [(entry.name, entry.dist.name if entry.dist else "", _state(entry)) for entry in entries]
     if json:

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 class ProtectedError(MmrsError):
-    """An output that would overwrite what somebody wrote."""
+    """An output that would overwrite a hand-written file."""
 
     exit_code: ClassVar[int] = 2
 
@@ -45,7 +45,7 @@ def refuse_inside(output: Path, folder: Path) -> None:
         ProtectedError: if it does.
     """
     if output.resolve().parent == folder.resolve():
-        raise ProtectedError(f"{output}: lies in {folder}, which is for types of robot only")
+        raise ProtectedError(f"{output}: lies in {folder}, which is for robot types only")
 
 
 def refuse_handwritten(file: Path, registry: Registry, way_out: str) -> None:

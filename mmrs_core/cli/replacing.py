@@ -13,9 +13,9 @@ def replace_files(texts: Mapping[Path, bytes]) -> None:
     """Put texts into files, and make the folders that they need.
 
     Raises:
-        OSError: if one cannot be written; all files and folders are as they were before, but for those
-            that it names because they could not be put back. A folder in which somebody else has put
-            something meanwhile stays.
+        OSError: if one cannot be written; all files and folders are as they were before, except those
+            that it names because they could not be put back. A folder with new files of other
+            programs stays.
     """
     before: dict[Path, bytes | None] = {}
     folders: list[Path] = []
@@ -32,7 +32,7 @@ def replace_files(texts: Mapping[Path, bytes]) -> None:
 
 
 def _make_for(file: Path, made: list[Path]) -> None:
-    """Make the folders that a file needs, outer ones first; each is told as soon as it stands."""
+    """Make the folders that a file needs, outer ones first; each is reported as soon as it exists."""
     for folder in [folder for folder in file.parents if not folder.exists()][::-1]:
         folder.mkdir()
         made.append(folder)

@@ -31,7 +31,7 @@ def resumed_steps(program: Program, wanted: RunOptions, here: tuple[str, ...]) -
     _refuse_others(program, wanted)
     if not wanted.resume:
         if found:
-            raise typer.BadParameter(f"--log {wanted.folder}: holds logs already; --resume goes on with them")
+            raise typer.BadParameter(f"--log {wanted.folder}: holds logs already; --resume continues them")
         return ()
     if not found:
         _refuse_unknown(wanted.folder, here)
@@ -52,10 +52,10 @@ def resumed_steps(program: Program, wanted: RunOptions, here: tuple[str, ...]) -
     for robot, why in over.items():
         tell(f"'{robot}': {f'its program has ended by {why}' if why else 'has come to its end'}")
     if all(record.label == "fault" and record.seq == 0 for record in records):
-        raise typer.BadParameter("--resume: nothing had begun; begin anew, with another --log")
+        raise typer.BadParameter("--resume: nothing had begun; begin again, with another --log")
     if set(over) >= set(here):
         raise typer.BadParameter(f"--resume: nothing is left to do for {', '.join(here)}")
-    tell(f"goes on after {counted(len(records), 'step')} and {clock(result.duration)}")
+    tell(f"continues after {counted(len(records), 'step')} and {clock(result.duration)}")
     return records
 
 

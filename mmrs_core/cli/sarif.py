@@ -41,14 +41,14 @@ def sarif_of(
 ) -> dict[str, object]:
     """Return a SARIF log of one run.
 
-    Files are told relative to the folder that the command runs in, as far as they lie in it.
+    Files are relative to the folder that the command runs in, as far as they lie in it.
 
     Args:
         faults: all of them.
-        entries: what is known of codes, by code.
+        entries: descriptions of codes, by code.
         proposals: quick fixes of some of the faults.
         subject: what was examined and how, such as ``validate/field``, so that runs on other subjects stand
-            beside this one and do not take its place.
+            next to this one and do not replace it.
     """
     codes = list(dict.fromkeys(fault.code for fault in faults))
     fixes: dict[Diagnostic, Proposal] = {each.fault: each for each in proposals}
@@ -115,12 +115,12 @@ def _result(fault: Diagnostic, index: int, places: Places, proposal: Proposal | 
 def as_faults(
     verdicts: Iterable[Verdict], against: Container[Verdict], checks: Iterable[Check] = ()
 ) -> tuple[Diagnostic, ...]:
-    """Return what stands against a behaviour, and what is not known of it, as faults.
+    """Return a behaviour's violations and unknowns as diagnostics.
 
     Args:
         verdicts: all of them.
         against: those that make the behaviour unsafe.
-        checks: what says how to mend each.
+        checks: with the fix of each.
     """
     known = tuple(checks)
     told = (each for each in verdicts if each in against or each.status.value == "unknown")
@@ -149,7 +149,7 @@ def refusals_in(file: Path | None, session: Session, subject: str) -> Iterator[N
 
 
 def subject_of(command: str, file: Path) -> str:
-    """Return what a command examines, as runs are told apart by: its path, if it lies below this folder.
+    """Return a command's subject, which distinguishes runs: its path, if it lies below this folder.
 
     >>> subject_of("check", Path("field/behaviour.xmi"))
     'check/field/behaviour.xmi'

@@ -27,7 +27,7 @@ _LINE_END = re.compile("\r\n?")
 
 
 class Places:
-    """Tells of places below a folder, and reads each file once."""
+    """Locates positions in files below a folder, and reads each file once."""
 
     def __init__(self, base: Path) -> None:
         self.base = base

@@ -93,7 +93,7 @@ class Session:
 
 
 class Stages:
-    """One mission on its way from models to verdicts."""
+    """One mission from its models to its verdicts."""
 
     def __init__(
         self,
@@ -144,7 +144,7 @@ class Stages:
     def grounded(self) -> Scene:
         """Return the mission in its local frame."""
         models = self.models
-        return self.session.stage("ground", "laying out the place", lambda: ground(models))
+        return self.session.stage("ground", "grounding the mission", lambda: ground(models))
 
     @cached_property
     def scene(self) -> Scene:

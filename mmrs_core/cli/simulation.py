@@ -156,7 +156,7 @@ def write_logs(
 
 @contextmanager
 def _named_in(folder: Path) -> Iterator[None]:
-    """Have errors about a file name it as it is called in a folder."""
+    """Let errors about a file name it as it is called in a folder."""
     try:
         yield
     except OSError as error:

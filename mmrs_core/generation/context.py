@@ -119,7 +119,7 @@ def uncarried(robot: RobotProgram, input: TargetInput, vehicles: Collection[str]
 
 
 def homeless(robot: RobotProgram) -> str:
-    """Return what there is to say of a robot without a home."""
+    """Return the refusal of a robot without a home."""
     return f"robot '{robot.id}': its home is not known, and heights count from there"
 
 

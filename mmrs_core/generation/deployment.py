@@ -96,7 +96,7 @@ def fetch(folder: Path, platforms: Sequence[str]) -> None:
         MmrsError: the folder has no requirements, or pip fails.
     """
     if not (folder / REQUIREMENTS).is_file():
-        raise MmrsError(f"{folder}: has no {REQUIREMENTS}, which says what wheels are needed")
+        raise MmrsError(f"{folder}: has no {REQUIREMENTS}, which lists the wheels that are needed")
     lines = (folder / REQUIREMENTS).read_text("utf-8").splitlines()
     pins = [line for line in lines if "==" in line and not line.startswith("#")]
     if not pins:

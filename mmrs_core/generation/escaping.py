@@ -63,7 +63,7 @@ def python_literal(value: object) -> Code:
     if isinstance(value, tuple | list):
         inner = ", ".join(python_literal(item) for item in value)
         return Code(f"({inner},)" if len(value) == 1 else f"({inner})")
-    raise ValueError(f"{value!r} is no plain value and has no literal")
+    raise ValueError(f"{value!r} is not a plain value and has no literal")
 
 
 def python_lines(value: object, indent: int = 0, before: int = 0) -> Code:
@@ -116,7 +116,7 @@ def name(value: object) -> Code:
         ValueError: it is none of ASCII letters, digits and ``_``.
     """
     if re.fullmatch(r"[A-Za-z_]\w*(\.[A-Za-z_]\w*)*", str(value), re.ASCII) is None:
-        raise ValueError(f"{value!r} is no name")
+        raise ValueError(f"{value!r} is not a name")
     return Code(str(value))
 
 

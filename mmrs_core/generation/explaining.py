@@ -1,4 +1,4 @@
-"""Says which step of which robot a line of a generated file serves, and where the lines for a step are."""
+"""Finds the step of a robot that a line of a generated file serves, and the lines of a step."""
 
 from __future__ import annotations
 
@@ -16,14 +16,15 @@ LEVELS = 8
 
 @dataclass(frozen=True, slots=True)
 class Explanation:
-    """What is known of a line.
+    """Facts about a line.
 
     Attributes:
         file: as it was asked for; line: counted from 1.
         target: that the file was generated for.
-        recorded: what the manifest says of the file.
+        recorded: the manifest's entry of the file.
         changed: whether the file is no longer as it was generated, so that lines may have moved.
-        entries: what the line serves, the narrowest first; empty where it serves no robot in particular.
+        entries: steps that the line serves, the narrowest first; empty where it serves no robot in
+            particular.
         overridden: whether its template is not the target's own.
     """
 
@@ -89,7 +90,7 @@ def places_of(folder: Path, *, robot: str = "", move: str = "", task: str = "") 
 
 
 def _listing(file: Path) -> tuple[Path, Manifest, Recorded]:
-    """Return the folder, the manifest that lists a file, and what it says of it."""
+    """Return the folder, the manifest that lists a file, and its entry."""
     absolute = file.resolve()
     for folder in absolute.parents[:LEVELS]:
         for path in sorted(folder.glob(f"*{ENDING}")):

@@ -15,14 +15,14 @@ from mmrs_core.generation.tracing import Served
 
 FORMAT = "mmrs-manifest-2"
 FORMERLY = "mmrs-manifest-1"
-"""Without lines, facts, templates and overrides; a folder that was generated then is written anew."""
+"""Without lines, facts, templates and overrides; a folder that was generated then is rewritten."""
 
 ENDING = ".manifest.json"
 
 
 @dataclass(frozen=True, slots=True)
 class Recorded:
-    """What a manifest says of a file; `template`: what it was made from."""
+    """A manifest's entry of a file; `template`: what it was made from."""
 
     path: str
     sha256: str
@@ -32,7 +32,7 @@ class Recorded:
 
 @dataclass(frozen=True, slots=True)
 class Facts:
-    """What the behaviour says of a step's move, or of its robot, as far as it concerns others.
+    """Facts about a step's move, or its robot, from the behaviour, as far as they concern others.
 
     Attributes:
         model: file (without its folder) and line where it stands, such as ``behaviour.xmi:12``; may be
@@ -65,10 +65,10 @@ class Manifest:
     """The content of a manifest.
 
     Attributes:
-        target: what the files were rendered for.
+        target: that the files were rendered for.
         versions: of the distributions that rendered them, by name.
-        losses: what the behaviour says and the files do not.
-        overrides: SHA-256 of the templates that took the place of the target's own, by name.
+        losses: elements of the behaviour that the files leave out.
+        overrides: SHA-256 of the templates that replaced the target's own, by name.
         files: all but the manifest itself.
         trace: which step each place in them serves.
     """
@@ -92,7 +92,7 @@ def versions_of(provider: str) -> dict[str, str]:
 
 
 def recorded(file: GeneratedFile, template: str = "") -> Recorded:
-    """Return what the manifest says of a file."""
+    """Return the manifest's entry of a file."""
     return Recorded(file.path, sha256(file.content).hexdigest(), file.once, template)
 
 
@@ -122,17 +122,17 @@ def written(manifest: Manifest) -> GeneratedFile:
 
 
 def read_manifest(path: Path) -> Manifest | None:
-    """Return what a manifest says; None where there is none.
+    """Return a manifest; None where there is none.
 
     Raises:
-        UnreadableError: the file is there and is no manifest.
+        UnreadableError: the file is there and is not a manifest.
     """
     if not path.exists():
         return None
     try:
         return manifest_in(path.read_bytes())
     except (ValueError, KeyError, TypeError, AttributeError, RecursionError) as error:
-        raise UnreadableError(f"{path}: is no manifest of generated files ({error})") from error
+        raise UnreadableError(f"{path}: is not a manifest of generated files ({error})") from error
 
 
 def manifest_in(text: bytes) -> Manifest:

@@ -19,7 +19,7 @@ HIDDEN = "."
 
 @dataclass(frozen=True, slots=True)
 class Overrides:
-    """The files that take the place of a target's own.
+    """The files that replace a target's own.
 
     Attributes:
         folder: of the target, in the folder that was given.
@@ -30,12 +30,12 @@ class Overrides:
     hashes: Mapping[str, str]
 
     def path(self, name: str) -> Path | None:
-        """Return the file that takes the place of that one; None if none does."""
+        """Return the file that replaces that one; None if none does."""
         return self.folder / name if name in self.hashes else None
 
 
 def overrides_in(folder: Path, target: Target, others: Collection[str] = ()) -> Overrides:
-    """Return what a folder has for a target: the files in ``<folder>/<target>``.
+    """Return a folder's files for a target: those in ``<folder>/<target>``.
 
     Args:
         folder: with one folder for each target.
@@ -44,7 +44,7 @@ def overrides_in(folder: Path, target: Target, others: Collection[str] = ()) -> 
 
     Raises:
         UnreadableError: there is no such folder.
-        MmrsError: it holds something that is no target's folder.
+        MmrsError: it contains something that is not a target's folder.
     """
     if not folder.is_dir():
         raise UnreadableError(f"{folder}: there is no such folder of templates")
@@ -65,7 +65,7 @@ def _is_hidden(path: Path, folder: Path) -> bool:
 
 
 def check_known(overrides: Overrides, target: Target, specs: Iterable[FileSpec]) -> None:
-    """Do nothing if each file takes the place of one that the target has.
+    """Do nothing if each file replaces one that the target has.
 
     Raises:
         MmrsError: if one does not; names what the target has.

@@ -41,16 +41,16 @@ def render(
     """Return the files of a target for a behaviour, the manifest last.
 
     Args:
-        target: what to render.
-        input: the behaviour and what goes with it.
+        target: to render.
+        input: the behaviour and what belongs to it.
         allow_lossy: leave out what the target cannot express; the manifest lists it.
         provider: the distribution that contributed the target, for the manifest.
-        overrides: templates and other files that take the place of the target's own.
+        overrides: templates and other files that replace the target's own.
 
     Raises:
         UnsupportedError: the target cannot express all of the behaviour; lists everything.
         InternalError: the target's templates are broken, or its paths collide or leave the folder.
-        MmrsError: a file that is to take the place of another is broken, or there is no such other.
+        MmrsError: a file that is to replace another is broken, or there is no such other.
     """
     losses = tuple(dict.fromkeys(target.refusals(input)))
     if losses and not allow_lossy:
@@ -118,7 +118,7 @@ def _check_paths(target: Target, specs: Sequence[FileSpec]) -> None:
 
 
 def _facts_of(program: Program) -> dict[tuple[str, str], Facts]:
-    """Return what the behaviour says of each move, and of each robot: by robot and move, or no move."""
+    """Return the facts of each move, and of each robot: by robot and move, or no move."""
     of_moves = {
         (robot.id, move.id): _facts(robot, index, move)
         for robot in program.robots

@@ -29,7 +29,7 @@ EPOCH = (1980, 1, 1, 0, 0, 0)
 """When every file of a wheel was written: the earliest that archives can say."""
 
 OF_THE_INSTALLATION = {"INSTALLER", "REQUESTED", "RECORD", "WHEEL", "direct_url.json", "uv_cache.json"}
-"""What the folder of metadata says of this installation, not of the distribution."""
+"""Metadata of this installation rather than of the distribution."""
 
 BACKEND = "hatchling.build"
 UNDERSTOOD = {"packages", "only-include", "sources"}

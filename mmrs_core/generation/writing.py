@@ -1,8 +1,8 @@
-"""Writes generated files, and nothing over what somebody else wrote.
+"""Writes generated files, and never over a hand-written one.
 
 A file is overwritten only if the folder's manifest lists it and it is still as it was generated; a
-file that was changed by hand, or that nobody generated, stops everything before anything is
-written. Files that a former run generated and this one does not are removed if nobody changed them.
+file that was changed by hand, or that was not generated, stops everything before anything is
+written. Files that a former run generated and this one does not are removed if they are unchanged.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ def write(files: Iterable[GeneratedFile], directory: Path, *, force: bool = Fals
 
     Raises:
         MmrsError: something in the folder must not be overwritten; lists all of it.
-        UnreadableError: the folder's manifest is no manifest.
+        UnreadableError: the folder's manifest is not a manifest.
         OSError: the folder cannot be written to.
     """
     files = tuple(files)

@@ -123,7 +123,7 @@ class Growth:
         ]
 
     def _made_for(self, feature: Feature) -> list[Element]:
-        """Return an element for a reference to lead to, put where a tree has room; else nothing."""
+        """Return an element as the target of a reference, put where a tree has room; otherwise nothing."""
         assert isinstance(feature.type, Metaclass)  # it is a reference
         best: tuple[Element, tuple[Step, ...]] | None = None
         for element in self._elements:

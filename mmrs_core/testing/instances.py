@@ -26,12 +26,12 @@ def instances_of(
         registry: the metamodels.
         ns_uri: of the metamodel whose class is wanted.
         name: of the class; instances of its subclasses are drawn as well. Empty: any class of the
-            metamodel whose elements are valid by themselves.
+            metamodel whose elements are valid alone.
         levels: of containment that are filled at random; below, only what must be is there.
         values: strategies for data types by (nsURI, name), where any text would not do.
 
     Raises:
-        ValueError: if there is no such class, or none of its elements can be valid by itself.
+        ValueError: if there is no such class, or none of its elements can be valid alone.
     """
     roots = _roots(registry, ns_uri, name)
 
@@ -46,7 +46,7 @@ def instances_of(
 def drafts_of(
     registry: Registry, ns_uri: str, name: str = "", *, levels: int = 2, values: Values | None = None
 ) -> st.SearchStrategy[Element]:
-    """Draw elements of a metaclass that may be half done, as models are while somebody works on them.
+    """Draw elements of a metaclass that may be incomplete, as models are while they are being edited.
 
     Values are of their types and references lead into the tree, but anything that must be there may be
     missing.

@@ -72,10 +72,10 @@ class Kinds:
                     yield feature, inner
 
     def way(self, start: Metaclass, wanted: Metaclass, free: Iterable[Feature]) -> tuple[Step, ...]:
-        """Return the shortest way down from an element of a class to one of another; empty if none is.
+        """Return the shortest path down from an element of a class to one of another; empty if none is.
 
         Args:
-            start: class of the element that the way begins at.
+            start: class of the element that the path begins at.
             wanted: class that its end is of.
             free: the containments of that element that have room.
         """
@@ -142,13 +142,13 @@ def kinds_below(registry: Registry, *roots: Metaclass) -> Kinds:
         kinds = Kinds(concrete)
         for root in roots:
             if kinds.height.get(root, inf) == inf:
-                raise ValueError(f"{root.name}: no finite element of it is valid by itself")
+                raise ValueError(f"{root.name}: no finite element of it is valid alone")
         inside = kinds.inside(roots)
         lacking = {kind: feature for kind in inside for feature in _unmet(kind, inside)}
         for root in roots:
             if root in lacking:
                 raise ValueError(
-                    f"{root.name}: no element of it is valid by itself: {lacking[root].name} refers to "
+                    f"{root.name}: no element of it is valid alone: {lacking[root].name} refers to "
                     f"{lacking[root].type.name}, which cannot stand inside it"
                 )
         if not lacking:

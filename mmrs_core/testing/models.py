@@ -1,4 +1,4 @@
-"""Sample models, and what constraints say of them."""
+"""Sample models, and what constraints find in them."""
 
 from __future__ import annotations
 

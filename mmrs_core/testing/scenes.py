@@ -41,7 +41,7 @@ def sample_type(
     lifetime: float = 1000.0,
     **capability: float,
 ) -> RobotType:
-    """Return a type of robot with one capability and no battery; half its diagonal is half a metre.
+    """Return a robot type with one capability and no battery; half its diagonal is half a metre.
 
     Args:
         name: of the type.

@@ -54,7 +54,7 @@ def values_of(feature: Feature, given: Values | None = None) -> st.SearchStrateg
 
 
 def _key(value: object) -> tuple[str, object]:
-    """Tell 1 from True and 0.0 from -0.0, as Java does."""
+    """Distinguish 1 from True and 0.0 from -0.0, as Java does."""
     return type(value).__name__, repr(value) if isinstance(value, float) else value
 
 

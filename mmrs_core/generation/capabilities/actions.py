@@ -1,4 +1,4 @@
-"""Probes of actions, and of the ways in which devices are wired."""
+"""Probes of actions, and of the wirings of devices."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ WIRINGS: Mapping[str, Mapping[str, str]] = {
 
 
 def of_actions() -> Iterator[Probe]:
-    """Yield a probe for each metaclass of actions, and each way in which devices are wired."""
+    """Yield a probe for each metaclass of actions, and each wiring of devices."""
     for words, properties in WIRINGS.items():
         type = replace(
             kind_of("copter"),

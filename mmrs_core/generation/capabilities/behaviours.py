@@ -1,4 +1,4 @@
-"""Probes of what a behaviour says as a whole, of its robots, and of the place."""
+"""Probes of a behaviour as a whole, of its robots, and of the context."""
 
 from __future__ import annotations
 

@@ -24,7 +24,7 @@ VERDICTS: dict[Verdict, str] = {
     "lossy": "refused; with --allow-lossy it is left out, or is done as the list says",
     "refused": "refused, also with --allow-lossy",
 }
-"""What each verdict means, for people."""
+"""Meaning of each verdict, as printed."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -117,7 +117,7 @@ def of_transitions() -> Iterator[Probe]:
 
 
 def _inserted(new: Move, *more: Move, **changes: object) -> tuple[TargetInput, TargetInput]:
-    """Return a stages with a move on its way, and without it; `more` makes up for it."""
+    """Return a behaviour with a move in it, and without it; `more` makes up for it."""
     made = replace(new, **changes)  # type: ignore[arg-type]
     longer = (*ON_THE_WAY[:2], made, *more, *ON_THE_WAY[2:])
     return given(robot(ALPHA, longer)), given(robot(ALPHA, ON_THE_WAY))

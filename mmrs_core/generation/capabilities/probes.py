@@ -99,11 +99,11 @@ KINDS: dict[str, tuple[Metaclasses, Metaclasses, tuple[Move, ...]]] = {
     "rover": (((ROBOT, "Robot"),), ((ROBOT, "MovementCapability"),), DRIVE),
     "sub": (((AUV, "AUV"), (ROBOT, "Robot")), ((AUV, "AUVMovement"), (ROBOT, "MovementCapability")), DIVE),
 }
-"""By kind of vehicle: metaclasses of its type, of its movement, and moves that it can make."""
+"""By vehicle class: metaclasses of its type, of its movement, and moves that it can make."""
 
 
 def kind_of(vehicle: str, **properties: str) -> RobotType:
-    """Return a type of robot with one device, which has these properties."""
+    """Return a robot type with one device, which has these properties."""
     metaclasses, capabilities, _ = KINDS[vehicle]
     names = {name.replace("__", "."): value for name, value in properties.items()}
     device = Device("device", {"act": DeviceAction("act", 2.0)}, names)

@@ -10,7 +10,7 @@ from mmrs_core.generation.capabilities.probes import KINDS, MULTICOPTER, Probe, 
 from mmrs_core.scene import Position
 
 OF_THE_AIR = ("multicopter", "TakeOff", "Land", "GoTo.trajectory", "Robot: a ")
-"""What the names of elements begin with that only flying robots have, or that are about kinds of robot."""
+"""Beginnings of names of elements that only flying robots have, or that are about robot kinds."""
 
 
 def under_water(probe: Probe) -> Probe:

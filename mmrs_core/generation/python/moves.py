@@ -40,7 +40,7 @@ def movement_of(move: Move, context: RobotContext, driver: Driver) -> Call:
 
 
 def action_of(action: Action, context: RobotContext, driver: Driver) -> Call:
-    """Return an action; ``NoEffect`` where there is no way to do it."""
+    """Return an action; ``NoEffect`` where it cannot be expressed."""
     if action.is_a(NOTIFY):
         return Call("Notify", (action.sets,), () if action.active else (("active", False),))
     if action.is_a(FEEDBACK):
@@ -105,7 +105,7 @@ def look_of(heading: Heading, context: RobotContext, more: tuple[tuple[str, obje
 def unturnable(heading: Heading, context: RobotContext) -> Iterator[str]:
     """Yield why a robot cannot turn as a heading says."""
     if not _is_number(properties_of(heading, context).get("mount.yaw", "0")):
-        yield f"device '{heading.device}': mount.yaw is no number"
+        yield f"device '{heading.device}': mount.yaw is not a number"
 
 
 def mount_of(heading: Heading, context: RobotContext) -> float:

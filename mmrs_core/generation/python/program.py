@@ -121,7 +121,7 @@ def objects_in(robot: RobotProgram) -> tuple[str, ...]:
 
 
 def deciding(robots: Iterable[RobotProgram]) -> dict[str, tuple[TracedStep, ...]]:
-    """Return, for each condition, the moves after which somebody asks for it; sorted by condition."""
+    """Return, for each condition, the moves after which it is asked for; sorted by condition."""
     return _by_name(
         (transition.condition, TracedStep("choice", robot.id, move.id, move.task, move.rule))
         for robot in robots
@@ -160,7 +160,7 @@ def trace_of(robot: RobotProgram) -> tuple[TracedStep, ...]:
 def senders_of(
     robot: RobotProgram, program: Program, *, active: bool
 ) -> tuple[tuple[str, tuple[str, ...]], ...]:
-    """Return, for each slot that somebody activates, or deactivates, the robots that do."""
+    """Return, for each slot that is ever activated, or deactivated, the robots that do."""
     found: dict[str, dict[str, None]] = {}
     for sender in program.robots:
         for (owner, slot), value in sender.settings:

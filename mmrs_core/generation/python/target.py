@@ -137,6 +137,6 @@ def _unanswerable(
     """Yield why a vehicle cannot answer an event as it is to."""
     why = driver.unanswerable(policy, context)
     if not why and policy.event == "POSITION_LOST" and policy.response in FINDING_ITS_WAY:
-        why = f"without its position, nobody can answer it by {policy.response}"
+        why = f"without its position, the robot cannot respond with {policy.response}"
     if why:
         yield f"{where}: policy {policy.event}: {why}"

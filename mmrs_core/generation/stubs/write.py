@@ -1,6 +1,6 @@
 """Writes stubs: those of the core's own languages, and those of any metamodel for its extenders.
 
-``python -m mmrs_core.generation.stubs.write`` writes those of the core anew after a metamodel was changed.
+``python -m mmrs_core.generation.stubs.write`` rewrites those of the core after a metamodel was changed.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ def write_core_stubs(registry: Registry, folder: Path) -> tuple[Path, ...]:
 def write_stubs(registry: Registry, ns_uris: Iterable[str], folder: Path) -> tuple[Path, ...]:
     """Write the stubs of some metamodels, and of all that they refer to beyond the core's.
 
-    Where the folder is a Python package, the stubs import each other from it; else as top-level modules.
+    Where the folder is a Python package, the stubs import each other from it; otherwise as top-level modules.
 
     Args:
         registry: holds them.
@@ -41,7 +41,7 @@ def write_stubs(registry: Registry, ns_uris: Iterable[str], folder: Path) -> tup
         The files, in the order of the names given, then what these refer to.
 
     Raises:
-        MmrsError: if a file of somebody else's would be replaced, or pyecoregen is not installed; nothing is
+        MmrsError: if a file of other origin would be replaced, or pyecoregen is not installed; nothing is
             written.
     """
     packages = _with_referred(registry, ns_uris)

@@ -46,13 +46,13 @@ class CheckConformance(Conformance):
         assert set(self.cases) == {each.name for each in declared(self.plugin, "checks")}
 
     def test_it_has_a_name_a_title_and_a_hint(self, check: Check) -> None:
-        """The name is snake_case, the title a sentence; the hint says how to fix a violation."""
+        """The name is snake_case, the title a sentence; the hint describes the fix."""
         assert re.fullmatch(r"[a-z][a-z0-9_]*", check.name)
         assert check.title[0].isupper()
         assert check.hint
 
     def test_a_violation_is_found_and_located(self, check: Check) -> None:
-        """A verdict is violated, with a negative margin where it has one, and says of which robot."""
+        """A verdict is violated, with a negative margin where it has one, and names the robot."""
         case = self.cases[check.name]
         found = [each for each in self._verdicts(check, case.violated) if each.status is Status.VIOLATED]
         assert found

@@ -69,7 +69,7 @@ class ConstraintConformance(Conformance):
         assert breaches(constraint, self.cases[constraint.code].kept(registry)) == []
 
     def test_half_a_model_crashes_no_constraint(self, constraint: Constraint, registry: Registry) -> None:
-        """Models are checked while somebody works on them."""
+        """Models are checked while they are being edited."""
         self._crashes_with_no(
             constraint, drafts_of(registry, *constraint.metaclass).map(lambda root: (root,))
         )
@@ -84,7 +84,7 @@ class ConstraintConformance(Conformance):
             self._crashes_with_no(constraint, alone.map(lambda root: (root,)))
 
     def test_the_documentation_tells_what_must_hold_and_how_to_mend_it(self, constraint: Constraint) -> None:
-        """The title is a sentence without a full stop; the hint says what to do."""
+        """The title is a sentence without a full stop; the hint describes the fix."""
         assert constraint.title[0].isupper()
         assert not constraint.title.endswith(".")
         assert constraint.hint

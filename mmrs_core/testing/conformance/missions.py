@@ -44,7 +44,7 @@ class MissionConformance:
         assert [each for each in found if each["severity"] != "note"] == []
 
     def test_every_rule_leads_to_moves(self, planned: Path) -> None:
-        """The plan says of each move by which rule it came about."""
+        """The plan names for each move the rule that it came from."""
         behaviour = (planned / "behaviour.xmi").read_text(encoding="utf-8")
         assert [rule for rule in self.rules if f'rule="{rule}"' not in behaviour] == []
 

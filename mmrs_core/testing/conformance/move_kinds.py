@@ -27,7 +27,7 @@ POSITIONS = st.tuples(_METRES, _METRES, _METRES)
 
 
 class MoveKindConformance(Conformance):
-    """Every kind of move says where a robot comes along and how long that takes, and both agree.
+    """Conformance of move kinds: where a robot passes and how long that takes, and both agree.
 
     Attributes:
         moves: a move of each kind, by the name of its metaclass.
@@ -66,7 +66,7 @@ class MoveKindConformance(Conformance):
     def test_a_move_takes_no_less_time_than_the_robot_needs_for_its_path(
         self, move_kind: MoveKind, mode: str
     ) -> None:
-        """The bounds are in order, and nobody goes faster than at the largest speed."""
+        """The bounds are in order, and no robot exceeds its largest speed."""
 
         @RELAXED
         @given(POSITIONS)

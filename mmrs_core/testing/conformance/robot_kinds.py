@@ -1,4 +1,4 @@
-"""Laws for kinds of robots."""
+"""Conformance of robot kinds."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ _STEPS = st.tuples(st.sampled_from(("east", "north", "up", "all")), _METRES, _ME
 
 
 class RobotKindConformance(Conformance):
-    """Every kind of robot gives figures that make sense, and moves that get where they should.
+    """Conformance of robot kinds: plausible figures, and moves that arrive where they should.
 
     Attributes:
         robots: a robot of each kind, by the kind's name; its kinematics do not matter.
@@ -113,7 +113,7 @@ class RobotKindConformance(Conformance):
         law()
 
     def test_every_fault_has_an_answer(self, robot_kind: RobotKind) -> None:
-        """A robot that nobody told what to do does something that its kind knows to be safe."""
+        """A robot without orders does something that its kind knows to be safe."""
         assert set(robot_kind.policies) == set(get_args(PolicyEvent))
         assert set(robot_kind.policies.values()) <= set(get_args(PolicyResponse))
 

@@ -122,7 +122,7 @@ class RuleConformance(Conformance):
             self._try(rule, replace(whole, part=replace(whole.part, attributes=attributes)), self.robot)
 
     def test_a_robot_without_devices_is_served_or_refused(self, rule: Rule) -> None:
-        """Who cannot do a task is told so, and others do it."""
+        """A robot that cannot do a task is refused with a reason, and others do it."""
         bare = replace(self.robot, type=replace(self.robot.type, devices={}))
         self._try(rule, self._task(rule), bare)
 

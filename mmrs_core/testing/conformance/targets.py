@@ -21,11 +21,11 @@ UNHEARD_OF = (("urn:mmrs:testing:nowhere:1.0", "Somersault"), ("urn:mmrs:behavio
 
 
 class TargetConformance(Conformance):
-    """Every target writes the same files for the same behaviour, and says what it cannot express.
+    """Conformance of targets: equal files for equal behaviours, and refusals of what cannot be expressed.
 
     Attributes:
-        inputs: a behaviour that the target can express, by the target's name. For a target that is not
-            among them it is two drones that take photos, one waiting for the other.
+        inputs: a behaviour that the target can express, by the target's name. Default: two robots that
+            take photos, one waiting for the other.
     """
 
     inputs: ClassVar[Mapping[str, TargetInput]] = {}
@@ -59,7 +59,7 @@ class TargetConformance(Conformance):
     def test_equal_behaviours_make_equal_files(
         self, target: Target, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
     ) -> None:
-        """Neither the time, nor the place, nor the machine gets into them."""
+        """Neither the time, nor the folder, nor the machine gets into them."""
         first = render(target, self._input(target))
         monkeypatch.chdir(tmp_path)
         monkeypatch.setenv("HOME", str(tmp_path))
@@ -88,7 +88,7 @@ class TargetConformance(Conformance):
             assert (entry.step.robot, entry.step.move) in moves | robots
 
     def test_its_table_of_capabilities_is_about_what_it_expresses_and_refuses(self, target: Target) -> None:
-        """The words of a target are for elements that it expresses, or whose absence is no loss.
+        """The words of a target are for elements that it expresses, or whose absence loses nothing.
 
         A refusal is about something that the behaviour without it is not refused for.
         """

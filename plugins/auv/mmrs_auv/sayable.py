@@ -72,7 +72,7 @@ def unturnable(device: str, type: RobotType | None) -> Iterator[str]:
     if known is not None and "mavlink.gimbal" in known.properties:
         yield f"device '{device}' turns on its own, where only the vehicle can be turned"
     if _yaw(device, type) is None:
-        yield f"device '{device}': mount.yaw is no number"
+        yield f"device '{device}': mount.yaw is not a number"
 
 
 def _yaw(device: str, type: RobotType | None) -> float | None:

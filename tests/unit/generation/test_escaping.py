@@ -148,7 +148,7 @@ def test_only_names_of_our_own_are_written_as_they_are(text):
     if text == "class":
         assert name(text) == "class"
         return
-    with pytest.raises(ValueError, match="is no name"):
+    with pytest.raises(ValueError, match="is not a name"):
         name(text)
 
 

@@ -90,7 +90,7 @@ def test_a_turn_points_a_device_that_looks_aside(tmp_path: Path, monkeypatch: py
 @pytest.mark.parametrize(
     ("properties", "why"),
     [
-        ({"mount.yaw": "aside"}, "device 'sonar': mount.yaw is no number"),
+        ({"mount.yaw": "aside"}, "device 'sonar': mount.yaw is not a number"),
         ({"mavlink.gimbal": "1"}, "device 'sonar' turns by itself, where only the vehicle can be turned"),
     ],
 )

@@ -339,7 +339,7 @@ def test_a_gimbal_cannot_look_past_its_target():
 
 def test_a_mount_that_is_no_number_is_refused():
     _, refusals = looking(go_to("a", (0.0, 30.0, 20.0), heading=AHEAD), mount__yaw="left")
-    assert refusals == ("robot 'alpha', move 'a': device 'camera': mount.yaw is no number",)
+    assert refusals == ("robot 'alpha', move 'a': device 'camera': mount.yaw is not a number",)
 
 
 def test_moves_that_come_round_again_are_refused():
