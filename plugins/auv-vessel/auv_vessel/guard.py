@@ -37,11 +37,11 @@ _NAMES = {each.id: each.name for each in (*COMMON, *BEATS)}
 class Senders:
     """Watches the messages that one node sends and receives.
 
-    Two senders of one message are told from one that restarted, from frames that are lost, come twice or
-    come late: each counts independently, and both continue.
+    Two senders of one message are distinguished from one that restarted, and from frames that are lost,
+    doubled or late: each counts independently, and both continue.
 
     Args:
-        own: identifiers of what only this node says.
+        own: identifiers of messages that only this node sends.
 
     Attributes:
         fault: which message has two senders, in words; empty: none has.

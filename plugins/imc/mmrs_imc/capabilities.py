@@ -19,7 +19,7 @@ CAPABILITIES: Mapping[str, str] = {
     "Context": "routes keep clear of it; plans know no areas",
     "GeoCoordinate": "latitude, longitude and depth",
     "GoTo": "Goto",
-    "GoTo.distance": "a Goto short of the place",
+    "GoTo.distance": "a Goto short of the position",
     "GoTo.speed": "speed in metres per second",
     "HoldPosition": "StationKeeping; at the surface PopUp; rounded up to seconds",
     "Move.name": "identifier of the manoeuvre",

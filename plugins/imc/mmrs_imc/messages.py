@@ -12,7 +12,7 @@ Value: TypeAlias = "int | float | str | Message | tuple[Message, ...] | None"
 
 LATITUDE, LONGITUDE, ANGLE = (-pi / 2, pi / 2), (-pi, pi), (-1.0, 2 * pi)
 UNCONSIDERED = -1.0
-"""An angle that the vehicle need not heed."""
+"""An angle that the vehicle may ignore."""
 
 DEPTH = 1
 METRES_PER_SECOND = 0

@@ -20,11 +20,11 @@ _WHOLE = {"uint8": 0xFF, "uint16": 0xFFFF}
 
 
 def packet(message: Message) -> bytes:
-    """Return a message as a packet of nobody in particular, at no time.
+    """Return a message as a packet without source or destination, at time 0.
 
     Raises:
         UnsupportedError: the message takes more bytes than packets hold.
-        ValueError: a value is none of its field.
+        ValueError: a value does not fit its field.
     """
     body = payload(message)
     if len(body) > LARGEST:

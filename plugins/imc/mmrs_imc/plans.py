@@ -40,7 +40,7 @@ LONGEST = 0xFFFF
 """Seconds of a manoeuvre at most."""
 
 PATIENCE, GRACE = 3.0, 60
-"""A manoeuvre may take so many times as long as it should, and so many seconds more."""
+"""Factor and seconds by which a manoeuvre may exceed its planned duration."""
 
 RADIUS = 2.0
 """Metres about its place within which a vehicle holds; manoeuvres at the surface take 1 at least."""
@@ -69,12 +69,12 @@ class Plan:
 def plan_of(context: RobotContext, name: str, stem: str) -> Plan:
     """Return the plan of a robot.
 
-    What plans cannot express is left out, but never so that a vehicle goes on where it should wait: a
+    What plans cannot express is left out, but never so that a vehicle continues where it should wait: a
     wait becomes a hold without end, and the plan ends at a choice.
 
     Args:
         context: of the robot.
-        name: of the behaviour, for people.
+        name: of the behaviour, as displayed.
         stem: of the robot's file, which identifies the plan.
     """
     walk = _Walk(context)

@@ -18,7 +18,7 @@ VEHICLES = ("ground", "rover", "sub")
 
 WORDING = Wording(
     turn="which no manoeuvre of IMC does",
-    heading="which vehicles may leave unheeded",
+    heading="which vehicles may ignore",
     object="which a plan cannot have looked for",
     policy="settings of the vehicle",
 )

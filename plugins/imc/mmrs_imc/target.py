@@ -1,9 +1,9 @@
-"""The target imc: a plan for each robot, as vehicles of LSTS take it, and as people read it.
+"""The target imc: a plan for each robot, as vehicles of LSTS take it, and in readable form.
 
 The messages are those of IMC 5.4 (https://www.lsts.pt/docs/imc/master/). ``<robot>.imc`` holds the
 packet of a ``PlanSpecification``; ``<robot>.load.imc`` the same in a request to a vehicle's plan data
-base (``PlanDB``, SET); ``<robot>.json`` the same for people and scripts. Nobody has sent these packets
-to a vehicle: what reads them in our tests was written from the published definitions.
+base (``PlanDB``, SET); ``<robot>.json`` the same for reading and scripts. These packets were never sent
+to a vehicle: their reader in the tests was written from the published definitions.
 """
 
 from __future__ import annotations

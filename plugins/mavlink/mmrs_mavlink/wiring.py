@@ -40,7 +40,7 @@ class Sampled:
 
 @dataclass(frozen=True, slots=True)
 class Unwired:
-    """Why there is no way to have a device do something."""
+    """Why a device action is not possible."""
 
     reason: str
 
@@ -53,10 +53,10 @@ class DeviceWiring:
     """How the actions of devices with a property are carried out.
 
     Attributes:
-        property: of a device, such as ``mavlink.camera``; it says that this wiring is meant. What
-            ``<property>.<action>`` says is about that action alone, and goes before other wirings.
-        description: one line for people: what an action does then.
-        wire: what an action of a device becomes; None: that action is none of this wiring's.
+        property: of a device, such as ``mavlink.camera``; it selects this wiring. The property
+            ``<property>.<action>`` concerns that action alone, and takes precedence over other wirings.
+        description: one line: what an action does then.
+        wire: what an action of a device becomes; None: this wiring does not handle the action.
     """
 
     property: str

@@ -1,4 +1,4 @@
-"""A robot's moves as steps, one after the other: what a helm does, and what makes it go on."""
+"""A robot's moves as steps, one after the other: the helm's task, and the event that ends it."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ POSTS = "moos.post."
 """Property of a device before the name of an action: what is posted, as in ``SONAR=on;RANGE=50``."""
 
 TOLD = "MMRS_FEEDBACK"
-"""The variable in which feedback is posted for people."""
+"""The variable in which feedback is posted for operators."""
 
 TOLERANCE = 0.5
 """Metres of depth within which a place is reached."""
@@ -202,7 +202,7 @@ class _Walk:
         return step
 
     def _act(self, move: Move, actions: Sequence[Action], here: Position) -> None:
-        """Have what actions post posted at the end of the step before, and stay for as long as they take."""
+        """Post the actions' messages at the end of the step before, and stay for their duration."""
         for number, action in enumerate(actions):
             posts = posts_of(action, self._context.type, self._variables)
             if isinstance(posts, str):
@@ -220,7 +220,7 @@ def posts_of(action: Action, type: RobotType | None, variables: Variables) -> li
         return [variables.told[slot, action.active] for slot in action.sets]
     if action.is_a(FEEDBACK):
         said = ",".join([action.name, *(f"{key}={value}" for key, value in action.parameters)])
-        return [(TOLD, said)] if _is_plain(said) else f"feedback '{said}' is no plain text"
+        return [(TOLD, said)] if _is_plain(said) else f"feedback '{said}' is not plain text"
     if not action.is_a(DEVICE_ACTION):
         return f"action {action.metaclasses[0][1]} has no form in a behaviour file"
     device = type.devices.get(action.device) if type is not None else None

@@ -1,8 +1,8 @@
-"""The target moos: what the helm (pHelmIvP) of each robot does, as MOOS-IvP's behaviour files say it.
+"""The target moos: each robot's helm (pHelmIvP), in MOOS-IvP's behaviour files.
 
-A file holds steps, of which the variable ``MMRS_STEP`` says whose turn it is. Its waypoints are metres
+A file holds steps; the variable ``MMRS_STEP`` holds the current one. Its waypoints are metres
 east and north of the behaviour's origin, which must be that of the vehicle's MOOS mission, too. The format
-is that of https://oceanai.mit.edu/ivpman/. Nobody has run these files by a helm: what reads them in our
+is that of https://oceanai.mit.edu/ivpman/. These files were never run by a helm: their reader in the
 tests was written from that manual.
 """
 

@@ -34,7 +34,7 @@ def text(value: object) -> str:
     if isinstance(value, int):
         return str(value)
     if not isinstance(value, str) or not value.isascii() or not value.isprintable():
-        raise ValueError(f"{value!r} is no value of a behaviour file")
+        raise ValueError(f"{value!r} is not a value of a behaviour file")
     if "//" in value or set("{}") & set(value):
-        raise ValueError(f"{value!r} is no value of a behaviour file")
+        raise ValueError(f"{value!r} is not a value of a behaviour file")
     return value

@@ -155,7 +155,7 @@ def test_actions_post_what_their_devices_say(given, dive, does, swimmer):
 def test_feedback_is_posted_for_people(given, dive):
     helm = sailed(given(dive("a", 5.0, 0.0, 2.0, after=(feedback("arrived", ("at", "a")),))))
     assert ("MMRS_FEEDBACK", "arrived,at=a") in [(name, value) for _, name, value in helm.posted]
-    with pytest.raises(UnsupportedError, match="feedback 'a } b' is no plain text"):
+    with pytest.raises(UnsupportedError, match="feedback 'a } b' is not plain text"):
         render(MOOS, given(dive("a", 5.0, 0.0, 2.0, after=(feedback("a } b"),))))
 
 

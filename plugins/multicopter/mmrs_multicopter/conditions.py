@@ -1,4 +1,4 @@
-"""Conditions that let a mission go on in one way or another by the energy that a drone has left."""
+"""Conditions that choose a branch by the energy that a drone has left."""
 
 from __future__ import annotations
 
@@ -7,12 +7,12 @@ from collections.abc import Callable
 from mmrs_core.contributions.execution import Condition, RobotState
 
 KILOJOULES = (50, 100, 200, 500, 1000)
-"""Of a small camera drone's battery, about 200 kJ, up to a large hexacopter's, some 2000 kJ."""
+"""From a small camera drone's battery, about 200 kJ, up to a large hexacopter's, some 2000 kJ."""
 
 
 def _more_than(joules: float) -> Callable[[RobotState], bool]:
     def holds(state: RobotState) -> bool:
-        """Return whether more energy is left; raise ValueError where nobody knows."""
+        """Return whether more energy is left; raise ValueError where it is unknown."""
         if state.energy is None:
             raise ValueError("the energy that is left is not known")
         return state.energy > joules

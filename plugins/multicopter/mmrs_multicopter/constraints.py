@@ -113,7 +113,7 @@ def _flown_by_no_drone(move: Element, models: ModelSet) -> Iterator[Finding]:
         return
     robot_type = _type_of(container_of(move), "typeName", models)
     if robot_type is not None and not is_kind(robot_type, *DRONE):
-        yield Finding(move, f"robot type '{label_of(robot_type)}' is no Drone and cannot do this move")
+        yield Finding(move, f"robot type '{label_of(robot_type)}' is not a Drone and cannot make this move")
 
 
 def _type_of(robot: Element | None, feature: str, models: ModelSet) -> Element | None:
@@ -133,7 +133,7 @@ CONSTRAINTS = (
         "Drones take off and land upright",
         DRONE,
         _not_upright,
-        "check that the place for the launch suits the drone, or use a type with VTOL",
+        "check that the launch site suits the drone, or use a type with VTOL",
         Severity.WARNING,
     ),
     Constraint(
@@ -178,7 +178,7 @@ CONSTRAINTS = (
         "Every drone can hold its position in the wind of the context",
         TEAM_MEMBER,
         _windier_than_held,
-        "use another type of robot or wait for calmer weather",
+        "use another robot type or wait for calmer weather",
     ),
     Constraint(
         "MUL009",

@@ -19,7 +19,7 @@ EXACT = 1e-6
 
 
 def too_high(mission: Element, models: ModelSet) -> Iterator[Finding]:
-    """Yield the tasks above the ceiling of every robot; none where some robot is no drone."""
+    """Yield the tasks above the ceiling of every robot; none where some robot is not a drone."""
     ground = sketch_of(models).ground
     ceiling = _highest_ceiling(mission, models, ground)
     for task in children(mission, "tasks"):
@@ -32,7 +32,7 @@ def too_high(mission: Element, models: ModelSet) -> Iterator[Finding]:
 
 
 def too_low(mission: Element, models: ModelSet) -> Iterator[Finding]:
-    """Yield the tasks below the floor of every robot; none where some robot is no drone."""
+    """Yield the tasks below the floor of every robot; none where some robot is not a drone."""
     ground = sketch_of(models).ground
     floors = [_floor(member, models, ground) for member in children(child(mission, "team"), "robots")]
     floor = min(floors, default=-inf)
@@ -47,7 +47,7 @@ def too_low(mission: Element, models: ModelSet) -> Iterator[Finding]:
 
 
 def cut_transit(mission: Element, models: ModelSet) -> Iterator[Finding]:
-    """Yield a mission whose transits are above the ceiling of every robot; none where some is no drone."""
+    """Yield a mission whose transits are above the ceiling of every robot; none where some is not a drone."""
     ceiling = _highest_ceiling(mission, models, sketch_of(models).ground)
     transit = number(mission, "transitAltitude")
     if transit is not None and transit > ceiling:

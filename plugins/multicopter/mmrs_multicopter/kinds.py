@@ -29,7 +29,7 @@ def kinematics(robot: Robot, scene: Scene) -> Kinematics:
     """Return what a drone can do: between 1 m and its largest altitude above home.
 
     Raises:
-        InfeasibleError: the type does not say how high the drone goes, or not for that payload.
+        InfeasibleError: the type does not define the drone's largest altitude, or not for that payload.
     """
     highest = robot.type.part.attributes.get("maxAltitude")
     if not isinstance(highest, (int, float)):
@@ -47,7 +47,7 @@ def kinematics(robot: Robot, scene: Scene) -> Kinematics:
 
 
 def launch(height: float) -> tuple[MoveSpec, ...]:
-    """Return the take-off to so many metres above home."""
+    """Return the take-off to a height in metres above home."""
     return (MoveSpec(TAKE_OFF, {"altitude": height}),)
 
 

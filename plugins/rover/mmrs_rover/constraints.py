@@ -62,7 +62,7 @@ def _on_stilts(rover: Element, models: ModelSet) -> Iterator[Finding]:
 def _harmless(terrain: Element, models: ModelSet) -> Iterator[Finding]:
     if not any(number(terrain, feature) for feature, _, _ in LIMITS):
         names = ", ".join(feature for feature, _, _ in LIMITS)
-        yield Finding(terrain, f"terrain '{label_of(terrain)}' states none of {names}: it bars nobody")
+        yield Finding(terrain, f"terrain '{label_of(terrain)}' states none of {names}: it bars no robot")
 
 
 def _no_such_ground(terrain: Element, models: ModelSet) -> Iterator[Finding]:

@@ -28,7 +28,7 @@ def kinematics(robot: Robot, scene: Scene) -> Kinematics:
     goes both forwards and backwards", 1990: curves of the sort C|C|C).
 
     Raises:
-        InfeasibleError: the type does not say how narrow its curves are, or has no capability for the
+        InfeasibleError: the type does not define its narrowest curve, or has no capability for the
             robot's payload.
     """
     level = robot.home[2]

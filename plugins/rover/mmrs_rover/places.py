@@ -21,7 +21,7 @@ EXACT = 1e-6
 
 
 def off_level(mission: Element, models: ModelSet) -> Iterator[Finding]:
-    """Yield the tasks on whose level no rover of the team is; none where some robot is no rover."""
+    """Yield the tasks on whose level no rover of the team is; none where some robot is not a rover."""
     sketch = sketch_of(models)
     levels = {_level(robot) for robot in sketch.robots}
     if None in levels or not levels:
@@ -41,7 +41,7 @@ def _words(task: Element, heights: tuple[float, ...], levels: list[float]) -> st
 
 
 def _level(robot: DrawnRobot) -> float | None:
-    """Return the height of a rover's home; None for robots that are no rovers, or have no place."""
+    """Return the height of a rover's home; None for other robots, or without a position."""
     if robot.type is None or robot.home is None or not is_kind(robot.type, *ROVER):
         return None
     return robot.home[2]

@@ -144,7 +144,7 @@ class Face:
 
 
 class Stay:
-    """Hold for `seconds` at the place of the last goal, or where the vehicle is if there was none."""
+    """Hold for `seconds` at the position of the last goal, or where the vehicle is if there was none."""
 
     def __init__(self, seconds: float, *, hold: bool = False) -> None:
         """Stay; `hold`: where the vehicle is when it begins."""

@@ -27,7 +27,7 @@ AT_REST = 0.1
 
 
 class Watch:
-    """Looks at what may go wrong with a vehicle, whatever it does.
+    """Watches a vehicle for faults, whatever it does.
 
     Attributes:
         borne: events that are not reported, since a policy is CONTINUE.

@@ -37,7 +37,7 @@ def sheets_in(path: Path) -> Mapping[str, Sheet]:
 
     Raises:
         UnreadableError, InvalidModelError: the models cannot be read, or are not valid.
-        UnsupportedError: there is no underwater vehicle, or data of one are missing; lists which.
+        UnsupportedError: there is not an underwater vehicle, or data of one are missing; lists which.
     """
     found = {}
     for member in _members(path):

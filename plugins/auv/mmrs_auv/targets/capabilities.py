@@ -23,5 +23,5 @@ OF_VEHICLES: Mapping[str, str] = {
     "FENCE_BREACHED": "there is no fence, so that it never happens",
     "VEHICLE_RESTARTED": "no vehicle on a CAN bus tells it, so that it never happens",
     "LOG_FAILED": "a step that cannot be written",
-    "GROUND_LOST": "no ground station is heard under water, so that it never happens",
+    "GROUND_LOST": "no ground station is received under water, so it never happens",
 }

@@ -153,14 +153,14 @@ def test_no_text_ends_a_comment(text):
 
 @pytest.mark.parametrize("value", [float("nan"), float("inf"), "1", True, None])
 def test_what_is_no_number_in_c_is_refused(value):
-    with pytest.raises(ValueError, match="is no number in C"):
+    with pytest.raises(ValueError, match="is not a number in C"):
         number(value)
 
 
 def test_a_robot_without_thrusters_on_a_bus_is_refused():
     with pytest.raises(UnsupportedError) as refusal:
         render(CAN_C, plain("rover"))
-    assert refusal.value.elements[0] == "robot 'alpha': is no underwater vehicle"
+    assert refusal.value.elements[0] == "robot 'alpha': not an underwater vehicle"
     given = plain("sub")
     with pytest.raises(UnsupportedError, match="type 'Kind' is not known"):
         render(CAN_C, replace(given, types={}))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 LATE_MILLISECONDS = 5_000
-"""By how much a message may be older than one that came before it, on a poor link."""
+"""Largest age of a message relative to one that came before it, on a poor link."""
 
 CONFIRMED = 3
 """How many messages from another start there must be before it is believed."""

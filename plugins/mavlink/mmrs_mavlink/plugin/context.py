@@ -39,7 +39,7 @@ class VehicleContext(RobotContext):
         return manoeuvre_of(move.metaclasses[0], self.moves)
 
     def climb(self, move: Move) -> float:
-        """Return how far a move climbs, metres; 0 for one that goes nowhere by itself."""
+        """Return how far a move climbs, metres; 0 for one without a movement of its own."""
         path = self.moves[move.metaclasses[0]].path(move, (0.0, 0.0, 0.0), None)
         return path[-1][2] if path else 0.0
 

@@ -125,10 +125,10 @@ class MavlinkPython(PythonDriver[VehicleContext]):
             yield f"takes off to {context.climb(move):g} m above the ground"
 
     def unanswerable(self, policy: Policy, context: VehicleContext) -> str:
-        """Return what a vehicle cannot do, or not by itself."""
+        """Return what a vehicle cannot do, or not as a failsafe."""
         profile, response = context.profile, policy.response
         if policy.event == "LINK_LOST" and response not in profile.alone:
-            return f"no {profile.vehicle} does {response} by itself"
+            return f"no {profile.vehicle} does {response} as a failsafe"
         return "" if response in profile.responses else f"no {profile.vehicle} can answer it by {response}"
 
     def refusals(self, context: VehicleContext, input: TargetInput) -> Iterable[str]:
@@ -232,7 +232,7 @@ def _protection(robot: RobotProgram, input: TargetInput) -> _Protection:
 
 
 def _escapes(escapes: Iterable[Escape], context: VehicleContext) -> Iterator[tuple[str, object]]:
-    """Yield the way from the end of each move; one that several share has a name."""
+    """Yield the path from the end of each move; one that several share has a name."""
     ways = [(each.move, tuple(place_of(place, context) for place in each.places)) for each in escapes]
     uses = Counter(way for _, way in ways)
     shared = [way for way, count in uses.items() if count > 1]
@@ -241,14 +241,14 @@ def _escapes(escapes: Iterable[Escape], context: VehicleContext) -> Iterator[tup
 
 
 def _escapes_alone(robot: RobotProgram, input: TargetInput) -> bool:
-    """Return whether the vehicle is to reach an emergency area by itself, anywhere."""
+    """Return whether the vehicle is to reach an emergency area by its failsafe, anywhere."""
     everywhere = policies_of(robot, input)
     somewhere = (policy for each in robot.transitions.values() for policy in each.policies)
     return ("LINK_LOST", "EMERGENCY_AREA") in ((p.event, p.response) for p in (*everywhere, *somewhere))
 
 
 def _endurance(context: VehicleContext) -> Iterator[tuple[str, object]]:
-    """Yield what the robot's type says of how long it lasts, and how fast it goes and comes down."""
+    """Yield the robot type's endurance, largest speed and descent speed."""
     if context.type is None or (capability := capability_of(context.robot, context.type)) is None:
         return
     if capability.lifetime is not None:

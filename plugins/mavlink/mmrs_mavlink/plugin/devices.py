@@ -51,7 +51,7 @@ def _explicit(action: Action, device: Device) -> Wiring | None:
     try:
         return Wired(int(numbers[0]), tuple(float(each) for each in numbers[1:]))
     except ValueError:
-        return Unwired(f"device {device.id!r}: {key} is no command number with its parameters")
+        return Unwired(f"device {device.id!r}: {key} is not a command number with its parameters")
 
 
 def _sampled(action: Action, device: Device) -> Wiring | None:
@@ -187,7 +187,7 @@ _BUILT_IN = (
     DeviceWiring("mavlink.relay", "switches a relay", _relay),
     DeviceWiring("mavlink.gripper", "moves a gripper", _gripper),
     DeviceWiring("mavlink.video", "begins or ends a video", _video),
-    DeviceWiring("mavlink.trigger", "triggers a camera every so many metres", _trigger),
+    DeviceWiring("mavlink.trigger", "triggers a camera at a distance", _trigger),
     DeviceWiring("mavlink.winch", "lets out or winds up a line", _winch),
     DeviceWiring("mavlink.gimbal", "points a gimbal", _gimbal),
 )

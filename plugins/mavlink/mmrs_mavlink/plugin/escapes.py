@@ -41,11 +41,11 @@ EITHER = 4.0
 
 @dataclass(frozen=True, slots=True)
 class Escape:
-    """A way to an emergency area.
+    """A path to an emergency area.
 
     Attributes:
         move: where it begins: at the end of that one.
-        begin: that place; places: those that it leads by, the last one above where the robot comes down.
+        begin: that position; places: its corners, the last one above where the robot lands.
     """
 
     move: str
@@ -60,10 +60,10 @@ class Escape:
 
 
 def escapes_of(robot: RobotProgram, input: TargetInput, points: Sequence[Point]) -> tuple[Escape, ...]:
-    """Return the quickest way from the end of each move to one of some points; none from where none is clear.
+    """Return the quickest clear path, if any, from the end of each move to one of some points.
 
-    Ways keep what the robot must keep from all areas, and stay between the lowest and the highest place
-    that its moves lead to. Whoever comes down there does so in a clear column.
+    Paths keep the robot's clearance from all areas, and stay between the lowest and the highest position
+    of its moves. The descent at their ends is in a clear column.
     """
     context = context_of(robot, input)
     ends = [
@@ -85,7 +85,7 @@ def escapes_of(robot: RobotProgram, input: TargetInput, points: Sequence[Point])
 
 
 def _quickest(space: Space, begin: Position, points: Sequence[Point]) -> tuple[Position, ...]:
-    """Return the quickest way to one of the points, without where it begins and without the last descent."""
+    """Return the quickest path to one of the points, without its beginning and without the last descent."""
     routes = []
     for point in points:
         try:
@@ -126,9 +126,9 @@ def _leaves_home(index: int, context: VehicleContext) -> bool:
 
 
 def straight_lines_are_clear(context: VehicleContext, input: TargetInput, points: Sequence[Point]) -> bool:
-    """Return whether a vehicle may fly straight to the nearest point from anywhere on its way.
+    """Return whether a vehicle may fly straight to the nearest point from anywhere on its path.
 
-    That is what it does by itself: it knows no areas and, on its way up and down, no heights; so all
+    That is its failsafe: it knows no areas and, while it climbs and descends, no heights; so all
     areas count, however high. Where two points are about as near, either may be chosen.
     """
     if not points or context.frame.is_local:

@@ -1,12 +1,12 @@
-"""The fence that a vehicle guards by itself: forbidden areas, enlarged by what the robot must keep.
+"""The vehicle's own geofence: forbidden areas, enlarged by the robot's clearance.
 
 Planned legs lead along the edge of that, and vehicles stray from their legs: the wind pushes them, and
-where they believe to be jumps. So that the fence does not stop a vehicle that does what it should, it
-stays away from every leg by what may be strayed, and is as large as that allows: at most what the robot
-must keep from the area, at least the area as drawn.
+their position estimate jumps. So that the fence does not stop a vehicle that follows its plan, it
+stays away from every leg by that error, and is as large as that allows: at most the robot's
+clearance from the area, at least the area as drawn.
 
-What breaks a fence is to be inside. ArduPilot's FENCE_MARGIN moves no fence: nearer than that, it only
-says so, and halts pilots who fly by hand (``AC_Fence.cpp``, ``check_fence_polygon``).
+Only being inside breaks a fence. ArduPilot's FENCE_MARGIN moves no fence: nearer than that, it only
+warns, and halts pilots who fly manually (``AC_Fence.cpp``, ``check_fence_polygon``).
 """
 
 from __future__ import annotations
@@ -97,12 +97,12 @@ class Fence:
 
 
 def fences_of(robot: RobotProgram, input: TargetInput, escapes: Iterable[Escape]) -> tuple[Fence, ...]:
-    """Return what a robot must not enter, its ways to emergency areas left free.
+    """Return what a robot must not enter, its paths to emergency areas left free.
 
     Args:
         robot: of the input's behaviour.
-        input: the behaviour and what goes with it.
-        escapes: its ways to emergency areas.
+        input: the behaviour and what belongs to it.
+        escapes: its paths to emergency areas.
     """
     error = input.program.position_error
     clearance = clearance_of(input.types.get(robot.type_name), error)
@@ -142,7 +142,7 @@ def fence_faults(robot: RobotProgram, areas: Iterable[Area]) -> Iterator[str]:
         if home is not None and drawn.intersects(Point(home[0], home[1])):
             yield f"robot '{robot.id}': its home is inside the fence around '{area.name}'"
         elif drawn.intersects(legs):
-            yield f"robot '{robot.id}': its way leads through the fence around '{area.name}'"
+            yield f"robot '{robot.id}': its path leads through the fence around '{area.name}'"
 
 
 def legs_of(robot: RobotProgram, more: Sequence[Leg] = ()) -> BaseGeometry:
@@ -228,7 +228,7 @@ def _around(area: Area, wanted: float, legs: BaseGeometry, stray: float) -> Fenc
 
 
 def _grown(drawn: Polygon, metres: float) -> Polygon:
-    """Return an area with so many metres around it; what that closes in belongs to it."""
+    """Return an area with `metres` around it; what that closes in belongs to it."""
     if metres <= 0.0:
         return Polygon(drawn.exterior)
     # Along a spike with no width, GEOS divides by zero on its way.
@@ -242,7 +242,7 @@ def _grown(drawn: Polygon, metres: float) -> Polygon:
 
 
 def _around_edges(drawn: Polygon, metres: float) -> Iterator[BaseGeometry]:
-    """Yield what is so many metres around each edge of an area, its ends rounded by chords outside."""
+    """Yield the strip of `metres` around each edge of an area, its ends rounded by chords outside."""
     far = metres / cos(pi / CHORDS)
     turns = [2.0 * pi * chord / CHORDS for chord in range(CHORDS)]
     circle = [(far * cos(turn), far * sin(turn)) for turn in turns]

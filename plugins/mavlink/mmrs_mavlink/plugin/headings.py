@@ -11,12 +11,12 @@ NO_TURNING = f"no ground vehicle turns to a heading on command; give the device 
 
 
 def on_gimbal(heading: Heading, context: VehicleContext) -> bool:
-    """Return whether the device that a heading is of turns by itself."""
+    """Return whether the device of a heading turns on its own."""
     return GIMBAL in properties_of(heading, context)
 
 
 def turns_to(heading: Heading, context: VehicleContext) -> bool:
-    """Return whether the vehicle, or the device on it, can be told to turn to a heading.
+    """Return whether the vehicle, or the device on it, turns to a heading on command.
 
     ArduPilot's Rover takes no heading: it ignores the yaw of position targets in GUIDED, and
     skips CONDITION_YAW in AUTO.

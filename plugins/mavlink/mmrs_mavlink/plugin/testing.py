@@ -48,7 +48,7 @@ class DeviceWiringConformance(Conformance):
         assert not isinstance(self._wired(device_action, device, use(device.id, name)), Unwired)
 
     def test_it_says_why_an_action_cannot_be_done(self, device_action: DeviceWiring) -> None:
-        """An action that nobody has heard of raises nothing, nor does a property that makes no sense."""
+        """An unknown action raises nothing, nor does an invalid property."""
         device, _ = self.devices[device_action.property]
         nonsense = replace(device, properties=dict.fromkeys(device.properties, "\u2603 nonsense"))
         for each in (device, nonsense):

@@ -18,7 +18,7 @@ from mmrs_mavlink.profiles import (
 )
 
 AUTOPILOT = "mavlink.autopilot"
-"""The property of a device that says which autopilot it is."""
+"""The property of a device that names the autopilot."""
 
 
 def profile_of(
@@ -28,13 +28,13 @@ def profile_of(
     moves: Mapping[Name, MoveKind],
     extensions: Extensions,
 ) -> VehicleProfile | None:
-    """Return the profile that carries a robot: by its type, else by its moves; None: no profile does.
+    """Return the profile that carries a robot: by its type, otherwise by its moves; None: no profile does.
 
     Args:
         robot: of a behaviour.
         type: of the robot; None where it is unknown.
-        kinds: kinds of robots. moves: kinds of moves.
-        extensions: what plug-ins contribute, with their profiles.
+        kinds: robot kinds. moves: move kinds.
+        extensions: contributions of plug-ins, with their profiles.
     """
     if type is not None:
         return profile_of_type(type, kinds, extensions)
@@ -101,7 +101,7 @@ def autopilot_fault(type: RobotType | None) -> str:
     found = autopilots_in(type)
     shown = ", ".join(map(repr, found))
     if len(found) > 1:
-        return f"{AUTOPILOT} is {shown}: which one it is nobody knows"
+        return f"{AUTOPILOT} is {shown}: it is ambiguous"
     if found and found[0] not in AUTOPILOTS:
         return f"{AUTOPILOT} is {shown}; known are {' and '.join(AUTOPILOTS)}"
     return ""

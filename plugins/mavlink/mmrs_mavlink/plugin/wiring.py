@@ -51,8 +51,8 @@ def _chosen(action: Action, device: Device, wirings: Wirings) -> Wiring:
             return found[0][1]
     if present:
         names = " and ".join(each.property for each in present)
-        return Unwired(f"device {device.id!r}: {names} does not say what {action.name!r} is")
-    return Unwired(f"device {device.id!r} has no property that says how it is wired, such as mavlink.camera")
+        return Unwired(f"device {device.id!r}: {names} does not define it {action.name!r} is")
+    return Unwired(f"device {device.id!r} has no wiring property, such as mavlink.camera")
 
 
 def _wired(each: DeviceWiring, action: Action, device: Device) -> Wiring | None:
@@ -98,7 +98,7 @@ def _finished(wiring: Wiring, action: Action, device: Device) -> Wiring:
 def _unfit(wiring: Wired | Sampled) -> str:
     """Return why a wiring cannot be sent to any vehicle; empty where it can."""
     if wiring.seconds is not None and not 0.0 <= wiring.seconds < inf:
-        return f"takes {wiring.seconds:g} s, which is no time"
+        return f"takes {wiring.seconds:g} s, which is not a time"
     if isinstance(wiring, Sampled) and not is_value_name(wiring.value):
         return f"reads {wiring.value!r}, and names of values are one to ten ASCII characters"
     for command, params in _commands(wiring):
@@ -107,7 +107,7 @@ def _unfit(wiring: Wired | Sampled) -> str:
         if len(params) > MOST_PARAMETERS:
             return "has more than seven parameters"
         if not all(abs(param) <= LARGEST for param in params):
-            return "has a parameter that is no number of single precision"
+            return "has a parameter that is not a number of single precision"
     return ""
 
 

@@ -53,7 +53,7 @@ NO_ANSWER = "no answer"
 
 
 class Recording:
-    """Observes one link; the robot's thread tells it what is sent, the link's reader what is heard.
+    """Observes one link; the robot's thread reports messages sent, the link's reader those received.
 
     Commands are written when the vehicle has answered, or when the next one shows that it never did.
     """

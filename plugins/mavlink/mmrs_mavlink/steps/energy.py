@@ -19,7 +19,7 @@ SLOWEST = 0.5
 """Metres per second; a robot that the wind keeps from being faster than that does not come back."""
 
 TURNING_SECONDS = 6.0
-"""To brake, turn round, accelerate, and stop at the end."""
+"""Allowance for braking, turning round, accelerating, and stopping at the end."""
 
 ACCELERATION = 2.0
 """Metres per second squared with which vehicles speed up, and slow down at every place of the way."""

@@ -18,7 +18,7 @@ from .responses import DOWN, alone, policy_for
 SURFACE = "SURFACE"
 STOP_THRUST = "STOP_THRUST"
 OFF = "off"
-"""To disarm, whatever happens then."""
+"""The mode for disarming, whatever happens then."""
 
 RESTS: Mapping[str, Mapping[str, str]] = {
     "copter": {LAND: modes.LAND, SURFACE: modes.HOLD},

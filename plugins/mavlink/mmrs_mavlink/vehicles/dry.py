@@ -61,7 +61,7 @@ class DryVehicle:
         self._armed = False
 
     def go_to(self, place: Place, speed: float | None, look: Look | None, through: bool) -> None:
-        """Be at a position after the time that the path takes."""
+        """Arrive at a position after the duration of the path."""
         self._mode = GUIDED
         self.rest(distance(self._here, place) / (speed or CRUISE))
         self._here = place

@@ -21,7 +21,7 @@ MORE_SPEED = 3.0
 """Metres per second by which a vehicle may be faster between two messages than either of them tells."""
 
 LATE_SECONDS = 5.0
-"""By how much a message may be older than the one before it; an older one belongs to another start."""
+"""Largest age of a message relative to the one before it; an older one belongs to another start."""
 
 
 class Leaps:

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from ..links.link import Link
 
 Answers: TypeAlias = Mapping[str, Mapping[str, int]]
-"""By response of a policy, parameters and their values."""
+"""Parameters and their values, by response of a policy."""
 
 GUIDED = "guided"
 AUTO = "auto"

@@ -26,7 +26,7 @@ RADII: Mapping[str, Mapping[str, float]] = {
     "sub": {"WP_RADIUS_M": 1.0, "WPNAV_RADIUS": _CENTIMETRES},
     "rover": {"WP_RADIUS": 1.0},
 }
-"""By vehicle class: names of the radius in ArduPilot's versions, with their units in a metre."""
+"""Names of the radius in ArduPilot's versions, with their units in a metre, by vehicle class."""
 
 PX4_RADIUS = "NAV_ACC_RAD"
 MARGINS = ("AVOID_MARGIN", "OA_MARGIN_MAX")

@@ -340,7 +340,11 @@ def test_the_number_of_a_gimbal_is_passed_on():
         ("BATTERY_LOW", "SURFACE", "no copter can answer it by SURFACE"),
         ("OBSTACLE", "STOP_THRUST", "no copter can answer it by STOP_THRUST"),
         ("POSITION_LOST", "RETURN", "without its position, the robot cannot respond with RETURN"),
-        ("POSITION_LOST", "EMERGENCY_AREA", "without its position, the robot cannot respond with EMERGENCY_AREA"),
+        (
+            "POSITION_LOST",
+            "EMERGENCY_AREA",
+            "without its position, the robot cannot respond with EMERGENCY_AREA",
+        ),
     ],
 )
 def test_a_response_that_no_vehicle_can_give_is_refused(event, response, why):

@@ -156,6 +156,6 @@ def test_a_robot_whose_home_or_way_is_in_the_fence_is_told():
     inside = robot_program("alpha", [take_off("up", 20.0)], home=(5.0, 5.0, 0.0))
     assert list(fence_faults(inside, [YARD])) == ["robot 'alpha': its home is inside the fence around 'yard'"]
     assert list(fence_faults(passing(5.0), [YARD])) == [
-        "robot 'alpha': its way leads through the fence around 'yard'"
+        "robot 'alpha': its path leads through the fence around 'yard'"
     ]
     assert list(fence_faults(FAR, [YARD])) == []

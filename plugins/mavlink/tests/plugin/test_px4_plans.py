@@ -106,7 +106,7 @@ def test_what_no_mission_of_a_px4_may_hold_is_refused_and_left_out():
     ("devices", "words"),
     [
         ((), "mavlink.autopilot is 'inav'; known are ardupilot and px4"),
-        ((Device("brain", {}, PX4),), "mavlink.autopilot is 'inav', 'px4': which one it is nobody knows"),
+        ((Device("brain", {}, PX4),), "mavlink.autopilot is 'inav', 'px4': it is ambiguous"),
     ],
 )
 def test_an_autopilot_that_nobody_knows_is_refused(devices, words):

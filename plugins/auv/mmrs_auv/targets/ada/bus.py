@@ -1,4 +1,4 @@
-"""Messages that the decision centre says and hears, as its template sees them."""
+"""Messages that the decision centre sends and receives, as its template sees them."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ def can_be_said(message: str, field: str, value: float) -> bool:
 
 
 def depth_step_of(robot: RobotProgram, input: TargetInput) -> float:
-    """Return metres of depth in a step on a robot's bus; 0: its type does not say how deep it goes."""
+    """Return metres of depth in a step on a robot's bus; 0: its type does not define its depth."""
     type, density = input.types.get(robot.type_name), input.environment.get("waterDensity", SEA_WATER)
     try:
         deepest = largest_depth(type, robot.payload, density) if type is not None else None

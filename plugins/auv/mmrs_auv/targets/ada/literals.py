@@ -50,7 +50,7 @@ def value(value: object) -> str:
     Plans.Numbers.Vector.
 
     Raises:
-        ValueError: it is none that Ada is told here, or a number that is not finite.
+        ValueError: it has no expression here, or is a number that is not finite.
     """
     if isinstance(value, bool):
         return str(value)

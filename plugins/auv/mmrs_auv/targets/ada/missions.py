@@ -52,13 +52,13 @@ class Mission:
     def __init__(
         self, context: RobotContext, program: Program, policies: Sequence[Policy], step: float
     ) -> None:
-        """Hold it.
+        """Create the view of a robot.
 
         Args:
             context: of the robot.
             program: of all robots.
             policies: of the robot, the first for an event counts.
-            step: metres of depth in a step on its bus; 0: its type does not say how deep it goes.
+            step: metres of depth in a step on its bus; 0: its type does not define its depth.
         """
         self._context, self._program, self._policies = context, program, tuple(policies)
         self._step = step
@@ -102,7 +102,7 @@ class Mission:
         return {"conditions": found, "units": units}
 
     def undecided(self) -> tuple[str, ...]:
-        """Return the conditions that somebody has to decide."""
+        """Return the conditions that the user has to decide."""
         found = (each.condition for each in self._context.robot.transitions.values())
         return tuple(dict.fromkeys(each for each in found if each and not _standard(each)["word"]))
 
@@ -145,7 +145,7 @@ class Mission:
             yield "Seconds", _duration(move)
 
     def _object(self, move: Move, target: MoveTarget) -> Iterator[tuple[str, object]]:
-        """Yield what is told of the object that a move leads to."""
+        """Yield facts about the object that a move leads to."""
         if target.description is None:
             return
         yield "Object", _json(target.description)
@@ -247,7 +247,7 @@ def _set_by(robot: RobotProgram) -> Iterator[SlotId]:
 
 
 def _standard(condition: str) -> Mapping[str, object]:
-    """Return what a standard condition asks; the others are asked of whoever has the program."""
+    """Return what a standard condition asks; the others are left to the user."""
     word, _, rest = condition.partition(":")
     if is_standard(condition) and word == BATTERY:
         return {"word": "battery", "argument": float(rest)}
@@ -262,7 +262,7 @@ def _sayable(speed: float) -> float:
 
 
 def _duration(move: Move) -> float:
-    """Return how long a move holds or charges; 0 for others, and where that is no number."""
+    """Return how long a move holds or charges; 0 for others, and where that is not a number."""
     found = move.attributes.get("duration")
     known = SORTS.get(move.metaclasses[0]) in ("hold", "charge")
     return float(found) if known and isinstance(found, (int, float)) and isfinite(found) else 0.0

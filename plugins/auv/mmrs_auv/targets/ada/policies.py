@@ -34,7 +34,7 @@ RESPONSES: Mapping[str, str] = {
     "HOLD": "Holds_Place", "RETURN": "Backs_Out", "LAND": "Comes_Up", "SURFACE": "Comes_Up",
     "STOP_THRUST": "Stops_Thrust", "CONTINUE": "Goes_On",
 }  # fmt: skip
-"""Responses that it can give; one that finds its way to an emergency area it cannot."""
+"""Responses that it can give; paths to an emergency area are not among them."""
 
 LASTING = (LINK_LOST, POSITION_LOST, BATTERY_LOW, OBSTACLE, WAIT_TOO_LONG, PEER_LOST)
 """Events that have to last before they count."""
@@ -53,7 +53,7 @@ OTHERWISE: PolicyResponse = "SURFACE"
 
 
 def declared(robot: RobotProgram, input: TargetInput) -> tuple[Policy, ...]:
-    """Return a robot's policies, the first for an event counts; what nobody declared is its kind's."""
+    """Return a robot's policies, the first for an event counts; the kind's defaults last."""
     kinds = {AUV_KIND.metaclass: AUV_KIND, **input.robot_kinds}
     return policies_of(robot, replace(input, robot_kinds=kinds))
 
@@ -63,11 +63,11 @@ def obstacles_to(policy: Policy) -> str:
     if policy.event not in DECLARED:
         return ""
     if policy.response not in RESPONSES:
-        return "no decision centre knows a way to an emergency area: it comes up"
+        return "no decision centre knows a path to an emergency area: it surfaces"
     if policy.event == POSITION_LOST and policy.response == "RETURN":
-        return "nobody finds back without its position: it comes up"
+        return "without a position no return is possible: it surfaces"
     if policy.event == LOG_FAILED and policy.response == "CONTINUE":
-        return "nobody could replay what it does without its log: it holds"
+        return "without its log its actions could not be replayed: it holds"
     return ""
 
 
@@ -88,7 +88,7 @@ def undeclared(event: str) -> str:
 
 
 def unbearable(event: str) -> str:
-    """Return what it does about one that it was to bear, and cannot: without its gateway it comes up, too."""
+    """Return its response to an event that it was to tolerate, and cannot."""
     return RESPONSES[SURFACE if event in NEVER_BORNE | {PEER_LOST} else LAST_RESORT]
 
 
@@ -99,9 +99,9 @@ def _possible(policy: Policy) -> Policy:
 
 
 def _seconds(event: str, answers: Responses) -> float:
-    """Return for how many seconds an event is borne; inf: for ever.
+    """Return for how many seconds an event is tolerated; inf: without limit.
 
-    That a link may be lost is about radio: on a vehicle's own bus, silence counts at last.
+    Tolerating a lost link is about radio: on a vehicle's own bus, silence counts at last.
     """
     found = answers.patience(Fault(event))
     return AFTER[event] if found == inf and event in NEVER_BORNE else found

@@ -31,7 +31,7 @@ def refusals(input: TargetInput) -> Iterator[str]:
             continue
         context = context_of(robot, input, VEHICLES)
         if not context.dives:
-            yield f"robot '{robot.id}': is no underwater vehicle: --allow-lossy leaves it out beside others"
+            yield f"robot '{robot.id}': not an underwater vehicle: --allow-lossy leaves it out beside others"
             continue
         for policy in declared(robot, input):
             if why := obstacles_to(policy):
@@ -64,13 +64,13 @@ def of_movement(move: Move, context: RobotContext, step: float = 0.0) -> Iterato
         yield f"{move.kind} is not known to this target"
     for name, number in _numbers(move):
         if not isfinite(number):
-            yield f"its {name} is {number:g}, which is no number"
+            yield f"its {name} is {number:g}, which is not a number"
     if sort == "turn" and (move.heading is None or move.heading.target.position is None):
-        yield "nobody says where what it turns to is"
+        yield "the position that it turns to is unknown"
     if sort != "go":
         return
     if move.target is None or move.target.position is None:
-        yield "nobody says where its target is"
+        yield "the position of its target is unknown"
         return
     east, north, up = move.target.position
     for name, metres in (("North", north), ("East", east)):
@@ -123,7 +123,7 @@ def _of_move(move: Move, context: RobotContext, step: float) -> Iterator[str]:
         if context.speed(move) is None:
             yield "its speed is not known, because its robot type is not given"
         if move.heading is not None and move.heading.target.position is None:
-            yield "nobody says where what it faces is"
+            yield "the position that it faces is unknown"
     if move.heading is not None:
         yield from unturnable(move.heading.device, context.type)
         if sort != "go" and sort != "turn":

@@ -1,4 +1,4 @@
-"""The codec of what drives hear and say, as cantools writes it."""
+"""The codec of the drives' messages, as cantools writes it."""
 
 from __future__ import annotations
 

@@ -28,11 +28,9 @@ SHARED = "drives"
 """Folder of what the drives of all vehicles share."""
 
 AS_THEY_ARE = ("drives.h", "drives.c", "outputs.h", "hub.c", "drives.mk")
-ASKS = (
-    "what sets the thrust of each motor, tells of its faults and of depth, and lets go of the drop weight",
-)
+ASKS = ("sets the thrust of each motor, reports its faults and the depth, and releases the drop weight",)
 KNOWN = frozenset({*MOVES, (BEHAVIOUR, "Recharge")})
-"""Moves in which thrusters do nothing but what they are told."""
+"""Moves in which thrusters only carry out commands."""
 
 LONGEST = 2000.0
 """Seconds that drives measure, at most: their microseconds have 32 bits."""
@@ -45,10 +43,10 @@ CAPABILITIES = {
 
 
 def files(input: TargetInput) -> Iterator[FileSpec]:
-    """Yield what all drives share, a folder for each robot, and how to build them.
+    """Yield the files that all drives share, a folder for each robot, and the build file.
 
     Raises:
-        UnsupportedError: a robot is no underwater vehicle whose data are known.
+        UnsupportedError: a robot is not an underwater vehicle with known data.
     """
     robots = input.program.robots
     stems = file_stems([robot.id for robot in robots], hyphens=False)
@@ -84,7 +82,7 @@ def files_of(sheets: Mapping[str, Sheet]) -> Iterator[FileSpec]:
 
 
 def refusals(input: TargetInput) -> Iterator[str]:
-    """Yield which robots have no thrusters on a bus, and which moves nobody knows."""
+    """Yield robots without thrusters on a bus, and unknown moves."""
     for robot in input.program.robots:
         if unknown := vehicleless(robot, input, VEHICLES):
             yield unknown
@@ -106,7 +104,7 @@ def _sheet(robot: RobotProgram, input: TargetInput) -> Sheet:
     if unknown := vehicleless(robot, input, VEHICLES):
         raise UnsupportedError(unknown)
     if not is_vehicle(type):
-        why = "is no underwater vehicle"
+        why = "is not an underwater vehicle"
         raise UnsupportedError(f"robot '{robot.id}': {why}", (why,))
     density = input.environment.get("waterDensity")
     return sheet_of(type, robot.id, payload=robot.payload, density=density)

@@ -17,7 +17,7 @@ def number(value: object) -> str:
     ('3', '0.1', '1e+22')
     """
     if isinstance(value, bool) or not isinstance(value, (int, float)) or not isfinite(value):
-        raise ValueError(f"{value!r} is no number in C")
+        raise ValueError(f"{value!r} is not a number in C")
     return repr(value)
 
 

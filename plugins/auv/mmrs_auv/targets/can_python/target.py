@@ -37,11 +37,11 @@ class CanPython(PythonDriver[RobotContext]):
     tried_with = "water"
 
     def undriven(self, robot: RobotProgram, input: TargetInput) -> str:
-        """Return that a robot is no underwater vehicle."""
+        """Return that a robot is not an underwater vehicle."""
         type = input.types.get(robot.type_name)
         if type is not None and is_vehicle(type):
             return vehicleless(robot, input, VEHICLES)
-        return vehicleless(robot, input, VEHICLES) or f"robot '{robot.id}': is no underwater vehicle"
+        return vehicleless(robot, input, VEHICLES) or f"robot '{robot.id}': not an underwater vehicle"
 
     def context(self, robot: RobotProgram, input: TargetInput) -> RobotContext:
         """Return what there is to know of a robot."""
@@ -67,9 +67,9 @@ class CanPython(PythonDriver[RobotContext]):
         return unturnable(heading.device, context.type)
 
     def unanswerable(self, policy: Policy, context: RobotContext) -> str:
-        """Return that nobody knows a way to an emergency area."""
+        """Return that no path to an emergency area is known."""
         known = policy.response != "EMERGENCY_AREA"
-        return "" if known else "no controller on a CAN bus knows a way to an emergency area"
+        return "" if known else "no controller on a CAN bus knows a path to an emergency area"
 
     def refusals(self, context: RobotContext, input: TargetInput) -> Iterator[str]:
         """Yield what is wrong with the vehicle's data, or more than its bus can say."""

@@ -17,7 +17,7 @@ _SERIAL = re.compile(r"/|COM\d+", re.IGNORECASE)
 
 
 def faults_of(options: Mapping[str, Mapping[str, str]], links: Mapping[str, str]) -> Iterator[str]:
-    """Yield the options, keys, links and faults on purpose that make no sense.
+    """Yield invalid options, keys, links and injected faults.
 
     Args:
         options: by robot of this backend.

@@ -105,8 +105,8 @@ def _refuse(given: VehicleInput, input: TargetInput, options: LinkOptions) -> No
     found = list(MAVLINK_PYTHON.refusals(alone))
     if not options.objects:
         found += [
-            f"robot '{given.robot.id}': object '{each}': nobody looks for it; say objects=expected to fly"
-            " where it is expected"
+            f"robot '{given.robot.id}': object '{each}': it is not located; objects=expected flies"
+            " to its expected position"
             for each in objects_in(given.robot)
         ]
     if found:

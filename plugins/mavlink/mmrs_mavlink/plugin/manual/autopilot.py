@@ -1,4 +1,4 @@
-"""What an ArduSub tells of itself, and how it is got ready, brought up and let go."""
+"""An ArduSub: its reports, its set-up, its ascent and its release."""
 
 from __future__ import annotations
 
@@ -24,20 +24,20 @@ TOLD_EVERY = 100_000
 """Microseconds."""
 
 NEEDED, STALE = ("ATTITUDE", "GLOBAL_POSITION_INT"), 2.0
-"""What heading and depth are told by, and after how many seconds without they are not known any more."""
+"""Messages with heading and depth, and the seconds without them after which these are unknown."""
 
 FIRST_SIGN = 60.0
 INSISTING, PATIENCE = 12, 3.0
 """Times that something is asked for until it is done, and seconds between them."""
 
 ASKED_EVERY = 1.0
-"""Seconds after which a vehicle that does not come up is told to once more."""
+"""Seconds after which a vehicle that does not surface is commanded once more."""
 
 OFF_FOR = 2.0
 """Seconds without motors after which no news of a new start is waited for."""
 
 STALL = 1.0
-"""Seconds from one look to the next after which this program was stalled, which is nobody's silence."""
+"""Seconds between two looks after which this program was stalled, which does not count as silence."""
 
 STICKS_LOST = Safeguard(
     "FS_PILOT_INPUT",
@@ -49,26 +49,26 @@ STICKS_LOST = Safeguard(
 
 LEAK = "leak detected"
 COMES_UP = "SURFACE"
-"""What an ArduSub says of water inside, in small letters, and the response to that."""
+"""An ArduSub's messages about water inside, in lower case, and the response to them."""
 
 
 class Autopilot:
-    """An ArduSub at the end of its link, in depth hold as long as it is not to come up.
+    """An ArduSub at the end of its link, in depth hold unless it is to surface.
 
     Attributes:
-        rising: whether it is to come up by itself.
+        rising: whether it is to surface in a mode of its own.
     """
 
     def __init__(
         self, link: Link, given_up: Callable[[], bool], reserve: float, *, under_way: bool = False
     ) -> None:
-        """Listen; nothing is said before it is to get ready.
+        """Receive; no command is sent before it is to get ready.
 
         Args:
             link: to the vehicle.
-            given_up: whether nobody waits for it any more.
-            reserve: part of the battery with less than which it counts as low.
-            under_way: whether its motors may run at first, as where a run is resumed.
+            given_up: whether it is no longer awaited.
+            reserve: fraction of the battery below which it counts as low.
+            under_way: whether it may be armed at first, as where a run is resumed.
         """
         self.rising = self._rose = False
         self._link, self._given_up, self._reserve, self._under_way = link, given_up, reserve, under_way
@@ -79,17 +79,17 @@ class Autopilot:
         self._looked = self._stalled = -inf
 
     def get_ready(self, say: Callable[[str], None]) -> None:
-        """Go into depth hold and arm.
+        """Enter depth hold and arm.
 
         Args:
-            say: is told what it does by itself when something goes wrong.
+            say: called with its failsafes.
 
         Raises:
-            faults.Strange: it is not the robot's, or somebody else may have it.
-            faults.Fault: it is not heard, tells too little, or does not do it; or nobody waits any more.
+            faults.Strange: it is not the robot's, or may be under external control.
+            faults.Fault: it is silent, reports too little, or does not do it; or it is no longer awaited.
         """
         if not self._wait(lambda: bool(self._link.component), FIRST_SIGN):
-            raise faults.Fault(faults.LINK_LOST, "no vehicle is heard")
+            raise faults.Fault(faults.LINK_LOST, "no vehicle is received")
         hear_out(self._link)
         if why := self._strange():
             raise faults.Strange(why)
@@ -105,7 +105,7 @@ class Autopilot:
         self._starts, self._ready_at = self._link.starts, self._link.clock.now()
 
     def safeguards(self) -> Iterator[str]:
-        """Yield what it does by itself when something goes wrong, as its parameters tell."""
+        """Yield its failsafes, from its parameters."""
         yield from report(self._link, "sub", [STICKS_LOST])
 
     def trouble(self, patience: float) -> faults.Fault | None:
@@ -119,9 +119,9 @@ class Autopilot:
         self._looked = now
         if self.is_silent(patience):
             self._silent_at = now
-            return faults.Fault(faults.LINK_LOST, f"not heard for {self._link.silent_for():.0f} s")
+            return faults.Fault(faults.LINK_LOST, f"no messages for {self._link.silent_for():.0f} s")
         if self._link.starts != self._starts:
-            return faults.Fault(faults.VEHICLE_RESTARTED, "it has begun anew, with its motors off")
+            return faults.Fault(faults.VEHICLE_RESTARTED, "it has restarted, and is disarmed")
         if not self.armed:
             return self._disarmed()
         self._off_since = inf
@@ -129,12 +129,12 @@ class Autopilot:
 
     @property
     def knows(self) -> bool:
-        """Return whether heading and depth were told just now."""
+        """Return whether heading and depth were reported just now."""
         return max(map(self._link.since, NEEDED)) <= self._stale_after
 
     @property
     def knows_depth(self) -> bool:
-        """Return whether its depth was told just now."""
+        """Return whether its depth was reported just now."""
         return self._link.since(NEEDED[1]) <= self._stale_after
 
     def heading(self) -> float | None:
@@ -167,11 +167,11 @@ class Autopilot:
 
     @property
     def silent(self) -> float:
-        """Return for how many seconds it has not been heard, since this program was last stalled."""
+        """Return for how many seconds it has been silent, since this program was last stalled."""
         return min(self._link.silent_for(), self._link.clock.now() - self._stalled)
 
     def is_silent(self, seconds: float) -> bool:
-        """Return whether it has not been heard for so long, and for a real second."""
+        """Return whether it has been silent for that long, and for a real second."""
         return self.silent > self._link.clock.patience(seconds, 1.0)
 
     def word(self) -> str:
@@ -179,17 +179,17 @@ class Autopilot:
         return "" if self.mode is None else word_of(self._link, "sub", self.mode)
 
     def move(self, sticks: Sticks) -> None:
-        """Have the sticks be somewhere."""
+        """Set the sticks."""
         self._link.send(manual_control(self._link.system, sticks))
 
     def rise(self) -> None:
-        """Have it come up by itself; by the stick as long as it does not. To be called again and again."""
+        """Let it surface in its own mode; by the stick as long as it does not. To be called repeatedly."""
         self.rising = self._rose = True
         self.move(Sticks(up=0.0 if self.mode == SURFACE else 1.0))
         self._ask(SURFACE)
 
     def stay(self) -> None:
-        """Have it stay at its depth after it was to come up. To be called until it is in depth hold."""
+        """Let it hold its depth after it was to surface. To be called until it is in depth hold."""
         self.move(Sticks())
         self._ask(DEPTH_HOLD)
 
@@ -204,10 +204,10 @@ class Autopilot:
             command(self._link, mavlink.MAV_CMD_COMPONENT_ARM_DISARM, 0.0, tries=2)
 
     def do(self, number: int, *params: float) -> None:
-        """Have it carry out a command, and return when it says that it does.
+        """Send a command, and return when it is carried out.
 
         Raises:
-            faults.Fault: it does not, or does not answer.
+            faults.Fault: it is not, or there is no answer.
         """
         command(self._link, number, *params)
 
@@ -218,30 +218,30 @@ class Autopilot:
             ask(self._link, mavlink.MAV_CMD_DO_SET_MODE, 1.0, float(mode))
 
     def _strange(self) -> str:
-        """Return why this vehicle must not be told anything; empty where it may."""
+        """Return why this vehicle must not be commanded; empty where it may."""
         beat = self._link.latest("HEARTBEAT")
         ardupilot = mavlink.MAV_AUTOPILOT_ARDUPILOTMEGA
         if beat is None or beat.type not in VEHICLES["sub"] or beat.autopilot != ardupilot:
-            return "the vehicle is no ArduSub"
+            return "the vehicle is not an ArduSub"
         if self.armed and not self._under_way:
-            return "the vehicle's motors run already: somebody else has it"
+            return "the vehicle is armed already: it is under external control"
         return self._link.doubt()
 
     def _disarmed(self) -> faults.Fault | None:
-        """Return that its motors are off, unless it may be about to tell that it has begun anew."""
+        """Return that it is disarmed, unless it may be about to report a restart."""
         self._off_since = min(self._off_since, self._link.clock.now())
         if self._link.clock.now() - self._off_since < self._link.clock.patience(OFF_FOR):
             return None
-        return faults.Fault(faults.MOTORS_OFF, "somebody, or the vehicle itself, has disarmed it")
+        return faults.Fault(faults.MOTORS_OFF, "it was disarmed externally, or by a failsafe")
 
     def _risen(self) -> faults.Fault | None:
-        """Return what has the vehicle come up by itself, or should."""
+        """Return why the vehicle surfaces on its own, or should."""
         if self._rose:
             return None
         if said := self._said(LEAK):
             return faults.Fault(faults.CRASHED, f"the vehicle says '{said}'", COMES_UP)
         if self.mode == SURFACE and self._is_low():
-            return faults.Fault(faults.BATTERY_LOW, "the vehicle comes up by itself", COMES_UP)
+            return faults.Fault(faults.BATTERY_LOW, "the vehicle surfaces on its own", COMES_UP)
         return None
 
     def _taken(self) -> faults.Fault | None:
@@ -258,7 +258,7 @@ class Autopilot:
         # What was told last before all fell silent is no older than that: then the link is lost.
         if age - silent <= self._stale_after or now - self._silent_at < self._stale_after:
             return None
-        return faults.Fault(faults.POSITION_LOST, f"heading or depth was not told for {age:.1f} s")
+        return faults.Fault(faults.POSITION_LOST, f"heading or depth was not reported for {age:.1f} s")
 
     def _low(self) -> faults.Fault | None:
         return faults.Fault(faults.BATTERY_LOW, f"{self.charge():.0%} are left") if self._is_low() else None
@@ -272,7 +272,7 @@ class Autopilot:
         return next((text for text in told if words in text.lower()), "")
 
     def _insist(self, test: Callable[[], bool], number: int, *params: float) -> None:
-        """Have a vehicle do what it takes some time after its start to do, and see that it does."""
+        """Command a vehicle that needs some time after its start, and check that it obeys."""
         for left in reversed(range(INSISTING)):
             try:
                 command(self._link, number, *params)

@@ -22,8 +22,8 @@ def connect(given: VehicleInput) -> ManualRobot:
     """Return a robot at the end of its link.
 
     Raises:
-        UnsupportedError: an option is unknown, the robot is no underwater vehicle, or it cannot be driven
-            to do all of its program by hand; lists all of it.
+        UnsupportedError: an option is unknown, the robot is not an underwater vehicle, or not all of its
+            program can be driven manually; lists all of it.
         LinkLostError: the port cannot be opened.
     """
     unknown = sorted(set(given.options) - {FULL_SPEED})
@@ -48,9 +48,11 @@ def _full_speed(given: VehicleInput) -> float:
     try:
         speed = given.type.capabilities[0].speed[1] if said is None else float(said)
     except ValueError as error:
-        raise UnsupportedError(f"option '{FULL_SPEED}': '{said}' is no number") from error
+        raise UnsupportedError(f"option '{FULL_SPEED}': '{said}' is not a number") from error
     if not 0.05 <= speed <= 20.0:
-        raise UnsupportedError(f"option '{FULL_SPEED}': {speed:g} m/s is no speed of an underwater vehicle")
+        raise UnsupportedError(
+            f"option '{FULL_SPEED}': {speed:g} m/s is not a speed of an underwater vehicle"
+        )
     return speed
 
 

@@ -11,7 +11,7 @@ from mmrs_runtime import faults
 
 
 def carry_out(action: Action, context: VehicleContext, autopilot: Autopilot) -> float:
-    """Have a device do something; return the seconds that it takes from then on.
+    """Carry out a device action; return the seconds that it takes from then on.
 
     Raises:
         faults.Fault: it is not wired for that, does not do it, or does not answer.

@@ -15,7 +15,7 @@ from mmrs_mavlink.plugin.manual.helm import Goal, Helm
 def refusals(context: VehicleContext) -> Iterator[str]:
     """Yield what a robot cannot be driven to do by hand, with its moves."""
     if not context.dives:
-        yield f"robot '{context.robot.id}': is no underwater vehicle"
+        yield f"robot '{context.robot.id}': not an underwater vehicle"
     if context.robot.home is None:
         yield f"robot '{context.robot.id}': its home is not known, and the way is reckoned from there"
     for move in context.robot.moves:
@@ -30,7 +30,7 @@ def _of_move(move: Move, context: VehicleContext) -> Iterator[str]:
     targets = (move.target, move.heading.target if move.heading is not None else None)
     for target in targets:
         if target is not None and target.description is not None:
-            yield f"object '{target.description}', which nobody looks for"
+            yield f"object '{target.description}', which is not located"
     if known == "go":
         if move.heading is not None:
             yield "heading on the way, which goes ahead"

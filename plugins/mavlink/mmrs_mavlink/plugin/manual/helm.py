@@ -9,7 +9,7 @@ NEAR, NEAR_DEPTH, NEAR_HEADING = 0.3, 0.15, 4.0
 """Metres, metres and degrees within which a goal is reached."""
 
 STRAIGHT = 15.0
-"""Degrees off its course up to which a vehicle goes ahead; else it turns on the spot first."""
+"""Degrees off its course up to which a vehicle goes ahead; beyond, it turns on the spot first."""
 
 SLOW_DOWN = 0.5
 """Metres per second for each metre that is left."""
@@ -18,7 +18,7 @@ FULL_TURN_AT, FULL_CLIMB_AT = 45.0, 1.0
 """Degrees, and metres of depth, of error at which the stick is at its end."""
 
 GRACE, PATIENCE, LEAST_SPEED, SLOWEST_CLIMB = 60.0, 3.0, 0.05, 0.05
-"""A goal may take so many seconds, so many times as long as its way, and as if it climbed so slowly, m/s."""
+"""Seconds that a goal may take, the factor of its path's duration, and the slowest climb, m/s."""
 
 LEAST = 0.12
 """Part of the stick's way below which autopilots take it to be let go."""
@@ -53,11 +53,11 @@ class Goal:
 
 
 class Helm:
-    """Steers towards goals, and reckons where the vehicle is.
+    """Steers towards goals, and estimates the vehicle's position.
 
     Attributes:
-        east, north: reckoned, metres from the origin.
-        heading, depth: as last heard.
+        east, north: dead reckoning, metres from the origin.
+        heading, depth: as last received.
         reached: whether the goal is.
     """
 
@@ -173,7 +173,7 @@ def _to_turn(off: float) -> float:
 
 
 def _deflected(wanted: float, least: float) -> float:
-    """Return a stick that an autopilot heeds: none for next to nothing, else no less than it takes."""
+    """Return a stick that an autopilot obeys: none for next to nothing, otherwise no less than it takes."""
     if abs(wanted) <= least:
         return 0.0
     part = max(LEAST, min(1.0, abs(wanted)))

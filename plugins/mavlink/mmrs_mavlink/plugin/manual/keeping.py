@@ -1,4 +1,4 @@
-"""The black box of an underwater vehicle, as whoever interprets behaviours keeps it."""
+"""The black box of an underwater vehicle whose behaviour is interpreted."""
 
 from __future__ import annotations
 

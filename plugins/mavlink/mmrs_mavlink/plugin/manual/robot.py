@@ -37,9 +37,9 @@ NEAR_THE_SURFACE = 0.4
 RESTS, FINDS, STAYS = (NOTHING, "STOP_THRUST"), ("RETURN", "EMERGENCY_AREA"), ("HOLD", "CONTINUE")
 OFF = (faults.MOTORS_OFF, faults.VEHICLE_RESTARTED)
 OURS_NO_MORE = (faults.LINK_LOST, faults.TAKEN_OVER, *OFF)
-"""What leaves a vehicle without motors; and after what it does not do what it is told."""
+"""Faults that leave a vehicle disarmed; and those after which it does not carry out its command."""
 
-UNKNOWN = "nobody knows where it is since it came up: bring it home"
+UNKNOWN = "its position is unknown since it surfaced: bring it home"
 
 
 class ManualRobot(Vehicle):
@@ -48,7 +48,7 @@ class ManualRobot(Vehicle):
     def __init__(
         self, given: VehicleInput, context: VehicleContext, link: Link, live: Live, full_speed: float
     ) -> None:
-        """Know the robot; nothing is sent before it is to get ready."""
+        """Create for the robot; nothing is sent before it is to get ready."""
         self._ways = Ways(given, context)
         self._context, self._link, self._live = context, link, live
         self._helm = Helm(self._ways.home[0], self._ways.home[1], full_speed)
@@ -102,7 +102,7 @@ class ManualRobot(Vehicle):
         threading.Thread(target=self._do, args=(action,), name="device", daemon=True).start()
 
     def look(self, now: float) -> float:
-        """See what went wrong, and whether what was begun last has finished; the world goes on by itself."""
+        """Look for faults, and whether the last order has finished; the vehicle continues meanwhile."""
         with self._lock:
             found = self._troubles.told() or self._own
             self.trouble = self._hinders(found) if self._response and found is not None else found
@@ -117,7 +117,7 @@ class ManualRobot(Vehicle):
         return done and self._own is None and (self._busy_until is None or now >= self._busy_until)
 
     def bear(self, now: float) -> bool:
-        """Go on although something went wrong that policies say to bear."""
+        """Continue although there is a fault that policies tolerate."""
         self._bears = True
         with self._lock:
             if self._troubles.told() is not None:
@@ -139,7 +139,7 @@ class ManualRobot(Vehicle):
             return RobotState(now, self._here(), helm.speed, helm.heading, None, charge)
 
     def respond(self, response: str, now: float) -> None:
-        """Do what a response says, or come up where that cannot be done; what it answers is told no more."""
+        """Carry out a response, or surface where that is impossible; its fault is reported no more."""
         if self.trouble is not None:
             self._answered.add(self.trouble.which)
         self.done, self.trouble = False, None
@@ -171,7 +171,7 @@ class ManualRobot(Vehicle):
             self._route.pause()
 
     def resume(self, now: float) -> None:
-        """Go on."""
+        """Continue."""
         with self._lock:
             self._route.resume(now)
 
@@ -180,7 +180,7 @@ class ManualRobot(Vehicle):
         return self._route.paused is not None and self._helm.reached and self._autopilot.armed
 
     def obeys(self, now: float) -> bool:
-        """Return whether the vehicle does what it was told by `respond`."""
+        """Return whether the vehicle carries out its last response."""
         if self._response in RESTS:
             return self._has_stopped(now)
         ours = self._troubles.event not in OURS_NO_MORE
@@ -188,23 +188,23 @@ class ManualRobot(Vehicle):
         return self.reachable(now) and ours and self._autopilot.mode == mode
 
     def watched(self, now: float) -> bool:
-        """Return whether the vehicle holds by thrust, so that somebody must stay."""
+        """Return whether the vehicle holds by thrust, so that an operator must stay."""
         off = self._troubles.event in OFF
         return self._response in STAYS and not off and self._ready and self._autopilot.silent <= UNANSWERED
 
     def undone(self, now: float) -> str:
-        """Return why it has stopped without doing what it was told."""
+        """Return why it has stopped without carrying out its order."""
         if self._response not in RESTS and self._troubles.event in OFF:
-            return f"its motors are off ({self._troubles.event}): it comes up if it is buoyant"
+            return f"it is disarmed ({self._troubles.event}): it comes up if it is buoyant"
         return self._instead
 
     def reachable(self, now: float) -> bool:
-        """Return whether the vehicle was heard of lately."""
+        """Return whether the vehicle was received lately."""
         return not self._autopilot.is_silent(LINK_PATIENCE)
 
     @property
     def comes_home(self) -> bool:
-        """Return that it knows the way back."""
+        """Return that it knows the return path."""
         return True
 
     def recover(self, passed: Sequence[str], begun: str, now: float) -> bool:
@@ -220,14 +220,14 @@ class ManualRobot(Vehicle):
         return True
 
     def hindrance(self, passed: Sequence[str], begun: str, now: float) -> str:
-        """Return why it cannot go on."""
+        """Return why it cannot continue."""
         with self._lock:
             if self._lost:
                 return UNKNOWN
             try:
                 self._ways.back(passed, self._here())
             except UnreachableError as error:
-                return f"no way is known back to where its program was broken off: {error}"
+                return f"no path is known back to where its program was broken off: {error}"
             return ""
 
     def away(self, now: float) -> str:
@@ -258,7 +258,7 @@ class ManualRobot(Vehicle):
         self._keeper.note(kind, content)
 
     def close(self) -> None:
-        """Let the sticks go, disarm where nobody else has the vehicle, and fall silent."""
+        """Release the sticks, disarm unless the vehicle is under external control, and fall silent."""
         self._ended.set()
         if self._thread is not None:
             self._thread.join(10.0)
@@ -294,7 +294,7 @@ class ManualRobot(Vehicle):
             self._live.wake()
 
     def _steer(self, now: float, trouble: str) -> None:
-        """Move the sticks, unless somebody else has the vehicle."""
+        """Move the sticks, unless the vehicle is under external control."""
         if trouble in (faults.TAKEN_OVER, *OFF) or not self._autopilot.armed:
             self._helm.drift(now)
         elif self._autopilot.rising:
@@ -333,7 +333,7 @@ class ManualRobot(Vehicle):
         self._live.wake()
 
     def _hinders(self, found: Fault) -> Fault | None:
-        """Return what keeps the vehicle from what it was told to do instead of its program."""
+        """Return what keeps the vehicle from carrying out its response."""
         if self._response == NOTHING:
             return None
         if found.which == faults.TAKEN_OVER or (found.which == faults.LINK_LOST and self._silent()):
@@ -352,7 +352,9 @@ class ManualRobot(Vehicle):
         if self._response == NOTHING or not driven or trouble in OFF:
             return True
         if self._autopilot.rising and now > self._route.late_at:
-            self._instead = f"it is not known to have come up: {self._helm.depth:.1f} m deep when last heard"
+            self._instead = (
+                f"it is not known to have come up: {self._helm.depth:.1f} m deep at the last message"
+            )
             return True
         if trouble == faults.LINK_LOST:
             return False
@@ -371,7 +373,7 @@ class ManualRobot(Vehicle):
             self._autopilot.rising = False
             self._route.go(goals, now)
         else:
-            self._come_up(now, "no way there is known: it comes up where it is")
+            self._come_up(now, "no path there is known: it surfaces where it is")
 
     def _come_up(self, now: float, instead: str = "") -> None:
         self._route.come_up(now)

@@ -19,7 +19,7 @@ class Route:
     """
 
     def __init__(self, helm: Helm) -> None:
-        """Have no goals."""
+        """Create without goals."""
         self.depth, self.late_at = 0.0, inf
         self.paused: Goal | None = None
         self._helm = helm
@@ -31,7 +31,7 @@ class Route:
         return self._helm.reached and not self._goals and self.paused is None
 
     def go(self, goals: Sequence[Goal], now: float) -> None:
-        """Have these goals instead of all others."""
+        """Replace all goals."""
         self._goals, self.paused = deque(goals), None
         self.go_on(now)
 
@@ -41,13 +41,13 @@ class Route:
             self._aim(self._goals.popleft(), now)
 
     def stay(self, depth: float) -> None:
-        """Have no goal but the reckoned place, so deep, for as long as it takes."""
+        """Hold the estimated position at that depth, without a time limit."""
         self._goals.clear()
         self.late_at = inf
         self._helm.aim(Goal(depth, self._helm.east, self._helm.north))
 
     def come_up(self, now: float) -> None:
-        """Have no goals, since the vehicle comes up by itself."""
+        """Drop all goals, since the vehicle surfaces on its own."""
         self._goals.clear()
         self.late_at = now + self._helm.seconds(Goal(0.0))
 

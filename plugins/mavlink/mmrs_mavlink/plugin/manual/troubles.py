@@ -1,4 +1,4 @@
-"""What is wrong with a vehicle that is driven by hand, and for how long policies bear it."""
+"""Faults of a vehicle that is driven manually, and how long policies tolerate them."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ class Troubles:
     """
 
     def __init__(self, autopilot: Autopilot, policies: Sequence[Policy]) -> None:
-        """Know of nothing yet; of two policies for an event the first counts."""
+        """Create without faults; of two policies for an event the first counts."""
         self.event = ""
         self._autopilot, self._policies = autopilot, policies
         seconds = patience(faults.LINK_LOST, policies)
@@ -33,7 +33,7 @@ class Troubles:
         self._borne: set[str] = set()
 
     def look(self, now: float) -> None:
-        """See what is wrong now; what goes on is told in the words in which it began."""
+        """Update the present faults; one that lasts is reported in the words of its beginning."""
         found = self._autopilot.trouble(self._silence)
         gone, self._looked = now - self._looked, now
         if found is None:
@@ -44,25 +44,25 @@ class Troubles:
             self._lasted += min(gone, STALL)
 
     def begin(self, found: Fault, lasted: float = inf) -> None:
-        """Have something be wrong that has lasted for so many seconds."""
+        """Set a fault that has lasted for that many seconds."""
         self._fault, self.event, self._lasted = found, found.which, lasted
 
     def end(self) -> None:
-        """Have nothing be wrong."""
+        """Clear all faults."""
         self._fault, self.event = None, ""
 
     def told(self) -> Fault | None:
-        """Return what is wrong, once it has lasted for as long as its policy says, unless it is borne."""
+        """Return a fault that has lasted for as long as its policy defines, unless it is tolerated."""
         found = self._fault
         if found is None or found.which in self._borne or self._lasted < self._after(found):
             return None
         return found
 
     def bear(self) -> None:
-        """Tell no more of what is wrong now, nor of the like."""
+        """Report the present faults, and those of their kind, no more."""
         self._borne.add(self.event)
 
     def _after(self, found: Fault) -> float:
-        """Return for how many seconds something is borne; of a lost link it has been already."""
+        """Return for how many seconds a fault is tolerated; a lost link has been already."""
         at_once = found.which == faults.LINK_LOST or found.instead
         return 0.0 if at_once else patience(found.which, self._policies) or 0.0

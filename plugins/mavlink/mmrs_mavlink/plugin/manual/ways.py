@@ -25,10 +25,10 @@ class Ways:
     """
 
     def __init__(self, given: VehicleInput, context: VehicleContext) -> None:
-        """Know the robot.
+        """Create for the robot.
 
         Raises:
-            UnsupportedError: nobody contributed how it moves.
+            UnsupportedError: no plug-in provides how it moves.
             InfeasibleError: its type lacks the figures.
         """
         self.home: Position = context.robot.home or (0.0, 0.0, context.zero)
@@ -36,16 +36,16 @@ class Ways:
         self._escapes = Escapes(given, kinematics_of(given), self.home)
 
     def for_response(self, response: str, here: Position) -> Sequence[Goal]:
-        """Return the way home or to an emergency area; empty where none is known."""
+        """Return the path home or to an emergency area; empty where none is known."""
         way = self._escapes.clear(response, here)
         at_home = response == "RETURN" and here[:2] == self.home[:2]
         return (self._goals(way) or [Goal(0.0)]) if at_home or way[-1][:2] != here[:2] else ()
 
     def back(self, passed: Sequence[str], here: Position) -> Sequence[Goal]:
-        """Return the way to where the last of the moves ended.
+        """Return the path to where the last of the moves ended.
 
         Raises:
-            UnreachableError: there is none; says why.
+            UnreachableError: there is none; names the reason.
         """
         moves = {move.id: move for move in self._context.robot.moves}
         place = self.home

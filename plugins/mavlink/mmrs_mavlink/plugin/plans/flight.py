@@ -25,9 +25,9 @@ ORIGIN = (0.0, 0.0, 0.0)
 def sorties_of(context: VehicleContext) -> tuple[tuple[Item, ...], ...]:
     """Return the items of each sortie: what a vehicle does between two stays on the ground.
 
-    What missions cannot express is left out, but never so that a vehicle goes on where it should
+    What missions cannot express is left out, but never so that a vehicle continues where it should
     wait: a wait becomes an unlimited loiter that the operator ends, and so does the end of a mission at
-    a choice or at a move that comes round again. A wait on the ground needs no item: the operator begins
+    a choice or at a move in a loop. A wait on the ground needs no item: the operator begins
     each sortie.
     """
     return tuple(flown(context).sorties)
@@ -55,11 +55,11 @@ def flown(context: VehicleContext) -> Flight:
 
 
 class Flight:
-    """Writes moves down as items, one after the other, and keeps where the robot is.
+    """Writes moves as items, one after the other, and tracks the robot's position.
 
     Attributes:
         sorties: the finished ones.
-        left: what could not be written down since a vehicle that flies heeds a mission from its take-off
+        left: what could not be written since a flying vehicle obeys a mission from its take-off
             on only, with the robot and the move.
         beyond: indices of the moves that come after the end of the last mission, if ever; Stop is nothing.
     """
@@ -88,7 +88,7 @@ class Flight:
             self._act(action, move)
 
     def wait(self, move: Move) -> None:
-        """Add a wait that only the operator ends, if the robot is on its way."""
+        """Add a wait that only the operator ends, if the robot is in motion."""
         if self._items and not self._down:
             self._add(cmd.LOITER_UNLIMITED, move, here=True)
 
@@ -156,7 +156,7 @@ class Flight:
             self._stay(move, seconds)
 
     def head_to(self, move: Move, fluid: bool) -> None:
-        """Turn to something, if its place is known; a gimbal turns by itself."""
+        """Turn to a target, if its position is known; a gimbal turns on its own."""
         heading = move.heading
         if heading is None or not self._context.profile.turns or on_gimbal(heading, self._context):
             self._look(move)

@@ -94,7 +94,7 @@ def _coming_round(robot: RobotProgram, context: VehicleContext) -> Iterator[str]
 
 
 def _declared(robot: RobotProgram, input: TargetInput) -> tuple[Policy, ...]:
-    """Return the policies of a robot that somebody wrote down; the habits of its kind are left out."""
+    """Return the declared policies of a robot, without the defaults of its kind."""
     return policies_of(robot, replace(input, robot_kinds={}))
 
 

@@ -29,14 +29,15 @@ Spot: TypeAlias = tuple[float, float, float]
 
 @dataclass(frozen=True, slots=True)
 class Mission:
-    """One sortie of a robot with all that goes into its file.
+    """One sortie of a robot with the contents of its file.
 
     Attributes:
         stem: of its file: the robot's, and the sortie's number where it is not the first.
-        home: its height is above mean sea level: 0 where that is not known and losses are allowed;
-            vehicles replace it by what they measure.
+        home: its height is above mean sea level: 0 where that is unknown and losses are allowed;
+            vehicles replace it by their own measurement.
         fence: polygons to stay out of.
-        rally: heights are above home: the greatest of the sortie, which is above what lies on its way.
+        rally: heights are above home: the greatest of the sortie, which is above the obstacles along its
+            path.
     """
 
     context: VehicleContext

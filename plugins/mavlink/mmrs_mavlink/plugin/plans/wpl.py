@@ -52,10 +52,10 @@ def line(value: object) -> str:
     What is left to the vehicle is written ``nan``.
 
     Raises:
-        ValueError: it is no row, or holds a number without end.
+        ValueError: it is not a row, or holds a number that is not finite.
     """
     if not isinstance(value, Row) or any(map(isinf, value.params)):
-        raise ValueError(f"{value!r} is no row of numbers that end")
+        raise ValueError(f"{value!r} is not a row of finite numbers")
     current = int(value.number == 0 and value.command == WAYPOINT)
     head = (value.number, current, value.frame, value.command)
     return "\t".join([*map(str, head), *(f"{param:.8f}" for param in value.params), "1"])
