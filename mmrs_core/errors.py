@@ -46,7 +46,7 @@ class UnreadableError(MmrsError):
 
     Attributes:
         code: of the problem, as diagnostics have it; empty where the input is not a file of a model.
-        reason: the problem, without the place.
+        reason: the problem, without its place.
         file: in which it is, if there is a code.
         line: counted from 1; 0 where unknown.
         diagnostics: this problem and those of other files that were to be read together with it, if any were.

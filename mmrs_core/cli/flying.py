@@ -148,14 +148,14 @@ def _telling(observe: Callable[[StepRecord], None], program: Program) -> Callabl
     """Return what observes steps as before, and tells people of every move that begins."""
     kinds = {(robot.id, move.id): move for robot in program.robots for move in robot.moves}
 
-    def told(record: StepRecord) -> None:
+    def observe_and_print(record: StepRecord) -> None:
         observe(record)
         if record.label == "begin":
             move = kinds[record.robot, record.move]
             serves = f" for task '{move.task}'" if move.task else ""
             tell(f"{clock(record.time)} '{record.robot}': {move.kind} '{move.id}'{serves}")
 
-    return told
+    return observe_and_print
 
 
 def _unbegun(robots: tuple[str, ...], resumed: tuple[StepRecord, ...]) -> list[str]:

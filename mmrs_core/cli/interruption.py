@@ -34,7 +34,7 @@ def interruptible(work: Callable[[], int]) -> int:
     if signal.getsignal(signal.SIGINT) is not signal.default_int_handler:
         return work()
     signal.signal(signal.SIGINT, _interrupt)
-    sys.excepthook, sys.unraisablehook = _told_elsewhere, _again_if_lost
+    sys.excepthook, sys.unraisablehook = _reported_elsewhere, _again_if_lost
     try:
         return work()
     except KeyboardInterrupt:
@@ -58,7 +58,9 @@ def _interrupt(number: int, frame: FrameType | None) -> NoReturn:
     raise KeyboardInterrupt
 
 
-def _told_elsewhere(kind: type[BaseException], error: BaseException, traceback: TracebackType | None) -> None:
+def _reported_elsewhere(
+    kind: type[BaseException], error: BaseException, traceback: TracebackType | None
+) -> None:
     """Print errors as usual, but none of an interrupt.
 
     Libraries written in C print what breaks their imports off: the interrupt, and errors that follow from it.

@@ -41,7 +41,7 @@ class PluginConformance(Conformance):
         """A move without a kind cannot be checked, simulated or generated."""
         assert self._classes_of(alone, MOVE) <= set(alone.move_kinds)
 
-    def test_every_task_can_be_told_on_a_map(self, alone: Contributions) -> None:
+    def test_every_task_is_drawn_on_a_map(self, alone: Contributions) -> None:
         """A task without a symbol looks like any other."""
         assert self._classes_of(alone, TASK) <= set(alone.map_symbols)
 

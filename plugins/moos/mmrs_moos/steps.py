@@ -87,7 +87,7 @@ def variables_for(context: RobotContext, input: TargetInput, nodes: Mapping[str,
     conditions = {each.condition for each in robot.transitions.values() if each.condition is not None}
     of_all = {each.id: variables_of(each.slots, "MMRS_SLOT_") for each in input.program.robots}
     told = {
-        ((owner, slot), active): _told(nodes[robot.id], nodes[owner], variable, active)
+        ((owner, slot), active): _posted(nodes[robot.id], nodes[owner], variable, active)
         for owner, slots in of_all.items()
         for slot, variable in slots.items()
         for active in (True, False)
@@ -95,7 +95,7 @@ def variables_for(context: RobotContext, input: TargetInput, nodes: Mapping[str,
     return Variables(of_all[robot.id], variables_of(sorted(conditions), "MMRS_IF_"), told)
 
 
-def _told(node: str, owner: str, variable: str, active: bool) -> tuple[str, str]:
+def _posted(node: str, owner: str, variable: str, active: bool) -> tuple[str, str]:
     """Return what a community posts to set a slot of its own, or of another."""
     value = str(active).lower()
     if owner == node:

@@ -249,7 +249,7 @@ def program_of(robots: Sequence[Robot]) -> runtime.Program:
     slots: dict[str, list[str]] = {name: [] for name in names}
     for robot in robots:
         for told, active in ((robot.senders, True), (robot.resets, False)):
-            for sender, slot in _told(robot.id, told):
+            for sender, slot in _senders(robot.id, told):
                 notifies[sender].append(Notify((slot,), active))
         for owner, name in robot.volatile:
             notifies[owner].append(Notify(((owner, name),), active=False))
@@ -269,11 +269,11 @@ def _strangers(robots: Sequence[Robot]) -> list[str]:
 
 
 def _contacts(robot: Robot) -> set[str]:
-    told = {sender for side in (robot.senders, robot.resets) for sender, _ in _told(robot.id, side)}
+    told = {sender for side in (robot.senders, robot.resets) for sender, _ in _senders(robot.id, side)}
     return told | {owner for notify in robot.executable.notifies for owner, _ in notify.slots}
 
 
-def _told(owner: str, side: Iterable[tuple[str, tuple[str, ...]]]) -> Iterable[tuple[str, SlotId]]:
+def _senders(owner: str, side: Iterable[tuple[str, tuple[str, ...]]]) -> Iterable[tuple[str, SlotId]]:
     return ((sender, (owner, name)) for name, senders in side for sender in senders)
 
 

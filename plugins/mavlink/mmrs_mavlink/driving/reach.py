@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from mmrs_runtime.clock import Clock
 from mmrs_runtime.faults import Fault
 
-from ..steps.hearing import is_heard, listening
+from ..steps.reception import is_received, listening
 
 if TYPE_CHECKING:
     from ..links.link import Link
@@ -23,21 +23,21 @@ class Reach:
         self._until = 0.0
 
     @property
-    def is_heard(self) -> bool:
+    def is_received(self) -> bool:
         """Return whether a message arrived lately; one without a link is always reachable."""
-        return self._link is None or is_heard(self._link)
+        return self._link is None or is_received(self._link)
 
     @property
-    def is_heard_again(self) -> bool:
+    def is_restored(self) -> bool:
         """Return whether a message arrived lately over a link that can be lost."""
-        return self._link is not None and is_heard(self._link)
+        return self._link is not None and is_received(self._link)
 
     def may_come_back(self, lost: Fault) -> bool:
         """Return whether the link may still be restored, for some time after it was lost or last received."""
         if self._link is None:
             return False
         now = self._clock.now()
-        if self._lost is not lost or self.is_heard:
+        if self._lost is not lost or self.is_received:
             self._lost = lost
             self._until = now + listening(self._clock)
         return now < self._until

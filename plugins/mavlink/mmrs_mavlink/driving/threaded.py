@@ -191,7 +191,7 @@ class ThreadedVehicle(Vehicle):
         if found is None and response == self._response.name:
             return
         self._under_way, self._brakes = (), lambda: False
-        job = self._response.begin(response, found, self._note_decision, heard=self._reach.is_heard_again)
+        job = self._response.begin(response, found, self._note_decision, heard=self._reach.is_restored)
         if job is not None:
             self._worker.begin(job, afresh=True)
             self._wake_vehicle()
@@ -208,7 +208,7 @@ class ThreadedVehicle(Vehicle):
 
     def reachable(self, now: float) -> bool:
         """Return whether a message of the vehicle arrived lately."""
-        return self._reach.is_heard
+        return self._reach.is_received
 
     def in_doubt(self, now: float) -> bool:
         """Return whether the vehicle has left its mode for an unknown cause, or one not yet handled."""
@@ -230,7 +230,7 @@ class ThreadedVehicle(Vehicle):
     def hindrance(self, passed: Sequence[str], begun: str, now: float) -> str:
         """Return why no return path exists now; empty where there is one."""
         vehicle = self._with.vehicle
-        if not self._reach.is_heard:
+        if not self._reach.is_received:
             return "no messages from its vehicle"
         if not vehicle.state().armed and (why := astray(self._robot, vehicle, self._tolerance)):
             return why
@@ -242,7 +242,7 @@ class ThreadedVehicle(Vehicle):
 
     def away(self, now: float) -> str:
         """Return that the vehicle stands elsewhere than at home, or is silent; empty where it is there."""
-        if not self._reach.is_heard:
+        if not self._reach.is_received:
             return "no messages from its vehicle"
         return away(self._robot, self._with.vehicle, self._tolerance)
 
@@ -335,7 +335,7 @@ class ThreadedVehicle(Vehicle):
         name, state = self._response.name, self._with.vehicle.state()
         if lost.event != LINK_LOST or lost is self._left or name in ("", NOTHING):
             return
-        if not (self._reach.is_heard_again and state.armed):
+        if not (self._reach.is_restored and state.armed):
             return
         if self._watch.answers_alone():
             self._left = lost

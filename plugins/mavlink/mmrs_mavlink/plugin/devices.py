@@ -98,7 +98,7 @@ def _switched(
         return Wired(command, (number, words[given] if given in words else float(given)))
     except ValueError:
         return Unwired(
-            f"device {device.id!r}: neither parameter {parameter} nor property {key}.{action.name} says"
+            f"device {device.id!r}: neither parameter {parameter} nor property {key}.{action.name} names"
             f" what {action.name!r} sets"
         )
 

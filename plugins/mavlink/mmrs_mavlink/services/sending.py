@@ -97,7 +97,7 @@ class _Sending:
             Refused: the vehicle will never take it.
         """
         for _ in range(REPEATS):
-            message = self.link.wait(lambda: first(inbox, self._heeds), self.link.patience)
+            message = self.link.wait(lambda: first(inbox, self._concerns), self.link.patience)
             if message is None:
                 self.over = self.refused
                 return False
@@ -112,7 +112,7 @@ class _Sending:
                 return False
         return False
 
-    def _heeds(self, message: Message) -> bool:
+    def _concerns(self, message: Message) -> bool:
         """Return whether a message concerns this transfer.
 
         A PX4 that still wants or gives items of another kind, since a doubled count has reached it late or

@@ -11,7 +11,7 @@ from mmrs_runtime.faults import TAKEN_OVER, VEHICLE_RESTARTED, Fault
 
 from ..program import Robot
 from ..vehicles import modes
-from ..vehicles.signs import STARTED_ANEW, Signs
+from ..vehicles.failsafe_events import STARTED_ANEW, Signs
 
 if TYPE_CHECKING:
     from ..links.link import Link

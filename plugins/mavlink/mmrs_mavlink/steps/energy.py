@@ -72,7 +72,7 @@ class Reserve:
             response: to a low battery.
             track: the positions that it has passed in this sortie.
         """
-        state = self._wind.heed(state)
+        state = self._wind.with_mean(state)
         if not state.armed:
             self._told = None
         left = self._left(state)
@@ -99,7 +99,7 @@ class Reserve:
         endurance = None if left is None or self._begun is None else self._endurance(state.time, left)
         if left is None or endurance is None or response not in COMES_DOWN:
             return ""
-        needed = seconds_back(self._robot, self._wind.heed(state), response, track) / endurance
+        needed = seconds_back(self._robot, self._wind.with_mean(state), response, track) / endurance
         if left >= needed:
             return ""
         return f"{left:.0%} of the energy is left, and {response} takes {needed:.0%}"

@@ -21,7 +21,7 @@ from mmrs_runtime.faults import (
 from mmrs_runtime.policies import COMES_DOWN, CONTINUE, LAND, UNDECLARED_AFTER, seconds_of
 
 from ..program import Policy, Robot
-from ..vehicles.signs import Signs
+from ..vehicles.failsafe_events import Signs
 from .departures import Departures
 from .energy import Reserve
 from .ground import WATCHED, Ground
@@ -80,7 +80,7 @@ class Watch:
         self._clock = clock
         self._reserve = Reserve(robot)
         self._watched: _Watched | None = None
-        self._heeded: frozenset[str] | None = None
+        self._events: frozenset[str] | None = None
         self._hands_off = self._out_of_reach = False
         self._response = self._untold = ""
         self._anew = False
@@ -89,7 +89,7 @@ class Watch:
 
     def begin(self, link: Link, vehicle: MavlinkVehicle) -> None:
         """Watch link and vehicle."""
-        signs = Signs(vehicle.telemetry, leaps=self._robot.vehicle != "sub")
+        signs = Signs(vehicle.telemetry, jumps=self._robot.vehicle != "sub")
         departures = Departures(self._robot, link, vehicle, signs, self._answers)
         motors = Motors(vehicle, self._robot.vehicle)
         self._watched = _Watched(link, vehicle, signs, departures, Ground(link), motors)
@@ -112,15 +112,15 @@ class Watch:
             response: its response; what would prevent or end that is still watched for,
                 and always the link, and external control.
         """
-        heeded = {POSITION_LOST, VEHICLE_RESTARTED}
+        watched = {POSITION_LOST, VEHICLE_RESTARTED}
         if response not in COMES_DOWN:
-            heeded |= {BATTERY_LOW, GROUND_LOST}
-        self._heeded = frozenset(heeded - set(handled))
+            watched |= {BATTERY_LOW, GROUND_LOST}
+        self._events = frozenset(watched - set(handled))
         self._response = response
 
     def let_go(self) -> None:
         """Watch only the link from now on: the vehicle is under external control."""
-        self._heeded, self._hands_off = frozenset(), True
+        self._events, self._hands_off = frozenset(), True
 
     def answers_alone(self) -> bool:
         """Return whether a vehicle whose link is restored has answered the loss with its failsafe.
@@ -151,7 +151,7 @@ class Watch:
 
     def tighten(self) -> None:
         """Watch for everything again: the robot continues its program."""
-        self._heeded, self._response = None, ""
+        self._events, self._response = None, ""
         self._hands_off = False
         self.renew()
 
@@ -212,7 +212,7 @@ class Watch:
         why = ground.silence(policy)
         if not why:
             self._borne.discard(GROUND_LOST)
-        elif GROUND_LOST not in self._borne and self._heeds(GROUND_LOST):
+        elif GROUND_LOST not in self._borne and self._watches(GROUND_LOST):
             self._judge(GROUND_LOST, why, policy)
 
     def _low(self, vehicle: MavlinkVehicle) -> str:
@@ -232,7 +232,7 @@ class Watch:
             self._since.pop(event, None)
             self._borne.discard(event)
             return
-        if event in self._borne or not self._heeds(event):
+        if event in self._borne or not self._watches(event):
             return
         policy = policy_for(event, self._robot, self.current())
         limit = seconds_of(policy)
@@ -249,8 +249,8 @@ class Watch:
         self._borne.add(event)
         self.decide(event, why, CONTINUE)
 
-    def _heeds(self, event: str) -> bool:
-        return self._heeded is None or event in self._heeded
+    def _watches(self, event: str) -> bool:
+        return self._events is None or event in self._events
 
     def _check_link(self, link: Link) -> None:
         policy = policy_for(LINK_LOST, self._robot, self.current())
@@ -352,4 +352,4 @@ class Watch:
     def _answers(self, event: str) -> bool:
         """Return whether the robot is to answer an event that happens now."""
         borne = policy_for(event, self._robot, self.current()).response == CONTINUE
-        return self._heeds(event) and not borne
+        return self._watches(event) and not borne

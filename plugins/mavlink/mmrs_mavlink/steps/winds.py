@@ -19,7 +19,7 @@ class MeanWind:
         self._mean: tuple[float, ...] | None = None
         self._begun = self._last = 0.0
 
-    def heed(self, state: State) -> State:
+    def with_mean(self, state: State) -> State:
         """Return a state with the mean wind instead of that of the moment, which is taken into account."""
         if state.wind is None:
             return state

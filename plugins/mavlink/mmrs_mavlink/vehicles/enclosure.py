@@ -49,25 +49,27 @@ def enclose(
         _check_height(places, values.get("GF_MAX_VER_DIST", 0.0), "GF_MAX_VER_DIST")
         return
     values = parameters.read(link, ARDUPILOT)
-    heeded = round(values.get("FENCE_TYPE", 0.0))
+    obeyed = round(values.get("FENCE_TYPE", 0.0))
     if values.get("FENCE_ENABLE"):
-        if heeded & CIRCLE:
+        if obeyed & CIRCLE:
             _check_radius(home, places, values.get("FENCE_RADIUS", 0.0), "FENCE_RADIUS")
-        if heeded & HEIGHT:
+        if obeyed & HEIGHT:
             _check_height(places, values.get("FENCE_ALT_MAX", 0.0), "FENCE_ALT_MAX")
     if polygons and "FENCE_TYPE" in values:
-        yield from _heed_polygons(link, heeded, heeded | POLYGONS if values.get("FENCE_ENABLE") else POLYGONS)
+        yield from _enable_polygons(
+            link, obeyed, obeyed | POLYGONS if values.get("FENCE_ENABLE") else POLYGONS
+        )
     yield from _far_from_rally(places, rally, values.get("RALLY_LIMIT_KM", 0.0))
 
 
-def _heed_polygons(link: Link, heeded: int, wanted: int) -> Iterator[str]:
-    if heeded == wanted:
+def _enable_polygons(link: Link, obeyed: int, wanted: int) -> Iterator[str]:
+    if obeyed == wanted:
         return
     if not parameters.write(link, "FENCE_TYPE", wanted):
         raise Refused(f"the fence: the vehicle does not confirm FENCE_TYPE = {wanted}")
     alone = wanted == POLYGONS
     what = "is the areas of the program alone" if alone else "obeys the areas of the program, too"
-    yield f"FENCE_TYPE = {wanted}, which was {heeded}: its fence {what}"
+    yield f"FENCE_TYPE = {wanted}, which was {obeyed}: its fence {what}"
 
 
 def _check_radius(home: Place, places: Sequence[Place], radius: float, name: str) -> None:

@@ -75,7 +75,7 @@ class LinkEvidence:
         if distance(self._telemetry.here(), place) <= THERE:
             return True
         self._ask(self._target)
-        if self._told_since(self._target):
+        if self._reported_since(self._target):
             return self._aims_at(place)
         return self._hurries_to(place, speed)
 
@@ -101,12 +101,12 @@ class LinkEvidence:
 
     def _beats(self) -> bool:
         """Return whether a heartbeat has come since; if not, ask for one."""
-        if self._told_since(HEARTBEAT):
+        if self._reported_since(HEARTBEAT):
             return True
         self._ask(HEARTBEAT)
         return False
 
-    def _told_since(self, kind: str) -> bool:
+    def _reported_since(self, kind: str) -> bool:
         return self._link.clock.now() - self._link.since(kind) > self._begun
 
     def _ask(self, kind: str) -> None:

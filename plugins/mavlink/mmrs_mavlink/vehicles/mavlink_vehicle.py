@@ -1,7 +1,7 @@
 """A vehicle at the end of a MAVLink link, in the words of a robot's program.
 
 ArduPilot is stepped in GUIDED and PX4 in OFFBOARD; both run missions in AUTO. What else differs
-between them is in ``habits.py`` and ``px4.py``.
+between them is in ``profile.py`` and ``px4.py``.
 """
 
 from __future__ import annotations
@@ -27,9 +27,9 @@ from . import modes, preparation, safeguards
 from .enclosure import enclose
 from .evidence import LinkEvidence
 from .exemptions import end_exemption
-from .helm import MODE_SECONDS, Helm
 from .listening import check_listening
 from .mission import Mission
+from .mode_control import MODE_SECONDS, ModeControl
 from .own_home import keep_home
 from .steering import PATIENCE_FACTOR, PATIENCE_SECONDS, STILL, Steering
 from .telemetry import Telemetry
@@ -73,16 +73,16 @@ class MavlinkVehicle:
         self._tell = tell
         self._link = link
         self._telemetry = Telemetry(link, home)
-        self._helm = Helm(link, self._telemetry, kind)
+        self._mode_control = ModeControl(link, self._telemetry, kind)
         self._acceptance = travel.acceptance if acceptance is None else acceptance
         self._steering = Steering(
-            link, self._telemetry, self._helm, self._acceptance, grounded=kind == "rover"
+            link, self._telemetry, self._mode_control, self._acceptance, grounded=kind == "rover"
         )
         self._travel = travel
         self._kind = kind
         self._home = home
         self._home_tolerance = home_tolerance
-        self._mission = Mission(link, self._telemetry, self._helm)
+        self._mission = Mission(link, self._telemetry, self._mode_control)
         self._alone: frozenset[int] = frozenset()
         self._listens = False
 
@@ -113,7 +113,7 @@ class MavlinkVehicle:
             self._tell(line)
         preparation.await_ready(self._link, self._telemetry)
         if fenced:
-            self._helm.habits.enable_fence()
+            self._mode_control.profile.enable_fence()
 
     def check(self) -> None:
         """Check that the vehicle is not under external control.
@@ -121,7 +121,7 @@ class MavlinkVehicle:
         Raises:
             Fault: it is, or a failsafe has answered an event.
         """
-        self._helm.check()
+        self._mode_control.check()
 
     def answer_lost_link(self, response: str, after: float | None = None) -> None:
         """Set the failsafe for a lost ground station.
@@ -138,7 +138,7 @@ class MavlinkVehicle:
         alone = modes.alone(self._link, self._kind, told)
         # Until it confirms, it may do the one or the other.
         self._alone |= alone
-        self._helm.alone |= alone
+        self._mode_control.alone |= alone
         otherwise = preparation.answer_lost_link(self._link, self._kind, response, after)
         self._alone = alone
         if otherwise:
@@ -169,9 +169,9 @@ class MavlinkVehicle:
             return
         if self.start != self._home and isinstance(self._home, Geographic) and not self._telemetry.armed():
             self._tell(keep_home(self._link, self._telemetry, self._home, self.start))
-        self._helm.leave_ground(height)
+        self._mode_control.leave_ground(height)
         limit = PATIENCE_SECONDS + PATIENCE_FACTOR * height
-        self._helm.until(lambda: self._is_at(height) or self._has_climbed(), limit, "to take off")
+        self._mode_control.until(lambda: self._is_at(height) or self._has_climbed(), limit, "to take off")
         if not self._is_at(height):
             self._steering.go_to(at_height(self._telemetry.here(), height), None, None, False)
 
@@ -183,7 +183,7 @@ class MavlinkVehicle:
 
         A PX4 takes for home where it leaves the ground, by when its height has drifted, or it has risen.
         """
-        holds = bool(self._helm.habits.climbing()) and self._helm.mode() == modes.HOLD
+        holds = bool(self._mode_control.profile.climbing()) and self._mode_control.mode() == modes.HOLD
         return holds and self._telemetry.airborne() and self._telemetry.speed() <= STILL
 
     def land(self) -> None:
@@ -192,10 +192,10 @@ class MavlinkVehicle:
         Raises:
             Fault: it does not come to the ground.
         """
-        self._helm.enter(modes.LAND)
+        self._mode_control.enter(modes.LAND)
         limit = PATIENCE_SECONDS + PATIENCE_FACTOR * 2.0 * max(0.0, self._telemetry.here().height)
-        self._helm.until(lambda: not self._telemetry.armed(), limit, "to land")
-        self._helm.let_go()
+        self._mode_control.until(lambda: not self._telemetry.armed(), limit, "to land")
+        self._mode_control.let_go()
 
     def go_to(self, place: Place, speed: float | None, look: Look | None, through: bool) -> None:
         """Go straight to a place.
@@ -216,16 +216,16 @@ class MavlinkVehicle:
             Refused: the vehicle has another mission by now, or does not begin with that item.
             Fault: no item was reached for too long, or the mission was set ahead or back externally.
         """
-        self._helm.arm()
+        self._mode_control.arm()
         end = self._mission.fly(first, last, reached)
-        self._helm.enter(modes.GUIDED)
+        self._mode_control.enter(modes.GUIDED)
         self._steering.stay(end)
 
     def rest(self, seconds: float) -> None:
         """Stay for `seconds`."""
         until = self._link.clock.now() + seconds
         self._link.wait(lambda: self._link.clock.now() >= until, seconds)
-        self._helm.check()
+        self._mode_control.check()
 
     def operate(self, number: int, params: tuple[float, ...], *, confirmed: bool = False) -> None:
         """Carry out a device action.
@@ -277,12 +277,12 @@ class MavlinkVehicle:
         Raises:
             Refused: it does not halt.
         """
-        if not self._helm.motors_may_run():
+        if not self._mode_control.motors_may_run():
             return False
         stands = self._telemetry.grounded() and self._kind != "sub"
-        if (stands or not self._telemetry.armed()) and self._helm.stops_motors():
+        if (stands or not self._telemetry.armed()) and self._mode_control.stops_motors():
             return False
-        self._helm.enter(modes.HOLD)
+        self._mode_control.enter(modes.HOLD)
         still = partial(self._telemetry.still_since, self._link.clock.now(), STILL)
         if not self._link.wait(still, PATIENCE_SECONDS, heard=True):
             raise Refused("the vehicle does not come to a halt")
@@ -291,15 +291,15 @@ class MavlinkVehicle:
     def carry_on(self) -> None:
         """Resume steering after a hold, at the vehicle's position; nothing happens on the ground."""
         if self._telemetry.airborne() or (self._telemetry.armed() and self._kind != "copter"):
-            self._helm.arm()
+            self._mode_control.arm()
             self._steering.stay()
 
     def take_back(self) -> None:
         """Prepare to command the vehicle out of a failsafe's mode."""
         try:
-            self._helm.check()
+            self._mode_control.check()
         except Fault:
-            self._helm.let_go()
+            self._mode_control.let_go()
 
     @property
     def modes_alone(self) -> frozenset[int]:
@@ -319,11 +319,11 @@ class MavlinkVehicle:
 
     def accept_own_modes(self) -> None:
         """Accept its present state, or the mode of its own failsafe, until the next command."""
-        self._helm.accept(self._alone)
+        self._mode_control.accept(self._alone)
 
     def accept_mode(self) -> None:
         """Accept its present mode until the next command."""
-        self._helm.accept(())
+        self._mode_control.accept(())
 
     def regain(self) -> None:
         """Return the vehicle to the mode that it has left without a command, and hold position in GUIDED.
@@ -331,17 +331,17 @@ class MavlinkVehicle:
         Raises:
             Refused: it does not enter it. Fault: it is under external control.
         """
-        self._helm.regain()
-        if self._helm.mode() == modes.GUIDED:
+        self._mode_control.regain()
+        if self._mode_control.mode() == modes.GUIDED:
             self._steering.stay()
 
     def explain(self, explains: Callable[[Fault], Fault]) -> None:
         """Find the cause of another mode during a mode change."""
-        self._helm.explains = explains
+        self._mode_control.explains = explains
 
     def insist(self, insists: Callable[[Fault], bool]) -> None:
         """Find the cause of a mode that was left during a mode change, before commanding it again."""
-        self._helm.insists = insists
+        self._mode_control.insists = insists
 
     def surface(self) -> None:
         """Surface.
@@ -355,21 +355,21 @@ class MavlinkVehicle:
             return self._telemetry.here().height > -self._acceptance
 
         if self._telemetry.armed():
-            self._helm.enter(modes.SURFACE if self._helm.has(modes.SURFACE) else modes.HOLD)
+            self._mode_control.enter(modes.SURFACE if self._mode_control.has(modes.SURFACE) else modes.HOLD)
             seconds = 10 * PATIENCE_SECONDS
-            self._helm.until(lambda: is_up() or not self._telemetry.armed(), seconds, "to surface")
+            self._mode_control.until(lambda: is_up() or not self._telemetry.armed(), seconds, "to surface")
         if not is_up():
             raise Refused("it is disarmed: it surfaces only if it is buoyant")
 
     def disarm(self) -> None:
         """Switch off propulsion, whatever happens then."""
         command(self._link, mavlink.MAV_CMD_COMPONENT_ARM_DISARM, 0, FORCE_DISARM)
-        self._helm.until(lambda: not self._telemetry.armed(), MODE_SECONDS, "to stop its motors")
+        self._mode_control.until(lambda: not self._telemetry.armed(), MODE_SECONDS, "to stop its motors")
 
     def finish(self) -> None:
         """End the mission: a vehicle that does not fly is disarmed, one that does is not."""
         if self._telemetry.armed() and (self._kind != "copter" or self._telemetry.grounded()):
-            self._helm.disarm()
+            self._mode_control.disarm()
 
     def evidence(self) -> LinkEvidence:
         """Return what shows, from now on, whether the vehicle obeys."""
@@ -378,7 +378,7 @@ class MavlinkVehicle:
 
     def state(self) -> State:
         """Return what is known now."""
-        mode, armed = self._helm.mode(), self._telemetry.armed()
+        mode, armed = self._mode_control.mode(), self._telemetry.armed()
         return replace(self._telemetry.state(), mode=mode, armed=armed)
 
 

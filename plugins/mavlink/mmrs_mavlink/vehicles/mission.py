@@ -19,7 +19,7 @@ from . import modes, preparation
 from .corridor import width_for
 from .feasibility import check_feasible
 from .following import Following
-from .helm import MODE_SECONDS, Helm
+from .mode_control import MODE_SECONDS, ModeControl
 from .runs import first_flown, keep_place, speed_for
 from .steering import PATIENCE_SECONDS
 from .telemetry import Telemetry
@@ -31,9 +31,9 @@ BEFORE_ID = 6
 class Mission:
     """The program's mission on a vehicle; there is none until it is uploaded."""
 
-    def __init__(self, link: Link, telemetry: Telemetry, helm: Helm) -> None:
+    def __init__(self, link: Link, telemetry: Telemetry, mode_control: ModeControl) -> None:
         """Take a vehicle that has none of the program's."""
-        self._link, self._telemetry, self._helm = link, telemetry, helm
+        self._link, self._telemetry, self._mode_control = link, telemetry, mode_control
         self._items: Sequence[Item] = ()
         self._id = 0
         self._width: float | None = None
@@ -48,7 +48,7 @@ class Mission:
             Refused: something is not accepted, or read back differently, or runs would begin elsewhere.
         """
         self._items, begun = uploads.mission, self._link.clock.now()
-        items = self._helm.habits.mission(uploads.mission)
+        items = self._mode_control.profile.mission(uploads.mission)
         self._id = preparation.replace_all(self._link, items, uploads.fence, uploads.rally)
         if items and is_px4(self._link):
             check_feasible(self._link, self._telemetry, begun)
@@ -71,7 +71,7 @@ class Mission:
             places = self._places(last)
             run = {seq: place for seq, place in places.items() if seq >= first}
             following = Following(trail, run, self._item, first, self._width)
-            self._helm.enter(modes.AUTO)
+            self._mode_control.enter(modes.AUTO)
             if (speed := speed_for(self._link, self._items, first)) is not None:
                 command(self._link, mavlink.MAV_CMD_DO_CHANGE_SPEED, 1, speed, -1)
             self._follow(first, last, following, reached)
@@ -95,7 +95,7 @@ class Mission:
             Refused: the vehicle does not confirm that it will.
         """
         flown = first_flown(self._items, seq)
-        self._helm.habits.select(self._helm.habits.number(seq))
+        self._mode_control.profile.select(self._mode_control.profile.number(seq))
         patience = self._link.clock.patience(MODE_SECONDS)
         if not self._link.wait(lambda: seq <= self._item() <= flown, patience, heard=True):
             raise Refused(f"the vehicle does not go to item {seq} of its mission")
@@ -103,7 +103,7 @@ class Mission:
     def _item(self) -> int:
         """Return the item of the program's mission that the vehicle is at; less than 0: not known."""
         found = self._telemetry.item()
-        return found - self._helm.habits.number(0) if found >= 0 else -1
+        return found - self._mode_control.profile.number(0) if found >= 0 else -1
 
     def _places(self, last: int) -> dict[int, Place]:
         """Return where the items up to one are, by their number, as far as they are anywhere."""
@@ -129,7 +129,7 @@ class Mission:
             return now if now > seq else None
 
         found = self._link.wait(behind, 10 * PATIENCE_SECONDS, heard=True)
-        self._helm.check()
+        self._mode_control.check()
         if found is None:
             raise Fault(NO_PROGRESS, f"item {seq} of the mission was not reached")
         return found

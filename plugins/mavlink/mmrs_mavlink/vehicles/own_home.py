@@ -62,13 +62,13 @@ def _own_home(link: Link, wanted: Geographic | None = None) -> Geographic | None
     """
     with link.inbox("HOME_POSITION") as inbox:
 
-        def told() -> Geographic | None:
+        def reported() -> Geographic | None:
             homes = map(_place_of, tuple(inbox))
             return next((each for each in homes if wanted is None or distance(each, wanted) <= SAME), None)
 
         for _ in link.attempts():
             ask(link, mavlink.MAV_CMD_REQUEST_MESSAGE, mavlink.MAVLINK_MSG_ID_HOME_POSITION)
-            if (found := link.wait(told, link.patience)) is not None:
+            if (found := link.wait(reported, link.patience)) is not None:
                 return found
     return None
 

@@ -26,7 +26,7 @@ from ..links.link import Link
 from ..program import Place
 from ..services.items import Item
 from . import modes
-from .habits import target
+from .autopilot_profile import target
 from .telemetry import Telemetry
 
 STREAM_SECONDS = 0.1

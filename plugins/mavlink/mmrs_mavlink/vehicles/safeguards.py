@@ -35,7 +35,7 @@ class Safeguard:
     below: tuple[float, str] | None = None
     unit: str = ""
 
-    def told(self, value: float) -> str:
+    def line(self, value: float) -> str:
         """Return what the value means, with a warning where there is cause for one."""
         whole = round(value)
         shown = self.words.get(whole, f"{value:g}{self.unit}")
@@ -207,4 +207,4 @@ def report(link: Link, kind: str, instead: Sequence[Safeguard] = ()) -> Iterator
         yield "the vehicle reports none of its failsafe parameters: check its failsafes yourself"
     for name, safeguard in safeguards.items():
         if name in values:
-            yield safeguard.told(values[name])
+            yield safeguard.line(values[name])

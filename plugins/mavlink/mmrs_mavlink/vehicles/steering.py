@@ -13,7 +13,7 @@ from ..links.link import Link
 from ..program import Geographic, Local, Look, Object, Place
 from ..services.commands import command, command_at
 from .footing import aside
-from .helm import Helm
+from .mode_control import ModeControl
 from .telemetry import Telemetry
 
 PATIENCE_FACTOR = 4.0
@@ -29,20 +29,26 @@ class Steering:
     """Steers a vehicle by position targets, which are sent again until it is there."""
 
     def __init__(
-        self, link: Link, telemetry: Telemetry, helm: Helm, acceptance: float, *, grounded: bool = False
+        self,
+        link: Link,
+        telemetry: Telemetry,
+        mode_control: ModeControl,
+        acceptance: float,
+        *,
+        grounded: bool = False,
     ) -> None:
-        """Steer a vehicle by the habits of its helm.
+        """Steer a vehicle by its autopilot profile.
 
         Args:
             link: to the vehicle.
             telemetry: of the vehicle.
-            helm: of the vehicle.
+            mode_control: of the vehicle.
             acceptance: metres from a place at which it counts as reached.
             grounded: whether it is as high as the ground takes it, so that heights say nothing.
         """
         self._link = link
         self._telemetry = telemetry
-        self._helm = helm
+        self._mode_control = mode_control
         self._acceptance = acceptance
         self._away = aside if grounded else distance
         self._yaw: float | None = None
@@ -54,7 +60,7 @@ class Steering:
         Raises:
             Fault: it does not get there.
         """
-        self._helm.arm()
+        self._mode_control.arm()
         self._speed = speed
         self._point(look)
         begun = self._telemetry.here()
@@ -62,12 +68,12 @@ class Steering:
         limit = self._link.clock.now() + PATIENCE_SECONDS + PATIENCE_FACTOR * way / max(0.2, speed or 1.0)
         while True:
             self._steer(place, look)
-            self._helm.pace(speed)
+            self._mode_control.pace(speed)
             if look is not None and isinstance(look.at, Local):
                 self._point(look)
             if self._link.wait(lambda: self._arrived(place, begun if through else None), RESEND_SECONDS):
                 break
-            self._helm.check()
+            self._mode_control.check()
             limit += RESEND_SECONDS if self._link.unheard() else 0.0
             if self._link.clock.now() > limit:
                 raise Fault(
@@ -81,7 +87,7 @@ class Steering:
         Raises:
             Fault: it does not turn so far.
         """
-        self._helm.arm()
+        self._mode_control.arm()
         if look.gimbal:
             self._point(look)
             return
@@ -94,7 +100,7 @@ class Steering:
             self._send_target(here, wanted)
             self._link.wait(lambda: self._faces(wanted), RESEND_SECONDS)
             until += RESEND_SECONDS if self._link.unheard() else 0.0
-            self._helm.check()
+            self._mode_control.check()
 
     def stay(self, place: Place | None = None) -> None:
         """Stay at a place, None: where the vehicle is, and look where it looks."""
@@ -106,7 +112,7 @@ class Steering:
         if isinstance(look.at, Local):
             self._aim_gimbal(look, look.at)
         elif isinstance(look.at, Geographic):
-            frame, height = self._helm.habits.level(look.at.height)
+            frame, height = self._mode_control.profile.level(look.at.height)
             at = Geographic(look.at.latitude, look.at.longitude, height)
             command_at(self._link, mavlink.MAV_CMD_DO_SET_ROI_LOCATION, at, frame, look.device)
 
@@ -141,7 +147,7 @@ class Steering:
         self._send_target(place, self._heading() if self._yaw is None else self._yaw)
 
     def _send_target(self, place: Place, yaw: float) -> None:
-        self._helm.habits.aim(place, radians(yaw), self._speed)
+        self._mode_control.profile.aim(place, radians(yaw), self._speed)
 
     def _arrived(self, place: Place, begun: Place | None) -> bool:
         """Return whether the vehicle is there, and still; or, on a leg to be gone through, abreast of it."""

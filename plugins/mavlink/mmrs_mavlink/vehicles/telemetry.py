@@ -17,7 +17,7 @@ from ..program import Geographic, Local, Place
 from .announcements import WORDS, Announcements
 from .batteries import Batteries
 from .detections import Detections
-from .leaps import Leaps
+from .position_jumps import PositionJumps
 from .readiness import lacks, unlocated
 from .texts import Texts
 from .trail import Trail, place_in
@@ -48,7 +48,7 @@ class Telemetry:
     Attributes:
         texts: of the vehicle.
         announcements: its texts about its failsafes.
-        leaps: jumps of its position estimate.
+        jumps: jumps of its position estimate.
     """
 
     def __init__(self, link: Link, home: Place) -> None:
@@ -63,8 +63,8 @@ class Telemetry:
         link.observe(self.announcements)
         self._batteries = Batteries(lambda: link.component)
         link.observe(self._batteries)
-        self.leaps = Leaps(self._position, lambda: link.component, self.armed)
-        link.observe(self.leaps)
+        self.jumps = PositionJumps(self._position, lambda: link.component, self.armed)
+        link.observe(self.jumps)
         self._detections = Detections(lambda: self.here() if self.placed() else None)
         link.observe(self._detections)
 

@@ -117,8 +117,8 @@ def test_a_wind_that_stays_is_believed_within_a_minute():
 def test_a_wind_that_turns_is_averaged_as_what_it_does():
     mean = MeanWind()
     for second in range(0, 20, 2):
-        mean.heed(state(0.9, time=float(second), wind=6.0, wind_from=350.0))
-        found = mean.heed(state(0.9, time=second + 1.0, wind=6.0, wind_from=10.0))
+        mean.with_mean(state(0.9, time=float(second), wind=6.0, wind_from=350.0))
+        found = mean.with_mean(state(0.9, time=second + 1.0, wind=6.0, wind_from=10.0))
     assert found.wind_from == pytest.approx(0.0, abs=1.0) or found.wind_from == pytest.approx(360.0, abs=1.0)
     assert found.wind == pytest.approx(6.0 * cos(radians(10.0)), abs=0.1)
 

@@ -14,8 +14,8 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 from mmrs_mavlink import Geographic
 from mmrs_mavlink.services.items import Item
 from mmrs_mavlink.vehicles import modes
-from mmrs_mavlink.vehicles.habits import ArduPilot
-from mmrs_mavlink.vehicles.helm import Helm
+from mmrs_mavlink.vehicles.autopilot_profile import ArduPilot
+from mmrs_mavlink.vehicles.mode_control import ModeControl
 from mmrs_mavlink.vehicles.px4 import Px4
 from mmrs_mavlink.vehicles.telemetry import Telemetry
 from mmrs_runtime.faults import Fault
@@ -59,7 +59,7 @@ class Autopilot:
 
 @pytest.fixture
 def px4():
-    """Return a helm, its telemetry, and the PX4 that it steers, in the air, at ten times real time."""
+    """Return a mode control, its telemetry, and the PX4 that it steers, in flight, at ten times real time."""
     with steered(10.0) as found:
         yield found
 
@@ -72,9 +72,9 @@ def steered(speedup: float):
         wire.say(here())
         wire.beat(autopilot=PX4, mode=LOITER, armed=True)
         eventually(telemetry.armed)
-        helm = Helm(link, telemetry, "copter")
-        yield helm, telemetry, autopilot
-        helm.habits.end_guiding()
+        mode_control = ModeControl(link, telemetry, "copter")
+        yield mode_control, telemetry, autopilot
+        mode_control.profile.end_guiding()
 
 
 def test_modes_are_main_and_sub_modes():
@@ -86,14 +86,14 @@ def test_modes_are_main_and_sub_modes():
 
 
 def test_the_heartbeat_says_which_habits_count(px4):
-    assert isinstance(px4[0].habits, Px4)
+    assert isinstance(px4[0].profile, Px4)
     with linked(autopilot=ARDUPILOT) as (link, _):
-        assert isinstance(Helm(link, Telemetry(link, HOME), "copter").habits, ArduPilot)
+        assert isinstance(ModeControl(link, Telemetry(link, HOME), "copter").profile, ArduPilot)
 
 
 def test_set_points_come_before_offboard_is_asked_for_and_go_on():
-    with steered(1.0) as (helm, telemetry, autopilot):
-        helm.enter(modes.GUIDED)
+    with steered(1.0) as (mode_control, telemetry, autopilot):
+        mode_control.enter(modes.GUIDED)
         assert telemetry.mode() == OFFBOARD
         before = len(autopilot.points)
         assert before >= 10
@@ -101,8 +101,8 @@ def test_set_points_come_before_offboard_is_asked_for_and_go_on():
 
 
 def test_set_points_begin_where_the_vehicle_is_above_sea_level(px4):
-    helm, _, autopilot = px4
-    helm.enter(modes.GUIDED)
+    mode_control, _, autopilot = px4
+    mode_control.enter(modes.GUIDED)
     first = autopilot.points[0]
     assert (first.coordinate_frame, first.lat_int, first.lon_int) == (GLOBAL_INT, 423_700_000, 133_500_000)
     assert first.alt == pytest.approx(720.0)
@@ -110,9 +110,9 @@ def test_set_points_begin_where_the_vehicle_is_above_sea_level(px4):
 
 
 def test_set_points_move_along_the_leg_at_the_commanded_speed(px4):
-    helm, _, autopilot = px4
-    helm.enter(modes.GUIDED)
-    helm.habits.aim(NORTH, 0.0, 5.0)
+    mode_control, _, autopilot = px4
+    mode_control.enter(modes.GUIDED)
+    mode_control.profile.aim(NORTH, 0.0, 5.0)
     begun = len(autopilot.points)
     eventually(lambda: len(autopilot.points) > begun + 30)
     metres = [(point.lat_int - 423_700_000) * 1e-7 * 111_319.49 for point in autopilot.points[begun:]]
@@ -123,9 +123,9 @@ def test_set_points_move_along_the_leg_at_the_commanded_speed(px4):
 
 
 def test_without_a_speed_the_set_point_is_the_target(px4):
-    helm, _, autopilot = px4
-    helm.enter(modes.GUIDED)
-    helm.habits.aim(NORTH, 0.0, None)
+    mode_control, _, autopilot = px4
+    mode_control.enter(modes.GUIDED)
+    mode_control.profile.aim(NORTH, 0.0, None)
     eventually(lambda: autopilot.points[-1].lat_int == 423_710_000)
 
 
@@ -138,50 +138,50 @@ def assert_silent(autopilot) -> None:
 
 
 def test_set_points_end_after_another_mode_is_there(px4):
-    helm, telemetry, autopilot = px4
-    helm.enter(modes.GUIDED)
-    helm.enter(modes.HOLD)
+    mode_control, telemetry, autopilot = px4
+    mode_control.enter(modes.GUIDED)
+    mode_control.enter(modes.HOLD)
     assert telemetry.mode() == LOITER
     assert_silent(autopilot)
 
 
 def test_set_points_end_when_somebody_else_has_the_vehicle(px4):
-    helm, telemetry, autopilot = px4
-    helm.enter(modes.GUIDED)
+    mode_control, telemetry, autopilot = px4
+    mode_control.enter(modes.GUIDED)
     autopilot.wire.beat(autopilot=PX4, mode=POSITION, armed=True)
     eventually(lambda: telemetry.mode() == POSITION)
     with pytest.raises(Fault, match="it is under external control") as fault:
-        helm.check()
+        mode_control.check()
     assert fault.value.event == "TAKEN_OVER"
     assert_silent(autopilot)
 
 
 def test_a_take_off_goes_straight_up_to_a_height_above_sea_level_and_may_change_modes(px4):
-    helm, telemetry, autopilot = px4
-    helm.leave_ground(20.0)
+    mode_control, telemetry, autopilot = px4
+    mode_control.leave_ground(20.0)
     sent = next(each for each in reversed(autopilot.wire.of("COMMAND_LONG")) if each.command == 22)
     assert sent.param7 == pytest.approx(720.0)
     assert isnan(sent.param5)
     for mode in (TAKE_OFF, LOITER):
         autopilot.wire.beat(autopilot=PX4, mode=mode, armed=True)
         eventually(lambda mode=mode: telemetry.mode() == mode)
-        helm.check()
+        mode_control.check()
     autopilot.wire.beat(autopilot=PX4, mode=POSITION, armed=True)
     eventually(lambda: telemetry.mode() == POSITION)
     with pytest.raises(Fault, match="left mode take-off for position"):
-        helm.check()
+        mode_control.check()
 
 
 def test_a_mission_has_no_home(px4):
     items = [Item(16, x=n) for n in range(3)]
-    habits = px4[0].habits
-    assert [item.x for item in habits.mission(items)] == [1, 2]
-    assert habits.number(1) == 0
+    profile = px4[0].profile
+    assert [item.x for item in profile.mission(items)] == [1, 2]
+    assert profile.number(1) == 0
 
 
 def test_a_mission_leaves_headings_to_the_vehicle_since_nought_is_north(px4):
     items = [Item(16), Item(178, (1.0, 5.0, -1.0, 0.0)), Item(16, (1.0, 0.0, 0.0, 0.0)), Item(17)]
-    speed, waypoint, wait = px4[0].habits.mission(items)
+    speed, waypoint, wait = px4[0].profile.mission(items)
     assert speed == items[1]
     assert waypoint.params[:3] == (1.0, 0.0, 0.0)
     assert isnan(waypoint.params[3])
@@ -189,6 +189,6 @@ def test_a_mission_leaves_headings_to_the_vehicle_since_nought_is_north(px4):
 
 
 def test_no_speed_is_commanded_where_set_points_have_it(px4):
-    helm, _, autopilot = px4
-    helm.pace(5.0)
+    mode_control, _, autopilot = px4
+    mode_control.pace(5.0)
     assert not [each for each in autopilot.wire.of("COMMAND_LONG") if each.command == 178]

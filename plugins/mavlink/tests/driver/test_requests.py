@@ -11,7 +11,7 @@ from mavlink_peer import acknowledged, eventually, heartbeat, linked
 from mmrs_mavlink import Geographic
 from mmrs_mavlink.driving.worker import Interrupted
 from mmrs_mavlink.vehicles import modes
-from mmrs_mavlink.vehicles.helm import Helm
+from mmrs_mavlink.vehicles.mode_control import ModeControl
 from mmrs_mavlink.vehicles.telemetry import Telemetry
 from mmrs_runtime.faults import Fault
 
@@ -37,12 +37,12 @@ class Late:
 
 @pytest.fixture
 def late():
-    """Return the helm of a vehicle that stands in STABILIZE, its link, its telemetry and the wire."""
+    """Return the mode control of a vehicle that stands in STABILIZE, its link, its telemetry and the wire."""
     with linked(speedup=10.0) as (link, wire):
         wire.answer = Late(wire)
         telemetry = Telemetry(link, HOME)
         show(wire, telemetry, STABILIZE)
-        yield Helm(link, telemetry, "copter"), link, telemetry, wire
+        yield ModeControl(link, telemetry, "copter"), link, telemetry, wire
 
 
 def show(wire, telemetry, mode: int) -> None:
@@ -50,7 +50,7 @@ def show(wire, telemetry, mode: int) -> None:
     eventually(lambda: telemetry.mode() == mode)
 
 
-def broken_off(helm: Helm, link, wire, mode: str) -> None:
+def broken_off(mode_control: ModeControl, link, wire, mode: str) -> None:
     """Ask for a mode, and let something else come before the vehicle shows it."""
 
     def order() -> None:
@@ -59,45 +59,45 @@ def broken_off(helm: Helm, link, wire, mode: str) -> None:
 
     link.guard = order
     with pytest.raises(Interrupted):
-        helm.enter(mode)
+        mode_control.enter(mode)
     link.guard = lambda: None
 
 
 def test_a_mode_that_was_asked_for_before_an_order_came_is_no_pilots(late):
-    helm, link, telemetry, wire = late
-    broken_off(helm, link, wire, modes.GUIDED)
-    helm.enter(modes.LAND)
+    mode_control, link, telemetry, wire = late
+    broken_off(mode_control, link, wire, modes.GUIDED)
+    mode_control.enter(modes.LAND)
     assert telemetry.mode() == LAND
     assert wire.answer.asked == [GUIDED, LAND]
-    helm.check()
+    mode_control.check()
 
 
 def test_a_copy_of_an_earlier_request_is_answered_by_asking_again(late):
-    helm, link, telemetry, wire = late
+    mode_control, link, telemetry, wire = late
     wire.answer.pause = 0.0
     link.retries = replace(link.retries, answer=5.0)
-    broken_off(helm, link, wire, modes.HOLD)
-    helm.enter(modes.LAND)
+    broken_off(mode_control, link, wire, modes.HOLD)
+    mode_control.enter(modes.LAND)
     show(wire, telemetry, BRAKE)
-    helm.check()
+    mode_control.check()
     assert wire.answer.asked[-1] == LAND
     eventually(lambda: telemetry.mode() == LAND)
-    helm.check()
+    mode_control.check()
 
 
 def test_a_pilots_mode_is_a_pilots_however_many_requests_are_on_their_way(late):
-    helm, link, _, wire = late
-    broken_off(helm, link, wire, modes.GUIDED)
+    mode_control, link, _, wire = late
+    broken_off(mode_control, link, wire, modes.GUIDED)
     wire.answer = lambda message: (acknowledged(176), heartbeat(mode=LOITER, armed=True))
     with pytest.raises(Fault, match="left mode stabilize for loiter: it is under external control"):
-        helm.enter(modes.LAND)
+        mode_control.enter(modes.LAND)
 
 
 def test_what_was_asked_for_long_ago_is_a_pilots_again(late):
-    helm, link, telemetry, wire = late
-    broken_off(helm, link, wire, modes.HOLD)
-    helm.enter(modes.LAND)
+    mode_control, link, telemetry, wire = late
+    broken_off(mode_control, link, wire, modes.HOLD)
+    mode_control.enter(modes.LAND)
     threading.Event().wait(1.0)
     show(wire, telemetry, BRAKE)
     with pytest.raises(Fault, match="left mode land for hold: it is under external control"):
-        helm.check()
+        mode_control.check()

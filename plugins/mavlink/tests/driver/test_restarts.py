@@ -51,7 +51,7 @@ def on_the_ground():
 
 def test_a_rover_that_is_being_charged_may_start_anew(on_the_ground):
     made = on_the_ground
-    made.vehicle._helm.enter("guided")
+    made.vehicle._mode_control.enter("guided")
     made.watch.moving = False
     restart(made, armed=False)
     until(lambda: made.watch.restarted)

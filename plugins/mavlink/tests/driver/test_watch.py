@@ -121,7 +121,7 @@ def test_a_position_that_leaps_counts_at_once_whatever_seconds_are_borne(in_the_
 def test_a_position_that_leaps_is_borne_by_who_carries_on(in_the_air):
     made = in_the_air(Policy("POSITION_LOST", "CONTINUE"))
     made.simulated.faults.begin("position-shift", 40.0)
-    until(lambda: made.vehicle.telemetry.leaps.count)
+    until(lambda: made.vehicle.telemetry.jumps.count)
     made.quiet(5.0)
     assert made.decided == [("POSITION_LOST", "CONTINUE")]
 

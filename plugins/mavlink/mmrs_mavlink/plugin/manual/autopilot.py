@@ -9,7 +9,7 @@ from typing import Any
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from mmrs_mavlink.links.link import Link
-from mmrs_mavlink.plugin.manual.helm import Sticks
+from mmrs_mavlink.plugin.manual.steering import Sticks
 from mmrs_mavlink.services.commands import ask, command
 from mmrs_mavlink.vehicles.modes import word_of
 from mmrs_mavlink.vehicles.preparation import VEHICLES, hear_out

@@ -9,7 +9,7 @@ from mmrs_core.behaviour.program import Move
 from mmrs_core.generation.plan_moves import MOVES, above_surface, seconds_of_hold
 from mmrs_core.transformation.kinds import before_target
 from mmrs_mavlink.plugin.context import VehicleContext
-from mmrs_mavlink.plugin.manual.helm import Goal, Helm
+from mmrs_mavlink.plugin.manual.steering import Goal, Steering
 
 
 def refusals(context: VehicleContext) -> Iterator[str]:
@@ -39,26 +39,26 @@ def _of_move(move: Move, context: VehicleContext) -> Iterator[str]:
             yield f"leads {above_surface(position, context):g} m above the surface"
 
 
-def goal_of(move: Move, helm: Helm, context: VehicleContext, depth: float) -> Goal | None:
+def goal_of(move: Move, steering: Steering, context: VehicleContext, depth: float) -> Goal | None:
     """Return what a move leads to; None for one that does nothing.
 
     Args:
         move: that is begun.
-        helm: knows where the vehicle is.
+        steering: knows where the vehicle is.
         context: of the robot.
         depth: at which it is to stay, metres.
     """
     sort = MOVES.get(move.metaclasses[0])
     if sort == "go" and move.target is not None and move.target.position is not None:
-        here = (helm.east, helm.north, context.zero - depth)
+        here = (steering.east, steering.north, context.zero - depth)
         place = before_target(here, move.target.position, move.distance)
         speed = context.speed(move) or 0.5
         return Goal(max(0.0, -above_surface(place, context)), place[0], place[1], speed=speed)
     if sort == "hold":
-        return Goal(depth, helm.east, helm.north, seconds=seconds_of_hold(move))
+        return Goal(depth, steering.east, steering.north, seconds=seconds_of_hold(move))
     heading = move.heading
     if sort == "turn" and heading is not None and heading.target.position is not None:
         east, north, _ = heading.target.position
-        bearing = degrees(atan2(east - helm.east, north - helm.north)) - heading.angle_degrees
+        bearing = degrees(atan2(east - steering.east, north - steering.north)) - heading.angle_degrees
         return Goal(depth, heading=bearing % 360.0)
     return None

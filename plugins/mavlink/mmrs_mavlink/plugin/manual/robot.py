@@ -15,9 +15,9 @@ from mmrs_mavlink.plugin.context import VehicleContext
 from mmrs_mavlink.plugin.manual.autopilot import DEPTH_HOLD, SURFACE, Autopilot
 from mmrs_mavlink.plugin.manual.equipment import carry_out
 from mmrs_mavlink.plugin.manual.goals import goal_of
-from mmrs_mavlink.plugin.manual.helm import Helm
 from mmrs_mavlink.plugin.manual.keeping import keeper_of
 from mmrs_mavlink.plugin.manual.route import Route
+from mmrs_mavlink.plugin.manual.steering import Steering
 from mmrs_mavlink.plugin.manual.troubles import LINK_PATIENCE, Troubles
 from mmrs_mavlink.plugin.manual.ways import Ways
 from mmrs_runtime import faults
@@ -51,8 +51,8 @@ class ManualRobot(Vehicle):
         """Create for the robot; nothing is sent before it is to get ready."""
         self._ways = Ways(given, context)
         self._context, self._link, self._live = context, link, live
-        self._helm = Helm(self._ways.home[0], self._ways.home[1], full_speed)
-        self._route = Route(self._helm)
+        self._steering = Steering(self._ways.home[0], self._ways.home[1], full_speed)
+        self._route = Route(self._steering)
         self._lock = threading.RLock()
         self._ended = threading.Event()
         reserve, resumed = given.program.reserve, live.resumed
@@ -85,7 +85,7 @@ class ManualRobot(Vehicle):
             self._act(order)
             return
         with self._lock:
-            goal = goal_of(order, self._helm, self._context, self._route.depth)
+            goal = goal_of(order, self._steering, self._context, self._route.depth)
             self._busy_until, self._own = now, None
             if goal is not None:
                 self._route.go((goal,), now)
@@ -104,7 +104,7 @@ class ManualRobot(Vehicle):
     def look(self, now: float) -> float:
         """Look for faults, and whether the last order has finished; the vehicle continues meanwhile."""
         with self._lock:
-            found = self._troubles.told() or self._own
+            found = self._troubles.lasting() or self._own
             self.trouble = self._hinders(found) if self._response and found is not None else found
             self.done = (self.trouble is None or self._bears) and self._has_finished(now)
             self._bears = False
@@ -120,7 +120,7 @@ class ManualRobot(Vehicle):
         """Continue although there is a fault that policies tolerate."""
         self._bears = True
         with self._lock:
-            if self._troubles.told() is not None:
+            if self._troubles.lasting() is not None:
                 self._troubles.bear()
             else:
                 self._own = None
@@ -134,9 +134,9 @@ class ManualRobot(Vehicle):
     def state(self, now: float) -> RobotState:
         """Return where the robot is by reckoning, and its battery."""
         with self._lock:
-            helm = self._helm
+            steering = self._steering
             charge = self._autopilot.charge()
-            return RobotState(now, self._here(), helm.speed, helm.heading, None, charge)
+            return RobotState(now, self._here(), steering.speed, steering.heading, None, charge)
 
     def respond(self, response: str, now: float) -> None:
         """Carry out a response, or surface where that is impossible; its fault is reported no more."""
@@ -152,7 +152,7 @@ class ManualRobot(Vehicle):
                 self._ended.set()
             elif response in STAYS:
                 self._autopilot.rising = False
-                self._route.stay(self._helm.depth)
+                self._route.stay(self._steering.depth)
             elif response in FINDS and blind:
                 self._come_up(now, "its heading or depth is not known: it comes up")
             elif response in FINDS:
@@ -177,7 +177,7 @@ class ManualRobot(Vehicle):
 
     def paused(self, now: float) -> bool:
         """Return whether the vehicle has halted."""
-        return self._route.paused is not None and self._helm.reached and self._autopilot.armed
+        return self._route.paused is not None and self._steering.reached and self._autopilot.armed
 
     def obeys(self, now: float) -> bool:
         """Return whether the vehicle carries out its last response."""
@@ -232,7 +232,7 @@ class ManualRobot(Vehicle):
 
     def away(self, now: float) -> str:
         """Return how far from home it is, by reckoning; empty at home."""
-        return self._ways.away(self._helm.east, self._helm.north)
+        return self._ways.away(self._steering.east, self._steering.north)
 
     def moves(self, now: float) -> bool:
         """Return whether the vehicle may move by thrust at any moment."""
@@ -242,14 +242,18 @@ class ManualRobot(Vehicle):
         """Return what the vehicle has told last."""
         if not self._ready:
             return {}
-        helm = self._helm
-        place = {"north": round(helm.north, 2), "east": round(helm.east, 2), "height": -round(helm.depth, 2)}
+        steering = self._steering
+        place = {
+            "north": round(steering.north, 2),
+            "east": round(steering.east, 2),
+            "height": -round(steering.depth, 2),
+        }
         return {
             "mode": self._autopilot.word(),
             "armed": self._autopilot.armed,
             "place": place,
-            "heading": round(helm.heading, 2),
-            "speed": round(helm.speed, 3),
+            "heading": round(steering.heading, 2),
+            "speed": round(steering.speed, 3),
             "energy": self._autopilot.charge(),
         }
 
@@ -269,7 +273,7 @@ class ManualRobot(Vehicle):
         try:
             self._autopilot.get_ready(self._live.say)
             with self._lock:
-                self._helm.depth = self._route.depth = self._autopilot.depth() or 0.0
+                self._steering.depth = self._route.depth = self._autopilot.depth() or 0.0
                 self._ready = True
             self._live.wake()
             while not self._ended.wait(self._link.clock.real(PERIOD)):
@@ -284,11 +288,11 @@ class ManualRobot(Vehicle):
 
     def _tick(self) -> None:
         with self._lock:
-            now, before = self._live.clock.now(), (self._troubles.event, self._helm.reached)
+            now, before = self._live.clock.now(), (self._troubles.event, self._steering.reached)
             self._troubles.look(now)
             self._steer(now, self._troubles.event)
             self._see_progress(now)
-            changed = before != (self._troubles.event, self._helm.reached)
+            changed = before != (self._troubles.event, self._steering.reached)
             self._keeper.seen(self.state(now))
         if changed:
             self._live.wake()
@@ -296,22 +300,22 @@ class ManualRobot(Vehicle):
     def _steer(self, now: float, trouble: str) -> None:
         """Move the sticks, unless the vehicle is under external control."""
         if trouble in (faults.TAKEN_OVER, *OFF) or not self._autopilot.armed:
-            self._helm.drift(now)
+            self._steering.drift(now)
         elif self._autopilot.rising:
-            self._helm.drift(now)
-            self._helm.depth = self._autopilot.depth() or 0.0
+            self._steering.drift(now)
+            self._steering.depth = self._autopilot.depth() or 0.0
             self._autopilot.rise()
         elif self._autopilot.mode == SURFACE:
-            self._helm.drift(now)
+            self._steering.drift(now)
             self._autopilot.stay()
         elif not self._autopilot.knows:
-            self._autopilot.move(self._helm.drift(now))
+            self._autopilot.move(self._steering.drift(now))
         else:
             heading, depth = self._autopilot.heading(), self._autopilot.depth()
-            self._autopilot.move(self._helm.step(now, heading or 0.0, depth or 0.0))
+            self._autopilot.move(self._steering.step(now, heading or 0.0, depth or 0.0))
 
     def _see_progress(self, now: float) -> None:
-        if not self._helm.reached:
+        if not self._steering.reached:
             if now > self._route.late_at and self._own is None:
                 self._own = Fault(faults.NO_PROGRESS, "its goal is not reached in time", "SURFACE")
         elif not self._route.reached:
@@ -353,14 +357,14 @@ class ManualRobot(Vehicle):
             return True
         if self._autopilot.rising and now > self._route.late_at:
             self._instead = (
-                f"it is not known to have come up: {self._helm.depth:.1f} m deep at the last message"
+                f"it is not known to have come up: {self._steering.depth:.1f} m deep at the last message"
             )
             return True
         if trouble == faults.LINK_LOST:
             return False
         if self._autopilot.rising:
-            return self._autopilot.knows_depth and self._helm.depth <= NEAR_THE_SURFACE
-        held = self._helm.reached or not self._autopilot.knows
+            return self._autopilot.knows_depth and self._steering.depth <= NEAR_THE_SURFACE
+        held = self._steering.reached or not self._autopilot.knows
         return self._response in STAYS and self._autopilot.mode == DEPTH_HOLD and held
 
     def _silent(self) -> bool:
@@ -381,7 +385,7 @@ class ManualRobot(Vehicle):
         self._lost = self._autopilot.rising = True
 
     def _here(self) -> Position:
-        return (self._helm.east, self._helm.north, self._context.zero - self._helm.depth)
+        return (self._steering.east, self._steering.north, self._context.zero - self._steering.depth)
 
     def _let_go(self) -> None:
         """Let the sticks go; disarm where the robot is still ours and its mode is."""

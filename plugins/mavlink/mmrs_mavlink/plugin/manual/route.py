@@ -6,11 +6,11 @@ from collections import deque
 from collections.abc import Sequence
 from math import inf
 
-from mmrs_mavlink.plugin.manual.helm import Goal, Helm
+from mmrs_mavlink.plugin.manual.steering import Goal, Steering
 
 
 class Route:
-    """Gives a helm its goals.
+    """Gives a steering its goals.
 
     Attributes:
         depth: of the last goal, or where the vehicle began; metres.
@@ -18,17 +18,17 @@ class Route:
         paused: goal towards which it is steered again after a pause; None: there is no pause.
     """
 
-    def __init__(self, helm: Helm) -> None:
+    def __init__(self, steering: Steering) -> None:
         """Create without goals."""
         self.depth, self.late_at = 0.0, inf
         self.paused: Goal | None = None
-        self._helm = helm
+        self._steering = steering
         self._goals: deque[Goal] = deque()
 
     @property
     def reached(self) -> bool:
         """Return whether all goals are, and there is no pause."""
-        return self._helm.reached and not self._goals and self.paused is None
+        return self._steering.reached and not self._goals and self.paused is None
 
     def go(self, goals: Sequence[Goal], now: float) -> None:
         """Replace all goals."""
@@ -44,19 +44,19 @@ class Route:
         """Hold the estimated position at that depth, without a time limit."""
         self._goals.clear()
         self.late_at = inf
-        self._helm.aim(Goal(depth, self._helm.east, self._helm.north))
+        self._steering.aim(Goal(depth, self._steering.east, self._steering.north))
 
     def come_up(self, now: float) -> None:
         """Drop all goals, since the vehicle surfaces on its own."""
         self._goals.clear()
-        self.late_at = now + self._helm.seconds(Goal(0.0))
+        self.late_at = now + self._steering.seconds(Goal(0.0))
 
     def pause(self) -> None:
         """Halt, and keep the goal."""
         if self.paused is None:
-            self.paused = self._helm.goal or Goal(self.depth)
+            self.paused = self._steering.goal or Goal(self.depth)
             self.late_at = inf
-            self._helm.hold()
+            self._steering.hold()
 
     def resume(self, now: float) -> None:
         """Steer towards the goal that was kept."""
@@ -65,5 +65,5 @@ class Route:
             self._aim(goal, now)
 
     def _aim(self, goal: Goal, now: float) -> None:
-        self.depth, self.late_at = goal.depth, now + self._helm.seconds(goal)
-        self._helm.aim(goal)
+        self.depth, self.late_at = goal.depth, now + self._steering.seconds(goal)
+        self._steering.aim(goal)

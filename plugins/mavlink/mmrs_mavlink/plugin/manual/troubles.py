@@ -51,7 +51,7 @@ class Troubles:
         """Clear all faults."""
         self._fault, self.event = None, ""
 
-    def told(self) -> Fault | None:
+    def lasting(self) -> Fault | None:
         """Return a fault that has lasted for as long as its policy defines, unless it is tolerated."""
         found = self._fault
         if found is None or found.which in self._borne or self._lasted < self._after(found):

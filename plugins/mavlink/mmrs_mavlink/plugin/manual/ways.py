@@ -11,7 +11,7 @@ from mmrs_core.simulation.escape import Escapes
 from mmrs_core.simulation.known import kinematics_of
 from mmrs_core.transformation.kinds import before_target
 from mmrs_mavlink.plugin.context import VehicleContext
-from mmrs_mavlink.plugin.manual.helm import Goal
+from mmrs_mavlink.plugin.manual.steering import Goal
 
 AT_HOME = 2.0
 """Metres from home, as reckoned, that count as at home."""

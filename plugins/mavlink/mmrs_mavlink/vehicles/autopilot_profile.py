@@ -24,7 +24,7 @@ POSITION_AND_YAW = (
 )
 
 
-class Habits(Protocol):
+class AutopilotProfile(Protocol):
     """How one sort of autopilot is steered.
 
     Attributes:

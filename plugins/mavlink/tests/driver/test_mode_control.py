@@ -9,8 +9,8 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 from mmrs_mavlink import Geographic
 from mmrs_mavlink.links.retries import Retries
 from mmrs_mavlink.vehicles import modes
-from mmrs_mavlink.vehicles.helm import Helm
 from mmrs_mavlink.vehicles.mavlink_vehicle import MavlinkVehicle
+from mmrs_mavlink.vehicles.mode_control import ModeControl
 from mmrs_mavlink.vehicles.telemetry import Telemetry
 from mmrs_runtime.faults import Fault, Refused, Unanswered
 
@@ -46,7 +46,7 @@ class Vehicle:
 
 @pytest.fixture
 def steered():
-    """Return a function that gives a helm, its telemetry, the vehicle and the wire to it."""
+    """Return a function that gives a mode control, its telemetry, the vehicle and the wire to it."""
     contexts = []
 
     def steer(**results):
@@ -55,7 +55,7 @@ def steered():
         contexts.append(context)
         wire.answer = vehicle = Vehicle(wire, **results)
         telemetry = Telemetry(link, HOME)
-        return Helm(link, telemetry, "copter"), telemetry, vehicle, wire
+        return ModeControl(link, telemetry, "copter"), telemetry, vehicle, wire
 
     yield steer
     for context in contexts:
@@ -68,61 +68,61 @@ def in_mode(wire, telemetry, mode: int) -> None:
 
 
 def test_a_mode_is_believed_when_a_heartbeat_shows_it(steered):
-    helm, telemetry, _, _ = steered()
-    helm.arm()
+    mode_control, telemetry, _, _ = steered()
+    mode_control.arm()
     assert (telemetry.mode(), telemetry.armed()) == (4, True)
-    helm.check()
+    mode_control.check()
 
 
 def test_a_mode_that_was_acknowledged_and_never_shown_is_refused(steered):
-    helm, _, _, wire = steered()
+    mode_control, _, _, wire = steered()
     wire.answer = lambda message: (
         [acknowledged(message.command)] if message.get_type() == "COMMAND_LONG" else []
     )
     with pytest.raises(Refused, match="does not go into mode land"):
-        helm.enter(modes.LAND)
+        mode_control.enter(modes.LAND)
 
 
 @pytest.mark.parametrize("mode", [LOITER, RTL, LAND, 0])
 def test_a_mode_that_nobody_asked_for_is_a_pilot(steered, mode):
-    helm, telemetry, _, wire = steered()
-    helm.arm()
+    mode_control, telemetry, _, wire = steered()
+    mode_control.arm()
     in_mode(wire, telemetry, mode)
     with pytest.raises(Fault, match=r"left mode guided for .*: it is under external control") as fault:
-        helm.check()
+        mode_control.check()
     assert fault.value.event == "TAKEN_OVER"
 
 
 @pytest.mark.parametrize(("mode", "event"), [(LAND, "POSITION_LOST"), (LOITER, "TAKEN_OVER")])
 def test_what_the_vehicle_answers_by_itself_is_no_pilot_but_a_stick_always_is(steered, mode, event):
-    helm, telemetry, _, wire = steered()
-    helm.arm()
+    mode_control, telemetry, _, wire = steered()
+    mode_control.arm()
     wire.say(text("EKF Failsafe: changed to LAND Mode"))
     in_mode(wire, telemetry, mode)
     with pytest.raises(Fault) as fault:
-        helm.check()
+        mode_control.check()
     assert fault.value.event == event
 
 
 def test_a_mode_that_is_being_changed_is_nobodys(steered):
-    helm, telemetry, _, wire = steered()
-    helm.arm()
-    helm.let_go()
+    mode_control, telemetry, _, wire = steered()
+    mode_control.arm()
+    mode_control.let_go()
     in_mode(wire, telemetry, LOITER)
-    helm.check()
+    mode_control.check()
 
 
 def test_a_vehicle_that_does_not_arm_says_why(steered):
-    helm, _, _, wire = steered(c400=mavlink.MAV_RESULT_FAILED)
+    mode_control, _, _, wire = steered(c400=mavlink.MAV_RESULT_FAILED)
     wire.say(text("Arm: Throttle too high"))
     with pytest.raises(
         Refused, match="COMPONENT_ARM_DISARM: the vehicle answers 'failed': Arm: Throttle too high"
     ):
-        helm.arm()
+        mode_control.arm()
 
 
 def test_a_vehicle_that_disarms_itself_at_once_is_asked_to_arm_again(steered):
-    helm, telemetry, vehicle, wire = steered()
+    mode_control, telemetry, vehicle, wire = steered()
     asked = []
 
     def at_first_disarmed(message):
@@ -133,13 +133,13 @@ def test_a_vehicle_that_disarms_itself_at_once_is_asked_to_arm_again(steered):
             yield answer
 
     wire.answer = at_first_disarmed
-    helm.arm()
+    mode_control.arm()
     assert telemetry.armed()
     assert asked == [1.0, 1.0]
 
 
 def test_a_vehicle_that_never_stays_armed_is_told_with_what_it_has_said(steered):
-    helm, _, vehicle, wire = steered()
+    mode_control, _, vehicle, wire = steered()
 
     def never_armed(message):
         for answer in vehicle(message):
@@ -149,18 +149,18 @@ def test_a_vehicle_that_never_stays_armed_is_told_with_what_it_has_said(steered)
 
     wire.answer = never_armed
     with pytest.raises(Fault, match=r"takes too long to arm: GCS Failsafe$"):
-        helm.arm()
+        mode_control.arm()
 
 
 def test_a_take_off_whose_first_answer_was_lost_is_no_refusal(steered):
-    helm, _, _, wire = steered(c22=mavlink.MAV_RESULT_FAILED)
+    mode_control, _, _, wire = steered(c22=mavlink.MAV_RESULT_FAILED)
     wire.say(FLYING)
-    helm.leave_ground(20.0)
+    mode_control.leave_ground(20.0)
 
 
 def test_a_take_off_is_asked_for_as_often_as_anything_where_the_vehicle_disarms_itself_before(steered):
-    helm, _, vehicle, wire = steered(c22=mavlink.MAV_RESULT_FAILED)
-    helm._link.retries, asked = Retries(tries=5), []
+    mode_control, _, vehicle, wire = steered(c22=mavlink.MAV_RESULT_FAILED)
+    mode_control._link.retries, asked = Retries(tries=5), []
 
     def disarm_itself(message):
         if message.get_type() == "COMMAND_LONG" and message.command == mavlink.MAV_CMD_NAV_TAKEOFF:
@@ -170,14 +170,14 @@ def test_a_take_off_is_asked_for_as_often_as_anything_where_the_vehicle_disarms_
         yield from vehicle(message)
 
     wire.answer = disarm_itself
-    helm.leave_ground(20.0)
+    mode_control.leave_ground(20.0)
     assert len(asked) == 5
 
 
 def test_a_take_off_that_is_refused_on_the_ground_is(steered):
-    helm, _, _, _ = steered(c22=mavlink.MAV_RESULT_FAILED)
+    mode_control, _, _, _ = steered(c22=mavlink.MAV_RESULT_FAILED)
     with pytest.raises(Refused, match="NAV_TAKEOFF: the vehicle answers 'failed'"):
-        helm.leave_ground(20.0)
+        mode_control.leave_ground(20.0)
 
 
 @pytest.fixture

@@ -1,4 +1,4 @@
-"""Where a pilot's sticks are to be, so that a vehicle gets somewhere by heading, depth and time."""
+"""Stick positions of a pilot, so that a vehicle gets somewhere by heading, depth and time."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ class Goal:
     seconds: float = 0.0
 
 
-class Helm:
+class Steering:
     """Steers towards goals, and estimates the vehicle's position.
 
     Attributes:

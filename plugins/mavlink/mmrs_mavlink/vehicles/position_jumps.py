@@ -24,11 +24,11 @@ LATE_SECONDS = 5.0
 """Largest age of a message relative to the one before it; an older one belongs to another start."""
 
 
-class Leaps:
+class PositionJumps:
     """Notices when a vehicle tells a place at which it cannot be by now; an observer of its link.
 
     Attributes:
-        count: of leaps, while the motors could run.
+        count: of jumps, while the motors could run.
         last: the last one, in words; empty before there is any.
     """
 

@@ -14,7 +14,7 @@ from ..links.autopilots import is_px4
 from ..links.link import Link
 from ..services.commands import ask, command
 from . import modes
-from .habits import ArduPilot, Habits
+from .autopilot_profile import ArduPilot, AutopilotProfile
 from .px4 import Px4
 from .readiness import REPEATED_SECONDS
 from .requests import Requests
@@ -34,7 +34,7 @@ AFRESH_SECONDS = 3.0
 """After which at least one new heartbeat should have come, even over a poor link."""
 
 
-class Helm:
+class ModeControl:
     """Keeps a vehicle in the mode that the program needs.
 
     Modes count when heartbeats show them, never by acknowledgement alone. A mode that
@@ -49,7 +49,7 @@ class Helm:
     """
 
     def __init__(self, link: Link, telemetry: Telemetry, kind: str) -> None:
-        """Take the helm of a vehicle of a kind, ``copter``, ``sub`` or ``rover``; change nothing yet."""
+        """Control a vehicle of a class, ``copter``, ``sub`` or ``rover``; change nothing yet."""
         self._link = link
         self._telemetry = telemetry
         self._kind = kind
@@ -57,7 +57,7 @@ class Helm:
         self._mode: str | None = None
         self._speed: float | None = None
         self._told = 0
-        self._habits: Habits | None = None
+        self._profile: AutopilotProfile | None = None
         self._requests = Requests(link)
         self._asked_again = -inf
         self._arming = False
@@ -66,12 +66,12 @@ class Helm:
         self.insists: Callable[[Fault], bool] = lambda fault: False
 
     @property
-    def habits(self) -> Habits:
+    def profile(self) -> AutopilotProfile:
         """Return how the vehicle is steered, once its heartbeat has told what it is."""
-        if self._habits is None:
+        if self._profile is None:
             px4 = is_px4(self._link)
-            self._habits = Px4(self._link, self._telemetry) if px4 else ArduPilot(self._link)
-        return self._habits
+            self._profile = Px4(self._link, self._telemetry) if px4 else ArduPilot(self._link)
+        return self._profile
 
     @property
     def _modes(self) -> Mapping[str, modes.Mode]:
@@ -93,7 +93,7 @@ class Helm:
             Fault: it enters a third one, or leaves the wanted one again: it is under external control.
         """
         wanted, left = self._modes[mode], self._mode or self.mode()
-        self._heed(left)
+        self._obey_late(left)
         known = self._accepted or frozenset({self._telemetry.mode()})
         self._mode, self._accepted = None, known | {wanted.number}
         for _ in range(MODE_TRIES):
@@ -105,14 +105,14 @@ class Helm:
                 self._link.clock.patience(MODE_SECONDS),
                 heard=True,
             )
-            self._heed(left)
+            self._obey_late(left)
             if self._telemetry.mode() == wanted.number:
                 self._requests.is_back()
                 if before != wanted.number:
                     self._requests.shows(wanted.number)
                 self._mode, self._speed, self._accepted = mode, None, frozenset({wanted.number})
                 if mode != modes.GUIDED:
-                    self.habits.end_guiding()
+                    self.profile.end_guiding()
                 return
         raise Refused(f"the vehicle does not go into mode {mode}")
 
@@ -183,9 +183,9 @@ class Helm:
 
     def _begin(self, mode: str) -> None:
         if mode == modes.GUIDED:
-            self.habits.begin_guiding()
+            self.profile.begin_guiding()
 
-    def _heed(self, before: str) -> None:
+    def _obey_late(self, before: str) -> None:
         """Check that the vehicle is not under external control while it is commanded to leave a mode.
 
         Raises:
@@ -199,7 +199,7 @@ class Helm:
 
     def _overtaken(self, number: int, mode: str) -> Fault:
         """Return that a pilot had chosen a mode before the vehicle received its command."""
-        self.habits.end_guiding()
+        self.profile.end_guiding()
         return Fault(
             TAKEN_OVER,
             f"the vehicle left mode {mode} for {modes.word_of(self._link, self._kind, number)}: it is under"
@@ -220,7 +220,7 @@ class Helm:
 
     def _left(self, number: int, mode: str) -> Fault:
         """Return what it means that the vehicle has left a mode for that of a number; steer no more."""
-        self.habits.end_guiding()
+        self.profile.end_guiding()
         cause = self._telemetry.failsafe()
         said = [text.text for event, text in self._telemetry.announcements.recent() if event == cause]
         if cause is not None and number in modes.answers_to(self._link, self._kind, cause, said):
@@ -285,10 +285,10 @@ class Helm:
             Refused: the vehicle does not arm or take off.
         """
         for attempt in count(1):
-            self._be_in(self.habits.climbs_in)
+            self._be_in(self.profile.climbs_in)
             self.start_motors()
             try:
-                command(self._link, mavlink.MAV_CMD_NAV_TAKEOFF, *self.habits.take_off(height))
+                command(self._link, mavlink.MAV_CMD_NAV_TAKEOFF, *self.profile.take_off(height))
                 self._follow_climb()
                 return
             except Refused:
@@ -335,7 +335,7 @@ class Helm:
         Raises:
             Refused: the vehicle takes no such speed.
         """
-        if speed is None or not self.habits.paces():
+        if speed is None or not self.profile.paces():
             return
         if speed != self._speed:
             self._speed, self._told = speed, 0
@@ -360,6 +360,6 @@ class Helm:
 
     def _follow_climb(self) -> None:
         """Accept the modes that a take-off passes through; none here is entered then."""
-        through = self.habits.climbing()
+        through = self.profile.climbing()
         if through:
             self._mode, self._accepted = None, frozenset(through)

@@ -15,21 +15,21 @@ STARTED_ANEW = "the vehicle has restarted"
 class Signs:
     """Reads what a vehicle tells; nothing here waits."""
 
-    def __init__(self, telemetry: Telemetry, *, leaps: bool = True) -> None:
+    def __init__(self, telemetry: Telemetry, *, jumps: bool = True) -> None:
         """Take for granted what was up to now.
 
         Args:
             telemetry: of the vehicle.
-            leaps: whether its position must not leap; that of what dives does when it comes up to a fix.
+            jumps: whether its position must not leap; that of what dives does when it comes up to a fix.
         """
         self._telemetry = telemetry
-        self._heeds_leaps = leaps
+        self._heeds_leaps = jumps
         self.renew()
 
     def renew(self) -> None:
-        """Take the vehicle's restarts and leaps up to now for granted."""
+        """Take the vehicle's restarts and jumps up to now for granted."""
         self._starts = self._telemetry.starts()
-        self._leaps = self._telemetry.leaps.count
+        self._jumps = self._telemetry.jumps.count
 
     @property
     def restarted(self) -> bool:
@@ -39,7 +39,7 @@ class Signs:
     @property
     def leapt(self) -> bool:
         """Return whether its position estimate has jumped since `renew`."""
-        return self._heeds_leaps and self._telemetry.leaps.count > self._leaps
+        return self._heeds_leaps and self._telemetry.jumps.count > self._jumps
 
     def seen(self, *, moving: bool) -> tuple[tuple[str, str], ...]:
         """Return each event with the reason to assume it; an empty one: none.
@@ -58,4 +58,4 @@ class Signs:
 
     def _unlocated(self) -> str:
         """Return why the vehicle's position is unknown; empty if it is known."""
-        return self._telemetry.position_trouble() or (self._telemetry.leaps.last if self.leapt else "")
+        return self._telemetry.position_trouble() or (self._telemetry.jumps.last if self.leapt else "")

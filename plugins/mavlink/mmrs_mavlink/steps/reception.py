@@ -16,7 +16,7 @@ LISTEN_SECONDS, LEAST_LISTEN_SECONDS = 30.0, 2.0
 """How long to wait for a vehicle whose link is lost, of the run and real, when no other robot works."""
 
 
-def is_heard(link: Link) -> bool:
+def is_received(link: Link) -> bool:
     """Return whether a vehicle was received lately."""
     return link.listening and link.silent_for() < lately(link.clock)
 

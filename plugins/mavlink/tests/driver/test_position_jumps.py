@@ -1,4 +1,4 @@
-"""What a vehicle takes for its place: leaps are noticed, and nothing that it can fly is one."""
+"""What a vehicle takes for its place: jumps are noticed, and nothing that it can fly is one."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from mmrs_mavlink.vehicles.leaps import LEAP_METRES, Leaps
+from mmrs_mavlink.vehicles.position_jumps import LEAP_METRES, PositionJumps
 
 COMPONENT = 1
 LOCAL = "LOCAL_POSITION_NED"
@@ -37,16 +37,16 @@ def on_earth(seconds: float, latitude: float, longitude: float):
     )
 
 
-def heard(*messages, kind: str = LOCAL, armed: bool = True) -> Leaps:
-    leaps = Leaps(kind, lambda: COMPONENT, lambda: armed)
+def heard(*messages, kind: str = LOCAL, armed: bool = True) -> PositionJumps:
+    jumps = PositionJumps(kind, lambda: COMPONENT, lambda: armed)
     for message in messages:
-        leaps(message, False)
-    return leaps
+        jumps(message, False)
+    return jumps
 
 
 def test_a_place_where_the_vehicle_cannot_be_by_now_is_a_leap():
-    leaps = heard(local(10.0, 0.0), local(10.25, 40.0), local(10.5, 40.0))
-    assert (leaps.count, leaps.last) == (1, "its position has leapt by 40 m in 0.25 s")
+    jumps = heard(local(10.0, 0.0), local(10.25, 40.0), local(10.5, 40.0))
+    assert (jumps.count, jumps.last) == (1, "its position has leapt by 40 m in 0.25 s")
 
 
 def test_a_leap_there_and_back_are_two():
@@ -79,9 +79,9 @@ def test_people_may_carry_a_vehicle_whose_motors_are_off():
 
 
 def test_what_is_sent_counts_for_nothing():
-    leaps = heard(local(10.0, 0.0))
-    leaps(local(10.25, 40.0), True)
-    assert leaps.count == 0
+    jumps = heard(local(10.0, 0.0))
+    jumps(local(10.25, 40.0), True)
+    assert jumps.count == 0
 
 
 def test_a_place_on_the_earth_leaps_too_and_none_at_all_is_no_leap():
