@@ -249,7 +249,7 @@ class Owner:
             lost_at: when a sender counts as lost; None: it does not.
         """
         kept = self.kept().values()
-        ends = [each.heard + KEPT_SECONDS for each in kept]
+        ends = [each.received + KEPT_SECONDS for each in kept]
         ends += [at for each in kept if (at := lost_at(each.id.sender)) is not None]
         return min(ends, default=None)
 
@@ -321,7 +321,7 @@ class Owner:
 
     def _end_if_lost(self, slot: Slot, now: float) -> None:
         kept = slot.kept
-        if kept is not None and (now - kept.heard > KEPT_SECONDS or self._lost(kept.id.sender, now)):
+        if kept is not None and (now - kept.received > KEPT_SECONDS or self._lost(kept.id.sender, now)):
             slot.lose_sender()
 
     def _take_up(self, line: Line) -> None:

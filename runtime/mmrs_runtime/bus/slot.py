@@ -20,14 +20,14 @@ class Kept:
 
     Attributes:
         most: the latest logical time that the notify may have.
-        heard: when the sender was last received, seconds of any monotonic clock.
+        received: when the sender was last received, seconds of any monotonic clock.
     """
 
     id: CommandId
     round: int
     active: bool
     most: int
-    heard: float
+    received: float
 
 
 @dataclass(slots=True)

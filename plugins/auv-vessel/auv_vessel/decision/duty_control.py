@@ -30,7 +30,7 @@ class Watch:
     """Watches a vehicle for faults, whatever it does.
 
     Attributes:
-        borne: events that are not reported, since a policy is CONTINUE.
+        tolerated: events that are not reported, since a policy is CONTINUE.
     """
 
     def __init__(
@@ -47,7 +47,7 @@ class Watch:
             after: seconds that an event lasts before it counts.
             clearance: metres ahead within which sonar must see nothing; 0: it may.
         """
-        self.borne: set[str] = set()
+        self.tolerated: set[str] = set()
         self._craft, self._reserve, self._after, self._clearance = craft, reserve, after, clearance
         self._since: dict[str, float] = {}
 
@@ -61,7 +61,7 @@ class Watch:
             del self._since[event]
         for event, reason in found.items():
             lasts = state.time - self._since.setdefault(event, state.time)
-            if event not in self.borne and lasts >= self._after(event):
+            if event not in self.tolerated and lasts >= self._after(event):
                 return FailureError(event, reason)
         return None
 
@@ -118,7 +118,7 @@ class DutyControl:
         if self._failure is not None and self._failure.event == event:
             self._failure, self._done = None, True
         elif self.watch is not None:
-            self.watch.borne.add(event)
+            self.watch.tolerated.add(event)
 
     def pause(self, now: float) -> None:
         """Halt; idempotent."""

@@ -158,7 +158,7 @@ class CanVehicle(Vehicle):
         """Carry out a response, or surface where that fails; its fault is reported no more."""
         if self.trouble is not None and self.trouble.which in OVERTAKES:
             self._answered.add(self.trouble.which)
-            self._watch.borne.add(self.trouble.which)
+            self._watch.tolerated.add(self.trouble.which)
         self.done, self.trouble, self._silent_device = False, None, None
         self._look(now)
         state = self._craft.state()
@@ -360,7 +360,7 @@ class CanVehicle(Vehicle):
         return found.event in OVERTAKES and answered
 
     def _forget_answers(self) -> None:
-        self._watch.borne -= self._answered
+        self._watch.tolerated -= self._answered
         self._answered.clear()
 
     def _at_rest(self) -> bool:

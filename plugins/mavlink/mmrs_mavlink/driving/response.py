@@ -49,21 +49,21 @@ class Response:
         self._decide: Decide = lambda event, why, response: None
         self.failed: Callable[[BaseException], None] = lambda error: None
 
-    def begin(self, name: str, found: Fault | None, decide: Decide, *, heard: bool) -> Job | None:
+    def begin(self, name: str, found: Fault | None, decide: Decide, *, restored: bool) -> Job | None:
         """Return the response to a fault; None where the vehicle cannot be commanded.
 
         Args:
             name: of the response, a literal of PolicyResponse or NOTHING.
             found: None for an order.
             decide: called with the response that replaces it.
-            heard: whether the link was lost and is restored.
+            restored: whether the link was lost and is restored.
         """
         self.name, self.holds, self._instead, self._shown = name, False, "", lambda: False
         self._decide = decide
         self._handled.add("" if found is None else found.event)
         self._watch.relax(self._handled, name)
         event = "" if found is None else found.event
-        if event == LINK_LOST and not heard:
+        if event == LINK_LOST and not restored:
             return None
         if name == NOTHING or event == TAKEN_OVER:
             return self._let_go()

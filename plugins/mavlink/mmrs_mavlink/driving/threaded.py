@@ -191,7 +191,7 @@ class ThreadedVehicle(Vehicle):
         if found is None and response == self._response.name:
             return
         self._under_way, self._brakes = (), lambda: False
-        job = self._response.begin(response, found, self._note_decision, heard=self._reach.is_restored)
+        job = self._response.begin(response, found, self._note_decision, restored=self._reach.is_restored)
         if job is not None:
             self._worker.begin(job, afresh=True)
             self._wake_vehicle()
@@ -341,7 +341,7 @@ class ThreadedVehicle(Vehicle):
             self._left = lost
             return
         self._with.say(f"link restored, in mode {state.mode}, and no failsafe has acted: {name}")
-        job = self._response.begin(name, lost, self._note_decision, heard=True)
+        job = self._response.begin(name, lost, self._note_decision, restored=True)
         if job is not None:
             job.append(lambda: self._with.say(f"has done {name}"))
             self._worker.instead(lost, job)

@@ -136,7 +136,9 @@ class Link:
         twin = self._roaming.twin or self._identity.twin
         if twin:
             return f"there are two vehicles with system id {self.system}: {twin}"
-        others = sorted(each for each in self._radio.heard - {self.system} if not self._radio.claimed(each))
+        others = sorted(
+            each for each in self._radio.received - {self.system} if not self._radio.claimed(each)
+        )
         if not self._wanted and others:
             shown = " and ".join(map(str, sorted([self.system, *others])))
             return f"vehicles with the system ids {shown} on this link: name one, as URL@{self.system}"
@@ -144,7 +146,7 @@ class Link:
 
     def strangers(self) -> str:
         """Return the systems on the radio other than the vehicle; empty if there are none."""
-        shown = ", ".join(map(str, sorted(self._radio.heard)))
+        shown = ", ".join(map(str, sorted(self._radio.received)))
         return f"received system {shown}, and not {self._wanted}" if shown and self._wanted else ""
 
     @property
@@ -221,7 +223,9 @@ class Link:
             yield sent
             sent, counted = sent + 1, counted + (not self.silent_since(begun))
 
-    def wait(self, test: Callable[[], Found | None], seconds: float, *, heard: bool = False) -> Found | None:
+    def wait(
+        self, test: Callable[[], Found | None], seconds: float, *, while_received: bool = False
+    ) -> Found | None:
         """Return the result of the test as soon as it has one; None if time runs out.
 
         Time that the guard takes, as for an order to hold, does not count.
@@ -229,7 +233,7 @@ class Link:
         Args:
             test: asked again after every message.
             seconds: of the run.
-            heard: whether time in which the vehicle is silent does not count either, since a guard
+            while_received: whether time in which the vehicle is silent does not count either, since a guard
                 decides when it is lost.
 
         Raises:
@@ -241,7 +245,7 @@ class Link:
             if self._ended:
                 raise Fault(LINK_LOST, self._ended)
             asked = self.clock.now()
-            if heard and self.unheard():
+            if while_received and self.unheard():
                 until += asked - before
             self.guard()
             before = self.clock.now()

@@ -67,7 +67,7 @@ class Radio:
 
     Attributes:
         dropped: how many frames were not used, by type and reason.
-        heard: the systems of all autopilots received.
+        received: the systems of all autopilots received.
         trouble: the port's last error; empty once messages arrive again.
     """
 
@@ -81,7 +81,7 @@ class Radio:
         """
         self.clock = clock
         self.dropped: Counter[str] = Counter()
-        self.heard: set[int] = set()
+        self.received: set[int] = set()
         self.trouble = ""
         self._port = port
         self._signer = signer
@@ -206,7 +206,7 @@ class Radio:
         met, self._speakers[sender] = sender not in self._speakers, time.monotonic()
         self.trouble = ""
         if is_autopilot(message):
-            self.heard.add(system)
+            self.received.add(system)
             self._introduce(message)
         if met:
             # Whoever has just come may answer a lost link, until it hears the first heartbeat.

@@ -142,7 +142,9 @@ def _end(link: Link, inbox: deque[Message], number: int, component: int) -> Mess
         Unanswered: the vehicle was silent about it for too long.
     """
     try:
-        while (answer := link.wait(lambda: _answer(inbox, number), PROGRESS_SECONDS, heard=True)) is not None:
+        while (
+            answer := link.wait(lambda: _answer(inbox, number), PROGRESS_SECONDS, while_received=True)
+        ) is not None:
             if answer.result != _BEGUN:
                 return answer
     except BaseException:

@@ -39,7 +39,7 @@ def check_feasible(link: Link, telemetry: Telemetry, begun: float) -> None:
         current = link.latest("MISSION_CURRENT")
         return current is None or current.mission_state != mavlink.MISSION_STATE_NO_MISSION
 
-    if not link.wait(has_one, link.clock.patience(FEASIBLE_SECONDS), heard=True):
+    if not link.wait(has_one, link.clock.patience(FEASIBLE_SECONDS), while_received=True):
         warnings = (
             text.text
             for text in telemetry.texts.since(begun)

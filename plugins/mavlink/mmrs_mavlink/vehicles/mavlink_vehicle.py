@@ -244,7 +244,7 @@ class MavlinkVehicle:
             if confirmed and not self._link.wait(
                 lambda: any(_taken(message) for message in tuple(inbox)),
                 self._link.clock.patience(IMAGE_SECONDS),
-                heard=True,
+                while_received=True,
             ):
                 raise Unanswered(f"{name_of(number)}: no image was reported within {IMAGE_SECONDS:.0f} s")
 
@@ -258,7 +258,7 @@ class MavlinkVehicle:
             found = self._link.wait(
                 lambda: next((m for m in inbox if m.name == value), None),
                 self._link.clock.patience(seconds),
-                heard=True,
+                while_received=True,
             )
         if found is None:
             raise Unanswered(f"{value}: no such value comes from the vehicle within {seconds:g} s")
@@ -284,7 +284,7 @@ class MavlinkVehicle:
             return False
         self._mode_control.enter(modes.HOLD)
         still = partial(self._telemetry.still_since, self._link.clock.now(), STILL)
-        if not self._link.wait(still, PATIENCE_SECONDS, heard=True):
+        if not self._link.wait(still, PATIENCE_SECONDS, while_received=True):
             raise Refused("the vehicle does not come to a halt")
         return self._telemetry.armed()
 

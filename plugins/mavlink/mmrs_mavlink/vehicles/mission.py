@@ -97,7 +97,7 @@ class Mission:
         flown = first_flown(self._items, seq)
         self._mode_control.profile.select(self._mode_control.profile.number(seq))
         patience = self._link.clock.patience(MODE_SECONDS)
-        if not self._link.wait(lambda: seq <= self._item() <= flown, patience, heard=True):
+        if not self._link.wait(lambda: seq <= self._item() <= flown, patience, while_received=True):
             raise Refused(f"the vehicle does not go to item {seq} of its mission")
 
     def _item(self) -> int:
@@ -128,7 +128,7 @@ class Mission:
             now = following.look()
             return now if now > seq else None
 
-        found = self._link.wait(behind, 10 * PATIENCE_SECONDS, heard=True)
+        found = self._link.wait(behind, 10 * PATIENCE_SECONDS, while_received=True)
         self._mode_control.check()
         if found is None:
             raise Fault(NO_PROGRESS, f"item {seq} of the mission was not reached")

@@ -103,7 +103,7 @@ class ModeControl:
             self._link.wait(
                 lambda: self._telemetry.mode() == wanted.number or self._strays(),
                 self._link.clock.patience(MODE_SECONDS),
-                heard=True,
+                while_received=True,
             )
             self._obey_late(left)
             if self._telemetry.mode() == wanted.number:
@@ -235,7 +235,7 @@ class ModeControl:
         Raises:
             Fault: it does not in that time; `doing` names the activity.
         """
-        if not self._link.wait(test, self._link.clock.patience(seconds, 2.0), heard=True):
+        if not self._link.wait(test, self._link.clock.patience(seconds, 2.0), while_received=True):
             raise Fault(NO_PROGRESS, f"the vehicle takes too long {doing}")
 
     def arm(self) -> None:
@@ -259,7 +259,7 @@ class ModeControl:
         begun, patience = self._link.clock.now(), self._link.clock.patience(AFRESH_SECONDS)
         for _ in range(ARM_TRIES):
             self._ask_to_arm()
-            if self._link.wait(self._telemetry.armed, patience, heard=True):
+            if self._link.wait(self._telemetry.armed, patience, while_received=True):
                 self._arming = False
                 return
         said = "; ".join(dict.fromkeys(text.text for text in self._telemetry.texts.since(begun)))
@@ -293,7 +293,7 @@ class ModeControl:
                 return
             except Refused:
                 # It refuses also when it has left the ground already, and its first answer was lost.
-                if self._link.wait(self._telemetry.airborne, AFRESH_SECONDS, heard=True):
+                if self._link.wait(self._telemetry.airborne, AFRESH_SECONDS, while_received=True):
                     self._follow_climb()
                     return
                 lost = 0 if self._telemetry.armed() else self._link.retries.tries

@@ -137,7 +137,7 @@ def await_position(link: Link, telemetry: Telemetry) -> None:
     Raises:
         Refused: it does not tell.
     """
-    if not link.wait(telemetry.placed, READY_SECONDS, heard=True):
+    if not link.wait(telemetry.placed, READY_SECONDS, while_received=True):
         raise Refused(f"the vehicle does not become ready: {'; '.join(telemetry.lacks())}")
 
 
@@ -147,7 +147,7 @@ def await_ready(link: Link, telemetry: Telemetry) -> None:
     Raises:
         Refused: it does not get ready.
     """
-    if not link.wait(telemetry.ready, READY_SECONDS, heard=True):
+    if not link.wait(telemetry.ready, READY_SECONDS, while_received=True):
         # A PX4 has said why once only, and perhaps before anybody listened.
         ask(link, mavlink.MAV_CMD_RUN_PREARM_CHECKS)
         link.wait(lambda: None, WORDS_SECONDS)

@@ -120,7 +120,7 @@ def test_time_in_which_the_vehicle_is_silent_is_no_time_that_it_takes():
             if not back.is_alive():
                 wire.beat()
 
-        assert link.wait(goes_on, 0.5, heard=True) is None
+        assert link.wait(goes_on, 0.5, while_received=True) is None
         assert time.monotonic() - begun > 1.2
         back.join()
 

@@ -36,7 +36,7 @@ def response_of(made) -> tuple[Response, list[BaseException]]:
 
 def test_a_response_that_fails_itself_halts_the_vehicle_and_is_told_as_not_done(made):
     response, failed = response_of(made)
-    job = response.begin("EMERGENCY_AREA", None, lambda what, why, does: None, heard=True)
+    job = response.begin("EMERGENCY_AREA", None, lambda what, why, does: None, restored=True)
     job.run()
     assert made.mode == "brake"
     assert response.holds
@@ -47,8 +47,8 @@ def test_a_response_that_fails_itself_halts_the_vehicle_and_is_told_as_not_done(
 
 def test_what_is_told_next_is_done_as_ever(made):
     response, _ = response_of(made)
-    response.begin("EMERGENCY_AREA", None, lambda what, why, does: None, heard=True).run()
-    response.begin("LAND", None, lambda what, why, does: None, heard=True).run()
+    response.begin("EMERGENCY_AREA", None, lambda what, why, does: None, restored=True).run()
+    response.begin("LAND", None, lambda what, why, does: None, restored=True).run()
     assert not made.simulated.autopilot.armed
     assert (response.holds, response.undone) == (False, "")
 
@@ -59,7 +59,7 @@ def test_a_vehicle_that_a_pilot_has_just_taken_is_left_to_him_whatever_is_ordere
     made.simulated.faults.begin("stick", mode)
     until(lambda: made.vehicle.telemetry.mode() == made.simulated.autopilot.mode)
     with pytest.raises(Fault, match="it is under external control"):
-        response.begin("LAND", None, lambda what, why, does: None, heard=True).run()
+        response.begin("LAND", None, lambda what, why, does: None, restored=True).run()
     assert made.mode == mode
 
 
@@ -72,7 +72,7 @@ def test_a_vehicle_that_obeys_nothing_is_watched_where_it_would_not_come_down_by
         made.vehicle.hold()
         made.simulated.faults.begin("silent", 176)
         response, _ = response_of(made)
-        job = response.begin("RETURN", None, lambda what, why, does: None, heard=True)
+        job = response.begin("RETURN", None, lambda what, why, does: None, restored=True)
         if not stays:
             with pytest.raises(Fault, match="DO_SET_MODE"):
                 job.run()
@@ -90,7 +90,7 @@ def test_a_return_that_cannot_be_steered_is_a_landing_and_told_as_that():
         made.simulated.faults.begin("gps-lost")
         response, _ = response_of(made)
         decided = []
-        response.begin("RETURN", None, lambda *words: decided.append(words[2]), heard=True).run()
+        response.begin("RETURN", None, lambda *words: decided.append(words[2]), restored=True).run()
         assert decided == ["HOLD", "LAND"]
         assert not made.simulated.autopilot.armed
         assert response.undone.endswith(": it does LAND")
