@@ -157,7 +157,7 @@ def given(*robots: RobotProgram, type: RobotType | None = None, frame: Frame = E
 
 
 def plain(vehicle: str = "copter") -> TargetInput:
-    """Return what a target gets of one robot of a kind that makes a simple stages."""
+    """Return what a target gets of one robot of a vehicle class that makes a simple journey."""
     return given(robot(ALPHA, KINDS[vehicle][2]), type=kind_of(vehicle))
 
 

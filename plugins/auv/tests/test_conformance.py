@@ -1,5 +1,7 @@
 from __future__ import annotations
 
+from dataclasses import replace
+
 from dives import dive, diver, swim
 from mmrs_auv import plugin
 from mmrs_auv.names import AUV_MOVEMENT, PIPELINE
@@ -21,6 +23,7 @@ THRUSTERS = (Part((), {"id": "T1", "maxDepth": 50.0}),)
 DIVER = sample_type(
     name="Diver", attributes={"thrusters": THRUSTERS}, movement=MOVEMENT, speed=(0.0, 2.0), climb_rate=0.5
 )
+SUB = replace(plain("sub"), robot_kinds={each.metaclass: each for each in plugin.mmrs_robot_kinds()})
 LAKE = sample_scene(surface=-3.0, environment={"waterDensity": 1000.0, "currentSpeed": 0.5})
 
 
@@ -82,9 +85,9 @@ class TestRules(RuleConformance):
 class TestTargets(TargetConformance):
     plugin = plugin
     inputs = {
-        "ada": plain("sub"),
-        "can-c": plain("sub"),
-        "can-python": plain("sub"),
+        "ada": SUB,
+        "can-c": SUB,
+        "can-python": SUB,
     }
 
 

@@ -30,7 +30,7 @@ def test_it_is_told_with_code_place_and_hint_beside_the_faults_of_other_files(fi
     assert "context.xmi:" in err
     assert "colour: no feature of Context" in err
     assert "Mission 'm': team is missing" in err
-    assert "error: not well-formed XML: unclosed token [FIL004]\n    expected: XML in which" in err
+    assert "error: not well-formed XML: unclosed token [FIL004]\n    expected: well-formed XML" in err
 
 
 def test_it_stands_among_the_diagnostics_of_json_and_sarif(field, mmrs, tmp_path):

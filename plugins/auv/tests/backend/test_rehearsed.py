@@ -91,7 +91,7 @@ def test_a_turn_points_a_device_that_looks_aside(tmp_path: Path, monkeypatch: py
     ("properties", "why"),
     [
         ({"mount.yaw": "aside"}, "device 'sonar': mount.yaw is not a number"),
-        ({"mavlink.gimbal": "1"}, "device 'sonar' turns by itself, where only the vehicle can be turned"),
+        ({"mavlink.gimbal": "1"}, "device 'sonar' turns on its own, where only the vehicle can be turned"),
     ],
 )
 def test_what_cannot_point_there_is_refused(

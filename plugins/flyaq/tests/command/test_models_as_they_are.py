@@ -149,7 +149,7 @@ def test_fix_leaves_their_files_alone_and_names_what_migrates_them(mmrs, orchard
     code, out, err = mmrs("validate", orchard, "--fix", "--yes", QUIET)
     assert (code, out) == (2, "")
     file = orchard / "mission.json"
-    assert f"mmrs: {file}: a model of FLYAQ 2015, whose file is not mended; 'mmrs migrate' makes" in err
+    assert f"mmrs: {file}: a model of FLYAQ 2015, which cannot be fixed; 'mmrs migrate' makes" in err
     assert held(orchard) == before
 
 
