@@ -24,11 +24,11 @@ _CHAPTERS = {
 _PREFACE = """\
 # Diagnostics
 
-Everything that can be wrong with models, by code. `mmrs validate` checks missions, contexts and robot types,
-`mmrs check` behaviours; both report every fault with its file, line and element, with what was expected, and
-with a hint. Errors stop a mission, warnings do not. `--json` and `--sarif FILE` tell the same to programs;
-`mmrs validate --fix` mends what has one right answer, and shows the change first. Plug-ins add constraints
-and fixes of their own.
+All diagnostics of models, by code. `mmrs validate` checks missions, contexts and robot types,
+`mmrs check` behaviours; both report every problem with its file, line and element, with the expectation, and
+with a hint. Errors stop a mission, warnings do not. `--json` and `--sarif FILE` write the same for programs;
+`mmrs validate --fix` fixes problems with one right answer, and shows each change first. Plug-ins add
+constraints and fixes of their own.
 
 This page is generated: each message is what the failing example gives. Examples show the parts in which a
 model that fails differs from one that passes.

@@ -109,14 +109,20 @@ def import_everything() -> None:
     mavutil.set_dialect("ardupilotmega")
     plugins = entry_points(group="mmrs.plugins")
     for name in sorted({"mmrs_core", "mmrs_runtime", "auv_vessel", *map(_package, plugins)}):
-        package = __import__(name)
-        for module in pkgutil.walk_packages(package.__path__, f"{name}."):
-            if not module.name.endswith(("__main__", ".stubs.write")):
-                __import__(module.name)
+        _import_all(name)
     contributions = load_plugins().contributions
     models, _ = read_models(shipped("examples") / "mixed-team", contributions)
     assert models is not None
     check_models(models, contributions)
+
+
+def _import_all(name: str) -> None:
+    """Import a package with all in it but the kit for tests: pytest wants to import hypothesis by itself."""
+    for module in pkgutil.iter_modules(__import__(name, fromlist=[""]).__path__, f"{name}."):
+        if not module.name.endswith((".testing", "__main__", ".stubs.write")):
+            __import__(module.name)
+            if module.ispkg:
+                _import_all(module.name)
 
 
 def _package(plugin: EntryPoint) -> str:

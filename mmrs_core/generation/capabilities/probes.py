@@ -99,7 +99,7 @@ KINDS: dict[str, tuple[Metaclasses, Metaclasses, tuple[Move, ...]]] = {
     "rover": (((ROBOT, "Robot"),), ((ROBOT, "MovementCapability"),), DRIVE),
     "sub": (((AUV, "AUV"), (ROBOT, "Robot")), ((AUV, "AUVMovement"), (ROBOT, "MovementCapability")), DIVE),
 }
-"""By vehicle class: metaclasses of its type, of its movement, and moves that it can make."""
+"""Metaclasses of type and movement, and possible moves, by vehicle class."""
 
 
 def kind_of(vehicle: str, **properties: str) -> RobotType:

@@ -50,7 +50,7 @@ def refused(url, *vehicles):
 
 def test_what_is_no_submarine_is_told_nothing():
     port = free_port()
-    assert "no ArduSub" in refused(f"udpin:127.0.0.1:{port}", (port, Settings()))
+    assert "not an ArduSub" in refused(f"udpin:127.0.0.1:{port}", (port, Settings()))
 
 
 def test_which_of_two_vehicles_is_meant_has_to_be_said():
@@ -66,7 +66,7 @@ def test_a_vehicle_whose_motors_run_already_is_somebody_elses():
         vehicle.autopilot.arm()
         backend.prepare(clock.now())
         until(lambda: trouble(backend, clock))
-        assert "motors run already" in trouble(backend, clock).reason
+        assert "is armed already" in trouble(backend, clock).reason
         backend.close()
         assert vehicle.autopilot.armed
 

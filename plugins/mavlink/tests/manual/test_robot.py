@@ -82,7 +82,7 @@ def test_it_comes_up_and_says_so_where_there_is_no_emergency_area():
     with sub() as driven:
         driven.go_down()
         driven.stop("EMERGENCY_AREA")
-        assert driven.undone == "no way there is known: it comes up where it is"
+        assert driven.undone == "no path there is known: it surfaces where it is"
         assert driven.truth[2] >= -0.4
 
 

@@ -102,7 +102,7 @@ def test_a_battery_that_gets_low_is_told_and_it_comes_up_by_itself():
         assert driven.truth[2] >= -0.4
         assert not driven.undone
         assert not driven.backend.watched(driven.clock.now())
-        assert "nobody knows where it is" in driven.backend.hindrance((), "out", driven.clock.now())
+        assert "its position is unknown" in driven.backend.hindrance((), "out", driven.clock.now())
 
 
 def test_water_inside_brings_it_up():
@@ -143,7 +143,7 @@ def test_an_autopilot_that_begins_anew_is_told_and_not_taken_for_a_pilot():
         driven.vehicle.faults.begin("restart")
         until(lambda: driven.fault and driven.fault.which == "VEHICLE_RESTARTED")
         driven.stop("SURFACE")
-        assert "its motors are off" in driven.undone
+        assert "it is disarmed" in driven.undone
         assert not driven.vehicle.autopilot.armed
 
 

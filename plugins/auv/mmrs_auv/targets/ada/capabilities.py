@@ -22,7 +22,7 @@ CAPABILITIES: Mapping[str, str] = {
     "Robot.id": "name of the folder, and in the log",
     "Robot.home": "places count from the mission's origin; it begins where the vehicle is",
     "Robot.payload": "speed, by the capability for it",
-    "Robot.slots": "kept by itself, or by the gateway of the bus between robots",
+    "Robot.slots": "kept by the program, or by the gateway of the bus between robots",
     "ObjectTarget": "located where cameras report it, otherwise taken to be at its expected position",
     "Context.forbiddenAreas": "routes keep clear of them; nothing else does",
     "Context.obstacles": "routes keep clear of them; nothing else does",

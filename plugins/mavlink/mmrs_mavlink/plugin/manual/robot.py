@@ -195,7 +195,7 @@ class ManualRobot(Vehicle):
     def undone(self, now: float) -> str:
         """Return why it has stopped without carrying out its order."""
         if self._response not in RESTS and self._troubles.event in OFF:
-            return f"it is disarmed ({self._troubles.event}): it comes up if it is buoyant"
+            return f"it is disarmed ({self._troubles.event}): it surfaces if it is buoyant"
         return self._instead
 
     def reachable(self, now: float) -> bool:
