@@ -50,7 +50,7 @@ def test_plan_does_not_overwrite_an_input_by_another_way_to_it(mmrs, pool):
 def test_plan_writes_nothing_among_the_types_of_robot(mmrs, pool):
     code, _, err = mmrs("plan", pool, "-o", pool / "robots" / "behaviour.xmi")
     assert code == 2
-    assert "types of robot" in err
+    assert "robot types" in err
     assert not (pool / "robots" / "behaviour.xmi").exists()
 
 

@@ -54,7 +54,7 @@ def test_a_part_of_a_black_box_with_a_huge_number_takes_no_memory(tmp_path):
 def test_files_that_nest_too_deeply_are_refused(tmp_path):
     file = tmp_path / "deep.json"
     file.write_text(DEEP)
-    with pytest.raises(UnreadableError, match="is no manifest"):
+    with pytest.raises(UnreadableError, match="is not a manifest"):
         read_manifest(file)
     with pytest.raises(UnreadableError, match="no surroundings"):
         sights_in(file)

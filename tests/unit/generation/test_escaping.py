@@ -68,7 +68,7 @@ def test_a_number_that_is_not_finite_has_no_literal(number):
 
 
 def test_an_object_has_no_literal():
-    with pytest.raises(ValueError, match="no plain value"):
+    with pytest.raises(ValueError, match="not a plain value"):
         python_literal(object())
 
 

@@ -102,6 +102,6 @@ def test_a_link_that_leads_out_is_not_followed(tmp_path):
 
 def test_a_manifest_that_is_none_is_refused(tmp_path):
     (tmp_path / "t.manifest.json").write_text("hello", "utf-8")
-    with pytest.raises(UnreadableError, match="is no manifest"):
+    with pytest.raises(UnreadableError, match="is not a manifest"):
         write(output(GeneratedFile("a.py", b"1")), tmp_path)
     assert not (tmp_path / "a.py").exists()

@@ -160,7 +160,7 @@ def test_what_is_no_number_in_c_is_refused(value):
 def test_a_robot_without_thrusters_on_a_bus_is_refused():
     with pytest.raises(UnsupportedError) as refusal:
         render(CAN_C, plain("rover"))
-    assert refusal.value.elements[0] == "robot 'alpha': not an underwater vehicle"
+    assert refusal.value.elements[0] == "robot 'alpha': is not an underwater vehicle"
     given = plain("sub")
     with pytest.raises(UnsupportedError, match="type 'Kind' is not known"):
         render(CAN_C, replace(given, types={}))

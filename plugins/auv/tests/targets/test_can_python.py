@@ -199,7 +199,7 @@ def test_what_controllers_cannot_do_is_refused() -> None:
     much = replace(use("ctd", "Sample"), parameters=(("seconds", "1e5"),))
     for behaviour, said in (
         (replace(dive(), robots=(flees,)), "emergency area"),
-        (program(flies, frame=POOL), "no underwater vehicle"),
+        (program(flies, frame=POOL), "not an underwater vehicle"),
         (dive(bakes), "Bake"),
         (dive(home=None), "home"),
         (dive(swim("a", 1.0, 0.0, 80.0)), "leads 80 m deep, where its vehicle may go 49.6 m deep"),

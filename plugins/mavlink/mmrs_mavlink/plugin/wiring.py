@@ -51,7 +51,7 @@ def _chosen(action: Action, device: Device, wirings: Wirings) -> Wiring:
             return found[0][1]
     if present:
         names = " and ".join(each.property for each in present)
-        return Unwired(f"device {device.id!r}: {names} does not define it {action.name!r} is")
+        return Unwired(f"device {device.id!r}: {names} does not define action {action.name!r}")
     return Unwired(f"device {device.id!r} has no wiring property, such as mavlink.camera")
 
 

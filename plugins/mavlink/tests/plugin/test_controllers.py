@@ -222,8 +222,8 @@ def test_a_response_to_a_lost_link_that_the_vehicle_cannot_give_by_itself_is_ref
     with pytest.raises(UnsupportedError) as error:
         generated(program(replace(robot, policies=surfaces)))
     assert error.value.elements == (
-        "robot 'alpha': policy LINK_LOST: no copter does SURFACE by itself",
-        "robot 'alpha', move 'up': policy LINK_LOST: no copter does SURFACE by itself",
+        "robot 'alpha': policy LINK_LOST: no copter does SURFACE as a failsafe",
+        "robot 'alpha', move 'up': policy LINK_LOST: no copter does SURFACE as a failsafe",
     )
 
 
@@ -240,7 +240,7 @@ def test_an_object_is_looked_for_by_the_users_own_function():
 def test_a_device_without_wiring_is_refused():
     bare = replace(quad(), devices={"camera": Device("camera", {}, {})})
     (fault,) = refused(take_off("up", 5.0), replace(LAND, before=(photo(),)), types=[bare])
-    assert "no property that says how it is wired" in fault
+    assert "no wiring property" in fault
 
 
 def test_a_robot_without_a_home_is_refused():

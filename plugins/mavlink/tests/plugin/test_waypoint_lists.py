@@ -141,5 +141,5 @@ def test_a_local_behaviour_is_refused_whatever_is_allowed():
 @pytest.mark.parametrize("number", ["nan", "inf"])
 def test_a_wiring_without_a_finite_number_is_refused(number):
     camera = Device("camera", {}, {"mavlink.command.takePhoto": f"2000 0 {number}"})
-    with pytest.raises(UnsupportedError, match="no number of single precision"):
+    with pytest.raises(UnsupportedError, match="not a number of single precision"):
         texts(*FLIGHT, types=[replace(quad(), devices={"camera": camera})])

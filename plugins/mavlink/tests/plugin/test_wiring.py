@@ -65,10 +65,10 @@ def test_a_value_is_sampled_by_its_name():
 @pytest.mark.parametrize(
     ("properties", "reason"),
     [
-        ({}, "no property that says how it is wired"),
+        ({}, "no wiring property"),
         ({"mavlink.camera": "front"}, "mavlink.camera is not a whole number"),
         ({"mavlink.servo": "9"}, "neither parameter pwm nor property"),
-        ({"mavlink.command.takePhoto": "photo"}, "no command number"),
+        ({"mavlink.command.takePhoto": "photo"}, "not a command number"),
         ({"mavlink.command.takePhoto": "1 2 3 4 5 6 7 8 9"}, "more than seven"),
         ({"mavlink.value": "much too long"}, "not one to ten"),
     ],
@@ -181,7 +181,7 @@ def test_a_plugin_wires_devices_of_its_own():
 def test_an_action_that_no_wiring_of_the_device_knows_is_not_wired():
     device = Device("d", {}, {"kites.reel": "9"})
     found = wiring_of(photo("d", "push"), replace(quad(), devices={"d": device}), REEL)
-    assert found == Unwired("device 'd': kites.reel does not say what 'push' is")
+    assert found == Unwired("device 'd': kites.reel does not define action 'push'")
 
 
 @pytest.mark.parametrize(
@@ -189,8 +189,8 @@ def test_an_action_that_no_wiring_of_the_device_knows_is_not_wired():
     [
         ("70000 1", "is command 70000, and MAVLink's are 0 to 65535"),
         ("-5 1", "is command -5"),
-        ("183 1e300", "no number of single precision"),
-        ("183 nan", "no number of single precision"),
+        ("183 1e300", "not a number of single precision"),
+        ("183 nan", "not a number of single precision"),
     ],
 )
 def test_a_command_whose_numbers_no_frame_holds_is_not_wired(words, why):
