@@ -15,13 +15,10 @@ from mmrs_core.contributions.vehicles import Live, VehicleInput
 from mmrs_core.scene import Capability, Device, DeviceAction, Frame, Part, RobotType
 from mmrs_core.testing.programs import move, program, robot_program
 from mmrs_mavlink.plugin.manual import ARDUSUB_MANUAL
-from mmrs_mavlink.plugin.manual.robot import NEAR_THE_SURFACE
 from mmrs_mavlink.sitl import Settings, SimulatedVehicle
 from mmrs_runtime.engine.clocks import RealClock
 
 SPEEDUP = 10.0
-COME_UP = -NEAR_THE_SURFACE - 0.001
-"""Where a vehicle has come up, in metres; it reports its depth in whole millimetres."""
 POOL = Frame("EPSG:4326", None, None, surface=0.0)
 ROBOT = ("urn:mmrs:robot:1.0", "Robot")
 DEVICE_ACTION = ((BEHAVIOUR, "DeviceAction"), (BEHAVIOUR, "Action"))

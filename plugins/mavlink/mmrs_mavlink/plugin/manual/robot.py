@@ -32,7 +32,7 @@ PERIOD = 0.1
 """Seconds from one message of the sticks to the next; ArduSub gives up after three."""
 
 NEAR_THE_SURFACE = 0.4
-"""Metres of depth at which a vehicle has come up."""
+"""A vehicle whose depth is less than these metres has come up. Equal ones may be 0.5 mm more: MAVLink rounds them."""
 
 RESTS, FINDS, STAYS = (NOTHING, "STOP_THRUST"), ("RETURN", "EMERGENCY_AREA"), ("HOLD", "CONTINUE")
 OFF = (faults.MOTORS_OFF, faults.VEHICLE_RESTARTED)
@@ -363,7 +363,7 @@ class ManualRobot(Vehicle):
         if trouble == faults.LINK_LOST:
             return False
         if self._autopilot.rising:
-            return self._autopilot.knows_depth and self._steering.depth <= NEAR_THE_SURFACE
+            return self._autopilot.knows_depth and self._steering.depth < NEAR_THE_SURFACE
         held = self._steering.reached or not self._autopilot.knows
         return self._response in STAYS and self._autopilot.mode == DEPTH_HOLD and held
 
