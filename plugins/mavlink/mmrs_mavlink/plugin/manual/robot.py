@@ -32,7 +32,7 @@ PERIOD = 0.1
 """Seconds from one message of the sticks to the next; ArduSub gives up after three."""
 
 NEAR_THE_SURFACE = 0.4
-"""A vehicle whose depth is less than these metres has come up. Equal ones may be 0.5 mm more: MAVLink rounds them."""
+"""A vehicle at less than this depth, in metres, has come up. MAVLink rounds depths to millimetres."""
 
 RESTS, FINDS, STAYS = (NOTHING, "STOP_THRUST"), ("RETURN", "EMERGENCY_AREA"), ("HOLD", "CONTINUE")
 OFF = (faults.MOTORS_OFF, faults.VEHICLE_RESTARTED)
