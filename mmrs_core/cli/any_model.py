@@ -67,7 +67,7 @@ def is_metamodel(file: Path) -> bool:
 
 
 def refuse_metamodel(file: Path) -> None:
-    """Do nothing, unless a file is a metamodel.
+    """Refuse a file that is a metamodel.
 
     Raises:
         UnreadableError: if it is, with what can be done with one.

@@ -105,7 +105,7 @@ def _models_at(place: Path) -> Iterator[Path]:
 
 
 def refuse_existing(targets: Sequence[Path], force: bool) -> None:
-    """Do nothing, unless a file exists that is not to be replaced.
+    """Refuse files that exist, unless they may be replaced.
 
     Raises:
         ProtectedError: if one does.
@@ -116,7 +116,7 @@ def refuse_existing(targets: Sequence[Path], force: bool) -> None:
 
 
 def refuse_imported(model: Model) -> None:
-    """Do nothing, unless a model was imported from another tool's file: then it is not the same any more.
+    """Refuse a model that was imported from another tool's file: it differs from that file.
 
     Raises:
         UnsupportedError: if it was.
@@ -127,7 +127,7 @@ def refuse_imported(model: Model) -> None:
 
 
 def refuse_links_outside(source: Path, target: Path, linked: Sequence[Path]) -> None:
-    """Do nothing, unless a model would refer to files that are not there: outside its new folder.
+    """Refuse to write a model where its references would lead outside its new folder.
 
     Args:
         source: the model.

@@ -214,7 +214,7 @@ ROBOTS = "robots"
 
 
 def require_copies(folder: Path, example: Path, others: Iterable[Path]) -> None:
-    """Do nothing if whatever a copy of an example would replace is a copy, too, of any of them.
+    """Require that a copy of an example replaces only copies of examples.
 
     Raises:
         ProtectedError: if it is something else, or the example itself.

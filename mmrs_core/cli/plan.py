@@ -109,7 +109,7 @@ def _behaviour(stages: Stages) -> object:
 
 
 def require_writable(stages: Stages, file: Path, way_out: str = "") -> None:
-    """Do nothing if the behaviour of a mission may be written there.
+    """Require that the behaviour of a mission may be written to a file.
 
     Args:
         stages: its models are read, if they were not yet.
@@ -129,7 +129,7 @@ def require_writable(stages: Stages, file: Path, way_out: str = "") -> None:
 
 
 def require_sound(stages: Stages, name: str) -> None:
-    """Do nothing if the behaviour of a mission may be carried out, and can be read again.
+    """Require that the behaviour of a mission is safe to execute, and valid.
 
     Args:
         stages: goes as far as to the verdicts.

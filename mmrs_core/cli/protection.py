@@ -26,7 +26,7 @@ def files_of(models: Iterable[Model]) -> tuple[Path, ...]:
 
 
 def refuse_inputs(outputs: Iterable[Path], inputs: Iterable[Path]) -> None:
-    """Do nothing if no output is an input, by whatever name or link.
+    """Refuse outputs that are inputs, by whatever name or link.
 
     Raises:
         ProtectedError: if one is; names both.
@@ -39,7 +39,7 @@ def refuse_inputs(outputs: Iterable[Path], inputs: Iterable[Path]) -> None:
 
 
 def refuse_inside(output: Path, folder: Path) -> None:
-    """Do nothing if a file does not lie in a folder.
+    """Refuse a file that lies in a folder.
 
     Raises:
         ProtectedError: if it does.
@@ -49,7 +49,7 @@ def refuse_inside(output: Path, folder: Path) -> None:
 
 
 def refuse_handwritten(file: Path, registry: Registry, way_out: str) -> None:
-    """Do nothing if there is no such file, it is empty, or it holds a behaviour that was planned.
+    """Refuse to replace a file, unless it is missing, empty, or holds a behaviour that was planned.
 
     A planned behaviour has moves that name the rule that they follow from.
 

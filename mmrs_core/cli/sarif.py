@@ -188,7 +188,7 @@ Sarif = Annotated[
 
 
 def refuse_two_outputs(sarif: Path | None, other: bool) -> None:
-    """Do nothing unless SARIF and something else are both to be the whole of standard output.
+    """Refuse SARIF together with something else as the whole of standard output.
 
     Raises:
         typer.BadParameter: if they are.

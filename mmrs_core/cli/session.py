@@ -194,7 +194,7 @@ def verdicts_of(session: Session, program: Program, place: Place) -> tuple[Verdi
 
 
 def require_safe(program: Program, verdicts: Sequence[Verdict], name: str) -> None:
-    """Do nothing for a behaviour that may be carried out.
+    """Require that a behaviour is safe to execute.
 
     Raises:
         RefusedError: if a property is violated, or unknown without the mission accepting that.

@@ -26,7 +26,7 @@ def box_name(robot: str) -> str:
 
 
 def refuse_flights(folder: Path) -> None:
-    """Do nothing if no black box of a flight lies in a folder; those of simulations may be replaced.
+    """Refuse a folder with black boxes of flights; those of simulations may be replaced.
 
     Raises:
         ProtectedError: if one does.

@@ -9,7 +9,7 @@ from mmrs_core.generation.overrides import Overrides
 
 
 def check_blocks(environment: Environment, overrides: Overrides) -> None:
-    """Do nothing if each block of a template that extends another replaces one there.
+    """Require that each block of a template that extends another replaces one there.
 
     Raises:
         MmrsError: if one does not; names the blocks that there are.

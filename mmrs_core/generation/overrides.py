@@ -65,7 +65,7 @@ def _is_hidden(path: Path, folder: Path) -> bool:
 
 
 def check_known(overrides: Overrides, target: Target, specs: Iterable[FileSpec]) -> None:
-    """Do nothing if each file replaces one that the target has.
+    """Require that each file replaces one that the target has.
 
     Raises:
         MmrsError: if one does not; names what the target has.

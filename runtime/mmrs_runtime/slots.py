@@ -188,10 +188,10 @@ class LocalSlots:
         self._left.add(robot)
 
     def on_change(self, callback: Callable[[], None]) -> None:
-        """Do nothing: these slots have no other source of changes."""
+        """Ignore a callback: these slots have no other source of changes."""
 
     def close(self) -> None:
-        """Do nothing: there are no other processes."""
+        """Return at once: there are no other processes."""
 
 
 class _Sending:

@@ -37,7 +37,7 @@ AVOIDED = (
     r"\bfor people\b",
     r"\bthe place\b",
     r"\bmotors (?:run|are o(?:n|ff))\b",
-    r"\A(?-i:Have|Be|Know|Hear|Bear|Tell|Say)\b",
+    r"\A(?-i:Have|Be|Know|Hear|Bear|Tell|Say|Do nothing)\b",
     r"\A(?-i:Of|To|By|Such as|As)\s",
     r"; else\b",
 )

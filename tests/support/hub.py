@@ -54,7 +54,7 @@ class HubCarrier:
             self._hub.noticed(robot, False, self._station)
 
     def publish(self, robot: str) -> None:
-        """Do nothing: nobody looks on."""
+        """Ignore a call: there are no observers."""
 
     def close(self) -> None:
         """Take all robots of this end away."""

@@ -68,7 +68,7 @@ class Addresses:
         return self._fragments()[id(element)]
 
     def refuse_strays(self, element: Unknown) -> None:
-        """Do nothing, unless the text of an unknown element refers to others that stand elsewhere now.
+        """Refuse an unknown element whose text refers to others that stand elsewhere now.
 
         Raises:
             ValueError: if it does: the text is kept as it was read, and would refer to other elements.

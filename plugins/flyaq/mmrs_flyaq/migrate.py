@@ -167,7 +167,7 @@ def settle(opened: Opened, mapping: DialectMapping, given: Sequence[Path], *, st
 
 
 def _refuse_unknown(types: Mapping[str, str], settled: Iterable[Settled], mapping: DialectMapping) -> None:
-    """Do nothing if every name that is to stand for a robot type occurs in the files."""
+    """Require that every name that is to stand for a robot type occurs in the files."""
     if not types:
         return
     occurring = {name for each in settled for name in _type_names(each, mapping)}

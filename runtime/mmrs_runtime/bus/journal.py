@@ -42,7 +42,7 @@ class NoJournal:
         yield from ()
 
     def keep(self, line: Line) -> None:
-        """Do nothing."""
+        """Drop a line: there is no file."""
 
 
 class FileJournal:

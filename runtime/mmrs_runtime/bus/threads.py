@@ -68,7 +68,7 @@ class Pacing:
         *,
         threaded: bool,
     ) -> None:
-        """Do nothing yet.
+        """Prepare the thread, without starting it.
 
         Args:
             lock: guards what it looks at; signalled when `next_due` may have changed.

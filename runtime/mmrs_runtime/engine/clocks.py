@@ -50,7 +50,7 @@ class SimulatedClock:
         self._now = max(self._now, time)
 
     def wake(self) -> None:
-        """Do nothing: simulated time has no sleepers."""
+        """Return at once: simulated time has no sleepers."""
 
 
 class RealClock:

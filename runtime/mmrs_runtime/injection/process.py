@@ -43,7 +43,7 @@ class Freeze:
             os.kill(os.getpid(), signal.SIGSTOP)
 
     def end(self) -> None:
-        """Do nothing: it is over."""
+        """Return at once: the fault is over."""
 
 
 class FullDisk:

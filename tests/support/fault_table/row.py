@@ -16,7 +16,7 @@ AT, LEG, AUTO, UP = "at its place", "on a leg (GUIDED)", "on a mission (AUTO)", 
 
 
 def leave_alone(vehicle: SimulatedVehicle) -> None:
-    """Do nothing to the vehicle: what goes wrong is elsewhere."""
+    """Leave the vehicle alone: what goes wrong is elsewhere."""
 
 
 def policy(event: str, response: str, after: float | None = None) -> POLICY:

@@ -220,7 +220,7 @@ def _with_inherited(
 
 
 def _check_source(rule: Rule, table: Table, structure: Structure) -> None:
-    """Do nothing if the rule is for a declared class and its declared features."""
+    """Require that a rule is for a declared class and its declared features."""
     kind = rule.source.partition("/")[0]
     if not structure.has(kind):
         raise table.fault(f"{kind} is not among the declared classes")

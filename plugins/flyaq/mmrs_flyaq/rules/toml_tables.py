@@ -79,7 +79,7 @@ class Table:
         return {key: self.take(key, str, "") for key in self.keys}
 
     def done(self) -> None:
-        """Do nothing if every key was taken.
+        """Require that every key was taken.
 
         Raises:
             UnreadableError: if one is left, with the nearest key that is known.

@@ -34,7 +34,7 @@ class Setup:
         way: WayBack,
         note: Callable[[str, Mapping[str, object]], None],
     ) -> None:
-        """Do nothing yet; `note` writes into the black box."""
+        """Keep the parts; `note` writes into the black box."""
         self.is_known = self.is_done = self._restarted = False
         self._robot, self._with = robot, equipment
         self._uploads, self._watch, self._lost_link = uploads, watch, lost_link

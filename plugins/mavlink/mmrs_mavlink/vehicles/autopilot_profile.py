@@ -88,10 +88,10 @@ class ArduPilot:
         self._link = link
 
     def begin_guiding(self) -> None:
-        """Do nothing: targets may come when the mode is there."""
+        """Return at once: targets may follow the change of mode."""
 
     def end_guiding(self) -> None:
-        """Do nothing: a target that was sent is forgotten with the mode."""
+        """Return at once: a target that was sent is forgotten with the mode."""
 
     def aim(self, place: Place, yaw: float, speed: float | None) -> None:
         """Send a target; the speed needs another command."""

@@ -40,10 +40,10 @@ class DryVehicle:
         self._armed = False
 
     def answer_lost_link(self, response: str, after: float | None = None) -> None:
-        """Do nothing: there is no link to lose."""
+        """Return at once: there is no link to lose."""
 
     def answer_breach(self, response: str) -> None:
-        """Do nothing: there is no fence."""
+        """Return at once: there is no fence."""
 
     def prepare(self, uploads: Uploads) -> None:
         """Keep the mission."""
@@ -89,13 +89,13 @@ class DryVehicle:
         self._guard()
 
     def operate(self, number: int, params: tuple[float, ...], *, confirmed: bool = False) -> None:
-        """Do nothing."""
+        """Return at once: there is no hardware."""
 
     def measure(self, value: str, seconds: float) -> None:
         """Measure nothing: there is nothing to measure."""
 
     def tell_ground(self, text: str) -> None:
-        """Do nothing: there is no link."""
+        """Drop a text: there is no link."""
 
     def hold(self) -> bool:
         """Stay."""
@@ -108,13 +108,13 @@ class DryVehicle:
         self._mode = GUIDED
 
     def check(self) -> None:
-        """Do nothing: there is no external control."""
+        """Return at once: there is no external control."""
 
     def take_back(self) -> None:
-        """Do nothing: there are no failsafes."""
+        """Return at once: there are no failsafes."""
 
     def regain(self) -> None:
-        """Do nothing: there are no failsafes."""
+        """Return at once: there are no failsafes."""
 
     def surface(self) -> None:
         """Move to the surface."""
@@ -122,10 +122,10 @@ class DryVehicle:
         self._here = at_height(self._here, 0.0)
 
     def disarm(self) -> None:
-        """Do nothing."""
+        """Return at once: there is no hardware."""
 
     def finish(self) -> None:
-        """Do nothing."""
+        """Return at once: there is no hardware."""
 
     def evidence(self) -> DryVehicle:
         """Return itself: it carries out every command."""

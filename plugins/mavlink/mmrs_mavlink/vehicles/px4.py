@@ -187,7 +187,7 @@ class Px4:
                 return
 
     def enable_fence(self) -> None:
-        """Do nothing: a PX4 obeys its own fence (GF_ACTION)."""
+        """Return at once: a PX4 obeys its own fence (GF_ACTION)."""
 
 
 def _unheaded(item: Item) -> Item:

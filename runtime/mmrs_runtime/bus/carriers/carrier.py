@@ -73,19 +73,19 @@ class NoCarrier:
     """Carries nothing: all robots are in this process."""
 
     def open(self, station: Station) -> None:
-        """Do nothing."""
+        """Ignore a call: all robots are in this process."""
 
     def ask(self, sender: str, owner: str, request: str, answered: Answered) -> None:
-        """Do nothing."""
+        """Ignore a call: all robots are in this process."""
 
     def appear(self, robot: str) -> None:
-        """Do nothing."""
+        """Ignore a call: all robots are in this process."""
 
     def vanish(self, robot: str) -> None:
-        """Do nothing."""
+        """Ignore a call: all robots are in this process."""
 
     def publish(self, robot: str) -> None:
-        """Do nothing."""
+        """Ignore a call: all robots are in this process."""
 
     def close(self) -> None:
-        """Do nothing."""
+        """Ignore a call: all robots are in this process."""
