@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import os
 import shutil
+import signal
 import sys
 import tempfile
 from functools import cache
@@ -33,10 +34,17 @@ def pytest_configure(config: pytest.Config) -> None:
         keep_bytecode_elsewhere(config)
     if not AT_WORK_WITH_OTHERS:
         config.add_cleanup(shared.open_folder())
+    obey_interrupts()
     draw_the_same_examples_everywhere()
     take_examples_by_profile(config)
     if AT_WORK_WITH_OTHERS and hasattr(os, "nice"):
         config.pluginmanager.register(Courtesy())
+
+
+def obey_interrupts() -> None:
+    """Let processes of tests obey interrupts: shells start what is in the background deaf to them."""
+    if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
+        signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
 def keep_bytecode_elsewhere(config: pytest.Config) -> None:
