@@ -33,7 +33,7 @@ def reason_of(error: OSError) -> str:
     return f"{error.filename}: {said}" if error.filename else said
 
 
-class Fault(Exception):  # noqa: N818  # the word that policies and logs use
+class FaultError(Exception):
     """A fault; `event` names it, and the robot's policies define the response.
 
     Attributes:
@@ -46,29 +46,29 @@ class Fault(Exception):  # noqa: N818  # the word that policies and logs use
         self.instead = instead
 
 
-class Displaced(Fault):
+class DisplacedError(FaultError):
     """The vehicle has left its commanded state for an event that is tolerated, or answered already.
 
     The command still holds: the vehicle is to be brought back to it.
     """
 
 
-class Refused(Fault):
+class RefusedError(FaultError):
     """The vehicle does not accept a command."""
 
     def __init__(self, message: str) -> None:
         super().__init__(REFUSED, message)
 
 
-class Unanswered(Refused):
+class UnansweredError(RefusedError):
     """The vehicle says nothing where it should: no answer to a command, no image, no value."""
 
 
-class Strange(Refused):
+class StrangeAnswerError(RefusedError):
     """The vehicle is not the robot's, or may be under external control: it must not be commanded."""
 
 
-class Stopped(Fault):
+class StoppedError(FaultError):
     """The robot was ordered to stop."""
 
     def __init__(self) -> None:

@@ -36,7 +36,7 @@ from mmrs_mavlink.steps.watch import Watch
 from mmrs_mavlink.vehicles.mavlink_vehicle import MavlinkVehicle
 from mmrs_runtime.clock import Clock
 from mmrs_runtime.controllers.geodesy import distance
-from mmrs_runtime.faults import Fault
+from mmrs_runtime.faults import FaultError
 from mmrs_runtime.ports import NOTHING, Port, Received
 
 HOME = Geographic(42.37, 13.35, 0.0)
@@ -148,13 +148,13 @@ class Manned:
         self.vehicle.go_to(NORTH, 5.0, None, False)
         self.track.append(("out", NORTH))
 
-    def caught(self, seconds: float = 20.0) -> Fault:
+    def caught(self, seconds: float = 20.0) -> FaultError:
         """Return what the watch raises as soon as it does; fail if it raises nothing for so long."""
         end = time.monotonic() + seconds
         while time.monotonic() < end:
             try:
                 self.watch.check()
-            except Fault as fault:
+            except FaultError as fault:
                 return fault
             time.sleep(0.005)
         raise AssertionError("the watch notices nothing")

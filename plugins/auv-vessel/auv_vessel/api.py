@@ -8,7 +8,7 @@ from dataclasses import dataclass, field, replace
 from types import MappingProxyType
 
 from auv_vessel.goals import GOAL_PERIOD, GOALS, Goal, check_goal, goal_frames
-from auv_vessel.hosting import Pace, Port, serve
+from auv_vessel.hosting import FramePort, Pace, serve
 from auv_vessel.sheet import Sheet
 from auv_vessel.wire.catalogue import BEAT_PERIOD, DECISION, EMERGENCIES, MOST_UPTIME, STATUS_BASE, by_id
 from auv_vessel.wire.codec import Codec, Received
@@ -352,7 +352,7 @@ class Connection:
         failure: what ended the thread; None: nothing did.
     """
 
-    def __init__(self, sheet: Sheet, port: Port, clock: Pace = "real") -> None:
+    def __init__(self, sheet: Sheet, port: FramePort, clock: Pace = "real") -> None:
         self.craft = Craft(sheet, Codec(sheet))
         self.failure: Exception | None = None
         self._stop = threading.Event()
@@ -364,7 +364,7 @@ class Connection:
         self._stop.set()
         self._thread.join(5.0)
 
-    def _serve(self, port: Port, clock: Pace) -> None:
+    def _serve(self, port: FramePort, clock: Pace) -> None:
         try:
             serve(self.craft, port, clock, self._stop)
         except Exception as error:

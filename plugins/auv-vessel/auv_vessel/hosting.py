@@ -45,7 +45,7 @@ class ClockSilentError(OSError):
     """Who told the time is gone, and with it the simulated vehicle."""
 
 
-class Port(Protocol):
+class FramePort(Protocol):
     """A connection to a bus, as `wire.ports.open_port` opens one."""
 
     def send(self, frame: Frame) -> None:
@@ -248,7 +248,7 @@ class Awake:
 
 def serve(
     node: Node,
-    port: Port,
+    port: FramePort,
     clock: Pace = "real",
     stop: threading.Event | None = None,
     *,
@@ -280,7 +280,7 @@ def serve(
 
 
 def _serve_by_clock(
-    node: Node, port: Port, stop: threading.Event, late: Callable[[float], None] | None
+    node: Node, port: FramePort, stop: threading.Event, late: Callable[[float], None] | None
 ) -> None:
     awake = Awake(CATCH_UP * node.period, time.monotonic)
     ticks, stalled = 0, 0.0
@@ -306,7 +306,7 @@ def _serve_by_clock(
             node.hear(heard, now)
 
 
-def _catch_up(node: Node, port: Port, awake: Awake) -> None:
+def _catch_up(node: Node, port: FramePort, awake: Awake) -> None:
     """Let a late node take the frames that wait for it, for a period at most, before it judges silence."""
     until = awake.now() + node.period
     while (now := awake.now()) < until and (frame := port.receive(0.0)) is not None:
@@ -314,7 +314,7 @@ def _catch_up(node: Node, port: Port, awake: Awake) -> None:
 
 
 def _serve_leading(
-    node: Node, port: Port, stop: threading.Event, speedup: float, late: Callable[[float], None] | None
+    node: Node, port: FramePort, stop: threading.Event, speedup: float, late: Callable[[float], None] | None
 ) -> None:
     """Send the time, and let it advance when it may and the others have kept up with it."""
     begin = time.monotonic()
@@ -346,7 +346,7 @@ def _serve_leading(
         ticks += 1
 
 
-def _serve_by_bus(node: Guard, port: Port, stop: threading.Event) -> None:
+def _serve_by_bus(node: Guard, port: FramePort, stop: threading.Event) -> None:
     due: float | None = None
     now = 0.0
     awake = Awake(CATCH_UP * _LISTENING, time.monotonic)

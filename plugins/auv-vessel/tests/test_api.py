@@ -10,7 +10,7 @@ from vessel_rig import Rig
 
 from auv_vessel.api import Craft
 from auv_vessel.decision.duties import ThrusterNews
-from auv_vessel.decision.duty_control import Watch
+from auv_vessel.decision.duty_control import FaultMonitor
 from auv_vessel.goals import Goal, goal_frames, goal_of, within_rating
 from auv_vessel.wire.codec import Codec, Received
 
@@ -57,7 +57,7 @@ def test_thrusters_that_fail_are_told_once_and_are_no_sign_of_life() -> None:
 def test_what_is_borne_lasts_by_the_time_in_which_a_vehicle_was_heard() -> None:
     """A stall of this program, in which only clocks on the wall go on, makes nothing last longer."""
     listener = Listener()
-    watch = Watch(listener.craft, 0.1, after=lambda event: 1.0, clearance=3.0)
+    watch = FaultMonitor(listener.craft, 0.1, after=lambda event: 1.0, clearance=3.0)
     found = []
     for _ in range(8):
         listener.tell("Depth", Depth=1.0, Uncertainty=0.1, Trusted=True)

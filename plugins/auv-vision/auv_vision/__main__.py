@@ -20,7 +20,7 @@ from urllib.parse import quote
 from auv_vessel.body.surroundings import Surroundings
 from auv_vessel.body.surroundings import from_json as surroundings_from
 from auv_vessel.eyes import CAMERAS
-from auv_vessel.hosting import Port, clock_time
+from auv_vessel.hosting import FramePort, clock_time
 from auv_vessel.node import stopped_by_signals
 from auv_vessel.refusals import refuse
 from auv_vessel.sheet import Sheet
@@ -75,7 +75,7 @@ class Whereabouts:
         """Return the time of the vehicle's clock; that of this computer where no time is received."""
         return time.time() if self._clock is None else self._clock
 
-    def listen(self, port: Port, stop: threading.Event) -> None:
+    def listen(self, port: FramePort, stop: threading.Event) -> None:
         """Read a bus until stopped; raises the port's errors when the bus is gone."""
         while not stop.is_set():
             if (frame := port.receive(0.1)) is not None:

@@ -86,7 +86,7 @@ class MavlinkDriver(Driver):
         """Return a robot's vehicle, possibly before its first message.
 
         Raises:
-            Fault: its port cannot be opened.
+            FaultError: its port cannot be opened.
         """
         assert isinstance(robot, Robot)
         outfit, guard = self._outfit, Guard()

@@ -67,5 +67,5 @@ class Driver(ABC):
         """Return a robot's vehicle, possibly before its first message; it closes the box.
 
         Raises:
-            Fault: it cannot be reached.
+            FaultError: it cannot be reached.
         """

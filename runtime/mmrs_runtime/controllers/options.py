@@ -11,7 +11,7 @@ from typing import Any
 
 from ..bus import PATIENCE
 from ..engine.clocks import FollowingClock, RealClock
-from ..faults import Fault
+from ..faults import FaultError
 from ..injection import HELP, Injections, injections
 from ..injection.spec import OF_STATIONS, OF_VEHICLE
 from ..records.blackbox import black_box_path, last_time, plan_of
@@ -202,7 +202,7 @@ def _run(parser: argparse.ArgumentParser, robots: Sequence[Robot], given: Any) -
         parser.error(f"--resume: there is no log of these robots in {given.log}")
     try:
         steps = [step for path in taken for step in read(path)]
-    except Fault as fault:
+    except FaultError as fault:
         parser.error(f"--resume: {fault}")
     runs = sorted({step.run for step in steps})
     if len(runs) > 1 or (runs and given.run and runs != [given.run]):

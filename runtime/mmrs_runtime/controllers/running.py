@@ -20,7 +20,7 @@ from ..engine.orders import Orders
 from ..engine.preflight import NotReadyError
 from ..engine.resuming import over_by, restore
 from ..engine.terms import Ending
-from ..faults import LINK_LOST, Fault, reason_of
+from ..faults import LINK_LOST, FaultError, reason_of
 from ..injection import Rehearsal
 from ..policies import NOTHING
 from ..program import Move, Notify, Program, SlotId
@@ -100,7 +100,7 @@ def _connect(driver: Driver, options: Options, rehearsal: Rehearsal, robot: Robo
     rehearsal.record(robot.id, lambda fault, content: box.write("injected", fault=fault, **content))
     try:
         return driver.connect(robot, live, box)
-    except Fault as fault:
+    except FaultError as fault:
         box.write("start", **start_of(robot, None))
         box.write("decision", what=fault.event, why=str(fault), response=NOTHING, move=robot.start)
         box.close()
@@ -125,7 +125,7 @@ def _run(live_run: LiveRun) -> int:
     except Incomplete as error:
         say(str(error))
         return LINK
-    except Fault as fault:
+    except FaultError as fault:
         return LINK if fault.event == LINK_LOST else FAILED
     except ValueError as error:
         say(f"--resume: {error}")

@@ -13,7 +13,7 @@ from math import isfinite
 from typing import TypeAlias
 
 from ..conditions import ANSWER_SECONDS, answers_at_once, is_standard, standard, undecided
-from ..faults import FAILURES, OBJECT_NOT_FOUND, Fault
+from ..faults import FAILURES, OBJECT_NOT_FOUND, FaultError
 from ..vehicle import Condition as Decided
 from ..vehicle import VehicleState as Asked
 from .geodesy import distance
@@ -61,7 +61,7 @@ class Finding:
         """Return where it is; None where the function has not answered within so many real seconds.
 
         Raises:
-            Fault: its locator does not find it, or not in time, or finds it farther from where it is
+            FaultError: its locator does not find it, or not in time, or finds it farther from where it is
                 expected than it may be: routes were checked for no other places.
         """
         description = self._target.description
@@ -69,15 +69,15 @@ class Finding:
             if time.monotonic() < self._until:
                 return None
             words = f"its locator has not answered for {ANSWER_SECONDS:g} s"
-            raise Fault(OBJECT_NOT_FOUND, f"object {description!r}: {words}")
+            raise FaultError(OBJECT_NOT_FOUND, f"object {description!r}: {words}")
         if isinstance(self._found, BaseException):
-            raise Fault(OBJECT_NOT_FOUND, f"object {description!r}: {self._found!r}") from self._found
+            raise FaultError(OBJECT_NOT_FOUND, f"object {description!r}: {self._found!r}") from self._found
         assert self._found is not None
         if self._target.expected is not None and self._target.tolerance is not None:
             away = distance(self._target.expected, self._found)
             if away > self._target.tolerance:
                 words = f"{away:.1f} m from where it should be"
-                raise Fault(OBJECT_NOT_FOUND, f"object {description!r}: {words}")
+                raise FaultError(OBJECT_NOT_FOUND, f"object {description!r}: {words}")
         return self._found
 
     def _look(self, locators: Mapping[str, Locator], state: State) -> None:
@@ -98,7 +98,7 @@ def place_of(
     """Return where a target is; `guard` is called while it is looked for, and may raise.
 
     Raises:
-        Fault: as of `Finding.place`.
+        FaultError: as of `Finding.place`.
     """
     if not isinstance(target, Object):
         return target

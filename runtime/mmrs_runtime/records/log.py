@@ -7,7 +7,7 @@ from pathlib import Path
 from types import TracebackType
 from typing import IO, TYPE_CHECKING, Literal
 
-from ..faults import LOG_FAILED, Fault
+from ..faults import LOG_FAILED, FaultError
 from .disk import Kept, sync
 from .lines import append_whole, keep_whole_lines, whole_lines
 from .steps import StepRecord, log_name, step_in, to_line
@@ -178,12 +178,12 @@ def read(path: Path) -> tuple[StepRecord, ...]:
     """Return the steps in the whole lines of a log; none where there is no such file.
 
     Raises:
-        Fault: it cannot be read, or a line is not a step.
+        FaultError: it cannot be read, or a line is not a step.
     """
     try:
         lines = whole_lines(path.read_bytes()) if path.exists() else []
     except OSError as error:
-        raise Fault(LOG_FAILED, f"{path}: cannot be read: {error}") from error
+        raise FaultError(LOG_FAILED, f"{path}: cannot be read: {error}") from error
     return tuple(_next_step(line, number, path) for number, line in enumerate(lines))
 
 
@@ -191,7 +191,7 @@ def _next_step(line: bytes, number: int, path: Path) -> StepRecord:
     try:
         step = step_in(line.decode("utf-8"))
     except ValueError as error:
-        raise Fault(LOG_FAILED, f"{path}:{number + 1}: cannot be read: {error}") from error
+        raise FaultError(LOG_FAILED, f"{path}:{number + 1}: cannot be read: {error}") from error
     if step.seq != number:
-        raise Fault(LOG_FAILED, f"{path}:{number + 1}: is not the next step of a log")
+        raise FaultError(LOG_FAILED, f"{path}:{number + 1}: is not the next step of a log")
     return step

@@ -17,7 +17,7 @@ from mmrs_mavlink.links.link import Link
 from mmrs_mavlink.links.ports import open_port
 from mmrs_mavlink.sitl import Settings, SimulatedVehicle
 from mmrs_runtime.clock import Clock
-from mmrs_runtime.faults import Fault
+from mmrs_runtime.faults import FaultError
 from mmrs_runtime.ports import NOTHING
 
 pytestmark = pytest.mark.real_time("controllers")
@@ -68,7 +68,7 @@ class Port:
 def test_a_link_whose_peer_hangs_up_ends_every_wait_with_the_reason():
     with hangs_up_after(0.1) as url:
         link = Link(open_port(url), Clock())
-        with pytest.raises(Fault, match="has closed the connection") as fault:
+        with pytest.raises(FaultError, match="has closed the connection") as fault:
             link.wait(lambda: None, 30.0)
         assert fault.value.event == "LINK_LOST"
         assert not link.listening

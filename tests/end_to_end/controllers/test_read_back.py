@@ -13,7 +13,7 @@ from mmrs_mavlink.services import missions
 from mmrs_mavlink.services.items import Item
 from mmrs_mavlink.sitl import Settings, SimulatedVehicle
 from mmrs_runtime.clock import Clock
-from mmrs_runtime.faults import Refused
+from mmrs_runtime.faults import RefusedError
 
 pytestmark = pytest.mark.real_time("controllers")
 
@@ -64,7 +64,7 @@ def test_the_same_frame_by_another_number_is_no_difference(read_back, item, fram
 @pytest.mark.parametrize("frame", [SEA, SEA_INT, TERRAIN, TERRAIN_INT, 1])
 @pytest.mark.parametrize(("kind", "command"), [(MISSION, WAYPOINT), (RALLY, RALLY_POINT)])
 def test_a_height_above_something_else_is_refused(read_back, item, frame, kind, command):
-    with pytest.raises(Refused, match="instead of"):
+    with pytest.raises(RefusedError, match="instead of"):
         read_back(kind, item(command), frame=frame)
 
 
@@ -79,17 +79,17 @@ def test_a_fence_is_given_back_without_heights(read_back, item):
 
 
 def test_a_corner_of_a_fence_somewhere_else_is_refused(read_back, item):
-    with pytest.raises(Refused, match="fence: item 0"):
+    with pytest.raises(RefusedError, match="fence: item 0"):
         read_back(FENCE, item(VERTEX), frame=SEA, z=0.0, x=423_701_100)
 
 
 def test_a_rally_point_keeps_whole_metres(read_back, item):
     read_back(RALLY, item(RALLY_POINT), z=20.0)
-    with pytest.raises(Refused):
+    with pytest.raises(RefusedError):
         read_back(RALLY, item(RALLY_POINT), z=18.0)
 
 
 def test_a_waypoint_keeps_centimetres(read_back, item):
     read_back(MISSION, item(WAYPOINT), z=20.49)
-    with pytest.raises(Refused):
+    with pytest.raises(RefusedError):
         read_back(MISSION, item(WAYPOINT), z=20.0)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from mmrs_runtime.faults import Fault
+from mmrs_runtime.faults import FaultError
 from mmrs_runtime.records.lines import keep_whole_lines, whole_lines
 from mmrs_runtime.records.log import read
 
@@ -27,6 +27,6 @@ def test_rubbish_before_a_whole_line_is_kept():
 def test_a_line_that_is_too_deep_to_be_read_is_a_fault_of_the_log(tmp_path):
     path = tmp_path / "r.jsonl"
     path.write_bytes(TOO_DEEP + b"\n")
-    with pytest.raises(Fault, match=r"r\.jsonl:1: cannot be read") as fault:
+    with pytest.raises(FaultError, match=r"r\.jsonl:1: cannot be read") as fault:
         read(path)
     assert fault.value.event == "LOG_FAILED"

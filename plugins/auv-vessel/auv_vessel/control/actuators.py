@@ -7,7 +7,7 @@ import numpy as np
 from auv_vessel.body.thrust import curve_of
 from auv_vessel.control import failsafe
 from auv_vessel.control.allocation import DEGREES, Allocation, Array
-from auv_vessel.control.drives import CatalogueDrives, Drives, Watch
+from auv_vessel.control.drives import CatalogueDrives, DriveMonitor, Drives
 from auv_vessel.instruments import instruments_of
 from auv_vessel.sheet import Sheet
 from auv_vessel.wire.catalogue import (
@@ -116,7 +116,7 @@ class Actuators:
         self._drives: Drives = driver or CatalogueDrives(sheet, codec)
         self._allocation = Allocation(sheet)
         self._limits = ThrustLimits(sheet)
-        self._watch = Watch(sheet)
+        self._watch = DriveMonitor(sheet)
         self._most = self._allocation.most(np.array([each.operating_thrust for each in sheet.thrusters]))
         self._air = instruments_of(sheet).pressure_air
         self._too_deep = failsafe.deepest(sheet.max_depth) * sheet.water_density * GRAVITY

@@ -83,7 +83,7 @@ class CatalogueDrives:
         return Status(number, float(found.values["Thrust"]), drive == "FAULT", drive == "RUNS")
 
 
-class Watch:
+class DriveMonitor:
     """Which thrusters work, by what their drives say and do.
 
     A thruster is dead while its drive says so or is silent, and for good once it gave nothing when asked.

@@ -26,7 +26,7 @@ AT_REST = 0.1
 """Metres per second under which a vehicle counts as halted."""
 
 
-class Watch:
+class FaultMonitor:
     """Watches a vehicle for faults, whatever it does.
 
     Attributes:
@@ -89,7 +89,7 @@ class DutyControl:
     """
 
     def __init__(self, craft: Craft) -> None:
-        self.watch: Watch | None = None
+        self.watch: FaultMonitor | None = None
         self._craft = craft
         self._duty: Duty | None = None
         self._failure: FailureError | None = None

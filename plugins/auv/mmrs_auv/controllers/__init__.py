@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from mmrs_auv.controllers.vocabulary import Operate
 from mmrs_runtime.conditions import standard, undecided
 from mmrs_runtime.controllers.state import State
 from mmrs_runtime.controllers.user_functions import Locator, not_looked_for, where_expected
@@ -68,23 +68,6 @@ __all__ = [
     "undecided",
     "where_expected",
 ]
-
-
-@dataclass(frozen=True, slots=True)
-class Operate:
-    """Command a device, and wait until it has finished.
-
-    Attributes:
-        device: as in the vehicle's sheet. action: human-readable.
-        number: of the action at the device. parameter: means what the device says.
-        seconds: that it takes.
-    """
-
-    device: str
-    action: str
-    number: int
-    parameter: float = 0.0
-    seconds: float = 0.0
 
 
 def __getattr__(name: str) -> object:

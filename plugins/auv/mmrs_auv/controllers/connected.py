@@ -13,7 +13,7 @@ from auv_vessel.api import FIRST_SIGN, Connection
 from auv_vessel.decision.duties import Ready
 from auv_vessel.eyes import Detections
 from auv_vessel.goals import FAREWELL
-from auv_vessel.hosting import Port, tells_time
+from auv_vessel.hosting import FramePort, tells_time
 from auv_vessel.sheet import Sheet
 from auv_vessel.wire import ports
 from auv_vessel.wire.frame import Frame
@@ -77,7 +77,7 @@ class _Frames:
         self._carrier.close()
 
 
-class ClosablePort(Port, Protocol):
+class ClosablePort(FramePort, Protocol):
     """A connection to a bus that can be closed."""
 
     def close(self) -> None:

@@ -27,7 +27,7 @@ from mmrs_runtime.controllers.state import State
 from mmrs_runtime.controllers.user_functions import Condition, Locator, objects_of, where_expected
 from mmrs_runtime.controllers.vocabulary import Robot
 from mmrs_runtime.engine.connecting import Live
-from mmrs_runtime.faults import LINK_LOST, Fault
+from mmrs_runtime.faults import LINK_LOST, FaultError
 from mmrs_runtime.records.blackbox import BlackBox
 
 LEADS = ("GO_TO", "HOLD", "SEARCH")
@@ -155,7 +155,7 @@ class CanDriver(Driver):
         """Return a robot's vehicle, which need not have sent a message yet.
 
         Raises:
-            Fault: there is no such bus, or its cameras' port is taken.
+            FaultError: there is no such bus, or its cameras' port is taken.
         """
         options, given = self._outfit.options, self._given
         sheet = from_json(self._sheets[robot.id].read_text(encoding="utf-8"))
@@ -205,7 +205,7 @@ class CanDriver(Driver):
                 )
             )
         except (OSError, ValueError) as error:
-            raise Fault(LINK_LOST, f"{channel}: {error}") from error
+            raise FaultError(LINK_LOST, f"{channel}: {error}") from error
         return made[0]
 
     def _eyes(self, robot: str) -> Detections | None:
@@ -214,7 +214,7 @@ class CanDriver(Driver):
         try:
             return self._outfit.stack.enter_context(Detections(port=port, robot=robot))
         except OSError as error:
-            raise Fault(LINK_LOST, f"--detections {port}: {error.strerror or error}") from error
+            raise FaultError(LINK_LOST, f"--detections {port}: {error.strerror or error}") from error
 
 
 class _DryVehicle(CanVehicle):

@@ -24,8 +24,8 @@ from auv_vessel.decision.duties import (
 from auv_vessel.decision.duties import Look as Bearing
 from auv_vessel.movement.abilities import abilities_of
 from auv_vessel.sheet import Sheet, Vector
-from mmrs_auv.controllers import Operate
 from mmrs_auv.controllers.orders import NoWayError, Waters
+from mmrs_auv.controllers.vocabulary import Operate
 from mmrs_runtime.controllers.geodesy import distance_to_leg, ends_of
 from mmrs_runtime.controllers.return_paths import steps_back
 from mmrs_runtime.controllers.state import State
@@ -48,8 +48,7 @@ from mmrs_runtime.controllers.vocabulary import (
     Stop,
     Turn,
 )
-from mmrs_runtime.faults import DEVICE_SILENT, OBJECT_NOT_FOUND
-from mmrs_runtime.faults import Fault as NotFound
+from mmrs_runtime.faults import DEVICE_SILENT, OBJECT_NOT_FOUND, FaultError
 from mmrs_runtime.policies import AFTER, Policy, patience
 from mmrs_runtime.vehicle import Fault
 
@@ -172,7 +171,7 @@ class ProgramOrders:
             return _Found(partial(self._finding, target), way)
         if target.expected is None:
             why = f"object {target.description!r}: unknown expected position"
-            return _Fails(NotFound(OBJECT_NOT_FOUND, why))
+            return _Fails(FaultError(OBJECT_NOT_FOUND, why))
         expected, told = self._below(target.expected), self._told.get(target.description)
         return Seek(
             target.description,
@@ -292,7 +291,7 @@ class _Found:
             assert self._finding is not None
             try:
                 place = self._finding.place()
-            except NotFound as fault:
+            except FaultError as fault:
                 raise FailureError(fault.event, str(fault)) from fault
             if place is None:
                 return False
@@ -304,7 +303,7 @@ class _Found:
 class _Fails:
     """What cannot even be begun."""
 
-    def __init__(self, fault: NotFound) -> None:
+    def __init__(self, fault: FaultError) -> None:
         self._fault = fault
 
     def begin(self, craft: Craft, now: float) -> None:

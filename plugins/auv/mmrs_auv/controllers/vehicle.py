@@ -24,7 +24,7 @@ from auv_vessel.decision.duty_control import (
     SILENT,
     UNHEARD,
     DutyControl,
-    Watch,
+    FaultMonitor,
 )
 from auv_vessel.movement.abilities import abilities_of
 from auv_vessel.sheet import Sheet, Vector
@@ -80,7 +80,7 @@ class CanVehicle(Vehicle):
         self._box, self._note, self._say, self._fixed = box, notes_in(box), say, -inf
         self._seen = seen
         self._helm, self._drives = DutyControl(craft), ThrusterNews(craft, sheet)
-        self._watch = Watch(craft, orders.reserve, self._after, clearance)
+        self._watch = FaultMonitor(craft, orders.reserve, self._after, clearance)
         self._afloat = float(abilities_of(sheet).afloat)
         self._response, self._instead = "", ""
         self._given_up = self._unheard = self._bears = False

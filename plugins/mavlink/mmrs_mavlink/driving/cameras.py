@@ -33,7 +33,7 @@ class Cameras:
         """Send all cameras their last continuous commands again.
 
         Raises:
-            Fault: one does not accept it.
+            FaultError: one does not accept it.
         """
         for action in self._last.values():
             vehicle.operate(action.command, action.params, confirmed=action.confirmed)

@@ -43,7 +43,7 @@ class LostLink:
         """Set the vehicle's failsafe, also where it was set before and lost.
 
         Raises:
-            Refused: it cannot respond so, or does not confirm that it will.
+            RefusedError: it cannot respond so, or does not confirm that it will.
         """
         wanted = self._wanted
         possible = alone(wanted, self._robot)
@@ -56,7 +56,7 @@ class LostLink:
         """Set the vehicle's failsafe, unless it was set so last.
 
         Raises:
-            Refused: it cannot respond so, or does not confirm that it will.
+            RefusedError: it cannot respond so, or does not confirm that it will.
         """
         if self.is_due:
             self.tell()

@@ -8,7 +8,7 @@ from functools import partial
 from mmrs_runtime.clock import Clock
 from mmrs_runtime.controllers.geodesy import at_height, ends_of
 from mmrs_runtime.controllers.user_functions import Locator, look_at, place_of
-from mmrs_runtime.faults import BATTERY_LOW, DEVICE_SILENT, Fault, Unanswered
+from mmrs_runtime.faults import BATTERY_LOW, DEVICE_SILENT, FaultError, UnansweredError
 from mmrs_runtime.policies import VALUE_SECONDS, seconds_of
 from mmrs_runtime.screen import words_of
 
@@ -132,7 +132,7 @@ class Moves:
         """Return the target of a movement, without the distance that it keeps.
 
         Raises:
-            Fault: it leads to an object that cannot be found.
+            FaultError: it leads to an object that cannot be found.
         """
         return self._found.get(movement) or self._find(movement)
 
@@ -224,9 +224,9 @@ class Moves:
                 self._vehicle.operate(action.command, action.params, confirmed=action.confirmed)
                 for command, params in action.more:
                     self._vehicle.operate(command, params)
-            except Unanswered as error:
+            except UnansweredError as error:
                 if self._clock.now() - begun >= self._silence:
-                    raise Fault(DEVICE_SILENT, f"{action.device}: {error}") from error
+                    raise FaultError(DEVICE_SILENT, f"{action.device}: {error}") from error
             else:
                 return
 
@@ -238,8 +238,8 @@ class Moves:
     def _measure(self, action: Measure) -> None:
         try:
             found = self._vehicle.measure(action.value, self._silence_of_values)
-        except Unanswered as error:
-            raise Fault(DEVICE_SILENT, f"{action.device}: {error}") from error
+        except UnansweredError as error:
+            raise FaultError(DEVICE_SILENT, f"{action.device}: {error}") from error
         self._told("measured", action.value, {"device": action.device, "result": found})
 
     def _report(self, action: Report) -> None:
@@ -272,7 +272,7 @@ class Moves:
                 taken = self._clock.now() - begun[0]
                 if taken >= RECHARGE_FACTOR * seconds:
                     why = f"after {taken:.0f} s of charging the battery is at {left:.0%}"
-                    raise Fault(BATTERY_LOW, why)
+                    raise FaultError(BATTERY_LOW, why)
                 self._vehicle.rest(min(5.0, seconds or 5.0))
             if left is None:
                 self._told("text", "charging", {"text": f"charged for {seconds:.0f} s; its range is unknown"})

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from mmrs_runtime.clock import Clock
-from mmrs_runtime.faults import Fault
+from mmrs_runtime.faults import FaultError
 
 from ..steps.reception import is_received, listening
 
@@ -19,7 +19,7 @@ class Reach:
     def __init__(self, link: Link | None, clock: Clock) -> None:
         """Listen to the vehicle at the end of a link; None: it is reached otherwise."""
         self._link, self._clock = link, clock
-        self._lost: Fault | None = None
+        self._lost: FaultError | None = None
         self._until = 0.0
 
     @property
@@ -32,7 +32,7 @@ class Reach:
         """Return whether a message arrived lately over a link that can be lost."""
         return self._link is not None and is_received(self._link)
 
-    def may_come_back(self, lost: Fault) -> bool:
+    def may_come_back(self, lost: FaultError) -> bool:
         """Return whether the link may still be restored, for some time after it was lost or last received."""
         if self._link is None:
             return False

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from mmrs_runtime.faults import BATTERY_LOW, FAILURES, LINK_LOST, POSITION_LOST, TAKEN_OVER, Fault
+from mmrs_runtime.faults import BATTERY_LOW, FAILURES, LINK_LOST, POSITION_LOST, TAKEN_OVER, FaultError
 from mmrs_runtime.policies import HOLD, LAND, NOTHING
 
 from ..program import Robot
@@ -49,7 +49,7 @@ class Response:
         self._decide: Decide = lambda event, why, response: None
         self.failed: Callable[[BaseException], None] = lambda error: None
 
-    def begin(self, name: str, found: Fault | None, decide: Decide, *, restored: bool) -> Job | None:
+    def begin(self, name: str, found: FaultError | None, decide: Decide, *, restored: bool) -> Job | None:
         """Return the response to a fault; None where the vehicle cannot be commanded.
 
         Args:
@@ -113,7 +113,7 @@ class Response:
             )
         except Interrupted:
             raise
-        except Fault as fault:
+        except FaultError as fault:
             if fault.event not in HINDRANCES or comes_down_alone(robot, vehicle, self._watch.current()):
                 raise
             self._instead = self._instead or f"{name} cannot be carried out: {fault}"
@@ -125,7 +125,7 @@ class Response:
             self._instead = f"the program itself fails: {error!r}: it does {HOLD}"
             return self._vehicle.hold()
 
-    def _do_less(self, name: str, why: Fault, less: str) -> None:
+    def _do_less(self, name: str, why: FaultError, less: str) -> None:
         """Report that a simpler response replaces the commanded one."""
         self._instead = f"{name} cannot be carried out: {why}: it does {less}"
         self._decide(why.event, f"{name} cannot be carried out: {why}", less)

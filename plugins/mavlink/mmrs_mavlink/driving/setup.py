@@ -44,7 +44,7 @@ class Setup:
         """Wait for the vehicle.
 
         Raises:
-            Fault: it does not come in time.
+            FaultError: it does not come in time.
         """
         radio = self._with.radio
         if radio is None:
@@ -63,7 +63,7 @@ class Setup:
         """Upload what the vehicle must know, once it is known to be the robot's.
 
         Raises:
-            Refused: it is not the robot's, or refuses an upload.
+            RefusedError: it is not the robot's, or refuses an upload.
         """
         vehicle = self._with.vehicle
         self._watch.renew()

@@ -16,9 +16,9 @@ from mmrs_runtime.faults import (
     DEVICE_SILENT,
     LINK_LOST,
     VEHICLE_RESTARTED,
-    Displaced,
+    DisplacedError,
+    FaultError,
 )
-from mmrs_runtime.faults import Fault as VehicleFault
 from mmrs_runtime.policies import CONTINUE, NOTHING
 from mmrs_runtime.vehicle import Fault, Vehicle
 
@@ -74,8 +74,8 @@ class ThreadedVehicle(Vehicle):
         )
         self._reach = Reach(self._link, equipment.clock)
         self._brakes: Callable[[], bool] = lambda: False
-        self._seen: VehicleFault | None = None
-        self._left: VehicleFault | None = None
+        self._seen: FaultError | None = None
+        self._left: FaultError | None = None
         # Last: it looks at all of the above from now on.
         self._worker = Worker(
             f"robot {robot.id!r}", self._look, self._idle, self._halt, equipment.vehicle.carry_on
@@ -236,7 +236,7 @@ class ThreadedVehicle(Vehicle):
             return why
         try:
             self._way.check(passed, begun)
-        except VehicleFault as fault:
+        except FaultError as fault:
             return str(fault)
         return ""
 
@@ -330,7 +330,7 @@ class ThreadedVehicle(Vehicle):
     def _note_decision(self, what: str, why: str, response: str) -> None:
         self.note("decision", {"what": what, "why": why, "response": response})
 
-    def _come_back(self, lost: VehicleFault) -> None:
+    def _come_back(self, lost: FaultError) -> None:
         """Make a vehicle whose link is restored respond to the loss, if its failsafe has not."""
         name, state = self._response.name, self._with.vehicle.state()
         if lost.event != LINK_LOST or lost is self._left or name in ("", NOTHING):
@@ -360,14 +360,14 @@ class ThreadedVehicle(Vehicle):
         """
         try:
             self._watch.check()
-        except Displaced as displaced:
+        except DisplacedError as displaced:
             if displaced.event == VEHICLE_RESTARTED:
                 self._with.vehicle.take_back()
                 self._worker.first(self._setup.begin_sortie)
             else:
                 self._with.vehicle.regain()
             raise Interrupted from None
-        except VehicleFault as fault:
+        except FaultError as fault:
             if self._setup.is_known or fault.event == LINK_LOST:
                 raise
 

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator, Sequence
 from itertools import pairwise
 
 from mmrs_runtime.controllers.geodesy import at_height, distance_to_leg, ends_of
-from mmrs_runtime.faults import BATTERY_LOW, Fault, Refused
+from mmrs_runtime.faults import BATTERY_LOW, FaultError, RefusedError
 from mmrs_runtime.policies import CONTINUE, still_low
 
 from ..program import GoTo, Land, Place, Recharge, Robot, Start, TakeOff
@@ -59,7 +59,7 @@ class WayBack:
         Where an object has yet to be found, there may be one; it is looked for when the vehicle sets out.
 
         Raises:
-            Refused: there is no verified one.
+            RefusedError: there is no verified one.
         """
         if not all(self._moves.knows(move) for move in (*passed, *self._run(begun))):
             return
@@ -71,7 +71,7 @@ class WayBack:
         """Restore the positions by which a flying vehicle can return: those passed in this sortie.
 
         Raises:
-            Refused: it is not on its path.
+            RefusedError: it is not on its path.
         """
         self._parts(passed, begun)
 
@@ -145,7 +145,9 @@ class WayBack:
         if gaps[nearest] > OFF_ITS_WAY:
             home = self._robot.home
             back = there(footing(home, way[0]), home)
-            raise Refused(f"it is {gaps[nearest]:.0f} m off its path: bring it {back} before it continues")
+            raise RefusedError(
+                f"it is {gaps[nearest]:.0f} m off its path: bring it {back} before it continues"
+            )
         return nearest
 
     def _legs_back(self, came: list[Point], flown: list[Point]) -> list[Callable[[], None]]:
@@ -188,11 +190,11 @@ class WayBack:
         state = self._vehicle.state()
         why = "" if state.armed else still_low(state.energy, self._robot.reserve)
         if why and policy_for(BATTERY_LOW, self._robot).response != CONTINUE:
-            raise Fault(BATTERY_LOW, why)
+            raise FaultError(BATTERY_LOW, why)
 
     def _refuse_astray(self, start: Place, here: Place) -> None:
         if why := misplaced(self._robot.home, footing(self._robot.home, start), here, self._tolerance):
-            raise Refused(why)
+            raise RefusedError(why)
 
 
 def sortie_of(robot: Robot, passed: Sequence[str]) -> tuple[str, ...]:

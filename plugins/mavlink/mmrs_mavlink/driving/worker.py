@@ -6,7 +6,7 @@ import threading
 from collections import deque
 from collections.abc import Callable
 
-from mmrs_runtime.faults import CRASHED, FAILURES, Fault
+from mmrs_runtime.faults import CRASHED, FAILURES, FaultError
 
 IDLE_SECONDS = 0.1
 """Real seconds between two looks at a vehicle that has nothing to do."""
@@ -70,9 +70,9 @@ class Worker:
             halt: brings the vehicle to a halt and returns when it stands.
             go_on: has the vehicle be steered again after that.
         """
-        self.fault: Fault | None = None
+        self.fault: FaultError | None = None
         self.changed: Callable[[], None] = lambda: None
-        self.faulty: Callable[[Fault], None] = lambda fault: None
+        self.faulty: Callable[[FaultError], None] = lambda fault: None
         self.failed: Callable[[BaseException], None] = lambda error: None
         self._watch, self._idle, self._halt, self._go_on = watch, idle, halt, go_on
         self._news = threading.Condition()
@@ -119,13 +119,13 @@ class Worker:
         """Return whether the vehicle was ordered to halt, and not yet to continue."""
         return self._halting and not self._holds
 
-    def instead(self, fault: Fault, job: Job) -> None:
+    def instead(self, fault: FaultError, job: Job) -> None:
         """Do a job about a fault that is still there, unless something else was begun since."""
         with self._news:
             if self.fault is fault and self._newest == self._running:
                 self.begin(job, afresh=True)
 
-    def forgive(self, fault: Fault) -> None:
+    def forgive(self, fault: FaultError) -> None:
         """Forget a fault; what it has broken off counts as done."""
         with self._news:
             if self.fault is fault:
@@ -162,7 +162,7 @@ class Worker:
 
         Raises:
             Interrupted: something else is to be done.
-            Fault: something has gone wrong.
+            FaultError: something has gone wrong.
         """
         if threading.current_thread() is not self._thread:
             return
@@ -195,11 +195,11 @@ class Worker:
             task()
         except Interrupted:
             return
-        except Fault as fault:
+        except FaultError as fault:
             self._fail(fault)
         except FAILURES as error:  # the thread must live on: the robot may still have to be stopped
             self.failed(error)
-            self._fail(Fault(CRASHED, f"the program itself fails: {error!r}"))
+            self._fail(FaultError(CRASHED, f"the program itself fails: {error!r}"))
 
     def _work(self) -> None:
         job = self._job
@@ -228,7 +228,7 @@ class Worker:
                 self._newest += 1
         self.changed()
 
-    def _fail(self, fault: Fault) -> None:
+    def _fail(self, fault: FaultError) -> None:
         with self._news:
             if self._newest == self._running:
                 self.fault = fault

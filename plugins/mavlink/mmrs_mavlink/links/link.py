@@ -11,7 +11,7 @@ from math import inf
 from typing import Any, TypeVar
 
 from mmrs_runtime.clock import Clock
-from mmrs_runtime.faults import LINK_LOST, Fault
+from mmrs_runtime.faults import LINK_LOST, FaultError
 from mmrs_runtime.ports import Address, Port
 
 from .identity import LATE_MILLISECONDS, Identity
@@ -237,13 +237,13 @@ class Link:
                 decides when it is lost.
 
         Raises:
-            Fault: the port has ended, so that no message will come any more; or what the guard raises.
+            FaultError: the port has ended, so that no message will come any more; or what the guard raises.
         """
         before = self.clock.now()
         until = before + seconds
         while True:
             if self._ended:
-                raise Fault(LINK_LOST, self._ended)
+                raise FaultError(LINK_LOST, self._ended)
             asked = self.clock.now()
             if while_received and self.unheard():
                 until += asked - before

@@ -6,7 +6,7 @@ import threading
 from collections.abc import Callable
 
 from mmrs_runtime.clock import Clock
-from mmrs_runtime.faults import LINK_LOST, Fault, Refused
+from mmrs_runtime.faults import LINK_LOST, FaultError, RefusedError
 from mmrs_runtime.ports import Port
 
 from .link import Link
@@ -49,7 +49,7 @@ class Radios:
             system: of the vehicle; 0 is whichever speaks first that no other robot has.
 
         Raises:
-            Fault: the port cannot be opened, or another robot has that vehicle.
+            FaultError: the port cannot be opened, or another robot has that vehicle.
         """
         with self._lock:
             radio = self._radios.get(url)
@@ -58,13 +58,13 @@ class Radios:
             try:
                 return Link(radio, self._clock, system, retries=self._retries)
             except ValueError as error:
-                raise Refused(f"{url}: {error}") from error
+                raise RefusedError(f"{url}: {error}") from error
 
     def meet(self, link: Link, url: str, seconds: float) -> None:
         """Wait for a vehicle's first message.
 
         Raises:
-            Fault: none comes; names what was received instead.
+            FaultError: none comes; names what was received instead.
         """
         if link.wait(lambda: link.component, seconds):
             return
@@ -74,10 +74,10 @@ class Radios:
                 0, f"{link.garbled} frames from there could not be read, or are not signed with the key"
             )
         why = "".join(f"; {reason}" for reason in reasons if reason)
-        raise Fault(LINK_LOST, f"no vehicle at {url}{why}")
+        raise FaultError(LINK_LOST, f"no vehicle at {url}{why}")
 
     def _port(self, url: str) -> Port:
         try:
             return self._wrap(open_port(url), url)
         except OSError as error:
-            raise Fault(LINK_LOST, f"{url}: {error.strerror or error}") from error
+            raise FaultError(LINK_LOST, f"{url}: {error.strerror or error}") from error

@@ -12,7 +12,7 @@ from contextlib import suppress
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from mmrs_runtime.faults import Refused
+from mmrs_runtime.faults import RefusedError
 
 from ..links.link import Link, Message
 from .exchanges import concerns, first, lacks_kinds, old_port
@@ -30,7 +30,7 @@ def clear(link: Link, kind: int, *, receiving: bool = False) -> int:
         receiving: whether it may be in the middle of receiving one, which is ended first.
 
     Raises:
-        Refused: the vehicle does not answer, or its port is too old for that kind of plan.
+        RefusedError: the vehicle does not answer, or its port is too old for that kind of plan.
     """
     with link.inbox("MISSION_ACK") as inbox:
         *before, ask = _ending(link, kind) if receiving else (_clearing(link, kind),)
@@ -39,7 +39,7 @@ def clear(link: Link, kind: int, *, receiving: bool = False) -> int:
         answer = _answer(link, ask, inbox, kind)
     if answer is None:
         unknown = "whether it keeps what it had is not known"
-        raise Refused(f"{NAMES[kind]}: the vehicle answers nothing to being told to clear it; {unknown}")
+        raise RefusedError(f"{NAMES[kind]}: the vehicle answers nothing to being told to clear it; {unknown}")
     if lacks_kinds(answer, kind):
         raise old_port(kind)
     return int(answer.type)
@@ -54,7 +54,7 @@ def break_off(link: Link, kind: int) -> None:
 def left_of(link: Link, kind: int) -> str:
     """Clear a plan of which the vehicle took only a part; return what it has now, in words."""
     # No answer to this either is told as what it is: nobody knows what is left.
-    with suppress(Refused):
+    with suppress(RefusedError):
         for _ in range(link.retries.tries):
             break_off(link, kind)
             if count_of(link, kind) <= _least(link, kind):

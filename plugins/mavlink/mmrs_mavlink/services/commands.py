@@ -8,7 +8,7 @@ from collections.abc import Callable, Sequence
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from mmrs_runtime.faults import Refused, Unanswered
+from mmrs_runtime.faults import RefusedError, UnansweredError
 
 from ..links.link import Link, Message
 from ..links.ourselves import GROUND_COMPONENT, GROUND_SYSTEM
@@ -55,8 +55,8 @@ def command(
         component: that is to carry it out; None: the autopilot.
 
     Raises:
-        Unanswered: no answer to any of the tries, or no end of what was begun.
-        Refused: the vehicle does not do it.
+        UnansweredError: no answer to any of the tries, or no end of what was begun.
+        RefusedError: the vehicle does not do it.
     """
     to = component or link.component
     _exchange(link, number, lambda sent: _message(link, number, params, to, sent), tries, to)
@@ -73,8 +73,8 @@ def command_at(link: Link, number: int, place: Geographic, frame: int, *params: 
         params: the first four at most.
 
     Raises:
-        Unanswered: no answer to any of the tries.
-        Refused: the vehicle does not do it.
+        UnansweredError: no answer to any of the tries.
+        RefusedError: the vehicle does not do it.
     """
     four = [*params, *[0.0] * (4 - len(params))]
     at = (round(place.latitude * 1e7), round(place.longitude * 1e7), place.height)
@@ -101,12 +101,12 @@ def _exchange(
     """Send a command, given how often it was sent before, until the vehicle says that it does it.
 
     Raises:
-        Unanswered: no answer to any of the tries, or no end of what was begun.
-        Refused: the vehicle does not do it.
+        UnansweredError: no answer to any of the tries, or no end of what was begun.
+        RefusedError: the vehicle does not do it.
     """
     answer = _answered(link, number, message, tries or link.retries.tries, component)
     if answer.result != mavlink.MAV_RESULT_ACCEPTED:
-        raise Refused(f"{name_of(number)}: the vehicle answers '{_word(answer.result)}'")
+        raise RefusedError(f"{name_of(number)}: the vehicle answers '{_word(answer.result)}'")
 
 
 def _answered(
@@ -124,7 +124,7 @@ def _answered(
                 return heard
             link.wait(lambda: None, link.retries.answer if heard is not None else 0.0)
     if answer is None:
-        raise Unanswered(f"{name_of(number)}: no answer to {tries} tries")
+        raise UnansweredError(f"{name_of(number)}: no answer to {tries} tries")
     return answer
 
 
@@ -139,7 +139,7 @@ def _end(link: Link, inbox: deque[Message], number: int, component: int) -> Mess
     """Return how a long-running command ends.
 
     Raises:
-        Unanswered: the vehicle was silent about it for too long.
+        UnansweredError: the vehicle was silent about it for too long.
     """
     try:
         while (
@@ -151,7 +151,9 @@ def _end(link: Link, inbox: deque[Message], number: int, component: int) -> Mess
         link.send(CommandCancel(link.system, component, number))
         raise
     link.send(CommandCancel(link.system, component, number))
-    raise Unanswered(f"{name_of(number)}: begun, and then no messages about it for {PROGRESS_SECONDS:.0f} s")
+    raise UnansweredError(
+        f"{name_of(number)}: begun, and then no messages about it for {PROGRESS_SECONDS:.0f} s"
+    )
 
 
 def _answer(inbox: deque[Message], number: int) -> Message | None:

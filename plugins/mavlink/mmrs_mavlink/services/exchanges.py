@@ -7,7 +7,7 @@ from collections.abc import Callable
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from mmrs_runtime.faults import Refused
+from mmrs_runtime.faults import RefusedError
 
 from ..links.link import Message
 from .items import MISSION, NAMES
@@ -37,9 +37,9 @@ def lacks_kinds(message: Message, kind: int) -> bool:
     return unsupported and kind != MISSION and is_old(message)
 
 
-def old_port(kind: int) -> Refused:
+def old_port(kind: int) -> RefusedError:
     """Return the message where the port's protocol is too old for that kind of plan."""
-    return Refused(f"{NAMES[kind]}: the vehicle {OLD_PORT}; it keeps what it had")
+    return RefusedError(f"{NAMES[kind]}: the vehicle {OLD_PORT}; it keeps what it had")
 
 
 def first(inbox: deque[Message], fits: Callable[[Message], bool]) -> Message | None:

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from mmrs_runtime.faults import Refused
+from mmrs_runtime.faults import RefusedError
 
 from ..links.link import Link, Message
 from .clearing import break_off, clear, left_of
@@ -28,7 +28,7 @@ def upload(link: Link, items: Sequence[Item], kind: int = MISSION) -> int:
         The id that the vehicle gave to the plan; 0 where it gives none.
 
     Raises:
-        Refused: the vehicle does not accept it, or does not answer; names what the vehicle has now.
+        RefusedError: the vehicle does not accept it, or does not answer; names what the vehicle has now.
     """
     transfer = Transfer()
     with link.inbox("STATUSTEXT") as said:
@@ -43,7 +43,9 @@ def upload(link: Link, items: Sequence[Item], kind: int = MISSION) -> int:
                 break_off(link, kind)
             raise
         left = _left(link, kind, transfer)
-        raise Refused(f"{NAMES[kind]}: the vehicle {transfer.outcome} to the upload; {left}{_texts(said)}")
+        raise RefusedError(
+            f"{NAMES[kind]}: the vehicle {transfer.outcome} to the upload; {left}{_texts(said)}"
+        )
 
 
 def verify(link: Link, items: Sequence[Item], kind: int = MISSION) -> None:
@@ -53,17 +55,17 @@ def verify(link: Link, items: Sequence[Item], kind: int = MISSION) -> None:
     above sea level.
 
     Raises:
-        Refused: the vehicle has kept something else.
+        RefusedError: the vehicle has kept something else.
     """
     beat = link.latest("HEARTBEAT")
     autopilot = beat.autopilot if beat is not None else mavlink.MAV_AUTOPILOT_GENERIC
     own_home = kind == MISSION and autopilot != mavlink.MAV_AUTOPILOT_PX4
     kept = download(link, kind)
     if len(kept) != len(items) and (items or len(kept) > own_home):
-        raise Refused(f"{NAMES[kind]}: the vehicle has {len(kept)} items instead of {len(items)}")
+        raise RefusedError(f"{NAMES[kind]}: the vehicle has {len(kept)} items instead of {len(items)}")
     for seq, (wanted, found) in enumerate(zip(items, kept, strict=False)):
         if not (seq == 0 and own_home) and not alike(wanted, found, kind, autopilot):
-            raise Refused(f"{NAMES[kind]}: item {seq} is {found} on the vehicle instead of {wanted}")
+            raise RefusedError(f"{NAMES[kind]}: item {seq} is {found} on the vehicle instead of {wanted}")
 
 
 def _replaces(link: Link, items: Sequence[Item], kind: int, transfer: Transfer, attempt: int) -> bool:
@@ -84,7 +86,7 @@ def _replaces(link: Link, items: Sequence[Item], kind: int, transfer: Transfer, 
 def _has(link: Link, items: Sequence[Item], kind: int) -> bool:
     try:
         verify(link, items, kind)
-    except Refused:
+    except RefusedError:
         return False
     return True
 

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from mmrs_runtime.faults import Refused
+from mmrs_runtime.faults import RefusedError
 
 from ..links.link import Link, Message
 from .exchanges import concerns, first, lacks_kinds, old_port, words_of
@@ -40,7 +40,7 @@ def download(link: Link, kind: int = MISSION) -> tuple[Item, ...]:
     """Return what the vehicle has of that kind.
 
     Raises:
-        Refused: the vehicle does not answer, or does not let it be read.
+        RefusedError: the vehicle does not answer, or does not let it be read.
     """
     with link.inbox(*ANSWERS) as inbox:
         reading = _Reading(link, kind, inbox)
@@ -49,7 +49,7 @@ def download(link: Link, kind: int = MISSION) -> tuple[Item, ...]:
             try:
                 items = tuple(reading.item(seq) for seq in range(count))
                 break
-            except Refused:
+            except RefusedError:
                 if attempt + 1 == link.retries.tries:
                     raise
                 link.wait(lambda: None, link.retries.answer)
@@ -61,7 +61,7 @@ def count_of(link: Link, kind: int) -> int:
     """Return how many items of that kind the vehicle has.
 
     Raises:
-        Refused: the vehicle does not answer.
+        RefusedError: the vehicle does not answer.
     """
     with link.inbox(*ANSWERS) as inbox:
         count = _Reading(link, kind, inbox).count()
@@ -91,7 +91,7 @@ class _Reading:
         while True:
             try:
                 return int(self._asked(ask, "MISSION_COUNT", self.link.retries.answer).count)
-            except Refused:
+            except RefusedError:
                 if not self.refusal or self.link.clock.now() > until:
                     raise
                 self.link.wait(lambda: None, self.link.retries.answer)
@@ -109,7 +109,7 @@ class _Reading:
         """Ask until the answer comes.
 
         Raises:
-            Refused: it does not come.
+            RefusedError: it does not come.
         """
         begun, self.refusal = self.link.clock.now(), ""
         least = self.link.clock.patience(seconds, seconds)
@@ -125,13 +125,13 @@ class _Reading:
             if found is not None:
                 break
         does = f"answers '{self.refusal}'" if self.refusal else "does not answer"
-        raise Refused(f"{NAMES[self.kind]}: the vehicle {does} when it is read back ({ask.get_type()})")
+        raise RefusedError(f"{NAMES[self.kind]}: the vehicle {does} when it is read back ({ask.get_type()})")
 
     def _fits(self, message: Message, answer: str, seq: int | None) -> bool:
         """Return whether a message is the answer, or ends the reading.
 
         Raises:
-            Refused: the vehicle's port is too old for that kind of plan.
+            RefusedError: the vehicle's port is too old for that kind of plan.
         """
         if not concerns(message, self.kind):
             return False

@@ -53,7 +53,7 @@ def send_all(link: Link, items: Sequence[Item], kind: int, transfer: Transfer) -
     """Offer a plan of at least one item, and give what is asked for; return whether it was accepted.
 
     Raises:
-        Refused: the vehicle's port is too old for that kind of plan.
+        RefusedError: the vehicle's port is too old for that kind of plan.
     """
     transfer.whole, transfer.outcome = False, "answers nothing"
     with link.inbox(*ANSWERS) as inbox:
@@ -94,7 +94,7 @@ class _Sending:
         """Wait until an item is asked for, or nothing comes any more; return whether one is.
 
         Raises:
-            Refused: the vehicle will never take it.
+            RefusedError: the vehicle will never take it.
         """
         for _ in range(REPEATS):
             message = self.link.wait(lambda: first(inbox, self._concerns), self.link.patience)

@@ -7,7 +7,7 @@ from math import inf
 from typing import TYPE_CHECKING
 
 from mmrs_runtime.clock import Clock
-from mmrs_runtime.faults import TAKEN_OVER, VEHICLE_RESTARTED, Fault
+from mmrs_runtime.faults import TAKEN_OVER, VEHICLE_RESTARTED, FaultError
 
 from ..program import Robot
 from ..vehicles import modes
@@ -65,7 +65,7 @@ class Departures:
             moving: whether the robot is in motion.
 
         Raises:
-            Fault: a pilot has taken over, as far as is known.
+            FaultError: a pilot has taken over, as far as is known.
         """
         self._moving = moving
         left = _left(self._vehicle)
@@ -79,7 +79,7 @@ class Departures:
             moving: whether the robot is in motion.
 
         Raises:
-            Fault: a pilot has taken over, as far as is known.
+            FaultError: a pilot has taken over, as far as is known.
         """
         tells = self._vehicle.telemetry
         if not tells.armed() or event == VEHICLE_RESTARTED:
@@ -88,21 +88,25 @@ class Departures:
         if tells.mode() not in self._vehicle.answers_to(event, said):
             self.find(moving=moving)
 
-    def _explain(self, left: Fault) -> Fault:
+    def _explain(self, left: FaultError) -> FaultError:
         """Return the event that the vehicle has answered by another mode than the commanded one.
 
         Raises:
-            Fault: a pilot has taken over, as far as is known.
+            FaultError: a pilot has taken over, as far as is known.
         """
         mode = self._vehicle.state().mode
         event, why = self._find(left)
-        return left if event == left.event else Fault(event, f"{why}; a failsafe switched it to mode {mode}")
+        return (
+            left
+            if event == left.event
+            else FaultError(event, f"{why}; a failsafe switched it to mode {mode}")
+        )
 
-    def _find(self, left: Fault) -> Cause:
+    def _find(self, left: FaultError) -> Cause:
         """Return the event that the vehicle has answered by its mode, or by another one since.
 
         Raises:
-            Fault: a pilot has taken over, as far as is known.
+            FaultError: a pilot has taken over, as far as is known.
         """
         taken_over, mode = _taken_over(left, self._vehicle), self._vehicle.telemetry.mode()
         self.looking = True
@@ -142,18 +146,18 @@ class Departures:
         return None
 
 
-def _taken_over(left: Fault, vehicle: MavlinkVehicle) -> Fault:
+def _taken_over(left: FaultError, vehicle: MavlinkVehicle) -> FaultError:
     """Return that a pilot has taken over, in the words of why the vehicle is elsewhere, if these say so."""
     if left.event == TAKEN_OVER:
         return left
     mode = vehicle.state().mode
-    return Fault(TAKEN_OVER, f"the vehicle has gone into mode {mode}: it is under external control")
+    return FaultError(TAKEN_OVER, f"the vehicle has gone into mode {mode}: it is under external control")
 
 
-def _left(vehicle: MavlinkVehicle) -> Fault | None:
+def _left(vehicle: MavlinkVehicle) -> FaultError | None:
     """Return why the vehicle is no longer in the mode that it should be in; None if it is."""
     try:
         vehicle.check()
-    except Fault as fault:
+    except FaultError as fault:
         return fault
     return None

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
-from mmrs_runtime.faults import FENCE_BREACHED, Refused
+from mmrs_runtime.faults import FENCE_BREACHED, RefusedError
 
 from ..program import Robot
 from ..vehicles.vehicle import Vehicle
@@ -25,12 +25,12 @@ def equip(robot: Robot, vehicle: Vehicle, uploads: Uploads, say: Callable[[str],
         say: reports refusals that the program can do without.
 
     Raises:
-        Refused: the vehicle does not accept an upload that it needs, or does not become ready.
+        RefusedError: the vehicle does not accept an upload that it needs, or does not become ready.
     """
     vehicle.prepare(uploads)
     if not uploads.fence:
         return
     try:
         vehicle.answer_breach(policy_for(FENCE_BREACHED, robot).response)
-    except Refused as error:
+    except RefusedError as error:
         say(str(error))

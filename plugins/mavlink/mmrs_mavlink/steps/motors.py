@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from mmrs_runtime.faults import MOTORS_OFF, VEHICLE_RESTARTED, Fault
+from mmrs_runtime.faults import MOTORS_OFF, VEHICLE_RESTARTED, FaultError
 from mmrs_runtime.policies import HOLD
 
 from ..vehicles import modes
@@ -42,7 +42,7 @@ class Motors:
             moving: whether the robot is in motion.
 
         Raises:
-            Fault: it has disarmed elsewhere.
+            FaultError: it has disarmed elsewhere.
         """
         tells, state = self._vehicle.telemetry, self._vehicle.state()
         below = self._kind == "sub" and state.place.height < -TOUCHING
@@ -52,7 +52,9 @@ class Motors:
         elif tells.armed():
             self._flown = below or (self._kind == "copter" and (self._flown or tells.airborne()))
         elif self._flown:
-            raise Fault(MOTORS_OFF, "it has disarmed in motion: it has crashed, or was disarmed by someone")
+            raise FaultError(
+                MOTORS_OFF, "it has disarmed in motion: it has crashed, or was disarmed by someone"
+            )
 
     def check_stands(self, said: str) -> None:
         """Check that a vehicle that has restarted has yet to take off, and so can begin again.
@@ -61,9 +63,9 @@ class Motors:
             said: of its start.
 
         Raises:
-            Fault: it was in motion: it has lost its state, and may not know its position.
+            FaultError: it was in motion: it has lost its state, and may not know its position.
         """
         armed = self._vehicle.telemetry.armed()
         if armed or self._flown or self._kind != "copter":
             why = f"{said} in motion, {'armed' if armed else 'disarmed'}: its program cannot be continued"
-            raise Fault(VEHICLE_RESTARTED, why, DOWN[self._kind] if armed else HOLD)
+            raise FaultError(VEHICLE_RESTARTED, why, DOWN[self._kind] if armed else HOLD)

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from functools import partial
 
 from mmrs_runtime.controllers.return_paths import Track, steps_back
-from mmrs_runtime.faults import LINK_LOST, NO_PROGRESS, REFUSED, Fault
+from mmrs_runtime.faults import LINK_LOST, NO_PROGRESS, REFUSED, FaultError
 from mmrs_runtime.policies import COMES_DOWN, ESCAPE, HOLD, LAND, NOTHING, RETURN
 
 from ..program import Place, Policy, Robot
@@ -86,7 +86,7 @@ def respond(
         Whether the vehicle now holds and must be watched.
 
     Raises:
-        Fault: the response cannot be carried out either.
+        FaultError: the response cannot be carried out either.
     """
     if response == NOTHING:
         return False
@@ -108,7 +108,7 @@ def respond_or_less(
     vehicle: Vehicle,
     track: list[tuple[str, Place]],
     repeat: Repeat,
-    tell: Callable[[str, Fault, str], None],
+    tell: Callable[[str, FaultError, str], None],
     *,
     low: bool,
 ) -> bool:
@@ -123,12 +123,12 @@ def respond_or_less(
         Whether the vehicle now holds and must be watched.
 
     Raises:
-        Fault: no simpler response can be carried out either, or there is another fault.
+        FaultError: no simpler response can be carried out either, or there is another fault.
     """
     while True:
         try:
             return respond(response, robot, vehicle, track, repeat)
-        except Fault as fault:
+        except FaultError as fault:
             less = plainer(response, robot.vehicle, low=low) if fault.event in HINDRANCES else ""
             if not less or not vehicle.state().armed:
                 raise

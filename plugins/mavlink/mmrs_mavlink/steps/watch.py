@@ -15,8 +15,8 @@ from mmrs_runtime.faults import (
     POSITION_LOST,
     TAKEN_OVER,
     VEHICLE_RESTARTED,
-    Displaced,
-    Fault,
+    DisplacedError,
+    FaultError,
 )
 from mmrs_runtime.policies import COMES_DOWN, CONTINUE, LAND, UNDECLARED_AFTER, seconds_of
 
@@ -128,7 +128,7 @@ class Watch:
         One that received messages all the time has not, and continues its last command.
 
         Raises:
-            Fault: a pilot has it, as far as is known, or its mode is unknown.
+            FaultError: a pilot has it, as far as is known, or its mode is unknown.
         """
         if self._watched is None:
             return True
@@ -143,7 +143,7 @@ class Watch:
         link, vehicle, answers = watched.link, watched.vehicle, True
         limit = self._clock.patience(BEAT_SECONDS, 1.0)
         if not link.wait(lambda: link.since("HEARTBEAT") < limit, limit):
-            raise Fault(LINK_LOST, "no heartbeat is received from it")
+            raise FaultError(LINK_LOST, "no heartbeat is received from it")
         if vehicle.telemetry.mode() not in vehicle.modes_alone and vehicle.telemetry.armed():
             answers = watched.departures.find(moving=self.moving) is not None
         vehicle.accept_own_modes()
@@ -185,7 +185,7 @@ class Watch:
         """Raise what should end a wait.
 
         Raises:
-            Fault: something should.
+            FaultError: something should.
         """
         watched = self._watched
         if watched is None or self.looking:
@@ -245,7 +245,7 @@ class Watch:
         if event == VEHICLE_RESTARTED:
             self._note_restart()
         if policy.response != CONTINUE:
-            raise Fault(event, why)
+            raise FaultError(event, why)
         self._borne.add(event)
         self.decide(event, why, CONTINUE)
 
@@ -263,7 +263,7 @@ class Watch:
             if not self._hands_off:
                 given = max(limit, UNDECLARED_AFTER[LINK_LOST])
                 link.give_up(self._clock.patience(given, LEAST_SILENCE) + silent)
-            raise Fault(LINK_LOST, f"the vehicle has been silent for {silent:.0f} s{why}")
+            raise FaultError(LINK_LOST, f"the vehicle has been silent for {silent:.0f} s{why}")
 
     def _answer(self, event: str, said: str, watched: _Watched) -> None:
         """Answer, as policies define, what the vehicle has answered by leaving its mode.
@@ -272,7 +272,7 @@ class Watch:
         sense; one that was out of reach, or stands still where it may restart, is left alone.
 
         Raises:
-            Fault: what is to be answered, or Displaced.
+            FaultError: what is to be answered, or DisplacedError.
         """
         vehicle = watched.vehicle
         why = f"{said}; a failsafe switched it to mode {vehicle.state().mode}"
@@ -285,13 +285,13 @@ class Watch:
             watched.departures.taken_back = self._clock.now()
             # Nothing explains its mode a second time, to an order that comes before the answer.
             vehicle.accept_mode()
-            raise Fault(event, why)
+            raise FaultError(event, why)
         if event == VEHICLE_RESTARTED:
             watched.motors.check_stands(said)
         elif hindrance := self._hindrance(event, said, vehicle):
-            raise Fault(event, f"{why}; {hindrance}", LAND)
+            raise FaultError(event, f"{why}; {hindrance}", LAND)
         self._take_back(event, why, watched.departures)
-        raise Displaced(event, why)
+        raise DisplacedError(event, why)
 
     def _note_restart(self) -> None:
         """Take a restart for known, which explains no other mode after this; the vehicle is to be set up."""
@@ -299,7 +299,7 @@ class Watch:
         if self._watched is not None:
             self._watched.signs.renew()
 
-    def _insists(self, fault: Fault) -> bool:
+    def _insists(self, fault: FaultError) -> bool:
         """Return whether a vehicle that leaves its commanded mode is commanded again."""
         assert self._watched is not None
         vehicle, departures = self._watched.vehicle, self._watched.departures
@@ -342,7 +342,7 @@ class Watch:
             event: that is responded to; a mode in which the vehicle's failsafe answers it is not a pilot's.
 
         Raises:
-            Fault: one has.
+            FaultError: one has.
         """
         if event == LINK_LOST:
             self.answers_alone()

@@ -10,7 +10,7 @@ from collections.abc import Mapping, Sequence
 from itertools import pairwise
 
 from mmrs_runtime.controllers.geodesy import distance_to_leg
-from mmrs_runtime.faults import NO_PROGRESS, Fault
+from mmrs_runtime.faults import NO_PROGRESS, FaultError
 
 from ..links.autopilots import is_px4
 from ..links.link import Link
@@ -42,7 +42,7 @@ class Corridor:
         """Take note of a position.
 
         Raises:
-            Fault: the vehicle has left its legs.
+            FaultError: the vehicle has left its legs.
         """
         if not self._legs or self._is_inside(here):
             self._outside = 0
@@ -50,7 +50,7 @@ class Corridor:
         self._outside += 1
         if self._outside >= OUTSIDE:
             off = min(distance_to_leg(here, *leg) for leg in self._legs)
-            raise Fault(
+            raise FaultError(
                 NO_PROGRESS,
                 f"the vehicle is {off:.0f} m off all legs of its run: it may have got another mission",
             )

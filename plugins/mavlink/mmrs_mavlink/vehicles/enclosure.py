@@ -12,7 +12,7 @@ from collections.abc import Iterator, Sequence
 from math import hypot
 
 from mmrs_runtime.controllers.geodesy import distance, offset
-from mmrs_runtime.faults import Refused
+from mmrs_runtime.faults import RefusedError
 
 from ..links.autopilots import is_px4
 from ..links.link import Link
@@ -41,7 +41,7 @@ def enclose(
         polygons: whether the program has areas to fence.
 
     Raises:
-        Refused: a fence is in the way, or the vehicle does not confirm which fences it obeys.
+        RefusedError: a fence is in the way, or the vehicle does not confirm which fences it obeys.
     """
     if is_px4(link):
         values = parameters.read(link, PX4)
@@ -66,7 +66,7 @@ def _enable_polygons(link: Link, obeyed: int, wanted: int) -> Iterator[str]:
     if obeyed == wanted:
         return
     if not parameters.write(link, "FENCE_TYPE", wanted):
-        raise Refused(f"the fence: the vehicle does not confirm FENCE_TYPE = {wanted}")
+        raise RefusedError(f"the fence: the vehicle does not confirm FENCE_TYPE = {wanted}")
     alone = wanted == POLYGONS
     what = "is the areas of the program alone" if alone else "obeys the areas of the program, too"
     yield f"FENCE_TYPE = {wanted}, which was {obeyed}: its fence {what}"
@@ -76,14 +76,14 @@ def _check_radius(home: Place, places: Sequence[Place], radius: float, name: str
     farthest = max((hypot(*offset(home, place)[:2]) for place in places), default=0.0)
     if 0.0 < radius < farthest + MARGIN:
         ends = f"the vehicle's own fence ends {radius:g} m from home ({name})"
-        raise Refused(f"{ends}, and its program goes {farthest:.0f} m")
+        raise RefusedError(f"{ends}, and its program goes {farthest:.0f} m")
 
 
 def _check_height(places: Sequence[Place], height: float, name: str) -> None:
     highest = max((place.height for place in places), default=0.0)
     if 0.0 < height < highest + MARGIN:
         ends = f"the vehicle's own fence ends {height:g} m above home ({name})"
-        raise Refused(f"{ends}, and its program goes to {highest:.0f} m")
+        raise RefusedError(f"{ends}, and its program goes to {highest:.0f} m")
 
 
 def _far_from_rally(places: Sequence[Place], rally: Sequence[Item], kilometres: float) -> Iterator[str]:

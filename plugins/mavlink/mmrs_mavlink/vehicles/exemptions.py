@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from mmrs_runtime.faults import Refused
+from mmrs_runtime.faults import RefusedError
 
 from ..links.autopilots import is_px4
 from ..links.link import Link
@@ -22,7 +22,7 @@ def end_exemption(link: Link, kind: str) -> str:
     """Make the failsafe for a lost link act in all modes of programs; return what operators should know.
 
     Raises:
-        Refused: it would continue, and does not confirm that it will not.
+        RefusedError: it would continue, and does not confirm that it will not.
     """
     coded = parameters.REAL
     if is_px4(link):
@@ -37,5 +37,5 @@ def end_exemption(link: Link, kind: str) -> str:
         return ""
     wanted = was & ~bits
     if not parameters.write(link, name, wanted, coded):
-        raise Refused(f"response to a lost link: the vehicle does not confirm {name} = {wanted}")
+        raise RefusedError(f"response to a lost link: the vehicle does not confirm {name} = {wanted}")
     return f"{name} = {wanted}, which was {was}: it answers a lost link in {where}, too"

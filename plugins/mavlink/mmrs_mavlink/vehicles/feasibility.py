@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from mmrs_runtime.faults import Refused
+from mmrs_runtime.faults import RefusedError
 
 from ..links.link import Link
 from .telemetry import Telemetry
@@ -30,7 +30,7 @@ def check_feasible(link: Link, telemetry: Telemetry, begun: float) -> None:
         begun: second of the run at which the upload was begun.
 
     Raises:
-        Refused: it would not.
+        RefusedError: it would not.
     """
     looked = link.clock.now() + LOOK_SECONDS
     link.wait(lambda: link.clock.now() >= looked, LOOK_SECONDS)
@@ -46,4 +46,4 @@ def check_feasible(link: Link, telemetry: Telemetry, begun: float) -> None:
             if text.severity <= mavlink.MAV_SEVERITY_WARNING
         )
         said = "".join(f"; it says '{text}'" for text in dict.fromkeys(warnings))
-        raise Refused(f"mission: the vehicle has accepted it, and would not fly it{said}")
+        raise RefusedError(f"mission: the vehicle has accepted it, and would not fly it{said}")

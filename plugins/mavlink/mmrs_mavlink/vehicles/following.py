@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 
 from mmrs_runtime.controllers.geodesy import distance, distance_to_leg
-from mmrs_runtime.faults import NO_PROGRESS, Fault
+from mmrs_runtime.faults import NO_PROGRESS, FaultError
 
 from ..program import Place
 from .corridor import Corridor
@@ -69,7 +69,7 @@ class Following:
         """Take note of where the vehicle is; return the first item that it has not surely left behind.
 
         Raises:
-            Fault: it has left items out, or has gone back, or is elsewhere.
+            FaultError: it has left items out, or has gone back, or is elsewhere.
         """
         for place in self._trail.passed():
             self._approach(place)
@@ -84,12 +84,12 @@ class Following:
         """Take note of the item that the vehicle says it is at.
 
         Raises:
-            Fault: it has gone back.
+            FaultError: it has gone back.
         """
         if 0 <= now < self._claimed:
             self._back.add(self._trail.place_order())
             if len(self._back) > SET_BACK_AFTER:
-                raise Fault(NO_PROGRESS, f"the mission was set back from item {self._claimed} to {now}")
+                raise FaultError(NO_PROGRESS, f"the mission was set back from item {self._claimed} to {now}")
             return
         self._back.clear()
         if now > self._claimed:
@@ -110,13 +110,13 @@ class Following:
         """Return whether the vehicle has been near an item, or the item is nowhere.
 
         Raises:
-            Fault: it surely has not.
+            FaultError: it surely has not.
         """
         if self._missed.get(seq, 0.0) <= 0.0:
             return True
         if self._since.get(seq, 0) >= JUDGED_AFTER:
             ahead = f"the mission was set ahead to item {self._claimed}"
-            raise Fault(NO_PROGRESS, f"{ahead}: the vehicle has not been near item {seq}")
+            raise FaultError(NO_PROGRESS, f"{ahead}: the vehicle has not been near item {seq}")
         return False
 
     def _approach(self, here: Place) -> None:

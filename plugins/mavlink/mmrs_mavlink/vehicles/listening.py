@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from mmrs_runtime.faults import Refused
+from mmrs_runtime.faults import RefusedError
 
 from ..links.autopilots import is_px4
 from ..links.link import Link
@@ -34,7 +34,7 @@ def check_listening(link: Link) -> str:
         What operators should know, where the vehicle does not report it; otherwise nothing.
 
     Raises:
-        Refused: it does not count this program's heartbeats.
+        RefusedError: it does not count this program's heartbeats.
     """
     if is_px4(link):
         return ""
@@ -44,7 +44,7 @@ def check_listening(link: Link) -> str:
         return NOT_TOLD
     if GROUND_SYSTEM in systems:
         return ""
-    raise Refused(
+    raise RefusedError(
         f"response to a lost link: the vehicle counts no heartbeats but those of system {_shown(systems)}"
         f" ({name}), and would not notice when this program falls silent: set {name} to {GROUND_SYSTEM},"
         " and give ground stations other systems"

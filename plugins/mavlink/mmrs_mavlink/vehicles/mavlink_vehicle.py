@@ -15,7 +15,7 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from mmrs_runtime.controllers.geodesy import at_height
 from mmrs_runtime.controllers.state import State
-from mmrs_runtime.faults import LINK_LOST, Fault, Refused, Unanswered
+from mmrs_runtime.faults import LINK_LOST, FaultError, RefusedError, UnansweredError
 
 from ..links.link import Link, Message
 from ..links.messages import ANYBODY
@@ -92,7 +92,7 @@ class MavlinkVehicle:
         A vehicle that is in the air already may be anywhere.
 
         Raises:
-            Refused: something is not accepted or read back differently, the vehicle does not stand where
+            RefusedError: something is not accepted or read back differently, the vehicle does not stand where
                 it is to, or it does not become ready.
         """
         geographic = isinstance(self._home, Geographic)
@@ -119,7 +119,7 @@ class MavlinkVehicle:
         """Check that the vehicle is not under external control.
 
         Raises:
-            Fault: it is, or a failsafe has answered an event.
+            FaultError: it is, or a failsafe has answered an event.
         """
         self._mode_control.check()
 
@@ -127,7 +127,7 @@ class MavlinkVehicle:
         """Set the failsafe for a lost ground station.
 
         Raises:
-            Refused: it cannot respond so, does not confirm that it will, or does not count this program.
+            RefusedError: it cannot respond so, does not confirm that it will, or does not count this program.
         """
         if response != "CONTINUE" and not self._listens:
             for said in (check_listening(self._link), end_exemption(self._link, self._kind)):
@@ -148,7 +148,7 @@ class MavlinkVehicle:
         """Set the failsafe for a broken fence.
 
         Raises:
-            Refused: it cannot respond so, or does not confirm that it will.
+            RefusedError: it cannot respond so, or does not confirm that it will.
         """
         preparation.answer_breach(self._link, self._kind, response)
 
@@ -161,8 +161,9 @@ class MavlinkVehicle:
         """Climb to a height above home, or go there straight up or down from where it is in the air.
 
         Raises:
-            Refused: the vehicle does not arm or take off, or, away from home, does not keep that for its own.
-            Fault: it does not get there.
+            RefusedError: the vehicle does not arm or take off, or, away from home, does not keep that
+                place for its own.
+            FaultError: it does not get there.
         """
         if self._telemetry.airborne():
             self._steering.go_to(at_height(self._telemetry.here(), height), None, None, False)
@@ -190,7 +191,7 @@ class MavlinkVehicle:
         """Descend and stop the motors.
 
         Raises:
-            Fault: it does not come to the ground.
+            FaultError: it does not come to the ground.
         """
         self._mode_control.enter(modes.LAND)
         limit = PATIENCE_SECONDS + PATIENCE_FACTOR * 2.0 * max(0.0, self._telemetry.here().height)
@@ -201,7 +202,7 @@ class MavlinkVehicle:
         """Go straight to a place.
 
         Raises:
-            Fault: it does not get there.
+            FaultError: it does not get there.
         """
         self._steering.go_to(place, speed, look, through)
 
@@ -213,8 +214,8 @@ class MavlinkVehicle:
         """Fly items of the uploaded mission; the one after `last` must make the vehicle wait.
 
         Raises:
-            Refused: the vehicle has another mission by now, or does not begin with that item.
-            Fault: no item was reached for too long, or the mission was set ahead or back externally.
+            RefusedError: the vehicle has another mission by now, or does not begin with that item.
+            FaultError: no item was reached for too long, or the mission was set ahead or back externally.
         """
         self._mode_control.arm()
         end = self._mission.fly(first, last, reached)
@@ -236,8 +237,8 @@ class MavlinkVehicle:
             confirmed: whether the vehicle reports the image that it takes.
 
         Raises:
-            Unanswered: the vehicle does not answer, or reports no image.
-            Refused: it does not do it.
+            UnansweredError: the vehicle does not answer, or reports no image.
+            RefusedError: it does not do it.
         """
         with self._link.inbox(*IMAGES, component=ANYBODY) as inbox:
             command(self._link, number, *params)
@@ -246,13 +247,15 @@ class MavlinkVehicle:
                 self._link.clock.patience(IMAGE_SECONDS),
                 while_received=True,
             ):
-                raise Unanswered(f"{name_of(number)}: no image was reported within {IMAGE_SECONDS:.0f} s")
+                raise UnansweredError(
+                    f"{name_of(number)}: no image was reported within {IMAGE_SECONDS:.0f} s"
+                )
 
     def measure(self, value: str, seconds: float) -> float:
         """Return the next value published under that name.
 
         Raises:
-            Unanswered: none comes within `seconds`.
+            UnansweredError: none comes within `seconds`.
         """
         with self._link.inbox("NAMED_VALUE_FLOAT") as inbox:
             found = self._link.wait(
@@ -261,7 +264,7 @@ class MavlinkVehicle:
                 while_received=True,
             )
         if found is None:
-            raise Unanswered(f"{value}: no such value comes from the vehicle within {seconds:g} s")
+            raise UnansweredError(f"{value}: no such value comes from the vehicle within {seconds:g} s")
         return float(found.value)
 
     def tell_ground(self, text: str) -> None:
@@ -275,7 +278,7 @@ class MavlinkVehicle:
             Whether it is still armed, so that it must be watched.
 
         Raises:
-            Refused: it does not halt.
+            RefusedError: it does not halt.
         """
         if not self._mode_control.motors_may_run():
             return False
@@ -285,7 +288,7 @@ class MavlinkVehicle:
         self._mode_control.enter(modes.HOLD)
         still = partial(self._telemetry.still_since, self._link.clock.now(), STILL)
         if not self._link.wait(still, PATIENCE_SECONDS, while_received=True):
-            raise Refused("the vehicle does not come to a halt")
+            raise RefusedError("the vehicle does not come to a halt")
         return self._telemetry.armed()
 
     def carry_on(self) -> None:
@@ -298,7 +301,7 @@ class MavlinkVehicle:
         """Prepare to command the vehicle out of a failsafe's mode."""
         try:
             self._mode_control.check()
-        except Fault:
+        except FaultError:
             self._mode_control.let_go()
 
     @property
@@ -329,17 +332,17 @@ class MavlinkVehicle:
         """Return the vehicle to the mode that it has left without a command, and hold position in GUIDED.
 
         Raises:
-            Refused: it does not enter it. Fault: it is under external control.
+            RefusedError: it does not enter it. FaultError: it is under external control.
         """
         self._mode_control.regain()
         if self._mode_control.mode() == modes.GUIDED:
             self._steering.stay()
 
-    def explain(self, explains: Callable[[Fault], Fault]) -> None:
+    def explain(self, explains: Callable[[FaultError], FaultError]) -> None:
         """Find the cause of another mode during a mode change."""
         self._mode_control.explains = explains
 
-    def insist(self, insists: Callable[[Fault], bool]) -> None:
+    def insist(self, insists: Callable[[FaultError], bool]) -> None:
         """Find the cause of a mode that was left during a mode change, before commanding it again."""
         self._mode_control.insists = insists
 
@@ -347,8 +350,8 @@ class MavlinkVehicle:
         """Surface.
 
         Raises:
-            Refused: it is disarmed, below.
-            Fault: it does not surface.
+            RefusedError: it is disarmed, below.
+            FaultError: it does not surface.
         """
 
         def is_up() -> bool:
@@ -359,7 +362,7 @@ class MavlinkVehicle:
             seconds = 10 * PATIENCE_SECONDS
             self._mode_control.until(lambda: is_up() or not self._telemetry.armed(), seconds, "to surface")
         if not is_up():
-            raise Refused("it is disarmed: it surfaces only if it is buoyant")
+            raise RefusedError("it is disarmed: it surfaces only if it is buoyant")
 
     def disarm(self) -> None:
         """Switch off propulsion, whatever happens then."""

@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from mmrs_runtime.faults import NO_PROGRESS, Fault, Refused
+from mmrs_runtime.faults import NO_PROGRESS, FaultError, RefusedError
 
 from ..links.autopilots import is_px4
 from ..links.link import Link
@@ -45,7 +45,7 @@ class Mission:
             What was changed so that each run begins with its own first item; empty where nothing was.
 
         Raises:
-            Refused: something is not accepted, or read back differently, or runs would begin elsewhere.
+            RefusedError: something is not accepted, or read back differently, or runs would begin elsewhere.
         """
         self._items, begun = uploads.mission, self._link.clock.now()
         items = self._mode_control.profile.mission(uploads.mission)
@@ -62,8 +62,8 @@ class Mission:
             Where that is; None where no item defines it.
 
         Raises:
-            Refused: the vehicle has another mission by now, or does not begin with that item.
-            Fault: no item was reached for too long, or the mission was set ahead or back externally.
+            RefusedError: the vehicle has another mission by now, or does not begin with that item.
+            FaultError: no item was reached for too long, or the mission was set ahead or back externally.
         """
         self._check()
         self._select(first)
@@ -81,24 +81,26 @@ class Mission:
         """Check that the mission was not replaced, where the vehicle has given it an id.
 
         Raises:
-            Refused: it was.
+            RefusedError: it was.
         """
         current = self._link.latest("MISSION_CURRENT")
         found = mark_of(current, BEFORE_ID) if current is not None else 0
         if self._id and found and found != self._id:
-            raise Refused("the vehicle has another mission than was uploaded: it was replaced externally")
+            raise RefusedError(
+                "the vehicle has another mission than was uploaded: it was replaced externally"
+            )
 
     def _select(self, seq: int) -> None:
         """Continue the mission at an item, or at the first after it that is flown to.
 
         Raises:
-            Refused: the vehicle does not confirm that it will.
+            RefusedError: the vehicle does not confirm that it will.
         """
         flown = first_flown(self._items, seq)
         self._mode_control.profile.select(self._mode_control.profile.number(seq))
         patience = self._link.clock.patience(MODE_SECONDS)
         if not self._link.wait(lambda: seq <= self._item() <= flown, patience, while_received=True):
-            raise Refused(f"the vehicle does not go to item {seq} of its mission")
+            raise RefusedError(f"the vehicle does not go to item {seq} of its mission")
 
     def _item(self) -> int:
         """Return the item of the program's mission that the vehicle is at; less than 0: not known."""
@@ -131,5 +133,5 @@ class Mission:
         found = self._link.wait(behind, 10 * PATIENCE_SECONDS, while_received=True)
         self._mode_control.check()
         if found is None:
-            raise Fault(NO_PROGRESS, f"item {seq} of the mission was not reached")
+            raise FaultError(NO_PROGRESS, f"item {seq} of the mission was not reached")
         return found

@@ -8,7 +8,7 @@ from math import inf
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from mmrs_runtime.faults import NO_PROGRESS, TAKEN_OVER, Fault, Refused, Unanswered
+from mmrs_runtime.faults import NO_PROGRESS, TAKEN_OVER, FaultError, RefusedError, UnansweredError
 
 from ..links.autopilots import is_px4
 from ..links.link import Link
@@ -62,8 +62,8 @@ class ModeControl:
         self._asked_again = -inf
         self._arming = False
         self.alone: frozenset[int] = frozenset()
-        self.explains: Callable[[Fault], Fault] = lambda left: left
-        self.insists: Callable[[Fault], bool] = lambda fault: False
+        self.explains: Callable[[FaultError], FaultError] = lambda left: left
+        self.insists: Callable[[FaultError], bool] = lambda fault: False
 
     @property
     def profile(self) -> AutopilotProfile:
@@ -89,8 +89,8 @@ class ModeControl:
         """Change the mode; the vehicle forgets the commanded speed.
 
         Raises:
-            Refused: the vehicle does not enter the mode.
-            Fault: it enters a third one, or leaves the wanted one again: it is under external control.
+            RefusedError: the vehicle does not enter the mode.
+            FaultError: it enters a third one, or leaves the wanted one again: it is under external control.
         """
         wanted, left = self._modes[mode], self._mode or self.mode()
         self._obey_late(left)
@@ -114,13 +114,13 @@ class ModeControl:
                 if mode != modes.GUIDED:
                     self.profile.end_guiding()
                 return
-        raise Refused(f"the vehicle does not go into mode {mode}")
+        raise RefusedError(f"the vehicle does not go into mode {mode}")
 
     def regain(self) -> None:
         """Enter the mode again that the vehicle has left without a command.
 
         Raises:
-            Refused: the vehicle does not enter it. Fault: it is under external control.
+            RefusedError: the vehicle does not enter it. FaultError: it is under external control.
         """
         mode = self._mode
         self.let_go()
@@ -139,7 +139,7 @@ class ModeControl:
         """Check that the vehicle is not under external control.
 
         Raises:
-            Fault: the vehicle has left the mode; TAKEN_OVER, or the event that its failsafe has answered.
+            FaultError: the vehicle has left the mode; TAKEN_OVER, or the event that its failsafe answered.
         """
         number, mode = self._telemetry.mode(), self._mode or "take-off"
         if (glimpse := self._glimpse()) not in (None, number):
@@ -189,7 +189,7 @@ class ModeControl:
         """Check that the vehicle is not under external control while it is commanded to leave a mode.
 
         Raises:
-            Fault: it is, or an event that its failsafe has answered is to be answered.
+            FaultError: it is, or an event that its failsafe has answered is to be answered.
         """
         glimpse = self._glimpse()
         if self._strays():
@@ -197,10 +197,10 @@ class ModeControl:
         elif glimpse is not None:
             raise self.explains(self._overtaken(glimpse, before))
 
-    def _overtaken(self, number: int, mode: str) -> Fault:
+    def _overtaken(self, number: int, mode: str) -> FaultError:
         """Return that a pilot had chosen a mode before the vehicle received its command."""
         self.profile.end_guiding()
-        return Fault(
+        return FaultError(
             TAKEN_OVER,
             f"the vehicle left mode {mode} for {modes.word_of(self._link, self._kind, number)}: it is under"
             f" external control; a command at that moment has put it into mode {self.mode()}",
@@ -210,7 +210,7 @@ class ModeControl:
         """Accept the mode of a failsafe, where the wanted one is to be commanded again.
 
         Raises:
-            Fault: it is under external control, or the event that its failsafe has answered is to be
+            FaultError: it is under external control, or the event that its failsafe has answered is to be
                 answered.
         """
         fault = self.explains(self._left(self._telemetry.mode(), before))
@@ -218,14 +218,16 @@ class ModeControl:
             raise fault
         self._accepted = self._accepted | {self._telemetry.mode()}
 
-    def _left(self, number: int, mode: str) -> Fault:
+    def _left(self, number: int, mode: str) -> FaultError:
         """Return what it means that the vehicle has left a mode for that of a number; steer no more."""
         self.profile.end_guiding()
         cause = self._telemetry.failsafe()
         said = [text.text for event, text in self._telemetry.announcements.recent() if event == cause]
         if cause is not None and number in modes.answers_to(self._link, self._kind, cause, said):
-            return Fault(cause, f"the vehicle left mode {mode} without a command, for mode {self.mode()}")
-        return Fault(
+            return FaultError(
+                cause, f"the vehicle left mode {mode} without a command, for mode {self.mode()}"
+            )
+        return FaultError(
             TAKEN_OVER, f"the vehicle left mode {mode} for {self.mode()}: it is under external control"
         )
 
@@ -233,16 +235,16 @@ class ModeControl:
         """Wait until a test holds; time in which the vehicle is silent does not count.
 
         Raises:
-            Fault: it does not in that time; `doing` names the activity.
+            FaultError: it does not in that time; `doing` names the activity.
         """
         if not self._link.wait(test, self._link.clock.patience(seconds, 2.0), while_received=True):
-            raise Fault(NO_PROGRESS, f"the vehicle takes too long {doing}")
+            raise FaultError(NO_PROGRESS, f"the vehicle takes too long {doing}")
 
     def arm(self) -> None:
         """Enter GUIDED and arm.
 
         Raises:
-            Refused: the vehicle does not arm; with its reason, if it gives one.
+            RefusedError: the vehicle does not arm; with its reason, if it gives one.
         """
         self._be_in(modes.GUIDED)
         self.start_motors()
@@ -251,8 +253,8 @@ class ModeControl:
         """Arm, if the vehicle is not armed; again where it disarms itself at once, as one that missed us.
 
         Raises:
-            Refused: it does not arm; it says why, where the vehicle does.
-            Fault: it does not stay armed.
+            RefusedError: it does not arm; it says why, where the vehicle does.
+            FaultError: it does not stay armed.
         """
         if self._telemetry.armed():
             return
@@ -263,18 +265,18 @@ class ModeControl:
                 self._arming = False
                 return
         said = "; ".join(dict.fromkeys(text.text for text in self._telemetry.texts.since(begun)))
-        raise Fault(NO_PROGRESS, f"the vehicle takes too long to arm{': ' if said else ''}{said}")
+        raise FaultError(NO_PROGRESS, f"the vehicle takes too long to arm{': ' if said else ''}{said}")
 
     def _ask_to_arm(self) -> None:
         self._arming = True
         try:
             command(self._link, mavlink.MAV_CMD_COMPONENT_ARM_DISARM, 1)
-        except Refused as error:
-            self._arming = isinstance(error, Unanswered)
+        except RefusedError as error:
+            self._arming = isinstance(error, UnansweredError)
             self._link.wait(lambda: None, WORDS_SECONDS)
             said = self._telemetry.texts.refusals(REPEATED_SECONDS)
             why = "; ".join(said or self._telemetry.lacks())
-            raise Refused(f"{error}{': ' if why else ''}{why}") from error
+            raise RefusedError(f"{error}{': ' if why else ''}{why}") from error
 
     def leave_ground(self, height: float) -> None:
         """Arm and take off, again where the vehicle has disarmed itself in between.
@@ -282,7 +284,7 @@ class ModeControl:
         As one does when the command is lost: it is then asked as often as anything may be lost.
 
         Raises:
-            Refused: the vehicle does not arm or take off.
+            RefusedError: the vehicle does not arm or take off.
         """
         for attempt in count(1):
             self._be_in(self.profile.climbs_in)
@@ -291,7 +293,7 @@ class ModeControl:
                 command(self._link, mavlink.MAV_CMD_NAV_TAKEOFF, *self.profile.take_off(height))
                 self._follow_climb()
                 return
-            except Refused:
+            except RefusedError:
                 # It refuses also when it has left the ground already, and its first answer was lost.
                 if self._link.wait(self._telemetry.airborne, AFRESH_SECONDS, while_received=True):
                     self._follow_climb()
@@ -304,7 +306,7 @@ class ModeControl:
         """Stop the motors of a vehicle that does not fly; one that does refuses.
 
         Raises:
-            Refused: the vehicle does not disarm.
+            RefusedError: the vehicle does not disarm.
         """
         command(self._link, mavlink.MAV_CMD_COMPONENT_ARM_DISARM, 0)
         self.until(lambda: not self._telemetry.armed(), MODE_SECONDS, "to disarm")
@@ -320,7 +322,7 @@ class ModeControl:
         """
         try:
             self.disarm()
-        except Refused:
+        except RefusedError:
             return False
         self._arming = False
         return True
@@ -333,7 +335,7 @@ class ModeControl:
         (``ModeGuided::set_desired_speed``). As any target may be lost, the speed is sent after several.
 
         Raises:
-            Refused: the vehicle takes no such speed.
+            RefusedError: the vehicle takes no such speed.
         """
         if speed is None or not self.profile.paces():
             return
@@ -344,9 +346,9 @@ class ModeControl:
         self._told += 1
         try:
             command(self._link, mavlink.MAV_CMD_DO_CHANGE_SPEED, 1, speed, -1)
-        except Unanswered:
+        except UnansweredError:
             raise
-        except Refused:
+        except RefusedError:
             if self._told == PACE_TELLINGS:
                 raise
 

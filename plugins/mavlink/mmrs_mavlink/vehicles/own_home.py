@@ -8,7 +8,7 @@ from __future__ import annotations
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from mmrs_runtime.controllers.geodesy import distance
-from mmrs_runtime.faults import Refused
+from mmrs_runtime.faults import RefusedError
 
 from ..links.link import Link, Message
 from ..program import Geographic, Place
@@ -36,7 +36,7 @@ def keep_home(link: Link, telemetry: Telemetry, home: Geographic, start: Place) 
         What operators should know.
 
     Raises:
-        Refused: the vehicle does not take it, or does not confirm that it has.
+        RefusedError: the vehicle does not take it, or does not confirm that it has.
     """
     takes_off = f"takes off {aside(home, start):.0f} m from its home"
     try:
@@ -45,8 +45,8 @@ def keep_home(link: Link, telemetry: Telemetry, home: Geographic, start: Place) 
             kept = _level_with(telemetry, home, start)
         command_at(link, mavlink.MAV_CMD_DO_SET_HOME, kept, mavlink.MAV_FRAME_GLOBAL)
         _await(link, telemetry, kept)
-    except Refused as error:
-        raise Refused(
+    except RefusedError as error:
+        raise RefusedError(
             f"it {takes_off}, and the vehicle does not keep that for its own ({error}), so that its own"
             " return would lead elsewhere: bring it home, and begin again"
         ) from error
@@ -81,7 +81,7 @@ def _level_with(telemetry: Telemetry, home: Geographic, start: Place) -> Geograp
     """Return home with that height above the sea from which on the ground here is as high as before."""
     level = telemetry.sea_level()
     if level is None:
-        raise Refused("the vehicle has not reported its height above sea level")
+        raise RefusedError("the vehicle has not reported its height above sea level")
     return Geographic(home.latitude, home.longitude, level + telemetry.here().height - start.height)
 
 
@@ -89,14 +89,14 @@ def _await(link: Link, telemetry: Telemetry, home: Geographic) -> None:
     """Wait until the vehicle says that a place is its home, and counts its heights from there.
 
     Raises:
-        Refused: it does not.
+        RefusedError: it does not.
     """
     if _own_home(link, home) is None:
-        raise Refused("the vehicle does not confirm it")
+        raise RefusedError("the vehicle does not confirm it")
 
     def counts() -> bool:
         level = telemetry.sea_level()
         return level is not None and abs(level - home.height) <= SAME
 
     if not link.wait(counts, link.patience):
-        raise Refused("the heights that the vehicle tells count from elsewhere")
+        raise RefusedError("the heights that the vehicle tells count from elsewhere")

@@ -7,7 +7,7 @@ from contextlib import suppress
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from mmrs_runtime.faults import Refused
+from mmrs_runtime.faults import RefusedError
 
 from ..links.link import Link
 from ..program import Place
@@ -58,7 +58,7 @@ def ask_for_messages(link: Link, *, geographic: bool) -> None:
     own = STREAMED_BY.get(beat.autopilot, {}) if beat is not None else {}
     for name, rate in (STREAMED | own | ({} if geographic else STREAMED_LOCAL)).items():
         number = getattr(mavlink, f"MAVLINK_MSG_ID_{name}")
-        with suppress(Refused):
+        with suppress(RefusedError):
             tries = None if name == position else 2
             command(link, mavlink.MAV_CMD_SET_MESSAGE_INTERVAL, number, 1e6 / rate, tries=tries)
 
@@ -70,7 +70,7 @@ def replace_all(link: Link, mission: Sequence[Item], fence: Sequence[Item], rall
         The id that the vehicle gave to the mission; 0 where it gives none.
 
     Raises:
-        Refused: something is not accepted, or read back differently.
+        RefusedError: something is not accepted, or read back differently.
     """
     marks = []
     for items, kind in ((mission, MISSION), (fence, FENCE), (rally, RALLY)):
@@ -109,20 +109,20 @@ def check_identity(
         resumed: whether a run is resumed, so that the vehicle may be known already, and be elsewhere.
 
     Raises:
-        Refused: it is not.
+        RefusedError: it is not.
     """
     beat = link.latest("HEARTBEAT")
     if beat is not None and beat.type not in VEHICLES[kind] | {mavlink.MAV_TYPE_GENERIC}:
         entry = mavlink.enums["MAV_TYPE"].get(beat.type)
         shown = entry.name.removeprefix("MAV_TYPE_").lower().replace("_", " ") if entry else beat.type
-        raise Refused(f"the vehicle is a {shown}, and the program is for a {kind}")
+        raise RefusedError(f"the vehicle is a {shown}, and the program is for a {kind}")
     if link.doubt():
-        raise Refused(link.doubt())
+        raise RefusedError(link.doubt())
     away = aside(start, telemetry.here())
     if away > tolerance:
         place = "the home of its program" if start == home else LANDED
         carry = f": carry it {there(start, home)}" if resumed or start != home else ""
-        raise Refused(f"the vehicle is {away:.0f} m from {place}{carry}")
+        raise RefusedError(f"the vehicle is {away:.0f} m from {place}{carry}")
 
 
 def hear_out(link: Link) -> None:
@@ -135,23 +135,23 @@ def await_position(link: Link, telemetry: Telemetry) -> None:
     """Wait until the vehicle has told where it is, before anything is uploaded that may be another's.
 
     Raises:
-        Refused: it does not tell.
+        RefusedError: it does not tell.
     """
     if not link.wait(telemetry.placed, READY_SECONDS, while_received=True):
-        raise Refused(f"the vehicle does not become ready: {'; '.join(telemetry.lacks())}")
+        raise RefusedError(f"the vehicle does not become ready: {'; '.join(telemetry.lacks())}")
 
 
 def await_ready(link: Link, telemetry: Telemetry) -> None:
     """Wait until the vehicle knows where it is and its own checks pass.
 
     Raises:
-        Refused: it does not get ready.
+        RefusedError: it does not get ready.
     """
     if not link.wait(telemetry.ready, READY_SECONDS, while_received=True):
         # A PX4 has said why once only, and perhaps before anybody listened.
         ask(link, mavlink.MAV_CMD_RUN_PREARM_CHECKS)
         link.wait(lambda: None, WORDS_SECONDS)
-        raise Refused(f"the vehicle does not become ready: {'; '.join(telemetry.lacks())}")
+        raise RefusedError(f"the vehicle does not become ready: {'; '.join(telemetry.lacks())}")
 
 
 def answer_lost_link(link: Link, kind: str, response: str, after: float | None = None) -> str:
@@ -167,7 +167,7 @@ def answer_lost_link(link: Link, kind: str, response: str, after: float | None =
         What the vehicle does otherwise than wanted; empty if nothing.
 
     Raises:
-        Refused: it cannot respond so, or does not confirm that it will.
+        RefusedError: it cannot respond so, or does not confirm that it will.
     """
     _answer(link, "a lost link", modes.lost_link_answers(link, kind), response, kind)
     told = [_wait_for(link, modes.set_point_patience(link), after, OFFBOARD_SECONDS)]
@@ -200,7 +200,7 @@ def answer_breach(link: Link, kind: str, response: str) -> None:
     """Set the failsafe for a broken fence.
 
     Raises:
-        Refused: it cannot respond so, or does not confirm that it will.
+        RefusedError: it cannot respond so, or does not confirm that it will.
     """
     _answer(link, "a broken fence", modes.breach_answers(link, kind), response, kind)
 
@@ -208,7 +208,7 @@ def answer_breach(link: Link, kind: str, response: str) -> None:
 def _answer(link: Link, event: str, answers: modes.Answers, response: str, kind: str) -> None:
     values = answers.get(response)
     if values is None:
-        raise Refused(f"response to {event}: a {kind} cannot do {response} as a failsafe")
+        raise RefusedError(f"response to {event}: a {kind} cannot do {response} as a failsafe")
     for name, value in values.items():
         if not parameters.write(link, name, value, modes.PARAMETER_KINDS.get(name, parameters.REAL)):
-            raise Refused(f"response to {event}: the vehicle does not confirm {name} = {value}")
+            raise RefusedError(f"response to {event}: the vehicle does not confirm {name} = {value}")

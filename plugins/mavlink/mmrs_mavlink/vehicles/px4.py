@@ -20,7 +20,7 @@ from math import nan, radians
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from mmrs_runtime.controllers.geodesy import between, distance
-from mmrs_runtime.faults import Refused
+from mmrs_runtime.faults import RefusedError
 
 from ..links.link import Link
 from ..program import Place
@@ -138,7 +138,7 @@ class Px4:
         Home is where and as high as the vehicle was armed: earlier reports do not count.
 
         Raises:
-            Refused: the vehicle has not reported its home's height.
+            RefusedError: the vehicle has not reported its home's height.
         """
         begun, clock = self._link.clock.now(), self._link.clock
         self._link.wait(
@@ -159,14 +159,14 @@ class Px4:
         """Return the frame of heights above sea level, and the height there.
 
         Raises:
-            Refused: the vehicle has not reported its home's height.
+            RefusedError: the vehicle has not reported its home's height.
         """
         return mavlink.MAV_FRAME_GLOBAL, self._above(height)
 
     def _above(self, height: float) -> float:
         level = self._telemetry.sea_level()
         if level is None:
-            raise Refused("the vehicle has not reported its home's height above sea level")
+            raise RefusedError("the vehicle has not reported its home's height above sea level")
         return level + height
 
     def mission(self, items: Sequence[Item]) -> Sequence[Item]:

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from math import inf
 from pathlib import Path
 
-from mmrs_runtime.faults import Refused
+from mmrs_runtime.faults import RefusedError
 from mmrs_runtime.records.entries import entry_in
 
 from ..links.link import Link
@@ -45,14 +45,14 @@ def recognise(
         system: that it had when the run began; 0: unknown.
 
     Raises:
-        Refused: it is not, or it may be.
+        RefusedError: it is not, or it may be.
     """
     telemetry = vehicle.telemetry
     preparation.ask_for_messages(link, geographic=isinstance(robot.home, Geographic))
     preparation.await_position(link, telemetry)
     preparation.hear_out(link)
     if system and link.system != system:
-        raise Refused(f"the vehicle is system {link.system}, and the robot's was system {system}")
+        raise RefusedError(f"the vehicle is system {link.system}, and the robot's was system {system}")
     vehicle.start = starts[0]
     if not telemetry.armed():
         vehicle.start = min(starts, key=lambda start: aside(start, telemetry.here()))
@@ -64,10 +64,10 @@ def recognise(
     if not telemetry.armed():
         return
     if not under_way:
-        raise Refused("the vehicle is armed already: it is under external control")
+        raise RefusedError("the vehicle is armed already: it is under external control")
     mode = vehicle.state().mode
     if mode not in OURS and telemetry.mode() not in _alone(link, robot.vehicle):
-        raise Refused(
+        raise RefusedError(
             f"the vehicle is armed, and it is in mode {mode}, by which it answers no lost link:"
             " a pilot may have it"
         )
@@ -87,13 +87,13 @@ def refuse_neighbours(robot: Robot, start: Place, here: Place) -> None:
         here: where it stands.
 
     Raises:
-        Refused: another robot's home is nearer than that.
+        RefusedError: another robot's home is nearer than that.
     """
     away = aside(start, here)
     other, name = min(((aside(home, here), name) for name, home in robot.neighbours), default=(inf, ""))
     if away > THERE and other < away:
         own = "that of its program" if start == robot.home else LANDED
-        raise Refused(
+        raise RefusedError(
             f"the vehicle is {other:.0f} m from the home of {name!r} and {away:.0f} m from {own}: "
             "are system ids or links swapped?"
         )

@@ -15,7 +15,7 @@ from collections.abc import Sequence
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from mmrs_runtime.faults import Refused
+from mmrs_runtime.faults import RefusedError
 
 from ..links.autopilots import is_px4
 from ..links.link import Link
@@ -73,11 +73,11 @@ def keep_place(link: Link) -> str:
         What was changed, in words; empty where nothing was.
 
     Raises:
-        Refused: it would begin runs elsewhere, or without a command.
+        RefusedError: it would begin runs elsewhere, or without a command.
     """
     name = AFTER_TAKE_OFF if is_px4(link) else RESTART
     if round(parameters.read(link, [name]).get(name, 0)) != AT_ONCE:
         return ""
     if not parameters.write(link, name, 0.0, modes.PARAMETER_KINDS.get(name, parameters.REAL)):
-        raise Refused(f"{name} = 1: {TROUBLE[name]}, and does not confirm 0")
+        raise RefusedError(f"{name} = 1: {TROUBLE[name]}, and does not confirm 0")
     return f"{name} = 0, which was 1: each run begins with its own first place"

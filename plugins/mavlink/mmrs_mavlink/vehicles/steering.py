@@ -7,7 +7,7 @@ from math import atan2, degrees, hypot, nan, radians
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from mmrs_runtime.controllers.geodesy import bearing, distance, offset
-from mmrs_runtime.faults import NO_PROGRESS, Fault
+from mmrs_runtime.faults import NO_PROGRESS, FaultError
 
 from ..links.link import Link
 from ..program import Geographic, Local, Look, Object, Place
@@ -58,7 +58,7 @@ class Steering:
         """Go straight to a place; `through`: without a stop there.
 
         Raises:
-            Fault: it does not get there.
+            FaultError: it does not get there.
         """
         self._mode_control.arm()
         self._speed = speed
@@ -76,7 +76,7 @@ class Steering:
             self._mode_control.check()
             limit += RESEND_SECONDS if self._link.unheard() else 0.0
             if self._link.clock.now() > limit:
-                raise Fault(
+                raise FaultError(
                     NO_PROGRESS, f"still {self._away(self._telemetry.here(), place):.1f} m from {place}"
                 )
         self._unpoint(look)
@@ -85,7 +85,7 @@ class Steering:
         """Turn until a device points at a target; a device with a gimbal turns on its own.
 
         Raises:
-            Fault: it does not turn so far.
+            FaultError: it does not turn so far.
         """
         self._mode_control.arm()
         if look.gimbal:
@@ -96,7 +96,7 @@ class Steering:
         until = self._link.clock.now() + self._link.clock.patience(PATIENCE_SECONDS, 2.0)
         while not self._faces(wanted):
             if self._link.clock.now() > until:
-                raise Fault(NO_PROGRESS, "the vehicle takes too long to turn")
+                raise FaultError(NO_PROGRESS, "the vehicle takes too long to turn")
             self._send_target(here, wanted)
             self._link.wait(lambda: self._faces(wanted), RESEND_SECONDS)
             until += RESEND_SECONDS if self._link.unheard() else 0.0

@@ -82,7 +82,7 @@ class Vehicle(Protocol):
         """Return the next value published under that name; None in a dry run.
 
         Raises:
-            Unanswered: none comes within `seconds`.
+            UnansweredError: none comes within `seconds`.
         """
         ...
 
@@ -102,7 +102,7 @@ class Vehicle(Protocol):
         """Check, without waiting, that the vehicle is not under external control.
 
         Raises:
-            Fault: it is.
+            FaultError: it is.
         """
         ...
 

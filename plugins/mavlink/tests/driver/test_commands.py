@@ -9,7 +9,7 @@ from mavlink_peer import acknowledged, eventually, linked
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from mmrs_mavlink.services.commands import CommandCancel, command
-from mmrs_runtime.faults import Fault, Refused, Unanswered
+from mmrs_runtime.faults import FaultError, RefusedError, UnansweredError
 
 ARM = mavlink.MAV_CMD_COMPONENT_ARM_DISARM
 
@@ -42,14 +42,14 @@ def test_what_is_not_answered_is_sent_again_with_the_confirmation_counted_up():
 
 def test_without_any_answer_it_ends_after_the_tries():
     with linked() as (link, wire):
-        with pytest.raises(Unanswered, match="COMPONENT_ARM_DISARM: no answer to 3 tries"):
+        with pytest.raises(UnansweredError, match="COMPONENT_ARM_DISARM: no answer to 3 tries"):
             command(link, ARM)
         assert len(wire.sent) == 3
 
 
 def test_a_refusal_is_told_in_words_and_not_repeated():
     with linked(in_turn(acknowledged(ARM, mavlink.MAV_RESULT_DENIED))) as (link, wire):
-        with pytest.raises(Refused, match="COMPONENT_ARM_DISARM: the vehicle answers 'denied'"):
+        with pytest.raises(RefusedError, match="COMPONENT_ARM_DISARM: the vehicle answers 'denied'"):
             command(link, ARM)
         assert len(wire.sent) == 1
 
@@ -63,7 +63,10 @@ def test_a_vehicle_that_asks_for_patience_is_asked_again():
 
 def test_a_vehicle_that_always_asks_for_patience_refuses_in_the_end():
     busy = acknowledged(ARM, mavlink.MAV_RESULT_TEMPORARILY_REJECTED)
-    with linked(in_turn(busy, busy, busy)) as (link, _), pytest.raises(Refused, match="temporarily rejected"):
+    with (
+        linked(in_turn(busy, busy, busy)) as (link, _),
+        pytest.raises(RefusedError, match="temporarily rejected"),
+    ):
         command(link, ARM)
 
 
@@ -83,14 +86,14 @@ def test_what_is_broken_off_while_it_is_in_progress_is_cancelled():
 
         def guard() -> None:
             if wire.sent:
-                raise Fault("STOPPED", "stop was asked for")
+                raise FaultError("STOPPED", "stop was asked for")
 
         begin = threading.Event()
         link.guard = lambda: guard() if begin.is_set() else None
         threading.Timer(0.5, begin.set).start()
         cancelled = []
         link.observe(lambda message, outgoing: cancelled.append(message) if outgoing else None)
-        with pytest.raises(Fault, match="stop was asked for"):
+        with pytest.raises(FaultError, match="stop was asked for"):
             command(link, ARM)
         assert isinstance(cancelled[-1], CommandCancel)
         assert cancelled[-1].command == ARM
@@ -126,10 +129,10 @@ def test_what_is_sent_while_the_link_is_silent_does_not_count_where_somebody_wat
         def guard() -> None:
             watched.append(link.silent_for())
             if link.silent_for() > 1.5:
-                raise Fault("LINK_LOST", "the vehicle has been silent")
+                raise FaultError("LINK_LOST", "the vehicle has been silent")
 
         link.guard = guard
-        with pytest.raises(Fault, match="has been silent") as fault:
+        with pytest.raises(FaultError, match="has been silent") as fault:
             command(link, ARM)
         assert fault.value.event == "LINK_LOST"
         assert len(wire.of("COMMAND_LONG")) > 3

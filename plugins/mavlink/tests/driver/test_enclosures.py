@@ -8,7 +8,7 @@ from mavlink_peer import ARDUPILOT, PX4, linked, value
 from mmrs_mavlink import Geographic
 from mmrs_mavlink.services.items import Item
 from mmrs_mavlink.vehicles.enclosure import enclose
-from mmrs_runtime.faults import Refused
+from mmrs_runtime.faults import RefusedError
 
 HOME = Geographic(42.37, 13.35, 0.0)
 USUAL = {"FENCE_ENABLE": 0.0, "FENCE_TYPE": 7.0, "FENCE_RADIUS": 300.0, "FENCE_ALT_MAX": 100.0}
@@ -52,7 +52,7 @@ def test_a_fence_that_was_off_stays_as_it_is_where_there_are_no_areas():
     ],
 )
 def test_a_program_that_leaves_a_fence_that_was_on_is_refused(where, words):
-    with pytest.raises(Refused, match=words):
+    with pytest.raises(RefusedError, match=words):
         told(where, **USUAL | {"FENCE_ENABLE": 1.0})
 
 
@@ -69,7 +69,7 @@ def test_only_what_a_fence_heeds_counts_and_areas_are_added():
 
 def test_a_px4_heeds_its_distances_unless_they_are_zero():
     assert told(place(500.0), autopilot=PX4, GF_MAX_HOR_DIST=0.0, GF_MAX_VER_DIST=0.0)[0] == []
-    with pytest.raises(Refused, match="GF_MAX_HOR_DIST"):
+    with pytest.raises(RefusedError, match="GF_MAX_HOR_DIST"):
         told(place(500.0), autopilot=PX4, GF_MAX_HOR_DIST=400.0, GF_MAX_VER_DIST=0.0)
 
 

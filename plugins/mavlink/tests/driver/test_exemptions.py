@@ -7,7 +7,7 @@ from flight_crew import manned
 from mavlink_peer import linked, value
 
 from mmrs_mavlink.vehicles.exemptions import end_exemption
-from mmrs_runtime.faults import Refused
+from mmrs_runtime.faults import RefusedError
 
 
 def answering(options: float, *, keeps: bool = False):
@@ -42,7 +42,7 @@ def test_others_are_left_as_they_are(kind, options):
 def test_a_copter_that_insists_on_going_on_is_refused():
     with (
         linked(answering(2.0, keeps=True)) as (link, _),
-        pytest.raises(Refused, match="does not confirm FS_OPTIONS = 0"),
+        pytest.raises(RefusedError, match="does not confirm FS_OPTIONS = 0"),
     ):
         end_exemption(link, "copter")
 

@@ -6,7 +6,7 @@ import pytest
 
 from mmrs_mavlink import Local
 from mmrs_mavlink.vehicles.following import Following
-from mmrs_runtime.faults import Fault
+from mmrs_runtime.faults import FaultError
 
 PLACES = {2: Local(50.0, 0.0, 20.0), 3: Local(100.0, 0.0, 20.0), 4: Local(100.0, 50.0, 20.0)}
 
@@ -65,7 +65,7 @@ def test_an_item_that_is_nowhere_is_believed_at_once(flight):
 def test_a_mission_that_was_set_ahead_is_a_fault_before_anything_is_believed(flight):
     assert flight(10.0, 0.0, 2) == 2
     assert flight(10.1, 0.1, 4) == 2
-    with pytest.raises(Fault, match="set ahead to item 4: the vehicle has not been near item 2"):
+    with pytest.raises(FaultError, match="set ahead to item 4: the vehicle has not been near item 2"):
         flight(12.0, 1.0, 4)
 
 
@@ -73,7 +73,7 @@ def test_a_mission_that_was_set_back_is_a_fault(flight):
     assert flight(51.0, 0.0, 3) == 3
     for north in (52.0, 51.0, 50.0):
         flight(north, 0.0, 1)
-    with pytest.raises(Fault, match="set back from item 3 to 1"):
+    with pytest.raises(FaultError, match="set back from item 3 to 1"):
         flight(49.0, 0.0, 1)
 
 
@@ -112,7 +112,7 @@ def test_a_vehicle_that_stands_still_where_it_was_set_ahead_to_is_not_waited_for
     vehicle.item, vehicle.sent = 4, 2
     assert following.look() == 2
     vehicle.sent += 2
-    with pytest.raises(Fault, match="has not been near item 2"):
+    with pytest.raises(FaultError, match="has not been near item 2"):
         following.look()
 
 
@@ -154,13 +154,13 @@ def kept():
 def test_a_vehicle_that_leaves_its_legs_is_a_fault_as_soon_as_it_is_sure(kept):
     kept(10.0, 7.0)
     kept(20.0, 9.0)
-    with pytest.raises(Fault, match="11 m off all legs of its run"):
+    with pytest.raises(FaultError, match="11 m off all legs of its run"):
         kept(20.0, 11.0)
 
 
 def test_a_vehicle_that_climbs_away_is_a_fault(kept):
     kept(10.0, 0.0, 29.0)
-    with pytest.raises(Fault, match="10 m off"):
+    with pytest.raises(FaultError, match="10 m off"):
         kept(10.0, 0.0, 30.0)
 
 

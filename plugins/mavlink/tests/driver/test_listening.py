@@ -8,7 +8,7 @@ from mavlink_peer import PX4, linked, value
 from mmrs_mavlink.driving.lost_link import LostLink
 from mmrs_mavlink.program import Policy
 from mmrs_mavlink.vehicles.listening import check_listening
-from mmrs_runtime.faults import Refused
+from mmrs_runtime.faults import RefusedError
 
 OTHER = "zzz"
 """The parameter that is asked for by its number."""
@@ -49,7 +49,7 @@ def test_a_vehicle_that_counts_our_heartbeats_is_told_of_in_no_word(values):
     ],
 )
 def test_a_vehicle_that_would_never_miss_us_is_refused(values, words):
-    with pytest.raises(Refused, match=words):
+    with pytest.raises(RefusedError, match=words):
         told(values)
 
 
@@ -63,7 +63,7 @@ def test_a_px4_takes_any_ground_station():
 
 def test_a_robot_whose_policy_wants_an_answer_to_a_lost_link_does_not_begin_with_such_a_vehicle(in_the_air):
     made = in_the_air(Policy("LINK_LOST", "RETURN"), parameters={"SYSID_MYGCS": 254.0})
-    with pytest.raises(Refused, match="would not notice when this program falls silent"):
+    with pytest.raises(RefusedError, match="would not notice when this program falls silent"):
         LostLink(made.robot, made.vehicle, made.said.append).tell()
     assert made.simulated.autopilot.parameters["FS_GCS_ENABLE"] != 3.0
 

@@ -10,7 +10,7 @@ from mmrs_mavlink.services.exchanges import mark_of
 from mmrs_mavlink.services.items import FENCE, MISSION, Item
 from mmrs_mavlink.services.missions import upload, verify
 from mmrs_mavlink.services.reading import download
-from mmrs_runtime.faults import Fault, Refused
+from mmrs_runtime.faults import FaultError, RefusedError
 
 ITEMS = [Item(16, (float(n), 0.0, 0.0, 0.0), 423_700_000 + n, 133_500_000, 20.0 + n) for n in range(4)]
 ACCEPTED, NO_SPACE, WRONG = 0, 4, 13
@@ -132,7 +132,7 @@ def test_a_vehicle_that_takes_nothing_keeps_what_it_had():
     with (
         linked(store, speedup=20.0) as (link, _),
         pytest.raises(
-            Refused, match="mission: the vehicle answers 'no space' to the upload; it keeps what it had"
+            RefusedError, match="mission: the vehicle answers 'no space' to the upload; it keeps what it had"
         ),
     ):
         upload(link, ITEMS)
@@ -143,7 +143,7 @@ def test_a_vehicle_that_refuses_an_item_is_left_with_nothing():
     store = Store(refuse_at=2)
     with (
         linked(store, speedup=20.0) as (link, _),
-        pytest.raises(Refused, match="'invalid param1' to the upload; it has none now"),
+        pytest.raises(RefusedError, match="'invalid param1' to the upload; it has none now"),
     ):
         upload(link, ITEMS)
     assert store.kept == []
@@ -153,7 +153,7 @@ def test_a_vehicle_that_falls_silent_in_the_middle_is_told_as_not_known():
     store = Store(deaf=["MISSION_ITEM_INT"] * 99 + ["MISSION_CLEAR_ALL", "MISSION_REQUEST_LIST"] * 99)
     with (
         linked(store, speedup=20.0) as (link, _),
-        pytest.raises(Refused, match="answers nothing more to the upload; what it has now is not known"),
+        pytest.raises(RefusedError, match="answers nothing more to the upload; what it has now is not known"),
     ):
         upload(link, ITEMS)
 
@@ -164,10 +164,10 @@ def test_an_upload_that_is_broken_off_is_cancelled_and_cleared():
 
         def guard() -> None:
             if "MISSION_ITEM_INT" in wire.kinds():
-                raise Fault("STOPPED", "stop was asked for")
+                raise FaultError("STOPPED", "stop was asked for")
 
         link.guard = guard
-        with pytest.raises(Fault, match="stop was asked for"):
+        with pytest.raises(FaultError, match="stop was asked for"):
             upload(link, ITEMS)
         ack, clear = wire.of("MISSION_ACK")[-1], wire.of("MISSION_CLEAR_ALL")[-1]
         assert ack.type == mavlink.MAV_MISSION_OPERATION_CANCELLED
@@ -199,7 +199,7 @@ def test_the_home_of_a_px4_is_no_item_and_is_compared():
     with linked(store, autopilot=PX4) as (link, _):
         upload(link, ITEMS)
         store.kept[0].x += 100
-        with pytest.raises(Refused, match="item 0 is"):
+        with pytest.raises(RefusedError, match="item 0 is"):
             verify(link, ITEMS)
 
 

@@ -12,7 +12,7 @@ from mmrs_mavlink.vehicles import modes
 from mmrs_mavlink.vehicles.mavlink_vehicle import MavlinkVehicle
 from mmrs_mavlink.vehicles.mode_control import ModeControl
 from mmrs_mavlink.vehicles.telemetry import Telemetry
-from mmrs_runtime.faults import Fault, Refused, Unanswered
+from mmrs_runtime.faults import FaultError, RefusedError, UnansweredError
 
 HOME = Geographic(42.37, 13.35, 0.0)
 ARM, TAKE_OFF, PHOTO = 400, 22, 2000
@@ -79,7 +79,7 @@ def test_a_mode_that_was_acknowledged_and_never_shown_is_refused(steered):
     wire.answer = lambda message: (
         [acknowledged(message.command)] if message.get_type() == "COMMAND_LONG" else []
     )
-    with pytest.raises(Refused, match="does not go into mode land"):
+    with pytest.raises(RefusedError, match="does not go into mode land"):
         mode_control.enter(modes.LAND)
 
 
@@ -88,7 +88,7 @@ def test_a_mode_that_nobody_asked_for_is_a_pilot(steered, mode):
     mode_control, telemetry, _, wire = steered()
     mode_control.arm()
     in_mode(wire, telemetry, mode)
-    with pytest.raises(Fault, match=r"left mode guided for .*: it is under external control") as fault:
+    with pytest.raises(FaultError, match=r"left mode guided for .*: it is under external control") as fault:
         mode_control.check()
     assert fault.value.event == "TAKEN_OVER"
 
@@ -99,7 +99,7 @@ def test_what_the_vehicle_answers_by_itself_is_no_pilot_but_a_stick_always_is(st
     mode_control.arm()
     wire.say(text("EKF Failsafe: changed to LAND Mode"))
     in_mode(wire, telemetry, mode)
-    with pytest.raises(Fault) as fault:
+    with pytest.raises(FaultError) as fault:
         mode_control.check()
     assert fault.value.event == event
 
@@ -116,7 +116,7 @@ def test_a_vehicle_that_does_not_arm_says_why(steered):
     mode_control, _, _, wire = steered(c400=mavlink.MAV_RESULT_FAILED)
     wire.say(text("Arm: Throttle too high"))
     with pytest.raises(
-        Refused, match="COMPONENT_ARM_DISARM: the vehicle answers 'failed': Arm: Throttle too high"
+        RefusedError, match="COMPONENT_ARM_DISARM: the vehicle answers 'failed': Arm: Throttle too high"
     ):
         mode_control.arm()
 
@@ -148,7 +148,7 @@ def test_a_vehicle_that_never_stays_armed_is_told_with_what_it_has_said(steered)
             yield text("GCS Failsafe")
 
     wire.answer = never_armed
-    with pytest.raises(Fault, match=r"takes too long to arm: GCS Failsafe$"):
+    with pytest.raises(FaultError, match=r"takes too long to arm: GCS Failsafe$"):
         mode_control.arm()
 
 
@@ -176,7 +176,7 @@ def test_a_take_off_is_asked_for_as_often_as_anything_where_the_vehicle_disarms_
 
 def test_a_take_off_that_is_refused_on_the_ground_is(steered):
     mode_control, _, _, _ = steered(c22=mavlink.MAV_RESULT_FAILED)
-    with pytest.raises(Refused, match="NAV_TAKEOFF: the vehicle answers 'failed'"):
+    with pytest.raises(RefusedError, match="NAV_TAKEOFF: the vehicle answers 'failed'"):
         mode_control.leave_ground(20.0)
 
 
@@ -214,5 +214,5 @@ def test_an_image_that_never_comes_is_a_silent_device(camera, monkeypatch, told)
     if told is not None:
         wire.say(told, component=100)
     vehicle.operate(PHOTO, (0.0, 0.0, 1.0))
-    with pytest.raises(Unanswered, match="IMAGE_START_CAPTURE: no image was reported within 2 s"):
+    with pytest.raises(UnansweredError, match="IMAGE_START_CAPTURE: no image was reported within 2 s"):
         vehicle.operate(PHOTO, (0.0, 0.0, 1.0), confirmed=True)

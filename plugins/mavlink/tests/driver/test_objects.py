@@ -13,7 +13,7 @@ from mmrs_mavlink.program import Geographic, Local, Object
 from mmrs_runtime.controllers import user_functions as objects
 from mmrs_runtime.controllers.state import State
 from mmrs_runtime.controllers.user_functions import place_of
-from mmrs_runtime.faults import Fault
+from mmrs_runtime.faults import FaultError
 
 HERE = State(0.0, HOME, 0.0, 0.0, 1.0)
 
@@ -40,13 +40,13 @@ def test_an_object_is_where_it_was_found():
 )
 @pytest.mark.parametrize("expected", [None, NORTH])
 def test_a_function_of_the_users_that_finds_no_place_ends_the_program_by_a_fault_of_its_own(locate, expected):
-    with pytest.raises(Fault, match="object 'the hive': ") as fault:
+    with pytest.raises(FaultError, match="object 'the hive': ") as fault:
         found(locate, expected, 5.0)
     assert fault.value.event == "OBJECT_NOT_FOUND"
 
 
 def test_an_object_too_far_from_where_it_should_be_is_not_gone_to():
-    with pytest.raises(Fault, match=r"22\.\d m from where it should be"):
+    with pytest.raises(FaultError, match=r"22\.\d m from where it should be"):
         found(lambda state, expected: HOME, Geographic(NORTH.latitude, NORTH.longitude, 0.0), 5.0)
 
 
@@ -59,7 +59,7 @@ def hanging():
 
 def test_a_function_that_does_not_answer_in_time_finds_nothing(monkeypatch, hanging):
     monkeypatch.setattr(objects, "ANSWER_SECONDS", 0.2)
-    with pytest.raises(Fault, match=r"its locator has not answered for 0\.2 s") as missed:
+    with pytest.raises(FaultError, match=r"its locator has not answered for 0\.2 s") as missed:
         found(hanging)
     assert missed.value.event == "OBJECT_NOT_FOUND"
 

@@ -11,7 +11,7 @@ from mmrs_mavlink.program import Geographic
 from mmrs_mavlink.services.uploads import Uploads
 from mmrs_mavlink.sitl import commands
 from mmrs_mavlink.vehicles.footing import aside, footing
-from mmrs_runtime.faults import Refused
+from mmrs_runtime.faults import RefusedError
 
 SET_HOME = 179
 HILL = 6.0
@@ -87,7 +87,7 @@ def test_a_place_near_home_is_home_and_the_vehicle_is_told_nothing(perched):
 def test_one_that_does_not_take_it_does_not_take_off(perched, settings, why):
     made = perched(restarted=True, **settings)
     made.link.retries = Retries(tries=2)
-    with pytest.raises(Refused, match="bring it home, and begin again") as refused:
+    with pytest.raises(RefusedError, match="bring it home, and begin again") as refused:
         made.vehicle.take_off(16.0)
     assert f"it takes off 72 m from its home, and the vehicle does not keep that for its own ({why}" in str(
         refused.value
@@ -99,6 +99,6 @@ def test_one_that_agrees_and_keeps_another_does_not_take_off(perched, monkeypatc
     monkeypatch.setitem(commands._HANDLERS, SET_HOME, lambda pilot, params: commands.ACCEPTED)
     made = perched(restarted=True)
     made.link.retries = Retries(tries=2)
-    with pytest.raises(Refused, match="the vehicle does not confirm it"):
+    with pytest.raises(RefusedError, match="the vehicle does not confirm it"):
         made.vehicle.take_off(16.0)
     assert not made.simulated.autopilot.armed

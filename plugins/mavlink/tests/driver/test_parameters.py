@@ -11,7 +11,7 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 from mmrs_mavlink.links.retries import Retries
 from mmrs_mavlink.services import parameters
 from mmrs_mavlink.vehicles import modes, preparation, safeguards
-from mmrs_runtime.faults import Refused
+from mmrs_runtime.faults import RefusedError
 
 pytestmark = pytest.mark.real_time("parts of flights")
 
@@ -199,12 +199,15 @@ def test_seconds_that_no_vehicle_can_be_told_are_told_to_people():
 
 
 def test_a_response_that_a_vehicle_cannot_give_by_itself_is_refused():
-    with linked() as (link, _), pytest.raises(Refused, match="a copter cannot do SURFACE as a failsafe"):
+    with linked() as (link, _), pytest.raises(RefusedError, match="a copter cannot do SURFACE as a failsafe"):
         preparation.answer_breach(link, "copter", "SURFACE")
 
 
 def test_a_response_that_the_vehicle_does_not_confirm_is_refused():
-    with linked() as (link, _), pytest.raises(Refused, match=r"a broken fence: .* confirm FENCE_ACTION = 2"):
+    with (
+        linked() as (link, _),
+        pytest.raises(RefusedError, match=r"a broken fence: .* confirm FENCE_ACTION = 2"),
+    ):
         preparation.answer_breach(link, "copter", "LAND")
 
 

@@ -18,7 +18,7 @@ from mmrs_mavlink.vehicles.autopilot_profile import ArduPilot
 from mmrs_mavlink.vehicles.mode_control import ModeControl
 from mmrs_mavlink.vehicles.px4 import Px4
 from mmrs_mavlink.vehicles.telemetry import Telemetry
-from mmrs_runtime.faults import Fault
+from mmrs_runtime.faults import FaultError
 
 HOME = Geographic(42.37, 13.35, 0.0)
 NORTH = Geographic(42.371, 13.35, 20.0)
@@ -150,7 +150,7 @@ def test_set_points_end_when_somebody_else_has_the_vehicle(px4):
     mode_control.enter(modes.GUIDED)
     autopilot.wire.beat(autopilot=PX4, mode=POSITION, armed=True)
     eventually(lambda: telemetry.mode() == POSITION)
-    with pytest.raises(Fault, match="it is under external control") as fault:
+    with pytest.raises(FaultError, match="it is under external control") as fault:
         mode_control.check()
     assert fault.value.event == "TAKEN_OVER"
     assert_silent(autopilot)
@@ -168,7 +168,7 @@ def test_a_take_off_goes_straight_up_to_a_height_above_sea_level_and_may_change_
         mode_control.check()
     autopilot.wire.beat(autopilot=PX4, mode=POSITION, armed=True)
     eventually(lambda: telemetry.mode() == POSITION)
-    with pytest.raises(Fault, match="left mode take-off for position"):
+    with pytest.raises(FaultError, match="left mode take-off for position"):
         mode_control.check()
 
 

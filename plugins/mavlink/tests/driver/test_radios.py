@@ -15,7 +15,7 @@ from mmrs_mavlink.links.radio import Radio
 from mmrs_mavlink.links.radios import Radios
 from mmrs_mavlink.vehicles.preparation import HEARING_SECONDS, hear_out
 from mmrs_runtime.clock import Clock
-from mmrs_runtime.faults import Fault, Refused
+from mmrs_runtime.faults import FaultError, RefusedError
 
 pytestmark = pytest.mark.real_time("parts of flights")
 
@@ -122,7 +122,7 @@ def test_a_wrong_system_is_told_when_nobody_else_speaks():
     radios = Radios(clock, retries=QUICK, wrap=lambda port, url: port.close() or wire)
     link = radios.open("udpin:127.0.0.1:0", 3)
     wire.beat(system=7)
-    with pytest.raises(Fault, match=r"no vehicle at here; received system 7, and not 3"):
+    with pytest.raises(FaultError, match=r"no vehicle at here; received system 7, and not 3"):
         radios.meet(link, "here", 0.3)
     link.close()
 
@@ -131,7 +131,7 @@ def test_two_robots_cannot_have_the_same_vehicle():
     wire = Wire()
     radios = Radios(Clock(), wrap=lambda port, url: port.close() or wire)
     link = radios.open("udpin:127.0.0.1:0", 3)
-    with pytest.raises(Refused, match="system 3 has two robots on one link"):
+    with pytest.raises(RefusedError, match="system 3 has two robots on one link"):
         radios.open("udpin:127.0.0.1:0", 3)
     link.close()
 

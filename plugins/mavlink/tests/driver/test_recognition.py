@@ -13,7 +13,7 @@ from patience import until
 from mmrs_mavlink.program import Geographic
 from mmrs_mavlink.vehicles.footing import aside
 from mmrs_mavlink.vehicles.recognition import recognise, refuse_neighbours
-from mmrs_runtime.faults import Refused
+from mmrs_runtime.faults import RefusedError
 
 
 def north(metres: float) -> Geographic:
@@ -26,12 +26,14 @@ def beside(metres: float):
 
 
 def test_a_vehicle_at_the_home_of_another_robot_is_that_ones():
-    with pytest.raises(Refused, match="0 m from the home of 'Brezza' and 8 m from that of its program: are"):
+    with pytest.raises(
+        RefusedError, match="0 m from the home of 'Brezza' and 8 m from that of its program: are"
+    ):
         refuse_neighbours(beside(8.0), HOME, north(8.0))
 
 
 def test_a_vehicle_that_is_nearer_to_another_home_than_to_its_own_is_refused():
-    with pytest.raises(Refused, match="'Cirro'"):
+    with pytest.raises(RefusedError, match="'Cirro'"):
         refuse_neighbours(beside(8.0), HOME, north(-4.3))
 
 
@@ -44,7 +46,7 @@ def test_a_vehicle_that_its_program_has_landed_elsewhere_belongs_there_and_not_a
     robot = beside(60.0)
     refuse_neighbours(robot, north(55.0), north(53.0))
     words = r"4 m from the home of 'Brezza' and 9 m from where its program has landed it: are"
-    with pytest.raises(Refused, match=words):
+    with pytest.raises(RefusedError, match=words):
         refuse_neighbours(robot, north(55.0), north(64.0))
 
 
@@ -81,7 +83,7 @@ def test_a_vehicle_that_does_by_itself_what_it_does_about_a_lost_link_is_gone_on
     ("mode", "answer"), [("return", 5.0), ("return", 0.0), ("alt_hold", 1.0), ("smart_return", 1.0)]
 )
 def test_a_vehicle_that_does_otherwise_may_have_a_pilot(found, mode, answer):
-    with pytest.raises(Refused, match="a pilot may have it"):
+    with pytest.raises(RefusedError, match="a pilot may have it"):
         recognised(found(mode, {"FS_GCS_ENABLE": answer}))
 
 
@@ -89,7 +91,7 @@ def test_a_vehicle_that_does_not_tell_what_it_does_about_a_lost_link_may_have_a_
     made = found("return", {"FS_GCS_ENABLE": 1.0})
     with made.simulated.lock:
         del made.simulated.autopilot.parameters["FS_GCS_ENABLE"]
-    with pytest.raises(Refused, match="a pilot may have it"):
+    with pytest.raises(RefusedError, match="a pilot may have it"):
         recognised(made)
 
 
@@ -114,7 +116,7 @@ def test_a_vehicle_whose_run_is_resumed_stands_where_its_log_leaves_it_or_is_to_
         with made.simulated.lock:
             made.simulated.autopilot.body.position = (away, 0.0, 0.0)
         until(lambda: aside(made.vehicle.state().place, north(away)) < 0.5)
-        with pytest.raises(Refused) if words else nullcontext() as refused:
+        with pytest.raises(RefusedError) if words else nullcontext() as refused:
             recognise(made.link, made.vehicle, made.robot, 20.0, starts, under_way=True, system=0)
         if words:
             assert str(refused.value) == f"the vehicle is {words}"

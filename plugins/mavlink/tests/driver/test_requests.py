@@ -13,7 +13,7 @@ from mmrs_mavlink.driving.worker import Interrupted
 from mmrs_mavlink.vehicles import modes
 from mmrs_mavlink.vehicles.mode_control import ModeControl
 from mmrs_mavlink.vehicles.telemetry import Telemetry
-from mmrs_runtime.faults import Fault
+from mmrs_runtime.faults import FaultError
 
 HOME = Geographic(42.37, 13.35, 0.0)
 STABILIZE, GUIDED, LOITER, LAND, BRAKE = 0, 4, 5, 9, 17
@@ -89,7 +89,7 @@ def test_a_pilots_mode_is_a_pilots_however_many_requests_are_on_their_way(late):
     mode_control, link, _, wire = late
     broken_off(mode_control, link, wire, modes.GUIDED)
     wire.answer = lambda message: (acknowledged(176), heartbeat(mode=LOITER, armed=True))
-    with pytest.raises(Fault, match="left mode stabilize for loiter: it is under external control"):
+    with pytest.raises(FaultError, match="left mode stabilize for loiter: it is under external control"):
         mode_control.enter(modes.LAND)
 
 
@@ -99,5 +99,5 @@ def test_what_was_asked_for_long_ago_is_a_pilots_again(late):
     mode_control.enter(modes.LAND)
     threading.Event().wait(1.0)
     show(wire, telemetry, BRAKE)
-    with pytest.raises(Fault, match="left mode land for hold: it is under external control"):
+    with pytest.raises(FaultError, match="left mode land for hold: it is under external control"):
         mode_control.check()

@@ -16,7 +16,7 @@ from mmrs_mavlink.vehicles import px4
 from mmrs_mavlink.vehicles.feasibility import check_feasible
 from mmrs_mavlink.vehicles.runs import first_flown, keep_place, speed_before
 from mmrs_runtime.controllers.geodesy import distance
-from mmrs_runtime.faults import Refused
+from mmrs_runtime.faults import RefusedError
 
 WAYS = {
     name: Geographic(42.37 + north / 111_080.0, 13.35, 10.0)
@@ -145,7 +145,7 @@ def test_a_px4_is_set_not_to_begin_its_mission_by_itself_after_take_off():
 def test_a_mission_that_a_px4_has_accepted_and_would_not_fly_is_refused_on_the_ground():
     with (
         manned(ROBOT, firmware="px4", parameters={"MIS_DIST_1WP": 5.0}) as made,
-        pytest.raises(Refused, match="mission: the vehicle has accepted it, and would not fly it"),
+        pytest.raises(RefusedError, match="mission: the vehicle has accepted it, and would not fly it"),
     ):
         prepare(made)
 
@@ -156,7 +156,7 @@ def test_what_a_px4_says_against_a_mission_is_told():
         upload(link, px4.Px4(link, telemetry).mission(MISSION))
         with made.simulated.lock:
             made.simulated.autopilot.say(2, "First waypoint too far away: 10m, 5 max")
-        with pytest.raises(Refused, match=r"would not fly it; it says 'First waypoint too far away"):
+        with pytest.raises(RefusedError, match=r"would not fly it; it says 'First waypoint too far away"):
             check_feasible(link, telemetry, 0.0)
 
 
@@ -164,7 +164,7 @@ def test_a_vehicle_that_keeps_beginning_its_missions_anew_is_not_flown(monkeypat
     monkeypatch.setattr(parameters, "write", lambda *given: False)
     with (
         manned(ROBOT, parameters={"MIS_RESTART": 1.0}) as made,
-        pytest.raises(Refused, match="MIS_RESTART = 1: the vehicle would begin every run"),
+        pytest.raises(RefusedError, match="MIS_RESTART = 1: the vehicle would begin every run"),
     ):
         keep_place(made.link)
 

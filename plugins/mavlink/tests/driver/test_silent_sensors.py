@@ -7,7 +7,7 @@ from flight_crew import manned, robot_of
 
 from mmrs_mavlink.driving.moves import Moves
 from mmrs_mavlink.program import Measure, Policy
-from mmrs_runtime.faults import DEVICE_SILENT, Fault
+from mmrs_runtime.faults import DEVICE_SILENT, FaultError
 
 SAMPLE = Measure("gas", "sample", "CO2")
 
@@ -38,7 +38,7 @@ def test_a_sensor_that_gives_no_value_is_a_silent_device_after_the_seconds_of_it
     made = robot(Policy(DEVICE_SILENT, "RETURN", 3.0))
     clock = made.clock
     begun = clock.now()
-    with pytest.raises(Fault, match="gas: CO2: no such value comes") as caught:
+    with pytest.raises(FaultError, match="gas: CO2: no such value comes") as caught:
         measure(made)
     assert caught.value.event == DEVICE_SILENT
     assert 3.0 <= clock.now() - begun < 3.0 + clock.patience(0.0, 2.0)

@@ -19,7 +19,7 @@ from mmrs_mavlink.services.missions import upload
 from mmrs_mavlink.services.reading import download
 from mmrs_mavlink.vehicles.px4 import Px4
 from mmrs_mavlink.vehicles.telemetry import Telemetry
-from mmrs_runtime.faults import LINK_LOST, Fault, Refused
+from mmrs_runtime.faults import LINK_LOST, FaultError, RefusedError
 
 pytestmark = pytest.mark.real_time("parts of flights")
 
@@ -46,7 +46,7 @@ def lost_after(link, seconds: float):
 
     def guard() -> None:
         if link.silent_for() > seconds:
-            raise Fault(LINK_LOST, "silent")
+            raise FaultError(LINK_LOST, "silent")
 
     return guard
 
@@ -74,7 +74,7 @@ def test_a_silent_vehicle_is_lost_when_the_policy_says_and_not_when_the_tries_ar
     with linked() as (link, _):
         link.guard = lost_after(link, AFTER)
         begun = time.monotonic()
-        with pytest.raises(Fault) as raised:
+        with pytest.raises(FaultError) as raised:
             EXCHANGES[exchange](link)
         assert raised.value.event == LINK_LOST
         assert time.monotonic() - begun > AFTER - 0.3
@@ -85,7 +85,7 @@ def test_a_vehicle_that_is_heard_and_does_not_answer_is_given_up_after_the_tries
     with linked() as (link, wire), beating(wire):
         link.guard = lost_after(link, 60.0)
         stalls = Stalls()
-        with suppress(Refused):
+        with suppress(RefusedError):
             EXCHANGES[exchange](link)
         # While this machine stalls, the vehicle is not heard either, and what is sent then does not count.
         most = link.retries.tries * link.retries.tries + stalls.seconds / link.retries.item
@@ -127,6 +127,6 @@ def test_time_in_which_the_vehicle_is_silent_is_no_time_that_it_takes():
 
 def test_nobody_waits_for_ever_where_nobody_watches():
     with linked() as (link, wire):
-        with pytest.raises(Refused, match="no answer to 3 tries"):
+        with pytest.raises(RefusedError, match="no answer to 3 tries"):
             command(link, ARM, 1.0)
         assert len(wire.sent) == 3

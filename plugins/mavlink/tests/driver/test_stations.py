@@ -13,7 +13,7 @@ from mmrs_mavlink.steps.ground import ANY_STATION, SAME_SYSTEM, Ground
 from mmrs_mavlink.steps.watch import Watch
 from mmrs_mavlink.vehicles.mavlink_vehicle import MavlinkVehicle
 from mmrs_runtime.clock import Clock
-from mmrs_runtime.faults import Fault
+from mmrs_runtime.faults import FaultError
 
 ELSEWHERE = ("10.0.0.3", 14_550)
 STATION = heartbeat(kind=mavlink.MAV_TYPE_GCS, autopilot=mavlink.MAV_AUTOPILOT_INVALID)
@@ -197,7 +197,7 @@ def test_a_watch_ends_the_program_when_the_last_station_is_lost(ears):
     beat(ears)
     watch.check()
     pass_seconds(ears, 6)
-    with pytest.raises(Fault, match="no messages from ground station 254 for 6 s") as fault:
+    with pytest.raises(FaultError, match="no messages from ground station 254 for 6 s") as fault:
         watch.check()
     assert (fault.value.event, decided) == ("GROUND_LOST", [HEARD])
 
@@ -225,5 +225,5 @@ def test_a_robot_that_holds_for_another_reason_still_heeds_it(ears, response, he
     if not heeded:
         watch.check()
         return
-    with pytest.raises(Fault, match="ground station 254"):
+    with pytest.raises(FaultError, match="ground station 254"):
         watch.check()

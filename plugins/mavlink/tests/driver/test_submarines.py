@@ -8,7 +8,7 @@ from flight_crew import manned, robot_of
 from mmrs_mavlink.program import Geographic
 from mmrs_mavlink.services.uploads import Uploads
 from mmrs_mavlink.steps.obeying import undone
-from mmrs_runtime.faults import MOTORS_OFF, Refused
+from mmrs_runtime.faults import MOTORS_OFF, RefusedError
 
 BELOW = Geographic(42.37, 13.35, -4.0)
 
@@ -33,7 +33,7 @@ def test_a_submarine_whose_motors_are_off_below_has_not_surfaced(below):
         below.simulated.autopilot.disarm()
     below.watch.moving = False
     assert below.link.wait(lambda: not below.vehicle.state().armed, 60.0)
-    with pytest.raises(Refused, match="it is disarmed: it surfaces only if it is buoyant"):
+    with pytest.raises(RefusedError, match="it is disarmed: it surfaces only if it is buoyant"):
         below.vehicle.surface()
 
 

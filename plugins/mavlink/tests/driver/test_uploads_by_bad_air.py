@@ -13,7 +13,7 @@ from virtual_link import Air, VirtualLink
 from mmrs_mavlink.services.items import FENCE, MISSION, NAMES, RALLY, Item
 from mmrs_mavlink.services.missions import upload, verify
 from mmrs_mavlink.sitl.items import StoredItem
-from mmrs_runtime.faults import Refused
+from mmrs_runtime.faults import RefusedError
 
 FIRMWARES = ("ardupilot", "px4")
 LONGEST = 1800.0
@@ -51,7 +51,7 @@ def check(link: VirtualLink, wanted: list[Item], kind: int) -> None:
     had, begun = places(link.stores[kind]), link.clock.now()
     try:
         upload(link, wanted, kind)
-    except Refused as refused:
+    except RefusedError as refused:
         told, has = str(refused), places(link.stores[kind])
         assert "it has none now" not in told or has == []
         assert "; it keeps what it had" not in told or has == had
@@ -67,7 +67,7 @@ def check(link: VirtualLink, wanted: list[Item], kind: int) -> None:
 
 def is_read_back(link: VirtualLink, wanted: list[Item], kind: int) -> bool:
     """Return whether reading back finds what was wanted."""
-    with suppress(Refused):
+    with suppress(RefusedError):
         verify(link, wanted, kind)
         return True
     return False
@@ -121,7 +121,7 @@ def test_most_plans_are_kept_where_every_tenth_frame_is_lost(firmware):
     kept = 0
     for seed in range(20):
         link = VirtualLink(firmware, Air(loss=0.1, double=0.05, delay=0.3, jitter=0.05), seed)
-        with suppress(Refused):
+        with suppress(RefusedError):
             for kind in COMMANDS:
                 upload(link, plan(kind, 10, 1), kind)
                 verify(link, plan(kind, 10, 1), kind)

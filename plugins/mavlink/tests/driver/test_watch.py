@@ -9,7 +9,7 @@ from patience import until
 from mmrs_mavlink.program import Policy
 from mmrs_mavlink.steps.watch import Watch
 from mmrs_runtime.clock import Clock
-from mmrs_runtime.faults import Fault
+from mmrs_runtime.faults import FaultError
 
 
 @pytest.mark.parametrize(
@@ -249,5 +249,5 @@ def test_a_vehicle_that_is_heard_again_in_the_mode_that_it_was_told_for_then_may
 
 def test_a_vehicle_that_is_heard_again_in_another_mode_is_a_pilots(back):
     made = back("return")
-    with pytest.raises(Fault, match="it is under external control"):
+    with pytest.raises(FaultError, match="it is under external control"):
         made.watch.check_hands("LINK_LOST")

@@ -35,7 +35,7 @@ from mmrs_mavlink.vehicles.recognition import system_of
 from mmrs_runtime.clock import Clock
 from mmrs_runtime.controllers.user_functions import Locator, where_expected
 from mmrs_runtime.engine.clocks import FollowingClock
-from mmrs_runtime.faults import Fault
+from mmrs_runtime.faults import FaultError
 from mmrs_runtime.injection import Rehearsal, injections
 from mmrs_runtime.ports import Port
 from mmrs_runtime.records.blackbox import BlackBox, black_box_path
@@ -79,7 +79,7 @@ def connect(given: VehicleInput, live: Live) -> ThreadedVehicle:
     url, system = _url(given, live)
     try:
         link = fleet.radios.open(url, system)
-    except Fault as fault:
+    except FaultError as fault:
         raise LinkLostError(f"robot '{given.robot.id}': {fault}") from fault
     context = context_of(given.robot, input)
     equipment = _equipment(given, live, context, program, fleet, link)

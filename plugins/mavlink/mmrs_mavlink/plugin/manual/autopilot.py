@@ -85,20 +85,20 @@ class Autopilot:
             say: called with its failsafes.
 
         Raises:
-            faults.Strange: it is not the robot's, or may be under external control.
-            faults.Fault: it is silent, reports too little, or does not do it; or it is no longer awaited.
+            faults.StrangeAnswerError: it is not the robot's, or may be under external control.
+            faults.FaultError: it is silent, reports too little, does not do it, or is no longer awaited.
         """
         if not self._wait(lambda: bool(self._link.component), FIRST_SIGN):
-            raise faults.Fault(faults.LINK_LOST, "no vehicle is received")
+            raise faults.FaultError(faults.LINK_LOST, "no vehicle is received")
         hear_out(self._link)
         if why := self._strange():
-            raise faults.Strange(why)
+            raise faults.StrangeAnswerError(why)
         for line in self.safeguards():
             say(line)
         for number in TOLD:
             command(self._link, mavlink.MAV_CMD_SET_MESSAGE_INTERVAL, float(number), float(TOLD_EVERY))
         if not self._wait(lambda: None not in (self.heading(), self.depth()), FIRST_SIGN):
-            raise faults.Fault("SENSORS_SILENT", "the vehicle tells no heading and no depth")
+            raise faults.FaultError("SENSORS_SILENT", "the vehicle tells no heading and no depth")
         self._insist(lambda: self.mode == DEPTH_HOLD, mavlink.MAV_CMD_DO_SET_MODE, 1.0, float(DEPTH_HOLD))
         self.move(Sticks())
         self._insist(lambda: self.armed, mavlink.MAV_CMD_COMPONENT_ARM_DISARM, 1.0)
@@ -108,7 +108,7 @@ class Autopilot:
         """Yield its failsafes, from its parameters."""
         yield from report(self._link, "sub", [STICKS_LOST])
 
-    def trouble(self, patience: float) -> faults.Fault | None:
+    def trouble(self, patience: float) -> faults.FaultError | None:
         """Return what is wrong; what leaves the vehicle to itself, or to others, goes first.
 
         Args:
@@ -119,9 +119,9 @@ class Autopilot:
         self._looked = now
         if self.is_silent(patience):
             self._silent_at = now
-            return faults.Fault(faults.LINK_LOST, f"no messages for {self._link.silent_for():.0f} s")
+            return faults.FaultError(faults.LINK_LOST, f"no messages for {self._link.silent_for():.0f} s")
         if self._link.starts != self._starts:
-            return faults.Fault(faults.VEHICLE_RESTARTED, "it has restarted, and is disarmed")
+            return faults.FaultError(faults.VEHICLE_RESTARTED, "it has restarted, and is disarmed")
         if not self.armed:
             return self._disarmed()
         self._off_since = inf
@@ -197,7 +197,7 @@ class Autopilot:
         """Let the sticks go, and disarm where it is in depth hold still, or `at_once`, while it comes up.
 
         Raises:
-            faults.Fault: it does not disarm.
+            faults.FaultError: it does not disarm.
         """
         if self.mode == DEPTH_HOLD or (at_once and self._rose and self.mode == SURFACE):
             self.move(Sticks())
@@ -207,7 +207,7 @@ class Autopilot:
         """Send a command, and return when it is carried out.
 
         Raises:
-            faults.Fault: it is not, or there is no answer.
+            faults.FaultError: it is not, or there is no answer.
         """
         command(self._link, number, *params)
 
@@ -227,41 +227,43 @@ class Autopilot:
             return "the vehicle is armed already: it is under external control"
         return self._link.doubt()
 
-    def _disarmed(self) -> faults.Fault | None:
+    def _disarmed(self) -> faults.FaultError | None:
         """Return that it is disarmed, unless it may be about to report a restart."""
         self._off_since = min(self._off_since, self._link.clock.now())
         if self._link.clock.now() - self._off_since < self._link.clock.patience(OFF_FOR):
             return None
-        return faults.Fault(faults.MOTORS_OFF, "it was disarmed externally, or by a failsafe")
+        return faults.FaultError(faults.MOTORS_OFF, "it was disarmed externally, or by a failsafe")
 
-    def _risen(self) -> faults.Fault | None:
+    def _risen(self) -> faults.FaultError | None:
         """Return why the vehicle surfaces on its own, or should."""
         if self._rose:
             return None
         if said := self._said(LEAK):
-            return faults.Fault(faults.CRASHED, f"the vehicle says '{said}'", COMES_UP)
+            return faults.FaultError(faults.CRASHED, f"the vehicle says '{said}'", COMES_UP)
         if self.mode == SURFACE and self._is_low():
-            return faults.Fault(faults.BATTERY_LOW, "the vehicle surfaces on its own", COMES_UP)
+            return faults.FaultError(faults.BATTERY_LOW, "the vehicle surfaces on its own", COMES_UP)
         return None
 
-    def _taken(self) -> faults.Fault | None:
+    def _taken(self) -> faults.FaultError | None:
         if self.mode == DEPTH_HOLD or (self._rose and self.mode == SURFACE):
             return None
-        return faults.Fault(
+        return faults.FaultError(
             "TAKEN_OVER", f"its mode is '{self.word()}' now: a pilot, or itself, has changed it"
         )
 
-    def _stale(self) -> faults.Fault | None:
+    def _stale(self) -> faults.FaultError | None:
         now, silent, age = self._link.clock.now(), self._link.silent_for(), max(map(self._link.since, NEEDED))
         if silent >= self._stale_after:
             self._silent_at = now
         # What was told last before all fell silent is no older than that: then the link is lost.
         if age - silent <= self._stale_after or now - self._silent_at < self._stale_after:
             return None
-        return faults.Fault(faults.POSITION_LOST, f"heading or depth was not reported for {age:.1f} s")
+        return faults.FaultError(faults.POSITION_LOST, f"heading or depth was not reported for {age:.1f} s")
 
-    def _low(self) -> faults.Fault | None:
-        return faults.Fault(faults.BATTERY_LOW, f"{self.charge():.0%} are left") if self._is_low() else None
+    def _low(self) -> faults.FaultError | None:
+        return (
+            faults.FaultError(faults.BATTERY_LOW, f"{self.charge():.0%} are left") if self._is_low() else None
+        )
 
     def _is_low(self) -> bool:
         charge = self.charge()
@@ -276,17 +278,17 @@ class Autopilot:
         for left in reversed(range(INSISTING)):
             try:
                 command(self._link, number, *params)
-            except faults.Refused:
+            except faults.RefusedError:
                 if not left:
                     raise
             if self._wait(test, PATIENCE):
                 return
-        raise faults.Refused(f"the vehicle does not do what command {number} asks for")
+        raise faults.RefusedError(f"the vehicle does not do what command {number} asks for")
 
     def _wait(self, test: Callable[[], bool], seconds: float) -> bool:
         found = self._link.wait(lambda: test() or self._given_up(), seconds)
         if self._given_up():
-            raise faults.Stopped
+            raise faults.StoppedError
         return bool(found)
 
 

@@ -71,5 +71,5 @@ def _link(given: VehicleInput, live: Live) -> Link:
         return _radios(live).open(url, system)
     except ValueError as error:
         raise UnsupportedError(f"link {error}") from error
-    except faults.Fault as fault:
+    except faults.FaultError as fault:
         raise LinkLostError(f"robot '{given.robot.id}': {fault}") from fault

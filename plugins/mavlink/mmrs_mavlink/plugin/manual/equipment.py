@@ -14,11 +14,11 @@ def carry_out(action: Action, context: VehicleContext, autopilot: Autopilot) -> 
     """Carry out a device action; return the seconds that it takes from then on.
 
     Raises:
-        faults.Fault: it is not wired for that, does not do it, or does not answer.
+        faults.FaultError: it is not wired for that, does not do it, or does not answer.
     """
     wiring = context.wiring(action)
     if not isinstance(wiring, Wired):
-        raise faults.Refused(f"'{action.device}' is not wired for '{action.name}'")
+        raise faults.RefusedError(f"'{action.device}' is not wired for '{action.name}'")
     for number, params in ((wiring.command, wiring.params), *wiring.more):
         autopilot.do(number, *params)
     return seconds_of(action, context.type) if wiring.seconds is None else wiring.seconds

@@ -278,7 +278,7 @@ class ManualRobot(Vehicle):
             self._live.wake()
             while not self._ended.wait(self._link.clock.real(PERIOD)):
                 self._tick()
-        except faults.Fault as fault:
+        except faults.FaultError as fault:
             self._troubles.begin(Fault(fault.event, str(fault)))
         except faults.FAILURES as error:
             self._troubles.begin(Fault(faults.REFUSED, f"{type(error).__name__}: {error}"))
@@ -328,7 +328,7 @@ class ManualRobot(Vehicle):
         seconds = 0.0
         try:
             seconds = carry_out(action, self._context, self._autopilot)
-        except faults.Fault as fault:
+        except faults.FaultError as fault:
             found = Fault(faults.DEVICE_SILENT, str(fault))
         with self._lock:
             if self._action is action:
@@ -393,5 +393,5 @@ class ManualRobot(Vehicle):
             return
         try:
             self._autopilot.let_go(at_once=self._response == "STOP_THRUST")
-        except faults.Fault as fault:
+        except faults.FaultError as fault:
             self._live.say(f"could not be disarmed: {fault}")

@@ -11,7 +11,7 @@ from patience import until
 from mmrs_mavlink.driving.moves import Moves
 from mmrs_mavlink.driving.response import Response
 from mmrs_mavlink.program import Geographic, Policy
-from mmrs_runtime.faults import Fault
+from mmrs_runtime.faults import FaultError
 
 pytestmark = pytest.mark.real_time("parts of flights")
 
@@ -58,7 +58,7 @@ def test_a_vehicle_that_a_pilot_has_just_taken_is_left_to_him_whatever_is_ordere
     response, _ = response_of(made)
     made.simulated.faults.begin("stick", mode)
     until(lambda: made.vehicle.telemetry.mode() == made.simulated.autopilot.mode)
-    with pytest.raises(Fault, match="it is under external control"):
+    with pytest.raises(FaultError, match="it is under external control"):
         response.begin("LAND", None, lambda what, why, does: None, restored=True).run()
     assert made.mode == mode
 
@@ -74,7 +74,7 @@ def test_a_vehicle_that_obeys_nothing_is_watched_where_it_would_not_come_down_by
         response, _ = response_of(made)
         job = response.begin("RETURN", None, lambda what, why, does: None, restored=True)
         if not stays:
-            with pytest.raises(Fault, match="DO_SET_MODE"):
+            with pytest.raises(FaultError, match="DO_SET_MODE"):
                 job.run()
             return
         job.run()

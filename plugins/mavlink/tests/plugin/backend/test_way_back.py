@@ -24,7 +24,7 @@ from mmrs_mavlink.program import Object, Policy
 from mmrs_mavlink.vehicles.dry import DryVehicle
 from mmrs_runtime.clock import Clock
 from mmrs_runtime.controllers.geodesy import distance, offset
-from mmrs_runtime.faults import BATTERY_LOW, Fault, Refused
+from mmrs_runtime.faults import BATTERY_LOW, FaultError, RefusedError
 
 FLUID = {index: Transition(index, index + 1, fluid=True) for index in (3, 4, 5)}
 BEHAVIOUR = program(
@@ -100,7 +100,7 @@ def test_it_takes_off_again_unless_its_battery_is_below_the_reserve(energy, flie
     if flies:
         assert recovered("s1", "s2", vehicle)[0][0] == ("up", 20.0)
         return
-    with pytest.raises(Fault, match="its battery is still at 19%") as low:
+    with pytest.raises(FaultError, match="its battery is still at 19%") as low:
         recovered("s1", "s2", vehicle)
     assert low.value.event == BATTERY_LOW
     assert vehicle.went == []
@@ -150,19 +150,19 @@ def test_ahead_on_a_run_that_it_flew_by_itself_it_goes_back_along_it():
 
 
 def test_in_the_air_elsewhere_it_is_refused():
-    with pytest.raises(Refused, match="bring it home"):
+    with pytest.raises(RefusedError, match="bring it home"):
         recovered("s1", "s2", Vehicle(-60.0, 20.0, 20.0))
 
 
 def test_on_the_ground_elsewhere_it_is_refused():
-    with pytest.raises(Refused, match="it stands 30 m from its home: carry it home"):
+    with pytest.raises(RefusedError, match="it stands 30 m from its home: carry it home"):
         recovered("s1", "s2", Vehicle(30.0, 0.0, 0.0))
 
 
 def test_a_way_back_is_looked_for_before_the_vehicle_hears_a_word():
     vehicle = Vehicle(-60.0, 20.0, 20.0)
     moves = Moves(ROBOT, vehicle, Clock(1e6), {}, lambda kind, name, content: None)
-    with pytest.raises(Refused, match="bring it home"):
+    with pytest.raises(RefusedError, match="bring it home"):
         WayBack(ROBOT, moves, vehicle, 20.0).check(MOVES[: MOVES.index("s1") + 1], "s2")
     assert vehicle.went == []
     assert moves.track == []
@@ -188,13 +188,13 @@ def test_nobody_looks_for_objects_before_the_vehicle_sets_out():
     way.know(passed, "s2")
     assert asked
     vehicle.go_to(Vehicle(-60.0, 20.0, 20.0).state().place, None, None, False)
-    with pytest.raises(Refused, match="bring it home"):
+    with pytest.raises(RefusedError, match="bring it home"):
         way.check([*passed, "s2"], "s3")
 
 
 def test_a_vehicle_that_has_not_begun_must_be_at_home():
     moves = Moves(ROBOT, Vehicle(500.0), Clock(1e6), {}, lambda kind, name, content: None)
-    with pytest.raises(Refused, match=r"it stands 50\d m from its home: carry it home"):
+    with pytest.raises(RefusedError, match=r"it stands 50\d m from its home: carry it home"):
         WayBack(ROBOT, moves, Vehicle(500.0), 20.0).check(["start"], "up")
 
 
@@ -268,7 +268,7 @@ def test_a_sortie_begins_where_the_robot_landed_by_its_program():
 @pytest.mark.parametrize(("passed", "begun"), [("wait", "wait on"), ("down", "wait"), ("again", "c")])
 def test_a_robot_at_home_is_refused_whose_program_goes_on_elsewhere(passed, begun):
     words = r"it stands 70 m from where its program has landed it: carry it to 42\.370000, 13\.35085\d"
-    with pytest.raises(Refused, match=words):
+    with pytest.raises(RefusedError, match=words):
         delivered(passed, begun, Vehicle())
     assert delivered(passed, begun, Vehicle(70.0)) == []
 

@@ -8,7 +8,7 @@ import time
 import pytest
 
 from mmrs_mavlink.driving.worker import Job, Worker
-from mmrs_runtime.faults import CRASHED, LINK_LOST, Fault
+from mmrs_runtime.faults import CRASHED, LINK_LOST, FaultError
 
 
 class Yard:
@@ -113,19 +113,19 @@ def test_a_job_given_while_it_pauses_waits(yard):
 def test_a_fault_ends_the_job_and_stays(yard):
     yard.worker.begin(Job(yard.wait("under way")))
     yard.until(lambda: yard.did)
-    yard.trouble = Fault(LINK_LOST, "silence")
+    yard.trouble = FaultError(LINK_LOST, "silence")
     assert yard.news.wait(20.0)
     assert yard.worker.fault is yard.trouble
 
 
 def test_a_fault_is_noticed_while_there_is_nothing_to_do(yard):
-    yard.trouble = Fault(LINK_LOST, "silence")
+    yard.trouble = FaultError(LINK_LOST, "silence")
     assert yard.news.wait(20.0)
     assert yard.worker.fault is yard.trouble
 
 
 def test_nothing_more_is_done_after_a_fault_until_something_is_begun_afresh(yard):
-    yard.trouble = Fault(LINK_LOST, "silence")
+    yard.trouble = FaultError(LINK_LOST, "silence")
     assert yard.news.wait(20.0)
     yard.trouble = None
     yard.worker.begin(Job(yard.do("no")))
