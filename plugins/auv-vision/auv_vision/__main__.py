@@ -95,13 +95,9 @@ def main(words: Sequence[str] | None = None) -> int:
     given = _parser().parse_args(words)
     logging.getLogger("can").setLevel(logging.ERROR)
     stop = stopped_by_signals()
-    try:
-        import cv2
+    import cv2
 
-        cv2.setNumThreads(1)
-    except ImportError:
-        print("vision needs OpenCV: install mmrs-auv[vision]", file=sys.stderr)
-        return EXIT_USAGE
+    cv2.setNumThreads(1)
     try:
         sheet = sheet_from(given.sheet.read_text(encoding="utf-8"))
         refuse(sheet)
