@@ -12,8 +12,7 @@ from c_drives import STRICT, Compared, compiled, happenings, need_compiler, told
 from can_hub import Raw, running
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
-from mmrs_auv.targets.can_c.target import CAN_C, files_of
-from mmrs_auv.targets.can_c.words import block, number
+from mmrs_auv.targets.can_c.target import CAN_C, block, files_of, number
 from vessel_sheets import sheet, sheets, thruster
 
 from auv_vessel.body.devices import pressure_of_depth

@@ -6,14 +6,14 @@ go over its CAN bus. It carries wheels of that runtime, and of what it needs to 
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
 
 from auv_vessel.sheet import Sheet, to_json
 from mmrs_auv.names import VEHICLES
 from mmrs_auv.sayable import Bus, parameter_of, unturnable
 from mmrs_auv.sheets import is_vehicle, sheet_of
-from mmrs_auv.targets.can_python.capabilities import CAPABILITIES
+from mmrs_auv.targets.capabilities import OF_VEHICLES
 from mmrs_auv.targets.places import templates_of
 from mmrs_core.behaviour.program import Action, Heading, RobotProgram
 from mmrs_core.contributions.targets import FileSpec, TargetInput
@@ -23,6 +23,20 @@ from mmrs_core.generation.escaping import Call
 from mmrs_core.generation.plan_moves import vehicleless
 from mmrs_core.generation.python import PythonDriver, python_target
 from mmrs_core.scene import Policy
+
+CAPABILITIES: Mapping[str, str] = {
+    **OF_VEHICLES,
+    "Robot.home": "the vehicle's zero",
+    "Robot.payload": "the vehicle's mass; speed, by the capability for it",
+    "ObjectTarget": "found by what cameras tell (--detections), or by a function of yours in objects.py",
+    "HoldPosition": "the last goal stays in force, timed by the controller",
+    "HeadTo.heading": "a goal TURN",
+    "Heading.target": "where it is expected, or found by a function of yours in objects.py",
+    "MoveTransition.waitFor": "waits for slots, over the bus between robots",
+    "Feedback": "printed, and in the black box",
+    "LINK_LOST": "the bus is silent; a vehicle whose controller is silent holds, then comes up",
+    "PEER_LOST": "the robots that could end a wait are gone",
+}
 
 
 class CanPython(PythonDriver[RobotContext]):
