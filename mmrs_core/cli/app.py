@@ -2,19 +2,18 @@
 
 from __future__ import annotations
 
-import os
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
 from importlib import import_module
 from typing import Annotated, Any
 
 import typer
 
-from mmrs_core.cli.as_typed import take_as_typed
-from mmrs_core.cli.completion import COMPLETING, completed_words
+from mmrs_core.cli.completion import is_completing, words_to_complete
 from mmrs_core.cli.output import say, tell
 from mmrs_core.cli.settings import DEBUG, NO_PLUGINS, QUIET_MIGRATION, Settings
-from mmrs_core.contributions.commands import Command
-from mmrs_core.errors import MmrsError, PluginError
+from mmrs_core.contributions.commands import CORE_COMMANDS, Command
+from mmrs_core.errors import PluginError
 
 _HELP = "Plan, verify and run missions of multi-robot teams."
 _EPILOG = (
@@ -67,50 +66,73 @@ _GROUPS = (
 )
 
 
-def app_for(arguments: Sequence[str], settings: Settings) -> typer.Typer:
-    """Return the application for a command line.
+@dataclass(frozen=True, slots=True)
+class Program:
+    """The application for one command line.
+
+    Attributes:
+        source: the plug-in whose command is called, as messages name it; empty: a command of the core.
+    """
+
+    app: typer.Typer
+    source: str = ""
+
+
+def program_for(name: str, arguments: Sequence[str], settings: Settings) -> Program:
+    """Return the application of ``mmrs`` or ``mmrs-gen`` for a command line.
 
     Of the core's commands, only the called one is imported; the others are there by name and help.
     Plug-ins are asked for their commands only if no command of the core is called: for the help,
     or for a command that the core does not know.
+
+    Args:
+        arguments: without the program's name; ignored where a shell asks for completions.
+
+    Raises:
+        PluginError: a plug-in is broken, or its command cannot be imported.
     """
+    words = words_to_complete() if is_completing(name) else arguments
+    called = next((word for word in words if not word.startswith("-")), None)
+    if name == "mmrs-gen":
+        return Program(_generating(called))
     app = typer.Typer(rich_markup_mode=None, help=_HELP, epilog=_EPILOG, no_args_is_help=True)
     app.callback()(_global_options)
-    words = completed_words() if COMPLETING in os.environ else arguments
-    called = next((word for word in words if not word.startswith("-")), None)
-    for command in _COMMANDS:
+    _add_commands(app, _COMMANDS, called)
+    source = "" if called in CORE_COMMANDS else _add_plugin_commands(app, settings, called)
+    _add_commands(app, _GROUPS, called)
+    return Program(app, source)
+
+
+def _generating(called: str | None) -> typer.Typer:
+    """Return the application ``mmrs-gen``: the command ``generate``, or a group with ``explain`` alone."""
+    app = typer.Typer(rich_markup_mode=None)
+    command = next(
+        each for each in _COMMANDS if each.name == ("explain" if called == "explain" else "generate")
+    )
+    app.command(command.name)(_imported(command))
+    if called == "explain":
+        app.callback()(_nothing)
+    return app
+
+
+def _add_commands(app: typer.Typer, commands: Iterable[Command], called: str | None) -> None:
+    for command in commands:
         if command.name == called:
-            app.command(command.name)(_imported(command))
+            _add(app, command, _imported(command))
         else:
             app.command(command.name, help=command.help)(_nothing)
-    if called not in {command.name for command in (*_COMMANDS, *_GROUPS)}:
-        _add_plugin_commands(app, settings, called)
-    for group in _GROUPS:
-        if group.name == called:
-            app.add_typer(_imported(group), name=group.name)
-        else:
-            app.command(group.name, help=group.help)(_nothing)
-    return app
 
 
-def generate_app(command: Callable[..., int]) -> typer.Typer:
-    """Return the application ``mmrs-gen``, or ``mmrs-gen explain``, which has one command."""
-    app = typer.Typer(rich_markup_mode=None, add_completion=False)
-    app.command()(command)
-    return app
-
-
-def app_of(program: str, arguments: Sequence[str], settings: Settings) -> tuple[str, typer.Typer, list[str]]:
-    """Return what a program's help calls it, its application, and the arguments for that."""
-    if program != "mmrs-gen":
-        return program, app_for(arguments, settings), list(arguments)
-    if next(iter(arguments), None) == "explain":
-        from mmrs_core.cli import explain
-
-        return f"{program} explain", generate_app(explain.explain), list(arguments[1:])
-    from mmrs_core.cli import generate
-
-    return program, generate_app(generate.generate), list(arguments)
+def _add(app: typer.Typer, command: Command, entry: Any) -> None:
+    """Add a command by what its entry names: an application, or a function that typer understands."""
+    if not isinstance(entry, typer.Typer):
+        app.command(command.name)(entry)
+    elif entry.registered_callback or len(entry.registered_commands) != 1:
+        app.add_typer(entry, name=command.name, help=command.help)
+    else:
+        only = entry.registered_commands[0]
+        only.name = command.name
+        app.registered_commands.append(only)
 
 
 def _imported(command: Command) -> Any:
@@ -148,8 +170,11 @@ def _global_options(
     """Describe the global options, which `taken_from` has taken off the command line before."""
 
 
-def _add_plugin_commands(app: typer.Typer, settings: Settings, called: str | None) -> None:
-    """Add the commands of plug-ins; what is wrong with them is only told where help was asked for."""
+def _add_plugin_commands(app: typer.Typer, settings: Settings, called: str | None) -> str:
+    """Add the commands of plug-ins; return the plug-in whose command is called.
+
+    A conflict of plug-ins is an error for a called command, and a line on standard error beside the help.
+    """
     try:
         contributions = settings.plugins().contributions
         commands = contributions.commands
@@ -157,35 +182,28 @@ def _add_plugin_commands(app: typer.Typer, settings: Settings, called: str | Non
         if called is not None:
             raise
         tell(f"mmrs: {error}")
-        return
-    for command in commands:
-        passed = {"allow_extra_args": True, "ignore_unknown_options": True, "help_option_names": []}
-        app.command(command.name, help=command.help, context_settings=passed, add_help_option=False)(
-            _runner(command, contributions.source_of("commands", command), settings)
-        )
+        return ""
+    _add_commands(app, (each for each in commands if each.name != called), called)
+    command = next((each for each in commands if each.name == called), None)
+    if command is None:
+        return ""
+    source = contributions.source_of("commands", command)
+    try:
+        entry = _imported(command)
+    except Exception as error:
+        raise PluginError(f"{source}: {command.entry} cannot be imported: {error!r}") from error
+    if isinstance(entry, typer.Typer):
+        _add(app, command, entry)
+        return source
+    passed = {"allow_extra_args": True, "ignore_unknown_options": True, "help_option_names": []}
+    app.command(command.name, help=command.help, context_settings=passed, add_help_option=False)(
+        _with_arguments(entry)
+    )
+    return source
 
 
-def _runner(command: Command, source: str, settings: Settings) -> Callable[[typer.Context], int]:
-    def run(context: typer.Context) -> int:
-        try:
-            entry = _imported(command)
-        except Exception as error:
-            raise PluginError(f"{source}: {command.entry} cannot be imported: {error!r}") from error
-        try:
-            if isinstance(entry, typer.Typer):
-                result = _result_of(entry, command.name, context.args, settings)
-            else:
-                result = entry(list(context.args))
-        except (MmrsError, OSError, typer.TyperException, typer.Exit, typer.Abort):
-            raise  # about what the user gave, in the words of all commands
-        except Exception as error:
-            raise PluginError(f"{source} fails: {error!r}") from error
-        return result if isinstance(result, int) else 0
+def _with_arguments(entry: Callable[[list[str]], object]) -> Callable[[typer.Context], object]:
+    def run(context: typer.Context) -> object:
+        return entry(list(context.args))
 
     return run
-
-
-def _result_of(app: typer.Typer, name: str, arguments: list[str], settings: Settings) -> object:
-    command = typer.main.get_command(app)
-    take_as_typed(command, arguments)
-    return command.main(arguments, prog_name=f"mmrs {name}", standalone_mode=False, obj=settings)

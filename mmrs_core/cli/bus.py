@@ -181,7 +181,7 @@ def gateway(
     DIR/gateway.json. See the page "bus" of the documentation for a session. If the program or the gateway
     ends early, the other robots report the robot as lost. Runs until interrupted.
 
-    Example: mmrs bus gateway survey.bl.xmi --robot Auv1 --connect tcp/10.0.0.2:7447
+    Example: mmrs bus gateway survey/behaviour.xmi --robot Auv1 --connect tcp/10.0.0.2:7447
     """
     with _needing("eclipse-zenoh"):
         from mmrs_runtime.bus.carriers.sessions import Endpoints

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import os
 import shlex
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -16,15 +16,17 @@ import typer
 if TYPE_CHECKING:
     from mmrs_core.generation.manifest import Entry
 
-COMPLETING = "_MMRS_COMPLETE"
-"""The environment variable by which a shell asks for completions."""
-
 _IN_FOLDER = ("behaviour.xmi", "behaviour.json", "mission.xmi", "mission.json")
 _NAMES = {"robots": ("id", "name"), "tasks": ("name",)}
 """The attributes that identify the elements of a feature, in behaviours and in missions."""
 
 
-def completed_words() -> list[str]:
+def is_completing(program: str) -> bool:
+    """Return whether a shell asks for completions of a program's command line."""
+    return f"_{program}_COMPLETE".replace("-", "_").upper() in os.environ
+
+
+def words_to_complete() -> list[str]:
     """Return the words of the command line that a shell completes, without the program's name."""
     line = os.environ.get("COMP_WORDS") or os.environ.get("_TYPER_COMPLETE_ARGS", "")
     try:
@@ -46,6 +48,28 @@ def target_names(context: typer.Context) -> list[str]:
     from mmrs_core.cli.settings import settings_of
 
     return sorted(settings_of(context).plugins().contributions.targets)
+
+
+def backend_names(context: typer.Context) -> list[str]:
+    """Return the names of the backends; for ``mmrs simulate``, of those in simulated time."""
+    from mmrs_core.cli.settings import settings_of
+
+    found = settings_of(context).plugins().contributions.vehicles
+    simulates = context.info_name == "simulate"
+    return sorted(name for name, each in found.items() if each.simulated or not simulates)
+
+
+def one_of(*values: str) -> Callable[[], list[str]]:
+    """Return what completes a value that has to be one of these."""
+    return lambda: list(values)
+
+
+def plugin_parts(incomplete: str) -> list[str]:
+    """Return the list of parts of a new plug-in that was begun, with each part that it may continue with."""
+    from mmrs_core.generation.scaffolding.files import PARTS
+
+    before, comma, _ = incomplete.rpartition(",")
+    return [f"{before}{comma}{part}" for part in PARTS if part not in before.split(",")]
 
 
 def robot_names(context: typer.Context) -> list[str]:

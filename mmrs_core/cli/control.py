@@ -8,7 +8,7 @@ from typing import Annotated, Any
 
 import typer
 
-from mmrs_core.cli.completion import running_robots
+from mmrs_core.cli.completion import one_of, running_robots
 from mmrs_core.cli.output import say, say_json
 from mmrs_core.cli.settings import Json
 from mmrs_core.errors import LinkLostError
@@ -21,7 +21,11 @@ from mmrs_runtime.orders.status_table import lines_of
 def control(
     order: Annotated[
         str,
-        typer.Argument(metavar="ORDER", help="Command: hold, resume, return, land, stop, answer or status."),
+        typer.Argument(
+            metavar="ORDER",
+            help="Command: hold, resume, return, land, stop, answer or status.",
+            autocompletion=one_of(*ORDERS),
+        ),
     ],
     robots: Annotated[
         list[str] | None,
@@ -37,7 +41,15 @@ def control(
     question: Annotated[
         str, typer.Option("--question", metavar="NAME", help="With answer: the question.")
     ] = "",
-    says: Annotated[str, typer.Option("--says", metavar="yes|no", help="With answer: the answer.")] = "",
+    says: Annotated[
+        str,
+        typer.Option(
+            "--says",
+            metavar="yes|no",
+            help="With answer: the answer.",
+            autocompletion=one_of("yes", "no"),
+        ),
+    ] = "",
     seconds: Annotated[
         float,
         typer.Option(

@@ -9,11 +9,11 @@ import typer
 
 from mmrs_core.cli.behaviours import load_behaviour
 from mmrs_core.cli.buses import BusOptions
-from mmrs_core.cli.completion import robot_names
+from mmrs_core.cli.completion import backend_names, one_of, robot_names
 from mmrs_core.cli.flying import carry_out
 from mmrs_core.cli.output import say_json
 from mmrs_core.cli.parameters import Assume, Behaviour, Context, Robots, behaviour_file, robot_files
-from mmrs_core.cli.run_options import MAVLINK, RunOptions
+from mmrs_core.cli.run_options import MAVLINK, ON_STOP, RunOptions
 from mmrs_core.cli.session import Session
 from mmrs_core.cli.settings import Json, settings_of
 from mmrs_core.cli.simulation import answers, backends_of, options_of
@@ -33,6 +33,7 @@ def run(
             "--backend",
             metavar="[ROBOT=]NAME",
             help="Backend of all robots or one. Default: mavlink. Repeatable.",
+            autocompletion=backend_names,
         ),
     ] = None,
     connect: Annotated[
@@ -61,7 +62,13 @@ def run(
         ),
     ] = 1.0,
     on_stop: Annotated[
-        str, typer.Option("--on-stop", metavar="hold|return|land", help="Behaviour on interrupt.")
+        str,
+        typer.Option(
+            "--on-stop",
+            metavar="hold|return|land",
+            help="Behaviour on interrupt.",
+            autocompletion=one_of(*ON_STOP),
+        ),
     ] = "hold",
     battery_patience: Annotated[
         float,

@@ -11,6 +11,7 @@ from typing import Annotated
 
 import typer
 
+from mmrs_core.cli.completion import plugin_parts
 from mmrs_core.cli.output import counted, say, say_json, tell
 from mmrs_core.cli.settings import Json, Settings, settings_of
 from mmrs_core.errors import PluginError, UnreadableError
@@ -78,11 +79,12 @@ def new_plugin(
             "--with",
             metavar="PART,...",
             help="Contributions to begin with: any of task, robot, target, check, vehicle.",
+            autocompletion=plugin_parts,
         ),
     ] = "task",
     task: Annotated[
-        TaskGeometry, typer.Option("--task", help="Geometry of the task.")
-    ] = TaskGeometry.POLYGON,
+        TaskGeometry | None, typer.Option("--task", help="Geometry of the task. Default: polygon.")
+    ] = None,
     output: Annotated[
         Path | None,
         typer.Option(
@@ -91,15 +93,18 @@ def new_plugin(
     ] = None,
     json: Json = False,
 ) -> int:
-    """Create a plug-in with a new task type.
+    """Create a plug-in, ready to install.
 
-    With --with, also a robot kind, a code generation target, a check of behaviours or a simulated vehicle.
-    The plug-in installs and passes its tests, which subclass the conformance classes of mmrs_core.testing.
-    Requires pyecoregen: pip install "mmrs-core[extend]".
+    --with lists its parts: a task type (task), a robot type with its own moves (robot), a code generation
+    target (target), a check of behaviours (check), a simulated vehicle (vehicle). The tests of the plug-in
+    pass; they subclass the conformance classes of mmrs_core.testing. Requires pyecoregen:
+    pip install "mmrs-core[extend]".
 
     Example: mmrs plugin new roof-wash --task polygon --with task,check
     """
     parts = _parts(contents)
+    if task is not None and "task" not in parts:
+        raise typer.BadParameter(f"--task {task}: --with {contents} creates no task; add task to --with")
     known = settings_of(call).plugins().contributions
     taken = {each.plugin for each in known.catalogue()}
     taken |= {part for source in known.metamodels for part in source.ns_uri.split(":")}
@@ -109,7 +114,7 @@ def new_plugin(
     except ValueError as fault:
         raise typer.BadParameter(str(fault)) from fault
     folder = output or Path(names.distribution)
-    written = write_plugin(names, parts, task.value, folder, known.metamodels)
+    written = write_plugin(names, parts, (task or TaskGeometry.POLYGON).value, folder, known.metamodels)
     if json:
         say_json({"plugin": names.name, "distribution": names.distribution, "files": written})
         return 0

@@ -2,28 +2,34 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Sequence
+from typing import Any
 
 import typer
 
-from mmrs_core.cli.app import app_of
+from mmrs_core.cli.app import program_for
 from mmrs_core.cli.as_typed import take_as_typed
 from mmrs_core.cli.failures import MODEL_INVALID, ended_by
 from mmrs_core.cli.interruption import INTERRUPTED, interrupted
 from mmrs_core.cli.output import tell
 from mmrs_core.cli.parameters import spread
-from mmrs_core.cli.settings import taken_from
+from mmrs_core.cli.settings import Settings, taken_from
+from mmrs_core.errors import MmrsError, PluginError
 
 
 def run_command(arguments: Sequence[str], program: str) -> int:
     """Run ``mmrs`` or ``mmrs-gen``; return the exit code, whatever happens."""
     settings, rest = taken_from(arguments)
+    source = ""
     try:
-        name, app, rest = app_of(program, rest, settings)
-        command = typer.main.get_command(app)
+        called = program_for(program, rest, settings)
+        source = called.source
+        command = typer.main.get_command(called.app)
         line = spread(rest, frozenset(flags_of(command)))
         take_as_typed(command, line)
-        result = command.main(line, prog_name=name, standalone_mode=False, obj=settings)
+        _keep_examples(command)
+        result = command.main(line, prog_name=program, standalone_mode=False, obj=settings)
         return result if isinstance(result, int) else 0
     except typer.Exit as ending:
         return ending.exit_code
@@ -32,7 +38,7 @@ def run_command(arguments: Sequence[str], program: str) -> int:
     except SystemExit as ending:
         return ending.code if isinstance(ending.code, int) else MODEL_INVALID
     except Exception as error:
-        return _interrupted() if interrupted() else _ended_by(error, arguments)
+        return _interrupted() if interrupted() else _ended_by(error, source, settings)
 
 
 def flags_of(command: object) -> Iterator[str]:
@@ -45,13 +51,24 @@ def flags_of(command: object) -> Iterator[str]:
         yield from flags_of(inner)
 
 
+def _keep_examples(command: Any) -> None:
+    """Keep each example in a help on one line, however long, so that it can be copied."""
+    if command.help:
+        command.help = re.sub(r"\n\n(Examples?: )", "\n\n\b\n\\1", command.help)
+    for inner in getattr(command, "commands", {}).values():
+        _keep_examples(inner)
+
+
 def _interrupted() -> int:
     tell("mmrs: interrupted")
     return INTERRUPTED
 
 
-def _ended_by(error: Exception, arguments: Sequence[str]) -> int:
+def _ended_by(error: Exception, source: str, settings: Settings) -> int:
+    if source and not isinstance(error, MmrsError | OSError | typer.TyperException):
+        fault = PluginError(f"{source} fails: {error!r}")
+        fault.__cause__, error = error, fault
     try:
-        return ended_by(error, taken_from(arguments)[0])
+        return ended_by(error, settings)
     except typer.Exit as ending:
         return ending.exit_code

@@ -8,6 +8,7 @@ from typing import Annotated
 import typer
 
 from mmrs_core.cli.behaviours import load_behaviour
+from mmrs_core.cli.completion import backend_names
 from mmrs_core.cli.output import say, say_json
 from mmrs_core.cli.parameters import Assume, Behaviour, Context, Robots, behaviour_file, robot_files
 from mmrs_core.cli.protection import refuse_inputs
@@ -47,6 +48,7 @@ def simulate(
             "--backend",
             metavar="[ROBOT=]NAME",
             help="Backend of all robots or one, in simulated time. Default: simulation. Repeatable.",
+            autocompletion=backend_names,
         ),
     ] = None,
     backend_option: Annotated[

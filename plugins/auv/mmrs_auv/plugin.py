@@ -115,6 +115,6 @@ def mmrs_commands() -> tuple[Command, ...]:
     said = "Work with vehicle CAN buses."
     rehearse = "Simulate underwater vehicles."
     return (
-        Command("can", said, "mmrs_auv.commands.can:main"),
-        Command("auv", rehearse, "mmrs_auv.commands.auv:main"),
+        Command("can", said, "mmrs_auv.commands.can:app"),
+        Command("auv", rehearse, "mmrs_auv.commands.auv:app"),
     )

@@ -15,8 +15,9 @@ import can
 import cantools
 import pytest
 from can_hub import Raw, running
-from mmrs_auv.commands.can import main
+from mmrs_auv.commands.can import app
 from mmrs_auv.commands.watching import Monitor
+from typer.main import get_command
 from vessel_sheets import sheet, thruster
 
 from auv_vessel.sheet import to_json
@@ -28,6 +29,10 @@ from mmrs_core.cli import run as mmrs
 from mmrs_core.errors import LinkLostError, UnreadableError, UnsupportedError
 
 SHEET = sheet()
+
+
+def main(words: list[str]) -> object:
+    return get_command(app)(words, standalone_mode=False)
 
 
 @pytest.fixture

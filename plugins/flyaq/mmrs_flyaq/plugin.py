@@ -26,4 +26,4 @@ def mmrs_importers() -> tuple[Importer, ...]:
 def mmrs_commands() -> tuple[Command, ...]:
     """Contribute the command that turns models of another dialect into a project."""
     summary = "Migrate models of another dialect to an MMRS project."
-    return (Command("migrate", summary, "mmrs_flyaq.command.migrate:main"),)
+    return (Command("migrate", summary, "mmrs_flyaq.command.migrate:app"),)

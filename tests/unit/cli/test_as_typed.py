@@ -8,7 +8,7 @@ import pytest
 import typer
 
 from mmrs_core.cli import run
-from mmrs_core.cli.app import app_for
+from mmrs_core.cli.app import program_for
 from mmrs_core.cli.as_typed import take_as_typed
 from mmrs_core.cli.settings import Settings
 from mmrs_core.contributions.commands import CORE_COMMANDS
@@ -16,7 +16,7 @@ from mmrs_core.contributions.commands import CORE_COMMANDS
 
 def commands_in(name, *, as_typed):
     """Return a command of the core and what is in it, with the parameters of each."""
-    app = typer.main.get_command(app_for([name], Settings(only_core=True)))
+    app = typer.main.get_command(program_for("mmrs", [name], Settings(only_core=True)).app)
     command = app.commands[name]
     inner = getattr(command, "commands", {})
     if as_typed:

@@ -10,7 +10,7 @@ import pytest
 import typer
 
 from mmrs_core.cli import run
-from mmrs_core.cli.app import app_for
+from mmrs_core.cli.app import program_for
 from mmrs_core.cli.settings import Settings
 from mmrs_core.contributions.commands import CORE_COMMANDS, Command
 from mmrs_core.errors import PluginError
@@ -62,7 +62,9 @@ def test_every_command_has_help(name, capsys):
 @pytest.mark.parametrize("name", CORE)
 def test_the_list_of_commands_says_what_each_command_says_of_itself(name):
     settings = Settings(only_core=True)
-    listed, called = (typer.main.get_command(app_for([each], settings)) for each in ("--help", name))
+    listed, called = (
+        typer.main.get_command(program_for("mmrs", [each], settings).app) for each in ("--help", name)
+    )
     shown = [group.commands[name].get_short_help_str(99) for group in (listed, called)]
     assert shown[0] == shown[1]
 
@@ -72,10 +74,11 @@ PARK = Path(__file__).parents[3] / "examples" / "carbon-dioxide"
 
 def completions(words, capfd, monkeypatch):
     """Return what bash is answered, as its completion script asks."""
-    monkeypatch.setenv("_MMRS_COMPLETE", "complete_bash")
+    program = words.partition(" ")[0]
+    monkeypatch.setenv(f"_{program.replace('-', '_').upper()}_COMPLETE", "complete_bash")
     monkeypatch.setenv("COMP_WORDS", words)
     monkeypatch.setenv("COMP_CWORD", str(words.count(" ")))
-    assert run([]) == 0
+    assert run([], program=program) == 0
     return capfd.readouterr().out.split()
 
 
@@ -90,6 +93,21 @@ def completions(words, capfd, monkeypatch):
         (f"mmrs run {PARK} --robot ", ["Alba", "Brezza", "Cirro"]),
         (f"mmrs bus gateway {PARK / 'mission.xmi'} --robot B", ["Brezza"]),
         ("mmrs run nowhere --robot ", []),
+        ("mmrs run field --on-stop ", ["hold", "return", "land"]),
+        ("mmrs run field --backend mav", ["mavlink"]),
+        ("mmrs simulate field --backend ", ["can-sim", "simulation"]),
+        ("mmrs control re", ["resume", "return"]),
+        ("mmrs plugin new roof --with ", ["task", "robot", "target", "check", "vehicle"]),
+        ("mmrs plugin new roof --with task,", ["task,robot", "task,target", "task,check", "task,vehicle"]),
+        ("mmrs plugin new roof --task p", ["polygon", "point"]),
+        ("mmrs si", ["simulate", "sitl"]),
+        ("mmrs sitl --f", ["--firmware", "--fault", "--for"]),
+        ("mmrs sitl --kind ", ["copter", "sub", "rover"]),
+        ("mmrs migrate --m", ["--mapping", "--metamodels"]),
+        ("mmrs can ", ["dbc", "hub", "monitor", "load"]),
+        ("mmrs auv sitl --sp", ["--speedup"]),
+        ("mmrs-gen field --target mavl", ["mavlink-python"]),
+        ("mmrs-gen explain --m", ["--move"]),
     ],
 )
 def test_a_shell_completes_commands_options_and_values(words, completed, capfd, monkeypatch):
@@ -110,6 +128,13 @@ def test_a_shell_completes_robots_that_have_logs(capfd, monkeypatch, tmp_path):
     (tmp_path / "a.jsonl").write_text('{"robot": "Alba", "seq": 0}\n')
     (tmp_path / "b.jsonl").write_text("no log")
     assert completions(f"mmrs control hold --log {tmp_path} ", capfd, monkeypatch) == ["Alba"]
+
+
+@pytest.mark.parametrize("program", ["mmrs", "mmrs-gen"])
+def test_a_shell_is_given_a_completion_script(program, capfd, monkeypatch):
+    monkeypatch.setenv(f"_{program.replace('-', '_').upper()}_COMPLETE", "source_bash")
+    assert run([], program=program) == 0
+    assert f"_completion {program}\n" in capfd.readouterr().out
 
 
 def test_completing_a_command_imports_no_other_command():
@@ -224,7 +249,7 @@ def test_a_plugin_command_that_breaks_while_it_is_imported_names_the_plugin(
 
 
 def test_no_plugin_can_have_a_name_of_the_core():
-    own = typer.main.get_command(app_for(["--help"], Settings(only_core=True)))
+    own = typer.main.get_command(program_for("mmrs", ["--help"], Settings(only_core=True)).app)
     assert own.commands.keys() == CORE_COMMANDS
 
 

@@ -3,7 +3,7 @@
 import pytest
 import typer
 
-from mmrs_core.cli.app import app_for
+from mmrs_core.cli.app import program_for
 from mmrs_core.cli.parameters import behaviour_file, robot_files, spread
 from mmrs_core.cli.running import flags_of
 from mmrs_core.cli.settings import Settings, taken_from
@@ -68,6 +68,6 @@ def test_what_follows_two_dashes_is_no_option():
 )
 def test_a_flag_takes_no_file_away_from_the_robots(command, flag):
     """What takes no value is asked of the commands themselves."""
-    own = frozenset(flags_of(typer.main.get_command(app_for([command], Settings()))))
+    own = frozenset(flags_of(typer.main.get_command(program_for("mmrs", [command], Settings()).app)))
     assert flag in own
     assert "--robots" not in own

@@ -13,7 +13,6 @@ from types import FrameType
 from typing import Annotated
 
 import typer
-from typer.main import get_command
 
 from mmrs_core.cli.interruption import INTERRUPTED
 from mmrs_core.cli.output import say, tell
@@ -25,12 +24,6 @@ from mmrs_runtime.records.steps import SUFFIX, log_name
 FIRST_PORT = 29_600
 
 app = typer.Typer(rich_markup_mode=None, no_args_is_help=True, add_completion=False)
-
-
-def main(arguments: list[str]) -> int:
-    """Run ``mmrs auv`` with what follows it; return the exit code."""
-    result = get_command(app)(args=arguments, prog_name="mmrs auv", standalone_mode=False)
-    return result if isinstance(result, int) else 0
 
 
 @app.callback(help="Simulate underwater vehicles.")

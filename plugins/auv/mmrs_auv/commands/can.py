@@ -9,7 +9,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, TextIO
 
 import typer
-from typer.main import get_command
 
 from mmrs_auv.commands.modelled import RobotName, Vehicle, sheet_in
 from mmrs_core.cli.output import say, say_file, say_json, tell
@@ -43,12 +42,6 @@ Seconds = Annotated[
     float,
     typer.Option("--for", min=0.0, metavar="SECONDS", help="Stop after SECONDS; 0 runs until interrupted."),
 ]
-
-
-def main(arguments: list[str]) -> int:
-    """Run ``mmrs can`` with what follows it; return the exit code."""
-    result = get_command(app)(args=arguments, prog_name="mmrs can", standalone_mode=False)
-    return result if isinstance(result, int) else 0
 
 
 @app.callback()

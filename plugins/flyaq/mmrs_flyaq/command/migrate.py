@@ -6,10 +6,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
-from typer.main import get_command
 
 from mmrs_core.cli.output import report, say, say_json, tell
-from mmrs_core.cli.settings import Json, Settings
+from mmrs_core.cli.settings import Json, settings_of
 
 if TYPE_CHECKING:
     from mmrs_flyaq.migrate import Migration
@@ -40,15 +39,12 @@ Types = Annotated[
 ]
 
 
-def main(arguments: list[str]) -> int:
-    """Run ``mmrs migrate`` with what follows it; return the exit code."""
-    app = typer.Typer(rich_markup_mode=None, add_completion=False)
-    app.command("migrate")(migrate)
-    result = get_command(app)(args=arguments, prog_name="mmrs migrate", standalone_mode=False)
-    return result if isinstance(result, int) else 0
+app = typer.Typer(rich_markup_mode=None, add_completion=False)
 
 
+@app.command()
 def migrate(
+    call: typer.Context,
     files: Files,
     output: Output,
     mapping: Mapping = None,
@@ -71,7 +67,7 @@ def migrate(
     from mmrs_flyaq.command.projects import read_sources, write_outputs
     from mmrs_flyaq.command.report import migration_lines, verdict_lines, verdicts_on
 
-    session = Session(Settings())
+    session = Session(settings_of(call))
     migration = read_sources(session, files, output, mapping, metamodels or (), types or ())
     written = write_outputs(session, migration, files, output, force=force)
     for line in migration_lines(migration, output) if not json else ():

@@ -8,6 +8,7 @@ from typing import Annotated
 
 import typer
 
+from mmrs_core.cli.completion import one_of
 from mmrs_core.cli.output import say, say_json
 from mmrs_core.cli.settings import Json, settings_of
 
@@ -37,11 +38,22 @@ def sitl(
     home: Annotated[
         str, typer.Option("--home", metavar="LATITUDE,LONGITUDE", help="Home of the first such vehicle.")
     ] = "42.37,13.35",
-    kind: Annotated[str, typer.Option("--kind", metavar="copter|sub|rover", help="Vehicle type.")] = "copter",
+    kind: Annotated[
+        str,
+        typer.Option(
+            "--kind",
+            metavar="copter|sub|rover",
+            help="Vehicle type.",
+            autocompletion=one_of("copter", "sub", "rover"),
+        ),
+    ] = "copter",
     firmware: Annotated[
         str,
         typer.Option(
-            "--firmware", metavar="ardupilot|px4", help="Autopilot to imitate; px4 supports copters only."
+            "--firmware",
+            metavar="ardupilot|px4",
+            help="Autopilot to imitate; px4 supports copters only.",
+            autocompletion=one_of("ardupilot", "px4"),
         ),
     ] = "ardupilot",
     port: Annotated[
