@@ -60,7 +60,7 @@ class FixConformance(Conformance):
     def test_it_fixes_models_in_json_as_well(self, fix: Fix, tmp_path: Path) -> None:
         """One fix serves both formats."""
         file, _ = self._spoilt(fix, tmp_path)
-        if run_mmrs("convert", file.parent, "-o", tmp_path / "json").returncode != 0:
+        if run_mmrs("convert", file.parent, "-o", tmp_path / "json").exit_code != 0:
             pytest.skip("the problem is one of XMI only")
         assert fix.code in _codes(tmp_path / "json")
         run_command("validate", tmp_path / "json", "--fix", "--yes")

@@ -4,16 +4,16 @@ from __future__ import annotations
 
 import json
 import shutil
-import subprocess
-import sys
 from collections.abc import Sequence
+from contextlib import redirect_stderr, redirect_stdout
+from dataclasses import dataclass
+from io import BytesIO, TextIOWrapper
 from pathlib import Path
 from typing import Any, ClassVar
 
 import pytest
 
-LONGEST_RUN = 120.0
-"""Seconds after which a command is taken for hanging."""
+from mmrs_core.cli import run
 
 
 class MissionConformance:
@@ -69,23 +69,34 @@ class MissionConformance:
         assert "<svg" in page.read_text(encoding="utf-8")
 
 
-def run_mmrs(*arguments: object) -> subprocess.CompletedProcess[str]:
-    """Return how ``mmrs`` ends, and what it prints."""
-    command = [sys.executable, "-m", "mmrs_core", *map(str, arguments)]
-    return subprocess.run(command, capture_output=True, text=True, check=False, timeout=LONGEST_RUN)
+@dataclass(frozen=True, slots=True)
+class CommandRun:
+    """How a command ended, and what it printed."""
+
+    exit_code: int
+    output: str
+    messages: str
+
+
+def run_mmrs(*arguments: object) -> CommandRun:
+    """Run ``mmrs`` in this process; return its exit code, standard output and standard error."""
+    output, messages = (TextIOWrapper(BytesIO(), "utf-8", write_through=True) for _ in range(2))
+    with redirect_stdout(output), redirect_stderr(messages):
+        exit_code = run([str(each) for each in arguments])
+    return CommandRun(exit_code, *(each.buffer.getvalue().decode() for each in (output, messages)))
 
 
 def run_command(*arguments: object) -> str:
     """Return what ``mmrs`` prints; the test fails if its exit code is not 0."""
-    run = run_mmrs(*arguments)
-    if run.returncode != 0:
+    done = run_mmrs(*arguments)
+    if done.exit_code != 0:
         words = " ".join(map(str, arguments))
-        pytest.fail(f"mmrs {words}: exit code {run.returncode}\n{run.stdout}{run.stderr}")
-    return run.stdout
+        pytest.fail(f"mmrs {words}: exit code {done.exit_code}\n{done.output}{done.messages}")
+    return done.output
 
 
 def run_json(*arguments: object, any_code: bool = False) -> Any:
     """Return the object that ``mmrs … --json`` prints; the test fails if its exit code is not 0."""
     if any_code:
-        return json.loads(run_mmrs(*arguments, "--json").stdout)
+        return json.loads(run_mmrs(*arguments, "--json").output)
     return json.loads(run_command(*arguments, "--json"))
