@@ -277,11 +277,13 @@ class Slot:
 
     Attributes:
         start: its least significant bit; bit 0 is the lowest of byte 0.
+        mask: as many ones as it has bits.
         low, high: the least and the greatest raw number that is sent and believed.
     """
 
     field: Field
     start: int
+    mask: int
     low: int
     high: int
 
@@ -300,12 +302,12 @@ def layout_of(message: Message) -> Layout:
     slots: dict[str, Slot] = {}
     start = 0
     for field in message.fields:
-        slots[field.name] = Slot(field, start, *_bounds(field))
+        slots[field.name] = Slot(field, start, (1 << field.bits) - 1, *_bounds(field))
         start += field.bits
     length = (start + 7) // 8
     if message.guarded:
         for field in (_COUNTER, _CHECK):
-            slots[field.name] = Slot(field, length * 8, 0, 255)
+            slots[field.name] = Slot(field, length * 8, 255, 0, 255)
             length += 1
     return Layout(message, slots, length)
 

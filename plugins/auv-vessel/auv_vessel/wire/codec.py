@@ -6,15 +6,11 @@ from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass
 from math import isfinite
-from typing import TYPE_CHECKING, Any, NoReturn, TypeAlias
+from typing import NoReturn, TypeAlias
 
 from auv_vessel.sheet import Sheet
 from auv_vessel.wire.catalogue import CHECK, SEQUENCE, Layout, Message, Slot, layout_of, messages_of
-from auv_vessel.wire.database import database_of
 from auv_vessel.wire.frame import Frame, check_of
-
-if TYPE_CHECKING:
-    from cantools.database.can import Message as Entry
 
 Value: TypeAlias = float | str | bool
 
@@ -48,11 +44,7 @@ class Codec:
             SheetError: a bus cannot be made of the vehicle's data; lists all that is wrong.
         """
         self.faults: Counter[str] = Counter()
-        database = database_of(sheet)
-        self._codings = {
-            message.name: _Coding(layout_of(message), database.get_message_by_name(message.name))
-            for message in messages_of(sheet)
-        }
+        self._codings = {message.name: _Coding(layout_of(message)) for message in messages_of(sheet)}
         self._by_id = {coding.message.id: coding for coding in self._codings.values()}
 
     def encode(self, name: str, **values: Value) -> Frame:
@@ -92,25 +84,28 @@ class Codec:
 class _Coding:
     """How one message is put into bytes and taken from them."""
 
-    def __init__(self, layout: Layout, entry: Entry) -> None:
+    def __init__(self, layout: Layout) -> None:
         self.message: Message = layout.message
         self._length = layout.length
-        self._slots = layout.slots
         self._own = {name: slot for name, slot in layout.slots.items() if name not in (SEQUENCE, CHECK)}
-        self._entry = entry
+        self._own_length = layout.length - len(layout.slots) + len(self._own)
         self._sequence = 255
 
-    def raw(self, values: Mapping[str, Value]) -> dict[str, int]:
+    def raw(self, values: Mapping[str, Value]) -> int:
+        """Return the bits of the message's own fields."""
         if values.keys() != self._own.keys():
             self._refuse_fields(values)
-        return {name: self._raw(slot, values[name]) for name, slot in self._own.items()}
+        bits = 0
+        for name, slot in self._own.items():
+            bits |= (self._raw(slot, values[name]) & slot.mask) << slot.start
+        return bits
 
     def frame(self, values: Mapping[str, Value]) -> Frame:
-        raw = self.raw(values)
+        data = self.raw(values).to_bytes(self._own_length, "little")
         if not self.message.guarded:
-            return Frame(self.message.id, self._packed(raw))
+            return Frame(self.message.id, data)
         self._sequence = (self._sequence + 1) % 256
-        data = self._packed(raw | {SEQUENCE: self._sequence, CHECK: 0})[:-1]
+        data += bytes((self._sequence,))
         return Frame(self.message.id, data + bytes((check_of(self.message.id, data),)))
 
     def received(self, data: bytes) -> Received | None:
@@ -118,18 +113,16 @@ class _Coding:
             return None
         if self.message.guarded and check_of(self.message.id, data[:-1]) != data[-1]:
             return None
-        raw: Any = self._entry.decode(data, decode_choices=False, scaling=False)
+        bits = int.from_bytes(data, "little")
         values: dict[str, Value] = {}
         for name, slot in self._own.items():
-            number = int(raw[name])
+            number = bits >> slot.start & slot.mask
+            if slot.field.signed and number > slot.mask >> 1:
+                number -= slot.mask + 1
             if not slot.low <= number <= slot.high:
                 return None
             values[name] = _meaning(slot, number)
-        return Received(self.message.name, values, int(raw[SEQUENCE]) if self.message.guarded else None)
-
-    def _packed(self, raw: Mapping[str, int]) -> bytes:
-        data: bytes = self._entry.encode(dict(raw), scaling=False, strict=False)
-        return data
+        return Received(self.message.name, values, data[-2] if self.message.guarded else None)
 
     def _raw(self, slot: Slot, value: Value) -> int:
         field = slot.field
