@@ -126,7 +126,7 @@ def test_nobody_who_listens_is_told_and_a_dry_run_needs_nobody(yard, tmp_path):
     process = drive(yard, "nowhere", tmp_path / "nowhere")
     said, _ = process.communicate(timeout=PATIENCE)
     assert process.returncode == 2, said
-    assert "--kart nowhere: is not HOST:PORT" in said
+    assert "--kart nowhere: expected HOST:PORT" in said
     process = drive(yard, "127.0.0.1:9", tmp_path / "dry", "--dry-run")
     said, _ = process.communicate(timeout=PATIENCE)
     assert process.returncode == 0, said

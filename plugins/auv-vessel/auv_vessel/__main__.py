@@ -1,5 +1,8 @@
-"""One part of a vehicle as a process of its own, on any bus that python-can has.
+"""Run one part of an underwater vehicle as a process on its CAN bus.
 
+sensors, actuators and movement are the parts of the control layer; vehicle simulates the vehicle itself.
+
+Example:
 python -m auv_vessel vehicle --sheet auv.json --interface socketcand --channel can0@127.0.0.1:29536
 """
 
@@ -61,46 +64,74 @@ def main(words: Sequence[str] | None = None) -> int:
         print(f"{given.part}: {error}", file=sys.stderr)
         return 3
     except PortError as error:
-        print(f"{given.part}: the bus is gone: {error}", file=sys.stderr)
+        print(f"{given.part}: bus lost: {error}", file=sys.stderr)
         return 3
     if given.figures:
         _write_figures(given.figures, late, time.process_time() - begin)
     return 0
 
 
+_SHEET = "vehicle configuration (JSON) from 'mmrs auv sheet'"
+_INTERFACE = "python-can interface. Default: socketcand"
+_CHANNEL = f"channel of the interface; NAME@HOST:PORT for a hub on another machine. Default: {CHANNEL}"
+
+
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
-        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+        prog="python -m auv_vessel", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
-    parser.add_argument("part", choices=PARTS)
-    parser.add_argument("--sheet", type=Path, required=True, help="data of the vehicle (JSON)")
-    parser.add_argument("--interface", default="socketcand", help="of python-can")
-    parser.add_argument("--channel", default=CHANNEL, help="of that interface; CHANNEL@HOST:PORT of a hub")
-    parser.add_argument("--bit-rate", type=int, help="bit rate, for adapters that need it")
+    parser.add_argument("part", choices=PARTS, help="part to run")
+    parser.add_argument("--sheet", type=Path, required=True, metavar="FILE", help=_SHEET)
+    parser.add_argument("--interface", default="socketcand", metavar="NAME", help=_INTERFACE)
+    parser.add_argument("--channel", default=CHANNEL, metavar="NAME", help=_CHANNEL)
     parser.add_argument(
-        "--clock", choices=("real", "bus"), default="real", help="bus: time as the vehicle tells it"
+        "--bit-rate", type=int, metavar="BITS", help="bit rate per second, for adapters that need it"
     )
-    parser.add_argument("--speedup", type=float, default=1.0, help="of the vehicle, where it tells time")
+    parser.add_argument(
+        "--clock",
+        choices=("real", "bus"),
+        default="real",
+        help="clock; bus: the time that the simulated vehicle sends. Default: real",
+    )
+    parser.add_argument(
+        "--speedup",
+        type=float,
+        default=1.0,
+        metavar="FACTOR",
+        help="simulated seconds per real second, for vehicle with --clock bus. Default: 1",
+    )
     parser.add_argument(
         "--surroundings",
         type=Path,
-        help="surroundings of the simulated vehicle. Default: still water, 100 m deep",
+        metavar="FILE",
+        help="surroundings of the simulated vehicle, as JSON. Default: still water, 100 m deep",
     )
     parser.add_argument(
         "--drives",
         metavar="MODULE:FUNCTION,OPTION=VALUE,...",
-        help="of thrusters that go by other messages, such as mmrs_dronecan.speed_controllers:opened",
+        help="for actuators: driver of thrusters with another protocol, such as "
+        "mmrs_dronecan.speed_controllers:opened",
     )
     parser.add_argument(
         "--without-drives",
         action="store_true",
-        help="the vehicle's thrusters push as drives that are other nodes of the bus say that they do",
+        help="for vehicle: take the thrust from speed controllers that are nodes of their own on the bus",
     )
     parser.add_argument(
-        "--faults", action="store_true", help="faults of the vehicle are typed: see body/befalling.py"
+        "--faults",
+        action="store_true",
+        help="for vehicle: read faults to inject from standard input, as 'mmrs auv sitl' does",
     )
-    parser.add_argument("--seed", type=int, default=0, help="of its instruments' noise and bias")
-    parser.add_argument("--figures", type=Path, help="file for how late ticks were, at the end")
+    parser.add_argument(
+        "--seed",
+        type=int,
+        default=0,
+        metavar="N",
+        help="random seed for instrument noise and bias. Default: 0",
+    )
+    parser.add_argument(
+        "--figures", type=Path, metavar="FILE", help="file for the processor time and the delay of each tick"
+    )
     return parser
 
 

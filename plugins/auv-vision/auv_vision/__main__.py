@@ -1,5 +1,8 @@
-"""One of the three processes that are the eyes of a vehicle.
+"""Run one of the three vision processes of an underwater vehicle.
 
+frames captures pictures from the cameras into shared memory; front and bottom detect objects in them.
+
+Examples:
 python -m auv_vision frames --sheet auv.json --surroundings pool.json --channel can0@127.0.0.1:29536
 python -m auv_vision front --sheet auv.json --surroundings pool.json --to 127.0.0.1:29600
 python -m auv_vision bottom --sheet auv.json --surroundings pool.json --to 127.0.0.1:29600
@@ -115,34 +118,67 @@ def main(words: Sequence[str] | None = None) -> int:
     return 0
 
 
+_SHEET = "vehicle configuration (JSON) from 'mmrs auv sheet'"
+
+
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
-        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+        prog="python -m auv_vision", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
-    parser.add_argument("part", choices=(FRAMES, *CAMERAS))
-    parser.add_argument("--sheet", type=Path, required=True, help="data of the vehicle (JSON)")
-    parser.add_argument("--surroundings", type=Path, required=True, help="objects to detect (JSON)")
-    parser.add_argument("--memory", help="name of the shared memory. Default: the name of the vehicle")
-    parser.add_argument("--to", type=_address, default=("127.0.0.1", 29600), help="HOST:PORT of who decides")
+    parser.add_argument("part", choices=(FRAMES, *CAMERAS), help="process to run")
+    parser.add_argument("--sheet", type=Path, required=True, metavar="FILE", help=_SHEET)
+    parser.add_argument(
+        "--surroundings", type=Path, required=True, metavar="FILE", help="objects to detect, as JSON"
+    )
+    parser.add_argument(
+        "--memory", metavar="NAME", help="name of the shared memory. Default: by the vehicle's name"
+    )
+    parser.add_argument(
+        "--to",
+        type=_address,
+        default=("127.0.0.1", 29600),
+        metavar="HOST:PORT",
+        help="UDP address of the controller that receives detections. Default: 127.0.0.1:29600",
+    )
     for camera in CAMERAS:
         parser.add_argument(
             f"--{camera}",
             metavar="SOURCE",
-            help="simulated, none, a film, a camera's number or device, or two as in 0,1; "
-            "if neither is given both are simulated, if one is given the other is none",
+            help=f"pictures of the {camera} camera: simulated, none, a video file, a camera's number or "
+            "device, or two of these for a stereo pair, as in 0,1. Default: simulated, or none "
+            "if the other is given",
         )
-    parser.add_argument("--rate", type=_rate, default=5.0, help="pairs of each camera in a second")
-    parser.add_argument("--seed", type=int, default=0, help="of simulated pictures' noise")
-    parser.add_argument("--interface", default="socketcand", help="of python-can; none: stay at home")
-    parser.add_argument("--channel", default="can0@127.0.0.1:29536", help="of that interface")
-    parser.add_argument("--figures", type=Path, help="file for seconds of processor time, at the end")
+    parser.add_argument(
+        "--rate", type=_rate, default=5.0, metavar="HERTZ", help="stereo pairs per second. Default: 5"
+    )
+    parser.add_argument(
+        "--seed",
+        type=int,
+        default=0,
+        metavar="N",
+        help="random seed for the noise of simulated pictures. Default: 0",
+    )
+    parser.add_argument(
+        "--interface",
+        default="socketcand",
+        metavar="NAME",
+        help="python-can interface to receive the vehicle's position from; none: the vehicle stays at its "
+        "home. Default: socketcand",
+    )
+    parser.add_argument(
+        "--channel",
+        default="can0@127.0.0.1:29536",
+        metavar="NAME",
+        help="channel of the interface. Default: can0@127.0.0.1:29536",
+    )
+    parser.add_argument("--figures", type=Path, metavar="FILE", help="file for the processor time used")
     return parser
 
 
 def _address(text: str) -> tuple[str, int]:
     host, _, port = text.rpartition(":")
     if not host or not port.isdecimal() or len(port) > 5 or not 0 < int(port) < 65536:
-        raise argparse.ArgumentTypeError(f"{text} is not HOST:PORT")
+        raise argparse.ArgumentTypeError(f"{text}: expected HOST:PORT")
     return host, int(port)
 
 
@@ -152,7 +188,7 @@ def _rate(text: str) -> float:
     except ValueError:
         rate = 0.0
     if not 0.0 < rate <= 100.0:
-        raise argparse.ArgumentTypeError(f"{text} is not a rate up to 100")
+        raise argparse.ArgumentTypeError(f"{text}: expected a rate above 0, at most 100")
     return rate
 
 
@@ -194,7 +230,7 @@ def _serve_frames(
     chosen = {name: otherwise if text is None else text for name, text in told.items()}
     used = {name: text for name, text in chosen.items() if text != NONE}
     if not used:
-        raise ValueError("no camera is left to take pictures with")
+        raise ValueError("--front none, --bottom none: no camera is used")
     with ExitStack() as stack:
         renderer = Renderer(around, given.seed)
         sources = {name: opened(text, cameras[name], lambda: renderer) for name, text in used.items()}
@@ -212,7 +248,7 @@ def _serve_frames(
         except SourceError as error:
             raise GoneError(str(error)) from error
         if lost:
-            raise GoneError(f"the bus is gone: {lost[0]}")
+            raise GoneError(f"bus lost: {lost[0]}")
 
 
 def _whereabouts(

@@ -117,7 +117,7 @@ def test_the_end_of_a_film_is_said_and_the_other_camera_takes_nothing(
 
 def test_no_camera_at_all_is_refused(words: list[str], capsys: pytest.CaptureFixture[str]) -> None:
     assert main([*words, "--front", "none"]) == 2
-    assert "no camera is left" in capsys.readouterr().err
+    assert "no camera is used" in capsys.readouterr().err
 
 
 def test_each_vehicle_on_a_computer_has_memory_of_its_own() -> None:

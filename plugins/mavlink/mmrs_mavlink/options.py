@@ -54,16 +54,46 @@ def add_reach(parser: argparse.ArgumentParser) -> None:
         action="append",
         default=[],
         metavar="[ROBOT=]URL[@SYSTEM]",
-        help="udpin:HOST:PORT, udpout:HOST:PORT, tcp:HOST:PORT or DEVICE,BAUD, and the vehicle's MAVLink"
-        " system, without which it is whichever speaks first; robots may share a URL;"
-        f" default udpin:127.0.0.1:{FIRST_PORT} for the first robot, {PORT_STEP} more for each further one",
+        help="connection URL of a robot: udpin:HOST:PORT, udpout:HOST:PORT, tcp:HOST:PORT or DEVICE,BAUD,"
+        " with the vehicle's MAVLink system after @ (otherwise the first system received). Robots may"
+        " share a URL."
+        f" Repeatable. Default: udpin:127.0.0.1:{FIRST_PORT} for the first robot, and {PORT_STEP} ports"
+        " higher for each further one",
     )
-    add("--tries", type=count, default=TRIES, help="how often to send at most what a vehicle does not answer")
-    add("--answer-seconds", type=positive, default=ANSWER_SECONDS, help="to wait for an answer each time")
-    add("--item-seconds", type=positive, default=ITEM_SECONDS, help="to wait for an item of a mission")
-    add("--signing-key", type=Path, metavar="FILE", help="sign all messages, and accept only signed ones")
-    add("--no-fence", action="store_true", help="do not upload the fence")
-    add("--acceptance", type=positive, help="acceptance radius in metres; default: by the travel mode")
+    add(
+        "--tries",
+        type=count,
+        default=TRIES,
+        metavar="N",
+        help=f"how often to send a command that the vehicle does not answer. Default: {TRIES}",
+    )
+    add(
+        "--answer-seconds",
+        type=positive,
+        default=ANSWER_SECONDS,
+        metavar="SECONDS",
+        help=f"timeout for each answer of a vehicle. Default: {ANSWER_SECONDS:g}",
+    )
+    add(
+        "--item-seconds",
+        type=positive,
+        default=ITEM_SECONDS,
+        metavar="SECONDS",
+        help=f"timeout for each item of a mission transfer. Default: {ITEM_SECONDS:g}",
+    )
+    add(
+        "--signing-key",
+        type=Path,
+        metavar="FILE",
+        help="MAVLink 2 signing key file; unsigned messages are ignored",
+    )
+    add("--no-fence", action="store_true", help="do not upload the geofence")
+    add(
+        "--acceptance",
+        type=positive,
+        metavar="METRES",
+        help="acceptance radius in metres. Default: by travel mode",
+    )
 
 
 def reach_of(parser: argparse.ArgumentParser, robots: Sequence[Robot], given: Any) -> Reach:
@@ -90,9 +120,9 @@ def _links(
     for text in texts:
         robot, separator, reached = text.rpartition("=")
         if separator and robot not in links:
-            parser.error(f"--connect {text}: there is no robot {robot!r}")
+            parser.error(f"--connect {text}: unknown robot {robot!r}; the robots are {', '.join(links)}")
         if not separator and len(robots) > 1:
-            parser.error(f"--connect {text}: which robot? say ROBOT={text}")
+            parser.error(f"--connect {text}: several robots; name one: --connect {robots[0].id}={text}")
         name = robot or robots[0].id
         if name in given:
             parser.error(f"--connect {text}: {name!r} is reached by {given[name]} already")
@@ -101,7 +131,7 @@ def _links(
     taken = [each for each in links.values() if each[1]]
     for url, system in taken:
         if taken.count((url, system)) > 1:
-            parser.error(f"--connect {url}@{system}: is given to two robots")
+            parser.error(f"--connect {url}@{system}: used for two robots")
     return links
 
 

@@ -70,29 +70,54 @@ class Options:
 
 def parser_for(robots: Sequence[Robot], driver: Driver) -> argparse.ArgumentParser:
     """Return the parser of the command line that runs these robots."""
+    named = ", ".join(repr(robot.id) for robot in robots)
     parser = argparse.ArgumentParser(
-        description=f"Runs {', '.join(repr(robot.id) for robot in robots)}.",
-        epilog="Exit codes: 0 done, 1 ended early, 2 usage, 5 link lost, 130 stopped."
-        " While it runs: python -m mmrs_runtime.control ORDER --log FOLDER.",
+        description=f"Run {named} on {'its vehicle' if len(robots) == 1 else 'their vehicles'}.",
+        epilog="Exit codes: 0 completed, 1 ended early, 2 usage error, 5 link lost, 130 interrupted."
+        " To send commands while it runs: python -m mmrs_runtime.control ORDER --log DIR.",
     )
     driver.add_options(parser)
     add = parser.add_argument
-    add("--patience", type=positive, default=30.0, help="real seconds to wait for a vehicle's first sign")
-    add("--log", type=Path, default=Path("logs"), help="folder for the logs; must not hold any yet")
-    add("--run", help=f"identifier of this run, in the logs; default {FIRST_RUN}")
-    add("--resume", action="store_true", help="resume where the logs in --log end, as with a new battery")
-    add("--dry-run", action="store_true", help="no link: go through the program with a vehicle made up")
-    add("--speedup", type=positive, default=None, help="how much faster than real time the vehicles run")
-    add("--on-stop", choices=("hold", "return", "land"), default="hold", help="what to do when interrupted")
+    add(
+        "--patience",
+        type=positive,
+        default=30.0,
+        metavar="SECONDS",
+        help="timeout for a vehicle's first message, in real seconds. Default: 30",
+    )
+    add(
+        "--log",
+        type=Path,
+        default=Path("logs"),
+        metavar="DIR",
+        help="folder for the logs, without logs of another run. Default: logs",
+    )
+    add("--run", metavar="NAME", help=f"run name, recorded in the logs. Default: {FIRST_RUN}")
+    add("--resume", action="store_true", help="resume the run logged in --log, e.g. after a battery change")
+    add("--dry-run", action="store_true", help="execute the program without a vehicle, in fast motion")
+    add(
+        "--speedup",
+        type=positive,
+        default=None,
+        metavar="FACTOR",
+        help="time factor of simulated vehicles. Default: 1",
+    )
+    add(
+        "--on-stop",
+        choices=("hold", "return", "land"),
+        default="hold",
+        help="behaviour on interrupt. Default: hold",
+    )
     add("--battery-patience", type=not_negative, default=0.0, metavar="SECONDS", help=_PATIENCE)
     add(
         "--home-tolerance",
         type=positive,
         default=20.0,
-        help="metres a vehicle may be from its home at first",
+        metavar="METRES",
+        help="maximum distance of a vehicle from its home at the start, in metres. Default: 20",
     )
     add("--inject", action="append", default=[], metavar="FAULTS", help=HELP)
-    add("--sync", action="store_true", help="begin at one instant, when all robots of the mission are ready")
+    add("--sync", action="store_true", help="start at one instant, once all robots of the mission are ready")
     add("--sync-patience", type=positive, default=PATIENCE, metavar="SECONDS", help=_SYNC_PATIENCE)
     add("--bus", action="store_true", help=_BUS)
     add(
@@ -100,16 +125,16 @@ def parser_for(robots: Sequence[Robot], driver: Driver) -> argparse.ArgumentPars
         action="append",
         default=[],
         metavar="ENDPOINT",
-        help="Zenoh endpoint to listen on, e.g. tcp/0.0.0.0:7447",
+        help="Zenoh endpoint to listen on, e.g. tcp/0.0.0.0:7447. Repeatable",
     )
     add(
         "--bus-connect",
         action="append",
         default=[],
         metavar="ENDPOINT",
-        help="Zenoh endpoint to connect to, e.g. tcp/10.0.0.2:7447",
+        help="Zenoh endpoint to connect to, e.g. tcp/10.0.0.2:7447. Repeatable",
     )
-    add("--bus-config", type=Path, metavar="FILE", help="Zenoh's configuration, as mmrs bus keys makes it")
+    add("--bus-config", type=Path, metavar="FILE", help="Zenoh configuration from 'mmrs bus keys'")
     return parser
 
 
@@ -147,16 +172,13 @@ def options_of(
     )
 
 
-_SYNC_PATIENCE = (
-    f"real seconds to wait with --sync for robots that are not ready, default {PATIENCE:g};"
-    " then nothing begins"
-)
+_SYNC_PATIENCE = f"start timeout for --sync, in real seconds; no robot starts after it. Default: {PATIENCE:g}"
 _BUS = (
-    "keep slots with robots of other processes, by Zenoh; without an address or keys, of processes on this"
-    " computer"
+    "synchronise slots (the signals that robots wait for) with other processes over Zenoh; without"
+    " endpoints: on this machine"
 )
 _PATIENCE = (
-    "how long to wait for the order resume when a robot has come home for its battery and no other works"
+    "timeout for a battery change (command resume) once no other robot is active, in real seconds. Default: 0"
 )
 
 
@@ -196,10 +218,12 @@ def _run(parser: argparse.ArgumentParser, robots: Sequence[Robot], given: Any) -
     """Return the identifier of the run, and how many seconds of it have passed."""
     taken = [given.log / robot.log for robot in robots if (given.log / robot.log).exists()]
     if taken and not given.resume:
-        parser.error(f"{taken[0]}: there is a log already; choose another --log, or resume it with --resume")
+        parser.error(
+            f"{taken[0]}: already contains a log; choose another --log, or resume that run with --resume"
+        )
     # A run in which nothing began has black boxes, and no logs.
     if given.resume and not any(path.exists() for path in (*taken, *_boxes(robots, given.log))):
-        parser.error(f"--resume: there is no log of these robots in {given.log}")
+        parser.error(f"--resume: no log of these robots in {given.log}")
     try:
         steps = [step for path in taken for step in read(path)]
     except FaultError as fault:
@@ -209,7 +233,9 @@ def _run(parser: argparse.ArgumentParser, robots: Sequence[Robot], given: Any) -
         parser.error(f"--resume: the logs are of run {', '.join(map(repr, runs))}")
     for robot in robots:
         if plan_of(black_box_path(given.log / robot.log)) not in ("", robot.plan):
-            parser.error(f"--resume: {robot.id!r} flew by another plan of the mission in {given.log}")
+            parser.error(
+                f"--resume: the logs of {robot.id!r} in {given.log} are from another plan of the mission"
+            )
     ends = (last_time(black_box_path(path)) for path in taken)
     start = max((*(step.time for step in steps), *ends), default=0.0)
     return (runs[0] if runs else given.run or FIRST_RUN), start
@@ -225,7 +251,7 @@ def _inject(
         parser.error(f"--inject {error}")
     for fault in found.faults:
         if fault.name in (*OF_VEHICLE, *OF_STATIONS) and fault.name not in rehearses:
-            parser.error(f"--inject {fault.text}: these vehicles cannot do that")
+            parser.error(f"--inject {fault.text}: not supported by these vehicles")
     return found
 
 

@@ -20,12 +20,13 @@ TIMED = (*CUTS, "bus-cut", *OF_VEHICLE, *OF_STATIONS, *OF_PROCESS)
 NAMES = (*OF_LINK, *OF_BUS, *OF_VEHICLE, *OF_STATIONS, *OF_PROCESS)
 
 HELP = (
-    "inject faults: loss=0.15, duplicate=0.05, corrupt=0.01 (fractions of all packets),"
-    " delay=0.2~0.1 (seconds, plus or minus), cut@60+20 (no packet passes for 20 s from second 60 of the run"
-    " on; cut-in, cut-out: one direction), ground-cut@60+20 (ground stations are not received), freeze@60+5,"
-    " disk-full@60+20, clock-jump@60+3600, gps-lost@60+20 (simulated vehicles only), bus-loss=0.1,"
-    " bus-duplicate=0.1, bus-delay=0.5, bus-cut@60+20, seed=7; several with commas, ROBOT:loss=0.15 for one"
-    " robot"
+    "faults to inject, separated by commas; ROBOT:FAULT for one robot. Fractions of packets: loss=0.15,"
+    " duplicate=0.05, corrupt=0.01. Latency in seconds, plus or minus: delay=0.2~0.1. FAULT@60+20 begins 60 s"
+    " after the start and lasts 20 s: cut (no packets; cut-in, cut-out: one direction), ground-cut (no"
+    " packets from ground stations), freeze (the controller stops), disk-full, gps-lost (simulated"
+    " vehicles only);"
+    " clock-jump@60+3600 sets the clock forward by 3600 s. Between robots: bus-loss=0.1, bus-duplicate=0.1,"
+    " bus-delay=0.5, bus-cut@60+20. Random seed: seed=7. Repeatable"
 )
 
 CENTURY = 3_155_760_000

@@ -42,7 +42,9 @@ def channels(folder: Path) -> tuple[Channel, ...]:
     """
     found = [channel for path in sorted(folder.glob(PATTERN)) for channel in _read(path)]
     if not found:
-        raise Unreachable(f"{folder}: no robots are running with their logs there")
+        raise Unreachable(
+            f"{folder}: no running robots use this log folder; name the folder of the run with --log"
+        )
     return tuple(found)
 
 
@@ -150,7 +152,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     bear_all_characters()
     given = _parser().parse_args(arguments)
     if (given.order == ANSWER) != bool(given.question):
-        _parser().error("answer needs --question QUESTION --says yes|no, and nothing else has it")
+        _parser().error(
+            "answer: needs --question NAME and --says yes or no; no other command takes --question"
+        )
     try:
         replies = give(
             given.log,
@@ -190,20 +194,27 @@ def _parser() -> argparse.ArgumentParser:
     orders = "; ".join(f"{name}: {meaning}" for name, meaning in ORDERS.items())
     parser = argparse.ArgumentParser(
         prog="python -m mmrs_runtime.control",
-        description=f"Gives orders to robots that are running. {orders}.",
-        epilog="Exit codes: 0 every robot has confirmed, 1 one has not, 2 usage, 5 no robots to be found.",
+        description=f"Send a command to running robots. {orders}.",
+        epilog="Exit codes: 0 every robot has confirmed, 1 one has not, 2 usage error, 5 no running robots.",
     )
     add = parser.add_argument
-    add("order", choices=tuple(ORDERS))
-    add("robots", nargs="*", metavar="ROBOT", help="none: all robots that are running")
-    add("--log", type=Path, default=Path("logs"), help="folder of the robots' logs")
-    add("--question", help="that is answered")
-    add("--says", choices=tuple(WORDS), default="no", help="the answer to the question")
+    add("order", choices=tuple(ORDERS), help="command")
+    add("robots", nargs="*", metavar="ROBOT", help="robots to command. Default: all running robots")
+    add(
+        "--log",
+        type=Path,
+        default=Path("logs"),
+        metavar="DIR",
+        help="folder of the run's logs. Default: logs",
+    )
+    add("--question", metavar="NAME", help="with answer: the question")
+    add("--says", choices=tuple(WORDS), default="no", help="with answer: the answer. Default: no")
     add(
         "--seconds",
         type=float,
         default=USUAL_SECONDS,
-        help="how long to wait for confirmation, in seconds, 30 at most",
+        metavar="SECONDS",
+        help=f"seconds to wait for confirmation, at most 30. Default: {USUAL_SECONDS:g}",
     )
     return parser
 

@@ -19,13 +19,13 @@ ANSWER = "answer"
 STATUS = "status"
 
 ORDERS = {
-    HOLD: "halt and stay until the next order",
-    RESUME: "resume after a hold, or after a change of batteries",
-    RETURN: "end the program and come home by the way it came",
-    LAND: "end the program and come down where it is",
-    STOP: "end the program as --on-stop says",
-    ANSWER: "answer a question that the robot waits for",
-    STATUS: "report the robot's state and activity",
+    HOLD: "stop moving and wait",
+    RESUME: "continue after a hold or a battery change",
+    RETURN: "abort the program, retrace the path and return home",
+    LAND: "abort the program and land",
+    STOP: "abort the program with the --on-stop response",
+    ANSWER: "answer the question of a Choice",
+    STATUS: "print the state of each robot",
 }
 """What can be ordered, and what it means."""
 

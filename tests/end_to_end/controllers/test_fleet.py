@@ -173,8 +173,8 @@ def test_one_of_several_robots_does_not_start_alone(controllers):
 @pytest.mark.parametrize(
     ("arguments", "complaint"),
     [
-        (["--connect", "gamma=udpin:127.0.0.1:1"], "there is no robot 'gamma'"),
-        (["--connect", "udpin:127.0.0.1:1"], "which robot"),
+        (["--connect", "gamma=udpin:127.0.0.1:1"], "unknown robot 'gamma'"),
+        (["--connect", "udpin:127.0.0.1:1"], "several robots"),
         (["--speedup", "-1"], "must be a positive number"),
         (["--home-tolerance", "nan"], "must be a positive number"),
     ],

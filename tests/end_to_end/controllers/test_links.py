@@ -207,7 +207,7 @@ def test_a_system_is_given_to_one_robot_only(controllers):
     url = "udpin:127.0.0.1:14550@1"
     code, said = controllers(TWO).run("fleet.py", "--connect", f"alpha={url}", "--connect", f"beta={url}")
     assert code == 2
-    assert f"--connect {url}: is given to two robots" in said
+    assert f"--connect {url}: used for two robots" in said
 
 
 def homes_of(program):

@@ -310,7 +310,7 @@ def test_a_program_that_has_ended_by_a_fault_does_not_go_on(controllers):
 
 @pytest.mark.parametrize(
     ("arguments", "complaint"),
-    [(("--resume",), "there is no log of these robots"), (("--resume", "--run", "other"), "there is no log")],
+    [(("--resume",), "no log of these robots"), (("--resume", "--run", "other"), "no log of these robots")],
 )
 def test_nothing_can_be_gone_on_with_where_nothing_was_begun(controllers, arguments, complaint):
     code, said = controllers(coverage()).run("fleet.py", "--dry-run", *arguments)

@@ -393,7 +393,7 @@ def test_a_robot_is_run_by_one_process_at_a_time(tmp_path, opened, inboxes):
 def test_nothing_is_left_of_a_channel_that_was_closed(tmp_path, inboxes):
     Control(tmp_path, "run-0", inboxes, lambda robot: {}).close()
     assert list(tmp_path.iterdir()) == []
-    with pytest.raises(Unreachable, match="no robots are running"):
+    with pytest.raises(Unreachable, match="no running robots"):
         list(give(tmp_path, "hold"))
 
 

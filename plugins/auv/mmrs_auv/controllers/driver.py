@@ -126,12 +126,29 @@ class CanDriver(Driver):
     def add_options(self, parser: ArgumentParser) -> None:
         """Add those of buses, cameras and sonar."""
         add = parser.add_argument
-        add("--can", action="append", default=[], metavar="[ROBOT=]CHANNEL", help=f"default {CHANNEL}")
-        add("--interface", default="socketcand", help="of python-can")
-        add("--bit-rate", type=int, help="bit rate, for adapters that need it")
+        add(
+            "--can",
+            action="append",
+            default=[],
+            metavar="[ROBOT=]CHANNEL",
+            help=f"CAN channel of a robot's vehicle. Repeatable. Default: {CHANNEL}",
+        )
+        add(
+            "--interface",
+            default="socketcand",
+            metavar="NAME",
+            help="python-can interface. Default: socketcand",
+        )
+        add("--bit-rate", type=int, metavar="BITS", help="bit rate per second, for adapters that need it")
         add("--detections", action="append", default=[], metavar="[ROBOT=]PORT", help=_DETECTIONS)
-        add("--clearance", type=_metres, default=0.0, help="metres ahead within which sonar must see nothing")
-        add("--clock", choices=("real", "bus"), help="bus: time as a simulated vehicle tells it")
+        add(
+            "--clearance",
+            type=_metres,
+            default=0.0,
+            metavar="METRES",
+            help="distance ahead, in metres, in which the sonar must detect nothing. Default: 0",
+        )
+        add("--clock", choices=("real", "bus"), help="clock; bus: the time that a simulated vehicle sends")
 
     def settle(self, parser: ArgumentParser, robots: Sequence[Robot], given: Namespace) -> Mapping[str, str]:
         """Keep which robot is on which bus, and which receives its cameras' detections."""
@@ -257,9 +274,9 @@ def _by_robot(
     for text in texts:
         robot, sign, value = text.rpartition("=")
         if sign and robot not in robots:
-            parser.error(f"{option} {text}: there is no robot {robot!r}")
+            parser.error(f"{option} {text}: unknown robot {robot!r}; the robots are {', '.join(robots)}")
         if not sign and len(robots) > 1:
-            parser.error(f"{option} {text}: which robot? say ROBOT={text}")
+            parser.error(f"{option} {text}: several robots; name one: {option} {robots[0]}={text}")
         found[robot or robots[0]] = value
     return found
 
@@ -268,7 +285,7 @@ def _ports(parser: ArgumentParser, robots: Sequence[str], texts: Sequence[str]) 
     found = _by_robot(parser, "--detections", robots, texts)
     for text in found.values():
         if not (text.isascii() and text.isdecimal() and len(text) < 6 and 0 < int(text) < 65_536):
-            parser.error(f"--detections {text}: is not a port")
+            parser.error(f"--detections {text}: not a port (1 to 65535)")
     if len(set(found.values())) < len(found):
         parser.error("--detections: each vehicle's cameras need a port of their own")
     return {robot: int(text) for robot, text in found.items()}

@@ -226,9 +226,9 @@ def test_robots_in_separate_programs_meet_by_zenoh(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("words", "said"),
     [
-        (("--detections", "4000"), "which robot"),
-        (("--detections", "Nobody=4000"), "there is no robot 'Nobody'"),
-        (("--detections", "Pollux=0"), "--detections 0: is not a port"),
+        (("--detections", "4000"), "several robots"),
+        (("--detections", "Nobody=4000"), "unknown robot 'Nobody'"),
+        (("--detections", "Pollux=0"), "--detections 0: not a port"),
         (("--detections", "Pollux=4000", "--detections", "Caßtor '1'=4000"), "a port of their own"),
     ],
 )
@@ -261,4 +261,4 @@ def test_faults_that_no_vehicle_on_a_bus_can_make_are_refused(tmp_path: Path) ->
     folder = generated(dive(swim("a", 1.0, 0.0, 1.0)), tmp_path / "code")
     done = call(folder, "--log", str(tmp_path / "logs"), "--inject", "gps-lost@60")
     assert done.returncode == 2
-    assert "--inject gps-lost@60: these vehicles cannot do that" in done.stderr
+    assert "--inject gps-lost@60: not supported by these vehicles" in done.stderr
