@@ -23,7 +23,7 @@ PARTS = ("vehicle", "sensors", "actuators", "movement")
 QUIT = frozenset({"quit", "exit"})
 HUB_SECONDS, END_SECONDS = 30.0, 10.0
 """Real seconds that a hub has to begin, and that processes have to end."""
-BUS_FAULTS = "cut, loss PART, delay SECONDS, corruption PART, and clear bus"
+BUS_FAULTS = "cut, loss SHARE, delay SECONDS, corruption SHARE, and clear bus"
 
 
 class VehicleProcesses:
@@ -94,8 +94,8 @@ class VehicleProcesses:
         """Let a fault befall the vehicle or its bus, or end one.
 
         Args:
-            words: as `befalling` takes them; or ``cut``, ``loss PART``, ``delay SECONDS`` and ``corruption
-                PART`` of the bus, which ``clear bus`` ends; or ``status``, which the vehicle answers.
+            words: as `befalling` takes them; or ``cut``, ``loss SHARE``, ``delay SECONDS`` and ``corruption
+                SHARE`` of the bus, which ``clear bus`` ends; or ``status``, which the vehicle answers.
 
         Raises:
             ValueError: there is no such fault.

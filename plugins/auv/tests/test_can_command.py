@@ -251,7 +251,7 @@ def test_the_hub_as_a_process(tmp_path: Path) -> None:
             assert hub.order("clear") == "loss 0, delay 0 s, corruption 0"
             assert hub.order("delay 0.05") == "loss 0, delay 0.05 s, corruption 0"
             assert hub.order("loss 7").startswith("loss 7: loss 7.0 is not 0 to 1")
-            assert hub.order("explode").startswith("explode: expected loss PART")
+            assert hub.order("explode").startswith("explode: expected loss SHARE")
             said.say("< send 102 0 >")
             assert heard.word().startswith("< frame 102 ")
         os.kill(hub.process.pid, signal.SIGTERM)

@@ -12,7 +12,7 @@ from auv_vessel.body.vehicle import Vehicle
 from auv_vessel.sheet import Sheet
 from auv_vessel.wire.frame import Frame
 
-FAULTS = "thruster-dead THRUSTER, frozen MESSAGE, silent MESSAGE, noisy MESSAGE TIMES, leak, battery PART"
+FAULTS = "thruster-dead THRUSTER, frozen MESSAGE, silent MESSAGE, noisy MESSAGE FACTOR, leak, battery CHARGE"
 
 Act: TypeAlias = Callable[[Vehicle], None]
 

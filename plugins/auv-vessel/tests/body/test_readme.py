@@ -16,7 +16,7 @@ from auv_vessel.sheet import Sheet
 from auv_vessel.wire.codec import Codec
 
 PAGE = (Path(__file__).parents[2] / "README.md").read_text(encoding="utf-8")
-TABLE = PAGE[PAGE.index("## The vehicle in simulation") :]
+TABLE = PAGE[PAGE.index("## The simulated vehicle") :]
 
 
 def said_keys() -> list[str]:

@@ -20,7 +20,7 @@ from auv_vessel.movement.abilities import abilities_of
 from auv_vessel.wire.codec import Codec
 
 PAGE = (Path(__file__).parents[2] / "README.md").read_text(encoding="utf-8")
-PART = PAGE[PAGE.index("## The control layer") : PAGE.index("## The vehicle in simulation")]
+PART = PAGE[PAGE.index("## The nodes") : PAGE.index("## The simulated vehicle")]
 
 
 def test_the_page_names_all_that_a_sheet_may_say_of_the_control_layer() -> None:
@@ -42,5 +42,5 @@ def test_the_page_names_all_that_a_sheet_may_say_of_the_control_layer() -> None:
 
 def test_the_page_says_within_what_a_goal_is_reached() -> None:
     said = (guidance.PLACE, guidance.DEPTH, guidance.HEADING, guidance.SPEED)
-    assert f"place ({said[0]:g} m), depth ({said[1]:g} m), heading ({said[2]:g}°)" in PART
+    assert f"position ({said[0]:g} m), depth ({said[1]:g} m), heading ({said[2]:g}°)" in PART
     assert f"{said[3]:g} m/s" in PART

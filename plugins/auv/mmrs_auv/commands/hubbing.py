@@ -15,7 +15,7 @@ from auv_vessel.wire.frame import Frame
 from auv_vessel.wire.hub import Hub, Troubles, log_line
 from mmrs_core.errors import LinkLostError
 
-ORDERS = "loss PART, delay SECONDS, corruption PART, cut, clear, quit"
+ORDERS = "loss SHARE, delay SECONDS, corruption SHARE, cut, clear, quit"
 
 
 def run_hub(
