@@ -190,7 +190,7 @@ def manned(robot: Robot | None = None, **settings: object) -> Iterator[Manned]:
         link = Link(Radio(ears, clock), clock, simulated.autopilot.settings.system)
         stack.callback(link.close)
         assert link.wait(lambda: link.component, 10.0 * SPEEDUP)
-        vehicle, watch = MavlinkVehicle(link, robot.vehicle, robot.home), Watch(robot, clock)
+        vehicle, watch = MavlinkVehicle(link, robot.profile, robot.home), Watch(robot, clock)
         watch.begin(link, vehicle)
         link.guard = watch.check
         made = Manned(robot, vehicle, link, watch, simulated, ears)

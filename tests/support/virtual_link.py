@@ -17,6 +17,7 @@ from mavlink_peer import ARDUPILOT, PX4, heartbeat
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from mmrs_mavlink.links.retries import Retries
+from mmrs_mavlink.profiles import ARDUCOPTER, VehicleProfile, on_autopilot
 from mmrs_mavlink.sitl.items import StoredItem
 from mmrs_mavlink.sitl.px4_transfers import Px4Transfers
 from mmrs_mavlink.sitl.radio import packed
@@ -84,6 +85,10 @@ class VirtualLink:
     @property
     def patience(self) -> float:
         return self.retries.answer
+
+    @property
+    def profile(self) -> VehicleProfile:
+        return on_autopilot(ARDUCOPTER, self._beat.autopilot)
 
     def latest(self, kind: str):
         return self._beat if kind == "HEARTBEAT" else None

@@ -65,6 +65,12 @@ class MavlinkDriver(Driver):
         self, parser: ArgumentParser, robots: Sequence[words.Robot], given: Namespace
     ) -> Mapping[str, str]:
         """Keep how robots are reached; return the urls of their links."""
+        for robot in robots:
+            assert isinstance(robot, Robot)
+            try:
+                robot.profile  # noqa: B018  it is imported now, before anything moves
+            except ValueError as error:
+                parser.error(f"robot '{robot.id}': {error}")
         self._reach = reach_of(parser, robots, given)
         return self._reach.urls
 

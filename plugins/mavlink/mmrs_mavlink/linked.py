@@ -28,7 +28,7 @@ def at_end_of(
     """
     vehicle = MavlinkVehicle(
         link,
-        robot.vehicle,
+        robot.profile,
         robot.home,
         acceptance=acceptance,
         travel=robot.travel,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import TypeAlias
 
 from mmrs_runtime.controllers import vocabulary as words
@@ -26,6 +27,8 @@ from mmrs_runtime.controllers.vocabulary import Step as Step
 from mmrs_runtime.controllers.vocabulary import Stop as Stop
 from mmrs_runtime.controllers.vocabulary import Then as Then
 from mmrs_runtime.controllers.vocabulary import Turn as Turn
+
+from .profiles import VehicleProfile, profile_for
 
 
 @dataclass(frozen=True, slots=True)
@@ -102,7 +105,7 @@ class Travel:
 
 @dataclass(frozen=True)
 class Robot(words.Robot):
-    """One robot whose vehicle speaks MAVLink (``copter``, ``sub`` or ``rover``), and all its moves.
+    """One robot whose vehicle speaks MAVLink, such as a ``copter``, and all its moves.
 
     Attributes:
         endurance: seconds that a full battery lasts at the type's mean power; None where unknown.
@@ -113,6 +116,7 @@ class Robot(words.Robot):
         straight: whether the vehicle may fly straight to the nearest rally point from anywhere on its path.
         neighbours: homes of the others whose vehicles might be taken for this robot's, by robot.
         travel: travel mode.
+        driven_by: ``module:name`` of the profile of a plug-in that drives its vehicle; empty: one of ours.
     """
 
     endurance: float | None = field(default=None, kw_only=True)
@@ -125,3 +129,13 @@ class Robot(words.Robot):
     tight: tuple[str, ...] = field(default=(), kw_only=True)
     neighbours: tuple[tuple[str, Place], ...] = field(default=(), kw_only=True)
     travel: Travel = field(default=Travel(), kw_only=True)
+    driven_by: str = field(default="", kw_only=True)
+
+    @cached_property
+    def profile(self) -> VehicleProfile:
+        """Return the profile of its class of vehicle, whose autopilot may be another one.
+
+        Raises:
+            ValueError: there is none, as where its plug-in is not installed.
+        """
+        return profile_for(self.vehicle, self.driven_by)

@@ -96,7 +96,7 @@ def _open_hangar():
             if not program.frame.is_local:
                 ((latitude, longitude),) = degrees_of([robot.home[:2]], program.frame)
             port = free_port()
-            kind = context_of(robot, target_input(program, types.values())).profile.driven_as
+            kind = context_of(robot, target_input(program, types.values())).profile.rehearsed_as
             given = Settings(kind, latitude, longitude, **settings)
             vehicle = SimulatedVehicle(port, given, speedup=speedup, loss=loss)
             vehicle.start()

@@ -19,7 +19,6 @@ from mmrs_core.testing.programs import (
     robot_program,
     take_off,
 )
-from mmrs_mavlink.vehicles.modes import LINK_LOST
 
 pytestmark = pytest.mark.real_time("controllers")
 
@@ -72,11 +71,3 @@ def test_the_vehicle_knows_the_response_of_the_wait_that_it_is_in(controllers, h
         said = process.stderr.read()
     assert process.returncode == 0, said
     assert seen == [0.0, 3.0, 5.0, 3.0]
-
-
-@pytest.mark.parametrize("kind", ["copter", "sub", "rover"])
-def test_a_target_knows_what_each_kind_of_vehicle_can_do_by_itself(kind):
-    from mmrs_mavlink.profiles import PROFILES
-
-    vehicle = next(each for each in PROFILES.values() if each.vehicle == kind)
-    assert set(LINK_LOST[kind]) == vehicle.alone

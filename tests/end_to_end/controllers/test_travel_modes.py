@@ -10,6 +10,7 @@ from ports import free_port
 from mmrs_core.testing.programs import LAND, go_to, program, robot_program, take_off
 from mmrs_mavlink.links.link import Link
 from mmrs_mavlink.links.ports import open_port
+from mmrs_mavlink.profiles import profile_for
 from mmrs_mavlink.program import Travel
 from mmrs_mavlink.sitl import Settings, SimulatedVehicle
 from mmrs_mavlink.vehicles.travel import set_up
@@ -32,7 +33,8 @@ def told():
         link = Link(open_port(f"udpin:127.0.0.1:{port}"), Clock(10.0))
         try:
             assert link.wait(lambda: link.component, 30.0)
-            return vehicle.autopilot.parameters, list(set_up(link, kind, travel))
+            link.expect(profile_for(kind))
+            return vehicle.autopilot.parameters, list(set_up(link, travel))
         finally:
             link.close()
             vehicle.stop()

@@ -175,11 +175,17 @@ def members_of(settings: CliSettings, path: Path) -> list[Member]:
         crew = [(each.name, each.type, each.home, each.payload) for each in scene.robots]
     if unknown := [why for name, type, *_ in crew if (why := uncarried(name, type, kinds, extensions))]:
         raise UnsupportedError(f"{path}: no simulated vehicle for all of its robots", unknown)
+    if unsimulated := [
+        f"robot '{each[0]}': no vehicle is simulated for profile '{profile.name}'"
+        for each, profile in zip(crew, profiles, strict=True)
+        if profile is not None and not profile.rehearsed_as
+    ]:
+        raise UnsupportedError(f"{path}: no simulated vehicle for all of its robots", unsimulated)
     if homeless := [name for name, _, home, _ in crew if home is None]:
         raise UnsupportedError(f"{path}: no home for {', '.join(homeless)}")
     homes = [home[:2] for _, _, home, _ in crew if home is not None]
     return [
-        Member(name, profile.driven_as, place, *_battery(payload, type), (north, east))
+        Member(name, profile.rehearsed_as, place, *_battery(payload, type), (north, east))
         for (name, type, _, payload), profile, place, (east, north) in zip(
             crew, profiles, degrees_of(homes, frame), homes, strict=True
         )

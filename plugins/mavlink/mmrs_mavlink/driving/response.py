@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from mmrs_runtime.faults import BATTERY_LOW, FAILURES, LINK_LOST, POSITION_LOST, TAKEN_OVER, FaultError
-from mmrs_runtime.policies import HOLD, LAND, NOTHING
+from mmrs_runtime.faults import BATTERY_LOW, FAILURES, LINK_LOST, TAKEN_OVER, FaultError
+from mmrs_runtime.policies import HOLD, NOTHING
 
 from ..program import Robot
 from ..steps.obeying import obeying, undone
 from ..steps.responding import HINDRANCES, comes_down_alone, respond_or_less
-from ..steps.responses import NEEDS_POSITION
+from ..steps.responses import instead_of
 from ..steps.watch import Decide, Watch
 from ..vehicles.vehicle import Vehicle
 from .moves import Moves
@@ -67,9 +67,9 @@ class Response:
             return None
         if name == NOTHING or event == TAKEN_OVER:
             return self._let_go()
-        if event == POSITION_LOST and self._robot.vehicle == "copter" and name in NEEDS_POSITION:
-            decide(POSITION_LOST, f"{name} needs a position", LAND)
-            self._instead, name = f"without a position, it does {LAND}", LAND
+        if instead := instead_of(name, event, self._robot):
+            decide(event, f"{name} needs a position", instead)
+            self._instead, name = f"without a position, it does {instead}", instead
         self._shown = obeying(name, self._robot, self._vehicle, self._moves.track)
         return Job(lambda: self._carry_out(name, event))
 

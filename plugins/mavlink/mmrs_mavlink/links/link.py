@@ -14,6 +14,7 @@ from mmrs_runtime.clock import Clock
 from mmrs_runtime.faults import LINK_LOST, FaultError
 from mmrs_runtime.ports import Address, Port
 
+from ..profiles import ARDUCOPTER, VehicleProfile, on_autopilot
 from .identity import LATE_MILLISECONDS, Identity
 from .messages import Messages
 from .radio import GLANCE_SECONDS, Radio, is_autopilot
@@ -90,11 +91,27 @@ class Link:
         self._given_up = -inf
         self._heard: float | None = None
         self._ended = ""
+        self._expected: VehicleProfile = ARDUCOPTER
+        self._found: tuple[int, VehicleProfile] | None = None
         radio.join(self)
 
     def close(self) -> None:
         """Stop listening."""
         self._radio.leave(self)
+
+    def expect(self, profile: VehicleProfile) -> None:
+        """Expect a vehicle of the class of a profile, with whatever autopilot its heartbeats report."""
+        self._expected, self._found = profile, None
+
+    @property
+    def profile(self) -> VehicleProfile:
+        """Return the profile of the vehicle: that of its class with the autopilot that it reports."""
+        beat, found = self.latest("HEARTBEAT"), self._found
+        if beat is None:
+            return self._expected
+        if found is None or found[0] != beat.autopilot:
+            found = self._found = (beat.autopilot, on_autopilot(self._expected, beat.autopilot))
+        return found[1]
 
     @property
     def listening(self) -> bool:

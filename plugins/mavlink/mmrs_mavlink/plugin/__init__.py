@@ -76,7 +76,7 @@ def mmrs_device_actions() -> Iterable[DeviceWiring]:
 
 @hookimpl
 def mmrs_vehicle_profiles() -> Iterable[VehicleProfile]:
-    """Contribute ArduCopter, ArduSub, Rover, and PX4's multicopter."""
+    """Contribute ArduCopter, ArduSub and Rover, and the same with PX4."""
     from mmrs_mavlink.profiles import PROFILES
 
     return tuple(PROFILES.values())

@@ -28,8 +28,7 @@ from mmrs_mavlink.plugin.fencing import Fence, fence_faults, fences_of
 from mmrs_mavlink.plugin.headings import NO_TURNING, gimbal_of, on_gimbal, turns_to
 from mmrs_mavlink.plugin.places import templates_of
 from mmrs_mavlink.plugin.runs import Run, runs_of
-from mmrs_mavlink.plugin.vehicles import autopilot_of
-from mmrs_mavlink.profiles import PX4
+from mmrs_mavlink.profiles import ARDUPILOT, PROFILES
 from mmrs_mavlink.wiring import Sampled, Wired
 
 
@@ -73,15 +72,20 @@ class MavlinkPython(PythonDriver[VehicleContext]):
 
     def undriven(self, robot: RobotProgram, input: TargetInput) -> str:
         """Return why no vehicle carries a robot."""
-        return vehicleless(robot, input)
+        if why := vehicleless(robot, input):
+            return why
+        profile = context_of(robot, input).profile
+        if profile.name in PROFILES or profile.source:
+            return ""
+        return f"robot '{robot.id}': profile '{profile.name}' says no module that programs import it from"
 
     def context(self, robot: RobotProgram, input: TargetInput) -> VehicleContext:
         """Return what there is to know of a robot."""
         return context_of(robot, input)
 
     def vehicle(self, context: VehicleContext) -> str:
-        """Return ``copter``, ``sub`` or ``rover``."""
-        return context.profile.driven_as
+        """Return the class of vehicle."""
+        return context.profile.vehicle
 
     def device(self, action: Action, context: VehicleContext) -> Call | str:
         """Return a command, or a value that is measured."""
@@ -142,6 +146,8 @@ class MavlinkPython(PythonDriver[VehicleContext]):
         kept, homes = _protection(robot, input), neighbours_of(robot, input)
         if not context.frame.is_local:
             context.degrees.find([*kept.vertices, *(home[:2] for _, home in homes)])
+        if context.profile.source:
+            yield "driven_by", context.profile.source
         yield "neighbours", tuple((name, place_of(home, context)) for name, home in homes)
         yield from _endurance(context)
         margins = travel_margins_of(robot, input.program.position_error)
@@ -212,11 +218,13 @@ def _rehearsal(driver: MavlinkPython, input: TargetInput) -> Iterator[str]:
     frame = input.program.frame
     driven = [robot for robot in input.program.robots if not driver.undriven(robot, input)]
     for number, robot in enumerate(driven):
-        context = context_of(robot, input)
-        port, kind = FIRST_PORT + PORT_STEP * number, context.profile.driven_as
-        given = f"--port {port} --system {number + 1} --kind {kind}"
-        if autopilot_of(context.type) == PX4:
-            given += f" --firmware {PX4}"
+        profile = context_of(robot, input).profile
+        if not profile.rehearsed_as:
+            continue
+        port = FIRST_PORT + PORT_STEP * number
+        given = f"--port {port} --system {number + 1} --kind {profile.rehearsed_as}"
+        if profile.autopilot.name != ARDUPILOT.name:
+            given += f" --firmware {profile.autopilot.name}"
         if not frame.is_local:
             ((latitude, longitude),) = degrees_of([require_home(robot)[:2]], frame)
             given += f" --home={latitude:.7f},{longitude:.7f}"

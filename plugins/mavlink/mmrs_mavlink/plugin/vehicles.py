@@ -8,14 +8,7 @@ from mmrs_core.behaviour.program import RobotProgram
 from mmrs_core.contributions.hooks import Extensions
 from mmrs_core.contributions.rules import MoveKind, RobotKind, robot_kind_of
 from mmrs_core.scene import Name, RobotType
-from mmrs_mavlink.profiles import (
-    ARDUCOPTER,
-    ARDUPILOT,
-    ARDUROVER,
-    AUTOPILOTS,
-    PROFILES,
-    VehicleProfile,
-)
+from mmrs_mavlink.profiles import ARDUCOPTER, ARDUROVER, PROFILES, VehicleProfile
 
 AUTOPILOT = "mavlink.autopilot"
 """The property of a device that names the autopilot."""
@@ -47,20 +40,19 @@ def profile_of_type(
 ) -> VehicleProfile | None:
     """Return the profile that carries robots of a type, whatever they do; None: no profile does.
 
-    Where no profile has the autopilot that the type names, that of another autopilot is returned.
+    That is the one of the class of vehicle that the robot kind names, with the autopilot that the type names.
     """
-    kind = robot_kind_of(type, kinds)
-    if kind is None:
-        return ARDUROVER
-    fitting = [each for each in profiles_in(extensions) if kind.vehicle in each.words]
-    own = (each for each in fitting if each.autopilot == autopilot_of(type))
-    return next(own, fitting[0] if fitting else None)
+    kind, autopilot = robot_kind_of(type, kinds), autopilot_of(type, extensions)
+    vehicle = kind.vehicle if kind is not None else ARDUROVER.vehicle
+    fitting = (each for each in profiles_in(extensions) if vehicle in each.words)
+    return next((each for each in fitting if autopilot in ("", each.autopilot.name)), None)
 
 
 def profiles_in(extensions: Extensions) -> Iterator[VehicleProfile]:
-    """Yield all profiles, by name."""
-    known = {**PROFILES, **extensions.get("vehicle_profiles", {})}
-    yield from (known[name] for name in sorted(known))
+    """Yield all profiles: those of this plug-in first, then those of others by name."""
+    known = extensions.get("vehicle_profiles", {})
+    yield from PROFILES.values()
+    yield from (known[name] for name in sorted(known.keys() - PROFILES.keys()))
 
 
 def uncarried(
@@ -69,8 +61,13 @@ def uncarried(
     """Return why no profile carries a robot, with the name of its kind; empty where one does."""
     kind = robot_kind_of(type, kinds) if type is not None else None
     words = sorted({word for each in profiles_in(extensions) for word in each.words})
-    if kind is None or kind.vehicle in words:
+    if type is None or kind is None or profile_of_type(type, kinds, extensions) is not None:
         return ""
+    if kind.vehicle in words:
+        autopilot = autopilot_of(type, extensions)
+        return (
+            f"robot '{robot}': {AUTOPILOT} is '{autopilot}', with which no profile of {kind.vehicle} is known"
+        )
     named = f"names vehicle '{kind.vehicle}'" if kind.vehicle else "names no vehicle"
     known = ", ".join(words)
     return f"robot '{robot}': is of kind '{kind.name}', which {named}; known are {known} (RobotKind.vehicle)"
@@ -90,18 +87,22 @@ def autopilots_in(type: RobotType | None) -> tuple[str, ...]:
     )
 
 
-def autopilot_of(type: RobotType | None) -> str:
-    """Return which autopilot robots of a type have; ArduPilot where the type does not state one clearly."""
+def autopilot_of(type: RobotType | None, extensions: Extensions) -> str:
+    """Return which autopilot robots of a type have; empty where the type does not state one clearly."""
     found = autopilots_in(type)
-    return found[0] if len(found) == 1 and found[0] in AUTOPILOTS else ARDUPILOT
+    return found[0] if len(found) == 1 and found[0] in _autopilots(extensions) else ""
 
 
-def autopilot_fault(type: RobotType | None) -> str:
+def autopilot_fault(type: RobotType | None, extensions: Extensions) -> str:
     """Return what is wrong with what a type states of its autopilot; empty: nothing."""
-    found = autopilots_in(type)
+    found, known = autopilots_in(type), _autopilots(extensions)
     shown = ", ".join(map(repr, found))
     if len(found) > 1:
         return f"{AUTOPILOT} is {shown}: it is ambiguous"
-    if found and found[0] not in AUTOPILOTS:
-        return f"{AUTOPILOT} is {shown}; known are {' and '.join(AUTOPILOTS)}"
+    if found and found[0] not in known:
+        return f"{AUTOPILOT} is {shown}; known are {' and '.join(known)}"
     return ""
+
+
+def _autopilots(extensions: Extensions) -> tuple[str, ...]:
+    return tuple(dict.fromkeys(each.autopilot.name for each in profiles_in(extensions)))

@@ -85,7 +85,5 @@ def _clearing(link: Link, kind: int) -> Message:
 
 
 def _least(link: Link, kind: int) -> int:
-    """Return how many items an empty plan has: ArduPilot's mission begins with its home."""
-    beat = link.latest("HEARTBEAT")
-    ardupilot = beat is not None and beat.autopilot == mavlink.MAV_AUTOPILOT_ARDUPILOTMEGA
-    return int(kind == MISSION and ardupilot)
+    """Return how many items an empty plan has at most: a mission may begin with home."""
+    return int(kind == MISSION and link.profile.autopilot.missions.begins_with_home)

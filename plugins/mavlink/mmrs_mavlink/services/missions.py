@@ -49,7 +49,7 @@ def upload(link: Link, items: Sequence[Item], kind: int = MISSION) -> int:
 
 
 def verify(link: Link, items: Sequence[Item], kind: int = MISSION) -> None:
-    """Read back what was uploaded; the home item of an ArduPilot's mission is its own and not compared.
+    """Read back what was uploaded; home as item 0 of a mission is the vehicle's own and not compared.
 
     Heights of fences are not compared either: they have none, and ArduPilot gives them back as 0
     above sea level.
@@ -57,14 +57,13 @@ def verify(link: Link, items: Sequence[Item], kind: int = MISSION) -> None:
     Raises:
         RefusedError: the vehicle has kept something else.
     """
-    beat = link.latest("HEARTBEAT")
-    autopilot = beat.autopilot if beat is not None else mavlink.MAV_AUTOPILOT_GENERIC
-    own_home = kind == MISSION and autopilot != mavlink.MAV_AUTOPILOT_PX4
+    autopilot = link.profile.autopilot
+    own_home = kind == MISSION and autopilot.missions.begins_with_home
     kept = download(link, kind)
     if len(kept) != len(items) and (items or len(kept) > own_home):
         raise RefusedError(f"{NAMES[kind]}: the vehicle has {len(kept)} items instead of {len(items)}")
     for seq, (wanted, found) in enumerate(zip(items, kept, strict=False)):
-        if not (seq == 0 and own_home) and not alike(wanted, found, kind, autopilot):
+        if not (seq == 0 and own_home) and not alike(wanted, found, kind, autopilot.keeping):
             raise RefusedError(f"{NAMES[kind]}: item {seq} is {found} on the vehicle instead of {wanted}")
 
 

@@ -8,7 +8,6 @@ from itertools import count
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from ..links.autopilots import is_px4
 from ..links.link import Link, Message
 
 ROUNDS = 2
@@ -23,7 +22,6 @@ _marks = count()
 BY_NAME = -1
 """The number that stands for none, where a parameter is asked for by its name."""
 
-REAL = mavlink.MAV_PARAM_TYPE_REAL32
 WHOLE: Mapping[int, str] = {
     mavlink.MAV_PARAM_TYPE_UINT8: "<Bxxx",
     mavlink.MAV_PARAM_TYPE_INT8: "<bxxx",
@@ -32,7 +30,7 @@ WHOLE: Mapping[int, str] = {
     mavlink.MAV_PARAM_TYPE_UINT32: "<I",
     mavlink.MAV_PARAM_TYPE_INT32: "<i",
 }
-"""How PX4 puts whole numbers into the four bytes of a number of single precision."""
+"""How whole numbers are copied into the four bytes of a number of single precision."""
 
 
 def read(link: Link, names: Iterable[str]) -> dict[str, float]:
@@ -70,15 +68,16 @@ def _ask(link: Link, name: str, number: int = BY_NAME) -> None:
     link.send(mavlink.MAVLink_param_request_read_message(link.system, link.component, name.encode(), number))
 
 
-def write(link: Link, name: str, value: float, kind: int = REAL) -> bool:
+def write(link: Link, name: str, value: float) -> bool:
     """Set a parameter; return whether the vehicle confirms the value.
 
     Args:
         link: to the vehicle.
         name: at most 16 letters.
         value: as people write it.
-        kind: its MAV_PARAM_TYPE, which PX4 insists on.
     """
+    whole = name in link.profile.autopilot.integers
+    kind = mavlink.MAV_PARAM_TYPE_INT32 if whole else mavlink.MAV_PARAM_TYPE_REAL32
     with link.inbox("PARAM_VALUE") as inbox:
         for _ in link.attempts():
             link.send(
@@ -97,7 +96,7 @@ def write(link: Link, name: str, value: float, kind: int = REAL) -> bool:
 def value_of(link: Link, message: Message) -> float:
     """Return the value in a PARAM_VALUE, as people write it."""
     form = WHOLE.get(message.param_type)
-    if form is None or not _bytewise(link):
+    if form is None or not link.profile.autopilot.copies_bytes:
         return float(message.param_value)
     (value,) = struct.unpack(form, struct.pack("<f", message.param_value))
     return float(value)
@@ -110,12 +109,7 @@ def same(a: float, b: float) -> bool:
 
 def _coded(link: Link, value: float, kind: int) -> float:
     form = WHOLE.get(kind)
-    if form is None or not _bytewise(link):
+    if form is None or not link.profile.autopilot.copies_bytes:
         return value
     (coded,) = struct.unpack("<f", struct.pack(form, round(value)))
     return float(coded)
-
-
-def _bytewise(link: Link) -> bool:
-    """Return whether the vehicle copies the bytes of whole numbers, as PX4 does, and not their values."""
-    return is_px4(link)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from math import ceil
 
 from mmrs_runtime.controllers.geodesy import at_height
@@ -87,10 +87,6 @@ def fence_of(robot: Robot) -> tuple[Item, ...]:
     )
 
 
-AT_THE_SURFACE = -0.01
-"""Metres: the least that ArduSub tells from no height at all, as it counts in centimetres."""
-
-
 def places_in(robot: Robot) -> tuple[Place, ...]:
     """Return all places that a robot's program leads to, above home as far as it takes off to."""
     movements = [step.movement for step in robot.steps]
@@ -114,13 +110,8 @@ def _items_of(robot: Robot, run: Run) -> Iterator[tuple[str, Item]]:
             speed = movement.speed
             yield move, Item(CHANGE_SPEED, (1.0, speed, -1.0, 0.0), frame=NO_FRAME)
         # Vehicles keep whole seconds and cut off the rest: less than one would be no hold at all.
-        place = _in_the_water(movement.at) if robot.vehicle == "sub" else movement.at
+        place = at_height(movement.at, robot.profile.item_height(movement.at.height))
         yield move, _positional(WAYPOINT, place, float(ceil(hold)))
-
-
-def _in_the_water(place: Geographic) -> Geographic:
-    """Return a place that ArduSub goes to in a mission: of 0 metres it makes the depth that it is at."""
-    return replace(place, height=min(place.height, AT_THE_SURFACE))
 
 
 def _positional(command: int, place: Place, first: float = 0.0) -> Item:

@@ -9,8 +9,6 @@ from typing import TYPE_CHECKING
 from mmrs_runtime.clock import Clock
 from mmrs_runtime.faults import TAKEN_OVER, VEHICLE_RESTARTED, FaultError
 
-from ..program import Robot
-from ..vehicles import modes
 from ..vehicles.failsafe_events import STARTED_ANEW, Signs
 
 if TYPE_CHECKING:
@@ -38,7 +36,6 @@ class Departures:
 
     def __init__(
         self,
-        robot: Robot,
         link: Link,
         vehicle: MavlinkVehicle,
         signs: Signs,
@@ -47,7 +44,7 @@ class Departures:
         """Look at a vehicle; `answers` returns whether the robot is to answer an event that happens now."""
         self.looking = self.taken = False
         self.taken_back = -inf
-        self._kind, self._answers = robot.vehicle, answers
+        self._answers = answers
         self._link, self._vehicle, self._signs = link, vehicle, signs
         self._moving = True
         vehicle.explain(self._explain)
@@ -122,11 +119,11 @@ class Departures:
 
     def _await_cause(self, mode: int) -> Cause | None:
         signs, link = self._signs, self._link
-        if not self._vehicle.telemetry.armed() or mode == modes.FIRST_MODE:
+        if not self._vehicle.telemetry.armed() or mode == link.profile.starts_in:
             # One that has started anew has lost its position, too: that is no cause.
             anew = link.wait(lambda: signs.restarted, self._clock.patience(RESTART_SECONDS))
             return (VEHICLE_RESTARTED, STARTED_ANEW) if anew else None
-        by_itself = mode in modes.of_failsafes(link, self._kind) | self._vehicle.modes_alone
+        by_itself = mode in link.profile.failsafe_modes | self._vehicle.modes_alone
         seconds = self._clock.patience(CAUSE_SECONDS) if by_itself else 0.0
         return link.wait(lambda: self._cause(mode), seconds)
 

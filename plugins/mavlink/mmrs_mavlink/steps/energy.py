@@ -138,7 +138,7 @@ def seconds_back(robot: Robot, state: State, response: str, track: Track) -> flo
         here = place
     if seconds > 0.0:
         seconds += TURNING_SECONDS
-    if robot.vehicle != "copter":
+    if not robot.profile.flies:
         return seconds
     return seconds + max(0.0, here.height) / (robot.descent or USUAL_DESCENT)
 
@@ -151,7 +151,7 @@ def _seconds(robot: Robot, state: State, a: Place, b: Place) -> float:
         return 0.0
     if pace < SLOWEST:
         return inf
-    if robot.vehicle == "copter":
+    if robot.profile.flies:
         rise = abs(offset(a, b)[2]) / way
         pace = min(pace, (robot.descent or USUAL_DESCENT) / rise) if rise else pace
     if way < pace**2 / ACCELERATION:

@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING
 from mmrs_runtime.faults import GROUND_LOST
 from mmrs_runtime.policies import CONTINUE, seconds_of
 
-from ..links.autopilots import is_px4
 from ..links.ourselves import GROUND_SYSTEM
 from ..program import Policy, Robot
 from .responses import policy_for
@@ -24,7 +23,7 @@ SAME_SYSTEM = (
     " falls silent, which has the same system id: give the station another one"
 )
 ANY_STATION = (
-    "as long as its vehicle, a PX4, receives any ground station, it does not notice when this program falls"
+    "as long as its vehicle, a {}, receives any ground station, it does not notice when this program falls"
     " silent"
 )
 
@@ -45,7 +44,10 @@ class Ground:
             return []
         added = set(self._met) - set(before)
         masked = [SAME_SYSTEM] if GROUND_SYSTEM in added else []
-        return [f"hears {stations}", *([ANY_STATION] if is_px4(self._link) and not before else masked)]
+        autopilot = self._link.profile.autopilot
+        if autopilot.counts_any_station and not before:
+            masked = [ANY_STATION.format(autopilot.title)]
+        return [f"hears {stations}", *masked]
 
     def silence(self, policy: Policy) -> str:
         """Return why all stations count as lost, by the seconds of the policy; empty if they do not."""

@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING
 from mmrs_runtime.faults import MOTORS_OFF, VEHICLE_RESTARTED, FaultError
 from mmrs_runtime.policies import HOLD
 
-from ..vehicles import modes
-from .responses import DOWN
+from ..profiles import VehicleProfile, modes
 
 if TYPE_CHECKING:
     from ..vehicles.mavlink_vehicle import MavlinkVehicle
@@ -23,9 +22,9 @@ COMES_DOWN_IN = frozenset({modes.LAND, modes.SURFACE, "return", "smart return"})
 class Motors:
     """Keeps whether a vehicle is in flight, or below the surface."""
 
-    def __init__(self, vehicle: MavlinkVehicle, kind: str) -> None:
-        """Look at a ``copter``, ``sub`` or ``rover``."""
-        self._vehicle, self._kind = vehicle, kind
+    def __init__(self, vehicle: MavlinkVehicle, profile: VehicleProfile) -> None:
+        """Look at a vehicle of a class."""
+        self._vehicle, self._profile = vehicle, profile
         self._flown = False
 
     def renew(self) -> None:
@@ -45,12 +44,12 @@ class Motors:
             FaultError: it has disarmed elsewhere.
         """
         tells, state = self._vehicle.telemetry, self._vehicle.state()
-        below = self._kind == "sub" and state.place.height < -TOUCHING
-        if self._kind == "rover" or not moving or state.mode in COMES_DOWN_IN:
+        below = self._profile.dives and state.place.height < -TOUCHING
+        if self._profile.drives or not moving or state.mode in COMES_DOWN_IN:
             low = not below and (tells.grounded() or state.place.height < TOUCHING)
             self._flown = self._flown and moving and not low
         elif tells.armed():
-            self._flown = below or (self._kind == "copter" and (self._flown or tells.airborne()))
+            self._flown = below or (self._profile.flies and (self._flown or tells.airborne()))
         elif self._flown:
             raise FaultError(
                 MOTORS_OFF, "it has disarmed in motion: it has crashed, or was disarmed by someone"
@@ -66,6 +65,6 @@ class Motors:
             FaultError: it was in motion: it has lost its state, and may not know its position.
         """
         armed = self._vehicle.telemetry.armed()
-        if armed or self._flown or self._kind != "copter":
+        if armed or self._flown or not self._profile.flies:
             why = f"{said} in motion, {'armed' if armed else 'disarmed'}: its program cannot be continued"
-            raise FaultError(VEHICLE_RESTARTED, why, DOWN[self._kind] if armed else HOLD)
+            raise FaultError(VEHICLE_RESTARTED, why, self._profile.down if armed else HOLD)

@@ -40,7 +40,7 @@ def undone(response: str, robot: Robot, vehicle: Vehicle, tolerance: float) -> s
     away = aside(robot.home, state.place)
     if response == RETURN and not state.armed and away > tolerance:
         return f"it stands {away:.0f} m from its home"
-    if response == HOLD and robot.vehicle == "sub" and not state.armed and state.place.height < -TOUCHING:
+    if response == HOLD and robot.profile.dives and not state.armed and state.place.height < -TOUCHING:
         return "it is disarmed, below the surface"
     return ""
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import partial
 
@@ -10,22 +10,15 @@ from mmrs_runtime.controllers.return_paths import Track, steps_back
 from mmrs_runtime.faults import LINK_LOST, NO_PROGRESS, REFUSED, FaultError
 from mmrs_runtime.policies import COMES_DOWN, ESCAPE, HOLD, LAND, NOTHING, RETURN
 
+from ..profiles import modes
 from ..program import Place, Policy, Robot
-from ..vehicles import modes
 from ..vehicles.vehicle import Vehicle
-from .responses import DOWN, alone, policy_for
+from .responses import alone, policy_for
 
 SURFACE = "SURFACE"
 STOP_THRUST = "STOP_THRUST"
 OFF = "off"
 """The mode for disarming, whatever happens then."""
-
-RESTS: Mapping[str, Mapping[str, str]] = {
-    "copter": {LAND: modes.LAND, SURFACE: modes.HOLD},
-    "sub": {LAND: modes.SURFACE, SURFACE: modes.SURFACE},
-    "rover": {LAND: modes.HOLD, SURFACE: modes.HOLD},
-}
-"""The mode in which each kind of vehicle comes down, or up: a rover stops, and a copter cannot surface."""
 
 HINDRANCES = frozenset({NO_PROGRESS, REFUSED})
 """Faults of a vehicle that does not carry out a command, while all else is well."""
@@ -58,9 +51,9 @@ def course_of(response: str, robot: Robot, vehicle: Vehicle, track: Track) -> Co
         vehicle: that carries it out.
         track: the places that the robot has passed, by which it goes back.
     """
-    down = RESTS[robot.vehicle]
+    down = robot.profile.rests
     if response in (RETURN, ESCAPE):
-        flies, state = robot.vehicle == "copter", vehicle.state()
+        flies, state = robot.profile.flies, vehicle.state()
         if (flies and not state.armed) or not (track or flies):
             return Course((), modes.HOLD, True)
         return Course(tuple(steps_back(robot, response, track, state.place)), down[LAND], False)
@@ -129,7 +122,7 @@ def respond_or_less(
         try:
             return respond(response, robot, vehicle, track, repeat)
         except FaultError as fault:
-            less = plainer(response, robot.vehicle, low=low) if fault.event in HINDRANCES else ""
+            less = plainer(response, robot.profile.down, low=low) if fault.event in HINDRANCES else ""
             if not less or not vehicle.state().armed:
                 raise
             tell(response, fault, less)
@@ -148,17 +141,17 @@ def comes_down_alone(robot: Robot, vehicle: Vehicle, policies: Sequence[Policy])
     return policy.response in COMES_DOWN or not vehicle.state().armed
 
 
-def plainer(response: str, kind: str, *, low: bool) -> str:
+def plainer(response: str, down: str, *, low: bool) -> str:
     """Return what is done where a response cannot be carried out; empty: there is nothing plainer.
 
     Args:
         response: as in policies.
-        kind: of the vehicle.
+        down: what is left to its class of vehicle.
         low: whether its battery is.
     """
     if response in (LAND, SURFACE):
         return ""
-    left = DOWN[kind] if low or response == HOLD else HOLD
+    left = down if low or response == HOLD else HOLD
     return "" if left == response else left
 
 

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 
 from mmrs_runtime import policies
-from mmrs_runtime.faults import OBJECT_NOT_FOUND, POSITION_LOST, TAKEN_OVER
-from mmrs_runtime.policies import ESCAPE, HOLD, LAND, NOTHING, RETURN, SURFACE, UNDECLARED
+from mmrs_runtime.faults import POSITION_LOST, TAKEN_OVER
+from mmrs_runtime.policies import ESCAPE, HOLD, NOTHING, RETURN, UNDECLARED
 
 from ..program import Policy, Robot
 
@@ -21,9 +21,6 @@ NO_ESCAPE = "has no clear path to an emergency area: instead of going there, it 
 NEEDS_POSITION = frozenset({RETURN, ESCAPE, HOLD})
 """Responses that need a known position."""
 
-DOWN: Mapping[str, str] = {"copter": LAND, "sub": SURFACE, "rover": HOLD}
-"""What is left, by kind of vehicle, where nothing else can be carried out: a rover halts."""
-
 
 def policy_for(event: str, robot: Robot, first: Sequence[Policy] = ()) -> Policy:
     """Return what a robot does about an event: by the wait's policies, its own, or the defaults."""
@@ -31,9 +28,7 @@ def policy_for(event: str, robot: Robot, first: Sequence[Policy] = ()) -> Policy
         return Policy(event, NOTHING)
     if declared := policies.policy_for(event, (*first, *robot.policies)):
         return declared
-    if event == OBJECT_NOT_FOUND and robot.vehicle == "sub":
-        return Policy(event, SURFACE)
-    return Policy(event, UNDECLARED.get(event, HOLD))
+    return Policy(event, robot.profile.usual_responses.get(event) or UNDECLARED.get(event, HOLD))
 
 
 def lacks_escape(robot: Robot) -> bool:
@@ -59,6 +54,10 @@ def response_to(event: str, robot: Robot, first: Sequence[Policy] = ()) -> str:
     Without a position it can neither return nor, if it flies, hold position: it lands.
     """
     response = policy_for(event, robot, first).response
-    if event == POSITION_LOST and robot.vehicle == "copter" and response in NEEDS_POSITION:
-        return LAND
-    return response
+    return instead_of(response, event, robot) or response
+
+
+def instead_of(response: str, event: str, robot: Robot) -> str:
+    """Return what a robot does about an event instead of a response that is impossible then; or nothing."""
+    impossible = event == POSITION_LOST and response in NEEDS_POSITION
+    return robot.profile.without_position if impossible else ""

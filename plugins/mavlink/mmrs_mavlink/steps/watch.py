@@ -26,7 +26,7 @@ from .departures import Departures
 from .energy import Reserve
 from .ground import WATCHED, Ground
 from .motors import Motors
-from .responses import DOWN, NO_ESCAPE, lacks_escape, policy_for
+from .responses import NO_ESCAPE, lacks_escape, policy_for
 
 if TYPE_CHECKING:
     from ..links.link import Link
@@ -89,16 +89,16 @@ class Watch:
 
     def begin(self, link: Link, vehicle: MavlinkVehicle) -> None:
         """Watch link and vehicle."""
-        signs = Signs(vehicle.telemetry, jumps=self._robot.vehicle != "sub")
-        departures = Departures(self._robot, link, vehicle, signs, self._answers)
-        motors = Motors(vehicle, self._robot.vehicle)
+        signs = Signs(vehicle.telemetry, jumps=self._robot.profile.watches_jumps)
+        departures = Departures(link, vehicle, signs, self._answers)
+        motors = Motors(vehicle, self._robot.profile)
         self._watched = _Watched(link, vehicle, signs, departures, Ground(link), motors)
         vehicle.insist(self._insists)
 
     def forewarn(self) -> None:
         """Report, before the robot moves, policies that do not apply, or not yet."""
         if policy_for(VEHICLE_RESTARTED, self._robot).response == CONTINUE:
-            self.say(GROUND_ONLY.format(DOWN[self._robot.vehicle]))
+            self.say(GROUND_ONLY.format(self._robot.profile.down))
         if lacks_escape(self._robot):
             self.say(NO_ESCAPE)
         if self._watched is not None and (missing := self._watched.ground.missing(self._robot)):

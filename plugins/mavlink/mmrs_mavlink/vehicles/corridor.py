@@ -6,20 +6,15 @@ known only from where it flies.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from itertools import pairwise
 
 from mmrs_runtime.controllers.geodesy import distance_to_leg
 from mmrs_runtime.faults import NO_PROGRESS, FaultError
 
-from ..links.autopilots import is_px4
 from ..links.link import Link
 from ..program import Place
 from ..services import parameters
-
-WIDTHS: Mapping[str, float] = {"copter": 8.0}
-OTHER_WIDTH = 20.0
-"""Metres that vehicles are beside their legs at most, in corners and gusts; others drive curves."""
 
 OUTSIDE = 2
 """How many positions in a row lie outside before it is believed."""
@@ -64,12 +59,12 @@ class Corridor:
         return False
 
 
-def width_for(link: Link, kind: str) -> float | None:
+def width_for(link: Link) -> float | None:
     """Return how far a vehicle may be beside its legs, metres; None: it goes its own ways round obstacles.
 
-    Whether it does is its owner's business (OA_TYPE of ArduPilot, COM_OBS_AVOID of PX4).
+    Whether it does is its owner's business.
     """
-    name = "COM_OBS_AVOID" if is_px4(link) else "OA_TYPE"
-    if parameters.read(link, [name]).get(name, 0.0):
+    name = link.profile.autopilot.avoids
+    if name and parameters.read(link, [name]).get(name, 0.0):
         return None
-    return WIDTHS.get(kind, OTHER_WIDTH)
+    return link.profile.corridor

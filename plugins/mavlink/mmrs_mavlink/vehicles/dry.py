@@ -10,8 +10,8 @@ from mmrs_runtime.clock import Clock
 from mmrs_runtime.controllers.geodesy import at_height, bearing, distance
 from mmrs_runtime.controllers.state import State
 
+from ..profiles.modes import GUIDED, HOLD, LAND, SURFACE
 from ..program import Geographic, Look, Place
-from .modes import GUIDED, HOLD, LAND, SURFACE
 
 if TYPE_CHECKING:
     from ..services.items import Item

@@ -14,18 +14,14 @@ from math import hypot
 from mmrs_runtime.controllers.geodesy import distance, offset
 from mmrs_runtime.faults import RefusedError
 
-from ..links.autopilots import is_px4
 from ..links.link import Link
+from ..profiles.autopilot import OwnFence
 from ..program import Geographic, Place
 from ..services import parameters
 from ..services.items import Item
 
-HEIGHT, CIRCLE, POLYGONS = 1, 2, 4
 MARGIN = 2.0
 """Metres that a program must stay inside a fence of the vehicle's own (FENCE_MARGIN)."""
-
-ARDUPILOT = ("FENCE_ENABLE", "FENCE_TYPE", "FENCE_RADIUS", "FENCE_ALT_MAX", "RALLY_LIMIT_KM")
-PX4 = ("GF_MAX_HOR_DIST", "GF_MAX_VER_DIST")
 
 
 def enclose(
@@ -43,33 +39,29 @@ def enclose(
     Raises:
         RefusedError: a fence is in the way, or the vehicle does not confirm which fences it obeys.
     """
-    if is_px4(link):
-        values = parameters.read(link, PX4)
-        _check_radius(home, places, values.get("GF_MAX_HOR_DIST", 0.0), "GF_MAX_HOR_DIST")
-        _check_height(places, values.get("GF_MAX_VER_DIST", 0.0), "GF_MAX_VER_DIST")
-        return
-    values = parameters.read(link, ARDUPILOT)
-    obeyed = round(values.get("FENCE_TYPE", 0.0))
-    if values.get("FENCE_ENABLE"):
-        if obeyed & CIRCLE:
-            _check_radius(home, places, values.get("FENCE_RADIUS", 0.0), "FENCE_RADIUS")
-        if obeyed & HEIGHT:
-            _check_height(places, values.get("FENCE_ALT_MAX", 0.0), "FENCE_ALT_MAX")
-    if polygons and "FENCE_TYPE" in values:
-        yield from _enable_polygons(
-            link, obeyed, obeyed | POLYGONS if values.get("FENCE_ENABLE") else POLYGONS
-        )
-    yield from _far_from_rally(places, rally, values.get("RALLY_LIMIT_KM", 0.0))
+    fence = link.profile.autopilot.fence
+    names = (fence.enabled_by, fence.types, *(limit.parameter for limit in fence.limits), fence.rally_limit)
+    values = parameters.read(link, [*filter(None, names)])
+    obeyed = round(values.get(fence.types, 0.0))
+    enabled = not fence.enabled_by or bool(values.get(fence.enabled_by))
+    for limit in fence.limits:
+        if enabled and (not fence.types or obeyed & limit.bit):
+            check = _check_radius if limit.of == "radius" else _check_height
+            check(home, places, values.get(limit.parameter, 0.0), limit.parameter)
+    if polygons and fence.types in values:
+        yield from _enable_polygons(link, fence, obeyed, enabled=enabled)
+    yield from _far_from_rally(places, rally, values.get(fence.rally_limit, 0.0), fence.rally_limit)
 
 
-def _enable_polygons(link: Link, obeyed: int, wanted: int) -> Iterator[str]:
+def _enable_polygons(link: Link, fence: OwnFence, obeyed: int, *, enabled: bool) -> Iterator[str]:
+    wanted = obeyed | fence.polygons if enabled else fence.polygons
     if obeyed == wanted:
         return
-    if not parameters.write(link, "FENCE_TYPE", wanted):
-        raise RefusedError(f"the fence: the vehicle does not confirm FENCE_TYPE = {wanted}")
-    alone = wanted == POLYGONS
+    if not parameters.write(link, fence.types, wanted):
+        raise RefusedError(f"the fence: the vehicle does not confirm {fence.types} = {wanted}")
+    alone = wanted == fence.polygons
     what = "is the areas of the program alone" if alone else "obeys the areas of the program, too"
-    yield f"FENCE_TYPE = {wanted}, which was {obeyed}: its fence {what}"
+    yield f"{fence.types} = {wanted}, which was {obeyed}: its fence {what}"
 
 
 def _check_radius(home: Place, places: Sequence[Place], radius: float, name: str) -> None:
@@ -79,14 +71,16 @@ def _check_radius(home: Place, places: Sequence[Place], radius: float, name: str
         raise RefusedError(f"{ends}, and its program goes {farthest:.0f} m")
 
 
-def _check_height(places: Sequence[Place], height: float, name: str) -> None:
+def _check_height(home: Place, places: Sequence[Place], height: float, name: str) -> None:
     highest = max((place.height for place in places), default=0.0)
     if 0.0 < height < highest + MARGIN:
         ends = f"the vehicle's own fence ends {height:g} m above home ({name})"
         raise RefusedError(f"{ends}, and its program goes to {highest:.0f} m")
 
 
-def _far_from_rally(places: Sequence[Place], rally: Sequence[Item], kilometres: float) -> Iterator[str]:
+def _far_from_rally(
+    places: Sequence[Place], rally: Sequence[Item], kilometres: float, name: str
+) -> Iterator[str]:
     points = [Geographic(item.x * 1e-7, item.y * 1e-7, item.z) for item in rally]
     if not points or kilometres <= 0.0:
         return
@@ -99,5 +93,5 @@ def _far_from_rally(places: Sequence[Place], rally: Sequence[Item], kilometres: 
         default=0.0,
     )
     if farthest > kilometres * 1000.0:
-        limit = f"RALLY_LIMIT_KM = {kilometres:g}: failsafe return"
+        limit = f"{name} = {kilometres:g}: failsafe return"
         yield f"{limit}: (beware: from {farthest:.0f} m away it goes home, and not to a rally point)"

@@ -15,18 +15,17 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from mmrs_runtime.controllers.geodesy import distance, offset
 
-from ..links.autopilots import is_px4
 from ..links.link import Link
+from ..profiles import modes
 from ..program import Place
 from ..services.commands import ask
-from . import modes
 from .telemetry import Telemetry
 
 THERE = 1.0
 """Metres from a place within which a vehicle is there, or a target is that place."""
 
 ADVANCE = 0.3
-"""Metres by which set-points must have come nearer to a place: a PX4's move there step by step."""
+"""Metres by which set-points must have come nearer to a place, where they are streamed."""
 
 BRISK, SLOWEST = 1.0, 0.3
 """Metres a second from which on a vehicle does not drift; and for those that are slow anyway."""
@@ -41,9 +40,9 @@ HEARTBEAT, GLOBAL, LOCAL = "HEARTBEAT", "POSITION_TARGET_GLOBAL_INT", "POSITION_
 class LinkEvidence:
     """Looks at what a vehicle has told since an instant; nothing here waits."""
 
-    def __init__(self, link: Link, telemetry: Telemetry, kind: str, *, geographic: bool) -> None:
+    def __init__(self, link: Link, telemetry: Telemetry, *, geographic: bool) -> None:
         """Discard all evidence so far."""
-        self._link, self._telemetry, self._kind = link, telemetry, kind
+        self._link, self._telemetry = link, telemetry
         self._target = GLOBAL if geographic else LOCAL
         self._begun = link.clock.now()
         self._asked: dict[str, float] = {}
@@ -54,7 +53,7 @@ class LinkEvidence:
 
         Where it has no mode in which to surface, it holds instead.
         """
-        wanted = mode if mode in modes.modes_of(self._link, self._kind) else modes.HOLD
+        wanted = mode if mode in self._link.profile.modes else modes.HOLD
         return self._beats() and self._word() == wanted
 
     def is_off(self) -> bool:
@@ -86,7 +85,7 @@ class LinkEvidence:
         away = hypot(*offset(aim, place)[:2])
         if self._first is None:
             self._first = away
-        steps = is_px4(self._link) and away <= self._first - ADVANCE
+        steps = self._link.profile.autopilot.streams and away <= self._first - ADVANCE
         return away <= THERE or steps
 
     def _hurries_to(self, place: Place, speed: float | None) -> bool:
@@ -97,7 +96,7 @@ class LinkEvidence:
         return pace >= needed and along >= STRAIGHT * pace * hypot(*way)
 
     def _word(self) -> str:
-        return modes.word_of(self._link, self._kind, self._telemetry.mode())
+        return self._link.profile.mode_name(self._telemetry.mode())
 
     def _beats(self) -> bool:
         """Return whether a heartbeat has come since; if not, ask for one."""

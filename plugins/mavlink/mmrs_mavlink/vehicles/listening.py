@@ -10,20 +10,13 @@ from collections.abc import Mapping
 
 from mmrs_runtime.faults import RefusedError
 
-from ..links.autopilots import is_px4
 from ..links.link import Link
 from ..links.ourselves import GROUND_SYSTEM
 from ..services import parameters
 
-OF_OLD = "SYSID_MYGCS"
-"""The system that counts, up to ArduPilot 4.6."""
-
-FIRST, LAST = "MAV_GCS_SYSID", "MAV_GCS_SYSID_HI"
-"""The systems that count, from 4.7 on: the last is 0 where the first is the only one."""
-
 NOT_TOLD = (
-    f"the vehicle does not tell whose heartbeats it counts ({OF_OLD}, {FIRST}): it may not notice when this"
-    " program falls silent"
+    "the vehicle does not tell whose heartbeats it counts ({}, {}): it may not notice when this program falls"
+    " silent"
 )
 
 
@@ -36,12 +29,12 @@ def check_listening(link: Link) -> str:
     Raises:
         RefusedError: it does not count this program's heartbeats.
     """
-    if is_px4(link):
+    stations = link.profile.autopilot.stations
+    if not any(stations):
         return ""
-    told = parameters.read(link, (OF_OLD, FIRST, LAST))
-    name, systems = _counted(told)
+    name, systems = _counted(stations, parameters.read(link, stations))
     if not name:
-        return NOT_TOLD
+        return NOT_TOLD.format(*stations)
     if GROUND_SYSTEM in systems:
         return ""
     raise RefusedError(
@@ -51,11 +44,12 @@ def check_listening(link: Link) -> str:
     )
 
 
-def _counted(told: Mapping[str, float]) -> tuple[str, range]:
+def _counted(stations: tuple[str, str, str], told: Mapping[str, float]) -> tuple[str, range]:
     """Return the parameter that defines which systems count, and these; an empty name: unknown."""
-    name = next((each for each in (FIRST, OF_OLD) if each in told), "")
+    single, from_, to = stations
+    name = next((each for each in (from_, single) if each in told), "")
     first = round(told.get(name, 0.0))
-    last = round(told.get(LAST, 0.0)) if name == FIRST else 0
+    last = round(told.get(to, 0.0)) if name == from_ else 0
     return name, range(first, max(first, last) + 1)
 
 

@@ -1,7 +1,7 @@
 """A vehicle at the end of a MAVLink link, in the words of a robot's program.
 
 ArduPilot is stepped in GUIDED and PX4 in OFFBOARD; both run missions in AUTO. What else differs
-between them is in ``profile.py`` and ``px4.py``.
+between them is in ``profiles/``.
 """
 
 from __future__ import annotations
@@ -19,11 +19,12 @@ from mmrs_runtime.faults import LINK_LOST, FaultError, RefusedError, UnansweredE
 
 from ..links.link import Link, Message
 from ..links.messages import ANYBODY
+from ..profiles import VehicleProfile, modes
 from ..program import Geographic, Look, Place, Travel
 from ..services.commands import command, name_of
 from ..services.telling import tell
 from ..services.uploads import Uploads
-from . import modes, preparation, safeguards
+from . import preparation
 from .enclosure import enclose
 from .evidence import LinkEvidence
 from .exemptions import end_exemption
@@ -50,7 +51,7 @@ class MavlinkVehicle:
     def __init__(
         self,
         link: Link,
-        kind: str,
+        profile: VehicleProfile,
         home: Place,
         *,
         acceptance: float | None = None,
@@ -62,7 +63,7 @@ class MavlinkVehicle:
 
         Args:
             link: open.
-            kind: ``copter``, ``sub`` or ``rover``.
+            profile: of its class of vehicle.
             home: of the robot, as in its program.
             acceptance: acceptance radius in metres; None: as `travel` defines.
             travel: travel mode.
@@ -72,14 +73,12 @@ class MavlinkVehicle:
         self.start = home
         self._tell = tell
         self._link = link
+        link.expect(profile)
         self._telemetry = Telemetry(link, home)
-        self._mode_control = ModeControl(link, self._telemetry, kind)
+        self._mode_control = ModeControl(link, self._telemetry)
         self._acceptance = travel.acceptance if acceptance is None else acceptance
-        self._steering = Steering(
-            link, self._telemetry, self._mode_control, self._acceptance, grounded=kind == "rover"
-        )
+        self._steering = Steering(link, self._telemetry, self._mode_control, self._acceptance)
         self._travel = travel
-        self._kind = kind
         self._home = home
         self._home_tolerance = home_tolerance
         self._mission = Mission(link, self._telemetry, self._mode_control)
@@ -99,21 +98,21 @@ class MavlinkVehicle:
         preparation.ask_for_messages(self._link, geographic=geographic)
         preparation.await_position(self._link, self._telemetry)
         tolerance = inf if self._telemetry.airborne() else self._home_tolerance
-        preparation.check_identity(self._link, self._telemetry, self._kind, tolerance, self._home, self.start)
+        preparation.check_identity(self._link, self._telemetry, tolerance, self._home, self.start)
         fenced = bool(uploads.fence)
         for line in enclose(self._link, self._home, uploads.places, uploads.rally, polygons=fenced):
             self._tell(line)
         for line in uploads.words:
             self._tell(line)
-        if geographic and (changed := self._mission.upload(uploads, self._kind)):
+        if geographic and (changed := self._mission.upload(uploads)):
             self._tell(changed)
-        for line in safeguards.report(self._link, self._kind):
+        for line in preparation.report_failsafes(self._link):
             self._tell(line)
-        for line in set_up(self._link, self._kind, self._travel, self._acceptance):
+        for line in set_up(self._link, self._travel, self._acceptance):
             self._tell(line)
         preparation.await_ready(self._link, self._telemetry)
         if fenced:
-            self._mode_control.profile.enable_fence()
+            self._mode_control.guidance.enable_fence()
 
     def check(self) -> None:
         """Check that the vehicle is not under external control.
@@ -130,16 +129,16 @@ class MavlinkVehicle:
             RefusedError: it cannot respond so, does not confirm that it will, or does not count this program.
         """
         if response != "CONTINUE" and not self._listens:
-            for said in (check_listening(self._link), end_exemption(self._link, self._kind)):
+            for said in (check_listening(self._link), end_exemption(self._link)):
                 if said:
                     self._tell(said)
             self._listens = True
-        told = modes.lost_link_answers(self._link, self._kind).get(response, {})
-        alone = modes.alone(self._link, self._kind, told)
+        failsafe = self._link.profile.lost_link
+        alone = failsafe.modes_by(failsafe.answers.get(response, {}))
         # Until it confirms, it may do the one or the other.
         self._alone |= alone
         self._mode_control.alone |= alone
-        otherwise = preparation.answer_lost_link(self._link, self._kind, response, after)
+        otherwise = preparation.answer_lost_link(self._link, response, after)
         self._alone = alone
         if otherwise:
             self._tell(otherwise)
@@ -150,7 +149,7 @@ class MavlinkVehicle:
         Raises:
             RefusedError: it cannot respond so, or does not confirm that it will.
         """
-        preparation.answer_breach(self._link, self._kind, response)
+        preparation.answer_breach(self._link, response)
 
     @property
     def telemetry(self) -> Telemetry:
@@ -184,7 +183,7 @@ class MavlinkVehicle:
 
         A PX4 takes for home where it leaves the ground, by when its height has drifted, or it has risen.
         """
-        holds = bool(self._mode_control.profile.climbing()) and self._mode_control.mode() == modes.HOLD
+        holds = bool(self._mode_control.guidance.climbing()) and self._mode_control.mode() == modes.HOLD
         return holds and self._telemetry.airborne() and self._telemetry.speed() <= STILL
 
     def land(self) -> None:
@@ -282,7 +281,7 @@ class MavlinkVehicle:
         """
         if not self._mode_control.motors_may_run():
             return False
-        stands = self._telemetry.grounded() and self._kind != "sub"
+        stands = self._telemetry.grounded() and not self._link.profile.dives
         if (stands or not self._telemetry.armed()) and self._mode_control.stops_motors():
             return False
         self._mode_control.enter(modes.HOLD)
@@ -293,7 +292,7 @@ class MavlinkVehicle:
 
     def carry_on(self) -> None:
         """Resume steering after a hold, at the vehicle's position; nothing happens on the ground."""
-        if self._telemetry.airborne() or (self._telemetry.armed() and self._kind != "copter"):
+        if self._telemetry.airborne() or (self._telemetry.armed() and not self._link.profile.flies):
             self._mode_control.arm()
             self._steering.stay()
 
@@ -318,7 +317,7 @@ class MavlinkVehicle:
         """
         if event == LINK_LOST:
             return self._alone
-        return modes.answers_to(self._link, self._kind, event, said)
+        return self._link.profile.failsafe_for(event, tuple(said))
 
     def accept_own_modes(self) -> None:
         """Accept its present state, or the mode of its own failsafe, until the next command."""
@@ -371,13 +370,13 @@ class MavlinkVehicle:
 
     def finish(self) -> None:
         """End the mission: a vehicle that does not fly is disarmed, one that does is not."""
-        if self._telemetry.armed() and (self._kind != "copter" or self._telemetry.grounded()):
+        if self._telemetry.armed() and (not self._link.profile.flies or self._telemetry.grounded()):
             self._mode_control.disarm()
 
     def evidence(self) -> LinkEvidence:
         """Return what shows, from now on, whether the vehicle obeys."""
         geographic = isinstance(self._home, Geographic)
-        return LinkEvidence(self._link, self._telemetry, self._kind, geographic=geographic)
+        return LinkEvidence(self._link, self._telemetry, geographic=geographic)
 
     def state(self) -> State:
         """Return what is known now."""

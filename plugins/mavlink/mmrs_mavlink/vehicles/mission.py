@@ -3,19 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
+from math import nan
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from mmrs_runtime.faults import NO_PROGRESS, FaultError, RefusedError
 
-from ..links.autopilots import is_px4
 from ..links.link import Link
+from ..profiles import modes
+from ..profiles.autopilot import Autopilot
 from ..program import Geographic, Place
 from ..services.commands import command
 from ..services.exchanges import mark_of
-from ..services.items import Item
+from ..services.items import LOITER, WAYPOINT, Item
 from ..services.uploads import Uploads
-from . import modes, preparation
+from . import preparation
 from .corridor import width_for
 from .feasibility import check_feasible
 from .following import Following
@@ -38,8 +41,8 @@ class Mission:
         self._id = 0
         self._width: float | None = None
 
-    def upload(self, uploads: Uploads, kind: str) -> str:
-        """Replace mission, fence and rally points of a vehicle of a kind, and read them back.
+    def upload(self, uploads: Uploads) -> str:
+        """Replace mission, fence and rally points of a vehicle, and read them back.
 
         Returns:
             What was changed so that each run begins with its own first item; empty where nothing was.
@@ -48,11 +51,11 @@ class Mission:
             RefusedError: something is not accepted, or read back differently, or runs would begin elsewhere.
         """
         self._items, begun = uploads.mission, self._link.clock.now()
-        items = self._mode_control.profile.mission(uploads.mission)
+        items = items_for(self._link.profile.autopilot, uploads.mission)
         self._id = preparation.replace_all(self._link, items, uploads.fence, uploads.rally)
-        if items and is_px4(self._link):
+        if items and self._link.profile.autopilot.missions.judged:
             check_feasible(self._link, self._telemetry, begun)
-        self._width = width_for(self._link, kind)
+        self._width = width_for(self._link)
         return keep_place(self._link) if self._items else ""
 
     def fly(self, first: int, last: int, reached: Callable[[int], None]) -> Place | None:
@@ -97,7 +100,7 @@ class Mission:
             RefusedError: the vehicle does not confirm that it will.
         """
         flown = first_flown(self._items, seq)
-        self._mode_control.profile.select(self._mode_control.profile.number(seq))
+        self._mode_control.guidance.select(seq - self._left_out)
         patience = self._link.clock.patience(MODE_SECONDS)
         if not self._link.wait(lambda: seq <= self._item() <= flown, patience, while_received=True):
             raise RefusedError(f"the vehicle does not go to item {seq} of its mission")
@@ -105,7 +108,12 @@ class Mission:
     def _item(self) -> int:
         """Return the item of the program's mission that the vehicle is at; less than 0: not known."""
         found = self._telemetry.item()
-        return found - self._mode_control.profile.number(0) if found >= 0 else -1
+        return found + self._left_out if found >= 0 else -1
+
+    @property
+    def _left_out(self) -> int:
+        """Return how many items before the first one the vehicle does not have: home."""
+        return 0 if self._link.profile.autopilot.missions.begins_with_home else 1
 
     def _places(self, last: int) -> dict[int, Place]:
         """Return where the items up to one are, by their number, as far as they are anywhere."""
@@ -135,3 +143,16 @@ class Mission:
         if found is None:
             raise FaultError(NO_PROGRESS, f"item {seq} of the mission was not reached")
         return found
+
+
+def items_for(autopilot: Autopilot, items: Sequence[Item]) -> Sequence[Item]:
+    """Return a mission that begins with home as an autopilot wants it.
+
+    Where 0 would count, as a heading north, headings are left to the vehicle.
+    """
+    wanted = items if autopilot.missions.begins_with_home else items[1:]
+    return [_unheaded(item) for item in wanted] if autopilot.missions.zero_counts else wanted
+
+
+def _unheaded(item: Item) -> Item:
+    return replace(item, params=(*item.params[:3], nan)) if item.command in (WAYPOINT, LOITER) else item

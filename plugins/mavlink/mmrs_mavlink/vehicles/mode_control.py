@@ -10,12 +10,10 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from mmrs_runtime.faults import NO_PROGRESS, TAKEN_OVER, FaultError, RefusedError, UnansweredError
 
-from ..links.autopilots import is_px4
 from ..links.link import Link
+from ..profiles import modes
 from ..services.commands import ask, command
-from . import modes
-from .autopilot_profile import ArduPilot, AutopilotProfile
-from .px4 import Px4
+from .guidance import Guidance, guidance_of
 from .readiness import REPEATED_SECONDS
 from .requests import Requests
 from .telemetry import Telemetry
@@ -48,16 +46,15 @@ class ModeControl:
         insists: whether a mode is commanded again that the vehicle has left during a mode change.
     """
 
-    def __init__(self, link: Link, telemetry: Telemetry, kind: str) -> None:
-        """Control a vehicle of a class, ``copter``, ``sub`` or ``rover``; change nothing yet."""
+    def __init__(self, link: Link, telemetry: Telemetry) -> None:
+        """Control a vehicle; change nothing yet."""
         self._link = link
         self._telemetry = telemetry
-        self._kind = kind
         self._accepted: frozenset[int] = frozenset()
         self._mode: str | None = None
         self._speed: float | None = None
         self._told = 0
-        self._profile: AutopilotProfile | None = None
+        self._guidance: Guidance | None = None
         self._requests = Requests(link)
         self._asked_again = -inf
         self._arming = False
@@ -66,16 +63,15 @@ class ModeControl:
         self.insists: Callable[[FaultError], bool] = lambda fault: False
 
     @property
-    def profile(self) -> AutopilotProfile:
+    def guidance(self) -> Guidance:
         """Return how the vehicle is steered, once its heartbeat has told what it is."""
-        if self._profile is None:
-            px4 = is_px4(self._link)
-            self._profile = Px4(self._link, self._telemetry) if px4 else ArduPilot(self._link)
-        return self._profile
+        if self._guidance is None:
+            self._guidance = guidance_of(self._link, self._telemetry)
+        return self._guidance
 
     @property
     def _modes(self) -> Mapping[str, modes.Mode]:
-        return modes.modes_of(self._link, self._kind)
+        return self._link.profile.modes
 
     def has(self, mode: str) -> bool:
         """Return whether the vehicle has such a mode."""
@@ -83,7 +79,7 @@ class ModeControl:
 
     def mode(self) -> str:
         """Return the vehicle's mode in the runtime's words, or its number where there is none."""
-        return modes.word_of(self._link, self._kind, self._telemetry.mode())
+        return self._link.profile.mode_name(self._telemetry.mode())
 
     def enter(self, mode: str) -> None:
         """Change the mode; the vehicle forgets the commanded speed.
@@ -112,7 +108,7 @@ class ModeControl:
                     self._requests.shows(wanted.number)
                 self._mode, self._speed, self._accepted = mode, None, frozenset({wanted.number})
                 if mode != modes.GUIDED:
-                    self.profile.end_guiding()
+                    self.guidance.end_guiding()
                 return
         raise RefusedError(f"the vehicle does not go into mode {mode}")
 
@@ -163,7 +159,7 @@ class ModeControl:
         """
         known = self._accepted | self.alone
         shown = [number for number in self._requests.shown() if number not in known]
-        pilots = (number for number in shown if modes.is_pilots(self._link, self._kind, number))
+        pilots = filter(self._link.profile.is_pilots, shown)
         return next(pilots, None) if self._accepted else None
 
     def _ask_again(self, number: int) -> None:
@@ -183,7 +179,7 @@ class ModeControl:
 
     def _begin(self, mode: str) -> None:
         if mode == modes.GUIDED:
-            self.profile.begin_guiding()
+            self.guidance.begin_guiding()
 
     def _obey_late(self, before: str) -> None:
         """Check that the vehicle is not under external control while it is commanded to leave a mode.
@@ -199,10 +195,10 @@ class ModeControl:
 
     def _overtaken(self, number: int, mode: str) -> FaultError:
         """Return that a pilot had chosen a mode before the vehicle received its command."""
-        self.profile.end_guiding()
+        self.guidance.end_guiding()
         return FaultError(
             TAKEN_OVER,
-            f"the vehicle left mode {mode} for {modes.word_of(self._link, self._kind, number)}: it is under"
+            f"the vehicle left mode {mode} for {self._link.profile.mode_name(number)}: it is under"
             f" external control; a command at that moment has put it into mode {self.mode()}",
         )
 
@@ -220,10 +216,10 @@ class ModeControl:
 
     def _left(self, number: int, mode: str) -> FaultError:
         """Return what it means that the vehicle has left a mode for that of a number; steer no more."""
-        self.profile.end_guiding()
+        self.guidance.end_guiding()
         cause = self._telemetry.failsafe()
-        said = [text.text for event, text in self._telemetry.announcements.recent() if event == cause]
-        if cause is not None and number in modes.answers_to(self._link, self._kind, cause, said):
+        said = tuple(text.text for event, text in self._telemetry.announcements.recent() if event == cause)
+        if cause is not None and number in self._link.profile.failsafe_for(cause, said):
             return FaultError(
                 cause, f"the vehicle left mode {mode} without a command, for mode {self.mode()}"
             )
@@ -274,7 +270,8 @@ class ModeControl:
         except RefusedError as error:
             self._arming = isinstance(error, UnansweredError)
             self._link.wait(lambda: None, WORDS_SECONDS)
-            said = self._telemetry.texts.refusals(REPEATED_SECONDS)
+            beginnings = self._link.profile.autopilot.refusals
+            said = self._telemetry.texts.refusals(beginnings, REPEATED_SECONDS)
             why = "; ".join(said or self._telemetry.lacks())
             raise RefusedError(f"{error}{': ' if why else ''}{why}") from error
 
@@ -287,10 +284,10 @@ class ModeControl:
             RefusedError: the vehicle does not arm or take off.
         """
         for attempt in count(1):
-            self._be_in(self.profile.climbs_in)
+            self._be_in(self.guidance.climbs_in)
             self.start_motors()
             try:
-                command(self._link, mavlink.MAV_CMD_NAV_TAKEOFF, *self.profile.take_off(height))
+                command(self._link, mavlink.MAV_CMD_NAV_TAKEOFF, *self.guidance.take_off(height))
                 self._follow_climb()
                 return
             except RefusedError:
@@ -337,7 +334,7 @@ class ModeControl:
         Raises:
             RefusedError: the vehicle takes no such speed.
         """
-        if speed is None or not self.profile.paces():
+        if speed is None or self._link.profile.autopilot.streams:
             return
         if speed != self._speed:
             self._speed, self._told = speed, 0
@@ -362,6 +359,6 @@ class ModeControl:
 
     def _follow_climb(self) -> None:
         """Accept the modes that a take-off passes through; none here is entered then."""
-        through = self.profile.climbing()
+        through = self.guidance.climbing()
         if through:
             self._mode, self._accepted = None, frozenset(through)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import suppress
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
@@ -10,12 +10,13 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 from mmrs_runtime.faults import RefusedError
 
 from ..links.link import Link
+from ..profiles import GENERIC
+from ..profiles.profile import Answers, Delay, Safeguard
 from ..program import Place
 from ..services import parameters
 from ..services.commands import ask, command
 from ..services.items import FENCE, MISSION, RALLY, Item
 from ..services.missions import upload, verify
-from . import modes
 from .footing import LANDED, aside, there
 from .telemetry import Telemetry
 
@@ -27,7 +28,7 @@ WORDS_SECONDS = 0.5
 """After which a vehicle that is asked for what fails has said it."""
 
 OFFBOARD_SECONDS = 5.0
-"""For how long a PX4 waits for set-points, where the policy does not say."""
+"""For how long a vehicle waits for set-points, where the policy does not say."""
 
 STREAMED = {
     "GLOBAL_POSITION_INT": 5.0,
@@ -40,11 +41,6 @@ STREAMED = {
 """Messages that the program lives by, and how often they are asked for, hertz."""
 
 STREAMED_LOCAL = {"LOCAL_POSITION_NED": 5.0}
-STREAMED_BY = {
-    mavlink.MAV_AUTOPILOT_ARDUPILOTMEGA: {"EKF_STATUS_REPORT": 1.0, "FENCE_STATUS": 1.0, "WIND": 1.0},
-    mavlink.MAV_AUTOPILOT_PX4: {"ESTIMATOR_STATUS": 1.0, "WIND_COV": 1.0},
-}
-"""Those that only one kind of autopilot knows, by MAV_AUTOPILOT."""
 
 
 def ask_for_messages(link: Link, *, geographic: bool) -> None:
@@ -54,9 +50,8 @@ def ask_for_messages(link: Link, *, geographic: bool) -> None:
     link makes it look lost.
     """
     position = "GLOBAL_POSITION_INT" if geographic else "LOCAL_POSITION_NED"
-    beat = link.latest("HEARTBEAT")
-    own = STREAMED_BY.get(beat.autopilot, {}) if beat is not None else {}
-    for name, rate in (STREAMED | own | ({} if geographic else STREAMED_LOCAL)).items():
+    own = link.profile.autopilot.streamed
+    for name, rate in (STREAMED | {**own} | ({} if geographic else STREAMED_LOCAL)).items():
         number = getattr(mavlink, f"MAVLINK_MSG_ID_{name}")
         with suppress(RefusedError):
             tries = None if name == position else 2
@@ -79,18 +74,9 @@ def replace_all(link: Link, mission: Sequence[Item], fence: Sequence[Item], rall
     return marks[0]
 
 
-VEHICLES = {
-    "copter": frozenset({2, 3, 4, 13, 14, 15, 29, 35}),
-    "rover": frozenset({10, 11}),
-    "sub": frozenset({12}),
-}
-"""Kinds of vehicles by MAV_TYPE."""
-
-
 def check_identity(
     link: Link,
     telemetry: Telemetry,
-    kind: str,
     tolerance: float,
     home: Place,
     start: Place,
@@ -102,7 +88,6 @@ def check_identity(
     Args:
         link: to the vehicle.
         telemetry: of the vehicle.
-        kind: ``copter``, ``sub`` or ``rover``.
         tolerance: metres that it may be from where it is to stand.
         home: of its program.
         start: where it is to stand.
@@ -111,11 +96,16 @@ def check_identity(
     Raises:
         RefusedError: it is not.
     """
-    beat = link.latest("HEARTBEAT")
-    if beat is not None and beat.type not in VEHICLES[kind] | {mavlink.MAV_TYPE_GENERIC}:
+    beat, profile = link.latest("HEARTBEAT"), link.profile
+    if beat is not None and beat.type not in (*profile.mav_types, mavlink.MAV_TYPE_GENERIC):
         entry = mavlink.enums["MAV_TYPE"].get(beat.type)
         shown = entry.name.removeprefix("MAV_TYPE_").lower().replace("_", " ") if entry else beat.type
-        raise RefusedError(f"the vehicle is a {shown}, and the program is for a {kind}")
+        raise RefusedError(f"the vehicle is a {shown}, and the program is for a {profile.vehicle}")
+    if beat is not None and profile.autopilot.number not in (beat.autopilot, GENERIC.number):
+        wanted = f"a {profile.vehicle} with {profile.autopilot.title}"
+        raise RefusedError(
+            f"the vehicle has autopilot {beat.autopilot} (MAV_AUTOPILOT); the program is for {wanted}"
+        )
     if link.doubt():
         raise RefusedError(link.doubt())
     away = aside(start, telemetry.here())
@@ -154,12 +144,11 @@ def await_ready(link: Link, telemetry: Telemetry) -> None:
         raise RefusedError(f"the vehicle does not become ready: {'; '.join(telemetry.lacks())}")
 
 
-def answer_lost_link(link: Link, kind: str, response: str, after: float | None = None) -> str:
+def answer_lost_link(link: Link, response: str, after: float | None = None) -> str:
     """Set the failsafe for a lost ground station.
 
     Args:
         link: to the vehicle.
-        kind: ``copter``, ``sub`` or ``rover``.
         response: of a policy.
         after: seconds of silence until then; None: unchanged.
 
@@ -169,46 +158,65 @@ def answer_lost_link(link: Link, kind: str, response: str, after: float | None =
     Raises:
         RefusedError: it cannot respond so, or does not confirm that it will.
     """
-    _answer(link, "a lost link", modes.lost_link_answers(link, kind), response, kind)
-    told = [_wait_for(link, modes.set_point_patience(link), after, OFFBOARD_SECONDS)]
+    failsafe = link.profile.lost_link
+    _answer(link, "a lost link", failsafe.answers, response)
+    told = [_wait_for(link, failsafe.set_point_delay, after, OFFBOARD_SECONDS)]
     if after is not None:
-        told.append(_wait_for(link, modes.patience(link, kind), after, after))
+        told.append(_wait_for(link, failsafe.delay, after, after))
     return "; ".join(dict.fromkeys(filter(None, told)))
 
 
-def _wait_for(link: Link, known: tuple[str, float, float] | None, wanted: float | None, usual: float) -> str:
+def _wait_for(link: Link, known: Delay | None, wanted: float | None, usual: float) -> str:
     """Set the delay of a failsafe; return what the vehicle does otherwise, empty if nothing.
 
     Args:
         link: to the vehicle.
-        known: a parameter for that, with its least and largest value; None: it has none.
+        known: its parameter; None: it has none.
         wanted: seconds; None: `usual`.
         usual: seconds.
     """
     if known is None:
         return ""
-    name, least, largest = known
-    seconds = min(max(usual if wanted is None else wanted, least), largest)
-    if not parameters.write(link, name, seconds, modes.PARAMETER_KINDS.get(name, parameters.REAL)):
+    name = known.parameter
+    seconds = min(max(usual if wanted is None else wanted, known.least), known.largest)
+    if not parameters.write(link, name, seconds):
         return f"the vehicle does not confirm {name} = {seconds:g}: it may respond sooner or later than that"
     if wanted is None or seconds == wanted:
         return ""
     return f"the vehicle responds to a lost link after {seconds:g} s, not {wanted:g} s"
 
 
-def answer_breach(link: Link, kind: str, response: str) -> None:
+def answer_breach(link: Link, response: str) -> None:
     """Set the failsafe for a broken fence.
 
     Raises:
         RefusedError: it cannot respond so, or does not confirm that it will.
     """
-    _answer(link, "a broken fence", modes.breach_answers(link, kind), response, kind)
+    _answer(link, "a broken fence", link.profile.breach, response)
 
 
-def _answer(link: Link, event: str, answers: modes.Answers, response: str, kind: str) -> None:
+def _answer(link: Link, event: str, answers: Answers, response: str) -> None:
     values = answers.get(response)
     if values is None:
-        raise RefusedError(f"response to {event}: a {kind} cannot do {response} as a failsafe")
+        raise RefusedError(
+            f"response to {event}: a {link.profile.vehicle} cannot do {response} as a failsafe"
+        )
     for name, value in values.items():
-        if not parameters.write(link, name, value, modes.PARAMETER_KINDS.get(name, parameters.REAL)):
+        if not parameters.write(link, name, value):
             raise RefusedError(f"response to {event}: the vehicle does not confirm {name} = {value}")
+
+
+def report_failsafes(link: Link, instead: Sequence[Safeguard] = ()) -> Iterator[str]:
+    """Yield a line for each failsafe parameter that the vehicle tells, and one if it tells none.
+
+    Args:
+        link: to the vehicle.
+        instead: told in place of those of the same name.
+    """
+    safeguards = {each.name: each for each in (*link.profile.safeguards, *instead)}
+    values = parameters.read(link, list(safeguards))
+    if not values:
+        yield "the vehicle reports none of its failsafe parameters: check its failsafes yourself"
+    for name, safeguard in safeguards.items():
+        if name in values:
+            yield safeguard.line(values[name])

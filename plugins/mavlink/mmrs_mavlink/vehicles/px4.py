@@ -13,8 +13,6 @@ the set-point on the wrong side of home wherever home is not where the estimator
 from __future__ import annotations
 
 import threading
-from collections.abc import Sequence
-from dataclasses import replace
 from math import nan, radians
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
@@ -23,10 +21,10 @@ from mmrs_runtime.controllers.geodesy import between, distance
 from mmrs_runtime.faults import RefusedError
 
 from ..links.link import Link
+from ..profiles import modes
+from ..profiles.px4 import HOLDS, TAKES_OFF
 from ..program import Place
-from ..services.items import Item
-from . import modes
-from .autopilot_profile import target
+from .guidance import target
 from .telemetry import Telemetry
 
 STREAM_SECONDS = 0.1
@@ -38,9 +36,6 @@ AHEAD_SECONDS = 1.5
 
 FRESH_SECONDS = 1.0
 """In which a position comes from a vehicle that tells five a second."""
-
-TAKING_OFF = (4, 2)
-HEADED = frozenset({mavlink.MAV_CMD_NAV_WAYPOINT, mavlink.MAV_CMD_NAV_LOITER_UNLIM})
 
 
 class Stream:
@@ -107,8 +102,8 @@ class Stream:
         return self._at
 
 
-class Px4:
-    """PX4: set-points as a stream, no home in missions, heights above sea level."""
+class Px4Guidance:
+    """PX4: set-points as a stream, heights above sea level."""
 
     climbs_in = modes.HOLD
 
@@ -149,11 +144,7 @@ class Px4:
 
     def climbing(self) -> tuple[int, ...]:
         """Return take-off, and loitering when it is high enough."""
-        return (modes.px4_number(*TAKING_OFF), modes.px4_number(*modes.PX4_MODES[modes.HOLD]))
-
-    def paces(self) -> bool:
-        """Return that it ignores commanded speeds: set-points move at the wanted speed."""
-        return False
+        return (TAKES_OFF, HOLDS)
 
     def level(self, height: float) -> tuple[int, float]:
         """Return the frame of heights above sea level, and the height there.
@@ -169,14 +160,6 @@ class Px4:
             raise RefusedError("the vehicle has not reported its home's height above sea level")
         return level + height
 
-    def mission(self, items: Sequence[Item]) -> Sequence[Item]:
-        """Return the items without home, with headings left to the vehicle: 0 would be north."""
-        return [_unheaded(item) for item in items[1:]]
-
-    def number(self, seq: int) -> int:
-        """Return the number without home."""
-        return seq - 1
-
     def select(self, seq: int) -> None:
         """Send MISSION_SET_CURRENT, which every PX4 knows; MISSION_CURRENT shows whether it came."""
         for _ in self._link.attempts():
@@ -188,7 +171,3 @@ class Px4:
 
     def enable_fence(self) -> None:
         """Return at once: a PX4 obeys its own fence (GF_ACTION)."""
-
-
-def _unheaded(item: Item) -> Item:
-    return replace(item, params=(*item.params[:3], nan)) if item.command in HEADED else item

@@ -6,9 +6,8 @@ from collections.abc import Iterator, Mapping
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from ..links.link import Link, Message
+from ..links.link import Link
 from ..links.messages import tells_place
-from . import modes
 from .texts import Texts
 
 PREARM = mavlink.MAV_SYS_STATUS_PREARM_CHECK
@@ -66,7 +65,7 @@ def lacks(link: Link, texts: Texts, position: str, *, geographic: bool) -> tuple
     if status is None:
         found.append("it has not reported its state (SYS_STATUS)")
     elif _checks_fail(link, status):
-        found.append(_why(status, texts))
+        found.append(_why(link, status, texts))
     return tuple(found)
 
 
@@ -114,32 +113,21 @@ def _fix_trouble(link: Link, geographic: bool) -> Iterator[str]:
 
 
 def _checks_fail(link: Link, status: object) -> bool:
-    """Return whether the vehicle's own checks fail; only ArduPilot and PX4 must report that they pass.
-
-    A PX4 reports whether it may be armed in its present mode (``SYS_STATUS.hpp``), since 1.14 without
-    announcing that it has such a check: that counts in the mode that it is to be armed in.
-    """
+    """Return whether the vehicle's own checks fail, as far as it must report that they pass."""
     health, present = (
         int(getattr(status, f"onboard_control_sensors_{word}")) for word in ("health", "present")
     )
     beat = link.latest("HEARTBEAT")
     if health & PREARM:
         return False
-    if beat is None or beat.autopilot == mavlink.MAV_AUTOPILOT_ARDUPILOTMEGA:
+    if beat is None:
         return True
-    if beat.autopilot == mavlink.MAV_AUTOPILOT_PX4 and _may_arm_here(beat):
-        return True
-    return bool(present & PREARM)
+    armed = bool(beat.base_mode & mavlink.MAV_MODE_FLAG_SAFETY_ARMED)
+    return link.profile.autopilot.must_report_checks(armed, beat.custom_mode) or bool(present & PREARM)
 
 
-def _may_arm_here(beat: Message) -> bool:
-    """Return whether a PX4 is in the mode that it is to be armed in, and is not yet."""
-    armed = beat.base_mode & mavlink.MAV_MODE_FLAG_SAFETY_ARMED
-    return not armed and bool(beat.custom_mode == modes.px4_number(*modes.PX4_MODES[modes.HOLD]))
-
-
-def _why(status: object, texts: Texts) -> str:
-    said = texts.refusals(REPEATED_SECONDS)
+def _why(link: Link, status: object, texts: Texts) -> str:
+    said = texts.refusals(link.profile.autopilot.refusals, REPEATED_SECONDS)
     if said:
         return f"its own checks fail: {'; '.join(said)}"
     enabled, health = (

@@ -10,9 +10,10 @@ from mmrs_runtime.faults import RefusedError
 from mmrs_runtime.records.entries import entry_in
 
 from ..links.link import Link
+from ..profiles import modes
 from ..program import Geographic, Place, Robot
 from ..services import parameters
-from ..vehicles import modes, preparation
+from ..vehicles import preparation
 from .footing import LANDED, aside
 from .mavlink_vehicle import MavlinkVehicle
 
@@ -56,9 +57,7 @@ def recognise(
     vehicle.start = starts[0]
     if not telemetry.armed():
         vehicle.start = min(starts, key=lambda start: aside(start, telemetry.here()))
-    preparation.check_identity(
-        link, telemetry, robot.vehicle, tolerance, robot.home, vehicle.start, resumed=under_way
-    )
+    preparation.check_identity(link, telemetry, tolerance, robot.home, vehicle.start, resumed=under_way)
     if tolerance < inf:
         refuse_neighbours(robot, vehicle.start, telemetry.here())
     if not telemetry.armed():
@@ -66,16 +65,17 @@ def recognise(
     if not under_way:
         raise RefusedError("the vehicle is armed already: it is under external control")
     mode = vehicle.state().mode
-    if mode not in OURS and telemetry.mode() not in _alone(link, robot.vehicle):
+    if mode not in OURS and telemetry.mode() not in _alone(link):
         raise RefusedError(
             f"the vehicle is armed, and it is in mode {mode}, by which it answers no lost link:"
             " a pilot may have it"
         )
 
 
-def _alone(link: Link, kind: str) -> frozenset[int]:
+def _alone(link: Link) -> frozenset[int]:
     """Return the modes in which a vehicle may be because its program was killed, as far as it says."""
-    return modes.alone(link, kind, parameters.read(link, modes.decides_alone(link, kind)))
+    failsafe = link.profile.lost_link
+    return failsafe.modes_by(parameters.read(link, failsafe.parameters))
 
 
 def refuse_neighbours(robot: Robot, start: Place, here: Place) -> None:

@@ -11,9 +11,7 @@ from dataclasses import dataclass
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from ..links.autopilots import is_px4
 from ..links.link import Link, Message
-from . import modes
 
 SHOWN_SECONDS = 5.0
 """Seconds in which a vehicle shows a mode after it has received the request, its next heartbeats being lost.
@@ -56,7 +54,10 @@ class Requests:
             return
         command = message.command if outgoing and message.get_type() == "COMMAND_LONG" else None
         if command == mavlink.MAV_CMD_DO_SET_MODE:
-            self._of[_number_in(self._link, message)] = Request(self._link.clock.now())
+            given = (message.param1, message.param2, message.param3)
+            for mode in self._link.profile.modes.values():
+                if given[: len(mode.params)] == mode.params:
+                    self._of[mode.number] = Request(self._link.clock.now())
 
     def shown(self) -> tuple[int, ...]:
         """Return the modes that heartbeats have shown since this was asked last."""
@@ -84,10 +85,3 @@ class Requests:
     def is_back(self) -> None:
         """Record that the vehicle is in a mode that it should be in."""
         self._late = None
-
-
-def _number_in(link: Link, asked: Message) -> int:
-    """Return the number of the mode that a command to the vehicle at a link asks for."""
-    if is_px4(link):
-        return modes.px4_number(int(asked.param2), int(asked.param3))
-    return int(asked.param2)

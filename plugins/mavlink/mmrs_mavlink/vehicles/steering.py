@@ -34,23 +34,20 @@ class Steering:
         telemetry: Telemetry,
         mode_control: ModeControl,
         acceptance: float,
-        *,
-        grounded: bool = False,
     ) -> None:
-        """Steer a vehicle by its autopilot profile.
+        """Steer a vehicle by its profile; of one that drives, heights say nothing.
 
         Args:
             link: to the vehicle.
             telemetry: of the vehicle.
             mode_control: of the vehicle.
             acceptance: metres from a place at which it counts as reached.
-            grounded: whether it is as high as the ground takes it, so that heights say nothing.
         """
         self._link = link
         self._telemetry = telemetry
         self._mode_control = mode_control
         self._acceptance = acceptance
-        self._away = aside if grounded else distance
+        self._away = aside if link.profile.drives else distance
         self._yaw: float | None = None
         self._speed: float | None = None
 
@@ -112,7 +109,7 @@ class Steering:
         if isinstance(look.at, Local):
             self._aim_gimbal(look, look.at)
         elif isinstance(look.at, Geographic):
-            frame, height = self._mode_control.profile.level(look.at.height)
+            frame, height = self._mode_control.guidance.level(look.at.height)
             at = Geographic(look.at.latitude, look.at.longitude, height)
             command_at(self._link, mavlink.MAV_CMD_DO_SET_ROI_LOCATION, at, frame, look.device)
 
@@ -147,7 +144,7 @@ class Steering:
         self._send_target(place, self._heading() if self._yaw is None else self._yaw)
 
     def _send_target(self, place: Place, yaw: float) -> None:
-        self._mode_control.profile.aim(place, radians(yaw), self._speed)
+        self._mode_control.guidance.aim(place, radians(yaw), self._speed)
 
     def _arrived(self, place: Place, begun: Place | None) -> bool:
         """Return whether the vehicle is there, and still; or, on a leg to be gone through, abreast of it."""

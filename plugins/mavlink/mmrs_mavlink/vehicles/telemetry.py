@@ -14,7 +14,7 @@ from mmrs_runtime.faults import FENCE_BREACHED, POSITION_LOST
 from ..links.link import Link, Message
 from ..links.messages import tells_place
 from ..program import Geographic, Local, Place
-from .announcements import WORDS, Announcements
+from .announcements import Announcements
 from .batteries import Batteries
 from .detections import Detections
 from .position_jumps import PositionJumps
@@ -59,7 +59,7 @@ class Telemetry:
         self._position = "GLOBAL_POSITION_INT" if self._geographic else "LOCAL_POSITION_NED"
         self.texts = Texts(link.clock)
         link.observe(self.texts)
-        self.announcements = Announcements(link.clock, self.texts)
+        self.announcements = Announcements(link, self.texts)
         link.observe(self.announcements)
         self._batteries = Batteries(lambda: link.component)
         link.observe(self._batteries)
@@ -145,7 +145,7 @@ class Telemetry:
         if self.breach():
             return FENCE_BREACHED
         said = {event for event, _ in self.announcements.recent()}
-        return next((event for event, _ in WORDS if event in said), None)
+        return next((event for event in self._link.profile.autopilot.announcements if event in said), None)
 
     def here(self) -> Place:
         """Return the last reported position; home before there is one."""

@@ -13,9 +13,6 @@ KEPT = 200
 CHUNK = 50
 """Letters of a piece; a shorter one is the last of its text."""
 
-REFUSALS = ("prearm:", "arm:", "preflight fail", "arming denied", "takeoff denied")
-"""How ArduPilot and PX4 begin what they say about why they do not arm, in small letters."""
-
 
 @dataclass(frozen=True, slots=True)
 class Text:
@@ -54,7 +51,12 @@ class Texts:
         """Return the texts since a second of the run, oldest first."""
         return tuple(text for text in tuple(self._texts) if text.time >= time)
 
-    def refusals(self, seconds: float) -> tuple[str, ...]:
-        """Return what the vehicle has said in the last seconds about why it does not arm, each once."""
+    def refusals(self, beginnings: tuple[str, ...], seconds: float) -> tuple[str, ...]:
+        """Return the texts of the last seconds about why the vehicle does not arm, each once.
+
+        Args:
+            beginnings: of such texts, in lower case.
+            seconds: of the run.
+        """
         found = self.since(self._clock.now() - seconds)
-        return tuple(dict.fromkeys(text.text for text in found if text.text.lower().startswith(REFUSALS)))
+        return tuple(dict.fromkeys(text.text for text in found if text.text.lower().startswith(beginnings)))

@@ -11,39 +11,24 @@ was verified.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from math import inf
 
-from ..links.autopilots import is_px4
 from ..links.link import Link
 from ..program import Travel
 from ..services import parameters
 
-_CENTIMETRES = 100.0
 
-RADII: Mapping[str, Mapping[str, float]] = {
-    "copter": {"WP_RADIUS_M": 1.0, "WPNAV_RADIUS": _CENTIMETRES},
-    "sub": {"WP_RADIUS_M": 1.0, "WPNAV_RADIUS": _CENTIMETRES},
-    "rover": {"WP_RADIUS": 1.0},
-}
-"""Names of the radius in ArduPilot's versions, with their units in a metre, by vehicle class."""
-
-PX4_RADIUS = "NAV_ACC_RAD"
-MARGINS = ("AVOID_MARGIN", "OA_MARGIN_MAX")
-
-
-def set_up(link: Link, kind: str, travel: Travel, acceptance: float = inf) -> Iterator[str]:
+def set_up(link: Link, travel: Travel, acceptance: float = inf) -> Iterator[str]:
     """Set a vehicle up for a way of travelling; yield what was changed, and what was not confirmed.
 
     Args:
         link: to the vehicle.
-        kind: ``copter``, ``sub`` or ``rover``.
         travel: how carefully it is to go.
         acceptance: metres from a place at which it counts as reached.
     """
-    radius = min(travel.radius, acceptance) if kind == "rover" else travel.radius
-    radii = {PX4_RADIUS: 1.0} if is_px4(link) else RADII[kind]
-    margins = () if is_px4(link) else MARGINS
+    radii, margins = link.profile.radii, link.profile.autopilot.margins
+    radius = min(travel.radius, acceptance) if link.profile.stops_early else travel.radius
     found = parameters.read(link, [*radii, *margins])
     for name, value in found.items():
         if name in radii and value > (wanted := radius * radii[name]):

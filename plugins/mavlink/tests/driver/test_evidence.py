@@ -8,9 +8,10 @@ import pytest
 from mavlink_peer import ARDUPILOT, PX4, eventually, linked
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
+from mmrs_mavlink.profiles import PX4_MULTICOPTER
+from mmrs_mavlink.profiles.modes import GUIDED, HOLD
 from mmrs_mavlink.program import Geographic
 from mmrs_mavlink.vehicles.evidence import LinkEvidence
-from mmrs_mavlink.vehicles.modes import GUIDED, HOLD, PX4_MODES, px4_number
 from mmrs_mavlink.vehicles.telemetry import Telemetry
 
 HOME = Geographic(42.37, 13.35, 10.0)
@@ -48,7 +49,7 @@ def watched(*, mode: int = COPTER_GUIDED, autopilot: int = ARDUPILOT):
             wire.say(message)
             eventually(lambda: link.clock.now() - link.since(message.get_type()) > before)
 
-        yield LinkEvidence(link, telemetry, "copter", geographic=True), say, wire
+        yield LinkEvidence(link, telemetry, geographic=True), say, wire
 
 
 def beat(mode: int):
@@ -85,7 +86,7 @@ def test_a_target_that_was_told_before_the_order_proves_nothing():
         wire.say(target(FAR.latitude))
         wire.say(position(HOME.latitude))
         eventually(lambda: link.latest("GLOBAL_POSITION_INT") and telemetry.aim())
-        evidence = LinkEvidence(link, telemetry, "copter", geographic=True)
+        evidence = LinkEvidence(link, telemetry, geographic=True)
         wire.say(position(HOME.latitude))
         link.wait(lambda: None, 0.2)
         assert not evidence.bound_for(FAR, 5.0)
@@ -124,7 +125,7 @@ def test_a_vehicle_that_is_there_obeys_as_soon_as_it_is_heard():
 
 @pytest.mark.parametrize(("moved", "goes"), [(ON_ITS_WAY, True), (OTHERWISE, False)], ids=["to", "away"])
 def test_set_points_that_move_towards_the_place_are_those_of_a_px4_that_goes_there(moved, goes):
-    offboard = px4_number(*PX4_MODES[GUIDED])
+    offboard = PX4_MULTICOPTER.modes[GUIDED].number
     with watched(mode=offboard, autopilot=PX4) as (evidence, say, _):
         say(target(HOME.latitude))
         assert not evidence.bound_for(FAR, 5.0)

@@ -6,6 +6,7 @@ import pytest
 from flight_crew import manned
 from mavlink_peer import linked, value
 
+from mmrs_mavlink.profiles import profile_for
 from mmrs_mavlink.vehicles.exemptions import end_exemption
 from mmrs_runtime.faults import RefusedError
 
@@ -27,7 +28,7 @@ def answering(options: float, *, keeps: bool = False):
 
 def test_a_copter_that_would_go_on_with_its_mission_is_told_otherwise():
     with linked(answering(18.0)) as (link, wire):
-        said = end_exemption(link, "copter")
+        said = end_exemption(link)
     assert said == "FS_OPTIONS = 16, which was 18: it answers a lost link in missions, too"
     assert [each.param_value for each in wire.of("PARAM_SET")] == [16.0]
 
@@ -35,7 +36,8 @@ def test_a_copter_that_would_go_on_with_its_mission_is_told_otherwise():
 @pytest.mark.parametrize(("kind", "options"), [("copter", 16.0), ("rover", 2.0)])
 def test_others_are_left_as_they_are(kind, options):
     with linked(answering(options)) as (link, wire):
-        assert end_exemption(link, kind) == ""
+        link.expect(profile_for(kind))
+        assert end_exemption(link) == ""
     assert wire.of("PARAM_SET") == []
 
 
@@ -44,7 +46,7 @@ def test_a_copter_that_insists_on_going_on_is_refused():
         linked(answering(2.0, keeps=True)) as (link, _),
         pytest.raises(RefusedError, match="does not confirm FS_OPTIONS = 0"),
     ):
-        end_exemption(link, "copter")
+        end_exemption(link)
 
 
 def test_a_px4_that_would_go_on_is_told_otherwise_for_the_modes_of_its_program():

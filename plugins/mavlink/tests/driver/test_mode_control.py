@@ -8,7 +8,7 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from mmrs_mavlink import Geographic
 from mmrs_mavlink.links.retries import Retries
-from mmrs_mavlink.vehicles import modes
+from mmrs_mavlink.profiles import ARDUCOPTER, modes
 from mmrs_mavlink.vehicles.mavlink_vehicle import MavlinkVehicle
 from mmrs_mavlink.vehicles.mode_control import ModeControl
 from mmrs_mavlink.vehicles.telemetry import Telemetry
@@ -55,7 +55,7 @@ def steered():
         contexts.append(context)
         wire.answer = vehicle = Vehicle(wire, **results)
         telemetry = Telemetry(link, HOME)
-        return ModeControl(link, telemetry, "copter"), telemetry, vehicle, wire
+        return ModeControl(link, telemetry), telemetry, vehicle, wire
 
     yield steer
     for context in contexts:
@@ -185,7 +185,7 @@ def camera():
     """Return a vehicle with a camera, and the wire to it."""
     with linked(speedup=10.0) as (link, wire):
         wire.answer = Vehicle(wire)
-        yield MavlinkVehicle(link, "copter", HOME), wire
+        yield MavlinkVehicle(link, ARDUCOPTER, HOME), wire
 
 
 IMAGE = mavlink.MAVLink_camera_image_captured_message(0, 0, 0, 0, 0, 0, 0, [1, 0, 0, 0], 1, 1, b"")

@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import pytest
-from mavlink_peer import PX4, linked
 
+from mmrs_mavlink.profiles import PX4_MULTICOPTER, profile_for
 from mmrs_mavlink.sitl import failsafes, px4_failsafes
 from mmrs_mavlink.sitl.modes import MODES
-from mmrs_mavlink.vehicles import modes
 
 CASES = [
     *(
@@ -30,15 +29,13 @@ def numbered(kind: str, names) -> set[int]:
 
 @pytest.mark.parametrize(("kind", "values", "names"), CASES)
 def test_an_ardupilot_goes_into_the_modes_that_are_expected_of_it(kind, values, names):
-    with linked() as (link, _):
-        expected = modes.alone(link, kind, values)
+    expected = profile_for(kind).lost_link.modes_by(values)
     assert expected - CONTINUING == numbered(kind, names)
 
 
 @pytest.mark.parametrize(("action", "names"), px4_failsafes.ON_LINK_LOSS.items())
 def test_a_px4_does_too_and_may_hold_before(action, names):
-    with linked(autopilot=PX4) as (link, _):
-        expected = modes.alone(link, "copter", {"NAV_DLL_ACT": float(action)})
+    expected = PX4_MULTICOPTER.lost_link.modes_by({"NAV_DLL_ACT": float(action)})
     before = {"loiter"} if {"return", "land"} & {*names} else set()
     assert expected == numbered("px4", {*names} | before)
 
@@ -49,21 +46,18 @@ BY_HAND = {"poshold", "alt_hold", "stabilize"}
 
 @pytest.mark.parametrize(("action", "names"), px4_failsafes.ON_SETPOINT_LOSS.items())
 def test_a_px4_that_misses_set_points_does_too(action, names):
-    with linked(autopilot=PX4) as (link, _):
-        expected = modes.alone(link, "copter", {"COM_OBL_RC_ACT": float(action)})
+    expected = PX4_MULTICOPTER.lost_link.modes_by({"COM_OBL_RC_ACT": float(action)})
     assert expected == numbered("px4", {*names} - BY_HAND)
 
 
 @pytest.mark.parametrize("kind", ["copter", "sub", "rover"])
 @pytest.mark.parametrize("values", [{}, {"FS_GCS_ENABLE": 0.0, "FS_ACTION": 1.0}])
 def test_nothing_is_expected_of_a_vehicle_whose_failsafe_is_off_or_not_known(kind, values):
-    with linked() as (link, _):
-        assert modes.alone(link, kind, values) == frozenset()
+    assert profile_for(kind).lost_link.modes_by(values) == frozenset()
 
 
 @pytest.mark.parametrize("kind", ["copter", "sub", "rover"])
 def test_whatever_a_vehicle_is_told_to_do_about_a_lost_link_is_known(kind):
     stays = {"CONTINUE", "STOP_THRUST"}
-    with linked() as (link, _):
-        for response, values in modes.lost_link_answers(link, kind).items():
-            assert bool(modes.alone(link, kind, values)) is (response not in stays)
+    for response, values in profile_for(kind).lost_link.answers.items():
+        assert bool(profile_for(kind).lost_link.modes_by(values)) is (response not in stays)

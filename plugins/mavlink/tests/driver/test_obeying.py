@@ -9,13 +9,13 @@ from flight_crew import HOME, NORTH, robot_of
 from mavlink_peer import ARDUPILOT, PX4, eventually, linked
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
+from mmrs_mavlink.profiles import PROFILES, profile_for
 from mmrs_mavlink.steps.obeying import obeying, undone
 from mmrs_mavlink.vehicles.mavlink_vehicle import MavlinkVehicle
-from mmrs_mavlink.vehicles.modes import MODES, PX4_MODES, px4_number
 
 NUMBERS = {
-    **{(kind, ARDUPILOT): numbers for kind, numbers in MODES.items()},
-    **{(kind, PX4): {name: px4_number(*mode) for name, mode in PX4_MODES.items()} for kind in MODES},
+    (each.vehicle, each.autopilot.number): {name: mode.number for name, mode in each.modes.items()}
+    for each in PROFILES.values()
 }
 
 
@@ -30,7 +30,7 @@ def vehicle_of(kind: str, autopilot: int = ARDUPILOT):
             wire.beat(autopilot=autopilot, mode=numbers[mode], armed=armed)
             eventually(lambda: link.clock.now() - link.since("HEARTBEAT") > before)
 
-        vehicle = MavlinkVehicle(link, kind, HOME)
+        vehicle = MavlinkVehicle(link, profile_for(kind), HOME)
         at = (round(HOME.latitude * 1e7), round(HOME.longitude * 1e7), 720_000, 0)
         wire.say(mavlink.MAVLink_global_position_int_message(1, *at, 0, 0, 0, 36_000))
         eventually(lambda: link.latest("GLOBAL_POSITION_INT"))

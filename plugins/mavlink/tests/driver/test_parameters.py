@@ -9,13 +9,14 @@ from mavlink_peer import ARDUPILOT, PX4, bytewise, linked, value
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from mmrs_mavlink.links.retries import Retries
+from mmrs_mavlink.profiles import ARDUROVER, PROFILES, profile_for
 from mmrs_mavlink.services import parameters
-from mmrs_mavlink.vehicles import modes, preparation, safeguards
+from mmrs_mavlink.vehicles import preparation
 from mmrs_runtime.faults import RefusedError
 
 pytestmark = pytest.mark.real_time("parts of flights")
 
-INT = mavlink.MAV_PARAM_TYPE_INT32
+REAL, INT = mavlink.MAV_PARAM_TYPE_REAL32, mavlink.MAV_PARAM_TYPE_INT32
 
 
 class Values:
@@ -117,16 +118,16 @@ def test_a_value_that_the_vehicle_does_not_take_is_not_confirmed():
         assert not parameters.write(link, "A", 3.0)
 
 
-@pytest.mark.parametrize(("autopilot", "sent"), [(ARDUPILOT, 3.0), (PX4, bytewise(3))])
+@pytest.mark.parametrize(("autopilot", "sent"), [(ARDUPILOT, (3.0, REAL)), (PX4, (bytewise(3), INT))])
 def test_whole_numbers_are_coded_as_each_autopilot_wants_them(autopilot, sent):
     def answer(message):
         if message.get_type() == "PARAM_SET":
             yield value("NAV_DLL_ACT", message.param_value, INT)
 
     with linked(answer, autopilot=autopilot) as (link, wire):
-        assert parameters.write(link, "NAV_DLL_ACT", 3, INT)
+        assert parameters.write(link, "NAV_DLL_ACT", 3)
         (message,) = wire.of("PARAM_SET")
-        assert (message.param_value, message.param_type) == (sent, INT)
+        assert (message.param_value, message.param_type) == sent
 
 
 @pytest.mark.parametrize(("autopilot", "coded"), [(ARDUPILOT, 5.0), (PX4, bytewise(5))])
@@ -140,7 +141,7 @@ def test_failsafes_are_told_in_words_with_a_warning_where_there_is_cause():
         FS_GCS_ENABLE=0.0, BATT_FS_LOW_ACT=0.0, FENCE_ACTION=1.0, DISARM_DELAY=2.0, RTL_ALT=1500.0
     )
     with linked(values) as (link, _):
-        told = list(safeguards.report(link, "copter"))
+        told = list(preparation.report_failsafes(link))
     assert told == [
         "FS_GCS_ENABLE = 0: no heartbeats from the ground: nothing",
         "BATT_FS_LOW_ACT = 0: battery low: nothing (warning: no failsafe set)",
@@ -153,7 +154,8 @@ def test_failsafes_are_told_in_words_with_a_warning_where_there_is_cause():
 
 def test_a_vehicle_that_tells_no_failsafes_is_told():
     with linked() as (link, _):
-        (line,) = safeguards.report(link, "rover")
+        link.expect(ARDUROVER)
+        (line,) = preparation.report_failsafes(link)
     assert line == "the vehicle reports none of its failsafe parameters: check its failsafes yourself"
 
 
@@ -184,7 +186,7 @@ def test_a_lost_link_is_answered_by_parameters(autopilot, response, expected):
             yield value(message.param_id, message.param_value, message.param_type)
 
     with linked(answer, autopilot=autopilot) as (link, wire):
-        assert preparation.answer_lost_link(link, "copter", response, 20.0) == ""
+        assert preparation.answer_lost_link(link, response, 20.0) == ""
         assert {message.param_id: message.param_value for message in wire.of("PARAM_SET")} == expected
 
 
@@ -194,13 +196,13 @@ def test_seconds_that_no_vehicle_can_be_told_are_told_to_people():
             yield value(message.param_id, message.param_value)
 
     with linked(answer) as (link, _):
-        otherwise = preparation.answer_lost_link(link, "copter", "LAND", 500.0)
+        otherwise = preparation.answer_lost_link(link, "LAND", 500.0)
     assert otherwise == "the vehicle responds to a lost link after 120 s, not 500 s"
 
 
 def test_a_response_that_a_vehicle_cannot_give_by_itself_is_refused():
     with linked() as (link, _), pytest.raises(RefusedError, match="a copter cannot do SURFACE as a failsafe"):
-        preparation.answer_breach(link, "copter", "SURFACE")
+        preparation.answer_breach(link, "SURFACE")
 
 
 def test_a_response_that_the_vehicle_does_not_confirm_is_refused():
@@ -208,24 +210,24 @@ def test_a_response_that_the_vehicle_does_not_confirm_is_refused():
         linked() as (link, _),
         pytest.raises(RefusedError, match=r"a broken fence: .* confirm FENCE_ACTION = 2"),
     ):
-        preparation.answer_breach(link, "copter", "LAND")
+        preparation.answer_breach(link, "LAND")
 
 
-@pytest.mark.parametrize("kind", ["copter", "rover", "sub"])
-def test_every_parameter_that_is_set_is_one_that_is_told_or_of_little_account(kind):
-    told = {each.name for each in safeguards.OF_ARDUPILOT[kind]} | {"RALLY_INCL_HOME", "RALLY_LIMIT_KM"}
-    answers = [*modes.LINK_LOST[kind].values(), *modes.BREACH[kind].values()]
+@pytest.mark.parametrize("profile", PROFILES.values(), ids=PROFILES)
+def test_every_parameter_that_is_set_is_one_that_is_told_or_of_little_account(profile):
+    told = {each.name for each in profile.safeguards} | {"RALLY_INCL_HOME", "RALLY_LIMIT_KM", "RTL_TYPE"}
+    answers = [*profile.lost_link.answers.values(), *profile.breach.values()]
     assert {name for values in answers for name in values} <= told
 
 
 def test_a_rover_that_is_to_flee_returns_to_a_rally_point_and_not_home_by_its_way():
-    with linked() as (link, _):
-        told = modes.lost_link_answers(link, "rover")["EMERGENCY_AREA"]
+    told = ARDUROVER.lost_link.answers["EMERGENCY_AREA"]
     assert told == {"RALLY_INCL_HOME": 0, "RALLY_LIMIT_KM": 0, "FS_ACTION": 1, "FS_GCS_ENABLE": 1}
 
 
 def test_a_submarine_that_stops_when_a_joystick_falls_silent_is_told_of():
     values = Values(FS_PILOT_INPUT=2.0)
     with linked(values) as (link, _):
-        (line,) = safeguards.report(link, "sub")
+        link.expect(profile_for("sub"))
+        (line,) = preparation.report_failsafes(link)
     assert line.startswith("FS_PILOT_INPUT = 2: a pilot's sticks, once used, fall silent: disarm (warning: ")

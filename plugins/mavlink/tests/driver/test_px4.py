@@ -12,11 +12,14 @@ from mavlink_peer import ARDUPILOT, PX4, acknowledged, eventually, linked
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from mmrs_mavlink import Geographic
+from mmrs_mavlink.profiles import PX4 as PX4_AUTOPILOT
+from mmrs_mavlink.profiles import PX4_MULTICOPTER, modes
+from mmrs_mavlink.profiles.px4 import px4_number
 from mmrs_mavlink.services.items import Item
-from mmrs_mavlink.vehicles import modes
-from mmrs_mavlink.vehicles.autopilot_profile import ArduPilot
+from mmrs_mavlink.vehicles.guidance import ArduPilotGuidance
+from mmrs_mavlink.vehicles.mission import items_for
 from mmrs_mavlink.vehicles.mode_control import ModeControl
-from mmrs_mavlink.vehicles.px4 import Px4
+from mmrs_mavlink.vehicles.px4 import Px4Guidance
 from mmrs_mavlink.vehicles.telemetry import Telemetry
 from mmrs_runtime.faults import FaultError
 
@@ -48,7 +51,7 @@ class Autopilot:
         if kind != "COMMAND_LONG":
             return
         if message.command == mavlink.MAV_CMD_DO_SET_MODE:
-            number = modes.px4_number(int(message.param2), int(message.param3))
+            number = px4_number(int(message.param2), int(message.param3))
             if number == OFFBOARD and len(self.points) < 3:
                 yield acknowledged(message.command, mavlink.MAV_RESULT_DENIED)
                 return
@@ -72,23 +75,23 @@ def steered(speedup: float):
         wire.say(here())
         wire.beat(autopilot=PX4, mode=LOITER, armed=True)
         eventually(telemetry.armed)
-        mode_control = ModeControl(link, telemetry, "copter")
+        mode_control = ModeControl(link, telemetry)
         yield mode_control, telemetry, autopilot
-        mode_control.profile.end_guiding()
+        mode_control.guidance.end_guiding()
 
 
 def test_modes_are_main_and_sub_modes():
-    assert [modes.px4_number(*modes.PX4_MODES[name]) for name in (modes.GUIDED, modes.HOLD, modes.AUTO)] == [
+    assert [PX4_MULTICOPTER.modes[name].number for name in (modes.GUIDED, modes.HOLD, modes.AUTO)] == [
         OFFBOARD,
         LOITER,
         MISSION,
     ]
 
 
-def test_the_heartbeat_says_which_habits_count(px4):
-    assert isinstance(px4[0].profile, Px4)
+def test_the_heartbeat_says_which_guidance_counts(px4):
+    assert isinstance(px4[0].guidance, Px4Guidance)
     with linked(autopilot=ARDUPILOT) as (link, _):
-        assert isinstance(ModeControl(link, Telemetry(link, HOME), "copter").profile, ArduPilot)
+        assert isinstance(ModeControl(link, Telemetry(link, HOME)).guidance, ArduPilotGuidance)
 
 
 def test_set_points_come_before_offboard_is_asked_for_and_go_on():
@@ -112,7 +115,7 @@ def test_set_points_begin_where_the_vehicle_is_above_sea_level(px4):
 def test_set_points_move_along_the_leg_at_the_commanded_speed(px4):
     mode_control, _, autopilot = px4
     mode_control.enter(modes.GUIDED)
-    mode_control.profile.aim(NORTH, 0.0, 5.0)
+    mode_control.guidance.aim(NORTH, 0.0, 5.0)
     begun = len(autopilot.points)
     eventually(lambda: len(autopilot.points) > begun + 30)
     metres = [(point.lat_int - 423_700_000) * 1e-7 * 111_319.49 for point in autopilot.points[begun:]]
@@ -125,7 +128,7 @@ def test_set_points_move_along_the_leg_at_the_commanded_speed(px4):
 def test_without_a_speed_the_set_point_is_the_target(px4):
     mode_control, _, autopilot = px4
     mode_control.enter(modes.GUIDED)
-    mode_control.profile.aim(NORTH, 0.0, None)
+    mode_control.guidance.aim(NORTH, 0.0, None)
     eventually(lambda: autopilot.points[-1].lat_int == 423_710_000)
 
 
@@ -172,16 +175,14 @@ def test_a_take_off_goes_straight_up_to_a_height_above_sea_level_and_may_change_
         mode_control.check()
 
 
-def test_a_mission_has_no_home(px4):
+def test_a_mission_has_no_home():
     items = [Item(16, x=n) for n in range(3)]
-    profile = px4[0].profile
-    assert [item.x for item in profile.mission(items)] == [1, 2]
-    assert profile.number(1) == 0
+    assert [item.x for item in items_for(PX4_AUTOPILOT, items)] == [1, 2]
 
 
-def test_a_mission_leaves_headings_to_the_vehicle_since_nought_is_north(px4):
+def test_a_mission_leaves_headings_to_the_vehicle_since_nought_is_north():
     items = [Item(16), Item(178, (1.0, 5.0, -1.0, 0.0)), Item(16, (1.0, 0.0, 0.0, 0.0)), Item(17)]
-    speed, waypoint, wait = px4[0].profile.mission(items)
+    speed, waypoint, wait = items_for(PX4_AUTOPILOT, items)
     assert speed == items[1]
     assert waypoint.params[:3] == (1.0, 0.0, 0.0)
     assert isnan(waypoint.params[3])

@@ -10,7 +10,7 @@ from mavlink_peer import acknowledged, eventually, heartbeat, linked
 
 from mmrs_mavlink import Geographic
 from mmrs_mavlink.driving.worker import Interrupted
-from mmrs_mavlink.vehicles import modes
+from mmrs_mavlink.profiles import modes
 from mmrs_mavlink.vehicles.mode_control import ModeControl
 from mmrs_mavlink.vehicles.telemetry import Telemetry
 from mmrs_runtime.faults import FaultError
@@ -42,7 +42,7 @@ def late():
         wire.answer = Late(wire)
         telemetry = Telemetry(link, HOME)
         show(wire, telemetry, STABILIZE)
-        yield ModeControl(link, telemetry, "copter"), link, telemetry, wire
+        yield ModeControl(link, telemetry), link, telemetry, wire
 
 
 def show(wire, telemetry, mode: int) -> None:

@@ -12,8 +12,8 @@ from mmrs_mavlink.program import Geographic, GoTo, Land, Run, Start, Step, Stop,
 from mmrs_mavlink.services import parameters
 from mmrs_mavlink.services.missions import upload
 from mmrs_mavlink.services.uploads import mission_of, uploads_of
-from mmrs_mavlink.vehicles import px4
 from mmrs_mavlink.vehicles.feasibility import check_feasible
+from mmrs_mavlink.vehicles.mission import items_for
 from mmrs_mavlink.vehicles.runs import first_flown, keep_place, speed_before
 from mmrs_runtime.controllers.geodesy import distance
 from mmrs_runtime.faults import RefusedError
@@ -153,7 +153,7 @@ def test_a_mission_that_a_px4_has_accepted_and_would_not_fly_is_refused_on_the_g
 def test_what_a_px4_says_against_a_mission_is_told():
     with manned(ROBOT, firmware="px4", parameters={"MIS_DIST_1WP": 5.0}) as made:
         link, telemetry = made.link, made.vehicle.telemetry
-        upload(link, px4.Px4(link, telemetry).mission(MISSION))
+        upload(link, items_for(link.profile.autopilot, MISSION))
         with made.simulated.lock:
             made.simulated.autopilot.say(2, "First waypoint too far away: 10m, 5 max")
         with pytest.raises(RefusedError, match=r"would not fly it; it says 'First waypoint too far away"):

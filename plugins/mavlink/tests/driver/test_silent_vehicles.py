@@ -17,7 +17,7 @@ from mmrs_mavlink.services.commands import command
 from mmrs_mavlink.services.items import FENCE, Item
 from mmrs_mavlink.services.missions import upload
 from mmrs_mavlink.services.reading import download
-from mmrs_mavlink.vehicles.px4 import Px4
+from mmrs_mavlink.vehicles.px4 import Px4Guidance
 from mmrs_mavlink.vehicles.telemetry import Telemetry
 from mmrs_runtime.faults import LINK_LOST, FaultError, RefusedError
 
@@ -36,7 +36,7 @@ EXCHANGES = {
     "upload": lambda link: upload(link, [ITEM, ITEM]),
     "clear": lambda link: upload(link, [], FENCE),
     "download": download,
-    "begin an item": lambda link: Px4(link, Telemetry(link, HOME)).select(3),
+    "begin an item": lambda link: Px4Guidance(link, Telemetry(link, HOME)).select(3),
 }
 every_exchange = pytest.mark.parametrize("exchange", list(EXCHANGES))
 

@@ -164,7 +164,7 @@ def test_any_station_hides_our_silence_from_a_px4():
         ground = Ground(link)
         wire.say(STATION, system=254, component=190)
         eventually(lambda: link.stations.systems)
-        assert ground.news() == ["hears ground station 254", ANY_STATION]
+        assert ground.news() == ["hears ground station 254", ANY_STATION.format("PX4")]
 
 
 @pytest.mark.parametrize(
@@ -184,7 +184,7 @@ def test_people_are_told_at_the_start_what_their_policy_waits_for(ears, policy, 
 def watching(ears, *policies):
     robot = robot_of(*policies)
     watch, decided = Watch(robot, ears.clock), []
-    watch.begin(ears.first, MavlinkVehicle(ears.first, "copter", robot.home))
+    watch.begin(ears.first, MavlinkVehicle(ears.first, robot.profile, robot.home))
     watch.decide = lambda *decision: decided.append(decision)
     return watch, decided
 

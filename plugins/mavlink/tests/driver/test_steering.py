@@ -7,6 +7,7 @@ from mavlink_peer import acknowledged, eventually, linked
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from mmrs_mavlink import Geographic, Local, Look
+from mmrs_mavlink.profiles import ARDUCOPTER
 from mmrs_mavlink.vehicles.mavlink_vehicle import MavlinkVehicle
 
 ROI, ROI_NONE, GIMBAL, SPEED = 195, 197, 1000, 178
@@ -52,7 +53,7 @@ def driven():
         link, wire = context.__enter__()
         contexts.append(context)
         wire.answer = Obedient(wire)
-        vehicle = MavlinkVehicle(link, "copter", home)
+        vehicle = MavlinkVehicle(link, ARDUCOPTER, home)
         wire.say(first)
         eventually(vehicle.telemetry.placed)
         return vehicle, wire

@@ -65,7 +65,7 @@ def test_a_report_is_told_with_its_robot_and_its_pairs():
 def test_a_report_comes_from_the_vehicles_own_system_which_ground_stations_show():
     with linked() as (link, wire):
         robot = robot_of()
-        vehicle = MavlinkVehicle(link, robot.vehicle, robot.home)
+        vehicle = MavlinkVehicle(link, robot.profile, robot.home)
         told = []
         report = Report("gas", (("ppm", "412"),))
         Moves(robot, vehicle, link.clock, {}, lambda *given: told.append(given)).action(report).run()

@@ -26,7 +26,7 @@ from mmrs_mavlink.plugin.controllers import MAVLINK_PYTHON
 from mmrs_mavlink.plugin.plans.qgc import QGC_PLAN
 from mmrs_mavlink.plugin.plans.wpl import WPL
 from mmrs_mavlink.plugin.vehicles import profile_of_type
-from mmrs_mavlink.profiles import PROFILES
+from mmrs_mavlink.profiles import ARDUPILOT, PROFILES
 from mmrs_mavlink.sitl.__main__ import parser_of_arguments
 
 WORDS = {word for profile in PROFILES.values() for word in profile.words}
@@ -64,7 +64,7 @@ def test_a_robot_that_no_vehicle_carries_is_refused_by_the_name_of_its_kind(targ
 def test_a_robot_is_what_its_kind_says():
     for profile in PROFILES.values():
         found = profile_of_type(KITES, kinds(profile.vehicle), {})
-        assert (found.vehicle, found.autopilot) == (profile.vehicle, "ardupilot")
+        assert (found.vehicle, found.autopilot) == (profile.vehicle, ARDUPILOT)
     files = {each.path: each.content for each in render(MAVLINK_PYTHON, flown("copter"))}
     assert b'vehicle="copter"' in files["robot_alpha.py"]
 

@@ -3,9 +3,13 @@
 from __future__ import annotations
 
 import json
+from contextlib import contextmanager
 from dataclasses import replace
 
 import pytest
+from flight_crew import robot_of
+from mavlink_peer import acknowledged, eventually, linked, value
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from mmrs_core.behaviour.program import Move
 from mmrs_core.contributions.rules import MoveKind
@@ -17,13 +21,53 @@ from mmrs_core.transformation.kinds import PLAIN_ROBOT
 from mmrs_mavlink.plugin.context import context_of
 from mmrs_mavlink.plugin.controllers import MAVLINK_PYTHON
 from mmrs_mavlink.plugin.plans.qgc import QGC_PLAN
-from mmrs_mavlink.profiles import ARDUCOPTER, VehicleProfile
+from mmrs_mavlink.profiles import ARDUCOPTER, ARDUPILOT, PROFILES, modes
+from mmrs_mavlink.profiles.profile import LostLink, Safeguard
+from mmrs_mavlink.vehicles.guidance import ArduPilotGuidance
+from mmrs_mavlink.vehicles.mavlink_vehicle import MavlinkVehicle
+from mmrs_mavlink.vehicles.preparation import check_identity, report_failsafes
+from mmrs_runtime.faults import RefusedError
 
 AIRSHIPS = "urn:airships:1.0"
 AIRSHIP, CAST_OFF, MOOR = (AIRSHIPS, "Airship"), (AIRSHIPS, "CastOff"), (AIRSHIPS, "Moor")
 MAV_TYPE_AIRSHIP = 7
-PROFILE = VehicleProfile(
-    "airship", "airship", "copter", MAV_TYPE_AIRSHIP, alone=frozenset({"CONTINUE", "LAND"})
+MAV_AUTOPILOT_AIRSHIPS = 19
+
+
+class Buoyant(ArduPilotGuidance):
+    """Lifts off in HOLD: an airship hovers as soon as it is untied."""
+
+    climbs_in = modes.HOLD
+
+
+AUTOPILOT = replace(
+    ARDUPILOT,
+    name="airships",
+    title="Airship Pilot",
+    number=MAV_AUTOPILOT_AIRSHIPS,
+    guidance=f"{__name__}:Buoyant",
+    announcements={"BATTERY_LOW": ("gas is low",)},
+)
+NUMBERS = {modes.GUIDED: 31, modes.HOLD: 32, modes.LAND: 33}
+PROFILE = replace(
+    ARDUCOPTER,
+    name="airship",
+    vehicle="airship",
+    autopilot=AUTOPILOT,
+    source=f"{__name__}:PROFILE",
+    rehearsed_as="",
+    mav_types=(MAV_TYPE_AIRSHIP,),
+    modes={name: modes.Mode(number, (1.0, float(number))) for name, number in NUMBERS.items()},
+    other_modes={34: "drifting"},
+    failsafe_modes=frozenset({33, 34}),
+    own_modes=frozenset(),
+    event_modes={"BATTERY_LOW": frozenset({34})},
+    lost_link=LostLink(
+        {"LAND": {"MOOR_ON_LOSS": 2}, "CONTINUE": {"MOOR_ON_LOSS": 0}}, {"MOOR_ON_LOSS": {2: frozenset({33})}}
+    ),
+    responses=frozenset({"CONTINUE", "LAND"}),
+    safeguards=(Safeguard("MOOR_ON_LOSS", "no ground station", {0: "nothing", 2: "moor"}),),
+    corridor=60.0,
 )
 TYPE = replace(quad(), name="Zeppelin", metaclasses=(AIRSHIP, PLAIN_ROBOT.metaclass))
 
@@ -83,7 +127,8 @@ def test_its_moves_become_the_manoeuvres_that_their_kinds_state(flight):
     code = file.content.decode()
     assert "TakeOff(12.0)" in code
     assert "Land()" in code
-    assert 'vehicle="copter"' in code
+    assert 'vehicle="airship"' in code
+    assert f'driven_by="{PROFILE.source}"' in code
 
 
 def test_plans_have_its_vehicle_type(flight):
@@ -98,11 +143,86 @@ def test_without_the_profile_the_kind_is_refused_by_its_name(flight):
     assert "is of kind 'airship', which names vehicle 'airship'; known are copter" in refusal
 
 
-def test_an_autopilot_without_a_profile_of_its_own_has_that_of_another():
-    boat = replace(quad(**{"mavlink.autopilot": "px4"}), metaclasses=(PLAIN_ROBOT.metaclass,))
-    robot = robot_program("a", [])
-    assert context_of(robot, target_input(program(robot), [boat])).profile.vehicle == "rover"
+def test_a_profile_that_programs_cannot_import_is_refused(flight):
+    nowhere = {"vehicle_profiles": {PROFILE.name: replace(PROFILE, source="")}}
+    (refusal,) = MAVLINK_PYTHON.refusals(replace(flight, extensions=nowhere))
+    assert refusal == "robot 'alpha': profile 'airship' says no module that programs import it from"
 
 
-def test_a_profile_answers_on_command_whatever_its_failsafe_does():
-    assert ARDUCOPTER.alone <= ARDUCOPTER.responses
+def test_a_class_of_vehicle_without_the_autopilot_of_a_type_is_refused(flight):
+    type = replace(quad(**{"mavlink.autopilot": "px4"}), name="Zeppelin", metaclasses=TYPE.metaclasses)
+    (refusal, *_) = MAVLINK_PYTHON.refusals(replace(flight, types={"Zeppelin": type}))
+    assert refusal == "robot 'alpha': mavlink.autopilot is 'px4', with which no profile of airship is known"
+
+
+@contextmanager
+def aloft(**about):
+    """Give an airship at the end of a link, and its wire."""
+    told = {"kind": MAV_TYPE_AIRSHIP, "autopilot": MAV_AUTOPILOT_AIRSHIPS, "mode": 32, "armed": True, **about}
+
+    def answer(message):
+        if message.get_type() == "PARAM_SET":
+            yield value(message.param_id, message.param_value)
+        if message.get_type() == "PARAM_REQUEST_READ" and message.param_id == "MOOR_ON_LOSS":
+            yield value("MOOR_ON_LOSS", 2.0)
+        if message.get_type() == "COMMAND_LONG":
+            if message.command == mavlink.MAV_CMD_DO_SET_MODE:
+                wire.beat(**{**told, "mode": int(message.param2)})
+            yield acknowledged(message.command)
+
+    with linked(answer) as (link, wire):
+        robot = robot_of(vehicle="airship", driven_by=PROFILE.source)
+        vehicle = MavlinkVehicle(link, robot.profile, robot.home)
+        begun = link.clock.now()
+        wire.beat(**told)
+        eventually(lambda: link.clock.now() - link.since("HEARTBEAT") > begun)
+        yield vehicle, link, wire
+
+
+def test_its_modes_are_those_of_its_profile():
+    with aloft() as (vehicle, _, wire):
+        assert vehicle.state().mode == modes.HOLD
+        vehicle._mode_control.enter(modes.GUIDED)
+        (asked,) = (each for each in wire.of("COMMAND_LONG") if each.command == mavlink.MAV_CMD_DO_SET_MODE)
+        assert asked.param2 == 31.0
+        assert vehicle.state().mode == modes.GUIDED
+
+
+def test_its_failsafe_for_a_lost_link_is_set_by_its_own_parameter():
+    with aloft() as (vehicle, link, wire):
+        vehicle.answer_lost_link("LAND")
+        sent = {each.param_id: each.param_value for each in wire.of("PARAM_SET")}
+        assert sent["MOOR_ON_LOSS"] == 2.0
+        assert vehicle.modes_alone == {33}
+        assert list(report_failsafes(link)) == ["MOOR_ON_LOSS = 2: no ground station: moor"]
+
+
+def test_it_is_guided_by_the_guidance_of_its_autopilot():
+    with aloft() as (vehicle, _, _):
+        assert isinstance(vehicle._mode_control.guidance, Buoyant)
+
+
+@pytest.mark.parametrize(
+    ("about", "why"),
+    [
+        (
+            {"kind": mavlink.MAV_TYPE_QUADROTOR},
+            "the vehicle is a quadrotor, and the program is for a airship",
+        ),
+        ({"autopilot": 3}, "the vehicle has autopilot 3 .* is for a airship with Airship Pilot"),
+    ],
+)
+def test_no_other_vehicle_is_taken_for_it(about, why):
+    with aloft(**about) as (vehicle, link, _), pytest.raises(RefusedError, match=why):
+        check_identity(link, vehicle.telemetry, 20.0, vehicle.start, vehicle.start)
+
+
+def test_a_profile_of_a_plug_in_that_is_missing_is_named():
+    with pytest.raises(ValueError, match="mmrs_zeppelins:ZEPPELIN: cannot be imported: No module"):
+        _ = robot_of(vehicle="zeppelin", driven_by="mmrs_zeppelins:ZEPPELIN").profile
+
+
+@pytest.mark.parametrize("profile", PROFILES.values(), ids=PROFILES)
+def test_what_a_vehicle_does_by_its_failsafes_it_does_on_command(profile):
+    assert profile.alone <= profile.responses
+    assert {profile.down, *profile.breach} <= profile.responses

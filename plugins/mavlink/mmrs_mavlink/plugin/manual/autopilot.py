@@ -10,10 +10,10 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from mmrs_mavlink.links.link import Link
 from mmrs_mavlink.plugin.manual.steering import Sticks
+from mmrs_mavlink.profiles import ARDUSUB
+from mmrs_mavlink.profiles.profile import Safeguard
 from mmrs_mavlink.services.commands import ask, command
-from mmrs_mavlink.vehicles.modes import word_of
-from mmrs_mavlink.vehicles.preparation import VEHICLES, hear_out
-from mmrs_mavlink.vehicles.safeguards import Safeguard, report
+from mmrs_mavlink.vehicles.preparation import hear_out, report_failsafes
 from mmrs_mavlink.vehicles.texts import Texts
 from mmrs_runtime import faults
 
@@ -72,6 +72,7 @@ class Autopilot:
         """
         self.rising = self._rose = False
         self._link, self._given_up, self._reserve, self._under_way = link, given_up, reserve, under_way
+        link.expect(ARDUSUB)
         self._texts, self._stale_after = Texts(link.clock), link.clock.patience(STALE)
         link.observe(self._texts)
         self._starts, self._ready_at, self._asked = 0, -inf, -inf
@@ -106,7 +107,7 @@ class Autopilot:
 
     def safeguards(self) -> Iterator[str]:
         """Yield its failsafes, from its parameters."""
-        yield from report(self._link, "sub", [STICKS_LOST])
+        yield from report_failsafes(self._link, [STICKS_LOST])
 
     def trouble(self, patience: float) -> faults.FaultError | None:
         """Return what is wrong; what leaves the vehicle to itself, or to others, goes first.
@@ -176,7 +177,7 @@ class Autopilot:
 
     def word(self) -> str:
         """Return its mode in words."""
-        return "" if self.mode is None else word_of(self._link, "sub", self.mode)
+        return "" if self.mode is None else self._link.profile.mode_name(self.mode)
 
     def move(self, sticks: Sticks) -> None:
         """Set the sticks."""
@@ -220,8 +221,7 @@ class Autopilot:
     def _strange(self) -> str:
         """Return why this vehicle must not be commanded; empty where it may."""
         beat = self._link.latest("HEARTBEAT")
-        ardupilot = mavlink.MAV_AUTOPILOT_ARDUPILOTMEGA
-        if beat is None or beat.type not in VEHICLES["sub"] or beat.autopilot != ardupilot:
+        if beat is None or beat.type not in ARDUSUB.mav_types or beat.autopilot != ARDUSUB.autopilot.number:
             return "the vehicle is not an ArduSub"
         if self.armed and not self._under_way:
             return "the vehicle is armed already: it is under external control"

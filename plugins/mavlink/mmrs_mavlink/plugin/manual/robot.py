@@ -20,6 +20,7 @@ from mmrs_mavlink.plugin.manual.route import Route
 from mmrs_mavlink.plugin.manual.steering import Steering
 from mmrs_mavlink.plugin.manual.troubles import LINK_PATIENCE, Troubles
 from mmrs_mavlink.plugin.manual.ways import Ways
+from mmrs_mavlink.profiles import ARDUSUB
 from mmrs_runtime import faults
 from mmrs_runtime.controllers.box_entries import PROCESS
 from mmrs_runtime.policies import NOTHING, OVERTAKES, response_to
@@ -71,7 +72,7 @@ class ManualRobot(Vehicle):
     def prepare(self, now: float) -> bool:
         """Begin to listen, go into depth hold and arm."""
         self.done, self.trouble = False, None
-        about = {"link": "mavlink", "vehicle": "sub", "confirms": False}
+        about = {"link": "mavlink", "vehicle": ARDUSUB.vehicle, "confirms": False}
         self.note("start", {"plan": self._plan, "process": PROCESS, **about})
         self._thread = threading.Thread(target=self._drive, name="sticks", daemon=True)
         self._thread.start()

@@ -1,8 +1,4 @@
-"""What missions of vehicles that dive ask for: heights count from the water surface, down.
-
-ArduSub takes its home to be at the surface, wherever it is armed. It skips what is above that, and
-takes a height of exactly 0 for the one that it is at: so a place at the surface is a little below it.
-"""
+"""What missions of vehicles that dive ask for: heights count from the water surface, down."""
 
 from __future__ import annotations
 
@@ -12,15 +8,6 @@ from mmrs_core.behaviour.program import RobotProgram
 from mmrs_core.contributions.targets import TargetInput
 from mmrs_core.scene import Position
 from mmrs_mavlink.plugin.context import VehicleContext, context_of
-
-AT_THE_SURFACE = -0.01
-"""Metres: the least that ArduSub tells from no height at all, as it counts in centimetres."""
-
-
-def height_in(context: VehicleContext, position: Position) -> float:
-    """Return a position's height in a mission, metres above home; below the surface for what dives."""
-    height = context.height(position)
-    return min(height, AT_THE_SURFACE) if context.dives else height
 
 
 def zero_of(context: VehicleContext, home: Position) -> Position:

@@ -12,11 +12,8 @@ from mmrs_core.scene import Name, Position
 from mmrs_mavlink.plugin.context import VehicleContext
 from mmrs_mavlink.plugin.headings import gimbal_of, on_gimbal, turns_to
 from mmrs_mavlink.plugin.plans import items as cmd
-from mmrs_mavlink.plugin.plans.items import Item
-from mmrs_mavlink.plugin.plans.px4 import unknown_in
+from mmrs_mavlink.plugin.plans.items import Item, unknown_in
 from mmrs_mavlink.plugin.runs import CORNER_SECONDS
-from mmrs_mavlink.plugin.vehicles import autopilot_of
-from mmrs_mavlink.profiles import PX4
 from mmrs_mavlink.wiring import Wired
 
 ORIGIN = (0.0, 0.0, 0.0)
@@ -75,7 +72,7 @@ class Flight:
         self._looking, self._gimbal = False, 0
         self._items: list[Item] = []
         self._down = context.profile.flies
-        self._px4 = autopilot_of(context.type) == PX4
+        self._dialect = context.profile.autopilot.missions
 
     def perform(self, move: Move, *, fluid: bool) -> None:
         """Add a move with its actions; `fluid`: the robot does not stop at its end."""
@@ -103,7 +100,7 @@ class Flight:
 
     def _act(self, action: Action, move: Move) -> None:
         wiring = self._context.wiring(action) if action.is_a(DEVICE_ACTION) else None
-        if isinstance(wiring, Wired) and not (self._px4 and unknown_in(wiring)):
+        if isinstance(wiring, Wired) and not unknown_in(wiring, self._dialect):
             for command, params in ((wiring.command, wiring.params), *wiring.more):
                 self._add(command, move, *params)
             took = f"no mission waits {wiring.seconds:g} s on the ground for its action '{action.name}'"
@@ -166,16 +163,17 @@ class Flight:
             self._turn(move, round(angle % 360.0, 1))
 
     def _stay(self, move: Move, seconds: float) -> None:
-        """Stay for a while; an ArduPilot keeps whole seconds and cuts off the rest: too short a stay."""
-        self._add(cmd.LOITER_TIME, move, seconds if self._px4 else float(ceil(seconds)), here=True)
+        """Stay for a while; where whole seconds are kept and the rest is cut off, not too short."""
+        seconds = float(ceil(seconds)) if self._dialect.whole_seconds else seconds
+        self._add(cmd.LOITER_TIME, move, seconds, here=True)
 
     def _turn(self, move: Move, angle: float) -> None:
-        """Turn on the spot; a PX4 does so only at a place that it goes to."""
-        if self._px4:
+        """Turn on the spot; some autopilots do so only at a place that they go to."""
+        if self._dialect.turns:
+            self._add(cmd.CONDITION_YAW, move, angle)
+        else:
             radius = TRAVEL_MARGINS[self._context.robot.travel_mode].radius
             self._add(cmd.WAYPOINT, move, CORNER_SECONDS, radius, 0.0, angle, here=True)
-        else:
-            self._add(cmd.CONDITION_YAW, move, angle)
 
     def _pace(self, move: Move) -> None:
         speed = self._context.speed(move)

@@ -12,9 +12,8 @@ from mmrs_core.behaviour.travel import TRAVEL_MARGINS
 from mmrs_core.contributions.targets import TracedStep
 from mmrs_core.scene import Position
 from mmrs_mavlink.plugin.context import VehicleContext
-from mmrs_mavlink.plugin.plans.diving import height_in
-from mmrs_mavlink.plugin.vehicles import autopilot_of
-from mmrs_mavlink.profiles import PX4
+from mmrs_mavlink.profiles.autopilot import Missions
+from mmrs_mavlink.wiring import Wired
 
 WAYPOINT, LOITER_UNLIMITED, LOITER_TIME, LAND, TAKE_OFF = 16, 17, 19, 21, 22
 CONDITION_YAW, CHANGE_SPEED, ROI_LOCATION, ROI_NONE = 115, 178, 195, 197
@@ -77,21 +76,20 @@ def rows_of(context: VehicleContext, sortie: Sequence[Item]) -> tuple[Row, ...]:
 def _row(number: int, item: Item, context: VehicleContext, degrees: Iterator[tuple[float, float]]) -> Row:
     place: tuple[float, ...] = ()
     if item.position is not None:
-        place = (*next(degrees), height_in(context, item.position))
+        place = (*next(degrees), context.profile.item_height(context.height(item.position)))
     filled = [0.0] * (PARAMETERS - len(place) - len(item.params))
-    if autopilot_of(context.type) == PX4:
-        filled = _as_px4_has_it(item, filled, context)
+    if context.profile.autopilot.missions.zero_counts:
+        filled = _left_open(item, filled, context)
     move = item.move
     step = TracedStep(f"item {number}", context.robot.id, move.id, move.task, move.rule)
     frame = RELATIVE if place else NO_FRAME
     return Row(number, frame, item.command, (*item.params, *filled, *place), step)
 
 
-def _as_px4_has_it(item: Item, filled: list[float], context: VehicleContext) -> list[float]:
-    """Return the parameters behind those that an item has, which mean something to a PX4 where they are 0.
+def _left_open(item: Item, filled: list[float], context: VehicleContext) -> list[float]:
+    """Return the parameters behind those that an item has, for an autopilot with which 0 counts.
 
-    A heading of 0 is north, and none at all is what the vehicle chooses; a radius of 0 is NAV_ACC_RAD,
-    which is 10 m at first.
+    A heading of 0 is north, and none at all is what the vehicle chooses; a radius of 0 is its default.
     """
     before = len(item.params)
     if item.command in HEADED and before <= HEADING:
@@ -99,3 +97,9 @@ def _as_px4_has_it(item: Item, filled: list[float], context: VehicleContext) -> 
     if item.command == WAYPOINT and before <= RADIUS:
         filled[RADIUS - before] = TRAVEL_MARGINS[context.robot.travel_mode].radius
     return filled
+
+
+def unknown_in(wiring: Wired, missions: Missions) -> tuple[int, ...]:
+    """Return the commands of a device action that no mission of an autopilot may have."""
+    commands = (wiring.command, *(command for command, _ in wiring.more))
+    return tuple(each for each in commands if missions.commands is not None and each not in missions.commands)

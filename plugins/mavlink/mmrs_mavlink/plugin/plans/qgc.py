@@ -13,8 +13,6 @@ from mmrs_mavlink.plugin.places import templates_of
 from mmrs_mavlink.plugin.plans.items import Row
 from mmrs_mavlink.plugin.plans.refusals import refusals
 from mmrs_mavlink.plugin.plans.surroundings import Mission, missions_of
-from mmrs_mavlink.plugin.vehicles import autopilot_of
-from mmrs_mavlink.profiles import AUTOPILOTS
 
 TEMPLATES = templates_of("qgc-plan")
 HEIGHT_ABOVE_HOME = 1
@@ -35,8 +33,8 @@ def files(input: TargetInput) -> Iterator[FileSpec]:
 def view_of(mission: Mission) -> dict[str, object]:
     """Return what the template sees; heights are above home."""
     return {
-        "firmware": AUTOPILOTS[autopilot_of(mission.context.type)],
-        "vehicle": mission.context.profile.mav_type,
+        "firmware": mission.context.profile.autopilot.number,
+        "vehicle": mission.context.profile.mav_types[0],
         "speed": _usual_speed(mission.context),
         "height_above_home": HEIGHT_ABOVE_HOME,
         "home": list(mission.home),

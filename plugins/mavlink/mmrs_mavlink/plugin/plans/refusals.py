@@ -17,9 +17,8 @@ from mmrs_mavlink.plugin.controllers import DRIVER
 from mmrs_mavlink.plugin.headings import on_gimbal
 from mmrs_mavlink.plugin.plans.diving import above_water
 from mmrs_mavlink.plugin.plans.flight import flown
-from mmrs_mavlink.plugin.plans.px4 import unknown_in
-from mmrs_mavlink.plugin.vehicles import autopilot_fault, autopilot_of
-from mmrs_mavlink.profiles import PX4
+from mmrs_mavlink.plugin.plans.items import unknown_in
+from mmrs_mavlink.plugin.vehicles import autopilot_fault
 from mmrs_mavlink.wiring import Sampled, Unwired
 
 
@@ -44,7 +43,7 @@ def _of_robot(robot: RobotProgram, input: TargetInput) -> Iterator[str]:
             f"robot '{robot.id}': the height of its home above mean sea level is not known; give altitudes"
             " above mean sea level, or the geoid separation"
         )
-    if fault := autopilot_fault(input.types.get(robot.type_name)):
+    if fault := autopilot_fault(input.types.get(robot.type_name), input.extensions):
         yield f"robot '{robot.id}': {fault}"
     for policy in _declared(robot, input):
         yield f"robot '{robot.id}': {_described(policy)}"
@@ -112,9 +111,9 @@ def _of_action(action: Action, move: Move, context: VehicleContext) -> Iterator[
         yield f"{context.label(move)}: action '{action.name}': {wiring.reason}"
     elif isinstance(wiring, Sampled):
         yield f"{context.label(move)}: action '{action.name}': a plan cannot record '{wiring.value}'"
-    elif autopilot_of(context.type) == PX4 and (unknown := unknown_in(wiring)):
-        shown = ", ".join(map(str, unknown))
-        yield f"{context.label(move)}: action '{action.name}': no mission of a PX4 has command {shown}"
+    elif unknown := unknown_in(wiring, context.profile.autopilot.missions):
+        shown, whose = ", ".join(map(str, unknown)), context.profile.autopilot.title
+        yield f"{context.label(move)}: action '{action.name}': no mission of a {whose} has command {shown}"
 
 
 def _of_heading(move: Move, context: VehicleContext) -> Iterator[str]:

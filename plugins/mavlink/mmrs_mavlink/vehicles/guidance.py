@@ -1,17 +1,16 @@
-"""What differs between autopilots when they are steered, and ArduPilot's way of it."""
+"""How autopilots are steered, step by step: what differs between them, and ArduPilot's guidance."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import Protocol
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from ..links.link import Link, Message
+from ..profiles import imported, modes
 from ..program import Geographic, Place
 from ..services.commands import command
-from ..services.items import Item
-from . import modes
+from .telemetry import Telemetry
 
 POSITION_AND_YAW = (
     mavlink.POSITION_TARGET_TYPEMASK_VX_IGNORE
@@ -24,8 +23,8 @@ POSITION_AND_YAW = (
 )
 
 
-class AutopilotProfile(Protocol):
-    """How one sort of autopilot is steered.
+class Guidance(Protocol):
+    """How an autopilot is steered; it is made from a link and its telemetry.
 
     Attributes:
         climbs_in: the mode that take-off is asked for in.
@@ -53,20 +52,8 @@ class AutopilotProfile(Protocol):
         """Return the numbers of the modes that a take-off may pass through."""
         ...
 
-    def paces(self) -> bool:
-        """Return whether the vehicle obeys a commanded speed when it is steered."""
-        ...
-
     def level(self, height: float) -> tuple[int, float]:
         """Return the frame in which it takes commands at places, and a height above home in it, metres."""
-        ...
-
-    def mission(self, items: Sequence[Item]) -> Sequence[Item]:
-        """Return a mission that begins with home as this autopilot takes it."""
-        ...
-
-    def number(self, seq: int) -> int:
-        """Return the vehicle's number of an item of a mission that begins with home as item 0."""
         ...
 
     def select(self, seq: int) -> None:
@@ -78,12 +65,12 @@ class AutopilotProfile(Protocol):
         ...
 
 
-class ArduPilot:
-    """ArduPilot: one target at a time, item 0 is home, heights count from home."""
+class ArduPilotGuidance:
+    """ArduPilot: one target at a time, heights count from home."""
 
     climbs_in = modes.GUIDED
 
-    def __init__(self, link: Link) -> None:
+    def __init__(self, link: Link, telemetry: Telemetry) -> None:
         """Steer the vehicle at a link."""
         self._link = link
 
@@ -106,21 +93,9 @@ class ArduPilot:
         """Return none: it stays in GUIDED."""
         return ()
 
-    def paces(self) -> bool:
-        """Return that it obeys DO_CHANGE_SPEED."""
-        return True
-
     def level(self, height: float) -> tuple[int, float]:
         """Return the frame of heights above home, and the height itself."""
         return mavlink.MAV_FRAME_GLOBAL_RELATIVE_ALT, height
-
-    def mission(self, items: Sequence[Item]) -> Sequence[Item]:
-        """Return the items as they are."""
-        return items
-
-    def number(self, seq: int) -> int:
-        """Return the same number."""
-        return seq
 
     def select(self, seq: int) -> None:
         """Send DO_SET_MISSION_CURRENT."""
@@ -129,6 +104,12 @@ class ArduPilot:
     def enable_fence(self) -> None:
         """Send DO_FENCE_ENABLE."""
         command(self._link, mavlink.MAV_CMD_DO_FENCE_ENABLE, 1)
+
+
+def guidance_of(link: Link, telemetry: Telemetry) -> Guidance:
+    """Return the guidance of the vehicle at a link, once its heartbeat has told what it is."""
+    made: Guidance = imported(link.profile.autopilot.guidance)(link, telemetry)
+    return made
 
 
 def target(link: Link, place: Place, yaw: float, frame: int, sea_level: float = 0.0) -> Message:
