@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from math import cos, pi, radians, sin, sqrt
+from typing import NamedTuple
 
 import numpy as np
 
@@ -23,8 +24,7 @@ SLOWING = 0.4
 """Part of yaw moment that braking a turn is planned with."""
 
 
-@dataclass(frozen=True, slots=True)
-class Motion:
+class Motion(NamedTuple):
     """The state of the vehicle as the sensor controller says it: metres, degrees, and these per second."""
 
     north: float = 0.0

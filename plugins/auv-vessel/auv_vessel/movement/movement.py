@@ -215,24 +215,24 @@ class Movement:
         return self._codec.encode("Progress", Goal=number, State=state, Distance=within)
 
     def _hear_state(self, found: Received, now: float) -> None:
-        self.motion = replace(
-            self.motion, **{name.lower(): float(value) for name, value in found.values.items()}
+        self.motion = self.motion._replace(
+            **{name.lower(): float(value) for name, value in found.values.items()}
         )
 
     def _hear_depth(self, found: Received, now: float) -> None:
         values = found.values
         depth, uncertainty = float(values["Depth"]), float(values["Uncertainty"])
-        self.motion = replace(self.motion, depth=depth, uncertainty=uncertainty)
+        self.motion = self.motion._replace(depth=depth, uncertainty=uncertainty)
         if values["Trusted"]:
             self._trusted_at = now
 
     def _hear_turning(self, found: Received, now: float) -> None:
         roll, pitch, yaw = (float(found.values[name]) for name in ("Roll", "Pitch", "Yaw"))
-        self.motion = replace(self.motion, rolling=roll, pitching=pitch, yawing=yaw)
+        self.motion = self.motion._replace(rolling=roll, pitching=pitch, yawing=yaw)
 
     def _hear_current(self, found: Received, now: float) -> None:
         north, east = float(found.values["North"]), float(found.values["East"])
-        self.motion = replace(self.motion, current_north=north, current_east=east)
+        self.motion = self.motion._replace(current_north=north, current_east=east)
 
     def _hear_reach(self, found: Received, now: float) -> None:
         self._loops.served = tuple(bool(found.values[degree]) for degree in DEGREES)

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Mapping
-from dataclasses import dataclass
 from math import isfinite
-from typing import NoReturn, TypeAlias
+from typing import NamedTuple, NoReturn, TypeAlias
 
 from auv_vessel.sheet import Sheet
 from auv_vessel.wire.catalogue import CHECK, SEQUENCE, Layout, Message, Slot, layout_of, messages_of
@@ -15,8 +14,7 @@ from auv_vessel.wire.frame import Frame, check_of
 Value: TypeAlias = float | str | bool
 
 
-@dataclass(frozen=True, slots=True)
-class Received:
+class Received(NamedTuple):
     """What a frame says.
 
     Attributes:

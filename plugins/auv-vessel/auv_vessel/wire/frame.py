@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from functools import lru_cache
+from typing import NamedTuple
 
 
-@dataclass(frozen=True, slots=True)
-class Frame:
+class Frame(NamedTuple):
     """A data frame as it goes over the bus.
 
     Attributes:
@@ -31,6 +31,7 @@ def _entry(byte: int) -> int:
 _TABLE = bytes(_entry(byte) for byte in range(256))
 
 
+@lru_cache(maxsize=64)  # each node that receives a frame asks
 def check_of(id: int, data: bytes) -> int:
     """Return the check of a message: over its identifier, low byte first, and the bytes before the check."""
     crc = _TABLE[_TABLE[START ^ (id & 0xFF)] ^ (id >> 8)]
