@@ -10,6 +10,7 @@ from pathlib import Path
 from zipfile import ZipFile
 
 import pytest
+from built_wheels import build, install
 
 from mmrs_core.generation.wheels import wheel_of
 
@@ -40,14 +41,10 @@ print(json.dumps({
 @pytest.fixture(scope="module")
 def site(tmp_path_factory):
     """Return a folder in which the wheels of the core and of every plug-in are installed."""
-    wheels, site = tmp_path_factory.mktemp("wheels"), tmp_path_factory.mktemp("site")
-    pip = [sys.executable, "-m", "pip", "--disable-pip-version-check", "--quiet"]
-    offline = ["--no-deps", "--no-build-isolation", "--no-index"]
-    for project in PROJECTS:
-        subprocess.run([*pip, "wheel", *offline, "--wheel-dir", wheels, project], check=True)
-    built = sorted(wheels.glob("*.whl"))
+    folder = tmp_path_factory.mktemp("built")
+    built = build(PROJECTS, folder / "wheels")
     assert len(built) == len(PROJECTS)
-    subprocess.run([*pip, "install", "--no-deps", "--no-index", "--target", site, *built], check=True)
+    install(built, site := folder / "site")
     return site
 
 

@@ -9,6 +9,7 @@ import sys
 from pathlib import Path
 
 import pytest
+from built_wheels import build, install
 from warm_python import python
 
 pytestmark = pytest.mark.long
@@ -60,10 +61,8 @@ def place(tmp_path_factory):
 @pytest.fixture(scope="module")
 def site(place):
     """A folder with all of them installed, beside the installed distributions."""
-    made = place / "site"
-    options = ("--quiet", "--no-deps", "--no-build-isolation", "--no-index", "--disable-pip-version-check")
-    folders = [place / f"mmrs-{name}" for name in (*KINDS.values(), *PARTS.values(), WHOLE)]
-    run(sys.executable, "-m", "pip", "install", *options, "--target", made, *folders, cwd=place)
+    others = [place / f"mmrs-{name}" for name in (*KINDS.values(), *PARTS.values())]
+    install([place / f"mmrs-{WHOLE}", *build(others, place / "wheels")], made := place / "site")
     return made
 
 
@@ -141,12 +140,13 @@ def test_all_three_serve_one_mission_together(place, site, tmp_path):
     assert [kind for kind in KINDS if f'rule="{snake(kind)}"' not in planned] == []
 
 
-@pytest.mark.parametrize("name", [*KINDS.values(), *PARTS.values(), WHOLE])
-def test_new_plugins_are_formatted_and_typed_as_strictly_as_the_core(name, place):
-    folder, tool = place / f"mmrs-{name}", (sys.executable, "-m")
-    run(*tool, "ruff", "check", "--no-cache", ".", cwd=folder)
-    run(*tool, "ruff", "format", "--no-cache", "--check", ".", cwd=folder)
-    run(*tool, "mypy", "--cache-dir", place / "mypy", f"mmrs_{name.replace('-', '_')}", cwd=folder)
+def test_new_plugins_are_formatted_and_typed_as_strictly_as_the_core(place):
+    folders = [place / f"mmrs-{name}" for name in (*KINDS.values(), *PARTS.values(), WHOLE)]
+    ruff, mypy = (sys.executable, "-m", "ruff"), (sys.executable, "-m", "mypy")
+    run(*ruff, "check", "--no-cache", *folders, cwd=place)
+    run(*ruff, "format", "--no-cache", "--check", *folders, cwd=place)
+    settings = ("--config-file", folders[-1] / "pyproject.toml", "--cache-dir", place / "mypy")
+    run(*mypy, *settings, *(package for each in folders for package in each.glob("mmrs_*")), cwd=place)
 
 
 def test_the_readme_of_a_new_plugin_shows_the_task_of_its_example(place):
