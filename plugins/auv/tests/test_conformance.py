@@ -2,6 +2,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+import pytest
 from dives import dive, diver, swim
 from mmrs_auv import plugin
 from mmrs_auv.names import AUV_MOVEMENT, PIPELINE
@@ -97,3 +98,16 @@ class TestVehicles(VehicleConformance):
     type = diver()
     options = {"can-sim": {"noise": "no"}}
     still = {"can-sim": (10.0, 0.05)}  # a body in water bobs until it has come to rest
+
+    @pytest.mark.parametrize(
+        ("share", "response"),
+        [
+            pytest.param(
+                share, response, marks=() if share == 0.3 or response == "HOLD" else pytest.mark.thorough
+            )
+            for share in (0.0, 0.3, 1.0)
+            for response in ("HOLD", "RETURN", "LAND", "SURFACE", "STOP_THRUST")
+        ],
+    )
+    def test_it_stops_from_any_state_and_stays_there(self, vehicle, response, share):
+        super().test_it_stops_from_any_state_and_stays_there(vehicle, response, share)
