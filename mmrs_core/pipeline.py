@@ -394,5 +394,5 @@ def _named(sort: str, name: str, contributed: Mapping[str, Contributed]) -> Cont
 
     if name not in contributed:
         known, guess = ", ".join(sorted(contributed)), nearest(name, contributed)
-        raise UsageError(f"{sort} '{name}': not known; there are {known}{guess and '; ' + guess}")
+        raise UsageError(f"{sort} '{name}': unknown; there are {known}{guess and '; ' + guess}")
     return contributed[name]

@@ -121,7 +121,7 @@ def _rounded(margin: float, allowed: float) -> float:
 def _judge_recharge(input: CheckInput, robot: RobotProgram) -> Iterator[Verdict]:
     moves = [index for index in sorted(reachable_moves(robot)) if robot.moves[index].is_a(RECHARGE)]
     if not moves:
-        yield not_checked(RECHARGE_NAME, robot, "it never recharges")
+        yield not_checked(RECHARGE_NAME, robot, "no Recharge move")
         return
     times = [battery.recharge_time for battery in type_of(input, robot).batteries]
     known = [time for time in times if time is not None]

@@ -41,7 +41,7 @@ NAME = "separation"
 def _run(input: CheckInput) -> Iterator[Verdict]:
     least = input.program.minimum_separation
     if least is None:
-        yield Verdict(NAME, Status.NOT_CHECKED, message="no minimum separation is asked for")
+        yield Verdict(NAME, Status.NOT_CHECKED, message="the mission sets no minimum separation")
         return
     if input.program.idle:
         everybody = (*input.program.robots, *input.program.idle)

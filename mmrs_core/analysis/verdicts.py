@@ -177,4 +177,4 @@ def refuses(verdicts: Iterable[Verdict], accepted_unknowns: Collection[str] = ()
 
 
 def _silent(check: Check) -> Verdict:
-    return Verdict(check.name, Status.NOT_CHECKED, message="nothing in the behaviour has this property")
+    return Verdict(check.name, Status.NOT_CHECKED, message="not applicable to this behaviour")

@@ -28,7 +28,9 @@ def read_log(path: Path, *, partial: bool = False) -> tuple[StepRecord, ...]:
     try:
         data = path.read_bytes()
     except OSError as error:
-        raise UnreadableError(f"{path}: cannot be read as a log: {error.strerror or error}") from error
+        raise UnreadableError(
+            f"{path}: cannot be read as a log: {(error.strerror or str(error)).lower()}"
+        ) from error
     lines = whole_lines(data) if partial else data.removesuffix(b"\n").split(b"\n") if data else []
     return _records(
         [_text(line, f"{path}:{number}") for number, line in enumerate(lines, start=1)], str(path)
@@ -88,7 +90,9 @@ def recover_log(path: Path) -> tuple[tuple[StepRecord, ...], tuple[Damage, ...]]
     try:
         lines = path.read_bytes().splitlines()
     except OSError as error:
-        raise UnreadableError(f"{path}: cannot be read as a log: {error.strerror or error}") from error
+        raise UnreadableError(
+            f"{path}: cannot be read as a log: {(error.strerror or str(error)).lower()}"
+        ) from error
     records: list[StepRecord] = []
     damages: list[Damage] = []
     for number, line in enumerate(lines, start=1):

@@ -128,7 +128,7 @@ def _add(app: typer.Typer, command: Command, entry: Any) -> None:
     if not isinstance(entry, typer.Typer):
         app.command(command.name)(entry)
     elif entry.registered_callback or len(entry.registered_commands) != 1:
-        app.add_typer(entry, name=command.name, help=command.help)
+        app.add_typer(entry, name=command.name)
     else:
         only = entry.registered_commands[0]
         only.name = command.name

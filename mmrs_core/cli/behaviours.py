@@ -22,6 +22,7 @@ from mmrs_core.grounding.scenes import (
 )
 from mmrs_core.languages import behaviour as bl
 from mmrs_core.languages import context as contexts
+from mmrs_core.languages import mission as missions
 from mmrs_core.languages import robot as robots_language
 from mmrs_core.languages.codes import explained, refusal
 from mmrs_core.languages.conformance import check_conformance
@@ -146,6 +147,14 @@ def _as_files(file: Path, models: Sequence[Model], place: Path | None = None) ->
     )
 
 
+def _instead_of_behaviour(files: BehaviourFiles) -> str:
+    """Return what is wrong with a file that does not contain exactly one behaviour."""
+    roots = files.models[0].roots
+    if len(roots) == 1 and isinstance(roots[0], missions.Mission):
+        return f"contains a mission, not a behaviour; 'mmrs plan {files.file}' makes one"
+    return "expected one behaviour in this file"
+
+
 def faults_of(session: Session, files: BehaviourFiles) -> tuple[Diagnostic, ...]:
     """Return every fault of the files: of reading, of their metamodels, and of the constraints.
 
@@ -158,7 +167,7 @@ def faults_of(session: Session, files: BehaviourFiles) -> tuple[Diagnostic, ...]
     for model in files.models:
         faults += [*model.diagnostics, *check_conformance(model, contributions.languages)]
     if files.behaviour is None or len(files.models[0].roots) != 1:
-        raise InvalidModelError(f"{files.file}: expected one behaviour in this file", in_order(faults))
+        raise InvalidModelError(f"{files.file}: {_instead_of_behaviour(files)}", in_order(faults))
     roots = [root for model in files.models for root in model.roots]
     places = [root for root in roots if isinstance(root, contexts.Context)]
     if files.place is not None and len(places) != 1:

@@ -39,7 +39,6 @@ if TYPE_CHECKING:
 
 app = typer.Typer(
     rich_markup_mode=None,
-    help="Synchronise slots between machines.",
     no_args_is_help=True,
     add_completion=False,
 )
@@ -70,7 +69,11 @@ _HOLDER = re.compile(r"[A-Za-z0-9][A-Za-z0-9_.-]*")
 
 @app.callback()
 def bus() -> None:
-    """Synchronise slots between machines."""
+    """Synchronise slots between machines.
+
+    A slot is a named flag of a robot. Robots coordinate by slots: one robot waits until its slot is set,
+    another robot sets it. Across machines, the bus (Zenoh) transmits slots; 'mmrs run --bus' joins it.
+    """
 
 
 @app.command("keys")
@@ -238,7 +241,9 @@ def state(
     else:
         _say_states(shown, missing)
         if not shown and not missing:
-            tell(f"no robot answered for mission {mission!r}, run {run!r}")
+            tell(
+                f"no robot answered for mission {mission!r}, run {run!r}; check --connect, --config and --run"
+            )
         for why in reasons(endpoints) if missing or not shown else ():
             tell(why)
     return LinkLostError.exit_code if missing or not shown else 0

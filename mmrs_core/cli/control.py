@@ -94,8 +94,8 @@ def _replies(
 
 def _check(order: str, question: str, says: str) -> None:
     if order not in ORDERS:
-        raise typer.BadParameter(f"{order}: is none of {', '.join(ORDERS)}")
+        raise typer.BadParameter(f"{order}: unknown command; expected one of {', '.join(ORDERS)}")
     if order == ANSWER and (not question or says not in ("yes", "no")):
         raise typer.BadParameter("answer: needs --question QUESTION and --says yes or --says no")
     if order != ANSWER and (question or says):
-        raise typer.BadParameter(f"{order}: --question and --says go with answer only")
+        raise typer.BadParameter(f"{order}: --question and --says are for the command answer")

@@ -62,7 +62,7 @@ def example_folder(name: str) -> Path:
     known = examples()
     known |= {also: folder for folder in known.values() if (also := also_called(folder))}
     if name not in known:
-        raise UnreadableError(f"{name}: no such example; there are {', '.join(known)}")
+        raise UnreadableError(f"{name}: unknown example; there are {', '.join(known)}")
     return known[name]
 
 

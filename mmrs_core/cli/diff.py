@@ -70,7 +70,7 @@ def _metamodels(call: typer.Context, before: Path, after: Path, json: bool) -> i
     """Do what ``mmrs metamodel diff`` does."""
     if not (is_metamodel(before) and is_metamodel(after)):
         one, other = (before, after) if is_metamodel(before) else (after, before)
-        raise UnreadableError(f"{one}: a metamodel, which is not compared with the model {other}")
+        raise UnreadableError(f"{one}: is a metamodel, {other} is a model; name two of a kind")
     return between_metamodels(call, str(before), str(after), json)
 
 
@@ -80,9 +80,12 @@ def _counts(counts: Mapping[str, int]) -> Mapping[str, int]:
 
 def _pairs(before: Path, after: Path) -> Iterator[Pair]:
     """Yield the files to be compared; those of folders by their names, whatever their endings."""
+    for path in (before, after):
+        if not path.exists():
+            raise UnreadableError(f"{path}: no such file or folder")
     if before.is_dir() != after.is_dir():
         folder, file = (before, after) if before.is_dir() else (after, before)
-        raise UnreadableError(f"{folder}: a folder, which is not compared with the file {file}")
+        raise UnreadableError(f"{folder}: is a folder, {file} is a file; name two files or two folders")
     if not before.is_dir():
         yield "", before, after
         return

@@ -62,7 +62,7 @@ def explain(
         return _places(Path(where), robot, move, task, json)
     file, _, line = where.rpartition(":")
     if not (file and line.isdecimal() and len(line) < 10):
-        raise typer.BadParameter(f"{where}: is not FILE:LINE; say --robot, --move or --task for a folder")
+        raise typer.BadParameter(f"{where}: expected FILE:LINE; for a folder, add --robot, --move or --task")
     return _line(Path(file), int(line), json)
 
 

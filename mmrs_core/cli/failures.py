@@ -84,8 +84,9 @@ def failure_of(error: Exception) -> Failure:
         case InvalidModelError():
             return Failure(error.exit_code, str(error), (), error.diagnostics)
         case InfeasibleError():
-            reasons = tuple(reason for reason in error.reasons if reason != str(error))
-            return Failure(error.exit_code, str(error), reasons)
+            if len(error.reasons) == 1 and error.reasons[0] in str(error):
+                return Failure(error.exit_code, str(error))
+            return Failure(error.exit_code, _without_list(error, error.reasons), error.reasons)
         case UnreadableError():
             from mmrs_core.languages.codes import refusal
 
@@ -95,7 +96,7 @@ def failure_of(error: Exception) -> Failure:
 
             return Failure(error.exit_code, str(error), tuple(map(verdict_line, error.verdicts)))
         case UnsupportedError():
-            return Failure(error.exit_code, _without_list(error), error.elements)
+            return Failure(error.exit_code, _without_list(error, error.elements), error.elements)
         case InternalError():
             return Failure(error.exit_code, *_unexpected(error))
         case PluginError():
@@ -110,9 +111,9 @@ def failure_of(error: Exception) -> Failure:
             return Failure(MODEL_INVALID, *_unexpected(error))
 
 
-def _without_list(error: UnsupportedError) -> str:
-    """Return the message up to where it begins to list the elements, which follow in full."""
-    first = error.elements[0] if error.elements else ""
+def _without_list(error: MmrsError, listed: Sequence[str]) -> str:
+    """Return the message up to where it begins to list what follows in full."""
+    first = listed[0] if listed else ""
     words = str(error)
     return words.partition(first)[0].rstrip(": ") or words if first else words
 
@@ -120,7 +121,7 @@ def _without_list(error: UnsupportedError) -> str:
 def _usage(error: typer.TyperException) -> str:
     if error.format_message().startswith(_HELP):
         return error.format_message()
-    message = error.format_message().rstrip(".")
+    message = error.format_message().rstrip(".").removeprefix("Invalid value: ")
     command = getattr(getattr(error, "ctx", None), "command_path", "")
     where = f"{'' if message.endswith('?') else ';'} try '{command} --help'" if command else ""
     return message[:1].lower() + message[1:] + where

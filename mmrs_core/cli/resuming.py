@@ -31,7 +31,10 @@ def resumed_steps(program: Program, wanted: RunOptions, here: tuple[str, ...]) -
     _refuse_others(program, wanted)
     if not wanted.resume:
         if found:
-            raise typer.BadParameter(f"--log {wanted.folder}: holds logs already; --resume continues them")
+            raise typer.BadParameter(
+                f"--log {wanted.folder}: already contains logs; choose another folder,"
+                " or resume that run with --resume"
+            )
         return ()
     if not found:
         _refuse_unknown(wanted.folder, here)

@@ -55,7 +55,7 @@ def robots_of(program: Program, wanted: tuple[str, ...]) -> tuple[str, ...]:
     known = tuple(robot.id for robot in program.robots)
     for robot in wanted:
         if robot not in known:
-            raise typer.BadParameter(f"--robot {robot}: not in the behaviour, which has {', '.join(known)}")
+            raise typer.BadParameter(f"--robot {robot}: unknown robot; the behaviour has {', '.join(known)}")
     return tuple(robot for robot in known if not wanted or robot in wanted)
 
 
@@ -66,7 +66,7 @@ def stop_response(word: str) -> str:
         typer.BadParameter: if there is none of that name.
     """
     if word not in ON_STOP:
-        raise typer.BadParameter(f"--on-stop {word}: is none of {', '.join(ON_STOP)}")
+        raise typer.BadParameter(f"--on-stop {word}: expected one of {', '.join(ON_STOP)}")
     return ON_STOP[word]
 
 
@@ -112,11 +112,15 @@ def links_of(given: tuple[str, ...], robots: tuple[str, ...]) -> dict[str, str]:
         named = max((each for each in robots if text.startswith(f"{each}=")), key=len, default="")
         robot, separator, url = (named, "=", text[len(named) + 1 :]) if named else text.partition("=")
         if not separator and len(robots) > 1:
-            raise typer.BadParameter(f"--connect {text}: which robot? say ROBOT={text}")
+            raise typer.BadParameter(
+                f"--connect {text}: several robots; name one: --connect {robots[0]}={text}"
+            )
         if separator and robot not in robots:
-            raise typer.BadParameter(f"--connect {text}: there is no robot '{robot}' here")
+            raise typer.BadParameter(
+                f"--connect {text}: unknown robot '{robot}'; the robots are {', '.join(robots)}"
+            )
         name, reached = (robot, url) if separator else (robots[0], text)
         if name in links:
-            raise typer.BadParameter(f"--connect {text}: '{name}' is reached by {links[name]} already")
+            raise typer.BadParameter(f"--connect {text}: '{name}' already has the connection {links[name]}")
         links[name] = reached
     return links

@@ -41,7 +41,7 @@ def answers(given: Sequence[str] | None) -> Mapping[str, bool]:
     for each in given or ():
         identifier, _, answer = each.rpartition("=")
         if not identifier or answer.lower() not in _HOLDS:
-            raise typer.BadParameter(f"'{each}' is not written as CONDITION=yes or CONDITION=no")
+            raise typer.BadParameter(f"--assume {each}: expected CONDITION=yes or CONDITION=no")
         found[identifier] = _HOLDS[answer.lower()]
     return found
 
@@ -84,7 +84,7 @@ def options_of(given: Sequence[str] | None) -> Mapping[str, str]:
     pairs = [each.partition("=") for each in given or ()]
     for key, sign, _ in pairs:
         if not key or not sign:
-            raise typer.BadParameter(f"'{key}{sign}' is not written as KEY=VALUE")
+            raise typer.BadParameter(f"--backend-option {key}{sign}: expected KEY=VALUE")
     return {key: value for key, _, value in pairs}
 
 

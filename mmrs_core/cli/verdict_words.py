@@ -9,6 +9,7 @@ from mmrs_core.pictures.figures import quantity
 
 _RANK = {Status.VIOLATED: 0, Status.UNKNOWN: 1, Status.NOT_CHECKED: 2, Status.SAFE: 3}
 
+_MOST_ROBOTS = 3
 _FOR_UNKNOWN = "give what is missing, or name the property in the mission's acceptedUnknowns"
 
 
@@ -69,12 +70,22 @@ def _by_property(verdicts: Iterable[Verdict]) -> dict[str, list[Verdict]]:
 _SPELT_OUT = (Status.VIOLATED, Status.UNKNOWN)
 
 
+def _reasons(found: Sequence[Verdict]) -> str:
+    """Return the first reason with the robots that it holds for, and how many further reasons there are."""
+    robots: dict[str, list[str]] = {}
+    for each in found:
+        robots.setdefault(each.message.removeprefix(f"{each.robot}: "), []).append(each.robot)
+    reason, whose = next(iter(robots.items()))
+    named = ", ".join(filter(None, whose[:_MOST_ROBOTS]))
+    others = f" and {len(whose) - _MOST_ROBOTS} more" if len(whose) > _MOST_ROBOTS else ""
+    more = f", and {len(robots) - 1} more" if len(robots) > 1 else ""
+    return f"{reason or 'no reason given'}{f' ({named}{others})' if named else ''}{more}"
+
+
 def _summary(found: Sequence[Verdict]) -> str:
     worst = min((each.status for each in found), key=_RANK.__getitem__)
     if worst is Status.NOT_CHECKED:
-        reasons = dict.fromkeys(each.message for each in found if each.status is worst and each.message)
-        others = f", and {len(reasons) - 1} more" if len(reasons) > 1 else ""
-        told = f"{worst.value}: {next(iter(reasons), 'no reason given')}{others}"
+        told = f"{worst.value}: {_reasons([each for each in found if each.status is worst])}"
         checked = [each for each in found if each.status is Status.SAFE]
         return f"{_summary(checked)}; {told}" if checked else told
     margins = [(each.margin, each) for each in found if each.margin is not None and each.status is worst]

@@ -53,7 +53,7 @@ def explain(file: Path, line: int) -> Explanation:
         UnreadableError: there is no such file or line, or no manifest that lists the file.
     """
     if not file.is_file():
-        raise UnreadableError(f"{file}: there is no such file")
+        raise UnreadableError(f"{file}: no such file")
     lines = len(file.read_bytes().splitlines())
     if not 1 <= line <= lines:
         raise UnreadableError(f"{file}: has no line {line}; it has {lines}")

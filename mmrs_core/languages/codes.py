@@ -190,8 +190,8 @@ CODES: Mapping[str, Advice] = MappingProxyType(
         ),
         "FIL001": Advice(
             "File not found",
-            "a file of that name",
-            "correct the path, or add the file",
+            "an existing file",
+            "correct the path",
         ),
         "FIL002": Advice(
             "File not readable",

@@ -72,7 +72,7 @@ def simulate(
         UsageError: if the backend's time is not simulated, or it does not know an option.
     """
     if not backend.simulated:
-        raise UsageError(f"backend '{backend.name}': does not simulate, it drives robots")
+        raise UsageError(f"backend '{backend.name}': runs in real time; use it with 'mmrs run'")
     given = inputs_of(
         program,
         types=types,
@@ -191,9 +191,10 @@ def refuse_unasked(program: Program, identifiers: Collection[str]) -> None:
     asked = asked_by(program)
     for identifier in identifiers:
         if identifier not in asked:
-            known, guess = ", ".join(map(repr, asked)) or "none at all", nearest(identifier, asked)
+            known, guess = ", ".join(map(repr, asked)) or "none", nearest(identifier, asked)
             raise UsageError(
-                f"no choice asks for condition {identifier!r}; asked for: {known}{guess and '; ' + guess}"
+                f"condition {identifier!r}: no Choice uses it; conditions in use: {known}"
+                f"{guess and '; ' + guess}"
             )
 
 

@@ -67,9 +67,7 @@ class SimulatedRobot(Vehicle):
             UnreadableError: if that is no such file.
         """
         for option in sorted(set(given.options) - {SURROUNDINGS}):
-            raise UsageError(
-                f"option '{option}': the simulation has none of that name: it has no links, disk or clock"
-            )
+            raise UsageError(f"option '{option}': unknown; the simulation has no links, disk or clock")
         surroundings = given.options.get(SURROUNDINGS)
         self._sights = () if surroundings is None else sights_in(Path(surroundings))
         self._places: dict[str, Position] = {}

@@ -36,7 +36,10 @@ def listed(names: Iterable[str]) -> str:
 
 def guessed(known: str, name: str, names: Iterable[str]) -> str:
     """Return a hint of what is known and of the name that a misspelt one is nearest to."""
-    guess = nearest(name, names)
+    choices = set(names)
+    guess = nearest(name, choices)
+    if guess and len(choices) == 1:
+        return guess
     return f"{known}; {guess}" if guess else known
 
 

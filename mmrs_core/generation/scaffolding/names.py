@@ -60,7 +60,7 @@ def plugin_names(name: str, taken: Collection[str] = (), codes: Collection[str] 
     """Return the names of a plug-in.
 
     Args:
-        name: in small ASCII letters, digits and hyphens.
+        name: in lower-case ASCII letters, digits and hyphens.
         taken: names of installed plug-ins, metamodels and rules.
         codes: of installed constraints.
 
@@ -96,7 +96,7 @@ def _refuse(name: str, taken: Collection[str]) -> None:
         hint = re.sub(r"[^a-z0-9]+", "-", name.lower()).strip("-0123456789")[:LONGEST].strip("-")
         example = hint if _NAME.fullmatch(hint) else "roof-wash"
         raise ValueError(
-            f"{name!r}: expected a name in small letters, digits and hyphens, such as {example!r}"
+            f"{name!r}: expected a name in lower-case letters, digits and hyphens, such as {example!r}"
         )
     if len(name) > LONGEST:
         raise ValueError(f"{name!r}: has {len(name)} characters, at most {LONGEST} are allowed")

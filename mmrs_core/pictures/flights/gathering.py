@@ -113,7 +113,7 @@ def read_flight(
     readable = not damages
     boxes = black_boxes(paths)
     if not steps and not boxes:
-        raise UnreadableError(f"{', '.join(map(str, paths))}: neither a log nor a black box is here")
+        raise UnreadableError(f"{', '.join(map(str, paths))}: contains no log and no black box")
     contents = _contents(boxes, damages)
     known = {robot.id for robot in program.robots}
     told = {*steps, *contents}

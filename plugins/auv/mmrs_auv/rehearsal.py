@@ -145,7 +145,8 @@ class VehicleProcesses:
         line = hub.stdout.readline()
         if not line.startswith("hub at "):
             assert hub.stderr is not None
-            raise LinkLostError(f"no hub at port {port}: {hub.stderr.read().strip()}")
+            last = hub.stderr.read().strip().rpartition("\n")[2]
+            raise LinkLostError(last.removeprefix("mmrs: ") or f"no hub at port {port}")
         return line.split()[2].rpartition(":")[2].rstrip(";")
 
     def _start(self, part: str, *more: str) -> None:

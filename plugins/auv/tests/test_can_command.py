@@ -288,7 +288,7 @@ def test_a_log_that_is_full_is_told_once_and_the_hub_goes_on() -> None:
 def test_a_port_that_is_taken_is_told(capsys: pytest.CaptureFixture[str]) -> None:
     with running() as hub:
         assert mmrs(["can", "hub", "--port", str(hub.port)]) == 5
-        assert f"no hub at 127.0.0.1:{hub.port}" in capsys.readouterr().err
+        assert f"no hub at 127.0.0.1:{hub.port}: address already in use; choose" in capsys.readouterr().err
 
 
 def test_it_ends_by_itself_and_warns_where_others_can_reach_it(capsys: pytest.CaptureFixture[str]) -> None:

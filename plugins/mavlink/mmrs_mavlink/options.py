@@ -125,7 +125,7 @@ def _links(
             parser.error(f"--connect {text}: several robots; name one: --connect {robots[0].id}={text}")
         name = robot or robots[0].id
         if name in given:
-            parser.error(f"--connect {text}: {name!r} is reached by {given[name]} already")
+            parser.error(f"--connect {text}: {name!r} already has the connection {given[name]}")
         given[name] = reached
         links[name] = _link(parser, reached)
     taken = [each for each in links.values() if each[1]]

@@ -167,9 +167,12 @@ class UserFunctions:
         if {name for robot in robots for name in robot.fleet} - {robot.id for robot in robots}:
             return []
         asked = conditions_of(robots)
-        known = ", ".join(map(repr, sorted(asked))) or "none at all"
+        known = ", ".join(map(repr, sorted(asked))) or "none"
         unasked = sorted(set(self.conditions) - asked)
-        return [f"conditions.py: no choice asks for {name!r}; asked for: {known}" for name in unasked]
+        return [
+            f"conditions.py: condition {name!r}: no Choice uses it; conditions in use: {known}"
+            for name in unasked
+        ]
 
     def _undecided(self, name: str) -> str:
         if self.conditions.get(name) is undecided:

@@ -176,7 +176,7 @@ def test_nothing_to_report_on_is_an_error(mmrs, project, tmp_path):
     (tmp_path / "empty").mkdir()
     code, _, err = mmrs("report", project, tmp_path / "empty")
     assert code == 3
-    assert "neither a log nor a black box is here" in err
+    assert "contains no log and no black box" in err
 
 
 def test_a_preview_of_logs_shows_what_was_flown_over_what_was_planned(mmrs, project):

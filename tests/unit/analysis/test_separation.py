@@ -21,7 +21,7 @@ def crossing(wait=None, before=0.0):
 
 def test_nothing_is_checked_unless_it_is_asked_for():
     verdict = finding("separation", given(*crossing()))
-    assert (verdict.status, verdict.message) == (Status.NOT_CHECKED, "no minimum separation is asked for")
+    assert (verdict.status, verdict.message) == (Status.NOT_CHECKED, "the mission sets no minimum separation")
 
 
 def test_robots_that_meet_at_a_crossing_are_violated():

@@ -172,7 +172,16 @@ def test_no_arguments_show_the_help(line, capsys):
         (["valdate"], "no such command 'valdate'. Did you mean 'validate'? try 'mmrs --help'"),
         (["plan", "a", "--stop-after", "lunch"], "lunch"),
         (["plan", "a", "--seed", "x"], "--seed"),
-        (["generate", "a"], "--target"),
+        (["generate", "a"], "mmrs: missing: --target, --output; try 'mmrs generate --help'"),
+        (["control", "hodl"], "mmrs: hodl: unknown command; expected one of hold, resume"),
+        (["explain", "."], ".: expected FILE:LINE; for a folder, add --robot, --move or --task"),
+        (["plugin", "new", "Roof"], "'Roof': expected a name in lower-case letters"),
+        (["plugin", "new", "roof", "--with", "tusk"], "--with tusk: unknown; there are task, robot"),
+        (
+            ["plugin", "new", "roof", "--with", "robot", "--task", "line"],
+            "creates no task; add task to --with",
+        ),
+        (["simulate", "a", "--assume", "calm"], "--assume calm: expected CONDITION=yes or CONDITION=no"),
     ],
 )
 def test_wrong_usage_ends_with_2_and_says_what_is_wrong(line, words, capsys):
@@ -195,6 +204,26 @@ def test_a_metamodel_is_for_a_model_not_for_a_project(tmp_path, capsys):
 def test_a_missing_project_ends_with_3_and_names_it(tmp_path, capsys):
     assert run(["validate", str(tmp_path / "nowhere")]) == 3
     assert "nowhere" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("line", "words"),
+    [
+        (["plan", "nowhere"], "nowhere: error: no such file [FIL001]\n    expected: an existing file"),
+        (["plan", "."], "no mission.xmi in this folder"),
+        (["check", "."], "no behaviour.xmi in this folder; 'mmrs plan .' makes one"),
+        (["run", str(PARK / "mission.xmi")], "contains a mission, not a behaviour; 'mmrs plan "),
+        (["diff", ".", "nowhere"], "nowhere: no such file or folder"),
+        (["diff", ".", str(PARK / "mission.xmi")], "mission.xmi is a file; name two files or two folders"),
+        (["control", "hold"], "logs: no running robots use this log folder; name the folder of the run with"),
+        (["explain", "x.py:3"], "x.py: no such file"),
+        (["demo", "nope"], "nope: unknown example; there are carbon-dioxide"),
+    ],
+)
+def test_what_is_not_there_is_named_with_what_helps(line, words, capsys, monkeypatch, tmp_path):
+    monkeypatch.chdir(tmp_path)
+    assert run(line) in (1, 3, 5)
+    assert words in capsys.readouterr().err
 
 
 def test_plugin_commands_are_in_the_help(with_kites, capsys):

@@ -51,9 +51,23 @@ def test_all_diagnostics_are_shown_with_their_hints(capsys):
     assert "hint: add one" in err
 
 
-def test_all_reasons_of_an_infeasible_mission_are_shown(capsys):
-    ended_by(InfeasibleError("field: cannot be planned", ["12 kJ short", "too far"]), Settings())
-    assert capsys.readouterr().err == "mmrs: field: cannot be planned\n  - 12 kJ short\n  - too far\n"
+@pytest.mark.parametrize(
+    ("message", "reasons", "shown"),
+    [
+        ("no plan", ["12 kJ short", "too far"], "no plan\n  - 12 kJ short\n  - too far\n"),
+        ("no plan: too far (2 reasons)", ["too far", "no wind"], "no plan\n  - too far\n  - no wind\n"),
+        ("no plan: too far", ["too far"], "no plan: too far\n"),
+        ("no plan", [], "no plan\n"),
+    ],
+)
+def test_every_reason_of_an_infeasible_mission_is_shown_once(message, reasons, shown, capsys):
+    ended_by(InfeasibleError(message, reasons), Settings())
+    assert capsys.readouterr().err == f"mmrs: {shown}"
+
+
+def test_a_refused_value_is_named_first(capsys):
+    ended_by(typer.BadParameter("--on-stop fly: expected hold"), Settings())
+    assert capsys.readouterr().err == "mmrs: --on-stop fly: expected hold\n"
 
 
 def test_an_unexpected_error_is_one_line_and_how_to_report_it(capsys):

@@ -42,7 +42,7 @@ def test_a_log_with_a_number_that_is_too_long_is_refused_with_its_line(tmp_path)
 
 def test_a_line_with_too_long_a_number_is_no_place_to_explain(capsys):
     assert run(["explain", f"robot.py:{LONG}"]) == 2
-    assert "is not FILE:LINE" in capsys.readouterr().err
+    assert "expected FILE:LINE" in capsys.readouterr().err
 
 
 def test_a_part_of_a_black_box_with_a_huge_number_takes_no_memory(tmp_path):

@@ -47,7 +47,7 @@ def test_two_robots_may_share_a_link():
 
 
 def test_one_robot_has_one_link():
-    with pytest.raises(typer.BadParameter, match=r"'alpha' is reached by udpin:.* already"):
+    with pytest.raises(typer.BadParameter, match=r"'alpha' already has the connection udpin:"):
         links_of((f"alpha={LINK}", "alpha=udpin:127.0.0.1:14560"), ("alpha", "beta"))
 
 

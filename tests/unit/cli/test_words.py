@@ -2,6 +2,8 @@
 
 from pathlib import Path
 
+import pytest
+
 from mmrs_core.cli.output import table
 from mmrs_core.cli.plan_words import plan_lines, plan_summary
 from mmrs_core.cli.tree_words import title_of
@@ -35,14 +37,23 @@ def test_a_verdict_without_message_names_robot_move_and_area():
     assert verdict_line(SAFE) == "clearance: safe, Alba, m1, tower, margin 3.5 m"
 
 
-def test_reasons_not_to_check_are_counted():
-    reasons = [Verdict("wind", Status.NOT_CHECKED, name, message=f"{name}: no wind") for name in ("a", "b")]
-    assert list(verdict_table(reasons)) == ["  wind  not checked: a: no wind, and 1 more"]
+@pytest.mark.parametrize(
+    ("messages", "told"),
+    [
+        (("no wind", "no wind"), "no wind (a, b)"),
+        (("no wind", "wired"), "no wind (a), and 1 more"),
+        (["no wind"] * 5, "no wind (a, b, c and 2 more)"),
+    ],
+)
+def test_robots_that_are_not_checked_for_one_reason_are_named_together(messages, told):
+    named = zip("abcde", messages, strict=False)
+    reasons = [Verdict("wind", Status.NOT_CHECKED, name, message=f"{name}: {why}") for name, why in named]
+    assert list(verdict_table(reasons)) == [f"  wind  not checked: {told}"]
 
 
 def test_what_was_checked_of_some_robots_only_says_both():
     open_ = Verdict("clearance", Status.NOT_CHECKED, "Cirro", message="Cirro: no context")
-    said = "  clearance  safe, least margin 3.5 m (Alba, near tower); not checked: Cirro: no context"
+    said = "  clearance  safe, least margin 3.5 m (Alba, near tower); not checked: no context (Cirro)"
     assert list(verdict_table([SAFE, open_])) == [said]
 
 

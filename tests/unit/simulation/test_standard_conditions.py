@@ -58,8 +58,8 @@ def test_what_some_robot_asks_may_be_answered_beforehand():
 @pytest.mark.parametrize(
     ("asked", "told"),
     [
-        (CHOOSES, "no choice asks for condition 'suny'; asked for: 'sunny'; did you mean sunny?"),
-        (program(robot("s", [])), "no choice asks for condition 'suny'; asked for: none at all"),
+        (CHOOSES, "condition 'suny': no Choice uses it; conditions in use: 'sunny'; did you mean sunny?"),
+        (program(robot("s", [])), "condition 'suny': no Choice uses it; conditions in use: none"),
     ],
 )
 def test_an_answer_that_no_choice_asks_for_is_refused_with_what_is_asked(asked, told):

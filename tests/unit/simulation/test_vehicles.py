@@ -98,11 +98,11 @@ def test_without_a_name_the_core_simulates():
 
 
 def test_a_name_that_nobody_contributed_is_refused_with_the_nearest():
-    with pytest.raises(UsageError, match=r"'jumpr': not known; there are jumper, simulation; .*jumper"):
+    with pytest.raises(UsageError, match=r"'jumpr': unknown; there are jumper, simulation; .*jumper"):
         simulated(Jumping(), backend="jumpr")
 
 
 def test_a_backend_that_drives_robots_is_not_taken_for_a_simulation():
     real = Jumping(replace(JUMPER, simulated=False))
-    with pytest.raises(UsageError, match="'jumper': does not simulate"):
+    with pytest.raises(UsageError, match="'jumper': runs in real time"):
         simulated(real, backend="jumper")

@@ -9,6 +9,7 @@ import threading
 from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import replace
+from errno import EADDRINUSE
 from typing import TextIO
 
 from auv_vessel.wire.frame import Frame
@@ -62,6 +63,13 @@ def _logging(log: TextIO | None, say: Callable[[str], None]) -> Callable[[float,
     return write
 
 
+def reason_of(error: OSError) -> str:
+    """Return why a port cannot be listened on, and what helps."""
+    if error.errno == EADDRINUSE:
+        return "address already in use; choose another port with --port"
+    return error.strerror or str(error)
+
+
 async def _run(
     hub: Hub, host: str, port: int, usual: Troubles, seconds: float, say: Callable[[str], None]
 ) -> None:
@@ -71,7 +79,7 @@ async def _run(
     try:
         found = await hub.start(host, port)
     except OSError as error:
-        raise LinkLostError(f"no hub at {host}:{port}: {error.strerror or error}") from error
+        raise LinkLostError(f"no hub at {host}:{port}: {reason_of(error)}") from error
     say(f"hub at {host}:{found}; python-can: interface=socketcand host={host} port={found} channel=can0")
 
     def order(line: str) -> None:

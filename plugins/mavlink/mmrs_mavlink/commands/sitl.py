@@ -133,8 +133,8 @@ def sitl(
         typer.Option(
             "--fault",
             metavar="[ROBOT:]FAULT[=VALUE,…][@SECONDS[+SECONDS]]",
-            help="Fault to inject SECONDS after the start of motion, for SECONDS. Repeatable. '--fault list' "
-            "lists all faults.",
+            help="Fault to inject: into ROBOT (default: all robots), @SECONDS after arming (default: 0), for "
+            "+SECONDS (default: until cleared). '--fault list' lists the faults. Repeatable.",
         ),
     ] = None,
     surroundings: Annotated[

@@ -62,5 +62,6 @@ def test_one_robot_has_one_link(asked, capsys):
     with pytest.raises(SystemExit):
         asked("--connect", first, "--connect", second)
     assert (
-        f"--connect {second}: 'alpha' is reached by udpin:127.0.0.1:14550 already" in capsys.readouterr().err
+        f"--connect {second}: 'alpha' already has the connection udpin:127.0.0.1:14550"
+        in capsys.readouterr().err
     )

@@ -30,7 +30,10 @@ def decides(*names):
 
 def test_a_condition_that_no_choice_of_a_whole_fleet_asks_for_is_refused_since_it_may_be_misspelt():
     (fault,) = decides("battery-below:0.30").faults([robot(asks=ASKS), robot("beta")])
-    assert fault == f"conditions.py: no choice asks for 'battery-below:0.30'; asked for: '{ASKS}'"
+    assert (
+        fault
+        == f"conditions.py: condition 'battery-below:0.30': no Choice uses it; conditions in use: '{ASKS}'"
+    )
 
 
 def test_conditions_of_robots_that_run_elsewhere_may_be_there():

@@ -118,7 +118,7 @@ def test_counts_by_type_and_reason_are_told_with_both(flight, folder):
 
 
 def test_a_folder_with_neither_log_nor_box_is_refused(flight, tmp_path):
-    with pytest.raises(UnreadableError, match="neither a log nor a black box"):
+    with pytest.raises(UnreadableError, match="contains no log and no black box"):
         flight(tmp_path)
 
 
