@@ -17,7 +17,7 @@ from mmrs_runtime.injection.spec import OF_STATIONS, OF_VEHICLE
 from mmrs_runtime.records.blackbox import BlackBox, black_box_path
 from mmrs_runtime.vehicle import Position
 
-from .driving.equipment import Equipment, Guard, Radio
+from .driving.equipment import Equipment, Guard, RadioLink
 from .driving.threaded import ThreadedVehicle
 from .options import Reach, add_reach, reach_of
 from .program import Place, Robot
@@ -117,7 +117,7 @@ class MavlinkDriver(Driver):
         )
         return ThreadedVehicle(robot, equipment)
 
-    def _radio(self, robot: Robot, live: Live, guard: Guard, box: BlackBox, radios: Radios) -> Radio:
+    def _radio(self, robot: Robot, live: Live, guard: Guard, box: BlackBox, radios: Radios) -> RadioLink:
         from .linked import at_end_of  # MAVLink's library need not be there for a dry run
         from .services.satellites import attended
         from .vehicles.recognition import system_of
@@ -130,7 +130,7 @@ class MavlinkDriver(Driver):
         vehicle = at_end_of(link, robot, reach.acceptance, home_tolerance, live.say, box, options.clock)
         self._outfit.rehearsal.attend(robot.id, attended(link))
         system = system_of(black_box_path(options.log / robot.log)) if options.resume else 0
-        return Radio(url, link, vehicle, radios, options.patience * options.clock.speedup, system)
+        return RadioLink(url, link, vehicle, radios, options.patience * options.clock.speedup, system)
 
 
 def _from(home: Place) -> Callable[[Place], Position]:

@@ -34,7 +34,7 @@ class Guard:
 
 
 @dataclass(frozen=True, slots=True)
-class Radio:
+class RadioLink:
     """How a vehicle that speaks MAVLink is reached.
 
     Attributes:
@@ -75,7 +75,7 @@ class Equipment:
     position: Callable[[Place], Position]
     say: Callable[[str], None]
     wake: Callable[[], None]
-    radio: Radio | None = None
+    radio: RadioLink | None = None
     joules: float | None = None
     locators: Mapping[str, Locator] = field(default_factory=dict)
     box: BlackBox | None = None

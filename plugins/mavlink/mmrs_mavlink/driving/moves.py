@@ -32,7 +32,7 @@ from ..program import (
     Then,
     Turn,
 )
-from ..services.uploads import Flight
+from ..services.uploads import UploadedRun
 from ..steps.energy import FULL, RECHARGE_FACTOR
 from ..steps.responses import policy_for
 from ..vehicles.corners import goes_through
@@ -100,7 +100,7 @@ class Moves:
             return Job(lambda: self._turn(movement.look))
         return Job(self._vehicle.finish) if isinstance(movement, Stop) else Job()
 
-    def run(self, flight: Flight, passed: Callable[[str], None]) -> Job:
+    def run(self, flight: UploadedRun, passed: Callable[[str], None]) -> Job:
         """Return the flight of an uploaded run; `passed` is called with every move of it but the last."""
         return Job(_Flight(self, flight, passed))
 
@@ -168,7 +168,7 @@ class Moves:
         assert isinstance(movement, GoTo)
         self._go(move, movement, through=False).run()
 
-    def fly(self, flight: Flight, passed: Callable[[str], None]) -> None:
+    def fly(self, flight: UploadedRun, passed: Callable[[str], None]) -> None:
         """Fly an uploaded run."""
 
         def reached(seq: int) -> None:
@@ -283,7 +283,7 @@ class Moves:
 class _Flight:
     """A run that goes up as a mission; what is left of it after an interruption is stepped."""
 
-    def __init__(self, moves: Moves, flight: Flight, passed: Callable[[str], None]) -> None:
+    def __init__(self, moves: Moves, flight: UploadedRun, passed: Callable[[str], None]) -> None:
         self._moves, self._flight, self._passed = moves, flight, passed
         self._left = list(flight.run.moves)
         self._stepped = False

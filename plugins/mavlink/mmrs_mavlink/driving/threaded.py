@@ -25,13 +25,13 @@ from mmrs_runtime.vehicle import Fault, Vehicle
 from ..program import Action, GoTo, Land, Operate, Place, Recharge, Robot, Step, TakeOff
 from ..services.uploads import uploads_of
 from ..steps.obeying import astray, away, obeying
+from ..steps.reception import Reception
 from ..steps.watch import Watch
 from ..vehicles.footing import footing
 from .cameras import Cameras
 from .equipment import Equipment
 from .lost_link import LostLink
 from .moves import Moves
-from .reach import Reach
 from .response import Response
 from .setup import Setup
 from .way_back import WayBack
@@ -72,7 +72,7 @@ class ThreadedVehicle(Vehicle):
         self._response = Response(
             robot, equipment.vehicle, self._watch, self._moves, equipment.say, self._tolerance
         )
-        self._reach = Reach(self._link, equipment.clock)
+        self._reception = Reception(self._link, equipment.clock)
         self._brakes: Callable[[], bool] = lambda: False
         self._seen: FaultError | None = None
         self._left: FaultError | None = None
@@ -191,7 +191,7 @@ class ThreadedVehicle(Vehicle):
         if found is None and response == self._response.name:
             return
         self._under_way, self._brakes = (), lambda: False
-        job = self._response.begin(response, found, self._note_decision, restored=self._reach.is_restored)
+        job = self._response.begin(response, found, self._note_decision, restored=self._reception.is_restored)
         if job is not None:
             self._worker.begin(job, afresh=True)
             self._wake_vehicle()
@@ -208,7 +208,7 @@ class ThreadedVehicle(Vehicle):
 
     def reachable(self, now: float) -> bool:
         """Return whether a message of the vehicle arrived lately."""
-        return self._reach.is_received
+        return self._reception.is_received
 
     def in_doubt(self, now: float) -> bool:
         """Return whether the vehicle has left its mode for an unknown cause, or one not yet handled."""
@@ -223,14 +223,14 @@ class ThreadedVehicle(Vehicle):
         if (found := self._worker.fault) is not None and found.event == CRASHED:
             return armed
         if found is not None:
-            return found.event == LINK_LOST and self._reach.may_come_back(found) and armed
+            return found.event == LINK_LOST and self._reception.may_come_back(found) and armed
         hands_off = self._response.hands_off and self._link is not None
         return self._response.holds or (armed and (hands_off or not self._worker.done))
 
     def hindrance(self, passed: Sequence[str], begun: str, now: float) -> str:
         """Return why no return path exists now; empty where there is one."""
         vehicle = self._with.vehicle
-        if not self._reach.is_received:
+        if not self._reception.is_received:
             return "no messages from its vehicle"
         if not vehicle.state().armed and (why := astray(self._robot, vehicle, self._tolerance)):
             return why
@@ -242,7 +242,7 @@ class ThreadedVehicle(Vehicle):
 
     def away(self, now: float) -> str:
         """Return that the vehicle stands elsewhere than at home, or is silent; empty where it is there."""
-        if not self._reach.is_received:
+        if not self._reception.is_received:
             return "no messages from its vehicle"
         return away(self._robot, self._with.vehicle, self._tolerance)
 
@@ -335,7 +335,7 @@ class ThreadedVehicle(Vehicle):
         name, state = self._response.name, self._with.vehicle.state()
         if lost.event != LINK_LOST or lost is self._left or name in ("", NOTHING):
             return
-        if not (self._reach.is_restored and state.armed):
+        if not (self._reception.is_restored and state.armed):
             return
         if self._watch.answers_alone():
             self._left = lost

@@ -27,7 +27,7 @@ from mmrs_mavlink.plugin.escapes import Escape, escapes_of, straight_lines_are_c
 from mmrs_mavlink.plugin.fencing import Fence, fence_faults, fences_of
 from mmrs_mavlink.plugin.headings import NO_TURNING, gimbal_of, on_gimbal, turns_to
 from mmrs_mavlink.plugin.places import templates_of
-from mmrs_mavlink.plugin.runs import Run, runs_of
+from mmrs_mavlink.plugin.runs import MoveRun, runs_of
 from mmrs_mavlink.profiles import ARDUPILOT, PROFILES
 from mmrs_mavlink.wiring import Sampled, Wired
 
@@ -266,7 +266,7 @@ def _endurance(context: VehicleContext) -> Iterator[tuple[str, object]]:
         yield "descent", capability.descent_rate
 
 
-def _run(run: Run, robot: RobotProgram) -> Call:
+def _run(run: MoveRun, robot: RobotProgram) -> Call:
     return Call("Run", (tuple(robot.moves[move].id for move in run.moves), run.holds))
 
 

@@ -21,14 +21,14 @@ our own simulated vehicle cuts corners within a radius that it was given for tha
 
 
 @dataclass(frozen=True, slots=True)
-class Run:
+class MoveRun:
     """A run: indices of its moves, and seconds to hold at the end of each."""
 
     moves: tuple[int, ...]
     holds: tuple[float, ...]
 
 
-def runs_of(context: VehicleContext) -> tuple[Run, ...]:
+def runs_of(context: VehicleContext) -> tuple[MoveRun, ...]:
     """Return the robot's runs, in the order of their first moves; none for a local behaviour.
 
     A run is a longest chain of at least three straight GoTo moves with fluid, unconditional
@@ -44,7 +44,7 @@ def runs_of(context: VehicleContext) -> tuple[Run, ...]:
         if first in chained and first not in entered:
             moves = _chain(first, chained)
             if len(moves) >= SHORTEST:
-                runs.append(Run(moves, _holds(robot, moves)))
+                runs.append(MoveRun(moves, _holds(robot, moves)))
     return tuple(runs)
 
 

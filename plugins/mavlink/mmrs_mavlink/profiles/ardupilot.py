@@ -33,7 +33,7 @@ from .autopilot import (
     always,
 )
 from .modes import Mode
-from .profile import Delay, Exemption, LostLink, Safeguard, VehicleProfile
+from .profile import Delay, Exemption, LostLinkFailsafe, Safeguard, VehicleProfile
 
 ARDUPILOT = Autopilot(
     "ardupilot",
@@ -205,7 +205,7 @@ ARDUCOPTER = VehicleProfile(
     | {16: "position hold", 21: "smart return"},
     failsafe_modes=frozenset({2, 6, 9, 17, 21}),
     own_modes=frozenset({STARTS_IN}),
-    lost_link=LostLink(
+    lost_link=LostLinkFailsafe(
         {
             "CONTINUE": {ON_LOST_LINK: 0},
             "RETURN": {ON_LOST_LINK: 3},
@@ -271,7 +271,7 @@ ARDUSUB = VehicleProfile(
     {0: "stabilize", 1: "acro", 2: "depth hold", 19: "manual"},
     failsafe_modes=frozenset({9, 16, 19}),
     own_modes=frozenset({STARTS_IN}),
-    lost_link=LostLink(
+    lost_link=LostLinkFailsafe(
         {
             "CONTINUE": {ON_LOST_LINK: 1},
             "STOP_THRUST": {ON_LOST_LINK: 2},
@@ -312,7 +312,7 @@ ARDUROVER = VehicleProfile(
     {0: "manual", 1: "acro", 3: "steering", 5: "loiter", 11: "return", 12: "smart return"},
     failsafe_modes=_STOPS,
     own_modes=frozenset({STARTS_IN}),
-    lost_link=LostLink(
+    lost_link=LostLinkFailsafe(
         {
             "CONTINUE": {ON_LOST_LINK: 0},
             "RETURN": {ON_ANY_LOSS: 3, ON_LOST_LINK: 1},

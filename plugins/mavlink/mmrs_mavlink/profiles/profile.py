@@ -32,7 +32,7 @@ class Exemption:
 
 
 @dataclass(frozen=True, slots=True)
-class LostLink:
+class LostLinkFailsafe:
     """The failsafe for a lost ground station.
 
     Attributes:
@@ -139,7 +139,7 @@ class VehicleProfile:
     modes: Mapping[str, Mode]
     other_modes: Mapping[int, str]
     failsafe_modes: frozenset[int]
-    lost_link: LostLink
+    lost_link: LostLinkFailsafe
     responses: frozenset[str]
     own_modes: frozenset[int] = frozenset()
     event_modes: Mapping[str, frozenset[int]] | None = None

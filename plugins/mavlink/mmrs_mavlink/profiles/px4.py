@@ -23,7 +23,7 @@ from .autopilot import (
     OwnFence,
 )
 from .modes import Mode
-from .profile import Answers, Delay, Exemption, LostLink, Safeguard, VehicleProfile
+from .profile import Answers, Delay, Exemption, LostLinkFailsafe, Safeguard, VehicleProfile
 
 
 def px4_number(main: int, sub: int) -> int:
@@ -184,7 +184,7 @@ SAFEGUARDS = (
     ),
 )
 
-LOST_LINK = LostLink(
+LOST_LINK = LostLinkFailsafe(
     {
         "CONTINUE": {ON_STILLNESS: 5, ON_SILENCE: 0},
         "HOLD": {ON_STILLNESS: 5, ON_SILENCE: 1},

@@ -13,7 +13,7 @@ from .items import CHANGE_SPEED, FENCE_VERTEX, LOITER, NO_FRAME, RALLY_POINT, WA
 
 
 @dataclass(frozen=True, slots=True)
-class Flight:
+class UploadedRun:
     """Where a run lies in the mission.
 
     Attributes:
@@ -40,7 +40,7 @@ class Uploads:
     """
 
     mission: tuple[Item, ...] = ()
-    flights: Mapping[str, Flight] = field(default_factory=dict)
+    flights: Mapping[str, UploadedRun] = field(default_factory=dict)
     fence: tuple[Item, ...] = ()
     rally: tuple[Item, ...] = ()
     places: tuple[Place, ...] = ()
@@ -55,7 +55,7 @@ def uploads_of(robot: Robot, *, fenced: bool = True) -> Uploads:
     return Uploads(mission, flights, fence, rally_of(robot), places_in(robot), words)
 
 
-def mission_of(robot: Robot) -> tuple[tuple[Item, ...], dict[str, Flight]]:
+def mission_of(robot: Robot) -> tuple[tuple[Item, ...], dict[str, UploadedRun]]:
     """Return the mission of all runs, and by first move where each lies in it; both may be empty.
 
     After each run the vehicle waits where it is until the program continues. The mission has no
@@ -64,14 +64,14 @@ def mission_of(robot: Robot) -> tuple[tuple[Item, ...], dict[str, Flight]]:
     if not robot.runs:
         return (), {}
     items = [_positional(WAYPOINT, robot.home)]
-    flights: dict[str, Flight] = {}
+    flights: dict[str, UploadedRun] = {}
     for run in robot.runs:
         first, ends = len(items), dict[int, str]()
         for move, item in _items_of(robot, run):
             if item.command == WAYPOINT:
                 ends[len(items)] = move
             items.append(item)
-        flights[run.moves[0]] = Flight(run, first, len(items) - 1, ends)
+        flights[run.moves[0]] = UploadedRun(run, first, len(items) - 1, ends)
         last = robot.step(run.moves[-1]).movement
         assert isinstance(last, GoTo)
         assert isinstance(last.at, Geographic)

@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from mmrs_mavlink.plugin.manual.autopilot import manual_control
-from mmrs_mavlink.plugin.manual.steering import Goal, Steering, Sticks
+from mmrs_mavlink.plugin.manual.steering import Goal, Sticks, StickSteering
 
 pytestmark = pytest.mark.real_time("vessels")
 
@@ -20,7 +20,7 @@ class Boat:
     """A vehicle that goes as its sticks say; `truth` is where it really is."""
 
     def __init__(self, heading=0.0, depth=0.0, current=(0.0, 0.0)):
-        self.steering = Steering(0.0, 0.0, FULL)
+        self.steering = StickSteering(0.0, 0.0, FULL)
         self.heading, self.depth, self.current = heading, depth, current
         self.truth, self.time = [0.0, 0.0], 0.0
         self.sticks = []
@@ -105,7 +105,7 @@ def test_a_goal_that_is_held_counts_only_after_its_time():
 
 
 def test_without_a_goal_the_sticks_are_let_go():
-    steering = Steering(0.0, 0.0, FULL)
+    steering = StickSteering(0.0, 0.0, FULL)
     assert steering.step(0.0, 90.0, 3.0) == Sticks()
     steering.aim(Goal(0.0, 9.0, 9.0))
     assert steering.step(0.1, 90.0, 3.0) != Sticks()
@@ -113,7 +113,7 @@ def test_without_a_goal_the_sticks_are_let_go():
 
 
 def test_a_vehicle_that_drifts_is_not_reckoned_to_go_on():
-    steering = Steering(0.0, 0.0, FULL)
+    steering = StickSteering(0.0, 0.0, FULL)
     steering.aim(Goal(0.0, 0.0, 9.0))
     steering.step(0.0, 0.0, 0.0)
     assert steering.speed > 0.0

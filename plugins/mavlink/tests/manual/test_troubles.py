@@ -10,7 +10,7 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from mmrs_core.behaviour.program import Action
 from mmrs_core.scene import Policy
-from mmrs_mavlink.plugin.manual.autopilot import DEPTH_HOLD, TOLD, Autopilot
+from mmrs_mavlink.plugin.manual.autopilot import DEPTH_HOLD, TOLD, StickAutopilot
 from mmrs_mavlink.plugin.manual.troubles import LINK_PATIENCE
 from mmrs_mavlink.services.commands import command
 
@@ -170,7 +170,7 @@ def test_a_goal_that_is_not_reached_in_time_ends_the_dive():
 
 def test_a_link_that_falls_silent_is_no_lost_heading_whatever_was_told_last():
     with linked(speedup=4.0) as (link, wire):
-        pilot = Autopilot(link, lambda: False, 0.2)
+        pilot = StickAutopilot(link, lambda: False, 0.2)
         wire.say(mavlink.MAVLink_attitude_message(0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0))
         wire.say(mavlink.MAVLink_global_position_int_message(0, 0, 0, -2000, -2000, 0, 0, 0, 0))
         link.wait(lambda: None, 0.5)

@@ -22,7 +22,7 @@ from mmrs_mavlink.plugin.context import context_of
 from mmrs_mavlink.plugin.controllers import MAVLINK_PYTHON
 from mmrs_mavlink.plugin.plans.qgc import QGC_PLAN
 from mmrs_mavlink.profiles import ARDUCOPTER, ARDUPILOT, PROFILES, modes
-from mmrs_mavlink.profiles.profile import LostLink, Safeguard
+from mmrs_mavlink.profiles.profile import LostLinkFailsafe, Safeguard
 from mmrs_mavlink.vehicles.guidance import ArduPilotGuidance
 from mmrs_mavlink.vehicles.mavlink_vehicle import MavlinkVehicle
 from mmrs_mavlink.vehicles.preparation import check_identity, report_failsafes
@@ -62,7 +62,7 @@ PROFILE = replace(
     failsafe_modes=frozenset({33, 34}),
     own_modes=frozenset(),
     event_modes={"BATTERY_LOW": frozenset({34})},
-    lost_link=LostLink(
+    lost_link=LostLinkFailsafe(
         {"LAND": {"MOOR_ON_LOSS": 2}, "CONTINUE": {"MOOR_ON_LOSS": 0}}, {"MOOR_ON_LOSS": {2: frozenset({33})}}
     ),
     responses=frozenset({"CONTINUE", "LAND"}),

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
+from functools import cached_property
 from math import inf
 from pathlib import Path
 from typing import cast
 
+from mmrs_core.behaviour.earth import from_wgs84
 from mmrs_core.behaviour.program import Action as Doing
 from mmrs_core.behaviour.program import Move, Program
 from mmrs_core.contributions.targets import TargetInput
@@ -15,8 +17,10 @@ from mmrs_core.contributions.vehicles import Live, VehicleInput
 from mmrs_core.errors import LinkLostError, UnsupportedError, UsageError
 from mmrs_core.generation.python.moves import action_of
 from mmrs_core.generation.python.program import built, objects_in
+from mmrs_core.geometry.frames import LocalFrame
+from mmrs_core.scene import Frame, Position
 from mmrs_mavlink import program as words
-from mmrs_mavlink.driving.equipment import Equipment, Guard, Radio
+from mmrs_mavlink.driving.equipment import Equipment, Guard, RadioLink
 from mmrs_mavlink.driving.threaded import ThreadedVehicle
 from mmrs_mavlink.linked import at_end_of
 from mmrs_mavlink.links.link import Link
@@ -26,10 +30,9 @@ from mmrs_mavlink.links.retries import Retries
 from mmrs_mavlink.links.signing import Signer, signer_for
 from mmrs_mavlink.options import FIRST_PORT, PORT_STEP
 from mmrs_mavlink.plugin.backend.options import LinkOptions, link_options
-from mmrs_mavlink.plugin.backend.whereabouts import Ground
 from mmrs_mavlink.plugin.context import VehicleContext, context_of
 from mmrs_mavlink.plugin.controllers import DRIVER, MAVLINK_PYTHON, robot_of
-from mmrs_mavlink.program import Action, Robot
+from mmrs_mavlink.program import Action, Geographic, Place, Robot
 from mmrs_mavlink.services.satellites import attended
 from mmrs_mavlink.vehicles.recognition import system_of
 from mmrs_runtime.clock import Clock
@@ -84,6 +87,34 @@ def connect(given: VehicleInput, live: Live) -> ThreadedVehicle:
     context = context_of(given.robot, input)
     equipment = _equipment(given, live, context, program, fleet, link)
     return BehaviourVehicle(program, equipment, lambda each: built(action_of(each, context, DRIVER), words))
+
+
+class RobotFrame:
+    """The local frame of a behaviour, as one robot sees it."""
+
+    def __init__(self, frame: Frame, home: Position, zero: float) -> None:
+        """Lay it.
+
+        Args:
+            frame: of the behaviour.
+            home: of the robot: east, north, up.
+            zero: height above the origin from which the robot's heights count, metres.
+        """
+        self._frame, self._home, self._zero = frame, home, zero
+
+    def position(self, place: Place) -> Position:
+        """Return a place as metres east, north and up of the origin."""
+        if not isinstance(place, Geographic):
+            return (self._home[0] + place.east, self._home[1] + place.north, self._zero + place.height)
+        longitude, latitude = from_wgs84(self._frame.crs).transform(place.longitude, place.latitude)
+        east, north = self._plane.to_local([latitude], [longitude])[0]
+        return (float(east), float(north), self._zero + place.height)
+
+    @cached_property
+    def _plane(self) -> LocalFrame:
+        assert self._frame.latitude is not None
+        assert self._frame.longitude is not None
+        return LocalFrame(self._frame.crs, self._frame.latitude, self._frame.longitude)
 
 
 class BehaviourVehicle(ThreadedVehicle):
@@ -191,10 +222,10 @@ def _equipment(
         vehicle,
         guard,
         fleet.clock,
-        Ground(given.program.frame, home, context.zero).position,
+        RobotFrame(given.program.frame, home, context.zero).position,
         live.say,
         live.wake,
-        radio=Radio(url, link, vehicle, fleet.radios, patience, system),
+        radio=RadioLink(url, link, vehicle, fleet.radios, patience, system),
         joules=joules,
         locators=locators,
         box=box,

@@ -52,7 +52,7 @@ COMES_UP = "SURFACE"
 """An ArduSub's messages about water inside, in lower case, and the response to them."""
 
 
-class Autopilot:
+class StickAutopilot:
     """An ArduSub at the end of its link, in depth hold unless it is to surface.
 
     Attributes:

@@ -5,12 +5,12 @@ from __future__ import annotations
 from mmrs_core.behaviour.program import Action
 from mmrs_core.generation.plan_moves import seconds_of
 from mmrs_mavlink.plugin.context import VehicleContext
-from mmrs_mavlink.plugin.manual.autopilot import Autopilot
+from mmrs_mavlink.plugin.manual.autopilot import StickAutopilot
 from mmrs_mavlink.wiring import Wired
 from mmrs_runtime import faults
 
 
-def carry_out(action: Action, context: VehicleContext, autopilot: Autopilot) -> float:
+def carry_out(action: Action, context: VehicleContext, autopilot: StickAutopilot) -> float:
     """Carry out a device action; return the seconds that it takes from then on.
 
     Raises:

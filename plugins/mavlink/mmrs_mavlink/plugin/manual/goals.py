@@ -9,7 +9,7 @@ from mmrs_core.behaviour.program import Move
 from mmrs_core.generation.plan_moves import MOVES, above_surface, seconds_of_hold
 from mmrs_core.transformation.kinds import before_target
 from mmrs_mavlink.plugin.context import VehicleContext
-from mmrs_mavlink.plugin.manual.steering import Goal, Steering
+from mmrs_mavlink.plugin.manual.steering import Goal, StickSteering
 
 
 def refusals(context: VehicleContext) -> Iterator[str]:
@@ -39,7 +39,7 @@ def _of_move(move: Move, context: VehicleContext) -> Iterator[str]:
             yield f"leads {above_surface(position, context):g} m above the surface"
 
 
-def goal_of(move: Move, steering: Steering, context: VehicleContext, depth: float) -> Goal | None:
+def goal_of(move: Move, steering: StickSteering, context: VehicleContext, depth: float) -> Goal | None:
     """Return what a move leads to; None for one that does nothing.
 
     Args:

@@ -12,12 +12,12 @@ from mmrs_core.errors import UnreachableError
 from mmrs_core.scene import Position
 from mmrs_mavlink.links.link import Link
 from mmrs_mavlink.plugin.context import VehicleContext
-from mmrs_mavlink.plugin.manual.autopilot import DEPTH_HOLD, SURFACE, Autopilot
+from mmrs_mavlink.plugin.manual.autopilot import DEPTH_HOLD, SURFACE, StickAutopilot
 from mmrs_mavlink.plugin.manual.equipment import carry_out
 from mmrs_mavlink.plugin.manual.goals import goal_of
 from mmrs_mavlink.plugin.manual.keeping import keeper_of
 from mmrs_mavlink.plugin.manual.route import Route
-from mmrs_mavlink.plugin.manual.steering import Steering
+from mmrs_mavlink.plugin.manual.steering import StickSteering
 from mmrs_mavlink.plugin.manual.troubles import LINK_PATIENCE, Troubles
 from mmrs_mavlink.plugin.manual.ways import Ways
 from mmrs_mavlink.profiles import ARDUSUB
@@ -52,12 +52,12 @@ class ManualRobot(Vehicle):
         """Create for the robot; nothing is sent before it is to get ready."""
         self._ways = Ways(given, context)
         self._context, self._link, self._live = context, link, live
-        self._steering = Steering(self._ways.home[0], self._ways.home[1], full_speed)
+        self._steering = StickSteering(self._ways.home[0], self._ways.home[1], full_speed)
         self._route = Route(self._steering)
         self._lock = threading.RLock()
         self._ended = threading.Event()
         reserve, resumed = given.program.reserve, live.resumed
-        self._autopilot = Autopilot(link, self._ended.is_set, reserve, under_way=resumed)
+        self._autopilot = StickAutopilot(link, self._ended.is_set, reserve, under_way=resumed)
         self._policies = (*context.robot.policies, *given.policies)
         self._troubles = Troubles(self._autopilot, self._policies)
         self._keeper, self._plan = keeper_of(given, live), given.program.fingerprint

@@ -6,7 +6,7 @@ from collections import deque
 from collections.abc import Sequence
 from math import inf
 
-from mmrs_mavlink.plugin.manual.steering import Goal, Steering
+from mmrs_mavlink.plugin.manual.steering import Goal, StickSteering
 
 
 class Route:
@@ -18,7 +18,7 @@ class Route:
         paused: goal towards which it is steered again after a pause; None: there is no pause.
     """
 
-    def __init__(self, steering: Steering) -> None:
+    def __init__(self, steering: StickSteering) -> None:
         """Create without goals."""
         self.depth, self.late_at = 0.0, inf
         self.paused: Goal | None = None

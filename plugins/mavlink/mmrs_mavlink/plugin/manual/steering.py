@@ -52,7 +52,7 @@ class Goal:
     seconds: float = 0.0
 
 
-class Steering:
+class StickSteering:
     """Steers towards goals, and estimates the vehicle's position.
 
     Attributes:

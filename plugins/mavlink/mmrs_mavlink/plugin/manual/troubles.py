@@ -7,7 +7,7 @@ from math import inf
 
 from mmrs_core.contributions.execution import Fault
 from mmrs_core.scene import Policy
-from mmrs_mavlink.plugin.manual.autopilot import STALL, Autopilot
+from mmrs_mavlink.plugin.manual.autopilot import STALL, StickAutopilot
 from mmrs_runtime import faults
 from mmrs_runtime.policies import UNDECLARED_AFTER, patience
 
@@ -22,7 +22,7 @@ class Troubles:
         event: what is wrong, in the word of policies; empty: nothing.
     """
 
-    def __init__(self, autopilot: Autopilot, policies: Sequence[Policy]) -> None:
+    def __init__(self, autopilot: StickAutopilot, policies: Sequence[Policy]) -> None:
         """Create without faults; of two policies for an event the first counts."""
         self.event = ""
         self._autopilot, self._policies = autopilot, policies

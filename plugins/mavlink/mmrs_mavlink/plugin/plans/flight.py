@@ -12,14 +12,14 @@ from mmrs_core.scene import Name, Position
 from mmrs_mavlink.plugin.context import VehicleContext
 from mmrs_mavlink.plugin.headings import gimbal_of, on_gimbal, turns_to
 from mmrs_mavlink.plugin.plans import items as cmd
-from mmrs_mavlink.plugin.plans.items import Item, unknown_in
+from mmrs_mavlink.plugin.plans.items import PlanItem, unknown_in
 from mmrs_mavlink.plugin.runs import CORNER_SECONDS
 from mmrs_mavlink.wiring import Wired
 
 ORIGIN = (0.0, 0.0, 0.0)
 
 
-def sorties_of(context: VehicleContext) -> tuple[tuple[Item, ...], ...]:
+def sorties_of(context: VehicleContext) -> tuple[tuple[PlanItem, ...], ...]:
     """Return the items of each sortie: what a vehicle does between two stays on the ground.
 
     What missions cannot express is left out, but never so that a vehicle continues where it should
@@ -30,9 +30,9 @@ def sorties_of(context: VehicleContext) -> tuple[tuple[Item, ...], ...]:
     return tuple(flown(context).sorties)
 
 
-def flown(context: VehicleContext) -> Flight:
+def flown(context: VehicleContext) -> FlightWriter:
     """Return the moves of a robot as missions, up to where they end."""
-    flight = Flight(context)
+    flight = FlightWriter(context)
     robot, index, seen = context.robot, context.robot.start, set[int]()
     while True:
         seen.add(index)
@@ -51,7 +51,7 @@ def flown(context: VehicleContext) -> Flight:
     return flight
 
 
-class Flight:
+class FlightWriter:
     """Writes moves as items, one after the other, and tracks the robot's position.
 
     Attributes:
@@ -63,14 +63,14 @@ class Flight:
 
     def __init__(self, context: VehicleContext) -> None:
         """Stand at home."""
-        self.sorties: list[tuple[Item, ...]] = []
+        self.sorties: list[tuple[PlanItem, ...]] = []
         self.left: list[str] = []
         self.beyond = frozenset[int]()
         self._context = context
         self._position: Position = context.robot.home or ORIGIN
         self._speed: float | None = None
         self._looking, self._gimbal = False, 0
-        self._items: list[Item] = []
+        self._items: list[PlanItem] = []
         self._down = context.profile.flies
         self._dialect = context.profile.autopilot.missions
 
@@ -186,13 +186,13 @@ class Flight:
         position = heading.target.position if heading else None
         if position is not None:
             self._gimbal = gimbal_of(heading, self._context) if heading else 0
-            self._items.append(Item(cmd.ROI_LOCATION, move, (float(self._gimbal),), position))
+            self._items.append(PlanItem(cmd.ROI_LOCATION, move, (float(self._gimbal),), position))
         elif self._looking:
             self._add(cmd.ROI_NONE, move, float(self._gimbal))
         self._looking = position is not None
 
     def _add(self, command: int, move: Move, *params: float, here: bool = False) -> None:
-        self._items.append(Item(command, move, params, self._position if here else None))
+        self._items.append(PlanItem(command, move, params, self._position if here else None))
 
 
 def _ends(start: Position, target: Position, move: Move) -> tuple[Position, ...]:
@@ -213,13 +213,13 @@ def _bearing(a: Position, b: Position) -> float:
     return degrees(atan2(b[0] - a[0], b[1] - a[1]))
 
 
-_MOVES: Mapping[Name, Callable[[Flight, Move, bool], None]] = {
-    (BEHAVIOUR, "GoTo"): Flight.go_to,
-    (BEHAVIOUR, "HoldPosition"): Flight.hold,
-    (BEHAVIOUR, "HeadTo"): Flight.head_to,
+_MOVES: Mapping[Name, Callable[[FlightWriter, Move, bool], None]] = {
+    (BEHAVIOUR, "GoTo"): FlightWriter.go_to,
+    (BEHAVIOUR, "HoldPosition"): FlightWriter.hold,
+    (BEHAVIOUR, "HeadTo"): FlightWriter.head_to,
 }
-_MANOEUVRES: Mapping[str, Callable[[Flight, Move, bool], None]] = {
-    "go_to": Flight.go_to,
-    "take_off": Flight.take_off,
-    "land": Flight.land,
+_MANOEUVRES: Mapping[str, Callable[[FlightWriter, Move, bool], None]] = {
+    "go_to": FlightWriter.go_to,
+    "take_off": FlightWriter.take_off,
+    "land": FlightWriter.land,
 }

@@ -27,7 +27,7 @@ HEADED = frozenset({WAYPOINT, LOITER_UNLIMITED, LOITER_TIME, LAND, TAKE_OFF})
 
 
 @dataclass(frozen=True, slots=True)
-class Item:
+class PlanItem:
     """An item in the local frame.
 
     Attributes:
@@ -66,14 +66,14 @@ class Row:
         return self.frame != NO_FRAME
 
 
-def rows_of(context: VehicleContext, sortie: Sequence[Item]) -> tuple[Row, ...]:
+def rows_of(context: VehicleContext, sortie: Sequence[PlanItem]) -> tuple[Row, ...]:
     """Return the items of a sortie, counted from 1: home, where a file has one, is number 0."""
     positions = [item.position for item in sortie if item.position is not None]
     degrees = iter(degrees_of([(east, north) for east, north, _ in positions], context.frame))
     return tuple(_row(number, item, context, degrees) for number, item in enumerate(sortie, start=1))
 
 
-def _row(number: int, item: Item, context: VehicleContext, degrees: Iterator[tuple[float, float]]) -> Row:
+def _row(number: int, item: PlanItem, context: VehicleContext, degrees: Iterator[tuple[float, float]]) -> Row:
     place: tuple[float, ...] = ()
     if item.position is not None:
         place = (*next(degrees), context.profile.item_height(context.height(item.position)))
@@ -86,7 +86,7 @@ def _row(number: int, item: Item, context: VehicleContext, degrees: Iterator[tup
     return Row(number, frame, item.command, (*item.params, *filled, *place), step)
 
 
-def _left_open(item: Item, filled: list[float], context: VehicleContext) -> list[float]:
+def _left_open(item: PlanItem, filled: list[float], context: VehicleContext) -> list[float]:
     """Return the parameters behind those that an item has, for an autopilot with which 0 counts.
 
     A heading of 0 is north, and none at all is what the vehicle chooses; a radius of 0 is its default.

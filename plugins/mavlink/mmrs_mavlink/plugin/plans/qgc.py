@@ -12,7 +12,7 @@ from mmrs_mavlink.plugin.context import VehicleContext
 from mmrs_mavlink.plugin.places import templates_of
 from mmrs_mavlink.plugin.plans.items import Row
 from mmrs_mavlink.plugin.plans.refusals import refusals
-from mmrs_mavlink.plugin.plans.surroundings import Mission, missions_of
+from mmrs_mavlink.plugin.plans.surroundings import PlannedMission, missions_of
 
 TEMPLATES = templates_of("qgc-plan")
 HEIGHT_ABOVE_HOME = 1
@@ -30,7 +30,7 @@ def files(input: TargetInput) -> Iterator[FileSpec]:
         yield FileSpec(f"{mission.stem}.plan", "plan.jinja", view_of(mission), trace=trace)
 
 
-def view_of(mission: Mission) -> dict[str, object]:
+def view_of(mission: PlannedMission) -> dict[str, object]:
     """Return what the template sees; heights are above home."""
     return {
         "firmware": mission.context.profile.autopilot.number,

@@ -18,7 +18,7 @@ from mmrs_mavlink.plugin.escapes import escapes_of
 from mmrs_mavlink.plugin.fencing import fences_of
 from mmrs_mavlink.plugin.plans.diving import zero_of
 from mmrs_mavlink.plugin.plans.flight import sorties_of
-from mmrs_mavlink.plugin.plans.items import Item, Row, rows_of
+from mmrs_mavlink.plugin.plans.items import PlanItem, Row, rows_of
 
 Vertex: TypeAlias = tuple[float, float]
 """Latitude and longitude in degrees."""
@@ -28,7 +28,7 @@ Spot: TypeAlias = tuple[float, float, float]
 
 
 @dataclass(frozen=True, slots=True)
-class Mission:
+class PlannedMission:
     """One sortie of a robot with the contents of its file.
 
     Attributes:
@@ -48,7 +48,7 @@ class Mission:
     rally: tuple[Spot, ...]
 
 
-def missions_of(input: TargetInput) -> Iterator[Mission]:
+def missions_of(input: TargetInput) -> Iterator[PlannedMission]:
     """Yield one mission for each sortie of each robot.
 
     Raises:
@@ -62,10 +62,12 @@ def missions_of(input: TargetInput) -> Iterator[Mission]:
             yield _mission(context, input, stems[robot.id] + suffix, sortie)
 
 
-def _mission(context: VehicleContext, input: TargetInput, stem: str, sortie: Sequence[Item]) -> Mission:
+def _mission(
+    context: VehicleContext, input: TargetInput, stem: str, sortie: Sequence[PlanItem]
+) -> PlannedMission:
     robot = context.robot
     points = rally_points_of(robot, input.program, input.types, input.areas).points
-    return Mission(
+    return PlannedMission(
         context,
         stem,
         _home(robot, context),
@@ -84,7 +86,7 @@ def _home(robot: RobotProgram, context: VehicleContext) -> Spot:
     return (latitude, longitude, sea_level_of(zero_of(context, home), context.frame) or 0.0)
 
 
-def _rally(context: VehicleContext, points: Sequence[Point], sortie: Sequence[Item]) -> tuple[Spot, ...]:
+def _rally(context: VehicleContext, points: Sequence[Point], sortie: Sequence[PlanItem]) -> tuple[Spot, ...]:
     highest = max(item.position[2] for item in sortie if item.position is not None)
     up = metres(highest - context.zero)
     return tuple((*degrees, up) for degrees in degrees_of(points, context.frame))

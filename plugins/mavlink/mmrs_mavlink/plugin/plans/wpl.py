@@ -23,7 +23,7 @@ from mmrs_mavlink.plugin.plans.items import (
     Row,
 )
 from mmrs_mavlink.plugin.plans.refusals import refusals
-from mmrs_mavlink.plugin.plans.surroundings import Mission, missions_of
+from mmrs_mavlink.plugin.plans.surroundings import PlannedMission, missions_of
 
 TEMPLATES = templates_of("wpl")
 TEMPLATE = "list.waypoints.jinja"
@@ -61,17 +61,17 @@ def line(value: object) -> str:
     return "\t".join([*map(str, head), *(f"{param:.8f}" for param in value.params), "1"])
 
 
-def _list(mission: Mission, what: str, rows: tuple[Row, ...]) -> FileSpec:
+def _list(mission: PlannedMission, what: str, rows: tuple[Row, ...]) -> FileSpec:
     trace = tuple(row.step for row in rows if row.step.move)
     return FileSpec(f"{mission.stem}{what}.waypoints", TEMPLATE, {"rows": rows}, trace=trace)
 
 
-def _home(mission: Mission) -> Row:
+def _home(mission: PlannedMission) -> Row:
     step = TracedStep("home", mission.context.robot.id, "")
     return Row(0, ABSOLUTE, WAYPOINT, (*NO_PARAMETERS, *mission.home), step)
 
 
-def _fence(mission: Mission) -> tuple[Row, ...]:
+def _fence(mission: PlannedMission) -> tuple[Row, ...]:
     vertices = [(vertex, float(len(ring))) for ring in mission.fence for vertex in ring]
     return tuple(
         Row(number, ABSOLUTE, FENCE_EXCLUSION, (count, 0.0, 0.0, 0.0, *vertex, 0.0), _around(mission))
@@ -79,14 +79,14 @@ def _fence(mission: Mission) -> tuple[Row, ...]:
     )
 
 
-def _rally(mission: Mission) -> tuple[Row, ...]:
+def _rally(mission: PlannedMission) -> tuple[Row, ...]:
     return tuple(
         Row(number, RELATIVE, RALLY_POINT, (*NO_PARAMETERS, *spot), _around(mission))
         for number, spot in enumerate(mission.rally)
     )
 
 
-def _around(mission: Mission) -> TracedStep:
+def _around(mission: PlannedMission) -> TracedStep:
     return TracedStep("surroundings", mission.context.robot.id, "")
 
 
