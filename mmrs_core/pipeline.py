@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from mmrs_core.contributions.registry import Contributions
     from mmrs_core.contributions.targets import GeneratedFile
     from mmrs_core.contributions.vehicles import VehicleFactory, VehicleInput
-    from mmrs_core.generation.capabilities.judging import Capability
+    from mmrs_core.generation.capabilities.judging import TargetCapability
     from mmrs_core.languages import behaviour as bl
     from mmrs_core.languages.modelset import ModelSet
     from mmrs_core.scene import Area, Plan, RobotType, Scene
@@ -33,7 +33,7 @@ CORE_DISTRIBUTION = "mmrs-core"
 
 
 @dataclass(frozen=True, slots=True)
-class Place:
+class BehaviourContext:
     """What a behaviour is checked against and rendered for, beside itself.
 
     Attributes:
@@ -142,10 +142,10 @@ def transform(scene: Scene, plan: Plan, contributions: Contributions) -> tuple[b
     )
 
 
-def place_of_scene(scene: Scene) -> Place:
+def place_of_scene(scene: Scene) -> BehaviourContext:
     """Return what the behaviour of a scene is checked against."""
     types = {robot.type.name: robot.type for robot in scene.robots}
-    return Place(types, scene.areas, scene.environment)
+    return BehaviourContext(types, scene.areas, scene.environment)
 
 
 def program_of(behaviour: bl.Behaviour, contributions: Contributions) -> Program:
@@ -155,7 +155,7 @@ def program_of(behaviour: bl.Behaviour, contributions: Contributions) -> Program
     return program(behaviour, registry=contributions.languages)
 
 
-def verify(program: Program, place: Place, contributions: Contributions) -> tuple[Verdict, ...]:
+def verify(program: Program, place: BehaviourContext, contributions: Contributions) -> tuple[Verdict, ...]:
     """Return what is known of every property of a behaviour."""
     from mmrs_core.analysis.verdicts import verify as verified
     from mmrs_core.contributions.checks import CheckInput
@@ -180,7 +180,7 @@ def refusals(verdicts: Iterable[Verdict], program: Program) -> tuple[Verdict, ..
 
 def render(
     program: Program,
-    place: Place,
+    place: BehaviourContext,
     target: str,
     contributions: Contributions,
     *,
@@ -228,7 +228,7 @@ def render(
         raise PluginError(f"{contributions.source_of('targets', chosen)}: {error}") from error
 
 
-def capabilities(target: str | None, contributions: Contributions) -> dict[str, tuple[Capability, ...]]:
+def capabilities(target: str | None, contributions: Contributions) -> dict[str, tuple[TargetCapability, ...]]:
     """Return what a target can express, or each target where None is named, by name; found by trying.
 
     Raises:
@@ -269,7 +269,7 @@ def save(
 
 def simulate(
     program: Program,
-    place: Place,
+    place: BehaviourContext,
     contributions: Contributions,
     *,
     backend: str = "simulation",
@@ -311,7 +311,7 @@ def simulate(
 
 def inputs_of(
     program: Program,
-    place: Place,
+    place: BehaviourContext,
     contributions: Contributions,
     *,
     options: Mapping[str, str] | None = None,

@@ -67,7 +67,7 @@ _GROUPS = (
 
 
 @dataclass(frozen=True, slots=True)
-class Program:
+class CommandLine:
     """The application for one command line.
 
     Attributes:
@@ -78,7 +78,7 @@ class Program:
     source: str = ""
 
 
-def program_for(name: str, arguments: Sequence[str], settings: Settings) -> Program:
+def program_for(name: str, arguments: Sequence[str], settings: Settings) -> CommandLine:
     """Return the application of ``mmrs`` or ``mmrs-gen`` for a command line.
 
     Of the core's commands, only the called one is imported; the others are there by name and help.
@@ -94,13 +94,13 @@ def program_for(name: str, arguments: Sequence[str], settings: Settings) -> Prog
     words = words_to_complete() if is_completing(name) else arguments
     called = next((word for word in words if not word.startswith("-")), None)
     if name == "mmrs-gen":
-        return Program(_generating(called))
+        return CommandLine(_generating(called))
     app = typer.Typer(rich_markup_mode=None, help=_HELP, epilog=_EPILOG, no_args_is_help=True)
     app.callback()(_global_options)
     _add_commands(app, _COMMANDS, called)
     source = "" if called in CORE_COMMANDS else _add_plugin_commands(app, settings, called)
     _add_commands(app, _GROUPS, called)
-    return Program(app, source)
+    return CommandLine(app, source)
 
 
 def _generating(called: str | None) -> typer.Typer:

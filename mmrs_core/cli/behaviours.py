@@ -28,7 +28,7 @@ from mmrs_core.languages.codes import explained, refusal
 from mmrs_core.languages.conformance import check_conformance
 from mmrs_core.languages.modelset import context_in, robot_files_in, types_by_name
 from mmrs_core.languages.reading import read_model
-from mmrs_core.pipeline import Place, program_of
+from mmrs_core.pipeline import BehaviourContext, program_of
 
 if TYPE_CHECKING:
     from mmrs_core.behaviour.program import Program
@@ -67,7 +67,7 @@ class Loaded:
     """
 
     program: Program
-    place: Place
+    place: BehaviourContext
     elements: tuple[Part, ...] = ()
 
 
@@ -217,13 +217,13 @@ def _valid(session: Session, files: BehaviourFiles) -> tuple[Program, bl.Behavio
 
 def _place(
     behaviour: bl.Behaviour, files: BehaviourFiles, elements: tuple[Part, ...], session: Session
-) -> Place:
+) -> BehaviourContext:
     types = {name: robot_type_of(root) for name, root in files.types.items()}
     if files.context is None:
-        return Place(types)
+        return BehaviourContext(types)
     barred = barriers(elements, types.values(), session.contributions.robot_kinds)
     areas = (*_areas(behaviour, files.context), *barred)
-    return Place(types, areas, environment_of(files.context))
+    return BehaviourContext(types, areas, environment_of(files.context))
 
 
 def _areas(behaviour: bl.Behaviour, context: contexts.Context) -> tuple[Area, ...]:

@@ -18,7 +18,7 @@ _UNKNOWN = "what cannot be known may be named in acceptedUnknowns"
 
 
 @dataclass(frozen=True, slots=True)
-class Entry:
+class CodeEntry:
     """What all faults of a code have in common.
 
     Attributes:
@@ -38,11 +38,11 @@ class Entry:
     plugin: str = ""
 
 
-def catalogue_of(contributions: Contributions) -> Mapping[str, Entry]:
+def catalogue_of(contributions: Contributions) -> Mapping[str, CodeEntry]:
     """Return what is known of every code, by code in order."""
     fixes = {code: fix.title for code, fix in contributions.fixes.items()}
     entries = [
-        Entry(code, about.severity, about.meaning, about.expected, about.hint, "", fixes.get(code, ""))
+        CodeEntry(code, about.severity, about.meaning, about.expected, about.hint, "", fixes.get(code, ""))
         for code, about in CODES.items()
     ]
     for each in contributions.constraints:
@@ -50,10 +50,10 @@ def catalogue_of(contributions: Contributions) -> Mapping[str, Entry]:
         plugin = "" if brought == "mmrs-core" else brought
         fix, subject = fixes.get(each.code, ""), each.metaclass[1]
         entries.append(
-            Entry(each.code, each.severity, each.expected, each.expected, each.hint, subject, fix, plugin)
+            CodeEntry(each.code, each.severity, each.expected, each.expected, each.hint, subject, fix, plugin)
         )
     entries += [
-        Entry(
+        CodeEntry(
             each.name,
             Severity.ERROR,
             _plainly(each.title),

@@ -24,7 +24,7 @@ from mmrs_core.pipeline import capabilities, render
 
 if TYPE_CHECKING:
     from mmrs_core.cli.session import Session
-    from mmrs_core.generation.capabilities.judging import Capability
+    from mmrs_core.generation.capabilities.judging import TargetCapability
 
 
 def generate(
@@ -204,7 +204,7 @@ def print_capabilities(session: Session, target: str | None, json: bool) -> int:
     return 0
 
 
-def policy_lines(rows: Iterable[Capability]) -> Iterator[tuple[str, str, str]]:
+def policy_lines(rows: Iterable[TargetCapability]) -> Iterator[tuple[str, str, str]]:
     """Yield policies in few lines: what, verdict, responses; those together that fare alike."""
     responses: dict[tuple[str, str, str], list[str]] = {}
     for row in rows:
@@ -218,7 +218,7 @@ def policy_lines(rows: Iterable[Capability]) -> Iterator[tuple[str, str, str]]:
         yield f"{group}: {'any fault' if len(names) == count else ', '.join(names)}", verdict, words
 
 
-def _cells(rows: Sequence[Capability]) -> Iterator[tuple[str, str, str]]:
+def _cells(rows: Sequence[TargetCapability]) -> Iterator[tuple[str, str, str]]:
     policies = [row for row in rows if is_policy(row)]
     for row in rows:
         if not is_policy(row):
@@ -226,10 +226,10 @@ def _cells(rows: Sequence[Capability]) -> Iterator[tuple[str, str, str]]:
     yield from policy_lines(policies)
 
 
-def is_policy(row: Capability) -> bool:
+def is_policy(row: TargetCapability) -> bool:
     """Return whether a row is about a policy of a robot."""
     return row.group.startswith("policy")
 
 
-def _row(row: Capability) -> dict[str, str]:
+def _row(row: TargetCapability) -> dict[str, str]:
     return {"group": row.group, "element": row.element, "verdict": row.verdict, "how": row.how}

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from mmrs_core.cli.catalogue import Entry, catalogue_of
+from mmrs_core.cli.catalogue import CodeEntry, catalogue_of
 from mmrs_core.cli.output import say_json
 from mmrs_core.cli.sarif_places import ROOT, Places
 from mmrs_core.cli.verdict_words import hint_of, verdict_line
@@ -35,7 +35,7 @@ _HASH = "primaryLocationLineHash"
 
 def sarif_of(
     faults: Sequence[Diagnostic],
-    entries: Mapping[str, Entry],
+    entries: Mapping[str, CodeEntry],
     proposals: Iterable[Proposal] = (),
     subject: str = "",
 ) -> dict[str, object]:
@@ -68,7 +68,7 @@ def sarif_of(
     return {"$schema": SCHEMA, "version": "2.1.0", "runs": [run]}
 
 
-def _rule(code: str, entry: Entry | None) -> dict[str, object]:
+def _rule(code: str, entry: CodeEntry | None) -> dict[str, object]:
     if entry is None:
         return {"id": code}
     told = {"Expected": entry.expected, "Mend": entry.hint}

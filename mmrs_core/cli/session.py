@@ -15,7 +15,7 @@ from mmrs_core.cli.protection import files_of
 from mmrs_core.cli.settings import Settings
 from mmrs_core.contributions.checks import Status, Verdict
 from mmrs_core.pipeline import (
-    Place,
+    BehaviourContext,
     expand,
     ground,
     place_of_scene,
@@ -176,7 +176,7 @@ class Stages:
         return program_of(self.transformed[0], self.session.contributions)
 
     @property
-    def place(self) -> Place:
+    def place(self) -> BehaviourContext:
         """Return what the behaviour is checked against."""
         return place_of_scene(self.scene)
 
@@ -186,7 +186,7 @@ class Stages:
         return verdicts_of(self.session, self.program, self.place)
 
 
-def verdicts_of(session: Session, program: Program, place: Place) -> tuple[Verdict, ...]:
+def verdicts_of(session: Session, program: Program, place: BehaviourContext) -> tuple[Verdict, ...]:
     """Return what is known of every property of a behaviour."""
     return session.stage(
         "verify", "checking the behaviour", lambda: verify(program, place, session.contributions)

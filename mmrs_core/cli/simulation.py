@@ -20,7 +20,7 @@ from mmrs_core.cli.simulated_boxes import remove_boxes, write_boxes
 from mmrs_core.contributions.rules import RobotKind
 from mmrs_core.errors import MmrsError
 from mmrs_core.pictures.figures import clock, length
-from mmrs_core.pipeline import Place, simulate
+from mmrs_core.pipeline import BehaviourContext, simulate
 from mmrs_core.resources import new_folders
 from mmrs_core.scene import Name, RobotType
 from mmrs_core.simulation.run import SimulatedRun
@@ -91,7 +91,7 @@ def options_of(given: Sequence[str] | None) -> Mapping[str, str]:
 def fly(
     session: Session,
     program: Program,
-    place: Place,
+    place: BehaviourContext,
     conditions: Mapping[str, bool],
     chosen: Chosen = Chosen(),
 ) -> SimulatedRun:

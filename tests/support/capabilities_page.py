@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import groupby
 
 from mmrs_core.cli.generate import is_policy, policy_lines
-from mmrs_core.generation.capabilities.judging import VERDICTS, Capability
+from mmrs_core.generation.capabilities.judging import VERDICTS, TargetCapability
 
 _PREFACE = """\
 # Capabilities of the targets
@@ -20,14 +20,14 @@ the targets that are installed, those of plug-ins included; `mmrs-gen --capabili
 """
 
 
-def page_of(tables: Mapping[str, Sequence[Capability]], descriptions: Mapping[str, str]) -> str:
+def page_of(tables: Mapping[str, Sequence[TargetCapability]], descriptions: Mapping[str, str]) -> str:
     """Return the page in Markdown: a section for each target, in the order of the tables."""
     verdicts = "".join(f"| {verdict} | {meaning} |\n" for verdict, meaning in VERDICTS.items())
     sections = (f"\n## {name}\n\n{descriptions[name]}\n{_section(rows)}" for name, rows in tables.items())
     return _PREFACE + verdicts + "".join(sections)
 
 
-def _section(rows: Sequence[Capability]) -> str:
+def _section(rows: Sequence[TargetCapability]) -> str:
     plain = sorted((row for row in rows if not is_policy(row)), key=lambda row: _order(row, rows))
     tables = (
         _table(group, ((row.element, row.verdict, row.how) for row in some))
@@ -37,7 +37,7 @@ def _section(rows: Sequence[Capability]) -> str:
     return "".join(tables) + _table("policy", policy_lines(policies), "responses")
 
 
-def _order(row: Capability, rows: Sequence[Capability]) -> int:
+def _order(row: TargetCapability, rows: Sequence[TargetCapability]) -> int:
     return next(index for index, each in enumerate(rows) if each.group == row.group)
 
 

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from itertools import groupby
 
-from mmrs_core.cli.catalogue import Entry
+from mmrs_core.cli.catalogue import CodeEntry
 
 _CHAPTERS = {
     "XMI": "Reading files",
@@ -51,7 +51,7 @@ class Example:
     language: str = "xml"
 
 
-def page_of(entries: Iterable[Entry], examples: Mapping[str, Example]) -> str:
+def page_of(entries: Iterable[CodeEntry], examples: Mapping[str, Example]) -> str:
     """Return the page in Markdown: chapters in their order, then plug-ins', then properties of verdicts."""
     ordered = sorted(entries, key=_place)
     chapters = (
@@ -61,7 +61,7 @@ def page_of(entries: Iterable[Entry], examples: Mapping[str, Example]) -> str:
     return "\n".join((_PREFACE, *chapters))
 
 
-def _place(entry: Entry) -> tuple[int, str, int, str]:
+def _place(entry: CodeEntry) -> tuple[int, str, int, str]:
     prefix = _prefix(entry)
     if not prefix:
         return 2, "", 0, entry.code
@@ -69,19 +69,19 @@ def _place(entry: Entry) -> tuple[int, str, int, str]:
     return (0, "", known.index(prefix), entry.code) if prefix in known else (1, entry.plugin, 0, entry.code)
 
 
-def _prefix(entry: Entry) -> str:
+def _prefix(entry: CodeEntry) -> str:
     """Return the capitals that a code begins with; none for a property of verdicts."""
     return entry.code.rstrip("0123456789") if entry.code[-1].isdigit() else ""
 
 
-def _chapter(entry: Entry) -> str:
+def _chapter(entry: CodeEntry) -> str:
     prefix = _prefix(entry)
     if not prefix:
         return "What is known of a behaviour"
     return _CHAPTERS.get(prefix) or f"Plug-in {entry.plugin}"
 
 
-def _entry(entry: Entry, example: Example | None) -> str:
+def _entry(entry: CodeEntry, example: Example | None) -> str:
     about = ", ".join(filter(None, (entry.subject, entry.severity.value)))
     lines = [f"### {entry.code}", "", f"{entry.meaning[:1].upper()}{entry.meaning[1:]}. ({about})", ""]
     if entry.expected != entry.meaning:

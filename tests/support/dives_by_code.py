@@ -18,7 +18,7 @@ from mmrs_core.contributions.registry import Contributions
 from mmrs_core.contributions.targets import TargetInput
 from mmrs_core.generation.render import render
 from mmrs_core.generation.writing import write
-from mmrs_core.pipeline import Place, inputs_of
+from mmrs_core.pipeline import BehaviourContext, inputs_of
 from mmrs_core.simulation.live import live_run_for
 from mmrs_core.simulation.run import asked_by
 from mmrs_core.transformation.kinds import MOVE_KINDS
@@ -39,7 +39,7 @@ def interpreted(
         behaviour,
         inputs_of(
             behaviour,
-            Place({diver().name: diver()}, (), {}),
+            BehaviourContext({diver().name: diver()}, (), {}),
             contributions,
             options={"clock": "bus", **options},
         ),

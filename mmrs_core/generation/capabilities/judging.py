@@ -28,7 +28,7 @@ VERDICTS: dict[Verdict, str] = {
 
 
 @dataclass(frozen=True, slots=True)
-class Capability:
+class TargetCapability:
     """What a target does with an element.
 
     Attributes:
@@ -65,7 +65,7 @@ def probes(more_moves: Iterable[Metaclasses] = ()) -> tuple[Probe, ...]:
 
 def capabilities_of(
     target: Target, contributions: Contributions, tried: Iterable[Probe] | None = None
-) -> tuple[Capability, ...]:
+) -> tuple[TargetCapability, ...]:
     """Return what a target does with each element; by default with each that `probes` gives."""
     trial = Trial(target)
     known = suited(probes() if tried is None else tried, target, contributions)
@@ -94,16 +94,16 @@ class Trial:
         self._target = target
         self._press = Press(target, environment_of(target))
 
-    def judged(self, probe: Probe) -> Capability:
+    def judged(self, probe: Probe) -> TargetCapability:
         """Return what the target does with the element of a probe."""
         refused = self._refusals(probe.given)
         if reasons := refused - self._refusals(probe.without) or refused:
             verdict: Verdict = "refused" if self._impossible(probe.given) else "lossy"
             words = "; ".join(sorted({_short(each) for each in reasons}))
-            return Capability(probe.group, probe.element, verdict, words)
+            return TargetCapability(probe.group, probe.element, verdict, words)
         how = self._how(probe.element)
         same = self._written(probe.given) == self._written_at_all(probe.without)
-        return Capability(probe.group, probe.element, "no difference" if same else "expressed", how)
+        return TargetCapability(probe.group, probe.element, "no difference" if same else "expressed", how)
 
     def _how(self, element: str) -> str:
         words = self._target.capabilities

@@ -12,7 +12,7 @@ from mmrs_core.contributions.registry import Contributions
 from mmrs_core.contributions.rules import MoveKind, most_specific
 from mmrs_core.errors import MmrsError
 from mmrs_core.pictures.flights.flight import Flight, Flown
-from mmrs_core.pipeline import Place, conditions_for
+from mmrs_core.pipeline import BehaviourContext, conditions_for
 from mmrs_core.scene import Name, Position
 from mmrs_core.simulation.run import SimulatedRun, refuse_unasked, simulate
 
@@ -56,7 +56,7 @@ class PlannedLeg:
 
 def planned_for(
     program: Program,
-    place: Place,
+    place: BehaviourContext,
     contributions: Contributions,
     flight: Flight,
     assume: Mapping[str, bool] | None = None,

@@ -24,7 +24,7 @@ from mmrs_core.pictures.preview.from_run import (
     reach_of,
 )
 from mmrs_core.pictures.preview.picture import Arm, Bar, Leg, Mark, Picture, RobotPicture
-from mmrs_core.pipeline import Place
+from mmrs_core.pipeline import BehaviourContext
 from mmrs_core.scene import Name, Part
 
 _HOLD = (BEHAVIOUR, "HoldPosition")
@@ -40,7 +40,7 @@ def picture_of_flight(
     flight: Flight,
     planned: Planned,
     contributed: Contributions,
-    place: Place,
+    place: BehaviourContext,
     elements: Iterable[Part] = (),
 ) -> Picture:
     """Return what to show of a flight; tracks are thinned out by a tolerance that a note gives."""

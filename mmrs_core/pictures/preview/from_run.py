@@ -18,7 +18,7 @@ from mmrs_core.pictures.flights.away import Stretch, without
 from mmrs_core.pictures.flights.tracks import Track, stretches_of
 from mmrs_core.pictures.preview.features import elements_of, origin_of, symbol_of_robot, zones_of
 from mmrs_core.pictures.preview.picture import Bar, Handover, Leg, Picture, RobotPicture
-from mmrs_core.pipeline import Place
+from mmrs_core.pipeline import BehaviourContext
 from mmrs_core.scene import Name, Part, Position
 from mmrs_runtime.records.steps import StepRecord
 
@@ -34,7 +34,7 @@ def picture_of_run(
     tracks: Mapping[str, Sequence[Sample]],
     move_kinds: Mapping[Name, MoveKind],
     symbols: Mapping[Name, MapSymbol],
-    place: Place,
+    place: BehaviourContext,
     elements: Iterable[Part] = (),
 ) -> Picture:
     """Return what to show of a run.

@@ -34,7 +34,7 @@ from mmrs_core.pictures.report.energies import energy_of
 from mmrs_core.pictures.report.events import events_of, injected_by, readings_of, without_secrets
 from mmrs_core.pictures.report.tasks import task_reports
 from mmrs_core.pictures.report.visits import move_reports, wait_reports
-from mmrs_core.pipeline import Place
+from mmrs_core.pipeline import BehaviourContext
 from mmrs_runtime.records.entries import number_of
 from mmrs_runtime.semantics import Outcome
 
@@ -47,7 +47,7 @@ class Given:
     """All that a report is made of."""
 
     program: Program
-    place: Place
+    place: BehaviourContext
     flight: Flight
     planned: Planned
     contributions: Contributions

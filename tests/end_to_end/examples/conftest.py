@@ -37,7 +37,7 @@ class Taken:
     behaviour: object
     trace: object
     program: object
-    place: pipeline.Place
+    place: pipeline.BehaviourContext
     verdicts: tuple
 
 

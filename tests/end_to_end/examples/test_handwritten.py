@@ -31,7 +31,7 @@ def program(model, contributions):
 
 @pytest.fixture(scope="module")
 def place(robots):
-    return pipeline.Place({robot.name: robot_type_of(robot) for robot in robots}, ())
+    return pipeline.BehaviourContext({robot.name: robot_type_of(robot) for robot in robots}, ())
 
 
 def test_it_is_valid(model, contributions):

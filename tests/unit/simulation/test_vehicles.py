@@ -18,7 +18,7 @@ from mmrs_runtime.vehicle import Vehicle
 
 SECONDS = 7.0
 BEHAVIOUR = program(robot("r", [go("there", (30.0, 0.0, 0.0))]))
-PLACE = pipeline.Place({ROBOT_TYPE: robot_type()})
+PLACE = pipeline.BehaviourContext({ROBOT_TYPE: robot_type()})
 
 
 class Jumper(Vehicle):

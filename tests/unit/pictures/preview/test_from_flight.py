@@ -9,7 +9,7 @@ from mmrs_core.pictures.flights.planned import Planned
 from mmrs_core.pictures.preview.from_flight import picture_of_flight
 from mmrs_core.pictures.preview.map import map_of
 from mmrs_core.pictures.preview.page import page
-from mmrs_core.pipeline import Place
+from mmrs_core.pipeline import BehaviourContext
 from mmrs_runtime.records.entries import Entry
 from mmrs_runtime.records.steps import StepRecord
 
@@ -20,7 +20,7 @@ def shown(behaviour, run, types, contributions):
 
     def picture(**changed):
         flight = flight_as(run, behaviour, **changed)
-        around = Place(types)
+        around = BehaviourContext(types)
         return picture_of_flight(behaviour, flight, Planned(run), contributions, around)
 
     return picture

@@ -9,7 +9,7 @@ from mmrs_core.contributions.execution import Sample
 from mmrs_core.contributions.rules import MoveKind
 from mmrs_core.contributions.symbols import MapSymbol
 from mmrs_core.pictures.preview.from_run import picture_of_run
-from mmrs_core.pipeline import Place
+from mmrs_core.pipeline import BehaviourContext
 from mmrs_core.scene import Area, AreaUse, Frame, Part, RobotType
 from mmrs_runtime.records.steps import StepRecord
 
@@ -86,7 +86,7 @@ TRACKS = {
 def shown():
     program = Program("relay", Frame("EPSG:4326", None, None), (A, B))
     tree = Area("tree", AreaUse.OBSTACLE, ((20.0, 0.0), (21.0, 0.0), (21.0, 1.0)), 0.0, 9.0, 1.0)
-    return picture_of_run(program, RECORDS, TRACKS, KINDS, {}, Place({"quad": QUAD}, (tree,)))
+    return picture_of_run(program, RECORDS, TRACKS, KINDS, {}, BehaviourContext({"quad": QUAD}, (tree,)))
 
 
 def test_every_move_that_moves_is_a_leg(shown):
@@ -111,7 +111,7 @@ def test_robots_and_things_have_their_symbols():
     tree = Part((("urn:test", "OldTree"),), {"name": "oak", "position": (1.0, 2.0, 0.0)})
     program = Program("relay", Frame("EPSG:4326", None, None), (A, B))
     symbols = {drone.metaclass: drone}
-    shown = picture_of_run(program, RECORDS, TRACKS, KINDS, symbols, Place({"quad": quad}), [tree])
+    shown = picture_of_run(program, RECORDS, TRACKS, KINDS, symbols, BehaviourContext({"quad": quad}), [tree])
     assert shown.robots[0].symbol == drone
     assert [(thing.name, thing.symbol.label) for thing in shown.elements] == [("oak", "old tree")]
 
@@ -148,6 +148,6 @@ def test_the_run_ends_with_its_last_step(shown):
 
 def test_a_robot_without_track_still_has_its_times():
     program = Program("relay", Frame("EPSG:4326", None, None), (A, B))
-    shown = picture_of_run(program, RECORDS, {}, KINDS, {}, Place({}))
+    shown = picture_of_run(program, RECORDS, {}, KINDS, {}, BehaviourContext({}))
     assert shown.robots[0].legs == ()
     assert len(shown.robots[0].bars) == 3
