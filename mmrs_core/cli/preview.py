@@ -98,14 +98,14 @@ def preview(
 def picture_of(stages: Stages) -> Picture:
     """Return the picture of a planned mission, with the moves that carry it out."""
     from mmrs_core.cli.verdict_words import verdict_rows
-    from mmrs_core.pictures.preview.from_models import problems_of
+    from mmrs_core.pictures.preview.from_models import with_problems
     from mmrs_core.pictures.preview.from_plan import picture_of_plan
     from mmrs_core.pictures.preview.moves import with_moves
 
     symbols = stages.session.contributions.map_symbols
     picture = with_moves(picture_of_plan(stages.scene, stages.plan, symbols), stages.program)
-    problems = problems_of(stages.models, stages.warnings)
-    return replace(picture, problems=problems, checks=verdict_rows(stages.verdicts))
+    picture = with_problems(picture, stages.models, stages.warnings)
+    return replace(picture, checks=verdict_rows(stages.verdicts))
 
 
 @contextmanager

@@ -35,7 +35,8 @@ _USES = {
 def part_of(element: Element, ground: Ground) -> Part:
     """Return an element with all that it contains.
 
-    A coordinate becomes its position, be it contained or referred to. A reference to anything else
+    A coordinate becomes its position, be it contained or referred to, and so does whatever else the ground
+    has a position for. A reference to anything else
     becomes the name of what it leads to, or its path where it has none. Vertices of rings are given
     once: neither the first again at the end nor one directly after itself.
 
@@ -69,7 +70,7 @@ def _is_ring(feature: Feature) -> bool:
 
 def _single(found: object, feature: Feature, ground: Ground) -> Value:
     if isinstance(found, Element):
-        if is_geographic(found) or is_relative(found):
+        if found in ground.positions or is_geographic(found) or is_relative(found):
             return position_of(found, ground)
         return part_of(found, ground) if feature.containment else label_of(found) or path_of(found)
     return found if found is None or isinstance(found, (bool, int, float, str)) else str(found)

@@ -26,7 +26,7 @@ class Crossing:
 def crossings(robot: RobotPicture, zones: Iterable[Zone]) -> Iterator[Crossing]:
     """Yield when a robot passes an obstacle or forbidden area, in the order of zones and legs."""
     for zone in zones:
-        if zone.use is AreaUse.EMERGENCY:
+        if zone.use is AreaUse.EMERGENCY or not robot.legs:
             continue
         shape = Polygon(zone.shell)
         west, south, east, north = shape.bounds

@@ -4,17 +4,21 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from itertools import chain
+from itertools import chain, groupby
 from math import isfinite
+from types import MappingProxyType
 
 from shapely.errors import ShapelyError
 
 from mmrs_core.contributions.symbols import MapSymbol, has_symbol, symbol_of, words_of
+from mmrs_core.diagnostics import Place
+from mmrs_core.errors import PluginError
 from mmrs_core.geometry.clearance import grow, shrink
 from mmrs_core.geometry.polygons import parts, rings
-from mmrs_core.pictures.preview.picture import Details, ElementPicture, TaskPicture, Zone
+from mmrs_core.pictures.preview.picture import Details, ElementPicture, Gap, TaskPicture, Zone
 from mmrs_core.scene import Area, AreaUse, Frame, Name, Part, Point, Ring, RobotType, Scene, Task, Value
 
+NO_CONTEXT = Gap("context", "there is none, so areas and obstacles are unknown")
 _RING = ("urn:mmrs:mission:1.0", "Ring")
 
 
@@ -25,25 +29,43 @@ def origin_of(frame: Frame) -> str:
     return f"{frame.latitude:.6f}, {frame.longitude:.6f} ({frame.crs})"
 
 
-def zones_of(areas: Iterable[Area], clearances: Iterable[float]) -> tuple[Zone, ...]:
+def zones_of(areas: Iterable[Area], clearances: Mapping[str, float | None]) -> tuple[Zone, ...]:
     """Return areas as drawn, with the outline that the robot of the widest clearance keeps to.
+
+    Where no robot's clearance is known, there is no such outline.
 
     Args:
         areas: as drawn.
-        clearances: of each robot without the areas' safety distances, metres.
+        clearances: of each robot without the areas' safety distances, metres; None: unknown.
     """
-    widest = max(clearances, default=0.0)
-    return tuple(_zone(area, area.safety_distance + widest) for area in areas)
+    known = [clearance for clearance in clearances.values() if clearance is not None]
+    unknown = tuple(name for name, clearance in clearances.items() if clearance is None)
+    return tuple(
+        _zone(area, area.safety_distance + max(known), unknown)
+        if known
+        else Zone(area.name, area.use, area.shell, area.low, area.high, types=area.types, unknown=unknown)
+        for area in areas
+    )
 
 
-def _zone(area: Area, clearance: float) -> Zone:
+def _zone(area: Area, clearance: float, unknown: tuple[str, ...]) -> Zone:
     change = shrink if area.use is AreaUse.EMERGENCY else grow
     try:
         pieces = parts(change(area.shell, clearance))
     except (ValueError, ShapelyError):  # the outline crosses itself
         pieces = ()
     outlines = tuple(ring for piece in pieces for ring in (rings(piece)[0], *rings(piece)[1]))
-    return Zone(area.name, area.use, area.shell, area.low, area.high, outlines, clearance, area.types)
+    return Zone(
+        area.name, area.use, area.shell, area.low, area.high, outlines, clearance, area.types, unknown
+    )
+
+
+def gap_of_clearances(zones: Iterable[Zone]) -> tuple[Gap, ...]:
+    """Return whose clearance is unknown, if areas are drawn without it."""
+    listed = tuple(zones)
+    robots = dict.fromkeys(chain.from_iterable(zone.unknown for zone in listed))
+    grown = "only that of other robots is drawn" if any(zone.kept for zone in listed) else "none is drawn"
+    return (Gap(f"clearance of {', '.join(robots)}", f"unknown; {grown}", drawn=True),) if robots else ()
 
 
 def task_pictures(
@@ -51,12 +73,16 @@ def task_pictures(
     begins: Mapping[str, float],
     ends: Mapping[str, float],
     symbols: Mapping[Name, MapSymbol],
+    gaps: Mapping[Place, str] = MappingProxyType({}),
 ) -> tuple[TaskPicture, ...]:
     """Return the tasks, those without a position (Fork, Join) included.
 
     A task's position is found by the shape of its attributes: ``shell`` and ``holes`` make an area,
     ``points`` a line, ``point`` a point, whichever plug-in the task comes from. A task that only refers to a
     context element is where that element is.
+
+    Args:
+        gaps: why elements cannot be drawn whole, by where they stand in their files.
     """
     return tuple(
         _task_picture(
@@ -65,41 +91,61 @@ def task_pictures(
             ends.get(task.name),
             symbol_of(task.part.metaclasses, symbols),
             scene.elements,
+            gaps,
         )
         for task in scene.tasks
     )
 
 
 def _task_picture(
-    task: Task, begin: float | None, end: float | None, symbol: MapSymbol, elements: Iterable[Part]
+    task: Task,
+    begin: float | None,
+    end: float | None,
+    symbol: MapSymbol,
+    elements: Iterable[Part],
+    gaps: Mapping[Place, str],
 ) -> TaskPicture:
     attributes = task.part.attributes
-    shell, line = points_of(attributes.get("shell")), points_of(attributes.get("points"))
+    shell, line = attributes.get("shell"), attributes.get("points")
+    outlines = (shell, *_holes(attributes.get("holes"))) if shell else ()
+    rings = tuple(points for ring in outlines if not is_broken(ring) and (points := points_of(ring)))
+    broken = (pieces_of(ring, closed=True) for ring in outlines if is_broken(ring))
+    lines = (*chain.from_iterable(broken), *pieces_of(line))
+    point, gap = point_of(attributes.get("point")), gaps.get(task.part.place, "")
+    if point is None and not (rings or lines):
+        point, incomplete_element = _referred(task.part, elements, gaps)
+        gap = gap or incomplete_element
     return TaskPicture(
         name=task.name,
         symbol=symbol,
-        rings=(shell, *_holes(attributes.get("holes"))) if shell else (),
-        line=line,
-        point=point_of(attributes.get("point"))
-        or (None if shell or line else _referred(task.part, elements)),
+        rings=rings,
+        lines=lines,
+        point=point,
         begin=begin,
         end=end,
         details=details_of(task.part, symbol),
+        gap=gap,
     )
 
 
-def _referred(part: Part, elements: Iterable[Part]) -> Point | None:
-    """Return the middle of the first element, of those with a position, that another element refers to."""
+def _referred(part: Part, elements: Iterable[Part], gaps: Mapping[Place, str]) -> tuple[Point | None, str]:
+    """Return the middle of the first element, of those with a position, that another element refers to.
+
+    And what is incomplete, if that element is.
+    """
     values = [value for name, value in part.attributes.items() if name != "name"]
     listed = chain.from_iterable(value if isinstance(value, tuple) else (value,) for value in values)
     named = {each for each in listed if isinstance(each, str) and each}
-    for element in _every(elements):
-        if element.attributes.get("name") in named or element.place.path in named:
-            shapes = _shapes(element)
-            points = [*shapes.marks, *chain(*shapes.outlines, *shapes.lines)]
-            if points:
-                return middle_of(points)
-    return None
+    for outer in elements:
+        for element in _every([outer]):
+            name = element.attributes.get("name")
+            if name in named or element.place.path in named:
+                shapes = _shapes(element)
+                points = [*shapes.marks, *chain(*shapes.outlines, *shapes.lines)]
+                if points:
+                    gap = f"{name or element.place.path} is incomplete" if outer.place in gaps else ""
+                    return middle_of(points), gap
+    return None, ""
 
 
 def _every(elements: Iterable[Part]) -> Iterator[Part]:
@@ -122,9 +168,9 @@ def symbol_of_robot(robot_type: RobotType, symbols: Mapping[Name, MapSymbol]) ->
     return None
 
 
-def _holes(value: Value) -> Iterator[Ring]:
+def _holes(value: Value) -> Iterator[Value]:
     for hole in value if isinstance(value, tuple) else ():
-        ring = points_of(hole.attributes.get("points") if isinstance(hole, Part) else hole)
+        ring = hole.attributes.get("points") if isinstance(hole, Part) else hole
         if ring:
             yield ring
 
@@ -139,36 +185,49 @@ class _Shapes:
     parts: list[Part] = field(default_factory=list)
 
 
-def elements_of(elements: Iterable[Part], symbols: Mapping[Name, MapSymbol]) -> tuple[ElementPicture, ...]:
+def elements_of(
+    elements: Iterable[Part],
+    symbols: Mapping[Name, MapSymbol],
+    gaps: Mapping[Place, str] = MappingProxyType({}),
+) -> tuple[ElementPicture, ...]:
     """Return what elements, and what they contain, look like.
 
     An element is found by the shape of its attributes, whichever plug-in it comes from: a coordinate
     is a mark, coordinates called ``shell`` an outline, those called ``points`` a line, others a mark
     each; and what the symbol makes of its figures are outlines too. One that it contains has its own
     symbol, or else that of what it is in.
+
+    Args:
+        gaps: why elements cannot be drawn whole, by where they stand in their files.
     """
     return tuple(
         element
         for index, part in enumerate(elements)
-        for element in _elements(part, symbol_of(part.metaclasses, symbols), symbols, f"elements[{index}]")
+        for element in _elements(
+            part,
+            symbol_of(part.metaclasses, symbols),
+            symbols,
+            gaps.get(part.place, ""),
+            f"elements[{index}]",
+        )
     )
 
 
 def _elements(
-    part: Part, symbol: MapSymbol, symbols: Mapping[Name, MapSymbol], otherwise: str = ""
+    part: Part, symbol: MapSymbol, symbols: Mapping[Name, MapSymbol], gap: str, otherwise: str = ""
 ) -> Iterator[ElementPicture]:
     """Yield an element and what it contains; `otherwise` is what one without a name is called."""
     shapes = _shapes(part)
-    if symbol.outlines is not None and part.is_a(symbol.metaclass):
-        shapes.outlines.extend(symbol.outlines(part))
+    shapes.outlines.extend(_figures(part, symbol, gap))
     own = part.attributes.get("name")
     name = own if isinstance(own, str) and own else otherwise
     places = tuple(shapes.outlines), tuple(shapes.lines), tuple(shapes.marks)
     if otherwise or any(places):
-        yield ElementPicture(name, symbol, *places, details=details_of(part, symbol), inner=not otherwise)
+        details = details_of(part, symbol)
+        yield ElementPicture(name, symbol, *places, details=details, inner=not otherwise, gap=gap)
     for inner in shapes.parts:
         known = has_symbol(inner.metaclasses, symbols)
-        yield from _elements(inner, symbol_of(inner.metaclasses, symbols) if known else symbol, symbols)
+        yield from _elements(inner, symbol_of(inner.metaclasses, symbols) if known else symbol, symbols, gap)
 
 
 def _shapes(part: Part) -> _Shapes:
@@ -180,22 +239,42 @@ def _shapes(part: Part) -> _Shapes:
         elif isinstance(value, Part):
             _add_part(shapes, value)
         elif isinstance(value, tuple):
-            _add_points(shapes, name, points_of(value))
+            _add_points(shapes, name, value)
             for each in value:
                 if isinstance(each, Part):
                     _add_part(shapes, each)
     return shapes
 
 
+def _figures(part: Part, symbol: MapSymbol, gap: str) -> tuple[Ring, ...]:
+    """Return the outlines that an element's figures make; of an incomplete one, as far as these allow.
+
+    Raises:
+        PluginError: if the symbol's plug-in fails on an element that is complete.
+    """
+    if symbol.outlines is None or not part.is_a(symbol.metaclass):
+        return ()
+    try:
+        outlines = symbol.outlines(part)
+    except PluginError:
+        if gap:
+            return ()
+        raise
+    return tuple(ring for ring in outlines if all(isfinite(east + north) for east, north in ring))
+
+
 def _add_part(shapes: _Shapes, part: Part) -> None:
     if part.is_a(_RING):
-        shapes.outlines.append(points_of(part.attributes.get("points")))
+        _add_points(shapes, "shell", part.attributes.get("points"))
     else:
         shapes.parts.append(part)
 
 
-def _add_points(shapes: _Shapes, name: str, points: tuple[Point, ...]) -> None:
-    if name == "shell" and len(points) > 2:
+def _add_points(shapes: _Shapes, name: str, value: Value) -> None:
+    points = points_of(value)
+    if is_broken(value) and name in ("shell", "points"):
+        shapes.lines.extend(pieces_of(value, closed=name == "shell"))
+    elif name == "shell" and len(points) > 2:
         shapes.outlines.append(points)
     elif name in ("shell", "points") and len(points) > 1:
         shapes.lines.append(points)
@@ -223,6 +302,27 @@ def points_of(value: Value) -> tuple[Point, ...]:
     """Return (east, north) of the positions among the items of a value."""
     found = tuple(point_of(item) for item in value) if isinstance(value, tuple) else ()
     return tuple(point for point in found if point is not None)
+
+
+def is_broken(value: Value) -> bool:
+    """Return whether some of the positions of a value are unknown: not numbers."""
+    return isinstance(value, tuple) and any(
+        isinstance(each, tuple) and len(each) == 3 and each[0] != each[0] for each in value
+    )
+
+
+def pieces_of(value: Value, *, closed: bool = False) -> tuple[tuple[Point, ...], ...]:
+    """Return the stretches of a line, or of a closed outline, between its unknown positions.
+
+    >>> pieces_of(((0.0, 0.0, 0.0), (9.0, 0.0, 0.0), (nan, nan, nan), (0.0, 9.0, 0.0)), closed=True)
+    (((0.0, 9.0), (0.0, 0.0), (9.0, 0.0)),)
+    """
+    points = [point_of(each) for each in value] if isinstance(value, tuple) else []
+    if closed and None in points:
+        begin = points.index(None)
+        points = points[begin:] + points[:begin]
+    runs = groupby(points, lambda point: point is not None)
+    return tuple(tuple(point for point in run if point is not None) for known, run in runs if known)
 
 
 def point_of(value: Value) -> Point | None:

@@ -56,7 +56,7 @@ def picture_of_plan(scene: Scene, plan: Plan, symbols: Mapping[Name, MapSymbol])
         title=scene.name,
         origin=origin_of(scene.frame),
         robots=tuple(_robot_picture(scene, robot, symbols) for robot in plan.robots),
-        zones=zones_of(scene.areas, (robot.clearance for robot in scene.robots)),
+        zones=zones_of(scene.areas, {robot.name: robot.clearance for robot in scene.robots}),
         tasks=task_pictures(scene, plan.begins, plan.ends, symbols),
         elements=elements_of(scene.elements, symbols),
         handovers=tuple(_handovers(plan)),

@@ -16,7 +16,14 @@ from mmrs_core.contributions.symbols import MapSymbol
 from mmrs_core.pictures.figures import clock, length
 from mmrs_core.pictures.flights.away import Stretch, without
 from mmrs_core.pictures.flights.tracks import Track, stretches_of
-from mmrs_core.pictures.preview.features import elements_of, origin_of, symbol_of_robot, zones_of
+from mmrs_core.pictures.preview.features import (
+    NO_CONTEXT,
+    elements_of,
+    gap_of_clearances,
+    origin_of,
+    symbol_of_robot,
+    zones_of,
+)
 from mmrs_core.pictures.preview.picture import Bar, Handover, Leg, Picture, RobotPicture
 from mmrs_core.pipeline import BehaviourContext
 from mmrs_core.scene import Name, Part, Position
@@ -59,13 +66,19 @@ def picture_of_run(
         )
         for robot in program.robots
     )
-    known = (types[robot.type_name] for robot in program.robots if robot.type_name in types)
-    clearances = [robot_type.half_diagonal + program.position_error for robot_type in known]
+    clearances = {
+        robot.id: types[robot.type_name].half_diagonal + program.position_error
+        if robot.type_name in types
+        else None
+        for robot in program.robots
+    }
+    zones = zones_of(place.areas or (), clearances)
     return Picture(
         title=program.name,
         origin=origin_of(program.frame),
         robots=robots,
-        zones=zones_of(place.areas or (), clearances),
+        zones=zones,
+        gaps=gap_of_clearances(zones) if place.areas is not None else (NO_CONTEXT,),
         elements=elements_of(elements, symbols),
         handovers=tuple(handovers_of(program, by_robot)),
         makespan=max((steps[-1].time for steps in by_robot.values() if steps), default=0.0),

@@ -15,6 +15,8 @@ _ROW = 24.0
 _SAMPLE = 34.0
 _GAP = 22.0
 _MARGIN = 18.0
+_MOST_GAPS = 12
+"""Gaps that the legend of a picture lists."""
 _PLANNED_SIGNS = (
     ("work", "thick line: task"),
     ("transit", "thin line: transit"),
@@ -48,10 +50,11 @@ class KeyEntry(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Legend:
-    """Entries placed beneath a map: (x, y, entry), in pixels from its upper edge."""
+    """What is placed beneath a map, in pixels from its upper edge: (x, y, entry), and lines of (y, words)."""
 
     height: float
     entries: tuple[tuple[float, float, KeyEntry], ...]
+    lines: tuple[tuple[float, str], ...]
 
 
 def key_of(picture: Picture) -> tuple[KeyEntry, ...]:
@@ -59,6 +62,8 @@ def key_of(picture: Picture) -> tuple[KeyEntry, ...]:
     planned, flown = _PLANNED_SIGNS if picture.planned else (), _FLOWN_SIGNS if picture.flown else ()
     signs = (*planned, *_SIGNS, *flown)
     problems = [KeyEntry("problem", "problem, by its number")] if picture.problems else []
+    if any(gap.drawn for gap in picture.gaps):
+        problems.append(KeyEntry("incomplete", "incomplete"))
     symbols = (KeyEntry("badge", shortened(each.label), symbol=each) for each in symbols_in(picture))
     return (*(KeyEntry(sample, words) for sample, words in signs), *problems, *symbols)
 
@@ -77,7 +82,26 @@ def legend_of(picture: Picture, width: float) -> Legend:
             x, row = _MARGIN, row + 1
         placed.append((x, _MARGIN / 2 + (row + 0.5) * _ROW, entry))
         x += needed
-    return Legend(_MARGIN + _ROW * (row + 1), tuple(placed))
+    below = _MARGIN + _ROW * (row + 1)
+    longest = int((width - 2 * _MARGIN) / width_of("m"))
+    lines = [shortened(words, longest) for words in gaps_in_words(picture, _MOST_GAPS)]
+    return Legend(
+        below + _ROW * len(lines),
+        tuple(placed),
+        tuple((below + _ROW * index, words) for index, words in enumerate(lines)),
+    )
+
+
+def gaps_in_words(picture: Picture, most: int) -> list[str]:
+    """Return a line for each gap of a picture: so many at most, and how many more there are."""
+    more = len(picture.gaps) - most
+    lines = [
+        f"{'incomplete' if gap.drawn else 'not drawn'}: {gap.what}"
+        + (f" ({gap.source})" if gap.source else "")
+        + f": {gap.reason}"
+        for gap in picture.gaps[:most]
+    ]
+    return [*lines, f"and {more} more"] if more > 0 else lines
 
 
 def symbols_in(picture: Picture) -> tuple[MapSymbol, ...]:
@@ -87,7 +111,7 @@ def symbols_in(picture: Picture) -> tuple[MapSymbol, ...]:
 
 def _symbols(picture: Picture) -> Iterator[MapSymbol]:
     for task in picture.tasks:
-        if task.rings or task.line or task.point is not None:
+        if task.drawn:
             yield task.symbol
     for element in picture.elements:
         if element.points:

@@ -57,6 +57,7 @@ class Label:
         icon: what stands before them, and its colour.
         at: where they are placed: the middle of their base line.
         leader: a line that joins them to what they name, if they are placed far from it.
+        note: what follows the words; never shortened.
     """
 
     words: str
@@ -67,6 +68,7 @@ class Label:
     icon: tuple[str, str] = ("", "")
     at: Point = (0.0, 0.0)
     leader: tuple[Point, Point] | None = None
+    note: str = ""
 
 
 @dataclass(slots=True)
@@ -98,7 +100,7 @@ class Labels:
 
     def put(self, label: Label) -> None:
         """Place words on what they name if it is large enough, else next to it: where they cover least."""
-        shown = shortened(label.words)
+        shown = shortened(label.words) + label.note
         half = width_of(f"{label.icon[0]} {shown}" if label.icon[0] else shown) / 2
         places = [(rank, self._inside(place, half)) for rank, place in _places(label.around, half)]
         others = self._others(label.around)

@@ -26,16 +26,18 @@ from mmrs_core.pictures.preview.picture import (
     RobotPicture,
     TaskPicture,
     Zone,
+    incomplete,
 )
 from mmrs_core.pictures.preview.projection import Projection, projection_of
 from mmrs_core.scene import AreaUse, Point
 
 _ARROW_EVERY = 90.0
-_USES = {
+USES = {
     AreaUse.FORBIDDEN: "forbidden area",
     AreaUse.OBSTACLE: "obstacle",
     AreaUse.EMERGENCY: "emergency area",
 }
+"""What areas are called."""
 
 
 class Shape(NamedTuple):
@@ -83,6 +85,7 @@ class _Path:
     marks: tuple[tuple[str, float, float, str], ...]
     home: Point
     home_tip: str
+    incomplete: bool
 
 
 def map_of(picture: Picture, *, standalone: bool = False, only: int | None = None) -> Markup:
@@ -155,14 +158,22 @@ def _barriers(picture: Picture, projection: Projection) -> Iterator[Shape]:
 def _zone(zone: Zone, projection: Projection, *, passed: bool = False) -> Shape:
     """Return an area as drawn; one that robots pass over or under is drawn lightly."""
     extent = heights(zone.low, zone.high) if zone.types is None else f"for {', '.join(sorted(zone.types))}"
-    kind = f"zone {zone.use.value}" + (" passed" if passed else "")
-    return Shape(kind, projection.closed((zone.shell,)), f"{zone.name}: {_USES[zone.use]}, {extent}")
+    kind = _marked(f"zone {zone.use.value}" + (" passed" if passed else ""), zone.gap)
+    outline = projection.lines(zone.pieces) if zone.pieces else projection.closed((zone.shell,))
+    return Shape(kind, outline, f"{zone.name}: {USES[zone.use]}, {extent}{incomplete(zone.gap)}")
+
+
+def _marked(kind: str, gap: str) -> str:
+    """Return the classes of a path, one more where it is incomplete."""
+    return f"{kind} incomplete" if gap else kind
 
 
 def _kept(zone: Zone, projection: Projection) -> Shape:
     """Return the outline that robots keep to."""
     verb = "shrunk" if zone.use is AreaUse.EMERGENCY else "grown"
     tip = f"{zone.name}, {verb} by the clearance of {length(zone.clearance)}"
+    if zone.unknown:
+        tip += f", which is not known of {', '.join(zone.unknown)}"
     return Shape(f"kept {zone.use.value}", projection.closed(zone.kept), tip)
 
 
@@ -172,9 +183,9 @@ def _tasks(tasks: tuple[TaskPicture, ...], projection: Projection) -> Iterator[S
     for task in tasks:
         tip, colour = task.tip, task.symbol.colour
         if task.rings:
-            yield Shape("task area", projection.closed(task.rings), tip, colour)
-        elif task.line:
-            yield Shape("task line", projection.lines([task.line]), tip, colour)
+            yield Shape(_marked("task area", task.gap), projection.closed(task.rings), tip, colour)
+        if task.lines:
+            yield Shape(_marked("task line", task.gap), projection.lines(task.lines), tip, colour)
         elif task.name in places:
             yield SymbolShape(task.symbol, *places[task.name], tip)
 
@@ -183,9 +194,9 @@ def _element(element: ElementPicture, projection: Projection) -> Iterator[Shape 
     """Yield the outlines, lines and marks of a context element."""
     tip, colour = element.tip, element.symbol.colour
     if element.outlines:
-        yield Shape("element area", projection.closed(element.outlines), tip, colour)
+        yield Shape(_marked("element area", element.gap), projection.closed(element.outlines), tip, colour)
     for line in element.lines:
-        yield Shape("element line", projection.lines([line]), tip, colour)
+        yield Shape(_marked("element line", element.gap), projection.lines([line]), tip, colour)
     for mark in element.marks:
         yield SymbolShape(element.symbol, *projection.place(mark), tip, STEM)
 
@@ -206,7 +217,8 @@ def _path(index: int, robot: RobotPicture, projection: Projection) -> _Path:
         projection.lines(robot.planned),
         tuple((mark.kind, *projection.place(mark.at), f"{robot.name}: {mark.tip}") for mark in robot.marks),
         projection.place(robot.home),
-        f"home of {robot.name} ({kind})",
+        f"home of {robot.name} ({kind}){incomplete(robot.gap)}",
+        bool(robot.gap),
     )
 
 

@@ -13,7 +13,7 @@ from shapely.geometry.base import BaseGeometry
 from mmrs_core.pictures.figures import heights
 from mmrs_core.pictures.palette import style_of
 from mmrs_core.pictures.preview.labels import Box, Label, Labels, around
-from mmrs_core.pictures.preview.picture import Picture, RobotPicture, TaskPicture, Zone
+from mmrs_core.pictures.preview.picture import Picture, RobotPicture, TaskPicture, Zone, incomplete
 from mmrs_core.pictures.preview.projection import Projection
 from mmrs_core.scene import AreaUse, Point, Position, Ring
 
@@ -37,7 +37,7 @@ def badge_places(tasks: Iterable[TaskPicture], projection: Projection) -> dict[s
     taken: list[Point] = []
     places: dict[str, Point] = {}
     for task in tasks:
-        if task.point is not None and not (task.rings or task.line):
+        if task.point is not None and not (task.rings or task.lines):
             x, y = projection.place(task.point)
             while any(dist((x, y), other) < BADGE for other in taken):
                 x += 2 * BADGE + 1
@@ -120,7 +120,8 @@ def _flown(robot: RobotPicture) -> Iterator[Sequence[Position]]:
 def _of_robots(picture: Picture, projection: Projection, first: int) -> Iterator[Label]:
     for index, robot in enumerate(picture.robots, start=first):
         x, y = projection.place(robot.home)
-        yield Label(robot.name, (x - _HOME, y - _HOME, x + _HOME, y + _HOME), "name", style_of(index).colour)
+        box = (x - _HOME, y - _HOME, x + _HOME, y + _HOME)
+        yield Label(robot.name, box, "name", style_of(index).colour, note=incomplete(robot.gap))
 
 
 def _of_tasks(picture: Picture, projection: Projection) -> Iterator[Label]:
@@ -128,16 +129,19 @@ def _of_tasks(picture: Picture, projection: Projection) -> Iterator[Label]:
     for task in picture.tasks:
         shape, icon = _shape(task), (task.symbol.icon, task.symbol.colour)
         if task.name in places:
-            yield Label(task.name, around(places[task.name], BADGE), "of-task", tip=task.tip)
+            box, icon = around(places[task.name], BADGE), ("", "")
         elif shape is not None:
-            yield Label(task.name, _box(shape, projection), "of-task", tip=task.tip, icon=icon)
+            box = _box(shape, projection)
+        else:
+            continue
+        yield Label(task.name, box, "of-task", tip=task.tip, icon=icon, note=incomplete(task.gap))
 
 
 def _shape(task: TaskPicture) -> BaseGeometry | None:
     if task.rings:
         return _polygon(task.rings[0])
-    if task.line:
-        return shapely.Point(task.line[len(task.line) // 2])
+    if task.lines:
+        return shapely.Point(task.lines[0][len(task.lines[0]) // 2])
     return None
 
 
@@ -156,7 +160,8 @@ def _of_elements(picture: Picture, projection: Projection) -> Iterator[Label]:
                 if element.marks
                 else _box(shapes[0], projection)
             )
-            yield Label(element.name, box, "of-element", tip=element.tip, icon=icon)
+            note = incomplete(element.gap)
+            yield Label(element.name, box, "of-element", tip=element.tip, icon=icon, note=note)
 
 
 def _of_zones(picture: Picture, projection: Projection) -> Iterator[Label]:
@@ -166,7 +171,7 @@ def _of_zones(picture: Picture, projection: Projection) -> Iterator[Label]:
         seen = shapely.intersection(_polygon(zone.shell), shown)
         if not seen.is_empty:
             box = _box(_polygon(zone.shell), projection)
-            yield Label(_zone_words(zone), box, f"of-{zone.use.value}")
+            yield Label(_zone_words(zone), box, f"of-{zone.use.value}", note=incomplete(zone.gap))
 
 
 def _zone_words(zone: Zone) -> str:

@@ -7,7 +7,7 @@ from markupsafe import Markup
 from mmrs_core.pictures.documents import render, source, style_sheets
 from mmrs_core.pictures.figures import clock
 from mmrs_core.pictures.palette import style_of, variables
-from mmrs_core.pictures.preview.key import key_of
+from mmrs_core.pictures.preview.key import gaps_in_words, key_of
 from mmrs_core.pictures.preview.map import map_of
 from mmrs_core.pictures.preview.picture import ElementPicture, Leg, Picture, RobotPicture
 from mmrs_core.pictures.preview.profile import BARS, BARS_OF_FLIGHTS, profile_of
@@ -15,6 +15,8 @@ from mmrs_core.pictures.preview.projection import projection_of
 from mmrs_core.pictures.preview.timeline import KEY, KEY_OF_FLIGHTS, LEFT, RIGHT, WIDTH, timeline_of
 
 _TALLEST = 940
+_MOST_GAPS = 200
+"""Gaps that a page lists."""
 _LAYERS = (
     ("problems", "problems"),
     ("planned", "planned paths"),
@@ -51,6 +53,7 @@ def page(picture: Picture) -> str:
         robots=[(index, style_of(index), robot) for index, robot in enumerate(picture.robots)],
         layers=[layer for layer in _LAYERS if layer[0] not in absent],
         key=key_of(picture),
+        gaps=gaps_in_words(picture, _MOST_GAPS),
         map=map_of(picture),
         ratio=f"{shown.width / shown.height:.4f}",
         widest=f"{_TALLEST * shown.width / shown.height:.0f}",
@@ -70,6 +73,8 @@ def _lead(picture: Picture) -> str:
     robots, tasks = len(picture.robots), len(picture.tasks)
     counts = [f"{robots} robot{'s' * (robots != 1)}"]
     counts += [f"{tasks} task{'s' * (tasks != 1)}"] if tasks else []
+    missing = sum(not gap.drawn for gap in picture.gaps)
+    counts += [f"{missing} not drawn"] if missing else []
     if not picture.planned:
         return f"{', '.join(counts)}, not planned. Origin: {picture.origin}."
     done = "flown for" if picture.flown else "mission time"

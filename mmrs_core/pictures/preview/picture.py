@@ -117,6 +117,7 @@ class RobotPicture:
         planned: the planned path of a robot that has flown: straight legs.
         planned_heights: as `heights`, of the plan of a robot that has flown.
         marks: events along its track.
+        gap: why it is not drawn whole; empty: it is.
     """
 
     name: str
@@ -133,6 +134,7 @@ class RobotPicture:
     planned: tuple[tuple[Position, ...], ...] = ()
     planned_heights: tuple[tuple[float, float], ...] = ()
     marks: tuple[Mark, ...] = ()
+    gap: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -140,10 +142,13 @@ class Zone:
     """An area of the context.
 
     Attributes:
-        shell: as drawn, (east, north).
+        shell: as drawn, (east, north); of an incomplete one, the vertices that have a position.
         kept: its outline once grown (or, an emergency area, shrunk) by the clearance, as rings.
         clearance: metres that it was grown by.
         types: robot types that it applies to; None: all.
+        unknown: robots whose clearance is unknown, so that they may have to keep farther away.
+        gap: why it is not drawn whole; empty: it is.
+        pieces: of an incomplete one, the stretches of its outline that are known.
     """
 
     name: str
@@ -154,6 +159,9 @@ class Zone:
     kept: tuple[Ring, ...] = ()
     clearance: float = 0.0
     types: frozenset[str] | None = None
+    unknown: tuple[str, ...] = ()
+    gap: str = ""
+    pieces: tuple[tuple[Point, ...], ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -163,20 +171,28 @@ class TaskPicture:
     Attributes:
         symbol: how such a task looks, and what it is called.
         rings: outlines of an area, the shell first; empty for other tasks.
-        line: of a task along a line; empty for other tasks. point: of a task at a point.
+        lines: of a task along a line, and known stretches of outlines that have a gap. point: of a task at a
+            point.
         begin, end: seconds; None where it is not planned.
         part: how much of it was done, 0 to 1.
+        gap: why it is not drawn whole; empty: it is.
     """
 
     name: str
     symbol: MapSymbol
     rings: tuple[Ring, ...] = ()
-    line: tuple[Point, ...] = ()
+    lines: tuple[tuple[Point, ...], ...] = ()
     point: Point | None = None
     begin: float | None = None
     end: float | None = None
     details: Details = ()
     part: float = 1.0
+    gap: str = ""
+
+    @property
+    def drawn(self) -> bool:
+        """Return whether it has a position."""
+        return bool(self.rings or self.lines or self.point is not None)
 
     @property
     def tip(self) -> str:
@@ -184,7 +200,7 @@ class TaskPicture:
         times = (
             "" if self.begin is None or self.end is None else f", {clock(self.begin)} to {clock(self.end)}"
         )
-        return f"{self.name}: {self.symbol.label}{_listed(self.details)}{times}"
+        return f"{self.name}: {self.symbol.label}{_listed(self.details)}{times}{incomplete(self.gap)}"
 
 
 @dataclass(frozen=True, slots=True)
@@ -195,6 +211,7 @@ class ElementPicture:
         name: empty for an inner element without one.
         outlines: not closed. lines: polylines. marks: single points. All (east, north), metres.
         inner: whether another element contains it.
+        gap: why it is not drawn whole; empty: it is.
     """
 
     name: str
@@ -204,6 +221,7 @@ class ElementPicture:
     marks: tuple[Point, ...] = ()
     details: Details = ()
     inner: bool = False
+    gap: str = ""
 
     @property
     def points(self) -> tuple[Point, ...]:
@@ -214,7 +232,7 @@ class ElementPicture:
     def tip(self) -> str:
         """Return what the element is."""
         called = f"{self.name}: " if self.name else ""
-        return f"{called}{self.symbol.label}{_listed(self.details)}"
+        return f"{called}{self.symbol.label}{_listed(self.details)}{incomplete(self.gap)}"
 
 
 @dataclass(frozen=True, slots=True)
@@ -236,6 +254,23 @@ class Problem:
     source: str = ""
     hint: str = ""
     at: Point | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Gap:
+    """Something that the map does not show, or not whole.
+
+    Attributes:
+        what: such as ``forbidden area 'school'``.
+        reason: why; may give several reasons.
+        source: file and line; may be empty.
+        drawn: whether some of it is drawn.
+    """
+
+    what: str
+    reason: str
+    source: str = ""
+    drawn: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -265,6 +300,8 @@ class Picture:
         notes: assumptions behind it.
         flown: whether it shows what happened, and not a plan or a simulation.
         problems: errors, with which the mission has no plan and its robots no paths; and warnings.
+        more_problems: how many problems there are beside those.
+        gaps: what the map does not show, or not whole; what is not drawn at all comes first.
         checks: what was found of the safety of its behaviour: (property, words).
     """
 
@@ -280,6 +317,8 @@ class Picture:
     surface: float | None = None
     flown: bool = False
     problems: tuple[Problem, ...] = ()
+    more_problems: int = 0
+    gaps: tuple[Gap, ...] = ()
     checks: Details = ()
 
     @property
@@ -293,6 +332,15 @@ class Picture:
         planned = (time for robot in self.robots for time, _ in robot.planned_heights[-1:])
         arms = (arm.end for robot in self.robots for arm in robot.arms)
         return max((self.makespan, *planned, *arms))
+
+
+def incomplete(gap: str) -> str:
+    """Return what is said behind the name of something that has a gap.
+
+    >>> incomplete("1 of 4 coordinates has no position"), incomplete("")
+    (', incomplete: 1 of 4 coordinates has no position', '')
+    """
+    return f", incomplete: {gap}" if gap else ""
 
 
 def _listed(details: Details) -> str:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from itertools import chain
 from math import floor, log10
@@ -53,9 +53,9 @@ class Projection:
         placed = (self.place(point) for point in points)
         return "L".join(f"{number(x)} {number(y)}" for x, y in placed)
 
-    def lines(self, lines: Iterable[Iterable[Point | Position]]) -> str:
-        """Return polylines as the data of one SVG path."""
-        return " ".join(f"M{self.line(line)}" for line in lines)
+    def lines(self, lines: Iterable[Sequence[Point | Position]]) -> str:
+        """Return polylines as the data of one SVG path; those of one point as a dot."""
+        return " ".join(f"M{self.line(line)}{'h0' * (len(line) == 1)}" for line in lines)
 
     def closed(self, rings: Iterable[Iterable[Point]]) -> str:
         """Return closed rings as the data of one SVG path."""
@@ -103,7 +103,7 @@ def _points(picture: Picture) -> Iterable[Point]:
         yield robot.home[:2]
         yield from (p[:2] for leg in robot.legs for p in leg.points)
     for task in picture.tasks:
-        yield from chain(task.line, *task.rings)
+        yield from chain(*task.lines, *task.rings)
         if task.point is not None:
             yield task.point
     yield from (problem.at for problem in picture.problems if problem.at is not None)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 import shutil
+from html import unescape
 
 import pytest
 from lxml import etree
@@ -98,6 +99,26 @@ def test_warnings_of_a_valid_mission_are_marked_too(field):
     assert len(pins(svg)) == 1
     assert "at the limit; 0.5 m of it is for position errors" in page
     assert "mission time" in page
+
+
+def test_areas_and_robots_that_cannot_be_read_whole_are_marked_or_listed(field):
+    folder = field(BAD_HOME)
+    context = (folder / "context.xmi").read_text("utf-8")
+    broken = context.replace(
+        '<shell xsi:type="mission:GeoCoordinate" latitude="42.369802"', '<shell latitude="x"', 1
+    )
+    broken = broken.replace('<obstacles name="barn"', '<obstacles xsi:type="context:Barn" name="barn"')
+    (folder / "context.xmi").write_text(broken, "utf-8")
+    assert run(["preview", str(folder)]) == 1
+    page, svg = (unescape((folder / name).read_text("utf-8")) for name in ("preview.html", "preview.svg"))
+    for document in (page, svg):
+        assert 'class="zone forbidden incomplete"' in document
+        assert (
+            "incomplete: forbidden area 'school' (context.xmi:8): 1 of 4 coordinates has no position"
+            in document
+        )
+        assert "not drawn: obstacle 'barn' (context.xmi:39): Barn: no class" in document
+        assert "not drawn: robot 'Brezza' (mission.xmi:12)" in document
 
 
 def test_what_cannot_be_read_at_all_is_not_drawn(field):

@@ -197,7 +197,7 @@ def test_words_are_placed_on_what_is_large_enough_for_them():
 
 
 def test_tasks_at_one_point_stand_side_by_side(picture):
-    point = {"rings": (), "line": (), "point": (30.0, 30.0)}
+    point = {"rings": (), "lines": (), "point": (30.0, 30.0)}
     tasks = tuple(replace(picture.tasks[0], name=name, **point) for name in ("first", "second"))
     badges = with_class(parsed(replace(picture, tasks=tasks)), "badge")
     assert [badge.findtext(f"{SVG}title").split(":")[0] for badge in badges] == ["first", "second"]
