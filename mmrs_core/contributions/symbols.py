@@ -14,7 +14,6 @@ if TYPE_CHECKING:
 
 _COLOUR = re.compile("#[0-9a-fA-F]{6}")
 _LONGEST_ICON = 2
-_NEUTRAL = "#3f4a3a"
 _MISSION = "urn:mmrs:mission:1.0"
 
 
@@ -29,7 +28,7 @@ class MapSymbol:
     Attributes:
         metaclass: of the elements.
         label: common name of such an element.
-        colour: as ``#rrggbb``.
+        colour: as ``#rrggbb``; empty: that of the palette for symbols.
         icon: up to two characters that stand for it on a map.
         fields: attributes that an editor offers first and pictures show, by feature name.
         outlines: rings (east, north) in metres that an element's figures make beside its coordinates, such
@@ -48,7 +47,7 @@ class MapSymbol:
 
     def __post_init__(self) -> None:
         """Refuse what no map can show."""
-        if not _COLOUR.fullmatch(self.colour):
+        if self.colour and not _COLOUR.fullmatch(self.colour):
             raise ValueError(f"{self.colour!r}: a map symbol's colour is written #rrggbb")
         if len(self.icon) > _LONGEST_ICON:
             raise ValueError(f"{self.icon!r}: a map symbol's icon has two characters at most")
@@ -69,7 +68,7 @@ def symbol_of(metaclasses: Metaclasses, symbols: Mapping[Name, MapSymbol]) -> Ma
     if name is not None:
         return symbols[name]
     own = metaclasses[0] if metaclasses else ("", "")
-    return MapSymbol(own, words_of(own[1]), _NEUTRAL, "")
+    return MapSymbol(own, words_of(own[1]), "", "")
 
 
 def words_of(name: str) -> str:
@@ -83,6 +82,6 @@ def words_of(name: str) -> str:
 
 
 CORE_SYMBOLS = (
-    MapSymbol((_MISSION, "Fork"), "fork", "#3f4a3a", "⋔"),
-    MapSymbol((_MISSION, "Join"), "join", "#3f4a3a", "⋈"),
+    MapSymbol((_MISSION, "Fork"), "fork", "", "⋔"),
+    MapSymbol((_MISSION, "Join"), "join", "", "⋈"),
 )

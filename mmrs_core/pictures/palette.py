@@ -50,6 +50,8 @@ COLOURS: Mapping[str, tuple[str, str]] = {
     **{f"series-{index}": pair for index, pair in enumerate(_SERIES)},
 }
 """Colours by name, on light screens and paper, and on dark screens; ``var(--name)`` in style sheets."""
+SYMBOL = "#3f4a3a"
+"""The colour of symbols that choose none, before a dark screen lifts it."""
 _LIFT = "brightness(1.9) saturate(.8)"
 """What a dark screen makes of colours that plug-ins chose for their symbols."""
 

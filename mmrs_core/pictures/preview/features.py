@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from itertools import chain, groupby
 from math import isfinite
 from types import MappingProxyType
@@ -15,8 +15,22 @@ from mmrs_core.diagnostics import Place
 from mmrs_core.errors import PluginError
 from mmrs_core.geometry.clearance import grow, shrink
 from mmrs_core.geometry.polygons import parts, rings
+from mmrs_core.pictures.palette import SYMBOL
 from mmrs_core.pictures.preview.picture import Details, ElementPicture, Gap, TaskPicture, Zone
-from mmrs_core.scene import Area, AreaUse, Frame, Name, Part, Point, Ring, RobotType, Scene, Task, Value
+from mmrs_core.scene import (
+    Area,
+    AreaUse,
+    Frame,
+    Metaclasses,
+    Name,
+    Part,
+    Point,
+    Ring,
+    RobotType,
+    Scene,
+    Task,
+    Value,
+)
 
 NO_CONTEXT = Gap("context", "there is none, so areas and obstacles are unknown")
 _RING = ("urn:mmrs:mission:1.0", "Ring")
@@ -89,7 +103,7 @@ def task_pictures(
             task,
             begins.get(task.name),
             ends.get(task.name),
-            symbol_of(task.part.metaclasses, symbols),
+            _symbol_of(task.part.metaclasses, symbols),
             scene.elements,
             gaps,
         )
@@ -168,6 +182,12 @@ def symbol_of_robot(robot_type: RobotType, symbols: Mapping[Name, MapSymbol]) ->
     return None
 
 
+def _symbol_of(metaclasses: Metaclasses, symbols: Mapping[Name, MapSymbol]) -> MapSymbol:
+    """Return the symbol of an element, with a colour."""
+    symbol = symbol_of(metaclasses, symbols)
+    return symbol if symbol.colour else replace(symbol, colour=SYMBOL)
+
+
 def _holes(value: Value) -> Iterator[Value]:
     for hole in value if isinstance(value, tuple) else ():
         ring = hole.attributes.get("points") if isinstance(hole, Part) else hole
@@ -205,7 +225,7 @@ def elements_of(
         for index, part in enumerate(elements)
         for element in _elements(
             part,
-            symbol_of(part.metaclasses, symbols),
+            _symbol_of(part.metaclasses, symbols),
             symbols,
             gaps.get(part.place, ""),
             f"elements[{index}]",
@@ -227,7 +247,7 @@ def _elements(
         yield ElementPicture(name, symbol, *places, details=details, inner=not otherwise, gap=gap)
     for inner in shapes.parts:
         known = has_symbol(inner.metaclasses, symbols)
-        yield from _elements(inner, symbol_of(inner.metaclasses, symbols) if known else symbol, symbols, gap)
+        yield from _elements(inner, _symbol_of(inner.metaclasses, symbols) if known else symbol, symbols, gap)
 
 
 def _shapes(part: Part) -> _Shapes:

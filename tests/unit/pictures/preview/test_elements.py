@@ -6,6 +6,7 @@ import pytest
 from lxml import etree
 
 from mmrs_core.contributions.symbols import MapSymbol
+from mmrs_core.pictures.palette import SYMBOL
 from mmrs_core.pictures.preview.features import elements_of
 from mmrs_core.pictures.preview.map import map_of
 from mmrs_core.pictures.preview.page import page
@@ -54,6 +55,11 @@ def test_what_it_contains_looks_as_its_own_metaclass_says():
 def test_what_it_contains_looks_like_itself_where_nobody_says_otherwise():
     _, inner = of(part(GROUP, shell=SHELL, panels=(part(PANEL, position=SHELL[1]),)))
     assert (inner.symbol, inner.marks) == (OF_GROUP, (FLAT[1],))
+
+
+def test_a_symbol_without_a_colour_has_that_of_the_palette():
+    (mooring,) = of(part((SOLAR, "Mooring"), position=SHELL[0]))
+    assert (mooring.symbol.label, mooring.symbol.colour) == ("mooring", SYMBOL)
 
 
 def test_contained_values_without_a_place_are_no_elements():
