@@ -23,12 +23,13 @@ from pathlib import Path
 from statistics import quantiles
 from typing import Any
 
+from mmrs_multicopter.testing import quad, robot_program, take_off
 from pymavlink import mavutil
 
 from mmrs_core.behaviour.program import Program
 from mmrs_core.simulation.live import live_run_for, run_live
 from mmrs_core.simulation.run import inputs_of
-from mmrs_core.testing.programs import move, program, quad, robot_program, take_off
+from mmrs_core.testing.programs import move, program
 from mmrs_mavlink.plugin.backend import MAVLINK
 from mmrs_mavlink.sitl import Settings, SimulatedVehicle
 from mmrs_runtime.engine.order_sources import receive_orders

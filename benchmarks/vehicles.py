@@ -220,17 +220,12 @@ def children() -> float:
 
 
 def generate(folder: Path, count: int) -> None:
+    from mmrs_multicopter.testing import LAND, go_to, robot_program, take_off, target_input
+
     from mmrs_core.generation.render import render
     from mmrs_core.generation.writing import write
     from mmrs_core.scene import Frame
-    from mmrs_core.testing.programs import (
-        LAND,
-        go_to,
-        program,
-        robot_program,
-        take_off,
-        target_input,
-    )
+    from mmrs_core.testing.programs import program
     from mmrs_mavlink.plugin.controllers import MAVLINK_PYTHON
 
     frame = Frame("EPSG:4326", 42.37 - NORTH / 111_070.0, 13.35)

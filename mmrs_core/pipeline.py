@@ -234,14 +234,11 @@ def capabilities(target: str | None, contributions: Contributions) -> dict[str, 
     Raises:
         UsageError: if there is no such target.
     """
-    from mmrs_core.generation.capabilities.judging import capabilities_of, probes
-    from mmrs_core.generation.capabilities.probes import PROBED
+    from mmrs_core.generation.capabilities.judging import capabilities_of
 
-    added = sorted(name for name in contributions.move_kinds if name[0] not in PROBED)
-    tried = probes(contributions.languages.metaclass(*name).ancestry for name in added)
     names = sorted(contributions.targets) if target is None else [target]
     chosen = {name: _named("target", name, contributions.targets) for name in names}
-    return {name: capabilities_of(each, contributions, tried) for name, each in chosen.items()}
+    return {name: capabilities_of(each, contributions) for name, each in chosen.items()}
 
 
 def write(files: Iterable[GeneratedFile], directory: Path) -> tuple[Path, ...]:

@@ -21,7 +21,7 @@ FARTHEST = 89.0
 
 
 def degrees_of(points: Sequence[Point], frame: Frame) -> tuple[tuple[float, float], ...]:
-    """Return (latitude, longitude) in degrees of WGS 84, with the seven decimals that MAVLink keeps.
+    """Return (latitude, longitude) in degrees of WGS 84, with seven decimals.
 
     Args:
         points: (east, north) in metres.

@@ -88,8 +88,7 @@ class Move:
     Attributes:
         id: unique in the robot: the move's name, or ``moves.<index>`` where it has none.
         metaclasses: (nsURI, name), most specific first.
-        attributes: plain attributes by feature name (``duration``, ``altitude``, ``trajectory`` …),
-            those of plug-ins included.
+        attributes: plain attributes by feature name, such as ``duration``, those of plug-ins included.
         target, distance, heading, speed: of a GoTo; heading also of a HeadTo. Metres, metres per second.
         before, after: pre- and post-actions in order.
         flows: whether the robot may go into it, or out of it, without a stop.

@@ -105,6 +105,8 @@ class RobotKind:
         medium: what it moves in.
         position_hold: attribute of robot types with the strongest wind in which they hold their position,
             metres per second; empty: the wind does not matter to them.
+        sample: a robot type of this kind, as `sample_type` makes it, with which targets are tried; None: they
+            are not tried with this kind.
     """
 
     name: str
@@ -118,6 +120,7 @@ class RobotKind:
     vehicle: str = ""
     medium: Medium = "ground"
     position_hold: str = ""
+    sample: RobotType | None = None
 
 
 @dataclass(frozen=True, slots=True)

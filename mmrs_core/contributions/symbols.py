@@ -74,8 +74,8 @@ def symbol_of(metaclasses: Metaclasses, symbols: Mapping[Name, MapSymbol]) -> Ma
 def words_of(name: str) -> str:
     """Return the words of a metaclass's or feature's name in small letters; abbreviations stay.
 
-    >>> words_of("gridResolution"), words_of("AUVDock")
-    ('grid resolution', 'AUV dock')
+    >>> words_of("gridResolution"), words_of("GPSMast")
+    ('grid resolution', 'GPS mast')
     """
     parted = re.sub(r"(?<=[a-z0-9])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z])", " ", name)
     return " ".join(word if word.isupper() and len(word) > 1 else word.lower() for word in parted.split())

@@ -5,12 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from mmrs_core.behaviour.program import Program
     from mmrs_core.contributions.hooks import Extensions
     from mmrs_core.contributions.rules import MoveKind, RobotKind
+    from mmrs_core.contributions.samples import SampleWiring
     from mmrs_core.scene import Area, Name, RobotType
 
 
@@ -113,7 +114,9 @@ class Target:
         capabilities: how elements of the Behaviour Language are expressed, in a few words each, by the
             element as the table of capabilities names it, or by how its name begins: the longest
             counts. What is expressed, and what is not, is found by trying.
-        tried_with: what the robots that it is tried with move in.
+        tried_with: class of vehicle, as in `RobotKind.vehicle`, of the robots that it is tried with, by
+            `RobotKind.sample`. Default, and where no such kind is installed: the core's plain robot.
+        wirings: device wirings that it is tried with, beside a device without wiring.
     """
 
     name: str
@@ -123,4 +126,5 @@ class Target:
     refusals: Callable[[TargetInput], Iterable[str]]
     filters: Mapping[str, Callable[[object], str]] = field(default_factory=dict)
     capabilities: Mapping[str, str] = field(default_factory=dict)
-    tried_with: Literal["air", "water"] = "air"
+    tried_with: str = "ground"
+    wirings: tuple[SampleWiring, ...] = ()

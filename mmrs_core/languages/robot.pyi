@@ -146,7 +146,7 @@ class Device(Element):
 class Property(Element):
     """One property of a device."""
     name: str
-    """The key, such as mavlink.camera, mavlink.servo, sensor.width, focal.length or can.id."""
+    """The key, such as sensor.width, focal.length or mount.yaw."""
     value: str
     """The value, as text; the key defines its unit."""
     def __init__(

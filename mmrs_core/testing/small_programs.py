@@ -26,7 +26,7 @@ from mmrs_core.scene import (
     RobotType,
 )
 
-ROBOT_TYPE = "rover"
+ROBOT_TYPE = "plain"
 MOVE = (BEHAVIOUR, "Move")
 
 

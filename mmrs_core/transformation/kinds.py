@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 from mmrs_core.behaviour.travel import SHARE_OF_LARGEST_SPEED
 from mmrs_core.contributions.rules import MoveKind, MoveSpec, RobotKind
+from mmrs_core.contributions.samples import sample_type
 from mmrs_core.errors import InfeasibleError
 from mmrs_core.scene import Capability, Kinematics, Position, Robot, RobotType, Scene
 
@@ -254,6 +255,7 @@ PLAIN_ROBOT = RobotKind(
         "GROUND_LOST": "CONTINUE",
     },
     vehicle="ground",
+    sample=sample_type((ROBOT,)),
 )
 
 _Seconds = Callable[["Move", tuple[Position, ...], Kinematics, str], tuple[float, float]]

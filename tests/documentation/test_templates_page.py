@@ -6,17 +6,17 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
+from mmrs_multicopter.testing import target_input, two_drones
 
 from mmrs_core.contributions.targets import Target
-from mmrs_core.generation.capabilities.probes import plain
 from mmrs_core.plugins import load_plugins
-from mmrs_core.testing.programs import installed, target_input, two_drones
+from mmrs_core.testing.programs import installed, sample_of
 
 PAGE = (Path(__file__).parents[2] / "docs" / "how-to" / "templates.md").read_text(encoding="utf-8")
 TARGETS = sorted(load_plugins().contributions.targets.values(), key=lambda target: target.name)
 INPUTS = {
-    "air": target_input(two_drones()),
-    "water": replace(plain("sub"), robot_kinds=installed().robot_kinds),
+    "copter": target_input(two_drones()),
+    "sub": replace(sample_of("auv").plain, robot_kinds=installed().robot_kinds),
 }
 
 

@@ -10,6 +10,7 @@ from mmrs_auv.backend import CAN_SIM
 from mmrs_auv.backend.rehearsed import RehearsedRobot, rehearsed
 from mmrs_auv.kinds import AUV_KIND
 from mmrs_auv.plugin import mmrs_metamodels
+from mmrs_multicopter.testing import robot_program
 
 from mmrs_core.behaviour.log import read_logs
 from mmrs_core.behaviour.program import Move, MoveTarget, Program
@@ -21,7 +22,7 @@ from mmrs_core.languages.reading import read_model
 from mmrs_core.languages.registry import registry_with
 from mmrs_core.scene import Area, Frame, RobotType
 from mmrs_core.simulation.run import SimulatedRun, simulate
-from mmrs_core.testing.programs import move, program, robot_program
+from mmrs_core.testing.programs import move, program
 from mmrs_core.transformation.kinds import MOVE_KINDS
 from mmrs_runtime.records.log import LogWriter
 

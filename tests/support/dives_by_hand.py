@@ -7,13 +7,14 @@ from dataclasses import replace
 
 from mmrs_auv.kinds import AUV_KIND
 from mmrs_auv.names import AUV_MOVEMENT
+from mmrs_multicopter.testing import robot_program
 from patience import until
 from ports import free_port
 
 from mmrs_core.behaviour.program import BEHAVIOUR, Heading, MoveTarget
 from mmrs_core.contributions.vehicles import Live, VehicleInput
 from mmrs_core.scene import Capability, Device, DeviceAction, Frame, Part, RobotType
-from mmrs_core.testing.programs import move, program, robot_program
+from mmrs_core.testing.programs import move, program
 from mmrs_mavlink.plugin.manual import ARDUSUB_MANUAL
 from mmrs_mavlink.sitl import Settings, SimulatedVehicle
 from mmrs_runtime.engine.clocks import RealClock

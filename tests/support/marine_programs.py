@@ -9,13 +9,14 @@ import pytest
 from hypothesis import HealthCheck, settings
 from hypothesis import strategies as st
 from mmrs_auv.names import AUV_MOVEMENT
+from mmrs_multicopter.testing import robot_program
 
 from mmrs_core.behaviour.program import BEHAVIOUR, Action, Heading, Move, MoveTarget, RobotProgram, Transition
 from mmrs_core.contributions.targets import TargetInput
 from mmrs_core.errors import UnsupportedError
 from mmrs_core.generation.render import render
 from mmrs_core.scene import Capability, Device, DeviceAction, Frame, Part, RobotType
-from mmrs_core.testing.programs import feedback, installed, move, program, robot_program
+from mmrs_core.testing.programs import feedback, installed, move, program
 from mmrs_core.testing.small_programs import notify
 
 SEA = Frame("EPSG:4326", 41.18, -8.7, 0.0, "MSL", surface=-2.0)

@@ -7,20 +7,7 @@ from dataclasses import replace
 
 from mmrs_core.behaviour.program import MoveTarget, Program
 from mmrs_core.contributions.targets import TargetInput
-from mmrs_core.generation.capabilities.probes import (
-    BETA,
-    FLIGHT,
-    HERE,
-    KINDS,
-    THERE,
-    Probe,
-    changed,
-    given,
-    kind_of,
-    plain,
-    robot,
-    with_move,
-)
+from mmrs_core.generation.capabilities.probes import BETA, Probe, Samples, changed, with_move
 from mmrs_core.scene import Area, AreaUse, Frame, Ring
 
 LOCAL = Frame("EPSG:4326", None, None)
@@ -28,9 +15,9 @@ SQUARE: Ring = ((100.0, 0.0), (140.0, 0.0), (140.0, 40.0), (100.0, 40.0))
 MEADOW: Ring = ((-40.0, 0.0), (-20.0, 0.0), (-20.0, 20.0), (-40.0, 20.0))
 
 
-def of_behaviours() -> Iterator[Probe]:
+def of_behaviours(samples: Samples) -> Iterator[Probe]:
     """Yield a probe for each feature of Behaviour, and of its frame."""
-    base = plain()
+    sample, base = samples.base, samples.base.plain
     frame = base.program.frame
     frames = {
         "Behaviour.crs": replace(frame, crs="EPSG:4265"),
@@ -44,30 +31,31 @@ def of_behaviours() -> Iterator[Probe]:
     for element, other in frames.items():
         yield Probe("behaviour", element, _with(base, frame=other), base)
     fenced = replace(base, areas=(Area("school", AreaUse.FORBIDDEN, SQUARE),))
+    second = sample.robot(BETA, sample.journey)
     for element, program in {
         "Behaviour.name": replace(base.program, name="another"),
         "Behaviour.minimumSeparation": replace(base.program, minimum_separation=5.0),
         "Behaviour.reserve": replace(base.program, reserve=0.4),
         "Behaviour.acceptedUnknowns": replace(base.program, accepted_unknowns=("energy",)),
-        "Behaviour.idleRobots": replace(base.program, idle=(robot(BETA, FLIGHT),)),
+        "Behaviour.idleRobots": replace(base.program, idle=(second,)),
     }.items():
         yield Probe("behaviour", element, replace(base, program=program), base)
     careful = replace(base.program, position_error=3.0)
     yield Probe("behaviour", "Behaviour.positionError", replace(fenced, program=careful), fenced)
-    sub = plain("sub")
-    yield Probe("behaviour", "Behaviour.surfaceHeight", _with(sub, frame=replace(frame, surface=1.0)), sub)
-    second = replace(base.program, robots=(*base.program.robots, robot(BETA, FLIGHT)))
-    yield Probe("behaviour", "Behaviour.robots", replace(base, program=second), base)
+    swum = (samples.swimming or sample).plain
+    yield Probe("behaviour", "Behaviour.surfaceHeight", _with(swum, frame=replace(frame, surface=1.0)), swum)
+    both = replace(base.program, robots=(*base.program.robots, second))
+    yield Probe("behaviour", "Behaviour.robots", replace(base, program=both), base)
 
 
-def of_robots() -> Iterator[Probe]:
-    """Yield a probe for each kind of vehicle, and for each feature of Robot."""
-    base = plain()
-    for vehicle in KINDS:
-        yield Probe("robot", f"Robot: a {vehicle}", plain(vehicle), given())
+def of_robots(samples: Samples) -> Iterator[Probe]:
+    """Yield a probe for each robot kind, and for each feature of Robot."""
+    sample, base = samples.base, samples.base.plain
+    for each in samples.every:
+        yield Probe("robot", f"Robot: {each.name}", each.plain, sample.given())
     yield Probe("robot", "Robot.id", changed(base, lambda r: replace(r, id="gamma")), base)
-    sub = plain("sub")
-    yield Probe("robot", "Robot.typeName", replace(sub, types={"Kind": kind_of("rover")}), sub)
+    swum, ground = (samples.swimming or sample).plain, samples.ground.plain.types
+    yield Probe("robot", "Robot.typeName", replace(swum, types=ground), swum)
     yield Probe(
         "robot", "Robot.typeName: a type that is not given", replace(_unhurried(base), types={}), base
     )
@@ -75,15 +63,15 @@ def of_robots() -> Iterator[Probe]:
     yield Probe("robot", "Robot.home absent", changed(base, lambda r: replace(r, home=None)), base)
     slow = _unhurried(base)
     for mode in ("SAFE", "AGGRESSIVE"):
-        other = changed(slow, lambda r, mode=mode: replace(r, travel_mode=mode))  # type: ignore[misc]
-        yield Probe("robot", f"Robot.travelMode {mode}", other, slow)
+        given = changed(slow, lambda r, mode=mode: replace(r, travel_mode=mode))  # type: ignore[misc]
+        yield Probe("robot", f"Robot.travelMode {mode}", given, slow)
     yield Probe("robot", "Robot.payload", changed(slow, lambda r: replace(r, payload=0.8)), slow)
     yield Probe("robot", "Robot.slots", changed(base, lambda r: replace(r, slots=("go",))), base)
 
 
-def of_places() -> Iterator[Probe]:
+def of_places(samples: Samples) -> Iterator[Probe]:
     """Yield a probe for each sort of area, and of target."""
-    base = plain()
+    base, here, there = samples.base.plain, samples.base.here, samples.base.there
     for element, area in {
         "Context.forbiddenAreas": Area("school", AreaUse.FORBIDDEN, SQUARE),
         "Context.obstacles: of unlimited height": Area("tower", AreaUse.OBSTACLE, SQUARE),
@@ -91,15 +79,15 @@ def of_places() -> Iterator[Probe]:
         "Context.emergencyAreas": Area("meadow", AreaUse.EMERGENCY, MEADOW),
     }.items():
         yield Probe("place", element, replace(base, areas=(area,)), base)
-    yield Probe("place", "GeoCoordinate", with_move(base, "a", target=MoveTarget(THERE)), base)
+    yield Probe("place", "GeoCoordinate", with_move(base, "a", target=MoveTarget(there)), base)
     local = _with(base, frame=LOCAL)
-    moved = with_move(local, "a", target=MoveTarget(THERE))
+    moved = with_move(local, "a", target=MoveTarget(there))
     yield Probe("place", "RelativeCoordinate of an origin without degrees", moved, local)
     for element, target in {
-        "Target.name": MoveTarget(HERE, name="gate"),
+        "Target.name": MoveTarget(here, name="gate"),
         "ObjectTarget.description": MoveTarget(None, "a buoy", None),
-        "ObjectTarget.expectedAt": MoveTarget(THERE, "a buoy", None),
-        "ObjectTarget.tolerance": MoveTarget(THERE, "a buoy", 2.0),
+        "ObjectTarget.expectedAt": MoveTarget(there, "a buoy", None),
+        "ObjectTarget.tolerance": MoveTarget(there, "a buoy", 2.0),
     }.items():
         yield Probe("place", element, with_move(base, "a", target=target), base)
 

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from itertools import chain
 from typing import Literal, TypeAlias
 
@@ -11,11 +10,9 @@ from mmrs_core.contributions.registry import Contributions
 from mmrs_core.contributions.targets import Target, TargetInput
 from mmrs_core.errors import UnsupportedError
 from mmrs_core.generation.capabilities import actions, behaviours, moves, policies
-from mmrs_core.generation.capabilities.probes import Probe
-from mmrs_core.generation.capabilities.water import under_water
+from mmrs_core.generation.capabilities.probes import Probe, samples_of
 from mmrs_core.generation.environment import environment_of
 from mmrs_core.generation.render import Press
-from mmrs_core.scene import Metaclasses
 
 Verdict: TypeAlias = Literal["expressed", "no difference", "lossy", "refused"]
 VERDICTS: dict[Verdict, str] = {
@@ -42,48 +39,29 @@ class TargetCapability:
     how: str = ""
 
 
-def probes(more_moves: Iterable[Metaclasses] = ()) -> tuple[Probe, ...]:
-    """Return a minimal behaviour for each element of the Behaviour Language.
-
-    Args:
-        more_moves: metaclasses of moves that plug-ins have added, each most specific first.
-    """
+def probes(target: Target, contributions: Contributions) -> tuple[Probe, ...]:
+    """Return a minimal behaviour for each element of the Behaviour Language, and of what extends it."""
+    samples = samples_of(target, contributions)
     return tuple(
         chain(
-            behaviours.of_behaviours(),
-            behaviours.of_robots(),
-            behaviours.of_places(),
-            moves.of_moves(),
-            moves.of_plugins(more_moves),
-            moves.of_headings(),
-            moves.of_transitions(),
-            actions.of_actions(),
-            policies.of_policies(),
+            behaviours.of_behaviours(samples),
+            behaviours.of_robots(samples),
+            behaviours.of_places(samples),
+            moves.of_moves(samples),
+            moves.of_plugins(samples, contributions),
+            moves.of_headings(samples),
+            moves.of_transitions(samples),
+            actions.of_devices(samples),
+            actions.of_actions(samples),
+            policies.of_policies(samples),
         )
     )
 
 
-def capabilities_of(
-    target: Target, contributions: Contributions, tried: Iterable[Probe] | None = None
-) -> tuple[TargetCapability, ...]:
-    """Return what a target does with each element; by default with each that `probes` gives."""
+def capabilities_of(target: Target, contributions: Contributions) -> tuple[TargetCapability, ...]:
+    """Return what a target does with each element."""
     trial = Trial(target)
-    known = suited(probes() if tried is None else tried, target, contributions)
-    return tuple(trial.judged(probe) for probe in known)
-
-
-def suited(tried: Iterable[Probe], target: Target, contributions: Contributions) -> tuple[Probe, ...]:
-    """Return the probes as they are tried with a target: with drones, or with underwater vehicles."""
-    made = (under_water(probe) if target.tried_with == "water" else probe for probe in tried)
-    moves = contributions.move_kinds
-    kinds = {name: replace(kind, policies={}) for name, kind in contributions.robot_kinds.items()}
-
-    def with_kinds(input: TargetInput) -> TargetInput:
-        return replace(input, robot_kinds=kinds, move_kinds=moves)
-
-    return tuple(
-        replace(probe, given=with_kinds(probe.given), without=with_kinds(probe.without)) for probe in made
-    )
+    return tuple(trial.judged(probe) for probe in probes(target, contributions))
 
 
 class Trial:

@@ -2,140 +2,146 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from dataclasses import replace
 
 from mmrs_core.behaviour.program import BEHAVIOUR, Heading, Move, MoveTarget, Transition
+from mmrs_core.contributions.registry import Contributions
+from mmrs_core.contributions.samples import DEVICE
 from mmrs_core.contributions.targets import TargetInput
 from mmrs_core.generation.capabilities.probes import (
     ALPHA,
-    FLIGHT,
-    KINDS,
-    LAND,
     MOVE,
-    TAKE_OFF,
-    THERE,
     Probe,
+    Sample,
+    Samples,
     changed,
-    given,
-    go_to,
-    kind_of,
     move,
-    plain,
-    robot,
     with_move,
 )
-from mmrs_core.scene import Metaclasses
+from mmrs_core.languages.metaclass import Enumeration, Metaclass
+from mmrs_core.scene import Metaclasses, Value
 
-AHEAD = Heading(MoveTarget((0.0, 90.0, 0.0)), "device")
+AHEAD = Heading(MoveTarget((0.0, 90.0, 0.0)), DEVICE)
 ASIDE = replace(AHEAD, angle_degrees=90.0)
+MOUNTED_ASIDE = {"mount.yaw": "90"}
 UNHEARD_OF: Metaclasses = (("urn:mmrs:nowhere:1.0", "Somersault"), MOVE)
-ON_THE_WAY = (TAKE_OFF, go_to("a"), go_to("b", THERE), LAND)
-"""Places where the moves of plug-ins are tried: between two of the core's."""
 
 
-def of_moves() -> Iterator[Probe]:
+def of_moves(samples: Samples) -> Iterator[Probe]:
     """Yield a probe for each metaclass and feature of moves."""
-    base, two = plain(), given(robot(ALPHA, ON_THE_WAY))
-    yield Probe("move", "Start, Stop", given(robot(ALPHA, ())), base)
-    yield Probe("move", "multicopter GoTo", given(robot(ALPHA, ON_THE_WAY)), base)
-    yield Probe("move", "GoTo", *_inserted(move("m", "GoTo"), target=MoveTarget(THERE), speed=2.0))
-    yield Probe("move", "GoTo.target", with_move(base, "a", target=MoveTarget(THERE)), base)
+    sample, base = samples.base, samples.base.plain
+    there = MoveTarget(sample.there)
+    yield Probe("move", "Start, Stop", sample.given(sample.robot(ALPHA, ())), base)
+    go_to = replace(move("m", "GoTo"), target=there, speed=2.0)
+    yield Probe("move", "GoTo", *sample.inserted(go_to))
+    yield Probe("move", "GoTo.target", with_move(base, "a", target=there), base)
     yield Probe("move", "GoTo.distance", with_move(base, "a", distance=4.0), base)
     yield Probe("move", "GoTo.speed", with_move(base, "a", speed=3.0), base)
     yield Probe("move", "GoTo.speed absent", with_move(base, "a", speed=None), base)
-    for trajectory in ("HORIZONTAL_FIRST", "VERTICAL_FIRST"):
-        other = with_move(two, "b", attributes={"trajectory": trajectory})
-        yield Probe("move", f"GoTo.trajectory {trajectory}", other, two)
-    yield Probe("move", "TakeOff", *_inserted(replace(TAKE_OFF, id="m"), LAND))
-    higher = {"altitude": 12.0}
-    yield Probe("move", "TakeOff.altitude", with_move(base, "up", attributes=higher), base)
-    yield Probe("move", "Land", *_inserted(replace(LAND, id="m"), TAKE_OFF))
-    yield Probe("move", "HoldPosition", *_inserted(move("m", "HoldPosition", duration=3.0)))
-    yield Probe("move", "HoldPosition.duration", *_differing(duration=3.0))
-    charge = move("m", "Recharge", BEHAVIOUR, (BEHAVIOUR, "HoldPosition"), duration=60.0)
-    yield Probe("move", "Recharge", *_between_sorties(charge))
-    yield Probe(
-        "move", "HeadTo.heading", *_inserted(replace(move("m", "HeadTo"), heading=replace(AHEAD, device="")))
-    )
+    yield Probe("move", "HoldPosition", *sample.inserted(move("m", "HoldPosition", duration=3.0)))
+    longer, _ = sample.inserted(move("m", "HoldPosition", duration=9.0))
+    shorter = with_move(longer, "m", attributes={"duration": 3.0})
+    yield Probe("move", "HoldPosition.duration", shorter, longer)
+    yield Probe("move", "Recharge", *_between_sorties(sample))
+    facing = replace(move("m", "HeadTo"), heading=replace(AHEAD, device=""))
+    yield Probe("move", "HeadTo.heading", *sample.inserted(facing))
     for name, changes in {
         "Move.name": {"id": "other"},
         "Move.task": {"task": "t"},
         "Move.rule": {"rule": "r"},
     }.items():
         yield Probe("move", name, with_move(base, "a", **changes), base)
-    yield Probe("move", "a move of a plug-in", *_inserted(Move("m", UNHEARD_OF)))
+    yield Probe("move", "a move of a plug-in", *sample.inserted(Move("m", UNHEARD_OF)))
 
 
-def of_plugins(moves: Iterable[Metaclasses]) -> Iterator[Probe]:
-    """Yield a probe for each metaclass of moves, most specific first, that plug-ins have added."""
-    for metaclasses in moves:
-        uri, name = metaclasses[0]
-        yield Probe("move of a plug-in", f"{name} ({uri})", *_inserted(Move("m", metaclasses)))
+def of_plugins(samples: Samples, contributions: Contributions) -> Iterator[Probe]:
+    """Yield a probe for each metaclass of moves that plug-ins have added, and for each attribute of it."""
+    for uri, name in sorted(each for each in contributions.move_kinds if each[0] != BEHAVIOUR):
+        metaclass, group = contributions.languages.metaclass(uri, name), f"move of {uri}"
+        values = _values_of(metaclass)
+        usual: dict[str, Value] = {feature: some[0] for feature, some in values.items()}
+        made = Move("m", metaclass.ancestry, usual)
+        if metaclass.is_kind(BEHAVIOUR, "GoTo"):
+            made = replace(made, target=MoveTarget(samples.base.there), speed=2.0)
+        kind, sample = contributions.move_kinds[uri, name], samples.base
+        before = sample.recover if kind.needs == {"grounded"} else ()
+        after = sample.launch if kind.leaves == "grounded" else ()
+        given, without = sample.inserted(*before, made, *after)
+        yield Probe(group, name, given, without)
+        for feature, (_, *others) in values.items():
+            for other in others:
+                words = f"{name}.{feature} {other}" if isinstance(other, str) else f"{name}.{feature}"
+                varied = with_move(given, "m", attributes={**usual, feature: other})
+                yield Probe(group, words, varied, given)
 
 
-def of_headings() -> Iterator[Probe]:
-    """Yield a probe for each way of pointing something somewhere."""
-    for vehicle in KINDS:
-        base = plain(vehicle)
+def _values_of(metaclass: Metaclass) -> dict[str, list[Value]]:
+    """Return two or more values for each number, truth and enumeration that a metaclass itself declares."""
+    found: dict[str, list[Value]] = {}
+    for feature in metaclass.by_name.values():
+        if feature.owner is not metaclass or feature.is_reference or feature.many:
+            continue
+        if isinstance(feature.type, Enumeration):
+            default = feature.default if isinstance(feature.default, str) else feature.type.names[0]
+            found[feature.name] = [default, *(each for each in feature.type.names if each != default)]
+        elif feature.type.name == "EBoolean":
+            found[feature.name] = [False, True]
+        elif feature.type.name in ("EDouble", "EFloat", "EInt", "ELong"):
+            found[feature.name] = [20.0, 12.0]
+    return found
+
+
+def of_headings(samples: Samples) -> Iterator[Probe]:
+    """Yield a probe for each way in which something is pointed somewhere."""
+    turning = {each.description: each.properties for each in samples.target.wirings if each.turns}
+    for sample in samples.carried:
+        base = sample.plain
         turned = with_move(base, "a", heading=AHEAD)
-        yield Probe("heading", f"GoTo.heading of a {vehicle}", turned, base)
-        yield Probe("heading", f"Heading.angle of a {vehicle}", with_move(base, "a", heading=ASIDE), turned)
+        name = f"({sample.name})"
+        yield Probe("heading", f"GoTo.heading {name}", turned, base)
+        yield Probe("heading", f"Heading.angle {name}", with_move(base, "a", heading=ASIDE), turned)
         for words, properties in {
-            "of a device that looks aside (mount.yaw)": {"mount__yaw": "90"},
-            "of a device on a gimbal (mavlink.gimbal)": {"mavlink__gimbal": "1"},
+            "of a device that looks aside (mount.yaw)": MOUNTED_ASIDE,
+            **{f"of {each}": properties for each, properties in turning.items()},
         }.items():
-            fitted = replace(turned, types={"Kind": kind_of(vehicle, **properties)})
-            yield Probe("heading", f"GoTo.heading of a {vehicle}, {words}", fitted, turned)
+            fitted = replace(turned, types={sample.type.name: sample.wired(properties)})
+            yield Probe("heading", f"GoTo.heading {name}, {words}", fitted, turned)
             aside = with_move(fitted, "a", heading=ASIDE)
-            yield Probe("heading", f"Heading.angle of a {vehicle}, {words}", aside, fitted)
+            yield Probe("heading", f"Heading.angle {name}, {words}", aside, fitted)
             facing = replace(move("m", "HeadTo"), heading=AHEAD)
-            ahead = _then(base, facing)
+            ahead = sample.given(sample.robot(ALPHA, sample.journey_with(facing)))
             other = replace(ahead, types=fitted.types)
-            yield Probe("heading", f"HeadTo.heading of a {vehicle}, {words}", other, ahead)
-    front = replace(AHEAD, device="")
-    base = plain()
+            yield Probe("heading", f"HeadTo.heading {name}, {words}", other, ahead)
+    base, front = samples.base.plain, replace(AHEAD, device="")
     yield Probe("heading", "Heading.deviceId absent: the front", with_move(base, "a", heading=front), base)
     found = Heading(MoveTarget((0.0, 90.0, 0.0), "a buoy", 2.0))
     yield Probe("heading", "Heading.target: an object", with_move(base, "a", heading=found), base)
 
 
-def of_transitions() -> Iterator[Probe]:
+def of_transitions(samples: Samples) -> Iterator[Probe]:
     """Yield a probe for each feature of MoveTransition and Choice."""
-    base = given(robot(ALPHA, ON_THE_WAY))
-    plainly = Transition(0, 3)
+    sample = samples.base
+    moves, on, beyond = sample.on_the_way(), sample.after("a"), sample.after("b")
+    plainly = Transition(0, on)
+    choice = replace(plainly, condition="calm", otherwise=beyond)
+    listening = changed(sample.given(sample.robot(ALPHA, moves)), lambda r: replace(r, slots=("go",)))
     for element, transition in {
         "MoveTransition.waitFor": replace(plainly, waits=("go",)),
         "MoveTransition.fluid": replace(plainly, fluid=True),
         "MoveTransition.to: a move that comes round again": Transition(0, 1),
-        "Choice.conditionIdentifier, Choice.falseBranch": Transition(0, 3, condition="calm", otherwise=4),
-        "Choice by a standard condition": Transition(0, 3, condition="battery-below:0.3", otherwise=4),
+        "Choice.conditionIdentifier, Choice.falseBranch": choice,
+        "Choice by a standard condition": replace(choice, condition="battery-below:0.3"),
     }.items():
-        other = changed(given(robot(ALPHA, ON_THE_WAY, a=transition)), lambda r: replace(r, slots=("go",)))
-        listening = changed(base, lambda r: replace(r, slots=("go",)))
+        other = changed(
+            sample.given(sample.robot(ALPHA, moves, a=transition)), lambda r: replace(r, slots=("go",))
+        )
         yield Probe("transition", element, other, listening)
 
 
-def _inserted(new: Move, *more: Move, **changes: object) -> tuple[TargetInput, TargetInput]:
-    """Return a behaviour with a move in it, and without it; `more` makes up for it."""
-    made = replace(new, **changes)  # type: ignore[arg-type]
-    longer = (*ON_THE_WAY[:2], made, *more, *ON_THE_WAY[2:])
-    return given(robot(ALPHA, longer)), given(robot(ALPHA, ON_THE_WAY))
-
-
-def _differing(**attributes: float) -> tuple[TargetInput, TargetInput]:
-    base, _ = _inserted(move("m", "HoldPosition", duration=9.0))
-    return with_move(base, "m", attributes=attributes), base
-
-
-def _then(base: TargetInput, new: Move) -> TargetInput:
-    """Return an input whose first robot makes another move after its first GoTo."""
-    (first, *_) = base.program.robots
-    index = next(number for number, each in enumerate(first.moves) if each.id == "a")
-    moves = (*first.moves[1 : index + 1], new, *first.moves[index + 1 : -1])
-    return changed(base, lambda r: robot(ALPHA, moves))
-
-
-def _between_sorties(new: Move) -> tuple[TargetInput, TargetInput]:
-    again = (replace(TAKE_OFF, id="up2"), replace(LAND, id="down2"))
-    return given(robot(ALPHA, (*FLIGHT, new, *again))), given(robot(ALPHA, (*FLIGHT, *again)))
+def _between_sorties(sample: Sample) -> tuple[TargetInput, TargetInput]:
+    charge = move("m", "Recharge", (BEHAVIOUR, "HoldPosition"), duration=60.0)
+    again = tuple(replace(each, id=f"{each.id}2") for each in (*sample.launch, *sample.recover))
+    both = ((*sample.journey, charge, *again), (*sample.journey, *again))
+    given, without = (sample.given(sample.robot(ALPHA, moves)) for moves in both)
+    return given, without

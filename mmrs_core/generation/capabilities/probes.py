@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 from mmrs_core.behaviour.program import (
     BEHAVIOUR,
@@ -14,29 +15,18 @@ from mmrs_core.behaviour.program import (
     RobotProgram,
     Transition,
 )
-from mmrs_core.contributions.targets import TargetInput
-from mmrs_core.scene import (
-    Battery,
-    Capability,
-    Device,
-    DeviceAction,
-    Frame,
-    Metaclasses,
-    Part,
-    Position,
-    RobotType,
-    Value,
-)
+from mmrs_core.contributions.registry import Contributions
+from mmrs_core.contributions.rules import Medium, MoveSpec, RobotKind, robot_kind_of
+from mmrs_core.contributions.samples import DEVICE
+from mmrs_core.contributions.targets import Target, TargetInput
+from mmrs_core.errors import InternalError
+from mmrs_core.scene import Frame, Name, RobotType, Value
 
-MULTICOPTER = "urn:mmrs:multicopter:1.0"
-ROBOT = "urn:mmrs:robot:1.0"
-AUV = "urn:mmrs:auv:1.1"
 MOVE = (BEHAVIOUR, "Move")
-PROBED = frozenset({BEHAVIOUR, MULTICOPTER})
-"""Languages whose moves have probes of their own."""
 ALPHA, BETA = "alpha", "beta"
 EARTH = Frame("EPSG:4326", 42.37, 13.35, 720.0, "MSL")
-HERE, THERE = (0.0, 30.0, 20.0), (25.0, 30.0, 20.0)
+HEIGHTS: Mapping[Medium, float] = {"air": 20.0, "ground": 0.0, "water": -5.0}
+"""Metres above home at which sample robots move."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,111 +44,151 @@ class Probe:
     without: TargetInput
 
 
-def move(id: str, kind: str, uri: str = BEHAVIOUR, *more: tuple[str, str], **attributes: Value) -> Move:
-    """Return a move of a metaclass; `more`: metaclasses between it and Move."""
-    return Move(id, ((uri, kind), *more, MOVE), attributes)
+class Sample:
+    """Robots of one kind, whose moves are those that the kind makes.
+
+    Attributes:
+        name: of the kind, in words.
+        type: of the robots.
+        here, there: two positions that they go to.
+        launch, recover: moves that bring them to their height, and down.
+        first, second: moves to the two positions; the last move of each has the identifier ``a`` or ``b``.
+    """
+
+    def __init__(self, kind: RobotKind, contributions: Contributions) -> None:
+        """Make the moves of the kind.
+
+        Raises:
+            InternalError: the kind has no sample type.
+        """
+        if kind.sample is None:
+            raise InternalError(f"robot kind '{kind.name}' has no sample type")
+        self._contributions = contributions
+        height = HEIGHTS[kind.medium]
+        self.name = kind.name.replace("_", " ")
+        self.type: RobotType = kind.sample
+        self.here, self.there = (0.0, 30.0, height), (25.0, 30.0, height)
+        self.launch = self._made(kind.launch(height), "up")
+        self.first = self._made(kind.travel(((0.0, 0.0, height), self.here)), "a")
+        self.second = self._made(kind.travel((self.here, self.there)), "b")
+        self.recover = self._made(kind.recover(), "down")
+
+    @property
+    def journey(self) -> tuple[Move, ...]:
+        """Return moves to one position and down."""
+        return self.journey_with()
+
+    def journey_with(self, *more: Move) -> tuple[Move, ...]:
+        """Return moves to one position, others there, and down."""
+        return (*self.launch, *self.first, *more, *self.recover)
+
+    @cached_property
+    def plain(self) -> TargetInput:
+        """Return one robot that makes the simple journey."""
+        return self.given(self.robot(ALPHA, self.journey))
+
+    def given(self, *robots: RobotProgram, type: RobotType | None = None) -> TargetInput:
+        """Return what a target gets of these robots; of this type, or of the sample's own."""
+        made = type or self.type
+        known = self._contributions
+        kinds = {name: replace(kind, policies={}) for name, kind in known.robot_kinds.items()}
+        return TargetInput(Program("mission", EARTH, robots), {made.name: made}, kinds, known.move_kinds)
+
+    def robot(self, id: str, moves: Iterable[Move], **transitions: Transition) -> RobotProgram:
+        """Return a robot that makes these moves one after the other, between Start and Stop.
+
+        Args:
+            id: of the robot.
+            moves: between Start and Stop.
+            transitions: what follows a move, by the move's identifier, where that is not merely the next; the
+                move that it comes from does not matter.
+        """
+        every = (move("start", "Start"), *moves, move("stop", "Stop"))
+        plain = {index: Transition(index, index + 1) for index in range(len(every) - 1)}
+        names = {each.id: index for index, each in enumerate(every)}
+        given = {names[name]: replace(each, source=names[name]) for name, each in transitions.items()}
+        home = (0.0, 0.0, 0.0) if id == ALPHA else (60.0, 0.0, 0.0)
+        last = len(every) - 1
+        return RobotProgram(id, self.type.name, "NORMAL", 0.0, home, (), every, {**plain, **given}, 0, last)
+
+    def on_the_way(self, *inserted: Move) -> tuple[Move, ...]:
+        """Return moves to two positions and down, with moves between the two positions."""
+        return (*self.launch, *self.first, *inserted, *self.second, *self.recover)
+
+    def after(self, id: str, beyond: int = 1) -> int:
+        """Return the index of a move that follows another on the way, Start being 0."""
+        return next(index for index, each in enumerate(self.on_the_way(), 1) if each.id == id) + beyond
+
+    def inserted(self, *new: Move) -> tuple[TargetInput, TargetInput]:
+        """Return a behaviour with moves between two positions, and without them."""
+        longer, shorter = self.robot(ALPHA, self.on_the_way(*new)), self.robot(ALPHA, self.on_the_way())
+        return self.given(longer), self.given(shorter)
+
+    def wired(self, properties: Mapping[str, str]) -> RobotType:
+        """Return the type with other properties of its device."""
+        device = self.type.devices[DEVICE]
+        return replace(self.type, devices={DEVICE: replace(device, properties=properties)})
+
+    def _made(self, specs: tuple[MoveSpec, ...], id: str) -> tuple[Move, ...]:
+        return tuple(
+            Move(
+                id if spec is specs[-1] else f"{id}{number}",
+                self._contributions.languages.metaclass(*spec.metaclass).ancestry,
+                spec.attributes,
+                target=MoveTarget(spec.target) if spec.target is not None else None,
+                speed=1.0 if spec.target is not None else None,
+            )
+            for number, spec in enumerate(specs)
+        )
 
 
-def go_to(id: str, position: Position = HERE, **attributes: Value) -> Move:
-    """Return a multicopter's GoTo with a speed."""
-    made = move(id, "GoTo", MULTICOPTER, (BEHAVIOUR, "GoTo"), **attributes)
-    return replace(made, target=MoveTarget(position), speed=5.0)
+@dataclass(frozen=True, slots=True)
+class Samples:
+    """What a target is tried with.
+
+    Attributes:
+        target: that is tried.
+        base: robots of the kind that it is made for.
+        every: robots of all kinds with a sample, sorted by name.
+        carried: those of them that the target does not refuse.
+        ground: the core's plain robots.
+        swimming: robots in water; None where no plug-in provides any.
+    """
+
+    target: Target
+    base: Sample
+    every: tuple[Sample, ...]
+    carried: tuple[Sample, ...]
+    ground: Sample
+    swimming: Sample | None
+
+
+def samples_of(target: Target, contributions: Contributions) -> Samples:
+    """Return what a target is tried with: by its kinds of robots, and by those that are installed."""
+    known = contributions.robot_kinds
+    kinds = sorted((kind for kind in known.values() if _has_sample(kind, known)), key=lambda kind: kind.name)
+    made = {kind.name: Sample(kind, contributions) for kind in kinds}
+    ground = made["plain_robot"]
+    base = next((made[kind.name] for kind in kinds if kind.vehicle == target.tried_with), ground)
+    carried = tuple(each for each in made.values() if not tuple(target.refusals(each.plain)))
+    swimming = next((made[kind.name] for kind in kinds if kind.medium == "water"), None)
+    return Samples(target, base, tuple(made.values()), carried, ground, swimming)
+
+
+def _has_sample(kind: RobotKind, known: Mapping[Name, RobotKind]) -> bool:
+    """Return whether a kind has a sample of its own; one that is made of another kind may hold that one's."""
+    return kind.sample is not None and robot_kind_of(kind.sample, known) is kind
+
+
+def move(id: str, kind: str, *more: tuple[str, str], **attributes: Value) -> Move:
+    """Return a move of the Behaviour Language; `more`: metaclasses between its own and Move."""
+    return Move(id, ((BEHAVIOUR, kind), *more, MOVE), attributes)
 
 
 def action(kind: str, *more: str, name: str = "", device: str = "") -> Action:
     """Return an action of a metaclass of the Behaviour Language; `more`: its supertypes but Action."""
     kinds = tuple((BEHAVIOUR, each) for each in (kind, *more, "Action"))
     return Action(kinds, name, device)
-
-
-def robot(id: str, moves: tuple[Move, ...], **transitions: Transition) -> RobotProgram:
-    """Return a robot that makes these moves one after the other, between Start and Stop.
-
-    Args:
-        id: of the robot.
-        moves: between Start and Stop.
-        transitions: what follows a move, by the move's identifier, where that is not merely the next.
-    """
-    every = (move("start", "Start"), *moves, move("stop", "Stop"))
-    plain = {index: Transition(index, index + 1) for index in range(len(every) - 1)}
-    names = {each.id: index for index, each in enumerate(every)}
-    given = {names[name]: replace(each, source=names[name]) for name, each in transitions.items()}
-    home = (0.0, 0.0, 0.0) if id == ALPHA else (60.0, 0.0, 0.0)
-    last = len(every) - 1
-    return RobotProgram(id, "Kind", "NORMAL", 0.0, home, (), every, {**plain, **given}, 0, last)
-
-
-TAKE_OFF = move("up", "TakeOff", MULTICOPTER, altitude=20.0)
-LAND = move("down", "Land", MULTICOPTER)
-FLIGHT = (TAKE_OFF, go_to("a"), LAND)
-DRIVE = (replace(move("a", "GoTo"), target=MoveTarget((0.0, 30.0, 0.0)), speed=1.0),)
-DIVE = (replace(move("a", "GoTo"), target=MoveTarget((0.0, 30.0, -5.0)), speed=1.0),)
-
-KINDS: dict[str, tuple[Metaclasses, Metaclasses, tuple[Move, ...]]] = {
-    "copter": (((MULTICOPTER, "Drone"), (ROBOT, "Robot")), ((ROBOT, "MovementCapability"),), FLIGHT),
-    "rover": (((ROBOT, "Robot"),), ((ROBOT, "MovementCapability"),), DRIVE),
-    "sub": (((AUV, "AUV"), (ROBOT, "Robot")), ((AUV, "AUVMovement"), (ROBOT, "MovementCapability")), DIVE),
-}
-"""Metaclasses of type and movement, and possible moves, by vehicle class."""
-
-
-def kind_of(vehicle: str, **properties: str) -> RobotType:
-    """Return a robot type with one device, which has these properties."""
-    metaclasses, capabilities, _ = KINDS[vehicle]
-    names = {name.replace("__", "."): value for name, value in properties.items()}
-    device = Device("device", {"act": DeviceAction("act", 2.0)}, names)
-    return RobotType(
-        name="Kind",
-        metaclasses=metaclasses,
-        capability_metaclasses=capabilities,
-        half_diagonal=0.5,
-        max_payload=1.0,
-        capabilities=(
-            Capability(0.0, 1200.0, (0.5, 8.0), 2.5, 2.5, 2.0, 90.0, _moving(vehicle)),
-            Capability(1.0, 900.0, (0.5, 4.0), 2.5, 2.5, 2.0, 90.0, _moving(vehicle)),
-        ),
-        batteries=(Battery(200_000.0, 3600.0),),
-        devices={"device": device},
-        part=Part((metaclasses[0],), {"size": SIZE, "thrusters": THRUSTERS} if vehicle == "sub" else {}),
-    )
-
-
-def _moving(vehicle: str) -> Part:
-    """Return how a vehicle moves; one under water by all its thrusters."""
-    if vehicle != "sub":
-        return Part((), {})
-    return Part((*KINDS["sub"][1],), {"thrusters": tuple(PUSHES)})
-
-
-def _thruster(id: str, forward: float, starboard: float, ahead: float, down: float) -> Part:
-    place = {"forward": forward, "starboard": starboard, "pushForward": ahead, "pushDown": down}
-    mounting = Part(((AUV, "Mounting"),), place)
-    figures = {"operatingThrust": 20.0, "maxThrust": 40.0, "operatingPower": 90.0, "maxPower": 250.0}
-    return Part(((AUV, "Thruster"),), {"id": id, "maxDepth": 100.0, "mounting": mounting, **figures})
-
-
-PUSHES = {
-    "T1": (0.3, 0.2, 1.0, 0.0),
-    "T2": (0.3, -0.2, 1.0, 0.0),
-    "T3": (0.3, 0.0, 0.0, 1.0),
-    "T4": (-0.3, 0.0, 0.0, 1.0),
-}
-THRUSTERS = tuple(_thruster(id, *each) for id, each in PUSHES.items())
-SIZE = Part(
-    ((AUV, "InWaterSize"),),
-    {"length": 0.8, "width": 0.5, "height": 0.4, "weight": 30.0, "weightInWater": -0.3},
-)
-
-
-def given(*robots: RobotProgram, type: RobotType | None = None, frame: Frame = EARTH) -> TargetInput:
-    """Return what a target gets: robots of a type, by default a copter without wired devices."""
-    made = kind_of("copter") if type is None else type
-    return TargetInput(Program("mission", frame, robots), {made.name: made}, {}, {})
-
-
-def plain(vehicle: str = "copter") -> TargetInput:
-    """Return what a target gets of one robot of a vehicle class that makes a simple journey."""
-    return given(robot(ALPHA, KINDS[vehicle][2]), type=kind_of(vehicle))
 
 
 def changed(base: TargetInput, change: Callable[[RobotProgram], RobotProgram]) -> TargetInput:

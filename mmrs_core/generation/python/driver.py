@@ -5,9 +5,10 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
-from typing import Any, ClassVar, Generic, Literal, TypeVar
+from typing import Any, ClassVar, Generic, TypeVar
 
 from mmrs_core.behaviour.program import Action, Heading, Move, RobotProgram
+from mmrs_core.contributions.samples import SampleWiring
 from mmrs_core.contributions.targets import FileSpec, TargetInput
 from mmrs_core.generation.context import RobotContext
 from mmrs_core.generation.escaping import Call
@@ -30,7 +31,7 @@ class PythonDriver(ABC, Generic[C]):
         templates: folder with ``README.md.jinja``, and with those that extend the core's as ``python/NAME``.
         movements: what is said for a move, by its own metaclass: one that extends it may move otherwise.
         capabilities: how elements of behaviours are expressed, as in `Target`.
-        tried_with: as in `Target`.
+        tried_with, wirings: as in `Target`.
     """
 
     name: ClassVar[str]
@@ -40,7 +41,8 @@ class PythonDriver(ABC, Generic[C]):
     templates: ClassVar[Path]
     movements: ClassVar[Mapping[Name, Movement]] = MOVEMENTS
     capabilities: ClassVar[Mapping[str, str]] = {}
-    tried_with: ClassVar[Literal["air", "water"]] = "air"
+    tried_with: ClassVar[str] = "ground"
+    wirings: ClassVar[tuple[SampleWiring, ...]] = ()
 
     @abstractmethod
     def undriven(self, robot: RobotProgram, input: TargetInput) -> str:

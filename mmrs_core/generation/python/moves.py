@@ -27,8 +27,6 @@ if TYPE_CHECKING:
 
     Driver = PythonDriver[Any]
 
-LEGS = {"DIRECT": "direct", "HORIZONTAL_FIRST": "level first", "VERTICAL_FIRST": "climb first"}
-
 
 def movement_of(move: Move, context: RobotContext, driver: Driver) -> Call:
     """Return the movement of a move; ``Skip`` where the driver has none."""
@@ -129,12 +127,18 @@ def number_of(move: Move, feature: str) -> float:
     return float(value) if isinstance(value, int | float) else 0.0
 
 
-def go_to(move: Move, context: RobotContext, driver: Driver) -> Call:
-    """Return the movement to a place or an object."""
+def go_to(move: Move, context: RobotContext, driver: Driver, legs: str = "direct") -> Call:
+    """Return the movement to a place or an object.
+
+    Args:
+        move: that becomes it.
+        context: of the robot.
+        driver: of the vehicle.
+        legs: of the path, as in the runtime's ``GoTo``: ``direct``, ``level first`` or ``climb first``.
+    """
     if move.target is None:
         return Call("Skip", ("it has no target",))
     named: list[tuple[str, object]] = [("speed", context.speed(move))]
-    legs = LEGS[str(move.attributes.get("trajectory", "DIRECT"))]
     if legs != "direct":
         named.append(("legs", legs))
     if move.distance:

@@ -48,6 +48,7 @@ def python_target(driver: PythonDriver[Any]) -> Target:
         refusals=partial(_refusals, driver=driver),
         capabilities={**OF_PROGRAMS, **driver.capabilities},
         tried_with=driver.tried_with,
+        wirings=driver.wirings,
     )
 
 

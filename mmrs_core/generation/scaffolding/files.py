@@ -75,7 +75,6 @@ def plugin_files(names: PluginNames, parts: Collection[str], geometry: Geometry)
     environment = environment_in(folder, filters)
     view = {each.name: getattr(names, each.name) for each in fields(names)}
     view |= {"title": names.title, "kind": geometry, "parts": tuple(parts), "model": _has_model(parts)}
-    view |= {"targets": _targets(names, parts)}
     environment.globals.update(view)  # what templates import sees globals only
     return {
         path: rendered(environment, template, view).encode()
@@ -93,13 +92,6 @@ def plain(value: object) -> str:
     if not _PLAIN.fullmatch(text):
         raise ValueError(f"{text!r} is not plain")
     return text
-
-
-def _targets(names: PluginNames, parts: Collection[str]) -> tuple[str, ...]:
-    """Return the targets that can express the example; no installed target knows a new robot kind."""
-    if "target" in parts:
-        return (names.name,)
-    return () if "robot" in parts else ("mavlink-python",)
 
 
 def _has_model(parts: Collection[str]) -> bool:

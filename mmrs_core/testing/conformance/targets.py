@@ -11,11 +11,11 @@ import pytest
 
 from mmrs_core.contributions.targets import Target, TargetInput
 from mmrs_core.errors import UnsupportedError
-from mmrs_core.generation.capabilities.judging import capabilities_of, probes, suited
+from mmrs_core.generation.capabilities.judging import capabilities_of, probes
 from mmrs_core.generation.manifest import manifest_in
 from mmrs_core.generation.render import render
 from mmrs_core.testing.conformance.declared import Conformance, declared
-from mmrs_core.testing.programs import installed, target_input, two_drones
+from mmrs_core.testing.programs import installed, two_robots
 
 UNHEARD_OF = (("urn:mmrs:testing:nowhere:1.0", "Somersault"), ("urn:mmrs:behaviour:1.0", "Move"))
 
@@ -24,8 +24,8 @@ class TargetConformance(Conformance):
     """Conformance of targets: equal files for equal behaviours, and refusals of what cannot be expressed.
 
     Attributes:
-        inputs: a behaviour that the target can express, by the target's name. Default: two robots that
-            take photos, one waiting for the other.
+        inputs: a behaviour that the target can express, by the target's name. Default: two robots of the kind
+            that it is made for, one of which waits until the other has used its device (`two_robots`).
     """
 
     inputs: ClassVar[Mapping[str, TargetInput]] = {}
@@ -97,9 +97,9 @@ class TargetConformance(Conformance):
         kept = [row.element for row in rows if row.verdict in ("expressed", "no difference")]
         for begin in target.capabilities:
             assert any(element.startswith(begin) for element in kept), begin
-        for probe, row in zip(suited(probes(), target, contributions), rows, strict=True):
+        for probe, row in zip(probes(target, contributions), rows, strict=True):
             refused = row.verdict in ("lossy", "refused")
             assert bool(tuple(target.refusals(probe.given))) is refused, row.element
 
     def _input(self, target: Target) -> TargetInput:
-        return self.inputs.get(target.name) or target_input(two_drones())
+        return self.inputs.get(target.name) or two_robots(target)

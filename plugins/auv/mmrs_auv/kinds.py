@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from mmrs_auv.names import AUV_MOVEMENT
+from mmrs_auv.names import AUV_MOVEMENT, IN_WATER_SIZE, MOUNTING, THRUSTER, VEHICLE
 from mmrs_core.contributions.rules import MoveSpec, RobotKind
+from mmrs_core.contributions.samples import sample_type
 from mmrs_core.errors import InfeasibleError
 from mmrs_core.scene import Kinematics, Part, Robot, RobotType, Scene
-from mmrs_core.transformation.kinds import capability_for, kinematics_for, straight_travel
+from mmrs_core.transformation.kinds import ROBOT, capability_for, kinematics_for, straight_travel
 
 ATMOSPHERE = 101_325.0
 """Pressure at the surface, pascals."""
@@ -74,6 +75,28 @@ def _no_recovery() -> tuple[MoveSpec, ...]:
     return ()
 
 
+MOVEMENT = ("urn:mmrs:robot:1.0", "MovementCapability")
+PUSHES = {
+    "T1": (0.3, 0.2, 1.0, 0.0),
+    "T2": (0.3, -0.2, 1.0, 0.0),
+    "T3": (0.3, 0.0, 0.0, 1.0),
+    "T4": (-0.3, 0.0, 0.0, 1.0),
+}
+"""Thrusters of the sample type: metres forward and to starboard, and how they push ahead and down."""
+
+SIZE = Part(
+    (IN_WATER_SIZE,),
+    {"length": 0.8, "width": 0.5, "height": 0.4, "weight": 30.0, "weightInWater": -0.3},
+)
+
+
+def _thruster(id: str, forward: float, starboard: float, ahead: float, down: float) -> Part:
+    place = {"forward": forward, "starboard": starboard, "pushForward": ahead, "pushDown": down}
+    mounting = Part((MOUNTING,), place)
+    figures = {"operatingThrust": 20.0, "maxThrust": 40.0, "operatingPower": 90.0, "maxPower": 250.0}
+    return Part((THRUSTER,), {"id": id, "maxDepth": 100.0, "mounting": mounting, **figures})
+
+
 AUV_KIND = RobotKind(
     name="auv",
     metaclass=AUV_MOVEMENT,
@@ -97,4 +120,9 @@ AUV_KIND = RobotKind(
     },
     vehicle="sub",
     medium="water",
+    sample=sample_type(
+        (VEHICLE, ROBOT),
+        movement=Part((AUV_MOVEMENT, MOVEMENT), {"thrusters": tuple(PUSHES)}),
+        attributes={"size": SIZE, "thrusters": tuple(_thruster(id, *each) for id, each in PUSHES.items())},
+    ),
 )

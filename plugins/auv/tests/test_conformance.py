@@ -7,7 +7,6 @@ from dives import dive, diver, swim
 from mmrs_auv import plugin
 from mmrs_auv.names import AUV_MOVEMENT, PIPELINE
 
-from mmrs_core.generation.capabilities.probes import plain
 from mmrs_core.scene import Kinematics, Part
 from mmrs_core.testing.conformance import (
     MetamodelConformance,
@@ -17,6 +16,7 @@ from mmrs_core.testing.conformance import (
     TargetConformance,
     VehicleConformance,
 )
+from mmrs_core.testing.programs import sample_of
 from mmrs_core.testing.scenes import sample_device, sample_robot, sample_scene, sample_type
 
 MOVEMENT = Part((AUV_MOVEMENT,), {"thrusters": ("T1",)})
@@ -24,7 +24,9 @@ THRUSTERS = (Part((), {"id": "T1", "maxDepth": 50.0}),)
 DIVER = sample_type(
     name="Diver", attributes={"thrusters": THRUSTERS}, movement=MOVEMENT, speed=(0.0, 2.0), climb_rate=0.5
 )
-SUB = replace(plain("sub"), robot_kinds={each.metaclass: each for each in plugin.mmrs_robot_kinds()})
+SUB = replace(
+    sample_of("auv").plain, robot_kinds={each.metaclass: each for each in plugin.mmrs_robot_kinds()}
+)
 LAKE = sample_scene(surface=-3.0, environment={"waterDensity": 1000.0, "currentSpeed": 0.5})
 
 

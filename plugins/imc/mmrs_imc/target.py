@@ -31,8 +31,8 @@ CAPABILITIES: Mapping[str, str] = {
     "Behaviour.name": "in the description of the plan",
     "Behaviour.surfaceHeight": "depths count from it",
     "Behaviour.robots": "a plan each",
-    "Robot: a sub": "depths below the surface",
-    "Robot: a rover": "a vehicle at the surface",
+    "Robot: auv": "depths below the surface",
+    "Robot: plain robot": "a vehicle at the surface",
     "Robot.id": "identifier of the plan, and name of the file",
     "Robot.home": "where it holds before it goes anywhere",
     "Robot.travelMode": "speed in metres per second",
@@ -166,5 +166,5 @@ IMC = Target(
     files=files,
     refusals=refusals,
     capabilities=CAPABILITIES,
-    tried_with="water",
+    tried_with="sub",
 )

@@ -2,8 +2,8 @@ from __future__ import annotations
 
 from mmrs_imc import plugin
 
-from mmrs_core.generation.capabilities.probes import plain
 from mmrs_core.testing.conformance import PluginConformance, TargetConformance
+from mmrs_core.testing.programs import sample_of
 
 
 class TestPlugin(PluginConformance):
@@ -13,4 +13,4 @@ class TestPlugin(PluginConformance):
 
 class TestTargets(TargetConformance):
     plugin = plugin
-    inputs = {"imc": plain("sub")}
+    inputs = {"imc": sample_of("auv").plain}

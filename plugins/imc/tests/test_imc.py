@@ -13,13 +13,14 @@ from marine_programs import MANY_PROGRAMS, inputs, rendered
 from mmrs_imc.messages import DEFINITIONS, Message
 from mmrs_imc.packing import crc16, packet, payload
 from mmrs_imc.target import IMC
+from mmrs_multicopter.testing import robot_program
 from pyproj import Geod
 
 from mmrs_core.behaviour.program import MoveTarget, Transition
 from mmrs_core.errors import UnsupportedError
 from mmrs_core.generation.render import render
 from mmrs_core.scene import Frame
-from mmrs_core.testing.programs import move, robot_program
+from mmrs_core.testing.programs import move
 
 RELAXED = settings(suppress_health_check=[HealthCheck.function_scoped_fixture], deadline=None)
 WGS84 = Geod(ellps="WGS84")

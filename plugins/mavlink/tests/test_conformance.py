@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from mmrs_multicopter.testing import LAND, go_to, robot_program, take_off, target_input
+
 from mmrs_core.scene import Device, DeviceAction
 from mmrs_core.testing.conformance import TargetConformance, VehicleConformance
-from mmrs_core.testing.programs import LAND, go_to, program, robot_program, take_off, target_input
+from mmrs_core.testing.programs import program
 from mmrs_mavlink import plugin
 from mmrs_mavlink.plugin.testing import DeviceWiringConformance
 

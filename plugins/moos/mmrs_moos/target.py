@@ -30,8 +30,8 @@ CAPABILITIES: Mapping[str, str] = {
     "Behaviour.origin absent: a local behaviour": "metres east and north of the origin",
     "Behaviour.surfaceHeight": "depths count from it",
     "Behaviour.robots": "a file each",
-    "Robot: a sub": "BHV_ConstantDepth beside all that moves it",
-    "Robot: a rover": "a vehicle at the surface",
+    "Robot: auv": "BHV_ConstantDepth beside all that moves it",
+    "Robot: plain robot": "a vehicle at the surface",
     "Robot.id": "name of the file and of its community",
     "Robot.home": "where it begins",
     "Robot.travelMode": "speed and capture radius",
@@ -193,5 +193,5 @@ MOOS = Target(
     refusals=refusals,
     filters={"bhv": text},
     capabilities=CAPABILITIES,
-    tried_with="water",
+    tried_with="sub",
 )

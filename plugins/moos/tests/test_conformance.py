@@ -2,8 +2,8 @@ from __future__ import annotations
 
 from mmrs_moos import plugin
 
-from mmrs_core.generation.capabilities.probes import plain
 from mmrs_core.testing.conformance import PluginConformance, TargetConformance
+from mmrs_core.testing.programs import sample_of
 
 
 class TestPlugin(PluginConformance):
@@ -13,4 +13,4 @@ class TestPlugin(PluginConformance):
 
 class TestTargets(TargetConformance):
     plugin = plugin
-    inputs = {"moos": plain("sub")}
+    inputs = {"moos": sample_of("auv").plain}

@@ -9,13 +9,14 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from marine_programs import MANY_PROGRAMS, inputs, rendered
 from mmrs_moos.target import MOOS
+from mmrs_multicopter.testing import robot_program
 from moos_reader import Helm, read, run
 
 from mmrs_core.behaviour.program import MoveTarget, Transition
 from mmrs_core.errors import UnsupportedError
 from mmrs_core.generation.render import render
 from mmrs_core.scene import Frame
-from mmrs_core.testing.programs import feedback, move, robot_program
+from mmrs_core.testing.programs import feedback, move
 from mmrs_core.testing.small_programs import notify
 
 RELAXED = settings(suppress_health_check=[HealthCheck.function_scoped_fixture], deadline=None, max_examples=6)

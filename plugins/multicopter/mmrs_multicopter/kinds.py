@@ -5,9 +5,10 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from mmrs_core.contributions.rules import MoveKind, MoveSpec, RobotKind
+from mmrs_core.contributions.samples import sample_type
 from mmrs_core.errors import InfeasibleError
 from mmrs_core.geometry.ground import ground_height
-from mmrs_core.transformation.kinds import kinematics_for, path_seconds, stopping_seconds
+from mmrs_core.transformation.kinds import ROBOT, kinematics_for, path_seconds, stopping_seconds
 from mmrs_multicopter import trajectories
 from mmrs_multicopter.names import DRONE, GO_TO, LAND, TAKE_OFF
 
@@ -107,6 +108,7 @@ MULTICOPTER_KIND = RobotKind(
     vehicle="copter",
     medium="air",
     position_hold="positionHold",
+    sample=sample_type((DRONE, ROBOT)),
 )
 
 MOVE_KINDS = (

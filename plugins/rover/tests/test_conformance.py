@@ -39,3 +39,4 @@ class TestRobotKinds(RobotKindConformance):
 class TestExample(MissionConformance):
     folder = Path(__file__).parents[3] / "examples" / "drone-and-rover"
     rules = ("photo_grid", "measure", "observe")
+    targets = ("mavlink-python",)

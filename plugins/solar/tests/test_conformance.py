@@ -158,6 +158,7 @@ class TestRules(RuleConformance):
 class TestExample(MissionConformance):
     folder = EXAMPLE
     rules = ("row_inspection", "panel_look")
+    targets = ("mavlink-python",)
 
 
 @pytest.fixture(scope="module")

@@ -11,9 +11,7 @@ from mmrs_core.testing.conformance import (
     RobotKindConformance,
     VehicleConformance,
 )
-from mmrs_core.testing.programs import (
-    move,
-)
+from mmrs_core.testing.programs import move
 from mmrs_core.testing.scenes import sample_robot
 
 PLACE = MoveTarget((70.0, -40.0, 25.0))

@@ -9,6 +9,7 @@ from pathlib import Path
 from types import MappingProxyType
 
 import pytest
+from mmrs_multicopter.testing import target_input
 from patience import until
 from ports import free_port
 from warm_python import python
@@ -18,7 +19,6 @@ from mmrs_core.behaviour.log import read_logs
 from mmrs_core.behaviour.replay import ReplayResult, replay
 from mmrs_core.generation.render import render
 from mmrs_core.generation.writing import write
-from mmrs_core.testing.programs import target_input
 from mmrs_mavlink.plugin.context import context_of
 from mmrs_mavlink.plugin.controllers import MAVLINK_PYTHON
 from mmrs_mavlink.sitl import Settings, SimulatedVehicle

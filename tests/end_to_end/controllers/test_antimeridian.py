@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import pytest
+from mmrs_multicopter.testing import LAND, go_to, robot_program, take_off
 
 from mmrs_core.behaviour.program import Transition
 from mmrs_core.scene import Frame
-from mmrs_core.testing.programs import LAND, go_to, program, robot_program, take_off
+from mmrs_core.testing.programs import program
 
 pytestmark = pytest.mark.real_time("controllers")
 

@@ -6,9 +6,10 @@ import time
 from dataclasses import replace
 
 import pytest
+from mmrs_multicopter.testing import LAND, robot_program, take_off
 
 from mmrs_core.scene import Policy
-from mmrs_core.testing.programs import LAND, move, program, robot_program, take_off
+from mmrs_core.testing.programs import move, program
 
 pytestmark = pytest.mark.real_time("controllers")
 

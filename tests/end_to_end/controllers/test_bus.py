@@ -10,6 +10,7 @@ from contextlib import ExitStack
 from dataclasses import replace
 
 import pytest
+from mmrs_multicopter.testing import LAND, robot_program, take_off, two_drones
 from ports import free_endpoint
 from warm_python import FREEZE, THAW
 
@@ -17,15 +18,7 @@ from mmrs_core.behaviour.log import read_logs
 from mmrs_core.behaviour.program import Transition
 from mmrs_core.behaviour.replay import replay
 from mmrs_core.scene import Policy
-from mmrs_core.testing.programs import (
-    LAND,
-    move,
-    notify,
-    program,
-    robot_program,
-    take_off,
-    two_drones,
-)
+from mmrs_core.testing.programs import move, notify, program
 from mmrs_runtime.semantics import Outcome
 
 pytestmark = pytest.mark.real_time("controllers")

@@ -5,19 +5,11 @@ from __future__ import annotations
 from dataclasses import replace
 
 import pytest
+from mmrs_multicopter.testing import LAND, go_to, quad, robot_program, take_off, target_input
 
 from mmrs_core.generation.render import render
 from mmrs_core.scene import Device, DeviceAction, Policy
-from mmrs_core.testing.programs import (
-    LAND,
-    go_to,
-    photo,
-    program,
-    quad,
-    robot_program,
-    take_off,
-    target_input,
-)
+from mmrs_core.testing.programs import photo, program
 from mmrs_mavlink.plugin.controllers import MAVLINK_PYTHON
 from mmrs_mavlink.wiring import DeviceWiring, Wired
 

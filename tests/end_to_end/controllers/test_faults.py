@@ -6,20 +6,12 @@ from dataclasses import replace
 from functools import partial
 
 import pytest
+from mmrs_multicopter.testing import LAND, go_to, robot_program, take_off
 from patience import until
 
 from mmrs_core.behaviour.program import Transition
 from mmrs_core.scene import Policy
-from mmrs_core.testing.programs import (
-    LAND,
-    go_to,
-    move,
-    notify,
-    photo,
-    program,
-    robot_program,
-    take_off,
-)
+from mmrs_core.testing.programs import move, notify, photo, program
 from mmrs_mavlink.sitl.commands import execute
 from mmrs_runtime.orders.ordering import give
 

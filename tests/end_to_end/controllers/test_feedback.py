@@ -7,10 +7,11 @@ from contextlib import suppress
 from dataclasses import replace
 
 import pytest
+from mmrs_multicopter.testing import LAND, robot_program, take_off
 from ports import free_port
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from mmrs_core.testing.programs import LAND, feedback, move, program, robot_program, take_off
+from mmrs_core.testing.programs import feedback, move, program
 from mmrs_mavlink.sitl import Settings, SimulatedVehicle
 from mmrs_runtime.orders.ordering import give
 

@@ -3,20 +3,12 @@ from __future__ import annotations
 from dataclasses import replace
 
 import pytest
+from mmrs_multicopter.testing import LAND, go_to, quad, robot_program, take_off, two_drones
 from ports import free_endpoint
 
 from mmrs_core.behaviour.program import MoveTarget, Transition
 from mmrs_core.scene import Device, DeviceAction, Frame
-from mmrs_core.testing.programs import (
-    LAND,
-    go_to,
-    photo,
-    program,
-    quad,
-    robot_program,
-    take_off,
-    two_drones,
-)
+from mmrs_core.testing.programs import photo, program
 from mmrs_runtime.semantics import Outcome
 
 pytestmark = pytest.mark.real_time("controllers")

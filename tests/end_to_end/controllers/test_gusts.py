@@ -5,18 +5,12 @@ from __future__ import annotations
 from dataclasses import replace
 
 import pytest
+from mmrs_multicopter.testing import LAND, go_to, robot_program, take_off, target_input
 from shapely import LineString, Polygon
 
 from mmrs_core.generation.render import render
 from mmrs_core.scene import Area, AreaUse
-from mmrs_core.testing.programs import (
-    LAND,
-    go_to,
-    program,
-    robot_program,
-    take_off,
-    target_input,
-)
+from mmrs_core.testing.programs import program
 from mmrs_mavlink.plugin.controllers import MAVLINK_PYTHON
 
 pytestmark = pytest.mark.real_time("controllers")

@@ -8,11 +8,12 @@ from contextlib import ExitStack, contextmanager
 from dataclasses import replace
 
 import pytest
+from mmrs_multicopter.testing import LAND, robot_program, take_off, two_drones
 from ports import free_port
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from mmrs_core.behaviour.earth import degrees_of
-from mmrs_core.testing.programs import LAND, program, robot_program, take_off, two_drones
+from mmrs_core.testing.programs import program
 from mmrs_mavlink.links.link import Link
 from mmrs_mavlink.links.ports import open_port
 from mmrs_mavlink.sitl import Settings, SimulatedVehicle

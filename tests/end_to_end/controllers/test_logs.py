@@ -8,17 +8,10 @@ import sys
 from dataclasses import replace
 
 import pytest
+from mmrs_multicopter.testing import LAND, quad, robot_program, take_off
 
 from mmrs_core.scene import Device, DeviceAction
-from mmrs_core.testing.programs import (
-    LAND,
-    feedback,
-    photo,
-    program,
-    quad,
-    robot_program,
-    take_off,
-)
+from mmrs_core.testing.programs import feedback, photo, program
 
 pytestmark = pytest.mark.real_time("controllers")
 

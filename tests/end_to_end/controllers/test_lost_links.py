@@ -6,19 +6,11 @@ import time
 from dataclasses import replace
 
 import pytest
+from mmrs_multicopter.testing import LAND, go_to, quad, robot_program, take_off
 
 from mmrs_core.behaviour.program import Transition
 from mmrs_core.scene import Policy
-from mmrs_core.testing.programs import (
-    LAND,
-    go_to,
-    move,
-    notify,
-    program,
-    quad,
-    robot_program,
-    take_off,
-)
+from mmrs_core.testing.programs import move, notify, program
 
 pytestmark = pytest.mark.real_time("controllers")
 

@@ -10,13 +10,13 @@ from pathlib import Path
 
 import pytest
 from lossy_proxy import LossyProxy
+from mmrs_multicopter.testing import target_input, two_drones
 from peer_lines import said_in
 from ports import free_port
 
 import mmrs_mavlink as flight
 from mmrs_core.generation.render import render
 from mmrs_core.generation.writing import write
-from mmrs_core.testing.programs import target_input, two_drones
 from mmrs_mavlink.links.link import Link
 from mmrs_mavlink.links.ports import open_port
 from mmrs_mavlink.links.retries import Retries

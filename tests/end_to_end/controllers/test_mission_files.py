@@ -11,11 +11,11 @@ from math import isnan
 from pathlib import Path
 
 import pytest
+from mmrs_multicopter.testing import quad, target_input, two_drones
 from peer_lines import said_in
 
 from mmrs_core.generation.render import render
 from mmrs_core.generation.writing import write
-from mmrs_core.testing.programs import quad, target_input, two_drones
 from mmrs_mavlink.plugin.plans.qgc import QGC_PLAN
 from mmrs_mavlink.plugin.plans.wpl import WPL
 

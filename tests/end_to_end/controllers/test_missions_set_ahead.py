@@ -6,10 +6,11 @@ import threading
 from dataclasses import replace
 
 import pytest
+from mmrs_multicopter.testing import LAND, go_to, robot_program, take_off
 
 from mmrs_core.behaviour.log import read_logs
 from mmrs_core.behaviour.program import Transition
-from mmrs_core.testing.programs import LAND, go_to, program, robot_program, take_off
+from mmrs_core.testing.programs import program
 from mmrs_mavlink.sitl.items import MISSION
 
 pytestmark = pytest.mark.real_time("controllers")

@@ -6,10 +6,11 @@ import time
 from dataclasses import replace
 
 import pytest
+from mmrs_multicopter.testing import LAND, go_to, robot_program, take_off
 from stalls import Stalls
 
 from mmrs_core.behaviour.program import Transition
-from mmrs_core.testing.programs import LAND, go_to, move, photo, program, robot_program, take_off
+from mmrs_core.testing.programs import move, photo, program
 from mmrs_runtime.orders.channels import Unreachable
 from mmrs_runtime.orders.ordering import give
 

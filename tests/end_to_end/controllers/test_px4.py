@@ -5,9 +5,10 @@ from __future__ import annotations
 from math import dist
 
 import pytest
+from mmrs_multicopter.testing import LAND, go_to, robot_program, take_off
 
 from mmrs_core.behaviour.program import Transition
-from mmrs_core.testing.programs import LAND, go_to, program, robot_program, take_off
+from mmrs_core.testing.programs import program
 
 pytestmark = pytest.mark.real_time("controllers")
 

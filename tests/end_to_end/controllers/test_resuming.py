@@ -9,21 +9,12 @@ from math import hypot
 from random import Random
 
 import pytest
+from mmrs_multicopter.testing import LAND, MULTICOPTER, go_to, robot_program, take_off
 from patience import until
 
 from mmrs_core.behaviour.program import Transition
 from mmrs_core.scene import Policy
-from mmrs_core.testing.programs import (
-    LAND,
-    MULTICOPTER,
-    go_to,
-    move,
-    notify,
-    photo,
-    program,
-    robot_program,
-    take_off,
-)
+from mmrs_core.testing.programs import move, notify, photo, program
 from mmrs_runtime.orders.ordering import give
 
 pytestmark = pytest.mark.real_time("controllers")

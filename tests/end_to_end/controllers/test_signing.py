@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import pytest
+from mmrs_multicopter.testing import LAND, robot_program, take_off
 
-from mmrs_core.testing.programs import LAND, program, robot_program, take_off
+from mmrs_core.testing.programs import program
 
 pytestmark = pytest.mark.real_time("controllers")
 

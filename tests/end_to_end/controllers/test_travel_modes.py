@@ -5,9 +5,10 @@ from __future__ import annotations
 from dataclasses import replace
 
 import pytest
+from mmrs_multicopter.testing import LAND, go_to, robot_program, take_off
 from ports import free_port
 
-from mmrs_core.testing.programs import LAND, go_to, program, robot_program, take_off
+from mmrs_core.testing.programs import program
 from mmrs_mavlink.links.link import Link
 from mmrs_mavlink.links.ports import open_port
 from mmrs_mavlink.profiles import profile_for

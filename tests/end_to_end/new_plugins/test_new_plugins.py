@@ -117,7 +117,7 @@ def test_a_breach_of_the_constraint_is_reported_with_its_code(kind, place, site,
     example = place / f"mmrs-{KINDS[kind]}" / "example"
     robots = tmp_path / "robots"
     robots.mkdir()
-    (robots / "rover.xmi").write_bytes((example / "robots" / "rover.xmi").read_bytes())
+    (robots / "robot.xmi").write_bytes((example / "robots" / "robot.xmi").read_bytes())
     text = (example / "mission.xmi").read_text()
     (tmp_path / "mission.xmi").write_text(text.replace(f'{attribute}="{good}"', f'{attribute}="{bad}"'))
     found = json.loads(mmrs("validate", tmp_path, "--json", cwd=tmp_path, site=site, code=1))
@@ -133,8 +133,8 @@ def test_all_three_serve_one_mission_together(place, site, tmp_path):
     whole = whole.replace('xmlns:class="urn:mmrs:class:1.0"', prefixes)
     (tmp_path / "mission.xmi").write_text(whole)
     (tmp_path / "robots").mkdir()
-    rover = place / "mmrs-class" / "example" / "robots" / "rover.xmi"
-    (tmp_path / "robots" / "rover.xmi").write_bytes(rover.read_bytes())
+    rover = place / "mmrs-class" / "example" / "robots" / "robot.xmi"
+    (tmp_path / "robots" / "robot.xmi").write_bytes(rover.read_bytes())
     mmrs("plan", ".", cwd=tmp_path, site=site)
     planned = (tmp_path / "behaviour.xmi").read_text()
     assert [kind for kind in KINDS if f'rule="{snake(kind)}"' not in planned] == []

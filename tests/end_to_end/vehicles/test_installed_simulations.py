@@ -9,12 +9,12 @@ from math import hypot
 import pytest
 from example_flight.fleets import PEERS, ArduCopter
 from example_flight.mission import Home
+from mmrs_multicopter.testing import target_input, two_drones
 from warm_python import python
 
 from mmrs_core.behaviour.earth import degrees_of
 from mmrs_core.generation.render import render
 from mmrs_core.generation.writing import write
-from mmrs_core.testing.programs import target_input, two_drones
 from mmrs_mavlink.plugin.controllers import MAVLINK_PYTHON
 
 pytestmark = pytest.mark.real_time("faults")

@@ -7,6 +7,7 @@ import subprocess
 import pytest
 from example_flight.fleets import OfMavsdk
 from example_flight.mission import Home
+from mmrs_multicopter.testing import target_input, two_drones
 from warm_python import python
 
 from mmrs_core.behaviour.earth import degrees_of
@@ -14,7 +15,6 @@ from mmrs_core.behaviour.log import read_logs
 from mmrs_core.behaviour.replay import replay
 from mmrs_core.generation.render import render
 from mmrs_core.generation.writing import write
-from mmrs_core.testing.programs import target_input, two_drones
 from mmrs_mavlink.plugin.controllers import MAVLINK_PYTHON
 from mmrs_runtime.semantics import Outcome
 

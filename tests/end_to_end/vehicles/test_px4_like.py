@@ -5,6 +5,7 @@ from __future__ import annotations
 import subprocess
 
 import pytest
+from mmrs_multicopter.testing import target_input, two_drones
 from ports import free_port
 from warm_python import python
 
@@ -13,7 +14,6 @@ from mmrs_core.behaviour.log import read_logs
 from mmrs_core.behaviour.replay import replay
 from mmrs_core.generation.render import render
 from mmrs_core.generation.writing import write
-from mmrs_core.testing.programs import target_input, two_drones
 from mmrs_mavlink.plugin.controllers import MAVLINK_PYTHON
 from mmrs_mavlink.sitl import Host, Settings, SimulatedVehicle
 from mmrs_runtime.semantics import Outcome

@@ -8,21 +8,13 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
+from mmrs_multicopter.testing import LAND, go_to, robot_program, take_off, target_input, two_drones
 
 from mmrs_core.behaviour.program import MoveTarget, Transition
 from mmrs_core.errors import UnsupportedError
 from mmrs_core.generation.render import render
 from mmrs_core.scene import Frame
-from mmrs_core.testing.programs import (
-    LAND,
-    feedback,
-    go_to,
-    program,
-    robot_program,
-    take_off,
-    target_input,
-    two_drones,
-)
+from mmrs_core.testing.programs import feedback, program
 from mmrs_mavlink.plugin.targets import TARGETS
 
 EXPECTED = Path(__file__).parent / "expected"

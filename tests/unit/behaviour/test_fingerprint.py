@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+from mmrs_multicopter.testing import two_drones
+
 from mmrs_core.diagnostics import Place
-from mmrs_core.testing.programs import two_drones
 
 
 def with_first_move(**changes):

@@ -7,10 +7,11 @@ from itertools import combinations
 from math import dist
 
 import pytest
+from mmrs_multicopter.testing import go_to, quad, robot_program
 
 from mmrs_core.behaviour.rally_points import rally_points_of
 from mmrs_core.scene import Area, AreaUse
-from mmrs_core.testing.programs import go_to, program, quad, robot_program
+from mmrs_core.testing.programs import program
 
 
 def rally_points(*areas, robots=1, error=1.0, separation=None):

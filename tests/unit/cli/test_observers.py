@@ -6,12 +6,14 @@ from contextlib import contextmanager
 from dataclasses import replace
 from threading import Event
 
+from mmrs_multicopter.testing import robot_program
+
 from mmrs_core.cli import observers
 from mmrs_core.cli.flying import StepRecorder
 from mmrs_core.cli.observers import Observers, ObserverThread
 from mmrs_core.hookspecs import hookimpl
 from mmrs_core.plugins import load_plugins
-from mmrs_core.testing.programs import feedback, move, photo, program, robot_program
+from mmrs_core.testing.programs import feedback, move, photo, program
 from mmrs_runtime.records.log import LogWriter
 from mmrs_runtime.records.steps import StepRecord
 

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import pytest
 import typer
+from mmrs_multicopter.testing import two_drones
 
 from mmrs_core.cli.resuming import resumed_steps
 from mmrs_core.cli.run_options import RunOptions
-from mmrs_core.testing.programs import two_drones
 from mmrs_runtime.records.log import LogWriter
 from mmrs_runtime.records.steps import StepRecord
 

@@ -7,19 +7,18 @@ from dataclasses import replace
 from functools import cache
 
 import pytest
+from mmrs_multicopter.names import MULTICOPTER
 
 from mmrs_core.behaviour.program import BEHAVIOUR
 from mmrs_core.cli import run
 from mmrs_core.contributions.targets import FileSpec, Target
 from mmrs_core.errors import UnsupportedError
-from mmrs_core.generation.capabilities.judging import capabilities_of, probes, suited
-from mmrs_core.generation.capabilities.probes import MOVE, MULTICOPTER
+from mmrs_core.generation.capabilities.judging import capabilities_of, probes
 from mmrs_core.generation.render import render
 from mmrs_core.plugins import load_plugins
 from mmrs_core.testing.programs import installed
 from mmrs_mavlink.plugin.targets import TARGETS
 
-PROBES = probes()
 BY_NAME = {target.name: target for target in TARGETS}
 LANGUAGES = (BEHAVIOUR, MULTICOPTER)
 
@@ -28,11 +27,11 @@ TOLD_WITH = {
     "Robot.moves": "Start, Stop",
     "Robot.moveTransitions": "MoveTransition.",
     "Robot.policies": "LINK_LOST: HOLD",
-    "Robot.launchType": "Robot: a copter",
+    "Robot.launchType": "Robot: multicopter",
     "GeoCoordinate.latitude": "GeoCoordinate",
     "GeoCoordinate.longitude": "GeoCoordinate",
     "GeoCoordinate.altitude": "GeoCoordinate",
-    "GeoCoordinate.depth": "Robot: a sub",
+    "GeoCoordinate.depth": "Robot: auv",
     "RelativeCoordinate.x": "RelativeCoordinate",
     "RelativeCoordinate.y": "RelativeCoordinate",
     "RelativeCoordinate.z": "RelativeCoordinate",
@@ -87,7 +86,7 @@ MAKE_NO_DIFFERENCE["wpl"] = MAKE_NO_DIFFERENCE["qgc-plan"] | {"Robot.typeName"}
 @cache
 def table_of(name):
     """Return the table of a target, which takes seconds to make."""
-    return capabilities_of(BY_NAME[name], installed(), PROBES)
+    return capabilities_of(BY_NAME[name], installed())
 
 
 @pytest.fixture(scope="module")
@@ -139,7 +138,7 @@ def test_rendering_does_what_the_whole_table_says(name):
 
 def check_table(name, every):
     target = without_copies(BY_NAME[name])
-    tried = suited(PROBES, target, installed())
+    tried = probes(target, installed())
     for probe, row in list(zip(tried, table_of(name), strict=True))[::every]:
         assert outcome(target, probe.given) == row.verdict.replace("no difference", "expressed"), row
 
@@ -192,33 +191,47 @@ def test_the_target_of_a_plugin_is_tried_in_the_same_way(cards):
     assert table["GoTo.speed"].verdict == "no difference"
 
 
-def test_moves_that_plugins_have_added_get_a_row(cards):
-    spiral = (("urn:kites:1.0", "Spiral"), MOVE)
-    row = next(
-        row for row in capabilities_of(cards, installed(), probes([spiral])) if "Spiral" in row.element
-    )
-    assert (row.group, row.element) == ("move of a plug-in", "Spiral (urn:kites:1.0)")
+def test_moves_that_plugins_have_added_get_a_row_for_themselves_and_for_each_attribute(cards):
+    added = [row for row in capabilities_of(cards, installed()) if row.group == f"move of {MULTICOPTER}"]
+    assert [(row.element, row.verdict) for row in added] == [
+        ("GoTo", "expressed"),
+        ("GoTo.trajectory HORIZONTAL_FIRST", "no difference"),
+        ("GoTo.trajectory VERTICAL_FIRST", "no difference"),
+        ("Land", "expressed"),
+        ("TakeOff", "expressed"),
+        ("TakeOff.altitude", "no difference"),
+    ]
 
 
-def test_a_target_for_what_dives_is_tried_with_underwater_vehicles(cards):
+def test_a_target_is_tried_with_the_kind_that_it_is_made_for(cards):
     def refusals(given):
         for robot in given.program.robots:
             yield from (each.kind for each in robot.moves if each.metaclasses[0][0] == MULTICOPTER)
 
-    flown = {row.element: row for row in capabilities_of(replace(cards, refusals=refusals), installed())}
-    swum = {
-        row.element: row
-        for row in capabilities_of(replace(cards, refusals=refusals, tried_with="water"), installed())
-    }
-    assert list(swum) == list(flown)
-    assert (flown["Robot.id"].verdict, swum["Robot.id"].verdict) == ("lossy", "no difference")
-    assert {name for name, row in swum.items() if row.verdict == "lossy"} >= {"TakeOff", "Robot: a copter"}
-    (probe,) = (
-        each
-        for each in suited(PROBES, replace(cards, tried_with="water"), installed())
-        if each.element == "GoTo.speed"
+    def tried_with(vehicle):
+        made = replace(cards, refusals=refusals, tried_with=vehicle)
+        (probe,) = (each for each in probes(made, installed()) if each.element == "GoTo.speed")
+        heights = {each.target.position[2] for each in probe.given.program.robots[0].moves if each.target}
+        return {row.element: row.verdict for row in capabilities_of(made, installed())}, heights
+
+    (flown, high), (swum, deep), (driven, level) = map(tried_with, ("copter", "sub", "unheard-of"))
+    assert (flown["Robot.id"], swum["Robot.id"], driven["Robot.id"]) == (
+        "lossy",
+        "no difference",
+        "no difference",
     )
-    assert [each.target.position[2] for each in probe.given.program.robots[0].moves if each.target] == [-20.0]
+    assert swum["Robot: multicopter"] == swum["TakeOff"] == "lossy"
+    assert (high, deep, level) == ({20.0}, {-5.0}, {0.0})
+
+
+def test_kinds_that_a_target_refuses_are_not_tried_further(cards):
+    def refusals(given):
+        return ["dives"] if any(type.metaclasses[0][1] == "AUV" for type in given.types.values()) else []
+
+    rows = capabilities_of(replace(cards, refusals=refusals), installed())
+    assert {row.verdict for row in rows if "auv" in row.element} == {"lossy"}
+    assert not any("(auv)" in f"{row.group} {row.element}" for row in rows)
+    assert any("(plain robot)" in row.element for row in rows)
 
 
 def test_a_target_that_writes_nothing_even_with_losses_refuses(cards):
@@ -241,7 +254,7 @@ def test_the_command_line_prints_the_table_of_a_target(capsys):
 def test_the_command_line_prints_all_tables_for_programs(capsys):
     assert run(["--capabilities", "--json", "--no-plugins"], program="mmrs-gen") == 0
     targets = json.loads(capsys.readouterr().out)["targets"]
-    assert {name: len(rows) for name, rows in targets.items()} == dict.fromkeys(BY_NAME, len(PROBES))
+    assert {name: len(rows) for name, rows in targets.items()} == dict.fromkeys(BY_NAME, 1)
 
 
 def test_an_unknown_target_has_no_table(capsys):

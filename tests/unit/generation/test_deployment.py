@@ -6,13 +6,13 @@ import sys
 from importlib.metadata import version
 
 import pytest
+from mmrs_multicopter.testing import target_input, two_drones
 
 from mmrs_core.errors import MmrsError
 from mmrs_core.generation.deployment import deployment_of, fetch
 from mmrs_core.generation.render import render
 from mmrs_core.generation.wheels import wheel_of
 from mmrs_core.generation.writing import write
-from mmrs_core.testing.programs import target_input, two_drones
 from mmrs_mavlink.plugin.controllers import MAVLINK_PYTHON
 
 PIP = [sys.executable, "-m", "pip", "--disable-pip-version-check", "--quiet", "install", "--no-index"]

@@ -4,13 +4,13 @@ import json
 from pathlib import Path
 
 import pytest
+from mmrs_multicopter.testing import target_input, two_drones
 
 from mmrs_core.contributions.targets import FileSpec, Target, TracedStep
 from mmrs_core.errors import UnreadableError
 from mmrs_core.generation.explaining import explain, places_of
 from mmrs_core.generation.render import render
 from mmrs_core.generation.writing import write
-from mmrs_core.testing.programs import target_input, two_drones
 from mmrs_mavlink.plugin.targets import TARGETS
 
 BY_NAME = {target.name: target for target in TARGETS}

@@ -4,12 +4,12 @@ import json
 from hashlib import sha256
 
 import pytest
+from mmrs_multicopter.testing import target_input, two_drones
 
 from mmrs_core.contributions.targets import FileSpec, Target
 from mmrs_core.errors import MmrsError, UnreadableError
 from mmrs_core.generation.overrides import overrides_in
 from mmrs_core.generation.render import render
-from mmrs_core.testing.programs import target_input, two_drones
 from mmrs_mavlink.plugin.targets import TARGETS
 
 

@@ -4,11 +4,11 @@ import json
 from dataclasses import replace
 
 import pytest
+from mmrs_multicopter.testing import target_input, two_drones
 
 from mmrs_core.contributions.targets import FileSpec, Target, TracedStep
 from mmrs_core.errors import InternalError, UnsupportedError
 from mmrs_core.generation.render import render
-from mmrs_core.testing.programs import target_input, two_drones
 
 
 @pytest.fixture

@@ -5,12 +5,12 @@ import json
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from mmrs_multicopter.testing import target_input, two_drones
 
 from mmrs_core.contributions.targets import FileSpec, Target, TracedStep
 from mmrs_core.errors import InternalError
 from mmrs_core.generation.render import render
 from mmrs_core.generation.tracing import MARK, Served, taken_out
-from mmrs_core.testing.programs import target_input, two_drones
 
 A = TracedStep("item 1", "alpha", "a1", "photos", "by_hand")
 B = TracedStep("item 2", "alpha", "a4")

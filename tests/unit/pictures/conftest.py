@@ -7,11 +7,12 @@ from dataclasses import replace
 
 import pytest
 from drawn_scene import SYMBOLS, plan_named, scene_named
+from mmrs_multicopter.testing import MULTICOPTER, quad, two_drones
 
 from mmrs_core.pictures.preview.from_plan import picture_of_plan
 from mmrs_core.pipeline import BehaviourContext, simulate
 from mmrs_core.scene import Part, Plan, Scene
-from mmrs_core.testing.programs import MULTICOPTER, areas, quad, two_drones
+from mmrs_core.testing.programs import areas
 
 BROWSER_OPTIONS = (
     "--headless",

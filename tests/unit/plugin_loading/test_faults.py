@@ -1,6 +1,7 @@
 """A fault of a plug-in is told as the plug-in's, with what it contributed."""
 
 import pytest
+from mmrs_multicopter.testing import two_drones
 
 from mmrs_core import pipeline
 from mmrs_core.contributions.checks import Check
@@ -13,7 +14,6 @@ from mmrs_core.contributions.targets import FileSpec, Target
 from mmrs_core.errors import InfeasibleError, PluginError
 from mmrs_core.hookspecs import hookimpl
 from mmrs_core.plugins import load_plugins
-from mmrs_core.testing.programs import two_drones
 
 KITE = ("urn:test:kite:1.0", "Kite")
 MISSPELT = ("urn:mmrs:mission:1.0", "PontTask")

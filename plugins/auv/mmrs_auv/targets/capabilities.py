@@ -6,7 +6,7 @@ from collections.abc import Mapping
 
 OF_VEHICLES: Mapping[str, str] = {
     "Behaviour.surfaceHeight": "depths count from it",
-    "Robot: a sub": "goals on its CAN bus",
+    "Robot: auv": "goals on its CAN bus",
     "Robot.travelMode": "speed of its goals",
     "GeoCoordinate": "metres north, east and below the surface",
     "RelativeCoordinate": "metres north, east and below the surface",

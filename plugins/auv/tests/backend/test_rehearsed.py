@@ -10,6 +10,7 @@ import dives
 import pytest
 from dives import POOL, Rehearsed, dive, rehearse, swim
 from mmrs_auv.backend.rehearsed import RehearsedRobot
+from mmrs_multicopter.testing import robot_program, take_off
 
 from auv_vessel.body.surroundings import BUOY, Surroundings, Thing, to_json
 from auv_vessel.movement import guidance, movement
@@ -17,7 +18,7 @@ from mmrs_core.behaviour.program import Action, Heading, Move, MoveTarget, Trans
 from mmrs_core.contributions.execution import Condition
 from mmrs_core.errors import UnsupportedError
 from mmrs_core.scene import Area, AreaUse, Device, Policy, RobotType
-from mmrs_core.testing.programs import feedback, move, notify, program, robot_program, take_off, use
+from mmrs_core.testing.programs import feedback, move, notify, program, use
 from mmrs_runtime.semantics import Outcome
 
 pytestmark = pytest.mark.long

@@ -20,8 +20,8 @@ from auv_vessel.wire.catalogue import EMERGENCIES
 from auv_vessel.wire.codec import Codec
 from auv_vessel.wire.frame import Frame, check_of
 from mmrs_core.errors import UnsupportedError
-from mmrs_core.generation.capabilities.probes import plain
 from mmrs_core.generation.render import render
+from mmrs_core.testing.programs import sample_of
 
 HOSTILE = (
     '*/ int x = "; /*',
@@ -158,9 +158,9 @@ def test_what_is_no_number_in_c_is_refused(value):
 
 def test_a_robot_without_thrusters_on_a_bus_is_refused():
     with pytest.raises(UnsupportedError) as refusal:
-        render(CAN_C, plain("rover"))
+        render(CAN_C, sample_of("plain_robot").plain)
     assert refusal.value.elements[0] == "robot 'alpha': is not an underwater vehicle"
-    given = plain("sub")
+    given = sample_of("auv").plain
     with pytest.raises(UnsupportedError, match="type 'Kind' is not known"):
         render(CAN_C, replace(given, types={}))
 
@@ -169,7 +169,9 @@ def test_how_deep_is_deep_depends_on_the_water():
     salty, fresh = ({"waterDensity": density} for density in (1028.0, 998.0))
     deep = []
     for water in (salty, fresh):
-        files = {file.path: file for file in render(CAN_C, replace(plain("sub"), environment=water))}
+        files = {
+            file.path: file for file in render(CAN_C, replace(sample_of("auv").plain, environment=water))
+        }
         header = files["drives_alpha/vehicle.h"].content.decode()
         deep.append(float(header.partition("VEHICLE_DEEP ")[2].split()[0]))
     assert deep == pytest.approx([101_325.0 + each * 9.80665 * 0.5 for each in (1028.0, 998.0)])
@@ -184,7 +186,7 @@ def test_vehicles_share_all_but_their_thrusters_and_outputs():
 
 
 def test_what_is_the_users_is_said_to_be_so():
-    files = {file.path: file for file in render(CAN_C, plain("sub"))}
+    files = {file.path: file for file in render(CAN_C, sample_of("auv").plain)}
     assert [path for path, file in files.items() if file.once] == ["drives_alpha/outputs.c"]
     assert files["drives_alpha/outputs.c"].asks
     assert "drives_alpha/" in files["README.md"].content.decode()

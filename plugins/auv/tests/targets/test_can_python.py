@@ -12,6 +12,7 @@ from dives import POOL, dive, diver, swim
 from mmrs_auv.controllers.driver import main
 from mmrs_auv.kinds import AUV_KIND
 from mmrs_auv.targets.can_python.target import CAN_PYTHON
+from mmrs_multicopter.testing import quad, robot_program
 from ports import free_endpoint
 
 from auv_vessel.sheet import from_json
@@ -23,7 +24,7 @@ from mmrs_core.errors import UnsupportedError
 from mmrs_core.generation.render import render
 from mmrs_core.generation.writing import write
 from mmrs_core.scene import Policy
-from mmrs_core.testing.programs import feedback, move, notify, program, quad, robot_program, use
+from mmrs_core.testing.programs import feedback, move, notify, program, use
 from mmrs_core.transformation.kinds import MOVE_KINDS
 from mmrs_mavlink.plugin.controllers import MAVLINK_PYTHON
 from mmrs_mavlink.program import Local, Robot

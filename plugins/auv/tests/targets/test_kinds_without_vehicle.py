@@ -11,10 +11,11 @@ from mmrs_auv.targets.can_c.target import CAN_C
 from mmrs_auv.targets.can_python.target import CAN_PYTHON
 from mmrs_imc.target import IMC
 from mmrs_moos.target import MOOS
+from mmrs_multicopter.testing import robot_program, target_input
 
 from mmrs_core.errors import UnsupportedError
 from mmrs_core.generation.render import render
-from mmrs_core.testing.programs import program, robot_program, target_input
+from mmrs_core.testing.programs import program
 
 EEL = ("urn:eels:1.0", "Eel")
 

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+from mmrs_core.contributions.samples import SampleWiring
+
 OF_CONTROLLERS: Mapping[str, str] = {
     "Behaviour.crs": "places are converted to WGS 84",
     "Behaviour.origin": "places in degrees with seven decimals",
@@ -12,9 +14,9 @@ OF_CONTROLLERS: Mapping[str, str] = {
     "Behaviour.geoidSeparation": "heights are above each robot's home",
     "Behaviour.positionError": "the geofence and rally points keep it",
     "Behaviour.surfaceHeight": "heights under water count from it",
-    "Robot: a copter": "ArduCopter; PX4 in the runtime, untested on a PX4",
-    "Robot: a rover": "ArduRover",
-    "Robot: a sub": "ArduSub",
+    "Robot: multicopter": "ArduCopter; PX4 in the runtime, untested on a PX4",
+    "Robot: plain robot": "ArduRover",
+    "Robot: auv": "ArduSub",
     "Robot.typeName": "the kind of vehicle, its speeds and devices",
     "Robot.home": "zero of its heights; the vehicle must be near it",
     "Robot.travelMode": "speed, acceptance radius and avoidance",
@@ -26,7 +28,6 @@ OF_CONTROLLERS: Mapping[str, str] = {
     "GeoCoordinate": "degrees, and metres above home",
     "RelativeCoordinate": "metres north, east and above home",
     "ObjectTarget": "found by a function of yours in objects.py",
-    "multicopter GoTo": "position targets in GUIDED; runs of them as a mission in AUTO",
     "GoTo": "position targets in GUIDED; runs of them as a mission in AUTO",
     "GoTo.speed": "DO_CHANGE_SPEED",
     "GoTo.speed absent": "DO_CHANGE_SPEED, by the travel mode",
@@ -61,7 +62,7 @@ OF_MISSIONS: Mapping[str, str] = {
     "Behaviour.positionError": "the geofence and rally points keep it",
     "Behaviour.surfaceHeight": "heights under water count from it",
     "Behaviour.robots": "files of their own",
-    "Robot: a": "items that its ArduPilot knows, or its PX4 (mavlink.autopilot)",
+    "Robot:": "items that its ArduPilot knows, or its PX4 (mavlink.autopilot)",
     "Robot.id": "name of the file",
     "Robot.typeName": "kind of vehicle, speeds and devices, as far as the format holds them",
     "Robot.home": "the planned home; heights are above it",
@@ -75,7 +76,6 @@ OF_MISSIONS: Mapping[str, str] = {
     "GeoCoordinate": "degrees, and metres above home",
     "Target.name": "is informative",
     "Start, Stop": "begin and end of the mission",
-    "multicopter GoTo": "NAV_WAYPOINT",
     "GoTo": "NAV_WAYPOINT",
     "GoTo.distance": "a waypoint short of the position",
     "GoTo.speed": "DO_CHANGE_SPEED",
@@ -105,3 +105,25 @@ OF_LISTS: Mapping[str, str] = {
     "Context.obstacles: of unlimited height": "exclusion polygons in a list of their own (.fence.waypoints)",
     "Context.emergencyAreas": "rally points in a list of their own (.rally.waypoints)",
 }
+
+WIRINGS = (
+    SampleWiring("a servo (mavlink.servo)", {"mavlink.servo": "9", "mavlink.servo.act": "1900"}),
+    SampleWiring("a MAVLink command (mavlink.command.ACTION)", {"mavlink.command.act": "183 9 1900"}),
+    SampleWiring("a value that is measured (mavlink.value)", {"mavlink.value": "CO2"}),
+    SampleWiring("a camera (mavlink.camera)", {"mavlink.camera": "0"}),
+    SampleWiring(
+        "a camera that the autopilot triggers", {"mavlink.camera": "0", "mavlink.camera.command": "digicam"}
+    ),
+    SampleWiring("a camera that tells each image", {"mavlink.camera": "0", "mavlink.camera.confirms": "yes"}),
+    SampleWiring("a relay (mavlink.relay)", {"mavlink.relay": "0", "mavlink.relay.act": "on"}),
+    SampleWiring("a gripper (mavlink.gripper)", {"mavlink.gripper": "1", "mavlink.gripper.act": "release"}),
+    SampleWiring("a video (mavlink.video)", {"mavlink.video": "0", "mavlink.video.act": "start"}),
+    SampleWiring(
+        "a trigger by distance (mavlink.trigger)", {"mavlink.trigger": "5", "mavlink.trigger.act": "start"}
+    ),
+    SampleWiring("a winch (mavlink.winch)", {"mavlink.winch": "1", "mavlink.winch.act": "length 5"}),
+    SampleWiring(
+        "a gimbal (mavlink.gimbal.ACTION)", {"mavlink.gimbal": "1", "mavlink.gimbal.act": "-90 0"}, turns=True
+    ),
+)
+"""How devices on MAVLink may be wired."""

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
-from mmrs_core.behaviour.program import Action, Move, RobotProgram
+from mmrs_core.behaviour.program import Action, Move, MoveTarget, RobotProgram
 from mmrs_core.contributions.rules import Medium, MoveKind
 from mmrs_core.contributions.targets import TargetInput
 from mmrs_core.errors import UnsupportedError
@@ -42,6 +42,17 @@ class VehicleContext(RobotContext):
         """Return how far a move climbs, metres; 0 for one without a movement of its own."""
         path = self.moves[move.metaclasses[0]].path(move, (0.0, 0.0, 0.0), None)
         return path[-1][2] if path else 0.0
+
+    def legs(self, move: Move) -> str:
+        """Return how a move goes to a target at another height: ``direct``, ``level first``, ``climb first``.
+
+        These are the paths with at most one corner, above or below an end; any other counts as direct.
+        """
+        east, north, up = goal = (10.0, 10.0, 10.0)
+        leading = replace(move, target=MoveTarget(goal), distance=0.0)
+        path = self.moves[move.metaclasses[0]].path(leading, (0.0, 0.0, 0.0), None)
+        corners = {(east, north, 0.0): "level first", (0.0, 0.0, up): "climb first"}
+        return corners.get(path[1], "direct") if path is not None and len(path) == 3 else "direct"
 
 
 def context_of(robot: RobotProgram, input: TargetInput) -> VehicleContext:

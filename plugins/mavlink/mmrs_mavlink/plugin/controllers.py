@@ -21,7 +21,7 @@ from mmrs_core.generation.safety import areas_of, policies_of
 from mmrs_core.scene import Name, Point, Policy
 from mmrs_mavlink import program as words
 from mmrs_mavlink.options import FIRST_PORT, PORT_STEP
-from mmrs_mavlink.plugin.capabilities import OF_CONTROLLERS
+from mmrs_mavlink.plugin.capabilities import OF_CONTROLLERS, WIRINGS
 from mmrs_mavlink.plugin.context import VehicleContext, context_of, neighbours_of, vehicleless
 from mmrs_mavlink.plugin.escapes import Escape, escapes_of, straight_lines_are_clear
 from mmrs_mavlink.plugin.fencing import Fence, fence_faults, fences_of
@@ -56,7 +56,11 @@ def _land(move: Move, context: VehicleContext, driver: object) -> Call:
     return Call("Land")
 
 
-MANOEUVRES: Mapping[str, Any] = {"take_off": _take_off, "land": _land, "go_to": go_to}
+def _go_to(move: Move, context: VehicleContext, driver: Any) -> Call:
+    return go_to(move, context, driver, context.legs(move))
+
+
+MANOEUVRES: Mapping[str, Any] = {"take_off": _take_off, "land": _land, "go_to": _go_to}
 """Movements by `MoveKind.manoeuvre`."""
 
 
@@ -69,6 +73,8 @@ class MavlinkPython(PythonDriver[VehicleContext]):
     requires = ("mmrs-mavlink",)
     templates = templates_of("mavlink-python")
     capabilities = OF_CONTROLLERS
+    tried_with = "copter"
+    wirings = WIRINGS
 
     def undriven(self, robot: RobotProgram, input: TargetInput) -> str:
         """Return why no vehicle carries a robot."""

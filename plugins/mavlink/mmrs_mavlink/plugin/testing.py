@@ -9,10 +9,10 @@ from typing import ClassVar
 from mmrs_core.behaviour.program import Action
 from mmrs_core.generation.render import render
 from mmrs_core.plugins import load_plugins
-from mmrs_core.scene import Device
+from mmrs_core.scene import Device, RobotType
 from mmrs_core.testing.conformance.declared import Conformance, declared
-from mmrs_core.testing.programs import go_to, program, quad, robot_program, take_off, target_input
-from mmrs_core.testing.small_programs import use
+from mmrs_core.testing.programs import target_input
+from mmrs_core.testing.small_programs import go, program, robot, robot_type, use
 from mmrs_mavlink.plugin.wiring import wiring_of
 from mmrs_mavlink.wiring import DeviceWiring, Unwired, Wiring
 
@@ -59,9 +59,8 @@ class DeviceWiringConformance(Conformance):
         """A generated controller has the device act, by the target ``mavlink-python`` of mmrs-mavlink."""
         target = load_plugins().contributions.targets["mavlink-python"]
         device, name = self.devices[device_action.property]
-        acts = replace(go_to("a", (0.0, 9.0, 5.0)), after=(use(device.id, name),))
-        type = replace(quad(), devices={device.id: device})
-        given = target_input(program(robot_program("alpha", [take_off("up", 5.0), acts])), [type])
+        acts = go("a", (0.0, 9.0, 0.0), after=(use(device.id, name),))
+        given = target_input(program(robot("alpha", [acts])), [_with(device)])
         files = render(
             target, replace(given, extensions={"device_actions": {device_action.property: device_action}})
         )
@@ -69,5 +68,8 @@ class DeviceWiringConformance(Conformance):
 
     @staticmethod
     def _wired(wiring: DeviceWiring, device: Device, action: Action) -> Wiring:
-        type = replace(quad(), devices={device.id: device})
-        return wiring_of(action, type, {wiring.property: wiring})
+        return wiring_of(action, _with(device), {wiring.property: wiring})
+
+
+def _with(device: Device) -> RobotType:
+    return replace(robot_type(), devices={device.id: device})

@@ -9,26 +9,14 @@ from dataclasses import replace
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
+from mmrs_multicopter.testing import LAND, go_to, quad, robot_program, take_off, target_input, two_drones
 
 from mmrs_core.behaviour.program import Heading, MoveTarget, Transition
 from mmrs_core.errors import UnsupportedError
 from mmrs_core.generation.render import render
 from mmrs_core.generation.writing import write
 from mmrs_core.scene import Device, DeviceAction, Frame, Policy
-from mmrs_core.testing.programs import (
-    LAND,
-    feedback,
-    go_to,
-    move,
-    notify,
-    photo,
-    program,
-    quad,
-    robot_program,
-    take_off,
-    target_input,
-    two_drones,
-)
+from mmrs_core.testing.programs import feedback, move, notify, photo, program
 from mmrs_mavlink.plugin.controllers import MAVLINK_PYTHON
 from mmrs_mavlink.plugin.plans.qgc import QGC_PLAN
 from mmrs_mavlink.wiring import DeviceWiring, Wired

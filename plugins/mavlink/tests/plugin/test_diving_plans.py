@@ -6,13 +6,14 @@ import json
 from dataclasses import replace
 
 import pytest
+from mmrs_multicopter.testing import quad, robot_program, target_input
 from pymavlink import mavutil, mavwp
 
 from mmrs_core.behaviour.program import MoveTarget
 from mmrs_core.errors import UnsupportedError
 from mmrs_core.generation.render import render
 from mmrs_core.scene import Frame
-from mmrs_core.testing.programs import move, program, quad, robot_program, target_input
+from mmrs_core.testing.programs import move, program
 from mmrs_mavlink.plugin.plans.qgc import QGC_PLAN
 from mmrs_mavlink.plugin.plans.wpl import WPL
 

@@ -5,6 +5,7 @@ from itertools import pairwise
 from math import dist, inf
 
 import pytest
+from mmrs_multicopter.testing import LAND, go_to, robot_program, take_off, target_input
 from shapely import LineString, Polygon
 
 from mmrs_core import pipeline
@@ -15,16 +16,7 @@ from mmrs_core.generation.safety import clearance_of
 from mmrs_core.plugins import load_plugins
 from mmrs_core.resources import shipped
 from mmrs_core.scene import Area, AreaUse, Policy
-from mmrs_core.testing.programs import (
-    LAND,
-    go_to,
-    installed,
-    move,
-    program,
-    robot_program,
-    take_off,
-    target_input,
-)
+from mmrs_core.testing.programs import installed, move, program
 from mmrs_mavlink.plugin.controllers import DRIVER
 from mmrs_mavlink.plugin.escapes import escapes_of
 

@@ -6,10 +6,11 @@ from math import cos, pi, sin
 import pytest
 from hypothesis import assume, example, given, settings
 from hypothesis import strategies as st
+from mmrs_multicopter.testing import go_to, robot_program, take_off
 from shapely import LineString, Polygon
 
 from mmrs_core.scene import Area, AreaUse
-from mmrs_core.testing.programs import go_to, move, robot_program, take_off
+from mmrs_core.testing.programs import move
 from mmrs_mavlink.plugin.fencing import FINE, STRAY, Fence, fence_faults, fence_of, legs_of
 
 SQUARE = ((0.0, 0.0), (10.0, 0.0), (10.0, 10.0), (0.0, 10.0))

@@ -6,21 +6,13 @@ import shlex
 from dataclasses import replace
 
 import pytest
+from mmrs_multicopter.testing import LAND, go_to, quad, robot_program, take_off, target_input, two_drones
 
 from mmrs_core.behaviour.earth import degrees_of
 from mmrs_core.errors import UnsupportedError
 from mmrs_core.generation.render import render
 from mmrs_core.scene import Frame
-from mmrs_core.testing.programs import (
-    LAND,
-    go_to,
-    program,
-    quad,
-    robot_program,
-    take_off,
-    target_input,
-    two_drones,
-)
+from mmrs_core.testing.programs import program
 from mmrs_core.transformation.kinds import PLAIN_ROBOT
 from mmrs_mavlink.plugin.controllers import MAVLINK_PYTHON
 from mmrs_mavlink.plugin.plans.qgc import QGC_PLAN

@@ -10,19 +10,12 @@ from tempfile import TemporaryDirectory
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from mmrs_multicopter.testing import LAND, go_to, robot_program, take_off, target_input
 from pymavlink import mavwp
 
 from mmrs_core.behaviour.program import Transition
 from mmrs_core.generation.render import render
-from mmrs_core.testing.programs import (
-    LAND,
-    go_to,
-    photo,
-    program,
-    robot_program,
-    take_off,
-    target_input,
-)
+from mmrs_core.testing.programs import photo, program
 from mmrs_mavlink.plugin.plans.qgc import QGC_PLAN
 from mmrs_mavlink.plugin.plans.wpl import WPL
 

@@ -3,20 +3,12 @@ from __future__ import annotations
 from dataclasses import replace
 
 import pytest
+from mmrs_multicopter.testing import LAND, go_to, quad, robot_program, take_off, target_input
 
 from mmrs_core.behaviour.program import Program
 from mmrs_core.generation.render import render
 from mmrs_core.scene import Device, DeviceAction
-from mmrs_core.testing.programs import (
-    LAND,
-    go_to,
-    photo,
-    program,
-    quad,
-    robot_program,
-    take_off,
-    target_input,
-)
+from mmrs_core.testing.programs import photo, program
 from mmrs_mavlink.plugin.controllers import MAVLINK_PYTHON, command_name, robot_of
 from mmrs_mavlink.wiring import DeviceWiring, Wired
 

@@ -4,25 +4,14 @@ import json
 from dataclasses import replace
 
 import pytest
+from mmrs_multicopter.testing import LAND, go_to, quad, robot_program, take_off, target_input, two_drones
 
 from mmrs_core.behaviour.program import Heading, MoveTarget, Transition
 from mmrs_core.errors import UnsupportedError
 from mmrs_core.generation.render import render
 from mmrs_core.geometry.frames import LocalFrame
 from mmrs_core.scene import Device, Frame, Policy
-from mmrs_core.testing.programs import (
-    L_AQUILA,
-    LAND,
-    go_to,
-    move,
-    photo,
-    program,
-    quad,
-    robot_program,
-    take_off,
-    target_input,
-    two_drones,
-)
+from mmrs_core.testing.programs import L_AQUILA, move, photo, program
 from mmrs_mavlink.plugin.plans.qgc import QGC_PLAN
 
 

@@ -10,13 +10,14 @@ import pytest
 from flight_crew import robot_of
 from mavlink_peer import acknowledged, eventually, linked, value
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
+from mmrs_multicopter.testing import go_to, quad, robot_program, target_input
 
 from mmrs_core.behaviour.program import Move
 from mmrs_core.contributions.rules import MoveKind
 from mmrs_core.generation.render import render
 from mmrs_core.hookspecs import hookimpl
 from mmrs_core.plugins import load_plugins
-from mmrs_core.testing.programs import go_to, program, quad, robot_program, target_input
+from mmrs_core.testing.programs import program
 from mmrs_core.transformation.kinds import PLAIN_ROBOT
 from mmrs_mavlink.plugin.context import context_of
 from mmrs_mavlink.plugin.controllers import MAVLINK_PYTHON

@@ -7,23 +7,14 @@ from dataclasses import replace
 from math import isnan
 
 import pytest
+from mmrs_multicopter.testing import MULTICOPTER, go_to, quad, robot_program, take_off, target_input
 from pymavlink import mavwp
 
 from mmrs_core.behaviour.program import Heading, MoveTarget
 from mmrs_core.errors import UnsupportedError
 from mmrs_core.generation.render import render
 from mmrs_core.scene import Device, DeviceAction
-from mmrs_core.testing.programs import (
-    MULTICOPTER,
-    go_to,
-    move,
-    photo,
-    program,
-    quad,
-    robot_program,
-    take_off,
-    target_input,
-)
+from mmrs_core.testing.programs import move, photo, program
 from mmrs_mavlink.plugin.plans.qgc import QGC_PLAN
 from mmrs_mavlink.plugin.plans.wpl import WPL
 

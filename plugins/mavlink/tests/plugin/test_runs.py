@@ -3,10 +3,11 @@ from __future__ import annotations
 from dataclasses import replace
 
 import pytest
+from mmrs_multicopter.testing import go_to, robot_program, target_input
 
 from mmrs_core.behaviour.program import Heading, MoveTarget, Transition
 from mmrs_core.scene import Frame
-from mmrs_core.testing.programs import L_AQUILA, go_to, photo, program, robot_program, target_input
+from mmrs_core.testing.programs import L_AQUILA, photo, program
 from mmrs_mavlink.plugin.context import context_of
 from mmrs_mavlink.plugin.runs import runs_of
 

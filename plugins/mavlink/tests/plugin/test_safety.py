@@ -2,9 +2,11 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+from mmrs_multicopter.testing import quad, robot_program, target_input
+
 from mmrs_core.generation.safety import clearance_of, policies_of
 from mmrs_core.scene import Policy
-from mmrs_core.testing.programs import program, quad, robot_program, target_input
+from mmrs_core.testing.programs import program
 
 
 def test_clearance_is_half_the_diagonal_and_the_position_error():

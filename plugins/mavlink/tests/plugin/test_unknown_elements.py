@@ -5,19 +5,12 @@ from __future__ import annotations
 from dataclasses import replace
 
 import pytest
+from mmrs_multicopter.testing import LAND, go_to, robot_program, take_off, target_input
 
 from mmrs_core.behaviour.program import BEHAVIOUR
 from mmrs_core.errors import UnsupportedError
 from mmrs_core.generation.render import render
-from mmrs_core.testing.programs import (
-    LAND,
-    go_to,
-    photo,
-    program,
-    robot_program,
-    take_off,
-    target_input,
-)
+from mmrs_core.testing.programs import photo, program
 from mmrs_mavlink.plugin.controllers import MAVLINK_PYTHON
 from mmrs_mavlink.plugin.plans.qgc import QGC_PLAN
 from mmrs_mavlink.plugin.plans.wpl import WPL

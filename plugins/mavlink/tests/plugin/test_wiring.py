@@ -3,10 +3,11 @@ from __future__ import annotations
 from dataclasses import replace
 
 import pytest
+from mmrs_multicopter.testing import quad
 
 from mmrs_core.errors import PluginError
 from mmrs_core.scene import Device, DeviceAction
-from mmrs_core.testing.programs import photo, quad
+from mmrs_core.testing.programs import photo
 from mmrs_mavlink.plugin.wiring import wiring_of
 from mmrs_mavlink.wiring import DeviceWiring, Sampled, Unwired, Wired
 

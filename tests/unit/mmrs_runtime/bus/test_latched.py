@@ -9,8 +9,9 @@ from threading import Thread
 import pytest
 from gateway_client import Client
 from hub import Hub
+from mmrs_multicopter.testing import quad, robot_program, target_input
 
-from mmrs_core.testing.programs import program, quad, robot_program, target_input
+from mmrs_core.testing.programs import program
 from mmrs_core.testing.small_programs import hold, notify
 from mmrs_mavlink.plugin.controllers import robot_of
 from mmrs_runtime.bus import CommandId, Node

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import pytest
+from mmrs_multicopter.testing import robot_program
 
 from mmrs_core.behaviour.program import Transition
 from mmrs_core.contributions.execution import Condition, RobotState
 from mmrs_core.pictures.flights.flight import Flight, Flown
 from mmrs_core.pictures.flights.planned import choosing_as
-from mmrs_core.testing.programs import move, program, robot_program
+from mmrs_core.testing.programs import move, program
 from mmrs_runtime.records.steps import StepRecord
 
 STATE = RobotState(0.0, (0.0, 0.0, 0.0), 0.0, 0.0, None)

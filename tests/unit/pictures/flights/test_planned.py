@@ -6,12 +6,12 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from mmrs_multicopter.testing import go_to, robot_program, take_off
 
 from mmrs_core.behaviour.program import MoveTarget
 from mmrs_core.pictures.flights.flight import Flown
 from mmrs_core.pictures.flights.planned import legs_of
 from mmrs_core.pictures.flights.tracks import NOWHERE, Track
-from mmrs_core.testing.programs import go_to, robot_program, take_off
 from mmrs_runtime.records.steps import StepRecord
 
 UP, EAST, NORTH = take_off("up", 5.0), go_to("east", (10.0, 0.0, 5.0)), go_to("north", (10.0, 20.0, 5.0))

@@ -6,11 +6,12 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from mmrs_multicopter.testing import quad, robot_program, take_off
 
 from mmrs_core.behaviour.earth import degrees_of
 from mmrs_core.pictures.flights.fixes import Datum, Fixes, datum_of
 from mmrs_core.scene import Frame
-from mmrs_core.testing.programs import L_AQUILA, program, quad, robot_program, take_off
+from mmrs_core.testing.programs import L_AQUILA, program
 from mmrs_core.transformation.kinds import PLAIN_ROBOT
 from mmrs_runtime.records.entries import Entry
 

@@ -9,6 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
+from mmrs_multicopter.testing import go_to
 from shapely.geometry import LineString, Point
 
 from mmrs_core.pictures.flights.planned import PlannedLeg
@@ -17,7 +18,7 @@ from mmrs_core.pictures.flights.tracks import along, nearest
 from mmrs_core.pictures.report.charts import cross_track_chart
 from mmrs_core.pictures.report.deviations import deviation_of
 from mmrs_core.scene import Frame
-from mmrs_core.testing.programs import go_to, move
+from mmrs_core.testing.programs import move
 
 WAY = ((0.0, 0.0, 10.0), (100.0, 0.0, 10.0))
 PLACES = Locator(Frame("EPSG:4326", None, None))

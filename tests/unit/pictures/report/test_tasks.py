@@ -5,11 +5,12 @@ from __future__ import annotations
 from dataclasses import replace
 
 import pytest
+from mmrs_multicopter.testing import go_to, robot_program, take_off
 
 from mmrs_core.pictures.flights.planned import legs_of
 from mmrs_core.pictures.report.contents import TaskStatus
 from mmrs_core.pictures.report.tasks import task_reports
-from mmrs_core.testing.programs import go_to, move, program, robot_program, take_off
+from mmrs_core.testing.programs import move, program
 
 
 @pytest.fixture

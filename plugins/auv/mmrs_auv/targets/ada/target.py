@@ -114,5 +114,5 @@ ADA = Target(
     refusals=refusals,
     filters={"ada": literals.value, "ada_string": literals.string},
     capabilities=CAPABILITIES,
-    tried_with="water",
+    tried_with="sub",
 )

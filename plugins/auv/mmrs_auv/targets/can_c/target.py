@@ -106,7 +106,7 @@ LONGEST = 2000.0
 
 CAPABILITIES = {
     "Behaviour.robots": "a folder each, beside what they share",
-    "Robot: a sub": "a drive for each of its thrusters",
+    "Robot: auv": "a drive for each of its thrusters",
     "Robot.id": "name of the folder",
 }
 
@@ -225,5 +225,5 @@ CAN_C = Target(
     refusals=refusals,
     filters={"block": block, "c": number},
     capabilities=CAPABILITIES,
-    tried_with="water",
+    tried_with="sub",
 )

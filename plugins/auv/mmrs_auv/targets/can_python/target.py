@@ -48,7 +48,7 @@ class CanPython(PythonDriver[RobotContext]):
     requires = ("auv-vessel", "mmrs-auv")
     templates = templates_of("can-python")
     capabilities = CAPABILITIES
-    tried_with = "water"
+    tried_with = "sub"
 
     def undriven(self, robot: RobotProgram, input: TargetInput) -> str:
         """Return that a robot is not an underwater vehicle."""

@@ -139,7 +139,7 @@ class FlightWriter:
         self._pace(move)
         self._look(move)
         # Without a hold at its end a vehicle cuts the corner; a fluid transition is content with that.
-        for position in _ends(self._position, move.target.position, move):
+        for position in _ends(self._position, move.target.position, self._context.legs(move), move.distance):
             self._position = position
             last = position == move.target.position
             self._add(cmd.WAYPOINT, move, 0.0 if fluid and last else CORNER_SECONDS, here=True)
@@ -195,16 +195,16 @@ class FlightWriter:
         self._items.append(PlanItem(command, move, params, self._position if here else None))
 
 
-def _ends(start: Position, target: Position, move: Move) -> tuple[Position, ...]:
+def _ends(start: Position, target: Position, legs: str, distance: float) -> tuple[Position, ...]:
     corner = {
-        "HORIZONTAL_FIRST": ((target[0], target[1], start[2]),),
-        "VERTICAL_FIRST": ((start[0], start[1], target[2]),),
-    }.get(str(move.attributes.get("trajectory", "DIRECT")), ())
+        "level first": ((target[0], target[1], start[2]),),
+        "climb first": ((start[0], start[1], target[2]),),
+    }.get(legs, ())
     last = corner[-1] if corner else start
     way = dist(last, target)
-    if move.distance <= 0.0 or way == 0.0:
+    if distance <= 0.0 or way == 0.0:
         return (*corner, target)
-    part = max(0.0, 1.0 - move.distance / way)
+    part = max(0.0, 1.0 - distance / way)
     east, north, up = (p + part * (q - p) for p, q in zip(last, target, strict=True))
     return (*corner, (east, north, up))
 

@@ -7,7 +7,7 @@ from math import isnan
 
 from mmrs_core.behaviour.travel import capability_of
 from mmrs_core.contributions.targets import FileSpec, Target, TargetInput
-from mmrs_mavlink.plugin.capabilities import OF_MISSIONS
+from mmrs_mavlink.plugin.capabilities import OF_MISSIONS, WIRINGS
 from mmrs_mavlink.plugin.context import VehicleContext
 from mmrs_mavlink.plugin.places import templates_of
 from mmrs_mavlink.plugin.plans.items import Row
@@ -77,4 +77,6 @@ QGC_PLAN = Target(
     files=files,
     refusals=refusals,
     capabilities=OF_MISSIONS,
+    tried_with="copter",
+    wirings=WIRINGS,
 )

@@ -12,7 +12,7 @@ from collections.abc import Iterator
 from math import isinf
 
 from mmrs_core.contributions.targets import FileSpec, Target, TargetInput, TracedStep
-from mmrs_mavlink.plugin.capabilities import OF_LISTS
+from mmrs_mavlink.plugin.capabilities import OF_LISTS, WIRINGS
 from mmrs_mavlink.plugin.places import templates_of
 from mmrs_mavlink.plugin.plans.items import (
     ABSOLUTE,
@@ -97,5 +97,7 @@ WPL = Target(
     files=files,
     refusals=refusals,
     capabilities=OF_LISTS,
+    tried_with="copter",
+    wirings=WIRINGS,
     filters={"row": line},
 )

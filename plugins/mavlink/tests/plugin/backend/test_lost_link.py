@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from mmrs_core.testing.programs import LAND, program, robot_program, take_off, target_input
+from mmrs_multicopter.testing import LAND, robot_program, take_off, target_input
+
+from mmrs_core.testing.programs import program
 from mmrs_mavlink.driving.lost_link import LostLink
 from mmrs_mavlink.plugin.controllers import robot_of
 from mmrs_mavlink.program import Policy

@@ -5,18 +5,10 @@ from __future__ import annotations
 from dataclasses import replace
 
 import pytest
+from mmrs_multicopter.testing import LAND, MULTICOPTER, go_to, robot_program, take_off, target_input
 
 from mmrs_core.behaviour.program import Transition
-from mmrs_core.testing.programs import (
-    LAND,
-    MULTICOPTER,
-    go_to,
-    move,
-    program,
-    robot_program,
-    take_off,
-    target_input,
-)
+from mmrs_core.testing.programs import move, program
 from mmrs_mavlink.driving.moves import Moves
 from mmrs_mavlink.driving.way_back import WayBack, sortie_of
 from mmrs_mavlink.plugin.controllers import robot_of
