@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from mmrs_core.cli.completion import example_names
-from mmrs_core.cli.demonstration import demonstrate, travel_margins_of
+from mmrs_core.cli.demonstration import demonstrate, manner_of
 from mmrs_core.cli.output import say, say_json
 from mmrs_core.cli.session import Session, Stages
 from mmrs_core.cli.settings import Json, settings_of
@@ -44,7 +44,7 @@ def demo(
     folder = example_folder(example)
 
     stages = Stages(Session(settings_of(call)), folder)
-    made = demonstrate(stages, folder, out, travel_margins_of(folder), examples().values())
+    made = demonstrate(stages, folder, out, manner_of(folder), examples().values())
     if json:
         say_json(made.summary())
     else:
@@ -75,7 +75,7 @@ def examples() -> dict[str, Path]:
 
 def also_called(folder: Path) -> str:
     """Return a shorter name of an example; empty: it has none."""
-    return travel_margins_of(folder).also
+    return manner_of(folder).also
 
 
 def _list_examples(json: bool) -> int:

@@ -27,7 +27,6 @@ from mmrs_core.resources import new_folders
 from mmrs_core.simulation.run import SimulatedRun
 
 _MOST_REASONS = 3
-TARGETS = ("mavlink-python", "qgc-plan")
 MANNER = "demo.toml"
 LOGS = "logs"
 
@@ -46,11 +45,11 @@ class Manner:
     also: str = ""
     backend: str = "simulation"
     options: Mapping[str, str] = field(default_factory=dict)
-    targets: tuple[str, ...] = TARGETS
+    targets: tuple[str, ...] = ()
     own: Mapping[str, str] = field(default_factory=dict)
 
 
-def travel_margins_of(folder: Path) -> Manner:
+def manner_of(folder: Path) -> Manner:
     """Return how an example is shown, by default with a simulation. ``{folder}`` is its own folder.
 
     Raises:
@@ -64,7 +63,7 @@ def travel_margins_of(folder: Path) -> Manner:
         options = {
             key: str(value).replace("{folder}", str(folder)) for key, value in found["options"].items()
         }
-        targets = tuple(map(str, found.get("targets", TARGETS)))
+        targets = tuple(map(str, found.get("targets", ())))
         own = {robot: str(name) for robot, name in found.get("own", {}).items()}
         return Manner(str(found.get("also", "")), str(found["backend"]), options, targets, own)
     except (OSError, ValueError, KeyError, AttributeError, TypeError) as error:

@@ -96,7 +96,8 @@ def carry_out(session: Session, loaded: Loaded, wanted: RunOptions) -> Result:
     check_backends(wanted, links, here, session.contributions.vehicles)
     resumed = resumed_steps(program, wanted, here)
     run = resumed[0].run if resumed else wanted.run
-    orders, options = Orders(stop_response(wanted.on_stop)), options_of_robots(wanted, here)
+    orders = Orders(stop_response(wanted.on_stop))
+    options = options_of_robots(wanted, here, session.contributions.vehicles)
     conditions = conditions_for(program, session.contributions, wanted.assume, asks=True)
     with ExitStack() as stack:
         clock = RealClock(wanted.speedup, end_of(resumed, wanted.folder))

@@ -13,7 +13,7 @@ from mmrs_core.cli.completion import backend_names, one_of, robot_names
 from mmrs_core.cli.flying import carry_out
 from mmrs_core.cli.output import say_json
 from mmrs_core.cli.parameters import Assume, Behaviour, Context, Robots, behaviour_file, robot_files
-from mmrs_core.cli.run_options import MAVLINK, ON_STOP, RunOptions
+from mmrs_core.cli.run_options import ON_STOP, RunOptions, default_backend
 from mmrs_core.cli.session import Session
 from mmrs_core.cli.settings import Json, settings_of
 from mmrs_core.cli.simulation import answers, backends_of, options_of
@@ -32,7 +32,7 @@ def run(
         typer.Option(
             "--backend",
             metavar="[ROBOT=]NAME",
-            help="Backend of all robots or one. Default: mavlink. Repeatable.",
+            help="Backend of all robots or one. Default: the default backend of a plug-in. Repeatable.",
             autocompletion=backend_names,
         ),
     ] = None,
@@ -119,7 +119,7 @@ def run(
         ),
     ] = 300.0,
     signing_key: Annotated[
-        Path | None, typer.Option("--signing-key", metavar="FILE", help="MAVLink 2 signing key file.")
+        Path | None, typer.Option("--signing-key", metavar="FILE", help="Signing key file for vehicle links.")
     ] = None,
     inject: Annotated[
         _Texts,
@@ -149,7 +149,8 @@ def run(
     Example: mmrs run mission/behaviour.xmi --connect Drone1=udpin:127.0.0.1:14550 --log flight-1
     """
     session = Session(settings_of(call))
-    usual, own = backends_of(backend, MAVLINK)
+    usual, own = backends_of(backend, "")
+    usual = usual or default_backend(session.contributions.vehicles)
     given = dict(options_of(backend_option))
     if signing_key is not None:
         given["signing-key"] = str(signing_key)

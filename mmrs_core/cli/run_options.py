@@ -11,9 +11,9 @@ import typer
 from mmrs_core.behaviour.program import Program
 from mmrs_core.cli.buses import BusOptions
 from mmrs_core.contributions.vehicles import VehicleFactory
+from mmrs_core.errors import UsageError
 from mmrs_core.simulation.run import options_for
 
-MAVLINK = "mavlink"
 ON_STOP = {"hold": "HOLD", "return": "RETURN", "land": "LAND"}
 
 
@@ -32,7 +32,7 @@ class RunOptions:
     """
 
     folder: Path
-    backend: str = MAVLINK
+    backend: str
     own_backends: Mapping[str, str] = field(default_factory=dict)
     options: Mapping[str, str] = field(default_factory=dict)
     links: tuple[str, ...] = ()
@@ -89,11 +89,29 @@ def check_backends(
             raise typer.BadParameter(fault)
 
 
-def options_of_robots(wanted: RunOptions, robots: tuple[str, ...]) -> dict[str, str]:
-    """Return the options of backends; where these differ, the key to sign with is for MAVLink's only."""
+def default_backend(backends: Mapping[str, VehicleFactory]) -> str:
+    """Return the backend that a plug-in declares as the default one.
+
+    Raises:
+        UsageError: there is none, or there are several.
+    """
+    found = sorted(name for name, each in backends.items() if each.default)
+    if len(found) != 1:
+        why = f"the defaults are {' and '.join(found)}" if found else "no installed plug-in has a default"
+        raise UsageError(f"--backend: {why}; choose one of {', '.join(sorted(backends))}")
+    return found[0]
+
+
+def options_of_robots(
+    wanted: RunOptions, robots: tuple[str, ...], backends: Mapping[str, VehicleFactory]
+) -> dict[str, str]:
+    """Return the options of backends; where these differ, the signing key is for those that sign."""
     options = dict(wanted.options)
     if wanted.own_backends and (key := options.pop("signing-key", None)) is not None:
-        options |= {f"{robot}:signing-key": key for robot in _by(MAVLINK, wanted, robots)}
+        signing = (
+            robot for name, each in backends.items() if each.signs for robot in _by(name, wanted, robots)
+        )
+        options |= {f"{robot}:signing-key": key for robot in signing}
     return options
 
 

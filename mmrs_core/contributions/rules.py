@@ -158,7 +158,7 @@ def robot_kind_of(robot_type: RobotType, kinds: Mapping[Name, RobotKind]) -> Rob
     """Return the robot kind of a type; None where no plug-in provides one.
 
     A capability's metaclass counts only where the type's own most specific match is the general
-    robot or none, so that an underwater capability makes an underwater vehicle of a plain Robot.
+    robot or none, so that a capability of a plug-in makes a plain Robot one of the plug-in's kind.
     """
     by_type = most_specific(robot_type.metaclasses, kinds)
     by_capability = most_specific(robot_type.capability_metaclasses, kinds)

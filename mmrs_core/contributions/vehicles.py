@@ -78,6 +78,8 @@ class VehicleFactory:
         check: yields what is wrong with the options of its robots and with the links of all robots, each by
             robot, as far as the command line alone shows it, such as ``--connect udp: is no address``. Raises
             OSError where a file that they name cannot be read.
+        default: whether ``mmrs run`` uses it where no backend is named; two such are an error.
+        signs: whether ``--signing-key`` is for its links.
         takes_photo: whether an action of a device takes one photo, by what the robot's type states; None
             where the type does not state it for these vehicles.
     """
@@ -87,4 +89,6 @@ class VehicleFactory:
     connect: Callable[[VehicleInput], Vehicle]
     simulated: bool = False
     check: Check = lambda options, links: ()
+    default: bool = False
+    signs: bool = False
     takes_photo: Callable[[Action, RobotType], bool | None] = lambda action, robot_type: None

@@ -39,5 +39,7 @@ MAVLINK = VehicleFactory(
     "ArduPilot and PX4 vehicles over MAVLink 2: serial, UDP or TCP, in real time",
     _connect,
     check=_check,
+    default=True,
+    signs=True,
     takes_photo=_takes_photo,
 )
