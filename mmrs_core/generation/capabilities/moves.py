@@ -93,7 +93,7 @@ def _values_of(metaclass: Metaclass) -> dict[str, list[Value]]:
 
 
 def of_headings(samples: Samples) -> Iterator[Probe]:
-    """Yield a probe for each way in which something is pointed somewhere."""
+    """Yield a probe for each orientation of a robot or device."""
     turning = {each.description: each.properties for each in samples.target.wirings if each.turns}
     for sample in samples.carried:
         base = sample.plain

@@ -1,4 +1,4 @@
-"""Probes of policies: each response to each fault, by each kind of robot that a target carries."""
+"""Probes of policies: each response to each fault, by each robot kind that a target carries."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ MEADOW: Ring = ((-40.0, 0.0), (-20.0, 0.0), (-20.0, 20.0), (-40.0, 20.0))
 
 
 def of_policies(samples: Samples) -> Iterator[Probe]:
-    """Yield a probe for each event, response and kind of robot, and for those of single waits."""
+    """Yield a probe for each event, response and robot kind, and for those of single waits."""
     for sample in samples.carried:
         base = replace(sample.plain, areas=(Area("meadow", AreaUse.EMERGENCY, MEADOW),))
         for event in EVENTS:

@@ -164,7 +164,7 @@ class Samples:
 
 
 def samples_of(target: Target, contributions: Contributions) -> Samples:
-    """Return what a target is tried with: by its kinds of robots, and by those that are installed."""
+    """Return what a target is tried with: by the robot kinds that are installed."""
     known = contributions.robot_kinds
     kinds = sorted((kind for kind in known.values() if _has_sample(kind, known)), key=lambda kind: kind.name)
     made = {kind.name: Sample(kind, contributions) for kind in kinds}
