@@ -165,7 +165,7 @@ def test_a_robot_whose_way_of_turning_nobody_knows_is_unknown():
     nobody = kind(metaclass=("urn:elsewhere:1.0", "Crawler"))
     verdict = past(go("by", (20.0, 0.0, 0.0)), area=square(at=(10.0, 6.0)), robot_kind=nobody)
     assert verdict.status is Status.UNKNOWN
-    assert verdict.message == "a: no plug-in provides a robot kind for type 'rover'"
+    assert verdict.message == "a: no plug-in provides a robot kind for type 'plain'"
 
 
 def test_a_leg_that_is_too_near_however_the_robot_turns_is_violated_beside_that():
@@ -193,7 +193,7 @@ def test_a_missing_robot_type_is_unknown_and_named():
     without = given(robot("a", []), areas=(square(),))
     without.types.clear()
     verdict = finding("clearance", without)
-    assert (verdict.status, verdict.message) == (Status.UNKNOWN, "a: robot type 'rover' is not described")
+    assert (verdict.status, verdict.message) == (Status.UNKNOWN, "a: robot type 'plain' is not described")
 
 
 def test_half_the_diagonal_is_computed_from_the_dimensions_of_the_type():

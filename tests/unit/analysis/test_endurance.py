@@ -212,7 +212,7 @@ def test_the_capability_is_that_of_the_smallest_payload_that_suffices():
 def test_no_capability_for_the_payload_is_unknown():
     loaded = replace(robot("a", [hold("h", 10.0)]), payload=1.0)
     verdict = finding("endurance", given(loaded))
-    assert verdict.message == "a: robot type 'rover' has no movement capability for a payload of 1 kg"
+    assert verdict.message == "a: robot type 'plain' has no movement capability for a payload of 1 kg"
 
 
 def test_a_lifetime_that_is_not_stated_is_unknown_with_batteries_and_unlimited_without():

@@ -41,7 +41,7 @@ def test_altitudes_stay_between_floor_and_ceiling(over, limits, status, margin):
 def test_an_unknown_robot_kind_is_unknown():
     verdict = finding("altitude", given(flight(), robot_kind=kind(FLYER)))
     assert verdict.status is Status.UNKNOWN
-    assert "no plug-in provides a robot kind for type 'rover'" in verdict.message
+    assert "no plug-in provides a robot kind for type 'plain'" in verdict.message
 
 
 def dive(depth, *, surface=0.0, type=None, robot_kind=None, density=None):
@@ -66,7 +66,7 @@ def test_a_dive_without_figures_is_unknown_and_says_which():
     verdict = finding("depth", dive(10.0))
     assert verdict.status is Status.UNKNOWN
     assert verdict.message == (
-        "a: goes 10.00 m under the surface, the maxOperatingPressure of robot type 'rover'"
+        "a: goes 10.00 m under the surface, the maxOperatingPressure of robot type 'plain'"
         " and the environment's waterDensity not given"
     )
 
@@ -130,7 +130,7 @@ def test_devices_and_actions_that_the_type_has_are_safe():
 @pytest.mark.parametrize(
     ("wrong", "words"),
     [
-        ({"device": "lamp"}, "'rover' has no device 'lamp'"),
+        ({"device": "lamp"}, "'plain' has no device 'lamp'"),
         ({"name": "zoom"}, "device 'camera' does not support action 'zoom'"),
         ({"parameters": (("iso", "100"),)}, "action 'shoot' of device 'camera' has no parameter 'iso'"),
     ],
@@ -154,7 +154,7 @@ def test_parameters_that_the_action_accepts_are_safe():
 def test_a_heading_needs_its_device():
     looking = replace(AWAY, heading=Heading(MoveTarget((0.0, 0.0, 0.0)), "lamp"))
     verdict = finding("devices", given(robot("a", [looking]), type=rover(devices=CAMERA)))
-    assert verdict.message == "a: GoTo 'away' points device 'lamp', which 'rover' does not have"
+    assert verdict.message == "a: GoTo 'away' points device 'lamp', which 'plain' does not have"
 
 
 def test_wind_is_compared_with_what_a_flying_robot_holds_against():
@@ -207,13 +207,13 @@ STANDS, WINDY = robot("a", []), {"windSpeed": 9.0}
             "range",
             given(robot("a", [AWAY])),
             Status.UNKNOWN,
-            "the communicationRange of robot type 'rover' is not given",
+            "the communicationRange of robot type 'plain' is not given",
         ),
         (
             "wind",
             given(flight(), robot_kind=flyer(), environment=WINDY),
             Status.UNKNOWN,
-            "the positionHold of robot type 'rover' is not given",
+            "the positionHold of robot type 'plain' is not given",
         ),
         (
             "wind",
@@ -226,7 +226,7 @@ STANDS, WINDY = robot("a", []), {"windSpeed": 9.0}
             "temperature",
             given(STANDS, environment={"temperature": 20.0}),
             Status.UNKNOWN,
-            "the operatingTemperature of robot type 'rover' is not given",
+            "the operatingTemperature of robot type 'plain' is not given",
         ),
         (
             "temperature",

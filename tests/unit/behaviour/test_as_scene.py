@@ -34,4 +34,4 @@ def test_the_reserve_is_the_behaviours_unless_told_otherwise():
 def test_robots_without_a_type_are_listed():
     with pytest.raises(UnsupportedError) as caught:
         scene_of(program(robot("a", []), robot("b", [])), {})
-    assert caught.value.elements == ("robot 'a': type 'rover'", "robot 'b': type 'rover'")
+    assert caught.value.elements == ("robot 'a': type 'plain'", "robot 'b': type 'plain'")

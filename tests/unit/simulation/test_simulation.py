@@ -242,7 +242,7 @@ def test_passing_a_waypoint_saves_the_time_to_brake_and_to_get_going_again(kinds
     def last_time(fluid):
         given = {**kinds, "move_kinds": {**kinds["move_kinds"], name: open_ended}}
         behaviour = program(robot("r", moves, fluid=fluid))
-        return simulate(behaviour, backend=SIMULATION, types={"rover": type}, **given).ending.time
+        return simulate(behaviour, backend=SIMULATION, types={"plain": type}, **given).ending.time
 
     assert last_time([]) == pytest.approx(26.0)
     assert last_time(["g"]) == pytest.approx(23.0)
@@ -331,7 +331,7 @@ def test_unknown_moves_and_actions_are_refused_and_listed_never_skipped(kinds):
 
 
 def test_a_robot_of_a_kind_that_nobody_contributed_is_refused(kinds):
-    with pytest.raises(UnsupportedError, match="type 'rover': no plug-in provides its robot kind"):
+    with pytest.raises(UnsupportedError, match="type 'plain': no plug-in provides its robot kind"):
         SimulatedRobot(given(program(robot("r", [])), kinds, robot_type(metaclass=("urn:x", "Blimp"))))
 
 
@@ -353,7 +353,7 @@ def test_a_robot_type_that_is_missing_is_named(kinds):
 
     with pytest.raises(UnsupportedError) as caught:
         simulate(program(robot("r", [])), backend=SIMULATION, types={}, **kinds)
-    assert caught.value.elements == ("robot 'r': type 'rover'",)
+    assert caught.value.elements == ("robot 'r': type 'plain'",)
 
 
 def test_state_lies_between_the_ends_of_a_leg_and_faces_its_way(kinds):
