@@ -9,8 +9,8 @@ from dataclasses import replace
 import pytest
 from flight_crew import robot_of
 from mavlink_peer import acknowledged, eventually, linked, value
-from pymavlink.dialects.v20 import ardupilotmega as mavlink
 from mmrs_multicopter.testing import go_to, quad, robot_program, target_input
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from mmrs_core.behaviour.program import Move
 from mmrs_core.contributions.rules import MoveKind
