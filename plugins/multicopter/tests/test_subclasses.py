@@ -60,12 +60,11 @@ class Airships:
         )
 
 
-@pytest.fixture
-def project(tmp_path, monkeypatch):
-    """Return the paper's example with airships instead of drones."""
-    plugin = Airships(tmp_path)
-    monkeypatch.setattr(Settings, "plugins", lambda settings: load_plugins(extra={"airships": plugin}))
-    made = Path(shutil.copytree(EXAMPLE, tmp_path / "project"))
+@pytest.fixture(scope="module")
+def project(tmp_path_factory):
+    """Return the paper's example with airships instead of drones, planned."""
+    folder = tmp_path_factory.mktemp("airships")
+    made = Path(shutil.copytree(EXAMPLE, folder / "project"))
     (file,) = (made / "robots").glob("*.xmi")
     text = file.read_text(encoding="utf-8").replace("multicopter:Drone ", "airship:Airship ")
     text = text.replace("</multicopter:Drone>", "</airship:Airship>")
@@ -76,18 +75,20 @@ def project(tmp_path, monkeypatch):
         text,
     )
     file.write_text(text, encoding="utf-8")
-    return made
+    plugin = Airships(folder)
+    with pytest.MonkeyPatch.context() as patched:
+        patched.setattr(Settings, "plugins", lambda settings: load_plugins(extra={"airships": plugin}))
+        assert run(["plan", str(made)]) == 0
+        yield made
 
 
 def test_another_flying_kind_is_planned_verified_and_simulated(project):
-    assert run(["plan", str(project)]) == 0
     planned = (project / "behaviour.xmi").read_text(encoding="utf-8")
     assert planned.count('xsi:type="airship:TakeOff"') == planned.count('xsi:type="airship:Land"') >= 3
     assert run(["simulate", str(project)]) == 0
 
 
 def test_a_multicopters_own_take_off_remains_a_drones(project, capsys):
-    assert run(["plan", str(project)]) == 0
     file = project / "behaviour.xmi"
     text = file.read_text(encoding="utf-8").replace('"airship:TakeOff"', '"multicopter:TakeOff"')
     file.write_text(

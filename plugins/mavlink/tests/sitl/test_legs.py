@@ -44,14 +44,14 @@ def off(place: Vector, a: Vector, b: Vector) -> float:
 
 @given(places, places, speeds)
 @example((30.0, -10.0, 8.0), (40.0, -20.0, 12.0), 6.0)
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=25, deadline=None)
 def test_a_vehicle_keeps_to_a_leg_that_climbs_or_descends(a, b, speed):
     assume(dist(a, b) > 1.0)
     assert max(off(place, a, b) for place in flown([a, b], speed)) < 0.05
 
 
 @given(st.lists(places, min_size=3, max_size=5), speeds)
-@settings(max_examples=50, deadline=None)
+@settings(max_examples=15, deadline=None)
 def test_a_vehicle_cuts_the_corners_of_steep_legs_no_more_than_those_of_level_ones(places, speed):
     legs = list(pairwise(places))
     assume(all(dist(a, b) > LONG for a, b in legs))
