@@ -14,7 +14,7 @@ from mmrs_mavlink.links.ports import open_port
 from mmrs_mavlink.profiles import profile_for
 from mmrs_mavlink.program import Travel
 from mmrs_mavlink.sitl import Settings, SimulatedVehicle
-from mmrs_mavlink.vehicles.travel import set_up
+from mmrs_mavlink.vehicles.owner_settings import set_up
 from mmrs_runtime.clock import Clock
 
 pytestmark = pytest.mark.real_time("controllers")

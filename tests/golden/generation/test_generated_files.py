@@ -15,10 +15,10 @@ from mmrs_core.errors import UnsupportedError
 from mmrs_core.generation.render import render
 from mmrs_core.scene import Frame
 from mmrs_core.testing.programs import feedback, program
-from mmrs_mavlink.plugin.targets import TARGETS
+from mmrs_mavlink.plugin import mmrs_targets
 
 EXPECTED = Path(__file__).parent / "expected"
-BY_NAME = {target.name: target for target in TARGETS}
+BY_NAME = {target.name: target for target in mmrs_targets()}
 
 
 def choosing():

@@ -17,9 +17,9 @@ from mmrs_core.generation.capabilities.judging import capabilities_of, probes
 from mmrs_core.generation.render import render
 from mmrs_core.plugins import load_plugins
 from mmrs_core.testing.programs import installed
-from mmrs_mavlink.plugin.targets import TARGETS
+from mmrs_mavlink.plugin import mmrs_targets
 
-BY_NAME = {target.name: target for target in TARGETS}
+BY_NAME = {target.name: target for target in mmrs_targets()}
 LANGUAGES = (BEHAVIOUR, MULTICOPTER)
 
 TOLD_WITH = {

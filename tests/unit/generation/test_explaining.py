@@ -11,15 +11,15 @@ from mmrs_core.errors import UnreadableError
 from mmrs_core.generation.explaining import explain, places_of
 from mmrs_core.generation.render import render
 from mmrs_core.generation.writing import write
-from mmrs_mavlink.plugin.targets import TARGETS
+from mmrs_mavlink.plugin import mmrs_targets
 
-BY_NAME = {target.name: target for target in TARGETS}
+BY_NAME = {target.name: target for target in mmrs_targets()}
 
 
 @pytest.fixture
 def folder(tmp_path):
     """Return a folder with the files of all targets of the core."""
-    for target in TARGETS:
+    for target in mmrs_targets():
         write(render(target, target_input(two_drones()), allow_lossy=True), tmp_path)
     return tmp_path
 

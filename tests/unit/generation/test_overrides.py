@@ -10,7 +10,7 @@ from mmrs_core.contributions.targets import FileSpec, Target
 from mmrs_core.errors import MmrsError, UnreadableError
 from mmrs_core.generation.overrides import overrides_in
 from mmrs_core.generation.render import render
-from mmrs_mavlink.plugin.targets import TARGETS
+from mmrs_mavlink.plugin import mmrs_targets
 
 
 @pytest.fixture
@@ -135,7 +135,7 @@ def test_the_manifest_says_which_files_were_replaced(target, mine):
     assert manifest["overrides"] == {"copied.txt": sha256(b"mine").hexdigest()}
 
 
-@pytest.mark.parametrize("target", TARGETS, ids=lambda target: target.name)
+@pytest.mark.parametrize("target", mmrs_targets(), ids=lambda target: target.name)
 def test_every_template_of_the_core_can_be_extended(target, tmp_path):
     own = tmp_path / target.name
     own.mkdir()

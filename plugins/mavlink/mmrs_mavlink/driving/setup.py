@@ -4,16 +4,22 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from math import inf
+from typing import TYPE_CHECKING
 
 from mmrs_runtime.controllers.box_entries import start_of
+from mmrs_runtime.faults import FENCE_BREACHED, RefusedError
 
 from ..program import Robot
 from ..services.uploads import Uploads
-from ..steps.equipping import equip
+from ..steps.responses import policy_for
 from ..steps.watch import Watch
+from ..vehicles.vehicle import Vehicle
 from .equipment import Equipment
 from .lost_link import LostLink
 from .way_back import WayBack
+
+if TYPE_CHECKING:
+    from ..services.uploads import Uploads
 
 
 class Setup:
@@ -114,3 +120,24 @@ class Setup:
         if first:
             self._way.know(self._with.passed, self._with.begun)
         self.is_known = True
+
+
+def equip(robot: Robot, vehicle: Vehicle, uploads: Uploads, say: Callable[[str], None]) -> None:
+    """Upload what a vehicle must know, and its response outside its fence.
+
+    Args:
+        robot: whose policies count.
+        vehicle: of the robot.
+        uploads: of its program.
+        say: reports refusals that the program can do without.
+
+    Raises:
+        RefusedError: the vehicle does not accept an upload that it needs, or does not become ready.
+    """
+    vehicle.prepare(uploads)
+    if not uploads.fence:
+        return
+    try:
+        vehicle.answer_breach(policy_for(FENCE_BREACHED, robot).response)
+    except RefusedError as error:
+        say(str(error))

@@ -10,7 +10,6 @@ from mmrs_runtime.faults import BATTERY_LOW, FaultError, RefusedError
 from mmrs_runtime.policies import CONTINUE, still_low
 
 from ..program import GoTo, Land, Place, Recharge, Robot, Start, TakeOff
-from ..steps.rejoining import ALIKE, OFF_ITS_WAY, way_ahead
 from ..steps.responses import policy_for
 from ..vehicles.footing import aside, footing, misplaced, there
 from ..vehicles.vehicle import Vehicle
@@ -208,3 +207,32 @@ def sortie_of(robot: Robot, passed: Sequence[str]) -> tuple[str, ...]:
         elif isinstance(movement, TakeOff):
             begin = index
     return tuple(passed[begin:])
+
+
+OFF_ITS_WAY = 5.0
+"""Metres that a robot may be from the path of its program to continue in the air."""
+
+ALIKE = 0.1
+"""Metres by which one leg must be nearer than another to count as that: of two, the later one is meant."""
+
+
+def way_ahead(robot: Robot, move: str, here: Place, locate: Callable[[GoTo], Place]) -> tuple[Place, ...]:
+    """Return the ends of the legs that a vehicle may be on without another command of its program.
+
+    Args:
+        robot: whose program it is.
+        move: that was in progress.
+        here: where that move began.
+        locate: finds where a movement leads to.
+    """
+    run = next((run.moves for run in robot.runs if move in run.moves), (move,))
+    ahead: list[Place] = []
+    for each in run[run.index(move) :]:
+        begun, movement = ahead[-1] if ahead else here, robot.step(each).movement
+        if isinstance(movement, TakeOff):
+            ahead.append(at_height(begun, movement.height))
+        elif isinstance(movement, Land):
+            ahead.append(at_height(begun, robot.home.height))
+        elif isinstance(movement, GoTo):
+            ahead += ends_of(begun, locate(movement), movement.legs, movement.distance)
+    return tuple(ahead)

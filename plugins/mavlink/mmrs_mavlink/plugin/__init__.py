@@ -20,9 +20,11 @@ if TYPE_CHECKING:
 @hookimpl
 def mmrs_targets() -> Iterable[Target]:
     """Contribute controllers, and plans for ground stations."""
-    from mmrs_mavlink.plugin.targets import TARGETS
+    from mmrs_mavlink.plugin.controllers import MAVLINK_PYTHON
+    from mmrs_mavlink.plugin.plans.qgc import QGC_PLAN
+    from mmrs_mavlink.plugin.plans.wpl import WPL
 
-    return TARGETS
+    return (MAVLINK_PYTHON, QGC_PLAN, WPL)
 
 
 @hookimpl

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
+from importlib.resources import files
+from pathlib import Path
 
 from mmrs_core.behaviour.program import Action, Move, MoveTarget, RobotProgram
 from mmrs_core.contributions.rules import Medium, MoveKind
@@ -15,6 +17,11 @@ from mmrs_mavlink.plugin.vehicles import manoeuvre_of, profile_of, uncarried
 from mmrs_mavlink.plugin.wiring import wiring_of
 from mmrs_mavlink.profiles import ARDUROVER, VehicleProfile
 from mmrs_mavlink.wiring import Wiring, Wirings
+
+
+def templates_of(target: str) -> Path:
+    """Return the folder of a target's templates."""
+    return Path(str(files("mmrs_mavlink"))) / "templates" / target
 
 
 @dataclass(frozen=True)

@@ -22,11 +22,10 @@ from mmrs_core.scene import Name, Point, Policy
 from mmrs_mavlink import program as words
 from mmrs_mavlink.options import FIRST_PORT, PORT_STEP
 from mmrs_mavlink.plugin.capabilities import OF_CONTROLLERS, WIRINGS
-from mmrs_mavlink.plugin.context import VehicleContext, context_of, neighbours_of, vehicleless
+from mmrs_mavlink.plugin.context import VehicleContext, context_of, neighbours_of, templates_of, vehicleless
 from mmrs_mavlink.plugin.escapes import Escape, escapes_of, straight_lines_are_clear
 from mmrs_mavlink.plugin.fencing import Fence, fence_faults, fences_of
 from mmrs_mavlink.plugin.headings import NO_TURNING, gimbal_of, on_gimbal, turns_to
-from mmrs_mavlink.plugin.places import templates_of
 from mmrs_mavlink.plugin.runs import MoveRun, runs_of
 from mmrs_mavlink.profiles import ARDUPILOT, PROFILES
 from mmrs_mavlink.wiring import Sampled, Wired

@@ -25,16 +25,13 @@ from ..services.commands import command, name_of
 from ..services.telling import tell
 from ..services.uploads import Uploads
 from . import preparation
-from .enclosure import enclose
 from .evidence import LinkEvidence
-from .exemptions import end_exemption
-from .listening import check_listening
 from .mission import Mission
 from .mode_control import MODE_SECONDS, ModeControl
 from .own_home import keep_home
+from .owner_settings import check_listening, enclose, end_exemption, set_up
 from .steering import PATIENCE_FACTOR, PATIENCE_SECONDS, STILL, Steering
 from .telemetry import Telemetry
-from .travel import set_up
 
 FORCE_DISARM = 21_196
 IMAGE_SECONDS = 10.0

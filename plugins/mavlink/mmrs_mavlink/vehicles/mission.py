@@ -1,4 +1,11 @@
-"""The uploaded mission: flown run by run, as long as it is not replaced."""
+"""The uploaded mission: flown run by run, as long as it is not replaced.
+
+A run begins where the program wants it, with any autopilot. A PX4 accepts what it can store, and looks at
+it afterwards: at its fence, at the distance to the first place (MIS_DIST_1WP), at what it wants missions
+to begin and end with (MIS_TKO_LAND_REQ). What is not feasible counts as no mission at all
+(``mavlink_mission.cpp``, ``update_mission_state``; since 1.15), and it never goes into AUTO with it, which
+would otherwise be noticed in the air.
+"""
 
 from __future__ import annotations
 
@@ -14,16 +21,15 @@ from ..links.link import Link
 from ..profiles import modes
 from ..profiles.autopilot import Autopilot
 from ..program import Geographic, Place
+from ..services import parameters
 from ..services.commands import command
 from ..services.exchanges import mark_of
-from ..services.items import LOITER, WAYPOINT, Item
+from ..services.items import CHANGE_SPEED, LOITER, WAYPOINT, Item
 from ..services.uploads import Uploads
 from . import preparation
 from .corridor import width_for
-from .feasibility import check_feasible
 from .following import Following
 from .mode_control import MODE_SECONDS, ModeControl
-from .runs import first_flown, keep_place, speed_for
 from .steering import PATIENCE_SECONDS
 from .telemetry import Telemetry
 
@@ -156,3 +162,92 @@ def items_for(autopilot: Autopilot, items: Sequence[Item]) -> Sequence[Item]:
 
 def _unheaded(item: Item) -> Item:
     return replace(item, params=(*item.params[:3], nan)) if item.command in (WAYPOINT, LOITER) else item
+
+
+LOOK_SECONDS = 1.0
+"""After which it has looked at what came last."""
+
+FEASIBLE_SECONDS = 5.0
+
+
+def check_feasible(link: Link, telemetry: Telemetry, begun: float) -> None:
+    """Make sure that a PX4 would fly the mission that it has; one that does not say is believed.
+
+    Args:
+        link: to the vehicle.
+        telemetry: of the vehicle.
+        begun: second of the run at which the upload was begun.
+
+    Raises:
+        RefusedError: it would not.
+    """
+    looked = link.clock.now() + LOOK_SECONDS
+    link.wait(lambda: link.clock.now() >= looked, LOOK_SECONDS)
+
+    def has_one() -> bool:
+        current = link.latest("MISSION_CURRENT")
+        return current is None or current.mission_state != mavlink.MISSION_STATE_NO_MISSION
+
+    if not link.wait(has_one, link.clock.patience(FEASIBLE_SECONDS), while_received=True):
+        warnings = (
+            text.text
+            for text in telemetry.texts.since(begun)
+            if text.severity <= mavlink.MAV_SEVERITY_WARNING
+        )
+        said = "".join(f"; it says '{text}'" for text in dict.fromkeys(warnings))
+        raise RefusedError(f"mission: the vehicle has accepted it, and would not fly it{said}")
+
+
+LAST_TO_FLY = int(mavlink.MAV_CMD_NAV_LAST)
+"""Items with higher commands are carried out on the way; the vehicle goes nowhere for them."""
+
+AT_ONCE = 1
+"""The value by which a vehicle begins a run elsewhere, or without a command."""
+
+USUAL_SPEED = -1.0
+"""With which DO_CHANGE_SPEED makes a vehicle take the speed of its parameters."""
+
+
+def first_flown(mission: Sequence[Item], seq: int) -> int:
+    """Return the number of the first item from `seq` on that the vehicle flies to."""
+    return next(index for index in range(seq, len(mission)) if mission[index].command <= LAST_TO_FLY)
+
+
+def speed_for(link: Link, mission: Sequence[Item], seq: int) -> float | None:
+    """Return the speed to command to a vehicle that begins AUTO at an item; None: none is needed.
+
+    Where the speed of an earlier run is restored, less than 0 makes the vehicle take its default.
+    """
+    said = speed_before(mission, seq)
+    if said is not None or mission[seq].command == CHANGE_SPEED:
+        return said
+    if not link.profile.autopilot.missions.keeps_speed:
+        return None
+    return USUAL_SPEED if any(item.command == CHANGE_SPEED for item in mission[:seq]) else None
+
+
+def speed_before(mission: Sequence[Item], seq: int) -> float | None:
+    """Return the speed that its run has said before an item, metres per second; None: none yet."""
+    for item in reversed(mission[:seq]):
+        if item.command == LOITER:
+            return None
+        if item.command == CHANGE_SPEED:
+            return item.params[1]
+    return None
+
+
+def keep_place(link: Link) -> str:
+    """Make the vehicle begin AUTO at the commanded item.
+
+    Returns:
+        What was changed, in words; empty where nothing was.
+
+    Raises:
+        RefusedError: it would begin runs elsewhere, or without a command.
+    """
+    name, trouble = link.profile.autopilot.missions.starts_itself
+    if not name or round(parameters.read(link, [name]).get(name, 0)) != AT_ONCE:
+        return ""
+    if not parameters.write(link, name, 0.0):
+        raise RefusedError(f"{name} = 1: {trouble}, and does not confirm 0")
+    return f"{name} = 0, which was 1: each run begins with its own first place"

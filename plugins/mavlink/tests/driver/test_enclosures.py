@@ -7,7 +7,7 @@ from mavlink_peer import ARDUPILOT, PX4, linked, value
 
 from mmrs_mavlink import Geographic
 from mmrs_mavlink.services.items import Item
-from mmrs_mavlink.vehicles.enclosure import enclose
+from mmrs_mavlink.vehicles.owner_settings import enclose
 from mmrs_runtime.faults import RefusedError
 
 HOME = Geographic(42.37, 13.35, 0.0)

@@ -7,8 +7,7 @@ from math import cos, dist, inf, radians, sqrt
 import pytest
 
 from mmrs_mavlink.program import Local, Robot
-from mmrs_mavlink.steps.energy import ACCELERATION, TURNING_SECONDS, Reserve, seconds_back
-from mmrs_mavlink.steps.winds import MeanWind
+from mmrs_mavlink.steps.energy import ACCELERATION, TURNING_SECONDS, MeanWind, Reserve, seconds_back
 from mmrs_runtime.controllers.return_paths import way_back
 from mmrs_runtime.controllers.state import State
 

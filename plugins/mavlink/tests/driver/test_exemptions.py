@@ -7,7 +7,7 @@ from flight_crew import manned
 from mavlink_peer import linked, value
 
 from mmrs_mavlink.profiles import profile_for
-from mmrs_mavlink.vehicles.exemptions import end_exemption
+from mmrs_mavlink.vehicles.owner_settings import end_exemption
 from mmrs_runtime.faults import RefusedError
 
 

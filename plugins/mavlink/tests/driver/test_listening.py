@@ -7,7 +7,7 @@ from mavlink_peer import PX4, linked, value
 
 from mmrs_mavlink.driving.lost_link import LostLink
 from mmrs_mavlink.program import Policy
-from mmrs_mavlink.vehicles.listening import check_listening
+from mmrs_mavlink.vehicles.owner_settings import check_listening
 from mmrs_runtime.faults import RefusedError
 
 OTHER = "zzz"

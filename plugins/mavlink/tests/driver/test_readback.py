@@ -9,7 +9,7 @@ import pytest
 
 from mmrs_mavlink.profiles import ARDUPILOT, GENERIC, PX4, Autopilot
 from mmrs_mavlink.services.items import FENCE, MISSION, NO_FRAME, RALLY, Item
-from mmrs_mavlink.services.readback import alike
+from mmrs_mavlink.services.missions import alike
 
 POINT = Item(16, (2.0, 1.5, 0.0, 90.0), 423_700_000, 133_500_000, 20.5)
 SPEED = Item(178, (1.0, 5.0, -1.0, 0.0), frame=NO_FRAME)

@@ -12,9 +12,7 @@ from mmrs_mavlink.program import Geographic, GoTo, Land, Run, Start, Step, Stop,
 from mmrs_mavlink.services import parameters
 from mmrs_mavlink.services.missions import upload
 from mmrs_mavlink.services.uploads import mission_of, uploads_of
-from mmrs_mavlink.vehicles.feasibility import check_feasible
-from mmrs_mavlink.vehicles.mission import items_for
-from mmrs_mavlink.vehicles.runs import first_flown, keep_place, speed_before
+from mmrs_mavlink.vehicles.mission import check_feasible, first_flown, items_for, keep_place, speed_before
 from mmrs_runtime.controllers.geodesy import distance
 from mmrs_runtime.faults import RefusedError
 

@@ -16,10 +16,9 @@ from mmrs_mavlink.plugin.manual.autopilot import DEPTH_HOLD, SURFACE, StickAutop
 from mmrs_mavlink.plugin.manual.equipment import carry_out
 from mmrs_mavlink.plugin.manual.goals import goal_of
 from mmrs_mavlink.plugin.manual.keeping import keeper_of
-from mmrs_mavlink.plugin.manual.route import Route
+from mmrs_mavlink.plugin.manual.route import Route, Ways
 from mmrs_mavlink.plugin.manual.steering import StickSteering
 from mmrs_mavlink.plugin.manual.troubles import LINK_PATIENCE, Troubles
-from mmrs_mavlink.plugin.manual.ways import Ways
 from mmrs_mavlink.profiles import ARDUSUB
 from mmrs_runtime import faults
 from mmrs_runtime.controllers.box_entries import PROCESS

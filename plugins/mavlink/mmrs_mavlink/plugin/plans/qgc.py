@@ -8,8 +8,7 @@ from math import isnan
 from mmrs_core.behaviour.travel import capability_of
 from mmrs_core.contributions.targets import FileSpec, Target, TargetInput
 from mmrs_mavlink.plugin.capabilities import OF_MISSIONS, WIRINGS
-from mmrs_mavlink.plugin.context import VehicleContext
-from mmrs_mavlink.plugin.places import templates_of
+from mmrs_mavlink.plugin.context import VehicleContext, templates_of
 from mmrs_mavlink.plugin.plans.items import Row
 from mmrs_mavlink.plugin.plans.refusals import refusals
 from mmrs_mavlink.plugin.plans.surroundings import PlannedMission, missions_of

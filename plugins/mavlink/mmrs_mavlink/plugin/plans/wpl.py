@@ -13,7 +13,7 @@ from math import isinf
 
 from mmrs_core.contributions.targets import FileSpec, Target, TargetInput, TracedStep
 from mmrs_mavlink.plugin.capabilities import OF_LISTS, WIRINGS
-from mmrs_mavlink.plugin.places import templates_of
+from mmrs_mavlink.plugin.context import templates_of
 from mmrs_mavlink.plugin.plans.items import (
     ABSOLUTE,
     FENCE_EXCLUSION,
