@@ -16,7 +16,7 @@ from mmrs_core.errors import PluginError
 from mmrs_core.geometry.clearance import grow, shrink
 from mmrs_core.geometry.polygons import parts, rings
 from mmrs_core.pictures.palette import SYMBOL
-from mmrs_core.pictures.preview.picture import Details, ElementPicture, Gap, TaskPicture, Zone
+from mmrs_core.pictures.preview.picture import Details, ElementPicture, MapGap, TaskPicture, Zone
 from mmrs_core.scene import (
     Area,
     AreaUse,
@@ -32,7 +32,7 @@ from mmrs_core.scene import (
     Value,
 )
 
-NO_CONTEXT = Gap("context", "there is none, so areas and obstacles are unknown")
+NO_CONTEXT = MapGap("context", "there is none, so areas and obstacles are unknown")
 _RING = ("urn:mmrs:mission:1.0", "Ring")
 
 
@@ -74,12 +74,12 @@ def _zone(area: Area, clearance: float, unknown: tuple[str, ...]) -> Zone:
     )
 
 
-def gap_of_clearances(zones: Iterable[Zone]) -> tuple[Gap, ...]:
+def gap_of_clearances(zones: Iterable[Zone]) -> tuple[MapGap, ...]:
     """Return whose clearance is unknown, if areas are drawn without it."""
     listed = tuple(zones)
     robots = dict.fromkeys(chain.from_iterable(zone.unknown for zone in listed))
     grown = "only that of other robots is drawn" if any(zone.kept for zone in listed) else "none is drawn"
-    return (Gap(f"clearance of {', '.join(robots)}", f"unknown; {grown}", drawn=True),) if robots else ()
+    return (MapGap(f"clearance of {', '.join(robots)}", f"unknown; {grown}", drawn=True),) if robots else ()
 
 
 def task_pictures(

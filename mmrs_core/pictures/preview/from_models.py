@@ -36,7 +36,7 @@ from mmrs_core.pictures.preview.gaps import Gaps, is_coordinate, paths_to, sourc
 from mmrs_core.pictures.preview.map import USES
 from mmrs_core.pictures.preview.picture import (
     ElementPicture,
-    Gap,
+    MapGap,
     Picture,
     Problem,
     RobotPicture,
@@ -88,7 +88,7 @@ class _Drawing:
         ground = ground_of(models.mission, models.context)
         self._gaps = Gaps(models, ground, (each for each in problems if isinstance(each, Diagnostic)))
         self._ground = replace(ground, positions=_Positions(ground.positions))
-        self._found: list[Gap] = []
+        self._found: list[MapGap] = []
 
     def picture(self) -> Picture:
         """Return the picture, without its problems."""
@@ -199,7 +199,7 @@ class _Drawing:
         for element, name in found["tasks"].items():
             if drawn.get(name) and not self._gaps.short(element):
                 self._found.append(
-                    Gap(f"task {name!r}", drawn[name], source_of(place_of(element)), drawn=True)
+                    MapGap(f"task {name!r}", drawn[name], source_of(place_of(element)), drawn=True)
                 )
             elif self._gaps.short(element) or not is_kind(element, MISSION, "ControlTask"):
                 self._note("task", name, element, drawn=name in drawn)

@@ -12,7 +12,7 @@ from mmrs_core.grounding.coordinates import Ground
 from mmrs_core.grounding.frame import NOWHERE, is_geographic, is_relative
 from mmrs_core.languages.element import Element, Unknown, descendants, place_of
 from mmrs_core.languages.modelset import ModelSet
-from mmrs_core.pictures.preview.picture import Gap
+from mmrs_core.pictures.preview.picture import MapGap
 
 _UNREADABLE = ("XMI", "ECO", "FIL", "PRJ", "MIG", "GND")
 """The beginnings of the codes of problems that leave a model without something that its file holds."""
@@ -61,7 +61,7 @@ class Gaps:
         problems = self.problems_of(element)
         return self._lost(element) or (problems[0].message if problems else "")
 
-    def gap(self, kind: str, name: str, element: Element, *, drawn: bool) -> Gap:
+    def gap(self, kind: str, name: str, element: Element, *, drawn: bool) -> MapGap:
         """Return why an element is not drawn, or not whole.
 
         Args:
@@ -78,14 +78,14 @@ class Gaps:
         shown = [*reasons[:_MOST_REASONS], *([f"and {more} more"] if more > 0 else [])]
         called = (isinstance(element, Unknown) and _NAME.match(element._mmrs_xml)) or None
         what = f"{kind} {(unescape(called[2]) if called else name)!r}"
-        return Gap(what, "; ".join(shown) or "it has no position", source_of(place), drawn)
+        return MapGap(what, "; ".join(shown) or "it has no position", source_of(place), drawn)
 
-    def others(self) -> Iterator[Gap]:
+    def others(self) -> Iterator[MapGap]:
         """Yield every problem that is in no gap so far: what it is about is in no element that is drawn."""
         for problem in self._problems.values():
             if problem not in self._explained:
                 file, path = problem.place.file.rpartition("/")[2], problem.place.path.strip("/")
-                yield Gap(f"{file}, {path}" if path else file, problem.message, source_of(problem.place))
+                yield MapGap(f"{file}, {path}" if path else file, problem.message, source_of(problem.place))
 
     def _lost(self, element: Element) -> str:
         """Return how many of an element's coordinates have no position; empty: all have one."""

@@ -257,7 +257,7 @@ class Problem:
 
 
 @dataclass(frozen=True, slots=True)
-class Gap:
+class MapGap:
     """Something that the map does not show, or not whole.
 
     Attributes:
@@ -318,7 +318,7 @@ class Picture:
     flown: bool = False
     problems: tuple[Problem, ...] = ()
     more_problems: int = 0
-    gaps: tuple[Gap, ...] = ()
+    gaps: tuple[MapGap, ...] = ()
     checks: Details = ()
 
     @property
