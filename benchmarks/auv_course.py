@@ -23,7 +23,7 @@ from mmrs_core import pipeline
 from mmrs_core.behaviour.log import read_logs
 from mmrs_core.behaviour.program import Program
 from mmrs_core.behaviour.replay import replay
-from mmrs_core.cli.demonstration import manner_of
+from mmrs_core.cli.examples import demo_settings_of
 from mmrs_core.cli.simulation import write_logs
 from mmrs_core.contributions.execution import Sample
 from mmrs_core.plugins import load_plugins
@@ -61,7 +61,7 @@ def dive(seed: int, objects: str) -> bool:
     """Dive once; print and return whether all was well."""
     folder = shipped("examples") / "pool-course"
     contributions = load_plugins().contributions
-    manner, start = manner_of(folder), random_start(seed)
+    manner, start = demo_settings_of(folder), random_start(seed)
     models, _ = pipeline.valid_models(folder, contributions)
     scene = pipeline.expand(pipeline.ground(models), contributions)
     behaviour, _ = pipeline.transform(scene, pipeline.plan(scene), contributions)

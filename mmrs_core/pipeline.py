@@ -10,8 +10,18 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
+from mmrs_core.contributions.checks import CheckInput
+from mmrs_core.contributions.targets import TargetInput
 from mmrs_core.diagnostics import Diagnostic, has_errors, in_order
 from mmrs_core.errors import InternalError, InvalidModelError, PluginError, UnreadableError, UsageError
+from mmrs_core.generation.overrides import overrides_in
+from mmrs_core.languages.codes import is_refusal
+from mmrs_core.languages.conformance import check_conformance
+from mmrs_core.languages.modelset import read_project
+from mmrs_core.languages.naming import nearest
+from mmrs_core.languages.writing import write_model
+from mmrs_runtime.conditions import question_of
+from mmrs_runtime.engine.decisions import assumed, standard_conditions
 
 if TYPE_CHECKING:
     from mmrs_core.behaviour.program import Program
@@ -64,8 +74,6 @@ def read_models(
     Raises:
         UnreadableError: if a file is missing or no model at all.
     """
-    from mmrs_core.languages.modelset import read_project
-
     return read_project(
         mission, context=context, robots=robots, registry=contributions.languages, unsaved=unsaved
     )
@@ -74,7 +82,6 @@ def read_models(
 def check_models(models: ModelSet, contributions: Contributions) -> tuple[Diagnostic, ...]:
     """Return every fault of the models: conformance to the metamodels, then constraints."""
     from mmrs_core.analysis.constraints import check_constraints
-    from mmrs_core.languages.conformance import check_conformance
 
     registry = contributions.languages
     faults = [fault for model in models.models for fault in check_conformance(model, registry)]
@@ -95,8 +102,6 @@ def valid_models(
         UnreadableError: with all diagnostics, if a file cannot be read at all.
         InvalidModelError: with all diagnostics, if any is an error.
     """
-    from mmrs_core.languages.codes import is_refusal
-
     models, faults = read_models(mission, contributions, context=context, robots=robots)
     refused = next(filter(is_refusal, faults), None)
     if refused is not None:
@@ -158,7 +163,6 @@ def program_of(behaviour: bl.Behaviour, contributions: Contributions) -> Program
 def verify(program: Program, place: BehaviourContext, contributions: Contributions) -> tuple[Verdict, ...]:
     """Return what is known of every property of a behaviour."""
     from mmrs_core.analysis.verdicts import verify as verified
-    from mmrs_core.contributions.checks import CheckInput
 
     given = CheckInput(
         program=program,
@@ -204,8 +208,6 @@ def render(
         MmrsError: if that folder holds something unknown or broken.
         PluginError: if the target is a plug-in's, and its templates are broken.
     """
-    from mmrs_core.contributions.targets import TargetInput
-    from mmrs_core.generation.overrides import overrides_in
     from mmrs_core.generation.render import render as rendered
 
     chosen = _named("target", target, contributions.targets)
@@ -259,8 +261,6 @@ def save(
     Args:
         schema_location: for Eclipse, where the .ecore of each nsURI lies, relative to the file.
     """
-    from mmrs_core.languages.writing import write_model
-
     write_model((behaviour,), path, contributions.languages, schema_location=schema_location)
 
 
@@ -351,8 +351,6 @@ def conditions_for(
         UsageError: if no Choice asks for what is assumed.
     """
     from mmrs_core.simulation.run import asked_by, refuse_unasked
-    from mmrs_runtime.conditions import question_of
-    from mmrs_runtime.engine.decisions import assumed, standard_conditions
 
     refuse_unasked(program, assume)
     asked = (each for each in asked_by(program) if asks or not question_of(each))
@@ -387,8 +385,6 @@ def backend_for(
 
 def _named(sort: str, name: str, contributed: Mapping[str, Contributed]) -> Contributed:
     """Return what was contributed under a name; the nearest one is suggested where there is none."""
-    from mmrs_core.languages.naming import nearest
-
     if name not in contributed:
         known, guess = ", ".join(sorted(contributed)), nearest(name, contributed)
         raise UsageError(f"{sort} '{name}': unknown; there are {known}{guess and '; ' + guess}")

@@ -24,7 +24,6 @@ from mmrs_core.cli.parameters import Behaviour, behaviour_file
 from mmrs_core.cli.session import Session
 from mmrs_core.cli.settings import Json, settings_of
 from mmrs_core.errors import LinkLostError, UnreadableError, UnsupportedError
-from mmrs_runtime.bus.carriers.over_zenoh import ZenohCarrier
 from mmrs_runtime.bus.gateway.server import Gateway
 from mmrs_runtime.bus.messages import digest
 from mmrs_runtime.bus.program_bus import node_of
@@ -33,9 +32,7 @@ from mmrs_runtime.screen import unfailing
 if TYPE_CHECKING:
     from types import FrameType
 
-    from mmrs_core.behaviour.program import Program
     from mmrs_runtime.bus import Node, Recorded
-    from mmrs_runtime.bus.carriers.sessions import Endpoints
 
 app = typer.Typer(
     rich_markup_mode=None,
@@ -187,14 +184,23 @@ def gateway(
     Example: mmrs bus gateway survey/behaviour.xmi --robot Auv1 --connect tcp/10.0.0.2:7447
     """
     with _needing("eclipse-zenoh"):
+        from mmrs_runtime.bus.carriers.over_zenoh import ZenohCarrier
         from mmrs_runtime.bus.carriers.sessions import Endpoints
     program = load_program(Session(settings_of(call)), behaviour_file(behaviour))
     if robot not in {each.id for each in program.robots}:
         raise typer.BadParameter(f"--robot {robot}: not in the behaviour")
     _refuse_endpoints(listen, connect)
     endpoints = Endpoints(tuple(listen or ()), tuple(connect or ()), config)
+    names = [each.id for each in program.robots]
+
+    def enter(recorded: Recorded | None) -> Node:
+        carrier = ZenohCarrier(program.name, run, names, endpoints, plan=program.fingerprint)
+        given = None if recorded is None else {robot: recorded}
+        return node_of(program.shared, [robot], run, log, carrier, given)
+
     try:
-        found = _gateway(program, robot, endpoints, run, log, port)
+        log.mkdir(parents=True, exist_ok=True)
+        found = Gateway(robot, run, enter, log, port)
     except OSError as error:
         raise LinkLostError(f"gateway: {error.strerror or error}") from error
     with unfailing():
@@ -331,20 +337,6 @@ def _refuse_doubles(holders: tuple[Holder, ...]) -> None:
 def _refuse_endpoints(listen: list[str] | None, connect: list[str] | None) -> None:
     refuse_endpoints("--listen", listen or ())
     refuse_endpoints("--connect", connect or ())
-
-
-def _gateway(
-    program: Program, robot: str, endpoints: Endpoints, run: str, folder: Path, port: int
-) -> Gateway:
-    names = [each.id for each in program.robots]
-
-    def enter(recorded: Recorded | None) -> Node:
-        carrier = ZenohCarrier(program.name, run, names, endpoints, plan=program.fingerprint)
-        given = None if recorded is None else {robot: recorded}
-        return node_of(program.shared, [robot], run, folder, carrier, given)
-
-    folder.mkdir(parents=True, exist_ok=True)
-    return Gateway(robot, run, enter, folder, port)
 
 
 def _until_interrupted(found: Gateway) -> None:

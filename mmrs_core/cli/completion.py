@@ -13,6 +13,9 @@ from xml.etree import ElementTree
 
 import typer
 
+from mmrs_core.cli.settings import settings_of
+from mmrs_core.errors import MmrsError
+
 if TYPE_CHECKING:
     from mmrs_core.generation.manifest import Entry
 
@@ -37,7 +40,7 @@ def words_to_complete() -> list[str]:
 
 def example_names(context: typer.Context) -> list[str]:
     """Return the names of the examples."""
-    from mmrs_core.cli.demo import also_called, examples
+    from mmrs_core.cli.examples import also_called, examples
 
     found = examples()
     return [*found, *filter(None, map(also_called, found.values()))]
@@ -45,15 +48,11 @@ def example_names(context: typer.Context) -> list[str]:
 
 def target_names(context: typer.Context) -> list[str]:
     """Return the names of the targets."""
-    from mmrs_core.cli.settings import settings_of
-
     return sorted(settings_of(context).plugins().contributions.targets)
 
 
 def backend_names(context: typer.Context) -> list[str]:
     """Return the names of the backends; for ``mmrs simulate``, of those in simulated time."""
-    from mmrs_core.cli.settings import settings_of
-
     found = settings_of(context).plugins().contributions.vehicles
     simulates = context.info_name == "simulate"
     return sorted(name for name, each in found.items() if each.simulated or not simulates)
@@ -97,7 +96,6 @@ def generated_tasks(context: typer.Context) -> list[str]:
 
 
 def _entries(context: typer.Context) -> Iterator[Entry]:
-    from mmrs_core.errors import MmrsError
     from mmrs_core.generation.explaining import places_of
 
     with suppress(MmrsError, OSError):

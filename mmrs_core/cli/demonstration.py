@@ -3,71 +3,29 @@
 from __future__ import annotations
 
 import shlex
-import tomllib
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 
 from mmrs_core.behaviour.log import read_logs
 from mmrs_core.behaviour.replay import ReplayResult, replay
+from mmrs_core.cli.examples import DemoSettings, copy_example, require_copies
 from mmrs_core.cli.output import counted
 from mmrs_core.cli.plan import require_sound, require_writable
 from mmrs_core.cli.plan_words import plan_lines, plan_summary
 from mmrs_core.cli.preview import drawn_on_failure, picture_of, write_pictures
-from mmrs_core.cli.protection import ProtectedError, refuse_inputs
-from mmrs_core.cli.replacing import replace_files
 from mmrs_core.cli.session import Stages
 from mmrs_core.cli.simulation import Chosen, fly, run_lines, succeeded, write_logs
 from mmrs_core.cli.verdict_words import verdict_table
 from mmrs_core.contributions.targets import GeneratedFile
-from mmrs_core.errors import UnreadableError, UnsupportedError
+from mmrs_core.errors import UnsupportedError
 from mmrs_core.generation.writing import write
 from mmrs_core.pipeline import render, save
 from mmrs_core.resources import new_folders
 from mmrs_core.simulation.run import SimulatedRun
 
 _MOST_REASONS = 3
-MANNER = "demo.toml"
 LOGS = "logs"
-
-
-@dataclass(frozen=True, slots=True)
-class Manner:
-    """How an example is shown, as the file demo.toml next to its mission states.
-
-    Attributes:
-        also: a shorter name; may be empty.
-        backend: of the robots, in simulated time. own: by robot, the backends that differ.
-        options: of the backends; ``ROBOT:KEY`` is for that of one robot.
-        targets: what is generated.
-    """
-
-    also: str = ""
-    backend: str = "simulation"
-    options: Mapping[str, str] = field(default_factory=dict)
-    targets: tuple[str, ...] = ()
-    own: Mapping[str, str] = field(default_factory=dict)
-
-
-def manner_of(folder: Path) -> Manner:
-    """Return how an example is shown, by default with a simulation. ``{folder}`` is its own folder.
-
-    Raises:
-        UnreadableError: if its file cannot be read.
-    """
-    file = folder / MANNER
-    if not file.is_file():
-        return Manner()
-    try:
-        found = tomllib.loads(file.read_text(encoding="utf-8"))
-        options = {
-            key: str(value).replace("{folder}", str(folder)) for key, value in found["options"].items()
-        }
-        targets = tuple(map(str, found.get("targets", ())))
-        own = {robot: str(name) for robot, name in found.get("own", {}).items()}
-        return Manner(str(found.get("also", "")), str(found["backend"]), options, targets, own)
-    except (OSError, ValueError, KeyError, AttributeError, TypeError) as error:
-        raise UnreadableError(f"{file}: cannot be used: {error}") from error
 
 
 @dataclass(frozen=True, slots=True)
@@ -133,8 +91,8 @@ def demonstrate(
     stages: Stages,
     example: Path,
     folder: Path,
-    manner: Manner = Manner(),
-    others: Iterable[Path] = (),
+    settings: DemoSettings,
+    others: Iterable[Path],
 ) -> Demonstration:
     """Take an example through all stages, and write it and their results to a folder.
 
@@ -142,7 +100,7 @@ def demonstrate(
         stages: of its mission.
         example: its folder.
         folder: of what is made; what is there of other examples is replaced.
-        manner: how it is shown.
+        settings: how it is settings.
         others: the folders of other examples.
 
     Raises:
@@ -165,7 +123,7 @@ def demonstrate(
         ("moves of each robot", behaviour, 1),
     ]
     left_out: dict[str, tuple[str, ...]] = {}
-    for target in manner.targets:
+    for target in settings.targets:
         rendered, left_out[target] = _rendered(stages, target)
         if not rendered:
             continue
@@ -176,13 +134,13 @@ def demonstrate(
             else ""
         )
         files.append((f"code for {target}{lossy}", folder / "controllers" / target, len(rendered)))
-    run = fly(session, program, place, {}, Chosen(manner.backend, manner.options, manner.own))
+    run = fly(session, program, place, {}, Chosen(settings.backend, settings.options, settings.own))
     logs = write_logs(run, program, folder / LOGS, place.types, session.contributions.robot_kinds)
     files.append(("steps of each robot in the simulation", folder / LOGS, len(logs)))
     pictures = write_pictures(picture_of(stages), folder)
     files += [("map, timeline and altitude profile", pictures[0], 1), ("map", pictures[1], 1)]
     replayed = replay(program, read_logs([folder / LOGS]))
-    backends = " and ".join(dict.fromkeys((manner.backend, *manner.own.values())))
+    backends = " and ".join(dict.fromkeys((settings.backend, *settings.own.values())))
     return Demonstration(stages, run, replayed, folder, tuple(files), left_out, backends)
 
 
@@ -205,47 +163,3 @@ def _rendered(stages: Stages, target: str) -> tuple[tuple[GeneratedFile, ...], t
         return rendered(True), losses
     except UnsupportedError:
         return (), losses
-
-
-NOT_COPIED = frozenset({"demo.toml"})
-ON_TOP = ("mission.xmi", "context.xmi", "surroundings.json")
-ROBOTS = "robots"
-
-
-def require_copies(folder: Path, example: Path, others: Iterable[Path]) -> None:
-    """Require that a copy of an example replaces only copies of examples.
-
-    Raises:
-        ProtectedError: if it is something else, or the example itself.
-    """
-    refuse_inputs((folder / name for name in names_in(example)), _files_in(example))
-    known = {file.read_bytes() for each in (example, *others) for file in _files_in(each)}
-    for file in _replaced_in(folder):
-        if file.read_bytes() not in known:
-            raise ProtectedError(
-                f"{file}: is not a copy of an example, and is not replaced; choose another folder"
-            )
-
-
-def copy_example(example: Path, folder: Path) -> int:
-    """Put a copy of an example in a folder, in place of that of another; return how many files it has."""
-    names = names_in(example)
-    for file in _replaced_in(folder):
-        if file.relative_to(folder) not in names:
-            file.unlink()
-    replace_files({folder / name: (example / name).read_bytes() for name in names})
-    return len(names)
-
-
-def names_in(example: Path) -> tuple[Path, ...]:
-    """Return the files of an example that are copied, from its folder on."""
-    return tuple(file.relative_to(example) for file in _files_in(example) if file.name not in NOT_COPIED)
-
-
-def _files_in(example: Path) -> Iterator[Path]:
-    return (file for file in sorted(example.rglob("*")) if file.is_file())
-
-
-def _replaced_in(folder: Path) -> list[Path]:
-    found = (*(folder / name for name in ON_TOP), *sorted((folder / ROBOTS).glob("*")))
-    return [file for file in found if file.is_file()]

@@ -14,6 +14,7 @@ from mmrs_core.cli.output import say, say_json, table, tell
 from mmrs_core.cli.settings import Json
 from mmrs_core.errors import MmrsError
 from mmrs_core.generation.explaining import Explanation, Found, places_of
+from mmrs_core.generation.explaining import explain as explained
 
 if TYPE_CHECKING:
     from mmrs_core.generation.manifest import Entry
@@ -67,9 +68,7 @@ def explain(
 
 
 def _line(file: Path, line: int, json: bool) -> int:
-    from mmrs_core.generation.explaining import explain
-
-    found = explain(file, line)
+    found = explained(file, line)
     if json:
         say_json(_explanation_json(found))
         return 0

@@ -11,6 +11,7 @@ import typer
 
 from mmrs_core.cli.output import one_line, report, say_json, tell
 from mmrs_core.cli.settings import DEBUG, NO_PLUGINS, Settings
+from mmrs_core.cli.verdict_words import verdict_line
 from mmrs_core.errors import (
     InfeasibleError,
     InternalError,
@@ -20,6 +21,7 @@ from mmrs_core.errors import (
     UnreadableError,
     UnsupportedError,
 )
+from mmrs_core.languages.codes import refusal
 
 if TYPE_CHECKING:
     from mmrs_core.contributions.checks import Verdict
@@ -88,12 +90,8 @@ def failure_of(error: Exception) -> Failure:
                 return Failure(error.exit_code, str(error))
             return Failure(error.exit_code, _without_list(error, error.reasons), error.reasons)
         case UnreadableError():
-            from mmrs_core.languages.codes import refusal
-
             return Failure(error.exit_code, str(error), (), refusal(error))
         case RefusedError():
-            from mmrs_core.cli.verdict_words import verdict_line
-
             return Failure(error.exit_code, str(error), tuple(map(verdict_line, error.verdicts)))
         case UnsupportedError():
             return Failure(error.exit_code, _without_list(error, error.elements), error.elements)

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import signal
 import sys
+from _thread import interrupt_main
 from collections.abc import Callable
+from threading import Timer
 from types import FrameType, TracebackType
 from typing import NoReturn
 
@@ -74,7 +76,4 @@ def _again_if_lost(unraisable: sys.UnraisableHookArgs) -> None:
     if not isinstance(unraisable.exc_value, KeyboardInterrupt):
         sys.__unraisablehook__(unraisable)
         return
-    from _thread import interrupt_main
-    from threading import Timer
-
     Timer(_SOON, interrupt_main).start()

@@ -19,6 +19,7 @@ from mmrs_core.languages.evolution.migration import Migration
 from mmrs_core.languages.evolution.versions import pairs_of, version_of
 from mmrs_core.languages.metamodels.export import export_metamodels
 from mmrs_core.languages.metamodels.gathering import registry_of_files
+from mmrs_core.pictures.pages.languages_page import pages
 
 app = typer.Typer(
     rich_markup_mode=None,
@@ -117,8 +118,6 @@ def docs(call: typer.Context, directory: Folder, json: Json = False) -> int:
 
     Writes one Markdown page with a class diagram of each metamodel.
     """
-    from mmrs_core.pictures.pages.languages_page import pages
-
     registry = settings_of(call).plugins().contributions.languages
     contents = {directory / path: content.encode() for path, content in pages(registry).items()}
     replace_files(contents)

@@ -13,6 +13,8 @@ from unicodedata import category
 
 import typer
 
+from mmrs_runtime.screen import let_end_in_nothing
+
 if TYPE_CHECKING:
     from mmrs_core.diagnostics import Diagnostic
 
@@ -180,8 +182,6 @@ def _unwritten(stream: TextIO, error: OSError) -> OSError:
 
 
 def _close(stream: TextIO) -> None:
-    from mmrs_runtime.screen import let_end_in_nothing
-
     let_end_in_nothing(stream)
 
 

@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
-from itertools import takewhile
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
 from mmrs_core.errors import UnreadableError
-
-ROBOTS = "--robots"
+from mmrs_core.languages.modelset import model_in, robot_files_in
 
 Project = Annotated[
     Path,
@@ -27,7 +25,7 @@ Context = Annotated[
 ]
 Robots = Annotated[
     list[Path] | None,
-    typer.Option(ROBOTS, metavar="FILE...", help="Robot types. Default: robots/*.xmi next to the input."),
+    typer.Option("--robots", metavar="FILE...", help="Robot types. Default: robots/*.xmi next to the input."),
 ]
 Seed = Annotated[int, typer.Option("--seed", metavar="N", min=0, help="Planner random seed.")]
 
@@ -49,8 +47,6 @@ def robot_files(given: Iterable[Path] | None) -> tuple[Path, ...]:
 def _files_of(path: Path) -> tuple[Path, ...]:
     if not path.is_dir():
         return (path,)
-    from mmrs_core.languages.modelset import robot_files_in
-
     found = robot_files_in(path)
     if not found:
         raise UnreadableError(f"{path}: no robot type (*.xmi, *.json) in this folder")
@@ -59,8 +55,6 @@ def _files_of(path: Path) -> tuple[Path, ...]:
 
 def without_mission(project: Path) -> Path:
     """Return the behaviour in a folder without a mission, otherwise the path."""
-    from mmrs_core.languages.modelset import model_in
-
     alone = model_in(project, "behaviour") if model_in(project, "mission") is None else None
     return alone or project
 
@@ -73,47 +67,7 @@ def behaviour_file(given: Path) -> Path:
     """
     if not given.is_dir():
         return given
-    from mmrs_core.languages.modelset import model_in
-
     file = model_in(given, "behaviour")
     if file is None or not file.is_file():
         raise UnreadableError(f"{given}: no behaviour.xmi in this folder; 'mmrs plan {given}' makes one")
     return file
-
-
-def spread(arguments: Sequence[str], flags: frozenset[str]) -> list[str]:
-    """Return the arguments with ``--robots A B`` written as ``--robots A --robots B``.
-
-    Where no plain argument stands before, the last file is the command's own argument.
-
-    Args:
-        arguments: of a command, its name left out.
-        flags: options that take no value.
-
-    >>> spread(["m.xmi", "--robots", "a", "b", "--json"], frozenset({"--json"}))
-    ['m.xmi', '--robots', 'a', '--robots', 'b', '--json']
-    >>> spread(["--robots", "a", "m.xmi"], frozenset())
-    ['--robots', 'a', 'm.xmi']
-    """
-    written: list[str] = []
-    rest, named = list(arguments), False
-    while rest:
-        argument = rest.pop(0)
-        if argument == ROBOTS:
-            files = list(takewhile(_is_plain, rest))
-            del rest[: len(files)]
-            own = files.pop() if len(files) > 1 and not named else None
-            written += [part for file in files for part in (ROBOTS, file)] or [ROBOTS]
-            written += [own] if own is not None else []
-            named = named or own is not None
-            continue
-        written.append(argument)
-        if not _is_plain(argument) and argument not in flags and "=" not in argument:
-            written += rest[:1]
-            del rest[:1]
-        named = named or _is_plain(argument)
-    return written
-
-
-def _is_plain(argument: str) -> bool:
-    return not argument.startswith("-")

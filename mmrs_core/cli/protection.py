@@ -7,6 +7,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, ClassVar
 
 from mmrs_core.errors import MmrsError, UnreadableError
+from mmrs_core.languages import behaviour
+from mmrs_core.languages.element import descendants
+from mmrs_core.languages.reading import read_model
 
 if TYPE_CHECKING:
     from mmrs_core.languages.model import Model
@@ -73,10 +76,6 @@ def _is_same(output: Path, file: Path) -> bool:
 
 
 def _is_planned(file: Path, registry: Registry) -> bool:
-    from mmrs_core.languages import behaviour
-    from mmrs_core.languages.element import descendants
-    from mmrs_core.languages.reading import read_model
-
     try:
         roots = read_model(file, registry).roots
     except UnreadableError:

@@ -4,20 +4,24 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
+from mmrs_core.behaviour.box_files import black_boxes
+from mmrs_core.behaviour.log import logs_in
+from mmrs_core.cli.behaviours import Loaded, load_behaviour
 from mmrs_core.cli.output import progress, say, say_json, tell
 from mmrs_core.cli.parameters import Assume, Behaviour, Context, Robots, behaviour_file, robot_files
 from mmrs_core.cli.protection import refuse_inputs
 from mmrs_core.cli.replacing import replace_files
 from mmrs_core.cli.session import Session
 from mmrs_core.cli.settings import Json, settings_of
-
-if TYPE_CHECKING:
-    from mmrs_core.cli.behaviours import Loaded
-    from mmrs_core.pictures.report.assembly import Given
+from mmrs_core.cli.simulation import answers
+from mmrs_core.pictures.flights.gathering import read_flight
+from mmrs_core.pictures.flights.planned import planned_for
+from mmrs_core.pictures.report.assembly import Given, report_of
+from mmrs_core.pictures.report.map import flight_picture
 
 PAGE = "report.html"
 
@@ -47,9 +51,6 @@ def report(
 
     Example: mmrs report mission/ mission/logs -o report.html
     """
-    from mmrs_core.cli.behaviours import load_behaviour
-    from mmrs_core.pictures.report.assembly import report_of
-    from mmrs_core.pictures.report.map import flight_picture
     from mmrs_core.pictures.report.page import page
 
     session, file = Session(settings_of(call)), behaviour_file(behaviour)
@@ -77,11 +78,6 @@ def flown(session: Session, loaded: Loaded, logs: Sequence[Path], assume: Sequen
         InvalidModelError: if none of them is of a robot of the behaviour.
         UsageError: if no Choice has an assumed condition.
     """
-    from mmrs_core.cli.simulation import answers
-    from mmrs_core.pictures.flights.gathering import read_flight
-    from mmrs_core.pictures.flights.planned import planned_for
-    from mmrs_core.pictures.report.assembly import Given
-
     program, place, contributions = loaded.program, loaded.place, session.contributions
     flight = read_flight(logs, program, place.types, contributions.robot_kinds)
     with progress("simulating the plan"):
@@ -91,7 +87,4 @@ def flown(session: Session, loaded: Loaded, logs: Sequence[Path], assume: Sequen
 
 def read_files(logs: Sequence[Path]) -> tuple[Path, ...]:
     """Return every log and part of a black box that paths lead to."""
-    from mmrs_core.behaviour.box_files import black_boxes
-    from mmrs_core.behaviour.log import logs_in
-
     return (*logs_in(logs), *(part for box in black_boxes(logs) for part in box.parts))

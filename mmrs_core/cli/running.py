@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Sequence
+from itertools import takewhile
 from typing import Any
 
 import typer
@@ -13,9 +14,10 @@ from mmrs_core.cli.as_typed import take_as_typed
 from mmrs_core.cli.failures import MODEL_INVALID, ended_by
 from mmrs_core.cli.interruption import INTERRUPTED, interrupted
 from mmrs_core.cli.output import tell
-from mmrs_core.cli.parameters import spread
 from mmrs_core.cli.settings import Settings, taken_from
 from mmrs_core.errors import MmrsError, PluginError
+
+_ROBOTS = "--robots"
 
 
 def run_command(arguments: Sequence[str], program: str) -> int:
@@ -39,6 +41,44 @@ def run_command(arguments: Sequence[str], program: str) -> int:
         return ending.code if isinstance(ending.code, int) else MODEL_INVALID
     except Exception as error:
         return _interrupted() if interrupted() else _ended_by(error, source, settings)
+
+
+def spread(arguments: Sequence[str], flags: frozenset[str]) -> list[str]:
+    """Return the arguments with ``--robots A B`` written as ``--robots A --robots B``.
+
+    Where no plain argument stands before, the last file is the command's own argument.
+
+    Args:
+        arguments: of a command, its name left out.
+        flags: options that take no value.
+
+    >>> spread(["m.xmi", "--robots", "a", "b", "--json"], frozenset({"--json"}))
+    ['m.xmi', '--robots', 'a', '--robots', 'b', '--json']
+    >>> spread(["--robots", "a", "m.xmi"], frozenset())
+    ['--robots', 'a', 'm.xmi']
+    """
+    written: list[str] = []
+    rest, named = list(arguments), False
+    while rest:
+        argument = rest.pop(0)
+        if argument == _ROBOTS:
+            files = list(takewhile(_is_plain, rest))
+            del rest[: len(files)]
+            own = files.pop() if len(files) > 1 and not named else None
+            written += [part for file in files for part in (_ROBOTS, file)] or [_ROBOTS]
+            written += [own] if own is not None else []
+            named = named or own is not None
+            continue
+        written.append(argument)
+        if not _is_plain(argument) and argument not in flags and "=" not in argument:
+            written += rest[:1]
+            del rest[:1]
+        named = named or _is_plain(argument)
+    return written
+
+
+def _is_plain(argument: str) -> bool:
+    return not argument.startswith("-")
 
 
 def flags_of(command: object) -> Iterator[str]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
+from os.path import relpath
 from pathlib import Path
 
 from mmrs_core.errors import UnreadableError
@@ -110,8 +111,6 @@ def _candidates(model: Path, missing: frozenset[str]) -> Iterator[Path]:
 
 def kept_places(source: Path, target: Path) -> Mapping[str, str]:
     """Return where a model says its metamodels lie, as a copy of it in another place has to say it."""
-    from os.path import relpath
-
     places = dict(stated_places(source))
     if source.resolve().parent != target.resolve().parent:
         for ns_uri, place in places.items():

@@ -8,10 +8,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from mmrs_core.errors import UnreadableError
+from mmrs_core.languages.codes import explained
 from mmrs_core.languages.collector import collector_at_rest
 from mmrs_core.languages.element import Element, Unknown
 from mmrs_core.languages.evolution.migration import may_be_old
+from mmrs_core.languages.importers import foreign_file
 from mmrs_core.languages.json_form import is_json
+from mmrs_core.languages.metamodels.text import package_text
 from mmrs_core.languages.model import Model
 from mmrs_core.languages.references.documents import Draft
 from mmrs_core.languages.references.hrefs import real_path
@@ -74,8 +77,6 @@ class Reading:
     def described(self, ns_uri: str) -> Draft:
         """Return a metamodel of the registry as a model of Ecore, whose classes others may refer to."""
         if ns_uri not in self._described:
-            from mmrs_core.languages.metamodels.text import package_text
-
             text = package_text(
                 self._registry.package(ns_uri), lambda other: f"{'' if other == ns_uri else other}#//"
             )
@@ -91,8 +92,6 @@ class Reading:
         except UnreadableError as error:
             draft, refusal = Draft(source), error
         if all(isinstance(root, Unknown) for root in draft.roots):
-            from mmrs_core.languages.importers import foreign_file
-
             foreign = foreign_file(data, source.file, self._registry, stored=source.path is not None)
             if foreign is not None:
                 draft = Draft(Source(source.file, source.path), importer=foreign.importer)
@@ -167,8 +166,6 @@ class Reading:
 def _explained(draft: Draft) -> tuple[Diagnostic, ...]:
     if not draft.diagnostics:
         return ()
-    from mmrs_core.languages.codes import explained  # most files are right, and need none of the many words
-
     return tuple(map(explained, draft.diagnostics))
 
 

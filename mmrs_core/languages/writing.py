@@ -10,6 +10,7 @@ from pathlib import Path
 from mmrs_core.languages.collector import collector_at_rest
 from mmrs_core.languages.element import Element
 from mmrs_core.languages.json_form import is_json
+from mmrs_core.languages.json_form.writer import JsonWriter
 from mmrs_core.languages.registry import Registry
 from mmrs_core.languages.xmi.quick_writer import writer_for
 from mmrs_core.resources import named
@@ -46,8 +47,6 @@ def to_json(
     file: Path | None = None,
 ) -> bytes:
     """Return the text of a model in our JSON form, in UTF-8; arguments and errors as in `to_xmi`."""
-    from mmrs_core.languages.json_form.writer import JsonWriter
-
     with collector_at_rest():
         return JsonWriter(tuple(roots), registry, file).document(schema_location or {}).encode()
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from html import unescape
 from xml.parsers import expat
 
 from mmrs_core.languages.element import Unknown
@@ -171,8 +172,6 @@ def name_in_tag(xml: str) -> str:
     >>> name_in_tag('<tasks name="a &gt; b" x=">"><y name="c"/></tasks>')
     'a > b'
     """
-    from html import unescape
-
     tag = _TAG.match(xml)
     attributes = _ATTRIBUTE.findall(tag[0]) if tag else []
     return next((unescape(value[1:-1]) for name, value in attributes if name == "name"), "")

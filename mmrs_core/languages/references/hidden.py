@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator, Sequence
+from html import unescape
 
 from mmrs_core.languages.element import Element, Hidden, Unknown, descendants
+from mmrs_core.languages.json_form.unknown import UnknownObject
 from mmrs_core.languages.references.documents import Draft
 from mmrs_core.languages.sources import Source
 
@@ -71,8 +73,6 @@ def strayed(element: Unknown, roots: Sequence[Element]) -> str:
 
 def _paths(text: str) -> Iterator[str]:
     """Yield the paths in a text that are about its own file."""
-    from html import unescape
-
     for match in _PATH.finditer(text):
         if _BEFORE.search(text, max(0, match.start() - 2), match.start()) is None:
             yield unescape(match.group())
@@ -95,14 +95,10 @@ def _unknown(roots: Iterable[Element]) -> Iterator[Unknown]:
 
 def _json_of(element: Unknown) -> str:
     """Return the text of an element that was kept as JSON, else nothing."""
-    from mmrs_core.languages.json_form.unknown import UnknownObject  # most files hold nothing unknown
-
     return element._mmrs_json if isinstance(element, UnknownObject) else ""
 
 
 def _texts(element: Unknown) -> Iterator[str]:
-    from html import unescape
-
     yield from (match[1] for match in _IN_JSON.finditer(_json_of(element)))
     for match in _IN_XML.finditer(element._mmrs_xml):
         yield unescape(match[1] if match[1] is not None else match[2])

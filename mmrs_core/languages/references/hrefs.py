@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from os.path import realpath
+from os.path import realpath, relpath
 from pathlib import Path
 from urllib.parse import unquote
 
@@ -58,7 +58,5 @@ def _project_folder(name: str, base: Path, root: Path) -> Path:
 
 def relative_href(target: Path, base: Path) -> str:
     """Return the reference to a file as it is written in a file of the folder ``base``."""
-    from os.path import relpath
-
     steps = Path(relpath(target, base)).as_posix()
     return re.sub(r"[\x00-\x20%#?]", lambda match: f"%{ord(match.group()):02X}", steps)

@@ -10,7 +10,7 @@ import pytest
 from lxml import etree
 
 from mmrs_core.cli import run
-from mmrs_core.cli.demo import example_folder
+from mmrs_core.cli.examples import example_folder
 from mmrs_core.pictures.preview.from_models import picture_of_models
 from mmrs_core.pipeline import read_models
 

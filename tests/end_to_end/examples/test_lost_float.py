@@ -11,7 +11,7 @@ import pytest
 
 from mmrs_core.behaviour.log import read_logs
 from mmrs_core.behaviour.replay import replay
-from mmrs_core.cli.demo import example_folder
+from mmrs_core.cli.examples import example_folder
 from mmrs_core.cli.simulation import write_logs
 from mmrs_core.contributions.checks import Status
 from mmrs_core.pipeline import simulate

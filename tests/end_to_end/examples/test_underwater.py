@@ -12,8 +12,7 @@ from sample_vessels import random_start
 
 from mmrs_core.behaviour.log import read_logs
 from mmrs_core.behaviour.replay import replay
-from mmrs_core.cli.demo import example_folder
-from mmrs_core.cli.demonstration import Manner, manner_of
+from mmrs_core.cli.examples import DemoSettings, demo_settings_of, example_folder
 from mmrs_core.cli.simulation import write_logs
 from mmrs_core.contributions.checks import Status
 from mmrs_core.contributions.execution import Sample
@@ -36,7 +35,7 @@ MEETINGS, TOGETHER = {"Castor": (0.5, 14.0, -0.2), "Pollux": (5.5, 14.0, -0.2)},
 
 def dived(taken, contributions, name, folder, **options):
     example = taken(name)
-    manner = manner_of(example_folder(name))
+    manner = demo_settings_of(example_folder(name))
     run = simulate(
         example.program,
         example.place,
@@ -107,10 +106,10 @@ def test_two_vehicles_meet_when_both_are_done(taken, contributions, tmp_path):
 def test_examples_say_how_they_are_shown(tmp_path):
     course = example_folder("auv")
     assert course == example_folder("pool-course")
-    manner = manner_of(course)
+    manner = demo_settings_of(course)
     assert (manner.backend, manner.targets) == ("can-sim", ("can-python",))
     assert Path(manner.options["surroundings"]).is_file()
-    assert manner_of(example_folder("pool")) == Manner(targets=("mavlink-python", "qgc-plan"))
+    assert demo_settings_of(example_folder("pool")) == DemoSettings(targets=("mavlink-python", "qgc-plan"))
     (tmp_path / "demo.toml").write_text("backend = 3\n")
     with pytest.raises(UnreadableError, match=r"demo\.toml"):
-        manner_of(tmp_path)
+        demo_settings_of(tmp_path)

@@ -17,7 +17,7 @@ from mmrs_auv.rehearsal import VehicleProcesses
 from ports import free_endpoint, free_port
 
 from auv_vessel.body.surroundings import from_json
-from mmrs_core.cli.demo import example_folder
+from mmrs_core.cli.examples import example_folder
 
 pytestmark = [pytest.mark.real_time("vessels"), pytest.mark.thorough]
 

@@ -147,6 +147,16 @@ def test_completing_a_command_imports_no_other_command():
     assert subprocess.run([sys.executable, "-c", code], env=environment, timeout=60).returncode == 0
 
 
+def test_without_zenoh_the_commands_of_the_bus_have_help_and_name_what_to_install():
+    code = (
+        "import sys; sys.modules['zenoh'] = None; from mmrs_core.cli import run;"
+        "sys.exit(10 * run(['bus', '--help']) + run(['bus', 'state', 'survey']))"
+    )
+    ended = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=60)
+    assert ended.returncode == 1, ended.stderr
+    assert ended.stderr == "mmrs: bus: needs eclipse-zenoh; pip install 'mmrs-core[bus]'\n"
+
+
 @pytest.mark.parametrize("group", ["", "plugin", "metamodel", "bus", "auv", "can"])
 def test_the_list_of_commands_cuts_no_sentence(group, capsys, monkeypatch):
     monkeypatch.setenv("COLUMNS", "80")

@@ -4,8 +4,8 @@ import pytest
 import typer
 
 from mmrs_core.cli.app import program_for
-from mmrs_core.cli.parameters import behaviour_file, robot_files, spread
-from mmrs_core.cli.running import flags_of
+from mmrs_core.cli.parameters import behaviour_file, robot_files
+from mmrs_core.cli.running import flags_of, spread
 from mmrs_core.cli.settings import Settings, taken_from
 from mmrs_core.errors import UnreadableError
 
