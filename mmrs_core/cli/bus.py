@@ -187,11 +187,11 @@ def gateway(
         from mmrs_runtime.bus.carriers.over_zenoh import ZenohCarrier
         from mmrs_runtime.bus.carriers.sessions import Endpoints
     program = load_program(Session(settings_of(call)), behaviour_file(behaviour))
-    if robot not in {each.id for each in program.robots}:
-        raise typer.BadParameter(f"--robot {robot}: not in the behaviour")
+    names = [each.id for each in program.robots]
+    if robot not in names:
+        raise typer.BadParameter(f"--robot {robot}: unknown robot; the behaviour has {', '.join(names)}")
     _refuse_endpoints(listen, connect)
     endpoints = Endpoints(tuple(listen or ()), tuple(connect or ()), config)
-    names = [each.id for each in program.robots]
 
     def enter(recorded: Recorded | None) -> Node:
         carrier = ZenohCarrier(program.name, run, names, endpoints, plan=program.fingerprint)

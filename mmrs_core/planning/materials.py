@@ -244,8 +244,8 @@ def charge_faults(material: Material, pilot: Pilot) -> Iterator[str]:
         yield _why_unreachable(material, pilot, worst)
     elif short[worst] > 1e-9:
         yield (
-            f"{_words(material, worst)} takes {pilot.limit + short[worst]:.0f} s there and back, of one"
-            f" charge {pilot.limit:.0f} s may be used: {short[worst]:.0f} s short"
+            f"{_words(material, worst)} takes {pilot.limit + short[worst]:.0f} s there and back; one"
+            f" charge allows {pilot.limit:.0f} s: {short[worst]:.0f} s short"
         )
 
 

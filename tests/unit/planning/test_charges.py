@@ -41,7 +41,7 @@ def test_energy_limits_sorties_as_time_does():
 def test_work_that_no_charge_suffices_for_is_refused_with_what_is_short():
     whole = scene([with_kinematics(robot(), endurance=100.0)], {"a": visit((1000.0, 0.0, 20.0))})
     with pytest.raises(
-        InfeasibleError, match=r"takes 227 s there and back, of one charge 100 s .*: 127 s short"
+        InfeasibleError, match=r"takes 227 s there and back; one charge allows 100 s: 127 s short"
     ):
         plan(whole)
 

@@ -13,6 +13,7 @@ from mmrs_core.languages.json_form import is_json
 from mmrs_core.languages.json_form.tree import Node as Object
 from mmrs_core.languages.json_form.tree import Tree
 from mmrs_core.languages.metamodels.ecore_file import EcoreFile
+from mmrs_core.languages.missing import is_own
 from mmrs_core.languages.xmi.events import XMI, XSI, Document, read_bytes
 from mmrs_flyaq.sources.nodes import (
     DEEPEST_NESTING,
@@ -245,6 +246,8 @@ def open_text(data: bytes, file: str, known: Iterable[KnownDocument]) -> Opened:
     if any(claim is not None and claim.document == ECORE for claim in claims):
         named = ", ".join(EcoreFile(data, file).ns_uris)
         return Opened(file, f"a metamodel, {named}: nothing to migrate")
+    if all(claim is not None and is_own(claim.document) for claim in claims):
+        return Opened(file, "already a model of MMRS: nothing to migrate")
     return Opened(file, "a model", document)
 
 

@@ -4,6 +4,7 @@ import pytest
 from mmrs_flyaq.sources.documents import open_document
 
 from mmrs_core.errors import UnreadableError
+from mmrs_core.resources import shipped
 
 
 @pytest.fixture
@@ -24,6 +25,11 @@ def what(mapping):
 )
 def test_files_are_called_what_they_are(what, flyaq, name, words):
     assert what(flyaq / name) == words
+
+
+def test_a_mission_of_mmrs_needs_no_migration(what):
+    mission = shipped("examples") / "pool" / "mission.xmi"
+    assert what(mission) == "already a model of MMRS: nothing to migrate"
 
 
 def test_every_robot_type_of_a_list_is_a_model_of_its_own(migrated, flyaq):
