@@ -12,6 +12,7 @@ from mmrs_runtime.controllers.state import State
 
 from ..profiles.modes import GUIDED, HOLD, LAND, SURFACE
 from ..program import Geographic, Look, Place
+from .vehicle import Vehicle
 
 if TYPE_CHECKING:
     from ..services.items import Item
@@ -21,8 +22,10 @@ CRUISE = 5.0
 CLIMB = 2.0
 
 
-class DryVehicle:
+class DryVehicle(Vehicle):
     """Does everything at once that a real vehicle takes its time for, but takes the time, too.
+
+    There is no link to lose, no fence, no hardware and no external control: the rest does nothing.
 
     Attributes:
         start: where it is to stand before it takes off.
@@ -38,12 +41,6 @@ class DryVehicle:
         self._items: Sequence[Item] = ()
         self._mode = GUIDED
         self._armed = False
-
-    def answer_lost_link(self, response: str, after: float | None = None) -> None:
-        """Return at once: there is no link to lose."""
-
-    def answer_breach(self, response: str) -> None:
-        """Return at once: there is no fence."""
 
     def prepare(self, uploads: Uploads) -> None:
         """Keep the mission."""
@@ -66,9 +63,6 @@ class DryVehicle:
         self.rest(distance(self._here, place) / (speed or CRUISE))
         self._here = place
 
-    def turn(self, look: Look) -> None:
-        """Turn at once."""
-
     def fly(self, first: int, last: int, reached: Callable[[int], None]) -> None:
         """Pass the mission's items one after the other."""
         for seq in range(first, last + 1):
@@ -88,14 +82,8 @@ class DryVehicle:
             time.sleep(min(self._clock.real(left), 0.1))
         self._guard()
 
-    def operate(self, number: int, params: tuple[float, ...], *, confirmed: bool = False) -> None:
-        """Return at once: there is no hardware."""
-
     def measure(self, value: str, seconds: float) -> None:
         """Measure nothing: there is nothing to measure."""
-
-    def tell_ground(self, text: str) -> None:
-        """Drop a text: there is no link."""
 
     def hold(self) -> bool:
         """Stay."""
@@ -107,25 +95,10 @@ class DryVehicle:
         """Become ready."""
         self._mode = GUIDED
 
-    def check(self) -> None:
-        """Return at once: there is no external control."""
-
-    def take_back(self) -> None:
-        """Return at once: there are no failsafes."""
-
-    def regain(self) -> None:
-        """Return at once: there are no failsafes."""
-
     def surface(self) -> None:
         """Move to the surface."""
         self._mode = SURFACE
         self._here = at_height(self._here, 0.0)
-
-    def disarm(self) -> None:
-        """Return at once: there is no hardware."""
-
-    def finish(self) -> None:
-        """Return at once: there is no hardware."""
 
     def evidence(self) -> DryVehicle:
         """Return itself: it carries out every command."""

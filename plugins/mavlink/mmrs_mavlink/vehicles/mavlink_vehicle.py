@@ -32,13 +32,14 @@ from .own_home import keep_home
 from .owner_settings import check_listening, enclose, end_exemption, set_up
 from .steering import PATIENCE_FACTOR, PATIENCE_SECONDS, STILL, Steering
 from .telemetry import Telemetry
+from .vehicle import Vehicle
 
 FORCE_DISARM = 21_196
 IMAGE_SECONDS = 10.0
 IMAGES = ("CAMERA_IMAGE_CAPTURED", "CAMERA_FEEDBACK")
 
 
-class MavlinkVehicle:
+class MavlinkVehicle(Vehicle):
     """A vehicle, stepped in GUIDED and run in AUTO.
 
     Attributes:

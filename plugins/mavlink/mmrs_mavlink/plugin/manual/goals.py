@@ -1,15 +1,18 @@
-"""What moves are to a vehicle that is driven by hand."""
+"""What moves and device actions are to a vehicle that is driven by hand."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from math import atan2, degrees
 
-from mmrs_core.behaviour.program import Move
-from mmrs_core.generation.plan_moves import MOVES, above_surface, seconds_of_hold
+from mmrs_core.behaviour.program import Action, Move
+from mmrs_core.generation.plan_moves import MOVES, above_surface, seconds_of, seconds_of_hold
 from mmrs_core.transformation.kinds import before_target
 from mmrs_mavlink.plugin.context import VehicleContext
+from mmrs_mavlink.plugin.manual.autopilot import StickAutopilot
 from mmrs_mavlink.plugin.manual.steering import Goal, StickSteering
+from mmrs_mavlink.wiring import Wired
+from mmrs_runtime import faults
 
 
 def refusals(context: VehicleContext) -> Iterator[str]:
@@ -62,3 +65,17 @@ def goal_of(move: Move, steering: StickSteering, context: VehicleContext, depth:
         bearing = degrees(atan2(east - steering.east, north - steering.north)) - heading.angle_degrees
         return Goal(depth, heading=bearing % 360.0)
     return None
+
+
+def carry_out(action: Action, context: VehicleContext, autopilot: StickAutopilot) -> float:
+    """Carry out a device action; return the seconds that it takes from then on.
+
+    Raises:
+        faults.FaultError: it is not wired for that, does not do it, or does not answer.
+    """
+    wiring = context.wiring(action)
+    if not isinstance(wiring, Wired):
+        raise faults.RefusedError(f"'{action.device}' is not wired for '{action.name}'")
+    for number, params in ((wiring.command, wiring.params), *wiring.more):
+        autopilot.do(number, *params)
+    return seconds_of(action, context.type) if wiring.seconds is None else wiring.seconds

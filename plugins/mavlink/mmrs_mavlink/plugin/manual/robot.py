@@ -13,8 +13,7 @@ from mmrs_core.scene import Position
 from mmrs_mavlink.links.link import Link
 from mmrs_mavlink.plugin.context import VehicleContext
 from mmrs_mavlink.plugin.manual.autopilot import DEPTH_HOLD, SURFACE, StickAutopilot
-from mmrs_mavlink.plugin.manual.equipment import carry_out
-from mmrs_mavlink.plugin.manual.goals import goal_of
+from mmrs_mavlink.plugin.manual.goals import carry_out, goal_of
 from mmrs_mavlink.plugin.manual.keeping import keeper_of
 from mmrs_mavlink.plugin.manual.route import Route, Ways
 from mmrs_mavlink.plugin.manual.steering import StickSteering

@@ -15,7 +15,6 @@ from mmrs_core.scene import Policy
 from mmrs_mavlink.plugin.context import VehicleContext, context_of, vehicleless
 from mmrs_mavlink.plugin.controllers import DRIVER
 from mmrs_mavlink.plugin.headings import on_gimbal
-from mmrs_mavlink.plugin.plans.diving import above_water
 from mmrs_mavlink.plugin.plans.flight import flown
 from mmrs_mavlink.plugin.plans.items import unknown_in
 from mmrs_mavlink.plugin.vehicles import autopilot_fault
@@ -32,7 +31,7 @@ def refusals(input: TargetInput) -> Iterator[str]:
             yield unknown
             continue
         yield from _of_robot(robot, input)
-        yield from above_water(robot, input)
+        yield from _above_water(robot, input)
 
 
 def _of_robot(robot: RobotProgram, input: TargetInput) -> Iterator[str]:
@@ -72,6 +71,16 @@ def _of_robot(robot: RobotProgram, input: TargetInput) -> Iterator[str]:
             )
         for policy in transition.policies if transition is not None else ():
             yield f"{context.label(move)}: {_described(explicit(policy))}"
+
+
+def _above_water(robot: RobotProgram, input: TargetInput) -> Iterator[str]:
+    """Yield what leads a vehicle that dives out of the water."""
+    context = context_of(robot, input)
+    for move in robot.moves if context.dives else ():
+        position = move.target.position if move.target is not None else None
+        if position is not None and context.height(position) > 0.0:
+            above = context.height(position)
+            yield f"{context.label(move)}: leads {above:g} m above the surface, which the vehicle skips"
 
 
 def _dives(robot: RobotProgram, input: TargetInput) -> bool:

@@ -16,7 +16,6 @@ from mmrs_core.scene import Point
 from mmrs_mavlink.plugin.context import VehicleContext, context_of
 from mmrs_mavlink.plugin.escapes import escapes_of
 from mmrs_mavlink.plugin.fencing import fences_of
-from mmrs_mavlink.plugin.plans.diving import zero_of
 from mmrs_mavlink.plugin.plans.flight import sorties_of
 from mmrs_mavlink.plugin.plans.items import PlanItem, Row, rows_of
 
@@ -82,8 +81,10 @@ def _mission(
 
 def _home(robot: RobotProgram, context: VehicleContext) -> Spot:
     home = require_home(robot)
+    # Heights of what dives count from the surface above its home.
+    zero = (home[0], home[1], context.zero) if context.dives else home
     ((latitude, longitude),) = degrees_of([(home[0], home[1])], context.frame)
-    return (latitude, longitude, sea_level_of(zero_of(context, home), context.frame) or 0.0)
+    return (latitude, longitude, sea_level_of(zero, context.frame) or 0.0)
 
 
 def _rally(context: VehicleContext, points: Sequence[Point], sortie: Sequence[PlanItem]) -> tuple[Spot, ...]:
