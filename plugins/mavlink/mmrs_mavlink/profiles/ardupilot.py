@@ -347,6 +347,7 @@ ARDUROVER = VehicleProfile(
     carries=("ground",),
     rehearsed_as="rover",
     turns=False,
+    in_plane=True,
     stops_early=True,
     radii={"WP_RADIUS": 1.0},
     starts_in=STARTS_IN,

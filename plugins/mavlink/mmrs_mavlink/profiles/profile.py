@@ -15,11 +15,12 @@ Answers: TypeAlias = Mapping[str, Mapping[str, int]]
 
 @dataclass(frozen=True, slots=True)
 class Delay:
-    """A parameter for the seconds until a failsafe acts, with its least and largest value."""
+    """A parameter for the seconds until a failsafe acts; `usual` is set where no policy says them."""
 
     parameter: str
     least: float
     largest: float
+    usual: float | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,6 +64,25 @@ class LostLinkFailsafe:
             return frozenset()
         known = (by_value.get(round(values.get(name, 0.0))) for name, by_value in self.modes.items())
         return frozenset().union(*filter(None, known))
+
+
+@dataclass(frozen=True, slots=True)
+class Timing:
+    """How long a vehicle may take, seconds of the run.
+
+    Attributes:
+        mode: until it shows a mode that was requested, or that it has disarmed.
+        arming: until it shows that it is armed, or has left the ground.
+        resend: after which a target is sent again that it has not reached.
+        restart: until its time since its start tells that it has restarted.
+        cause: until it tells why it has left its mode as its failsafe would.
+    """
+
+    mode: float = 5.0
+    arming: float = 3.0
+    resend: float = 1.0
+    restart: float = 4.0
+    cause: float = 1.5
 
 
 @dataclass(frozen=True, slots=True)
@@ -120,6 +140,10 @@ class VehicleProfile:
         flies: whether the vehicle takes off and lands.
         dives: whether its heights count from the water surface.
         turns: whether it turns to a heading on command.
+        in_plane: whether it is at a place whatever its height: it is as high as the ground takes it.
+        still: metres per second up to which it stands still.
+        timing: how long it may take.
+        speed_repeats: number of targets in a row with which a new speed is sent: any may be lost.
         stops_early: whether it stops as soon as it is within the radius of its target.
         radii: parameters for the radius of waypoints, with their units in a metre.
         corridor: metres that it is beside its legs at most, in corners and gusts.
@@ -152,6 +176,10 @@ class VehicleProfile:
     flies: bool = False
     dives: bool = False
     turns: bool = True
+    in_plane: bool = False
+    still: float = 0.3
+    timing: Timing = Timing()
+    speed_repeats: int = 3
     stops_early: bool = False
     radii: Mapping[str, float] = field(default_factory=dict)
     corridor: float = 20.0

@@ -206,7 +206,7 @@ LOST_LINK = LostLinkFailsafe(
         },
     },
     delay=Delay("COM_DL_LOSS_T", 5.0, 300.0),
-    set_point_delay=Delay("COM_OF_LOSS_T", 5.0, 60.0),
+    set_point_delay=Delay("COM_OF_LOSS_T", 5.0, 60.0, usual=5.0),
     exemption=Exemption("COM_DLL_EXCEPT", 0b111, "the modes of its program"),
 )
 """A PX4 in OFFBOARD misses set-points before it misses heartbeats, and then acts by their failsafe: by

@@ -15,12 +15,6 @@ if TYPE_CHECKING:
     from ..links.link import Link
     from ..vehicles.mavlink_vehicle import MavlinkVehicle
 
-CAUSE_SECONDS = 1.5
-"""For how long the cause is looked for when a vehicle has left its mode as a failsafe would."""
-
-RESTART_SECONDS = 4.0
-"""How long to wait for the vehicle's boot time where it may have restarted."""
-
 Cause = tuple[str, str]
 """An event, and the reason to believe that it is there."""
 
@@ -121,10 +115,10 @@ class Departures:
         signs, link = self._signs, self._link
         if not self._vehicle.telemetry.armed() or mode == link.profile.starts_in:
             # One that has started anew has lost its position, too: that is no cause.
-            anew = link.wait(lambda: signs.restarted, self._clock.patience(RESTART_SECONDS))
+            anew = link.wait(lambda: signs.restarted, self._clock.patience(link.profile.timing.restart))
             return (VEHICLE_RESTARTED, STARTED_ANEW) if anew else None
         by_itself = mode in link.profile.failsafe_modes | self._vehicle.modes_alone
-        seconds = self._clock.patience(CAUSE_SECONDS) if by_itself else 0.0
+        seconds = self._clock.patience(link.profile.timing.cause) if by_itself else 0.0
         return link.wait(lambda: self._cause(mode), seconds)
 
     def _cause(self, mode: int) -> Cause | None:

@@ -27,10 +27,10 @@ from ..services.uploads import Uploads
 from . import preparation
 from .evidence import LinkEvidence
 from .mission import Mission
-from .mode_control import MODE_SECONDS, ModeControl
+from .mode_control import ModeControl
 from .own_home import keep_home
 from .owner_settings import check_listening, enclose, end_exemption, set_up
-from .steering import PATIENCE_FACTOR, PATIENCE_SECONDS, STILL, Steering
+from .steering import PATIENCE_FACTOR, PATIENCE_SECONDS, Steering
 from .telemetry import Telemetry
 from .vehicle import Vehicle
 
@@ -182,7 +182,7 @@ class MavlinkVehicle(Vehicle):
         A PX4 takes for home where it leaves the ground, by when its height has drifted, or it has risen.
         """
         holds = bool(self._mode_control.guidance.climbing()) and self._mode_control.mode() == modes.HOLD
-        return holds and self._telemetry.airborne() and self._telemetry.speed() <= STILL
+        return holds and self._telemetry.airborne() and self._telemetry.speed() <= self._link.profile.still
 
     def land(self) -> None:
         """Descend and stop the motors.
@@ -283,7 +283,7 @@ class MavlinkVehicle(Vehicle):
         if (stands or not self._telemetry.armed()) and self._mode_control.stops_motors():
             return False
         self._mode_control.enter(modes.HOLD)
-        still = partial(self._telemetry.still_since, self._link.clock.now(), STILL)
+        still = partial(self._telemetry.still_since, self._link.clock.now(), self._link.profile.still)
         if not self._link.wait(still, PATIENCE_SECONDS, while_received=True):
             raise RefusedError("the vehicle does not come to a halt")
         return self._telemetry.armed()
@@ -364,7 +364,9 @@ class MavlinkVehicle(Vehicle):
     def disarm(self) -> None:
         """Switch off propulsion, whatever happens then."""
         command(self._link, mavlink.MAV_CMD_COMPONENT_ARM_DISARM, 0, FORCE_DISARM)
-        self._mode_control.until(lambda: not self._telemetry.armed(), MODE_SECONDS, "to stop its motors")
+        self._mode_control.until(
+            lambda: not self._telemetry.armed(), self._link.profile.timing.mode, "to stop its motors"
+        )
 
     def finish(self) -> None:
         """End the mission: a vehicle that does not fly is disarmed, one that does is not."""

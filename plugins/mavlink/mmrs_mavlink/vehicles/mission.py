@@ -29,7 +29,7 @@ from ..services.uploads import Uploads
 from . import preparation
 from .corridor import width_for
 from .following import Following
-from .mode_control import MODE_SECONDS, ModeControl
+from .mode_control import ModeControl
 from .steering import PATIENCE_SECONDS
 from .telemetry import Telemetry
 
@@ -107,7 +107,7 @@ class Mission:
         """
         flown = first_flown(self._items, seq)
         self._mode_control.guidance.select(seq - self._left_out)
-        patience = self._link.clock.patience(MODE_SECONDS)
+        patience = self._link.clock.patience(self._link.profile.timing.mode)
         if not self._link.wait(lambda: seq <= self._item() <= flown, patience, while_received=True):
             raise RefusedError(f"the vehicle does not go to item {seq} of its mission")
 

@@ -18,18 +18,11 @@ from .readiness import REPEATED_SECONDS
 from .requests import Requests
 from .telemetry import Telemetry
 
-MODE_SECONDS = 5.0
 MODE_TRIES = 3
 TAKE_OFF_TRIES = 3
 ARM_TRIES = 3
 WORDS_SECONDS = 0.5
 """After which a vehicle that refuses has said why."""
-
-PACE_TELLINGS = 3
-"""Number of targets after which the speed is sent: all of them are hardly ever lost."""
-
-AFRESH_SECONDS = 3.0
-"""After which at least one new heartbeat should have come, even over a poor link."""
 
 
 class ModeControl:
@@ -98,7 +91,7 @@ class ModeControl:
             command(self._link, mavlink.MAV_CMD_DO_SET_MODE, *wanted.params)
             self._link.wait(
                 lambda: self._telemetry.mode() == wanted.number or self._strays(),
-                self._link.clock.patience(MODE_SECONDS),
+                self._link.clock.patience(self._link.profile.timing.mode),
                 while_received=True,
             )
             self._obey_late(left)
@@ -254,7 +247,7 @@ class ModeControl:
         """
         if self._telemetry.armed():
             return
-        begun, patience = self._link.clock.now(), self._link.clock.patience(AFRESH_SECONDS)
+        begun, patience = self._link.clock.now(), self._link.clock.patience(self._link.profile.timing.arming)
         for _ in range(ARM_TRIES):
             self._ask_to_arm()
             if self._link.wait(self._telemetry.armed, patience, while_received=True):
@@ -292,7 +285,9 @@ class ModeControl:
                 return
             except RefusedError:
                 # It refuses also when it has left the ground already, and its first answer was lost.
-                if self._link.wait(self._telemetry.airborne, AFRESH_SECONDS, while_received=True):
+                if self._link.wait(
+                    self._telemetry.airborne, self._link.profile.timing.arming, while_received=True
+                ):
                     self._follow_climb()
                     return
                 lost = 0 if self._telemetry.armed() else self._link.retries.tries
@@ -306,7 +301,7 @@ class ModeControl:
             RefusedError: the vehicle does not disarm.
         """
         command(self._link, mavlink.MAV_CMD_COMPONENT_ARM_DISARM, 0)
-        self.until(lambda: not self._telemetry.armed(), MODE_SECONDS, "to disarm")
+        self.until(lambda: not self._telemetry.armed(), self._link.profile.timing.mode, "to disarm")
 
     def motors_may_run(self) -> bool:
         """Return whether the vehicle is armed, or was commanded to arm, and may be by now."""
@@ -338,7 +333,7 @@ class ModeControl:
             return
         if speed != self._speed:
             self._speed, self._told = speed, 0
-        if self._told == PACE_TELLINGS:
+        if self._told == self._link.profile.speed_repeats:
             return
         self._told += 1
         try:
@@ -346,7 +341,7 @@ class ModeControl:
         except UnansweredError:
             raise
         except RefusedError:
-            if self._told == PACE_TELLINGS:
+            if self._told == self._link.profile.speed_repeats:
                 raise
 
     def _be_in(self, mode: str) -> None:

@@ -27,9 +27,6 @@ READY_SECONDS = 120.0
 WORDS_SECONDS = 0.5
 """After which a vehicle that is asked for what fails has said it."""
 
-OFFBOARD_SECONDS = 5.0
-"""For how long a vehicle waits for set-points, where the policy does not say."""
-
 STREAMED = {
     "GLOBAL_POSITION_INT": 5.0,
     "EXTENDED_SYS_STATE": 2.0,
@@ -160,25 +157,16 @@ def answer_lost_link(link: Link, response: str, after: float | None = None) -> s
     """
     failsafe = link.profile.lost_link
     _answer(link, "a lost link", failsafe.answers, response)
-    told = [_wait_for(link, failsafe.set_point_delay, after, OFFBOARD_SECONDS)]
-    if after is not None:
-        told.append(_wait_for(link, failsafe.delay, after, after))
+    told = (_wait_for(link, delay, after) for delay in (failsafe.set_point_delay, failsafe.delay))
     return "; ".join(dict.fromkeys(filter(None, told)))
 
 
-def _wait_for(link: Link, known: Delay | None, wanted: float | None, usual: float) -> str:
-    """Set the delay of a failsafe; return what the vehicle does otherwise, empty if nothing.
-
-    Args:
-        link: to the vehicle.
-        known: its parameter; None: it has none.
-        wanted: seconds; None: `usual`.
-        usual: seconds.
-    """
-    if known is None:
+def _wait_for(link: Link, known: Delay | None, wanted: float | None) -> str:
+    """Set the seconds until a failsafe acts; return what the vehicle does otherwise; empty: nothing."""
+    given = wanted if known is None or wanted is not None else known.usual
+    if known is None or given is None:
         return ""
-    name = known.parameter
-    seconds = min(max(usual if wanted is None else wanted, known.least), known.largest)
+    name, seconds = known.parameter, min(max(given, known.least), known.largest)
     if not parameters.write(link, name, seconds):
         return f"the vehicle does not confirm {name} = {seconds:g}: it may respond sooner or later than that"
     if wanted is None or seconds == wanted:

@@ -18,8 +18,6 @@ from .telemetry import Telemetry
 
 PATIENCE_FACTOR = 4.0
 PATIENCE_SECONDS = 60.0
-RESEND_SECONDS = 1.0
-STILL = 0.3
 CLOSE_DEGREES = 5.0
 ABREAST_METRES = 0.1
 """How near a place must be that is gone through: chains of short legs around a corner would add up more."""
@@ -35,7 +33,7 @@ class Steering:
         mode_control: ModeControl,
         acceptance: float,
     ) -> None:
-        """Steer a vehicle by its profile; of one that drives, heights say nothing.
+        """Steer a vehicle by its profile; some are at a place whatever their height.
 
         Args:
             link: to the vehicle.
@@ -47,7 +45,7 @@ class Steering:
         self._telemetry = telemetry
         self._mode_control = mode_control
         self._acceptance = acceptance
-        self._away = aside if link.profile.drives else distance
+        self._away = aside if link.profile.in_plane else distance
         self._yaw: float | None = None
         self._speed: float | None = None
 
@@ -63,15 +61,16 @@ class Steering:
         begun = self._telemetry.here()
         way = distance(begun, place)
         limit = self._link.clock.now() + PATIENCE_SECONDS + PATIENCE_FACTOR * way / max(0.2, speed or 1.0)
+        resend = self._link.profile.timing.resend
         while True:
             self._steer(place, look)
             self._mode_control.pace(speed)
             if look is not None and isinstance(look.at, Local):
                 self._point(look)
-            if self._link.wait(lambda: self._arrived(place, begun if through else None), RESEND_SECONDS):
+            if self._link.wait(lambda: self._arrived(place, begun if through else None), resend):
                 break
             self._mode_control.check()
-            limit += RESEND_SECONDS if self._link.unheard() else 0.0
+            limit += resend if self._link.unheard() else 0.0
             if self._link.clock.now() > limit:
                 raise FaultError(
                     NO_PROGRESS, f"still {self._away(self._telemetry.here(), place):.1f} m from {place}"
@@ -91,12 +90,13 @@ class Steering:
         here = self._telemetry.here()
         wanted = self._yaw = _yaw(here, look)
         until = self._link.clock.now() + self._link.clock.patience(PATIENCE_SECONDS, 2.0)
+        resend = self._link.profile.timing.resend
         while not self._faces(wanted):
             if self._link.clock.now() > until:
                 raise FaultError(NO_PROGRESS, "the vehicle takes too long to turn")
             self._send_target(here, wanted)
-            self._link.wait(lambda: self._faces(wanted), RESEND_SECONDS)
-            until += RESEND_SECONDS if self._link.unheard() else 0.0
+            self._link.wait(lambda: self._faces(wanted), resend)
+            until += resend if self._link.unheard() else 0.0
             self._mode_control.check()
 
     def stay(self, place: Place | None = None) -> None:
@@ -152,7 +152,7 @@ class Steering:
         away = self._away(here, place)
         if away > self._acceptance:
             return False
-        if self._telemetry.speed() <= STILL:
+        if self._telemetry.speed() <= self._link.profile.still:
             return True
         return begun is not None and (away <= ABREAST_METRES or _is_past(begun, here, place))
 

@@ -7,7 +7,7 @@ from contextlib import contextmanager
 from dataclasses import replace
 
 import pytest
-from flight_crew import robot_of
+from flight_crew import NORTH, robot_of
 from mavlink_peer import acknowledged, eventually, linked, value
 from mmrs_multicopter.testing import go_to, quad, robot_program, target_input
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
@@ -23,7 +23,7 @@ from mmrs_mavlink.plugin.context import context_of
 from mmrs_mavlink.plugin.controllers import MAVLINK_PYTHON
 from mmrs_mavlink.plugin.plans.qgc import QGC_PLAN
 from mmrs_mavlink.profiles import ARDUCOPTER, ARDUPILOT, PROFILES, modes
-from mmrs_mavlink.profiles.profile import LostLinkFailsafe, Safeguard
+from mmrs_mavlink.profiles.profile import LostLinkFailsafe, Safeguard, Timing
 from mmrs_mavlink.vehicles.guidance import ArduPilotGuidance
 from mmrs_mavlink.vehicles.mavlink_vehicle import MavlinkVehicle
 from mmrs_mavlink.vehicles.preparation import check_identity, report_failsafes
@@ -69,6 +69,7 @@ PROFILE = replace(
     responses=frozenset({"CONTINUE", "LAND"}),
     safeguards=(Safeguard("MOOR_ON_LOSS", "no ground station", {0: "nothing", 2: "moor"}),),
     corridor=60.0,
+    timing=Timing(resend=0.1),
 )
 TYPE = replace(quad(), name="Zeppelin", metaclasses=(AIRSHIP, PLAIN_ROBOT.metaclass))
 
@@ -196,6 +197,22 @@ def test_its_failsafe_for_a_lost_link_is_set_by_its_own_parameter():
         assert sent["MOOR_ON_LOSS"] == 2.0
         assert vehicle.modes_alone == {33}
         assert list(report_failsafes(link)) == ["MOOR_ON_LOSS = 2: no ground station: moor"]
+
+
+def test_a_target_is_sent_again_after_the_seconds_of_its_profile():
+    with aloft() as (vehicle, link, wire):
+        wire.say(mavlink.MAVLink_global_position_int_message(1, 423_700_000, 133_500_000, 0, 0, 0, 0, 0, 0))
+        eventually(lambda: link.latest("GLOBAL_POSITION_INT"))
+        begun, ended = link.clock.now(), RefusedError("enough")
+
+        def guard():
+            if link.clock.now() - begun > 0.5:
+                raise ended
+
+        link.guard = guard
+        with pytest.raises(RefusedError, match="enough"):
+            vehicle.go_to(NORTH, None, None, False)
+        assert len(wire.of("SET_POSITION_TARGET_GLOBAL_INT")) >= 3
 
 
 def test_it_is_guided_by_the_guidance_of_its_autopilot():
