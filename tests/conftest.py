@@ -2,21 +2,18 @@
 
 from __future__ import annotations
 
-import json
 import os
 import shutil
 import signal
 import sys
 import tempfile
-from functools import cache
 from pathlib import Path
 
 import pytest
 import shared
+from whole_files import ByGroup, InWorkers
 
 AT_WORK_WITH_OTHERS = "PYTEST_XDIST_WORKER" in os.environ
-GROUPS = "groups.json"
-"""What a worker writes for the scheduler, which sees names of tests, but not their markers."""
 THOROUGH = "thorough"
 GIVING_WAY = 10
 """Niceness of workers, and of the processes that they start, once they have no tests in real time left."""
@@ -39,6 +36,8 @@ def pytest_configure(config: pytest.Config) -> None:
     take_examples_by_profile(config)
     if AT_WORK_WITH_OTHERS and hasattr(os, "nice"):
         config.pluginmanager.register(Courtesy())
+    if AT_WORK_WITH_OTHERS and config.option.loadgroup and not any("::" in each for each in config.args):
+        config.pluginmanager.register(InWorkers())
 
 
 def obey_interrupts() -> None:
@@ -81,34 +80,12 @@ def take_examples_by_profile(config: pytest.Config) -> None:
 
 @pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
-    """Give tests with full counts time enough; sort the tests of workers, and write down their groups."""
+    """Give tests with full counts time enough."""
     for item in items:
         if config.option.markexpr == THOROUGH and hasattr(getattr(item, "obj", None), "hypothesis"):
             item.add_marker(THOROUGH)
         if item.get_closest_marker(THOROUGH) and not item.get_closest_marker("timeout"):
             item.add_marker(pytest.mark.timeout(3600))
-    if AT_WORK_WITH_OTHERS:
-        items.sort(key=rank)
-        if config.workerinput["workerid"] == "gw0":  # type: ignore[attr-defined]
-            grouped = {file_of(item.nodeid): group for item in items if (group := group_of(item))}
-            (shared.folder() / GROUPS).write_text(json.dumps(grouped))
-
-
-def rank(item: pytest.Item) -> int:
-    """Return when a test begins: those in real time, those that take long, all others."""
-    if item.get_closest_marker("real_time"):
-        return 0
-    return 1 if item.get_closest_marker("long") or item.get_closest_marker("together") else 2
-
-
-def group_of(item: pytest.Item) -> str | None:
-    """Return the group that a marker of the test's file names, if one does."""
-    marker = item.get_closest_marker("real_time") or item.get_closest_marker("together")
-    return marker.args[0] if marker else None
-
-
-def file_of(nodeid: str) -> str:
-    return nodeid.partition("::")[0]
 
 
 class Courtesy:
@@ -123,22 +100,7 @@ class Courtesy:
 @pytest.hookimpl(optionalhook=True)
 def pytest_xdist_make_scheduler(config: pytest.Config, log):
     """Give each group of tests, or else each file, one worker."""
-    if config.getoption("dist") != "loadgroup":
-        return None
-    from xdist.scheduler import LoadScopeScheduling
-
-    config.option.loadscopereorder = False
-
-    @cache
-    def groups() -> dict[str, str]:
-        return json.loads((shared.folder() / GROUPS).read_text())
-
-    class ByGroup(LoadScopeScheduling):
-        def _split_scope(self, nodeid: str) -> str:
-            file = file_of(nodeid)
-            return groups().get(file, file)
-
-    return ByGroup(config, log)
+    return ByGroup(config, log) if config.getoption("dist") == "loadgroup" else None
 
 
 @pytest.fixture
