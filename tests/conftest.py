@@ -11,6 +11,7 @@ from pathlib import Path
 
 import pytest
 import shared
+from _pytest.mark.expression import Expression
 from whole_files import ByGroup, InWorkers
 
 AT_WORK_WITH_OTHERS = "PYTEST_XDIST_WORKER" in os.environ
@@ -70,19 +71,29 @@ def draw_the_same_examples_everywhere() -> None:
 
 
 def take_examples_by_profile(config: pytest.Config) -> None:
-    """Draw few examples, or very many with ``-m thorough``; each may take as long as a busy machine needs."""
+    """Draw few examples, or very many where ``-m`` selects thorough tests; each may take its time.
+
+    Tests with other counts than these take them from `counts`.
+    """
     from hypothesis import settings
 
     settings.register_profile("fast", deadline=None, max_examples=50)
     settings.register_profile("thorough", deadline=None, max_examples=2000)
-    settings.load_profile("thorough" if config.option.markexpr == THOROUGH else "fast")
+    settings.load_profile(THOROUGH if selects_thorough(config) else "fast")
+
+
+def selects_thorough(config: pytest.Config) -> bool:
+    """Return whether ``-m`` selects tests that have no other marker than ``thorough``."""
+    expression = config.option.markexpr
+    return not expression or Expression.compile(expression).evaluate(lambda name, **_: name == THOROUGH)
 
 
 @pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
     """Give tests with full counts time enough."""
+    thorough = selects_thorough(config)
     for item in items:
-        if config.option.markexpr == THOROUGH and hasattr(getattr(item, "obj", None), "hypothesis"):
+        if thorough and hasattr(getattr(item, "obj", None), "hypothesis"):
             item.add_marker(THOROUGH)
         if item.get_closest_marker(THOROUGH) and not item.get_closest_marker("timeout"):
             item.add_marker(pytest.mark.timeout(3600))

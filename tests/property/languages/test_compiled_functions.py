@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from contextlib import contextmanager
 
+from counts import many
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
@@ -22,7 +23,11 @@ from mmrs_core.testing.instances import drafts_of
 
 NEVER = 10**9
 LANGUAGES = ("urn:mmrs:mission:1.0", "urn:mmrs:robot:1.0", "urn:mmrs:behaviour:1.0", "urn:test:zoo")
-RELAXED = settings(deadline=None, suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large])
+RELAXED = settings(
+    deadline=None,
+    max_examples=many(3000),
+    suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large],
+)
 JUNK = (
     *("", "x", "1_0", " 5 ", "5", "-0.0", "NaN", "nan", "inf", "1.5d", "1e400", "\u0663.5", "true", "True"),
     *("//@nope.3", "//@animals.0", "//@animals.0 //@animals.1", "//@animals.\u0661", "//@animals.-1", "/9"),

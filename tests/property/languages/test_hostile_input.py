@@ -2,7 +2,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from hypothesis import given
+from counts import many
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from mmrs_core.errors import UnreadableError
@@ -48,6 +49,7 @@ def outcome(text, registry):
         return None, str(refusal)
 
 
+@settings(max_examples=many(5000))
 @given(data=st.data())
 def test_a_damaged_model_is_unreadable_or_has_faults_but_never_breaks_us(registry, data):
     text = bytearray(data.draw(st.sampled_from(EXAMPLES)).read_bytes()[:4000])
@@ -61,12 +63,14 @@ def test_a_damaged_model_is_unreadable_or_has_faults_but_never_breaks_us(registr
         assert fault.place.line > 0
 
 
+@settings(max_examples=many(1000))
 @given(st.binary(max_size=200))
 def test_random_bytes_are_unreadable(registry, data):
     model, refusal = outcome(data, registry)
     assert refusal or model.diagnostics
 
 
+@settings(max_examples=many(1500))
 @given(data=st.data())
 def test_swapped_words_are_faults_with_a_place(registry, data):
     example = data.draw(st.sampled_from(EXAMPLES))

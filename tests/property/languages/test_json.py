@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from counts import many
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
@@ -71,7 +72,7 @@ PIECES = st.sampled_from(
 )
 
 
-@RELAXED
+@settings(RELAXED, max_examples=many(5000))
 @given(data=st.data())
 def test_a_damaged_file_never_breaks_us(registry, data):
     text = bytearray(SAMPLE)

@@ -7,6 +7,7 @@ import re
 from pathlib import Path
 
 import pytest
+from counts import many
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
@@ -121,7 +122,7 @@ PIECES = st.sampled_from(
 )
 
 
-@RELAXED
+@settings(RELAXED, max_examples=many(5000))
 @given(data=st.data())
 def test_a_damaged_old_model_never_breaks_us(new, data):
     text = bytearray(SAMPLE)

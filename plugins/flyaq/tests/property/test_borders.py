@@ -1,11 +1,12 @@
 """Every vertex of a border lies in or on the border that is made of it."""
 
+from counts import many
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from mmrs_flyaq.building.borders import border_of
 from shapely.geometry import LinearRing, Point, Polygon
 
-ROUNDS = settings(deadline=None, derandomize=True)
+ROUNDS = settings(deadline=None, derandomize=True, max_examples=many(20_000))
 LEAST = 1e-12
 """Degrees; a tenth of a micrometre, which is what rounding may take."""
 

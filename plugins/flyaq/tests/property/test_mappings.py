@@ -2,6 +2,7 @@
 
 import re
 
+from counts import many
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from mmrs_flyaq.migrate import migrate
@@ -14,6 +15,7 @@ ROUNDS = settings(
     deadline=None,
     suppress_health_check=[HealthCheck.function_scoped_fixture, HealthCheck.too_slow],
     derandomize=True,
+    max_examples=many(3000),
 )
 FILES = (
     "orchard-mission.json",

@@ -3,6 +3,7 @@
 from random import Random
 
 import pytest
+from counts import many
 from dialect_models import as_json, as_xmi, random_model
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
@@ -69,7 +70,7 @@ ODD = (
 )
 
 
-@ROUNDS
+@settings(ROUNDS, max_examples=many(5000))
 @given(data=st.data())
 def test_a_damaged_file_is_migrated_or_told(said, flyaq, data):
     text = (flyaq / data.draw(st.sampled_from(FILES))).read_bytes()
