@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from types import MappingProxyType
+from typing import NamedTuple
 
 from auv_vessel.goals import GOAL_PERIOD, GOALS, Goal, check_goal, goal_frames
 from auv_vessel.hosting import FramePort, Pace, serve
@@ -33,8 +34,7 @@ REQUESTS = 256
 """Numbers that requests of devices have, from 1 on, again and again."""
 
 
-@dataclass(frozen=True, slots=True)
-class State:
+class State(NamedTuple):
     """What is known of a vehicle: metres, metres per second, degrees, degrees per second.
 
     Attributes:
@@ -75,7 +75,7 @@ class State:
     progress: str = "NONE"
     distance: float = 0.0
     emergency: str | None = None
-    devices: Mapping[int, str] = field(default_factory=lambda: MappingProxyType({}))
+    devices: Mapping[int, str] = MappingProxyType({})
     failed: frozenset[int] = frozenset()
 
 
@@ -227,14 +227,13 @@ class Craft:
         with self._lock:
             self._codec.check("DecisionEmergency", Reason=reason, Release=release)
             self._emergency, self._emergencies = (reason, release), OFTEN
-            self._state = replace(self._state, emergency=self._state.emergency or reason)
+            self._state = self._state._replace(emergency=self._state.emergency or reason)
 
     def state(self) -> State:
         """Return what is known now."""
         with self._lock:
             known, age = self._state, self._now - self._state_at
-            return replace(
-                known,
+            return known._replace(
                 time=self._now,
                 age=age,
                 silent=self._now - self._heard_at,
@@ -287,7 +286,7 @@ class Craft:
             goal = replace(goal, number=(self._goal.number + 1) % GOALS)
             check_goal(self._codec, goal)
             self._goal, self._aimless = goal, False
-            self._state = replace(self._state, goal=goal.number, progress="NONE", distance=0.0)
+            self._state = self._state._replace(goal=goal.number, progress="NONE", distance=0.0)
             return goal.number
 
     def _hear_drive(self, number: int, frame: Frame) -> None:
@@ -295,46 +294,46 @@ class Craft:
         with self._lock:
             found = self._codec.decode(frame)
             if found is not None and (found.values["Drive"] == "FAULT") is not (number in self._state.failed):
-                self._state = replace(self._state, failed=self._state.failed ^ {number})
+                self._state = self._state._replace(failed=self._state.failed ^ {number})
 
     def _hear_place(self, found: Received, now: float) -> None:
         north, east = _numbers(found, "North", "East")
-        self._state = replace(self._state, north=north, east=east)
+        self._state = self._state._replace(north=north, east=east)
 
     def _hear_pose(self, found: Received, now: float) -> None:
         roll, pitch, heading = _numbers(found, "Roll", "Pitch", "Heading")
-        self._state = replace(self._state, roll=roll, pitch=pitch, heading=heading)
+        self._state = self._state._replace(roll=roll, pitch=pitch, heading=heading)
 
     def _hear_speed(self, found: Received, now: float) -> None:
         surge, sway, heave = _numbers(found, "Surge", "Sway", "Heave")
-        self._state = replace(self._state, surge=surge, sway=sway, heave=heave)
+        self._state = self._state._replace(surge=surge, sway=sway, heave=heave)
 
     def _hear_depth(self, found: Received, now: float) -> None:
         values = found.values
         depth, uncertainty = float(values["Depth"]), float(values["Uncertainty"])
-        self._state = replace(
-            self._state, depth=depth, uncertainty=uncertainty, trusted=bool(values["Trusted"])
+        self._state = self._state._replace(
+            depth=depth, uncertainty=uncertainty, trusted=bool(values["Trusted"])
         )
         self._state_at = now
 
     def _hear_current(self, found: Received, now: float) -> None:
         north, east = _numbers(found, "North", "East")
-        self._state = replace(self._state, current_north=north, current_east=east)
+        self._state = self._state._replace(current_north=north, current_east=east)
 
     def _hear_health(self, found: Received, now: float) -> None:
         seen = float(found.values["SonarRange"])
         sonar = seen if seen < FARTHEST_SEEN else None
         charge, leak = float(found.values["Charge"]), bool(found.values["Leak"])
-        self._state = replace(self._state, charge=charge, leak=leak, sonar=sonar)
+        self._state = self._state._replace(charge=charge, leak=leak, sonar=sonar)
 
     def _hear_progress(self, found: Received, now: float) -> None:
         values = found.values
         if int(values["Goal"]) == self._goal.number:
             progress, distance = str(values["State"]), float(values["Distance"])
-            self._state = replace(self._state, goal=self._goal.number, progress=progress, distance=distance)
+            self._state = self._state._replace(goal=self._goal.number, progress=progress, distance=distance)
 
     def _hear_emergency(self, found: Received, now: float) -> None:
-        self._state = replace(self._state, emergency=self._state.emergency or str(found.values["Reason"]))
+        self._state = self._state._replace(emergency=self._state.emergency or str(found.values["Reason"]))
 
     def _hear_device(self, found: Received, now: float) -> None:
         request, state = int(found.values["Request"]), str(found.values["State"])

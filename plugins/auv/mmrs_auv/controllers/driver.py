@@ -5,7 +5,6 @@ from __future__ import annotations
 import argparse
 from argparse import ArgumentParser, Namespace
 from collections.abc import Callable, Collection, Mapping, Sequence
-from dataclasses import replace
 from math import dist, inf
 from pathlib import Path
 
@@ -53,22 +52,25 @@ class DryCraft(Craft):
         """Return where it would be, with a full battery."""
         place = self._move_on()
         there = dist(place, self._target()) < 1e-6
-        return replace(
-            super().state(),
-            time=self._since,
-            north=place[0],
-            east=place[1],
-            depth=place[2],
-            heading=self._goal.heading,
-            uncertainty=0.0,
-            trusted=True,
-            position_lost=False,
-            age=0.0,
-            silent=0.0,
-            charge=1.0,
-            goal=self._goal.number,
-            progress="REACHED" if there else "ACTIVE",
-            distance=dist(place, self._target()),
+        return (
+            super()
+            .state()
+            ._replace(
+                time=self._since,
+                north=place[0],
+                east=place[1],
+                depth=place[2],
+                heading=self._goal.heading,
+                uncertainty=0.0,
+                trusted=True,
+                position_lost=False,
+                age=0.0,
+                silent=0.0,
+                charge=1.0,
+                goal=self._goal.number,
+                progress="REACHED" if there else "ACTIVE",
+                distance=dist(place, self._target()),
+            )
         )
 
     def _begin(self, goal: Goal) -> int:
