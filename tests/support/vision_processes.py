@@ -5,13 +5,13 @@ from __future__ import annotations
 import os
 import signal
 import subprocess
-import sys
 import threading
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from secrets import token_hex
 
+import warm_python
 from can_hub import running
 from sample_vessels import pool_sheet
 
@@ -67,9 +67,9 @@ class Teller:
 
 
 class Head:
-    """Three processes, who tells them where they are, and who listens."""
+    """Processes, who tells them where they are, and who listens."""
 
-    def __init__(self, folder: Path, channel: str, pose: Pose) -> None:
+    def __init__(self, folder: Path, channel: str, pose: Pose, parts: Iterable[str], python: str) -> None:
         self._files = (folder / "sheet.json", folder / "pool.json")
         self._files[0].write_text(sheet_json(pool_sheet()))
         self._files[1].write_text(to_json(POOL))
@@ -77,12 +77,13 @@ class Head:
         self.channel = channel
         self.told = Teller(channel, pose)
         self.detections = Detections(lasting=2.0)
-        self.parts = {part: self.start(part) for part in PARTS}
+        self._python = python
+        self.parts = {part: self.start(part) for part in parts}
 
     def start(self, part: str, *words: str) -> subprocess.Popen[str]:
         return subprocess.Popen(
             [
-                sys.executable, "-m", "auv_vision", part, "--sheet", str(self._files[0]),
+                self._python, "-m", "auv_vision", part, "--sheet", str(self._files[0]),
                 "--surroundings", str(self._files[1]), "--memory", self.memory, "--rate", "5",
                 "--channel", self.channel, "--to", f"127.0.0.1:{self.detections.port}", *words,
             ],
@@ -97,7 +98,7 @@ class Head:
         self.parts[part] = self.start(part)
 
     def cpu(self) -> float:
-        """Return seconds of processor time that all three have had."""
+        """Return seconds of processor time that all have had."""
         ticks = 0
         for process in self.parts.values():
             figures = Path(f"/proc/{process.pid}/stat").read_text().rpartition(")")[2].split()
@@ -116,10 +117,10 @@ class Head:
 
 
 @contextmanager
-def eyes(folder: Path, pose: Pose) -> Iterator[Head]:
-    """Have a vehicle's eyes run."""
+def eyes(folder: Path, pose: Pose, parts: Iterable[str] = PARTS, python: str | None = None) -> Iterator[Head]:
+    """Have these processes of a vehicle's eyes run, by a Python that has imported all that they need."""
     with running() as hub:
-        head = Head(folder, f"can0@127.0.0.1:{hub.port}", pose)
+        head = Head(folder, f"can0@127.0.0.1:{hub.port}", pose, parts, python or warm_python.python())
         try:
             yield head
         finally:

@@ -99,6 +99,7 @@ def _write_programs(folder: Path) -> None:
 
 def import_everything() -> None:
     """Import the core, the driver, the plug-ins and their languages, so that no call has to."""
+    import cv2  # noqa: F401
     import zenoh  # noqa: F401
     from pymavlink import mavutil
 
@@ -108,7 +109,7 @@ def import_everything() -> None:
 
     mavutil.set_dialect("ardupilotmega")
     plugins = entry_points(group="mmrs.plugins")
-    for name in sorted({"mmrs_core", "mmrs_runtime", "auv_vessel", *map(_package, plugins)}):
+    for name in sorted({"mmrs_core", "mmrs_runtime", "auv_vessel", "auv_vision", *map(_package, plugins)}):
         _import_all(name)
     contributions = load_plugins().contributions
     models, _ = read_models(shipped("examples") / "mixed-team", contributions)
@@ -168,8 +169,8 @@ class Server:
             self._watched.register(line, selectors.EVENT_READ)
             return None
         text = b""
-        while len(text) < int.from_bytes(size, "big"):
-            text += line.recv(1 << 16)
+        while len(text) < int.from_bytes(size, "big") and (more := line.recv(1 << 16)):
+            text += more
         pid = os.fork()
         if pid == 0:
             self._let_go(line)
@@ -177,7 +178,8 @@ class Server:
         for fd in fds:
             os.close(fd)
         self._lines[pid] = line
-        line.sendall(pid.to_bytes(4, "big"))
+        with contextlib.suppress(BrokenPipeError):  # a caller that was killed already ends its fork below
+            line.sendall(pid.to_bytes(4, "big"))
         self._watched.register(line, selectors.EVENT_READ, pid)
         return None
 

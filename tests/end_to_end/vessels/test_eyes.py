@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 import time
 from dataclasses import replace
 from pathlib import Path
@@ -32,7 +33,7 @@ def sees_nothing(head: Head) -> bool:
 
 
 def test_three_processes_tell_where_things_are_within_half_a_core(tmp_path: Path) -> None:
-    with eyes(tmp_path, HERE) as head:
+    with eyes(tmp_path, HERE, python=sys.executable) as head:
         assert sees_all(head)
         for thing in POOL.things:
             assert head.detections.place(thing.name) == pytest.approx(
@@ -101,13 +102,12 @@ def test_a_dark_film_stands_for_cameras_and_ends_the_process_when_it_ends(tmp_pa
         (("--front", "nowhere.avi"), "there is no such film or camera"),
         (("--bottom", "97"), "cannot open"),
         (("--surroundings", "nowhere.json"), "No such file"),
-        (("--rate", "0"), "not a rate"),
-        (("--to", "nobody"), "not HOST:PORT"),
+        (("--rate", "0"), "expected a rate above 0"),
+        (("--to", "nobody"), "expected HOST:PORT"),
     ],
 )
 def test_what_is_wrong_with_its_words_is_said(words: tuple[str, str], said: str, tmp_path: Path) -> None:
-    with eyes(tmp_path, HERE) as head:
-        head.kill("frames")
+    with eyes(tmp_path, HERE, parts=()) as head:
         process = head.start("frames", *words)
         _, error = process.communicate(timeout=40)
         assert process.returncode == 2
