@@ -15,8 +15,9 @@ _ROW = 24.0
 _SAMPLE = 34.0
 _GAP = 22.0
 _MARGIN = 18.0
-_MOST_GAPS = 12
-"""Gaps that the legend of a picture lists."""
+_MOST_GAPS = 200
+_MOST_BENEATH = 12
+"""Gaps that a page lists, and the legend of a picture."""
 _PLANNED_SIGNS = (
     ("work", "thick line: task"),
     ("transit", "thin line: transit"),
@@ -84,7 +85,7 @@ def legend_of(picture: Picture, width: float) -> Legend:
         x += needed
     below = _MARGIN + _ROW * (row + 1)
     longest = int((width - 2 * _MARGIN) / width_of("m"))
-    lines = [shortened(words, longest) for words in gaps_in_words(picture, _MOST_GAPS)]
+    lines = [shortened(words, longest) for words in gaps_in_words(picture, _MOST_BENEATH)]
     return Legend(
         below + _ROW * len(lines),
         tuple(placed),
@@ -92,7 +93,7 @@ def legend_of(picture: Picture, width: float) -> Legend:
     )
 
 
-def gaps_in_words(picture: Picture, most: int) -> list[str]:
+def gaps_in_words(picture: Picture, most: int = _MOST_GAPS) -> list[str]:
     """Return a line for each gap of a picture: so many at most, and how many more there are."""
     more = len(picture.gaps) - most
     lines = [

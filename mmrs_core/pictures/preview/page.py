@@ -15,8 +15,6 @@ from mmrs_core.pictures.preview.projection import projection_of
 from mmrs_core.pictures.preview.timeline import KEY, KEY_OF_FLIGHTS, LEFT, RIGHT, WIDTH, timeline_of
 
 _TALLEST = 940
-_MOST_GAPS = 200
-"""Gaps that a page lists."""
 _LAYERS = (
     ("problems", "problems"),
     ("planned", "planned paths"),
@@ -53,7 +51,7 @@ def page(picture: Picture) -> str:
         robots=[(index, style_of(index), robot) for index, robot in enumerate(picture.robots)],
         layers=[layer for layer in _LAYERS if layer[0] not in absent],
         key=key_of(picture),
-        gaps=gaps_in_words(picture, _MOST_GAPS),
+        gaps=gaps_in_words(picture),
         map=map_of(picture),
         ratio=f"{shown.width / shown.height:.4f}",
         widest=f"{_TALLEST * shown.width / shown.height:.0f}",

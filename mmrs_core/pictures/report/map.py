@@ -12,7 +12,7 @@ from mmrs_core.errors import MmrsError
 from mmrs_core.languages.modelset import model_in
 from mmrs_core.pictures.preview.features import task_pictures
 from mmrs_core.pictures.preview.from_flight import picture_of_flight
-from mmrs_core.pictures.preview.picture import Picture
+from mmrs_core.pictures.preview.picture import MapGap, Picture
 from mmrs_core.pictures.report.assembly import Given
 from mmrs_core.pictures.report.contents import Report, TaskStatus
 from mmrs_core.pipeline import check_models, ground, read_models
@@ -25,7 +25,7 @@ def flight_picture(
     """Return the picture of a flight, with the tasks of the mission in a folder and when they were done.
 
     A mission that cannot be read, is not valid, lies in another frame, or does not have these tasks
-    adds nothing.
+    adds no tasks, which is one of the picture's gaps.
 
     Args:
         elements: context elements of plug-ins.
@@ -33,10 +33,9 @@ def flight_picture(
     picture = picture_of_flight(
         given.program, given.flight, given.planned, contributions, given.place, elements
     )
-    scene = _scene_in(folder, contributions)
-    named = {task.name for task in report.tasks}
-    if scene is None or scene.frame != given.program.frame or not named <= {t.name for t in scene.tasks}:
-        return picture
+    scene = _scene_in(folder, contributions, given, report)
+    if not isinstance(scene, Scene):
+        return replace(picture, gaps=(*picture.gaps, MapGap("tasks", scene))) if scene else picture
     begins = {task.name: task.flown[0] for task in report.tasks if task.flown is not None}
     ends = {t.name: t.flown[1] for t in report.tasks if t.flown is not None and t.flown[1] is not None}
     partly = {task.name: task.part for task in report.tasks if task.status is TaskStatus.PART}
@@ -51,14 +50,17 @@ def _last(picture: Picture, task: str) -> float:
     return max((bar.end for bar in bars), default=picture.makespan)
 
 
-def _scene_in(folder: Path, contributions: Contributions) -> Scene | None:
+def _scene_in(folder: Path, contributions: Contributions, given: Given, report: Report) -> Scene | str:
+    """Return the mission in a folder, or why its tasks cannot be drawn; empty where there is none."""
     try:
         file = model_in(folder, "mission")
         if file is None or not file.is_file():
-            return None
+            return ""
         models, faults = read_models(file, contributions)
         if models is None or has_errors((*faults, *check_models(models, contributions))):
-            return None
-        return ground(models)
+            return f"{file.name} is not valid"
+        scene = ground(models)
     except MmrsError:  # the report is of the behaviour: it needs no mission
-        return None
+        return "the mission beside the behaviour cannot be read"
+    same = {task.name for task in report.tasks} <= {task.name for task in scene.tasks}
+    return scene if same and scene.frame == given.program.frame else f"{file.name} is of another behaviour"

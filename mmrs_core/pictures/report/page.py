@@ -12,7 +12,7 @@ from mmrs_core.pictures.documents import render, style_sheets
 from mmrs_core.pictures.figures import clock
 from mmrs_core.pictures.flights.planned import PlannedLeg
 from mmrs_core.pictures.palette import style_of, variables
-from mmrs_core.pictures.preview.key import key_of
+from mmrs_core.pictures.preview.key import gaps_in_words, key_of
 from mmrs_core.pictures.preview.map import map_of
 from mmrs_core.pictures.preview.picture import Picture
 from mmrs_core.pictures.preview.profile import BARS_OF_FLIGHTS, profile_of
@@ -43,6 +43,7 @@ def page(report: Report, given: Given, picture: Picture) -> str:
         figures=list(figures(report)),
         map=map_of(picture),
         key=key_of(picture),
+        gaps=gaps_in_words(picture),
         tasks=tables.tasks(report),
         sections=[section for section in _sections(report, given, picture) if not section.empty],
         foot=_foot(report),

@@ -196,6 +196,15 @@ def test_a_preview_of_logs_shows_the_tasks_of_the_mission_beside_the_behaviour(m
     text = (project / "out" / "preview.html").read_text("utf-8")
     assert "2 robots, 3 tasks, flown for" in text
     assert text.count('class="task-bar"') == 3
+    assert "not drawn" not in text
+    mission = project / "mission.xmi"
+    mission.write_text(mission.read_text("utf-8").replace("<tasks ", '<tasks speed="x" ', 1), "utf-8")
+    assert mmrs("preview", project, "--logs", project / "logs", "-o", project / "out")[0] == 0
+    assert "not drawn: tasks: mission.xmi is not valid" in (project / "out" / "preview.html").read_text(
+        "utf-8"
+    )
+    assert mmrs("report", project, project / "logs", "-o", project / "report.html")[0] == 0
+    assert "not drawn: tasks: mission.xmi is not valid" in (project / "report.html").read_text("utf-8")
 
 
 def test_a_replay_tells_where_robots_were(mmrs, project):
