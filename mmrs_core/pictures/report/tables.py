@@ -3,14 +3,24 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
-from typing import NamedTuple, TypeAlias
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import NamedTuple, TypeAlias, TypeVar
 
 from markupsafe import Markup
 
 from mmrs_core.pictures.figures import clock, quantity
-from mmrs_core.pictures.report.contents import Event, Nearness, Report, TaskReport, TaskStatus
+from mmrs_core.pictures.report.contents import (
+    EnergyReport,
+    Event,
+    LinkReport,
+    Nearness,
+    Report,
+    Separation,
+    Spread,
+    TaskReport,
+    TaskStatus,
+)
 from mmrs_core.pictures.report.events import BY_PEOPLE
 from mmrs_core.pictures.report.wording import (
     UNKNOWN,
@@ -40,6 +50,7 @@ class Badge(NamedTuple):
 
 
 Cell: TypeAlias = str | Badge
+Item = TypeVar("Item")
 
 
 @dataclass(frozen=True, slots=True)
@@ -79,19 +90,22 @@ class Section:
         return not (rows or self.words or self.notes or self.drawings)
 
 
+def _table(items: Iterable[Item], *columns: tuple[str, Callable[[Item], Cell]], fold: str = "") -> Table:
+    """Return a table with a row for each item, from columns: (name, the item's cell)."""
+    head = tuple(name for name, _ in columns)
+    return Table(head, [tuple(cell(item) for _, cell in columns) for item in items], fold)
+
+
 def tasks(report: Report) -> Section:
     """Return what was asked and what was achieved."""
-    rows = [
-        (
-            task.name,
-            _status(task),
-            ", ".join(task.robots) or "none",
-            span(task.planned),
-            span(task.flown) if task.flown is not None else "not started",
-        )
-        for task in report.tasks
-    ]
-    table = Table(("task", "achieved", "robots", "planned", "flown"), rows)
+    table = _table(
+        report.tasks,
+        ("task", lambda task: task.name),
+        ("achieved", _status),
+        ("robots", lambda task: ", ".join(task.robots) or "none"),
+        ("planned", lambda task: span(task.planned)),
+        ("flown", lambda task: span(task.flown) if task.flown is not None else "not started"),
+    )
     return Section("Tasks", (table,), "Fractions of the planned working time of the moves that serve a task.")
 
 
@@ -109,26 +123,16 @@ def _status(task: TaskReport) -> Badge:
 
 def robots(report: Report) -> Section:
     """Return each robot as a whole."""
-    rows = [
-        (
-            robot.robot,
-            robot.type_name,
-            Badge(spoken(robot.ending), _ending(robot.ending)),
-            f"{robot.moves[0]} of {robot.moves[1]}",
-            f"{metres(robot.way)} of {metres(robot.planned_way)}",
-            f"{seconds(robot.time)} of {seconds(robot.planned_time)}",
-        )
-        for robot in report.robots
-    ]
-    head = (
-        "robot",
-        "type",
-        "program",
-        "moves completed",
-        "distance flown / planned",
-        "time (flown / planned)",
+    table = _table(
+        report.robots,
+        ("robot", lambda each: each.robot),
+        ("type", lambda each: each.type_name),
+        ("program", lambda each: Badge(spoken(each.ending), _ending(each.ending))),
+        ("moves completed", lambda each: f"{each.moves[0]} of {each.moves[1]}"),
+        ("distance flown / planned", lambda each: f"{metres(each.way)} of {metres(each.planned_way)}"),
+        ("time (flown / planned)", lambda each: f"{seconds(each.time)} of {seconds(each.planned_time)}"),
     )
-    return Section("Robots", (Table(head, rows),))
+    return Section("Robots", (table,))
 
 
 def _ending(words: str) -> str:
@@ -140,29 +144,31 @@ def _ending(words: str) -> str:
 
 def waits(report: Report) -> Section:
     """Return which robot waited for which."""
-    rows = [
-        (
-            each.robot,
-            each.move,
-            ", ".join(each.slots),
-            ", ".join(each.setters) or UNKNOWN,
-            f"{clock(each.since)} to {clock(each.since + each.seconds)}",
-            seconds(each.seconds) + (", timed out" if each.until is None else ""),
-            seconds(each.planned),
-        )
-        for each in report.waits
-    ]
-    head = ("robot", "after move", "for slots", "set by", "when", "waited", "planned")
-    return Section("Waits", (Table(head, rows),))
+    table = _table(
+        report.waits,
+        ("robot", lambda each: each.robot),
+        ("after move", lambda each: each.move),
+        ("for slots", lambda each: ", ".join(each.slots)),
+        ("set by", lambda each: ", ".join(each.setters) or UNKNOWN),
+        ("when", lambda each: f"{clock(each.since)} to {clock(each.since + each.seconds)}"),
+        ("waited", lambda each: seconds(each.seconds) + (", timed out" if each.until is None else "")),
+        ("planned", lambda each: seconds(each.planned)),
+    )
+    return Section("Waits", (table,))
 
 
 def events(report: Report) -> Section:
     """Return faults, decisions, commands and warnings."""
-    rows = [
-        (clock(each.time), each.robot, _event(each), _what(each), spoken(each.why)) for each in report.events
-    ]
-    table = Table(("time", "robot", "kind", "what", "cause and response"), rows)
-    return Section("Faults, decisions, commands, warnings", (table,), words="" if rows else "None.")
+    table = _table(
+        report.events,
+        ("time", lambda each: clock(each.time)),
+        ("robot", lambda each: each.robot),
+        ("kind", _event),
+        ("what", _what),
+        ("cause and response", lambda each: spoken(each.why)),
+    )
+    words = "" if report.events else "None."
+    return Section("Faults, decisions, commands, warnings", (table,), words=words)
 
 
 def _event(event: Event) -> Badge:
@@ -177,21 +183,22 @@ def _what(event: Event) -> str:
 
 def moves(report: Report) -> Section:
     """Return every move, folded."""
-    rows = [
+    table = _table(
+        report.moves,
+        ("robot", lambda each: each.robot),
+        ("move", lambda each: each.move),
+        ("kind", lambda each: each.kind),
+        ("task", lambda each: each.task),
+        ("since", lambda each: clock(each.entered)),
+        ("took", lambda each: seconds(each.flown)),
+        ("planned", lambda each: seconds(each.planned)),
         (
-            each.robot,
-            each.move,
-            each.kind,
-            each.task,
-            clock(each.entered),
-            seconds(each.flown),
-            seconds(each.planned),
-            more_or_less(each.flown, each.planned) if each.ended else "not completed",
-        )
-        for each in report.moves
-    ]
-    head = ("robot", "move", "kind", "task", "since", "took", "planned", "difference")
-    return Section("Moves", (Table(head, rows, f"all {len(rows)} moves"),))
+            "difference",
+            lambda each: more_or_less(each.flown, each.planned) if each.ended else "not completed",
+        ),
+        fold=f"all {len(report.moves)} moves",
+    )
+    return Section("Moves", (table,))
 
 
 def unknown(report: Report) -> Section:
@@ -202,81 +209,74 @@ def unknown(report: Report) -> Section:
 
 def deviations(report: Report) -> Section:
     """Return how far robots were off their planned paths."""
-    rows = [
+    table = _table(
+        report.deviations,
+        ("robot", lambda each: each.robot),
+        ("cross-track, median", lambda each: metres(each.sideways.median)),
+        ("95 %", lambda each: metres(each.sideways.most)),
+        ("maximum", lambda each: _largest(each.sideways, each.time, each.move)),
+        ("position", lambda each: place(each.where)),
         (
-            each.robot,
-            metres(each.sideways.median),
-            metres(each.sideways.most),
-            f"{metres(each.sideways.largest)} at {clock(each.time)}, move {each.move}",
-            place(each.where),
-            f"{metres(each.upwards.median)} / {metres(each.upwards.most)}",
-            f"{metres(each.upwards.largest)} at {clock(each.high_time)}, move {each.high_move}",
-            str(each.fixes),
-        )
-        for each in report.deviations
-    ]
-    head = (
-        "robot",
-        "cross-track, median",
-        "95 %",
-        "maximum",
-        "position",
-        "altitude, median / 95 %",
-        "maximum",
-        "fixes",
+            "altitude, median / 95 %",
+            lambda each: f"{metres(each.upwards.median)} / {metres(each.upwards.most)}",
+        ),
+        ("maximum", lambda each: _largest(each.upwards, each.high_time, each.high_move)),
+        ("fixes", lambda each: str(each.fixes)),
     )
     note = (
         "From each fix to the nearest point of its move's planned path. Fixes outside of moves, on the"
         " ground, during searches for objects and during off-plan responses do not count."
         " Errors of the vehicle's own position are not in these figures."
     )
-    return Section("Planned vs. flown", (Table(head, rows),), note)
+    return Section("Planned vs. flown", (table,), note)
+
+
+def _largest(spread: Spread, time: float, move: str) -> str:
+    return f"{metres(spread.largest)} at {clock(time)}, move {move}"
 
 
 def approaches(report: Report) -> Section:
     """Return how near robots came to areas."""
-    ordered = sorted(report.approaches, key=lambda each: each.kept - (each.required or 0.0))
-    rows = [
-        (
-            each.robot,
-            f"{each.area} ({each.use})",
-            metres(each.kept) if each.kept > 0 else "inside",
-            metres(each.required),
-            _kept(each),
-            clock(each.time),
-            place(each.where),
-        )
-        for each in ordered
-    ]
-    head = ("robot", "area", "closest approach", "required clearance", "verdict", "when", "position")
+    table = _table(
+        sorted(report.approaches, key=lambda each: each.kept - (each.required or 0.0)),
+        ("robot", lambda each: each.robot),
+        ("area", lambda each: f"{each.area} ({each.use})"),
+        ("closest approach", lambda each: metres(each.kept) if each.kept > 0 else "inside"),
+        ("required clearance", lambda each: metres(each.required)),
+        ("verdict", _kept),
+        ("when", lambda each: clock(each.time)),
+        ("position", lambda each: place(each.where)),
+    )
     note = (
         "Measured in three dimensions to the shapes as drawn, straight between fixes."
         " Required: the area's safety distance, half the robot's diagonal and the position error, which may"
         " be used up; closer than that is too close."
     )
-    return Section("Distances to forbidden areas and obstacles", (Table(head, rows),), note)
+    return Section("Distances to forbidden areas and obstacles", (table,), note)
 
 
 def separations(report: Report) -> Section:
     """Return how near robots came to each other, the nearest first."""
-    rows = [
-        (
-            f"{each.robot}, {each.other}",
-            metres(each.kept),
-            metres(each.required) if each.required is not None else "no separation required",
-            _kept(each) if each.required is not None else "",
-            clock(each.time),
-            place(each.where),
-        )
-        for each in sorted(report.separations, key=lambda each: each.kept)
-    ]
-    head = ("robots", "closest approach", "required separation", "verdict", "when", "first robot's position")
+    table = _table(
+        sorted(report.separations, key=lambda each: each.kept),
+        ("robots", lambda each: f"{each.robot}, {each.other}"),
+        ("closest approach", lambda each: metres(each.kept)),
+        ("required separation", _required),
+        ("verdict", lambda each: _kept(each) if each.required is not None else ""),
+        ("when", lambda each: clock(each.time)),
+        ("first robot's position", lambda each: place(each.where)),
+    )
     note = (
         "While both were in motion, straight between fixes. Required: the mission's minimum separation and"
         " the position error of both, which may be used up."
     )
-    rest = (Table(head, rows, f"all {len(rows)} pairs"),) if len(rows) > _PAIRS else ()
-    return Section("Distances between robots", (Table(head, rows[:_PAIRS]), *rest), note)
+    pairs = len(table.rows)
+    rest = (replace(table, fold=f"all {pairs} pairs"),) if pairs > _PAIRS else ()
+    return Section("Distances between robots", (replace(table, rows=table.rows[:_PAIRS]), *rest), note)
+
+
+def _required(each: Separation) -> str:
+    return metres(each.required) if each.required is not None else "no separation required"
 
 
 def _kept(approach: Nearness) -> Badge:
@@ -286,21 +286,22 @@ def _kept(approach: Nearness) -> Badge:
 
 def energies(report: Report) -> Section:
     """Return what robots used of their batteries."""
-    rows = [
-        (
-            each.robot,
-            level(each.planned, each.capacity),
-            level(each.used, each.capacity),
-            f"{level(each.lowest)} at {clock(each.lowest_at)}" if each.lowest_at is not None else UNKNOWN,
-            level(each.planned_lowest),
-            level(each.end),
-            _reserve(each.lowest, each.reserve),
-        )
-        for each in report.energies
-    ]
-    head = ("robot", "planned use", "used", "lowest", "lowest as planned", "at the end", "reserve")
+    table = _table(
+        report.energies,
+        ("robot", lambda each: each.robot),
+        ("planned use", lambda each: level(each.planned, each.capacity)),
+        ("used", lambda each: level(each.used, each.capacity)),
+        ("lowest", _lowest),
+        ("lowest as planned", lambda each: level(each.planned_lowest)),
+        ("at the end", lambda each: level(each.end)),
+        ("reserve", lambda each: _reserve(each.lowest, each.reserve)),
+    )
     note = "Fractions of a full battery; a charged or replaced battery counts as a new one."
-    return Section("Energy", (Table(head, rows),), note)
+    return Section("Energy", (table,), note)
+
+
+def _lowest(each: EnergyReport) -> str:
+    return f"{level(each.lowest)} at {clock(each.lowest_at)}" if each.lowest_at is not None else UNKNOWN
 
 
 def _reserve(lowest: float | None, reserve: float) -> Badge:
@@ -314,62 +315,59 @@ def photos(report: Report) -> Section:
     """Return photos, unconfirmed ones first."""
     missing = [photo for photo in report.photos if photo.state == "not confirmed"]
     rest = [photo for photo in report.photos if photo.state != "not confirmed"]
-    rows = [
+    table = _table(
+        (*missing, *rest),
+        ("number", lambda each: "" if each.index is None else str(each.index)),
+        ("robot", lambda each: each.robot),
+        ("time", lambda each: clock(each.time)),
         (
-            "" if each.index is None else str(each.index),
-            each.robot,
-            clock(each.time),
-            Badge(each.state, {"taken": "good", "not confirmed": "bad"}.get(each.state, "none")),
-            each.task,
-            place(each.where),
-        )
-        for each in (*missing, *rest)
-    ]
+            "state",
+            lambda each: Badge(each.state, {"taken": "good", "not confirmed": "bad"}.get(each.state, "none")),
+        ),
+        ("task", lambda each: each.task),
+        ("position", lambda each: place(each.where)),
+        fold="all photos",
+    )
     words = f"{len(rest)} photos" if report.simulated else f"{len(rest)} photos were confirmed"
     words += f"; {len(missing)} were commanded and not confirmed" if missing else ""
-    table = Table(("number", "robot", "time", "state", "task", "position"), rows, "all photos")
     note = (
         "Confirmed: the vehicle reported that the camera took it. The pictures themselves were not examined."
     )
-    return Section("Photos", (table,), note, f"{words}." if rows else "")
+    return Section("Photos", (table,), note, f"{words}." if report.photos else "")
 
 
 def readings(report: Report) -> Section:
     """Return what was measured and reported."""
-    rows = [
-        (clock(each.time), each.robot, each.kind, each.name, each.content, place(each.where))
-        for each in report.readings
-    ]
-    head = ("time", "robot", "kind", "name", "content", "position")
-    return Section("Measurements and reports", (Table(head, rows),))
+    table = _table(
+        report.readings,
+        ("time", lambda each: clock(each.time)),
+        ("robot", lambda each: each.robot),
+        ("kind", lambda each: each.kind),
+        ("name", lambda each: each.name),
+        ("content", lambda each: each.content),
+        ("position", lambda each: place(each.where)),
+    )
+    return Section("Measurements and reports", (table,))
 
 
 def links(report: Report) -> Section:
     """Return the quality of the links."""
-    rows = [
-        (
-            each.robot,
-            ", ".join(part for part in (each.vehicle, each.by) if part) or UNKNOWN,
-            str(each.fixes),
-            f"{each.gaps}, {seconds(each.silent)} in all" if each.gaps else "none",
-            seconds(each.longest) if each.gaps else "",
-            _dropped(each.dropped),
-            f"{each.commands}, {each.repeated} repeated, {each.refused} not accepted",
-            quantity(each.slowest, "s") if each.slowest is not None else "",
-        )
-        for each in report.links
-    ]
-    head = (
-        "robot",
-        "vehicle, link",
-        "fixes",
-        "gaps",
-        "longest",
-        "frames dropped",
-        "commands",
-        "slowest answer",
+    table = _table(
+        report.links,
+        ("robot", lambda each: each.robot),
+        ("vehicle, link", lambda each: ", ".join(filter(None, (each.vehicle, each.by))) or UNKNOWN),
+        ("fixes", lambda each: str(each.fixes)),
+        ("gaps", lambda each: f"{each.gaps}, {seconds(each.silent)} in all" if each.gaps else "none"),
+        ("longest", lambda each: seconds(each.longest) if each.gaps else ""),
+        ("frames dropped", lambda each: _dropped(each.dropped)),
+        ("commands", _commands),
+        ("slowest answer", lambda each: quantity(each.slowest, "s") if each.slowest is not None else ""),
     )
-    return Section("Links", (Table(head, rows),))
+    return Section("Links", (table,))
+
+
+def _commands(each: LinkReport) -> str:
+    return f"{each.commands}, {each.repeated} repeated, {each.refused} not accepted"
 
 
 def _dropped(counts: Mapping[str, int]) -> str:
