@@ -18,7 +18,7 @@ _UNREADABLE = ("XMI", "ECO", "FIL", "PRJ", "MIG", "GND")
 """The beginnings of the codes of problems that leave a model without something that its file holds."""
 _CONTRADICTORY = ("CTX003", "CTX004", "CTX005", "CTX007")
 """The codes of areas whose outline, heights or safety distance cannot be meant."""
-_NAME = re.compile(r"""^<[^>]*?\sname\s*=\s*(["'])(.*?)\1""", re.DOTALL)
+_NAME = re.compile(r'\sname="([^"<>]*)"')
 _MOST_REASONS = 5
 
 
@@ -76,8 +76,8 @@ class Gaps:
         reasons = [*([lost] if lost else []), *dict.fromkeys(problem.message for problem in causes)]
         more = len(reasons) - _MOST_REASONS
         shown = [*reasons[:_MOST_REASONS], *([f"and {more} more"] if more > 0 else [])]
-        called = (isinstance(element, Unknown) and _NAME.match(element._mmrs_xml)) or None
-        what = f"{kind} {(unescape(called[2]) if called else name)!r}"
+        called = (isinstance(element, Unknown) and _NAME.search(element._mmrs_xml.partition(">")[0])) or None
+        what = f"{kind} {(unescape(called[1]) if called else name)!r}"
         return MapGap(what, "; ".join(shown) or "it has no position", source_of(place), drawn)
 
     def others(self) -> Iterator[MapGap]:
