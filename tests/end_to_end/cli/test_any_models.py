@@ -199,11 +199,6 @@ def test_a_model_that_cannot_be_read_wholly_is_not_compared(town, capsys):
     assert "bad.xmi: not compared, since something of it cannot be read" in capsys.readouterr().err
 
 
-def test_diff_takes_no_folder_with_a_file(town, capsys):
-    assert run(["diff", str(town), "town.xmi"]) == 3
-    assert "is a folder, town.xmi is a file" in capsys.readouterr().err
-
-
 def test_metamodel_diff_says_whether_old_models_load(town, capsys):
     new = town / "new.ecore"
     new.write_text(

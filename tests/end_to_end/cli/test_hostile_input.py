@@ -70,13 +70,7 @@ def test_a_missing_file_ends_with_3_and_is_named(mmrs, folder, command):
     assert "lost.xmi" in err
 
 
-def test_a_folder_without_mission_says_so(mmrs, folder):
-    code, _, err = mmrs("plan", folder)
-    assert code == 3
-    assert "no mission.xmi" in err
-
-
-@pytest.mark.parametrize("megabytes", [5, pytest.param(50, marks=pytest.mark.thorough)])
+@pytest.mark.parametrize("megabytes", [2, pytest.param(50, marks=pytest.mark.thorough)])
 def test_megabytes_of_junk_end_soon(mmrs, folder, megabytes):
     (folder / "mission.xmi").write_bytes(b"<m>" + b"<a b='c'/>" * (megabytes * 100_000))
     code, _, err = mmrs("validate", folder)

@@ -115,13 +115,13 @@ def test_a_shell_completes_commands_options_and_values(words, completed, capfd, 
 
 
 def test_a_shell_completes_robots_and_tasks_of_generated_files(capfd, monkeypatch, tmp_path):
-    assert run(["plan", str(PARK), "-o", str(tmp_path / "behaviour.xmi")]) == 0
-    types = ["--robots", str(PARK / "robots")]
-    behaviour, code = str(tmp_path / "behaviour.xmi"), tmp_path / "code"
-    assert run(["generate", behaviour, *types, "--target", "mavlink-python", "-o", str(code)]) == 0
+    pool, behaviour, code = PARK.parent / "pool", str(tmp_path / "behaviour.xmi"), tmp_path / "code"
+    assert run(["plan", str(pool), "-o", behaviour]) == 0
+    models = ["--robots", str(pool / "robots"), "--context", str(pool / "context.xmi")]
+    assert run(["generate", behaviour, *models, "--target", "mavlink-python", "-o", str(code)]) == 0
     capfd.readouterr()
-    assert completions(f"mmrs explain {code} --robot A", capfd, monkeypatch) == ["Alba"]
-    assert "west" in completions(f"mmrs explain {code} --task w", capfd, monkeypatch)[0]
+    assert completions(f"mmrs explain {code} --robot N", capfd, monkeypatch) == ["Naiad"]
+    assert "gate" in completions(f"mmrs explain {code} --task g", capfd, monkeypatch)
 
 
 def test_a_shell_completes_robots_that_have_logs(capfd, monkeypatch, tmp_path):
@@ -209,11 +209,6 @@ def test_version_is_told(capsys):
 def test_a_metamodel_is_for_a_model_not_for_a_project(tmp_path, capsys):
     assert run(["validate", str(tmp_path), "--metamodel", "lab.ecore"]) == 2
     assert "--metamodel is for one model: name its file" in capsys.readouterr().err
-
-
-def test_a_missing_project_ends_with_3_and_names_it(tmp_path, capsys):
-    assert run(["validate", str(tmp_path / "nowhere")]) == 3
-    assert "nowhere" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize(

@@ -46,11 +46,6 @@ def test_a_folder_stands_for_its_behaviour(tmp_path):
     assert behaviour_file(tmp_path) == tmp_path / "behaviour.xmi"
 
 
-def test_a_folder_without_behaviour_says_how_to_make_one(tmp_path):
-    with pytest.raises(UnreadableError, match="mmrs plan"):
-        behaviour_file(tmp_path)
-
-
 def test_global_options_may_stand_anywhere():
     settings, rest = taken_from(["plan", "--debug", "field", "--no-plugins", "--json"])
     assert settings == Settings(only_core=True, debug=True, json=True)
