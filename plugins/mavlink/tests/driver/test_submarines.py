@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 from flight_crew import manned, robot_of
 
-from mmrs_mavlink.program import Geographic
-from mmrs_mavlink.services.uploads import Uploads
+from mmrs_mavlink.program import Geographic, GoTo, Run, Start, Step, Stop, Then
+from mmrs_mavlink.services.uploads import Uploads, mission_of
 from mmrs_mavlink.steps.obeying import undone
 from mmrs_runtime.faults import MOTORS_OFF, RefusedError
 
@@ -59,3 +61,19 @@ def test_motors_that_stop_at_the_surface_are_not(below):
     with below.simulated.lock:
         below.simulated.autopilot.disarm()
     below.quiet(5.0)
+
+
+WAYPOINT = 16
+DEPTHS = {"down": -8.0, "up": 0.0, "again": -0.5}
+STEPS = (
+    Step("start", Start(), then=Then("down")),
+    *(Step(name, GoTo(Geographic(42.37, 13.35, up), 1.0)) for name, up in DEPTHS.items()),
+    Step("stop", Stop()),
+)
+
+
+@pytest.mark.parametrize(("vehicle", "heights"), [("sub", [-8.0, -0.01, -0.5]), ("rover", [-8.0, 0.0, -0.5])])
+def test_a_place_at_the_surface_is_a_little_below_it(vehicle, heights):
+    robot = replace(robot_of(), vehicle=vehicle, steps=STEPS, runs=(Run(tuple(DEPTHS), (0.0,) * 3),))
+    items, _ = mission_of(robot)
+    assert [item.z for item in items if item.command == WAYPOINT and item.x][-3:] == heights
