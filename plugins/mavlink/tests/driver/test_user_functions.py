@@ -12,7 +12,6 @@ from flight_crew import HOME, NORTH, robot_of
 
 from mmrs_mavlink.program import Choose, Geographic, Local, Object
 from mmrs_runtime.conditions import standard
-from mmrs_runtime.controllers import Local
 from mmrs_runtime.controllers import user_functions as objects
 from mmrs_runtime.controllers.state import State
 from mmrs_runtime.controllers.user_functions import UserFunctions, place_of
