@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+import subprocess
+import sys
 from contextlib import contextmanager
 from dataclasses import replace
 
@@ -15,6 +17,7 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 from mmrs_core.behaviour.program import Move
 from mmrs_core.contributions.rules import MoveKind
 from mmrs_core.generation.render import render
+from mmrs_core.generation.writing import write
 from mmrs_core.hookspecs import hookimpl
 from mmrs_core.plugins import load_plugins
 from mmrs_core.testing.programs import program
@@ -149,6 +152,30 @@ def test_a_profile_that_programs_cannot_import_is_refused(flight):
     nowhere = {"vehicle_profiles": {PROFILE.name: replace(PROFILE, source="")}}
     (refusal,) = MAVLINK_PYTHON.refusals(replace(flight, extensions=nowhere))
     assert refusal == "robot 'alpha': profile 'airship' says no module that programs import it from"
+
+
+MODULE = """from dataclasses import replace
+
+from mmrs_mavlink.profiles import ARDUCOPTER
+
+ZEPPELIN = replace(ARDUCOPTER, name="airship", vehicle="airship")
+"""
+
+
+def test_a_program_imports_its_profile_and_begins_nothing_without_it(flight, tmp_path):
+    own = {"vehicle_profiles": {PROFILE.name: replace(PROFILE, source="zeppelins:ZEPPELIN")}}
+    write(render(MAVLINK_PYTHON, replace(flight, extensions={**flight.extensions, **own})), tmp_path)
+
+    def dry_run():
+        command = [sys.executable, "fleet.py", "--dry-run", "--speedup", "100"]
+        found = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, timeout=60, check=False)
+        return found.returncode, found.stderr
+
+    code, said = dry_run()
+    assert code == 2
+    assert "robot 'alpha': zeppelins:ZEPPELIN: cannot be imported" in said
+    (tmp_path / "zeppelins.py").write_text(MODULE, "utf-8")
+    assert dry_run()[0] == 0
 
 
 def test_a_class_of_vehicle_without_the_autopilot_of_a_type_is_refused(flight):
