@@ -19,13 +19,8 @@ pytestmark = pytest.mark.real_time("controllers")
 
 BRAKE = 17
 LOITER = 5
-AT_HOME = 0.6
-"""Metres from home at which a vehicle may land: the radius in which places count as reached, and a little."""
 thorough = partial(pytest.param, marks=pytest.mark.thorough)
 """Values of a test that runs in the full counts only."""
-
-also_in_the_fault_table = pytest.mark.thorough
-"""Marks what rows of the fault table, and tests of endings, test in the fast profile, too."""
 
 SOON = ("--tries", "2")
 """Has a vehicle asked twice only, so that it is sooner known not to answer."""
@@ -66,84 +61,6 @@ def test_an_interrupted_robot_holds_and_says_so_when_it_does(controllers, hangar
     assert made.replayed(partial=True).faults == {"alpha": "STOPPED"}
 
 
-@also_in_the_fault_table
-def test_an_interrupted_robot_returns_by_the_way_it_came_if_it_is_asked_to(controllers, hangar):
-    made = controllers(one_drone())
-    vehicles, links = hangar(made.program)
-    with made.start("fleet.py", *links, "--on-stop", "return") as process:
-        until(at_work(vehicles["alpha"]))
-        process.send_signal(signal.SIGTERM)
-        _, said = process.communicate(timeout=60)
-    assert process.returncode == 130, said
-    assert not vehicles["alpha"].autopilot.armed
-    assert max(map(abs, vehicles["alpha"].autopilot.body.position)) < AT_HOME
-
-
-@also_in_the_fault_table
-def test_a_lost_link_ends_the_program_and_the_vehicle_answers_by_itself(controllers, hangar):
-    made = controllers(one_drone(Policy("LINK_LOST", "LAND", 3.0)))
-    vehicles, links = hangar(made.program)
-    with made.start("fleet.py", *links) as process:
-        until(at_work(vehicles["alpha"]))
-        vehicles["alpha"].faults.begin("link-down")
-        _, said = process.communicate(timeout=60)
-    assert process.returncode == 5, said
-    assert vehicles["alpha"].autopilot.parameters["FS_GCS_ENABLE"] == 5.0
-    assert made.replayed(partial=True).faults == {"alpha": "LINK_LOST"}
-
-
-@also_in_the_fault_table
-def test_a_short_silence_of_the_link_changes_nothing(controllers, hangar):
-    made = controllers(one_drone(Policy("LINK_LOST", "RETURN", 60.0), hold=20.0))
-    vehicles, links = hangar(made.program)
-    with made.start("fleet.py", *links) as process:
-        until(at_work(vehicles["alpha"]))
-        vehicles["alpha"].faults.begin("link-down")
-        time.sleep(0.5)
-        vehicles["alpha"].faults.end("link-down")
-        _, said = process.communicate(timeout=60)
-    assert process.returncode == 0, said
-
-
-@also_in_the_fault_table
-def test_a_low_battery_brings_the_robot_home(controllers, hangar):
-    made = controllers(one_drone(Policy("BATTERY_LOW", "RETURN"), hold=600.0))
-    vehicles, links = hangar(made.program, energy=100.0)
-    code, said = made.run("fleet.py", *links)
-    assert code == 1
-    assert "BATTERY_LOW" in said
-    assert not vehicles["alpha"].autopilot.armed
-    assert max(map(abs, vehicles["alpha"].autopilot.body.position)) < AT_HOME
-
-
-@also_in_the_fault_table
-def test_a_pilot_who_takes_over_is_left_alone(controllers, hangar):
-    made = controllers(one_drone())
-    vehicles, links = hangar(made.program)
-    with made.start("fleet.py", *links) as process:
-        until(at_work(vehicles["alpha"]))
-        vehicles["alpha"].faults.begin("stick", "loiter")
-        assert any("hands off" in line for line in process.stderr)
-        heard = len(vehicles["alpha"].received)
-        time.sleep(0.5)
-        interrupt_twice(process)
-        process.communicate(timeout=60)
-    assert process.returncode == 130
-    assert vehicles["alpha"].received[heard:] == []
-    assert vehicles["alpha"].autopilot.mode == LOITER
-    assert made.replayed(partial=True).faults == {"alpha": "TAKEN_OVER"}
-
-
-@also_in_the_fault_table
-def test_a_device_that_does_not_answer_is_a_fault(controllers, hangar):
-    made = controllers(one_drone(Policy("DEVICE_SILENT", "LAND"), hold=1.0))
-    vehicles, links = hangar(made.program, silent=frozenset({2000}))
-    code, said = made.run("fleet.py", *links)
-    assert code == 1
-    assert "DEVICE_SILENT" in said
-    assert not vehicles["alpha"].autopilot.armed
-
-
 @pytest.mark.thorough
 def test_a_policy_may_carry_on_without_a_device(controllers, hangar):
     made = controllers(one_drone(Policy("DEVICE_SILENT", "CONTINUE"), hold=1.0))
@@ -178,18 +95,6 @@ def test_a_robot_that_holds_is_left_to_whoever_takes_over(controllers, hangar):
     assert process.returncode == 130, said
     assert "cannot carry out" not in said
     assert vehicles["alpha"].autopilot.mode == LOITER
-
-
-@also_in_the_fault_table
-def test_an_emergency_area_is_gone_to_and_landed_in(controllers, hangar):
-    made = controllers(one_drone(Policy("DEVICE_SILENT", "EMERGENCY_AREA"), hold=1.0))
-    vehicles, links = hangar(made.program, silent=frozenset({2000}))
-    code, said = made.run("fleet.py", *links)
-    assert code == 1, said
-    north, east, up = vehicles["alpha"].autopilot.body.position
-    assert -40.0 < east < -20.0
-    assert 0.0 < north < 20.0
-    assert up == 0.0
 
 
 def test_a_vehicle_far_from_home_does_not_start(controllers, hangar):
@@ -235,16 +140,6 @@ def test_a_robot_whose_peer_fails_responds_to_it(controllers, hangar):
     assert process.returncode == 130
     assert not vehicles["beta"].autopilot.armed
     assert made.replayed(partial=True).faults["beta"] == "PEER_LOST"
-
-
-@also_in_the_fault_table
-def test_a_wait_that_is_too_long_is_a_fault(controllers, hangar):
-    made = controllers(waiting_pair(Policy("WAIT_TOO_LONG", "LAND", 2.0)))
-    vehicles, links = hangar(made.program)
-    code, said = made.run("fleet.py", *links)
-    assert code == 1
-    assert "'beta': WAIT_TOO_LONG" in said
-    assert not vehicles["beta"].autopilot.armed
 
 
 @pytest.mark.parametrize("command", [22, *map(thorough, (400, 176))])
