@@ -107,25 +107,6 @@ def test_a_robot_in_the_air_comes_home_by_its_policy_where_another_is_never_hear
     assert flown.steps("b") == before
 
 
-@pytest.mark.thorough
-def test_a_robot_whose_run_is_killed_on_its_way_home_for_its_battery_comes_home_in_the_resumed_run(fleet):
-    low = (STAYS, ("BATTERY_LOW", "RETURN", None))
-    flown = fleet(Pad("a", policies=low, stay=2.0), Pad("b", stay=2.0), speedup=UNHURRIED)
-    killed = flown.start()
-    vehicle = begun(flown, "a", "tour 3")
-    vehicle.faults.begin("battery", 0.15)
-    assert wait_for(lambda: any("BATTERY_LOW" in line for line in killed.said), PATIENCE)
-    killed.signal(signal.SIGKILL)
-    killed.end(PATIENCE)
-    resumed = flown.start("--resume")
-    assert resumed.end(PATIENCE) == 1, resumed.said
-    assert any("'a': came home for its battery" in line for line in resumed.said), resumed.said
-    assert not vehicle.autopilot.armed
-    assert vehicle.autopilot.body.position == pytest.approx((0.0, 0.0, 0.0), abs=AT_HOME)
-    assert "fault" not in {step["label"] for step in flown.steps("a")}
-    assert flown.steps("b")[-1]["move"] == "stop"
-
-
 def test_a_changed_battery_lets_a_run_go_on_where_it_stopped(fleet):
     flown = fleet(Pad("a", stay=2.0, policies=(("BATTERY_LOW", "RETURN", None),)))
     first = flown.start()

@@ -50,33 +50,6 @@ def _finish(outcome: Outcome, fleet: Fleet, robot: str) -> None:
         outcome.problems.append("said: " + " | ".join(fleet.process.said[-12:]))
 
 
-def new_battery(folder: Path, response: str, moment: str) -> Outcome:
-    """Fly until the battery is low, change it, and go on with ``--resume``."""
-    policy = ("BATTERY_LOW", response, None)
-    outcome = Outcome(f"battery low {moment}, changed, resumed", f"BATTERY_LOW → {response}")
-    with Fleet(folder, [Pad("r0", policies=(policy,), stay=5.0)], GENERATED) as fleet:
-        vehicle = fleet.vehicles["r0"]
-        first = fleet.start()
-        _reached(fleet, "r0", moment)
-        since = struck(vehicle)
-        vehicle.faults.begin("battery", 0.15)
-        code = first.end(30.0)
-        outcome.answered, outcome.rested = answered(vehicle, since), vehicle.autopilot.time - since.time
-        outcome.happened = story(vehicle, since)
-        if code != 1:
-            outcome.problems.append(f"the exit code for a battery that is low is {code}, not 1")
-        vehicle.faults.begin("battery", 1.0)
-        vehicle.autopilot.body.position = (0.0, 0.0, 0.0)  # somebody carries it home
-        again = struck(vehicle)
-        second = fleet.start("--resume")
-        code = second.end(40.0)
-        outcome.happened += "; then, with a new battery: " + story(vehicle, again)
-        if code != 0:
-            outcome.problems.append(f"the exit code after the new battery is {code}, not 0")
-        _finish(outcome, fleet, "r0")
-    return outcome
-
-
 def killed_and_resumed(folder: Path, response: str, moment: str) -> Outcome:
     """Kill the process in the air, let the vehicle do what it does by itself, and go on with ``--resume``."""
     policy = ("LINK_LOST", response, 5.0)
@@ -182,7 +155,6 @@ def _split(faults: str, after: float, event: str) -> Callable[[Path], Outcome]:
 
 
 JOURNEYS = (
-    Journey("battery changed", partial(new_battery, response="RETURN", moment=AUTO)),
     Journey("killed and resumed", partial(killed_and_resumed, response="RETURN", moment=AUTO)),
     Journey("peer killed", partial(peer, number=signal.SIGKILL, response="RETURN", ends="home")),
     Journey("peer frozen", partial(peer, number=FREEZE, response="LAND", ends="here")),
