@@ -1,15 +1,19 @@
-"""What a plug-in object declares, asked of it without loading any other plug-in."""
+"""What a plug-in object declares, asked of it without loading more plug-ins than it builds on."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable
+from functools import cache
+from types import SimpleNamespace
 from typing import Any, ClassVar
 
 import pytest
 
 from mmrs_core import builtin
 from mmrs_core.contributions.registry import Contributions
-from mmrs_core.languages.registry import MetamodelSource, Registry, registry_with
+from mmrs_core.errors import PluginError
+from mmrs_core.hookspecs import hookimpl
+from mmrs_core.languages.registry import MetamodelSource, Registry
 from mmrs_core.plugins import load_plugins
 
 
@@ -40,32 +44,47 @@ class Conformance:
     Attributes:
         plugin: the module or object with its hooks.
         name: of its entry point; matters only where it is looked for among the installed plug-ins.
-        more_metamodels: those that tests need beside the plug-in's own.
+        more_plugins: those that it builds on, modules or objects with hooks: loaded with it, not tested.
+        more_metamodels: those that only tests need; their classes are not tested either.
         more_sorts: as `SORTS`, for hooks of plug-ins.
     """
 
     plugin: ClassVar[object]
     name: ClassVar[str] = "tested"
+    more_plugins: ClassVar[Iterable[object]] = ()
     more_metamodels: ClassVar[Iterable[MetamodelSource]] = ()
     more_sorts: ClassVar[tuple[str, ...]] = ()
 
     @pytest.fixture(scope="class")
     @classmethod
     def registry(cls) -> Registry:
-        """Return the core's metamodels with the plug-in's and those of the tests."""
-        return registry_with((*declared(cls.plugin, "metamodels"), *cls.more_metamodels))
+        """Return the metamodels of the core, of the plug-in, of those that it builds on and of the tests."""
+        return cls.with_core().languages
 
     @pytest.fixture(scope="class")
     @classmethod
     def alone(cls) -> Contributions:
-        """Return what the core and this plug-in contribute, without any other."""
+        """Return what the core, this plug-in and those that it builds on contribute, without any other."""
         return cls.with_core()
 
     @classmethod
+    @cache
     def with_core(cls) -> Contributions:
-        """Return what the core and this plug-in contribute, without any other."""
-        extra = {} if cls.plugin is builtin else {cls.name: cls.plugin}
-        return load_plugins(only_core=True, extra=extra).contributions
+        """Return what the core, this plug-in and those that it builds on contribute, without any other."""
+        plugins = {f"{cls.name} builds on {index}": each for index, each in enumerate(cls.more_plugins, 1)}
+        if cls.more_metamodels:
+            found = tuple(cls.more_metamodels)
+            plugins[f"tests of {cls.name}"] = SimpleNamespace(mmrs_metamodels=hookimpl(lambda: found))
+        if cls.plugin is not builtin:
+            plugins[cls.name] = cls.plugin
+        contributions = load_plugins(only_core=True, extra=plugins).contributions
+        try:
+            assert contributions.languages
+        except PluginError as error:
+            hint = "name the plug-in that provides it in more_plugins, or it alone in more_metamodels"
+            wanted = "needs the metamodel" in str(error)
+            pytest.fail(f"{cls.__name__}: {error}{f': {hint}' if wanted else ''}", pytrace=False)
+        return contributions
 
     def pytest_generate_tests(self, metafunc: pytest.Metafunc) -> None:
         """Run a test once for each descriptor of the sort that one of its arguments is named after."""
