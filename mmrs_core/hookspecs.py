@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from mmrs_core.contributions.execution import Condition
     from mmrs_core.contributions.fixes import Fix
     from mmrs_core.contributions.hooks import Hook
-    from mmrs_core.contributions.rules import MoveKind, RobotKind, Rule
+    from mmrs_core.contributions.rules import ElementKind, MoveKind, RobotKind, Rule
     from mmrs_core.contributions.symbols import MapSymbol
     from mmrs_core.contributions.targets import Target
     from mmrs_core.contributions.vehicles import VehicleFactory
@@ -80,6 +80,11 @@ def mmrs_robot_kinds() -> Iterable[RobotKind]:  # type: ignore[empty-body]
 @hookspec
 def mmrs_move_kinds() -> Iterable[MoveKind]:  # type: ignore[empty-body]
     """Contribute what moves of a metaclass do; one kind for a metaclass."""
+
+
+@hookspec
+def mmrs_element_kinds() -> Iterable[ElementKind]:  # type: ignore[empty-body]
+    """Contribute the areas that context elements are to all robots; one kind for a metaclass."""
 
 
 @hookspec

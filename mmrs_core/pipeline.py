@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from mmrs_core.generation.capabilities.judging import TargetCapability
     from mmrs_core.languages import behaviour as bl
     from mmrs_core.languages.modelset import ModelSet
-    from mmrs_core.scene import Area, Plan, RobotType, Scene
+    from mmrs_core.scene import Area, Part, Plan, RobotType, Scene
     from mmrs_core.simulation.run import SimulatedRun
     from mmrs_core.transformation.engine import Trace
     from mmrs_runtime.records.steps import StepRecord
@@ -48,13 +48,15 @@ class BehaviourContext:
 
     Attributes:
         types: robot types by name.
-        areas: of the context as drawn; None where no context is given.
+        areas: of the context as drawn, and those that its elements make; None where no context is given.
         environment: weather and water, by attribute name.
+        elements: context elements of plug-ins.
     """
 
     types: Mapping[str, RobotType]
     areas: tuple[Area, ...] | None = None
     environment: Mapping[str, float] | None = None
+    elements: tuple[Part, ...] = ()
 
 
 def read_models(
@@ -124,7 +126,7 @@ def expand(scene: Scene, contributions: Contributions) -> Scene:
     """Return the scene with the kinematics of every robot and the work of every task."""
     from mmrs_core.transformation.expand import expand as expanded
 
-    return expanded(scene, contributions.rules, contributions.robot_kinds)
+    return expanded(scene, contributions.rules, contributions.robot_kinds, contributions.element_kinds)
 
 
 def plan(scene: Scene, *, seed: int = 0) -> Plan:
@@ -150,7 +152,7 @@ def transform(scene: Scene, plan: Plan, contributions: Contributions) -> tuple[b
 def place_of_scene(scene: Scene) -> BehaviourContext:
     """Return what the behaviour of a scene is checked against."""
     types = {robot.type.name: robot.type for robot in scene.robots}
-    return BehaviourContext(types, scene.areas, scene.environment)
+    return BehaviourContext(types, scene.areas, scene.environment, scene.elements)
 
 
 def program_of(behaviour: bl.Behaviour, contributions: Contributions) -> Program:
@@ -171,6 +173,7 @@ def verify(program: Program, place: BehaviourContext, contributions: Contributio
         move_kinds=contributions.move_kinds,
         areas=place.areas,
         environment=place.environment or {},
+        elements=place.elements,
     )
     return verified(given, contributions.checks)
 
@@ -219,6 +222,7 @@ def render(
         areas=place.areas or (),
         extensions=contributions.extensions,
         environment=place.environment or {},
+        elements=place.elements,
     )
     provider = contributions.distribution_of("targets", chosen)
     overrides = overrides_in(templates, chosen, contributions.targets) if templates is not None else None
@@ -302,6 +306,7 @@ def simulate(
         conditions=conditions_for(program, contributions, assume or {}, asks=False),
         environment=place.environment,
         areas=place.areas or (),
+        elements=place.elements,
         terms=Terms(observe=observe),
     )
 
@@ -333,6 +338,7 @@ def inputs_of(
         options=options or {},
         environment=place.environment or {},
         areas=place.areas or (),
+        elements=place.elements,
         extensions=contributions.extensions,
     )
     return {id: each for id, each in found.items() if robots is None or id in robots}

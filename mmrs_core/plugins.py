@@ -33,6 +33,7 @@ _KINDS: Mapping[str, str] = {
     "rules": "contributions.rules.Rule",
     "robot_kinds": "contributions.rules.RobotKind",
     "move_kinds": "contributions.rules.MoveKind",
+    "element_kinds": "contributions.rules.ElementKind",
     "checks": "contributions.checks.Check",
     "targets": "contributions.targets.Target",
     "vehicles": "contributions.vehicles.VehicleFactory",

@@ -102,6 +102,7 @@ def kinematics_of(input: CheckInput, robot: RobotProgram) -> Kinematics:
         dependencies=(),
         robots=(actor,),
         areas=input.areas or (),
+        elements=input.elements,
         environment=input.environment,
         minimum_separation=input.program.minimum_separation,
         reserve=input.program.reserve,

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 
 from mmrs_core.behaviour.program import Program, RobotProgram
 from mmrs_core.errors import UnsupportedError
-from mmrs_core.scene import Robot, RobotType, Scene
+from mmrs_core.scene import Part, Robot, RobotType, Scene
 
 ORIGIN = (0.0, 0.0, 0.0)
 
@@ -33,6 +33,7 @@ def scene_of(
     types: Mapping[str, RobotType],
     *,
     environment: Mapping[str, float] | None = None,
+    elements: tuple[Part, ...] = (),
     reserve: float | None = None,
 ) -> Scene:
     """Return a scene of the behaviour's robots, without tasks and areas.
@@ -41,6 +42,7 @@ def scene_of(
         program: the behaviour.
         types: robot types by name.
         environment: of the context, by attribute name.
+        elements: of the context, of plug-ins.
         reserve: part of lifetime and energy that robots must leave; None: the behaviour's own.
 
     Raises:
@@ -56,6 +58,7 @@ def scene_of(
         tasks=(),
         dependencies=(),
         robots=tuple(robot_of(robot, types[robot.type_name], error) for robot in program.robots),
+        elements=elements,
         environment=environment or {},
         minimum_separation=program.minimum_separation,
         reserve=program.reserve if reserve is None else reserve,

@@ -63,12 +63,10 @@ class Loaded:
 
     Attributes:
         place: with areas None where there is no context.
-        elements: what else the context holds, of types that plug-ins add.
     """
 
     program: Program
     place: BehaviourContext
-    elements: tuple[Part, ...] = ()
 
 
 def load_behaviour(
@@ -82,8 +80,7 @@ def load_behaviour(
     """
     files = read_behaviour_files(session, file, context=context, robots=robots)
     program, behaviour = _valid(session, files)
-    elements = _elements(behaviour, files.context)
-    return Loaded(program, _place(behaviour, files, elements, session), elements)
+    return Loaded(program, _place(behaviour, files, session))
 
 
 def read_behaviour_files(
@@ -215,15 +212,14 @@ def _valid(session: Session, files: BehaviourFiles) -> tuple[Program, bl.Behavio
     return program_of(files.behaviour, session.contributions), files.behaviour
 
 
-def _place(
-    behaviour: bl.Behaviour, files: BehaviourFiles, elements: tuple[Part, ...], session: Session
-) -> BehaviourContext:
+def _place(behaviour: bl.Behaviour, files: BehaviourFiles, session: Session) -> BehaviourContext:
     types = {name: robot_type_of(root) for name, root in files.types.items()}
     if files.context is None:
         return BehaviourContext(types)
-    barred = barriers(elements, types.values(), session.contributions.robot_kinds)
-    areas = (*_areas(behaviour, files.context), *barred)
-    return BehaviourContext(types, areas, environment_of(files.context))
+    elements = _elements(behaviour, files.context)
+    drawn, known = _areas(behaviour, files.context), session.contributions
+    barred = barriers(elements, drawn, types.values(), known.robot_kinds, known.element_kinds)
+    return BehaviourContext(types, (*drawn, *barred), environment_of(files.context), elements)
 
 
 def _areas(behaviour: bl.Behaviour, context: contexts.Context) -> tuple[Area, ...]:
@@ -233,8 +229,8 @@ def _areas(behaviour: bl.Behaviour, context: contexts.Context) -> tuple[Area, ..
     return areas_of(context, laid)
 
 
-def _elements(behaviour: bl.Behaviour, context: contexts.Context | None) -> tuple[Part, ...]:
-    if context is None or not children(context, "elements"):
+def _elements(behaviour: bl.Behaviour, context: contexts.Context) -> tuple[Part, ...]:
+    if not children(context, "elements"):
         return ()
     laid = ground_of(behaviour, context)
     return tuple(part_of(element, laid) for element in children(context, "elements"))

@@ -150,7 +150,6 @@ def _of_behaviour(
         contributions.move_kinds,
         contributions.map_symbols,
         loaded.place,
-        loaded.elements,
     )
 
 
@@ -168,7 +167,7 @@ def _of_flight(
 
     loaded = load_behaviour(session, file, context=context, robots=robots)
     given = flown(session, loaded, logs, assume)
-    return flight_picture(given, report_of(given), session.contributions, loaded.elements, file.parent)
+    return flight_picture(given, report_of(given), session.contributions, file.parent)
 
 
 def write_pictures(picture: Picture, folder: Path) -> tuple[Path, ...]:

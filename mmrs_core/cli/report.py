@@ -61,7 +61,7 @@ def report(
     made = report_of(given)
     path = output if output is not None else (logs[0] if logs[0].is_dir() else logs[0].parent) / PAGE
     refuse_inputs((path,), (*session.inputs, *read_files(logs)))
-    picture = flight_picture(given, made, session.contributions, loaded.elements, file.parent)
+    picture = flight_picture(given, made, session.contributions, file.parent)
     replace_files({path: page(made, given, picture).encode()})
     if json:
         say_json({"files": [path], "report": made})

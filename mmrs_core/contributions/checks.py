@@ -12,7 +12,7 @@ from mmrs_core.diagnostics import Place
 if TYPE_CHECKING:
     from mmrs_core.behaviour.program import Program
     from mmrs_core.contributions.rules import MoveKind, RobotKind
-    from mmrs_core.scene import Area, Name, RobotType
+    from mmrs_core.scene import Area, Name, Part, RobotType
 
 
 class Status(Enum):
@@ -69,8 +69,9 @@ class CheckInput:
 
     Attributes:
         types: robot types by name; a type that a robot names may be missing.
-        areas: of the context as drawn; None where no context was given.
+        areas: of the context as drawn, and those that its elements make; None where no context was given.
         environment: by attribute name; absent where not known.
+        elements: context elements of plug-ins; empty where no context was given.
         shared: what checks of one verification keep for each other, by the function that found it.
     """
 
@@ -80,6 +81,7 @@ class CheckInput:
     move_kinds: Mapping[Name, MoveKind]
     areas: tuple[Area, ...] | None = None
     environment: Mapping[str, float] = field(default_factory=dict)
+    elements: tuple[Part, ...] = ()
     shared: dict[Callable[..., object], object] = field(default_factory=dict, compare=False, repr=False)
 
 

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from mmrs_core.contributions.execution import Condition
     from mmrs_core.contributions.fixes import Fix
     from mmrs_core.contributions.hooks import Extensions, Hook
-    from mmrs_core.contributions.rules import MoveKind, RobotKind, Rule
+    from mmrs_core.contributions.rules import ElementKind, MoveKind, RobotKind, Rule
     from mmrs_core.contributions.symbols import MapSymbol
     from mmrs_core.contributions.targets import Target
     from mmrs_core.contributions.vehicles import VehicleFactory
@@ -46,6 +46,7 @@ _SHOWN: Mapping[str, Callable[[Any], object]] = {
     "rules": lambda rule: rule.name,
     "robot_kinds": lambda kind: kind.name,
     "move_kinds": lambda kind: "#//".join(kind.metaclass),
+    "element_kinds": lambda kind: "#//".join(kind.metaclass),
     "checks": lambda check: check.name,
     "targets": lambda target: target.name,
     "vehicles": lambda vehicle: vehicle.name,
@@ -162,6 +163,11 @@ class Contributions:
     def move_kinds(self) -> Mapping[Name, MoveKind]:
         """Return the move kinds by metaclass."""
         return self._by_metaclass("move_kinds")
+
+    @cached_property
+    def element_kinds(self) -> Mapping[Name, ElementKind]:
+        """Return the kinds of context elements by metaclass."""
+        return self._by_metaclass("element_kinds")
 
     @cached_property
     def checks(self) -> tuple[Check, ...]:

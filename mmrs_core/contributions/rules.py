@@ -93,7 +93,9 @@ class RobotKind:
         name: snake_case.
         metaclass: of the robot type or of its movement capabilities; the most specific one wins,
             the robot type's own metaclasses before those of its capabilities.
-        kinematics: what a robot of this kind can do on that mission.
+        kinematics: what a robot of this kind can do on that mission. When a behaviour is checked or
+            simulated, the scene contains that robot alone, the areas, the elements and the environment, and
+            no tasks. Raises InfeasibleError where a figure is missing.
         launch: moves that take it from home to that height above home, metres.
         recover: moves that bring it down where it is.
         travel: moves along straight legs; the first position is where the robot is.
@@ -149,6 +151,24 @@ class MoveKind:
     manoeuvre: Literal["", "take_off", "land", "go_to"] = ""
 
 
+@dataclass(frozen=True, slots=True)
+class ElementKind:
+    """What context elements of one metaclass are to all robots: areas that they keep out of.
+
+    The planner, the checks, the fences of generated code and the maps treat these areas as those that the
+    context draws. What bars some robots only is `RobotKind.barrier`.
+
+    Attributes:
+        metaclass: of the elements; the most specific one wins.
+        areas: forbidden areas and obstacles that an element makes. Arguments: the element, and all of the
+            context, elements first, then what its areas are (`Area.part`): `element_called` finds there
+            what a reference names. Raises InfeasibleError where a figure is missing.
+    """
+
+    metaclass: Name
+    areas: Callable[[Part, tuple[Part, ...]], Iterable[Area]]
+
+
 def most_specific(metaclasses: tuple[Name, ...], registered: Mapping[Name, object]) -> Name | None:
     """Return the first of the metaclasses that is registered; None if none is."""
     return next((name for name in metaclasses if name in registered), None)
@@ -168,20 +188,32 @@ def robot_kind_of(robot_type: RobotType, kinds: Mapping[Name, RobotKind]) -> Rob
 
 
 def barriers(
-    elements: Iterable[Part], types: Iterable[RobotType], kinds: Mapping[Name, RobotKind]
+    elements: tuple[Part, ...],
+    drawn: Iterable[Area],
+    types: Iterable[RobotType],
+    robot_kinds: Mapping[Name, RobotKind],
+    element_kinds: Mapping[Name, ElementKind],
 ) -> tuple[Area, ...]:
-    """Return the areas that elements of a context are to robots of certain types only.
+    """Return the areas that elements of a context make, for all robots or for those of certain types only.
 
     Args:
         elements: grounded, in the context's order.
+        drawn: the areas of the context itself.
         types: of the robots; sorted here, so that their order does not matter.
-        kinds: robot kinds by metaclass.
+        robot_kinds, element_kinds: by metaclass.
+
+    Raises:
+        InfeasibleError: if an element lacks a figure that its kind needs.
     """
-    found = []
+    found: list[Area] = []
     known = sorted(types, key=lambda each: each.name)
+    everything = (*elements, *(area.part for area in drawn))
     for element in elements:
+        name = most_specific(element.metaclasses, element_kinds)
+        if name is not None:
+            found.extend(element_kinds[name].areas(element, everything))
         for robot_type in known:
-            kind = robot_kind_of(robot_type, kinds)
+            kind = robot_kind_of(robot_type, robot_kinds)
             area = kind.barrier(robot_type, element) if kind is not None and kind.barrier else None
             if area is not None:
                 found.append(replace(area, types=frozenset({robot_type.name})))

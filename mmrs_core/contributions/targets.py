@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from mmrs_core.contributions.hooks import Extensions
     from mmrs_core.contributions.rules import MoveKind, RobotKind
     from mmrs_core.contributions.samples import SampleWiring
-    from mmrs_core.scene import Area, Name, RobotType
+    from mmrs_core.scene import Area, Name, Part, RobotType
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,9 +38,10 @@ class TargetInput:
 
     Attributes:
         types: robot types by name.
-        areas: of the context as drawn, empty where no context was given.
+        areas: of the context as drawn, and those that its elements make; empty where no context was given.
         extensions: what plug-ins contribute by hooks of plug-ins, by `Hook.sort`, then by key.
         environment: weather and water, by attribute name, as far as the context states them.
+        elements: context elements of plug-ins; empty where no context was given.
     """
 
     program: Program
@@ -50,6 +51,7 @@ class TargetInput:
     areas: tuple[Area, ...] = ()
     extensions: Extensions = field(default_factory=dict)
     environment: Mapping[str, float] = field(default_factory=dict)
+    elements: tuple[Part, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from mmrs_core.contributions.execution import Sample
     from mmrs_core.contributions.hooks import Extensions
     from mmrs_core.contributions.rules import MoveKind, RobotKind
-    from mmrs_core.scene import Area, Name, Policy, RobotType
+    from mmrs_core.scene import Area, Name, Part, Policy, RobotType
     from mmrs_runtime.vehicle import Vehicle
 
 
@@ -41,10 +41,11 @@ class VehicleInput:
     Attributes:
         options: as in ``--backend-option``, those of this robot.
         policies: of the robot, in the order in which they go: the first for an event counts.
-        areas: of the context as drawn; empty where none was given.
+        areas: of the context as drawn, and those that its elements make; empty where none was given.
         live: of a run in real time; None in simulated time.
         extensions: what plug-ins contribute by hooks of plug-ins, by `Hook.sort`, then by key.
         types: of all robots, by name, as far as they are known.
+        elements: context elements of plug-ins; empty where no context was given.
     """
 
     program: Program
@@ -59,6 +60,7 @@ class VehicleInput:
     live: Live | None = None
     extensions: Extensions = field(default_factory=dict)
     types: Mapping[str, RobotType] = field(default_factory=dict)
+    elements: tuple[Part, ...] = ()
 
 
 Check = Callable[[Mapping[str, Mapping[str, str]], Mapping[str, str]], Iterable[str]]

@@ -5,6 +5,7 @@ Valid models hold what is asked for; where one does not, the task is refused, ne
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import TypeGuard
 
 from mmrs_core.errors import InfeasibleError
@@ -62,6 +63,14 @@ def pairs(part: Part, name: str) -> tuple[tuple[str, str], ...]:
     value = part.attributes.get(name)
     found = [each for each in value if isinstance(each, Part)] if _is_many(value) else []
     return tuple((text(each, "key"), text(each, "value")) for each in found)
+
+
+def element_called(elements: Iterable[Part], name: str) -> Part | None:
+    """Return the first element of that name, which is what a reference to it holds; None if there is none.
+
+    A reference to an element without a name holds its path, such as ``//@elements.2``.
+    """
+    return next((each for each in elements if name in (text(each, "name"), each.place.path)), None)
 
 
 def _is_many(value: Value) -> TypeGuard[tuple[Value, ...]]:

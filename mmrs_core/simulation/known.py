@@ -25,7 +25,7 @@ def kinematics_of(given: VehicleInput) -> Kinematics:
         raise UnsupportedError(f"{who}: no plug-in provides its robot kind", [who])
     alone = replace(given.program, robots=(given.robot,))
     types = {given.robot.type_name: given.type}
-    scene = scene_of(alone, types, environment=given.environment, reserve=0.0)
+    scene = scene_of(alone, types, environment=given.environment, elements=given.elements, reserve=0.0)
     return kind.kinematics(scene.robots[0], scene)
 
 

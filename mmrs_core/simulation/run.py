@@ -13,7 +13,7 @@ from mmrs_core.contributions.vehicles import Recorder, VehicleFactory, VehicleIn
 from mmrs_core.errors import UnsupportedError, UsageError
 from mmrs_core.languages.collector import collector_at_rest
 from mmrs_core.languages.naming import nearest
-from mmrs_core.scene import Area, Name, Policy, RobotType
+from mmrs_core.scene import Area, Name, Part, Policy, RobotType
 from mmrs_runtime.engine.clocks import SimulatedClock
 from mmrs_runtime.engine.run import run
 from mmrs_runtime.engine.terms import TO_THE_END, Ending, Terms
@@ -51,6 +51,7 @@ def simulate(
     conditions: Mapping[str, Condition] | None = None,
     environment: Mapping[str, float] | None = None,
     areas: tuple[Area, ...] = (),
+    elements: tuple[Part, ...] = (),
     terms: Terms = TO_THE_END,
 ) -> SimulatedRun:
     """Return the simulated run of a behaviour; the same input gives the same run.
@@ -64,6 +65,7 @@ def simulate(
         conditions: by identifier; see `assumed` for fixed answers.
         environment: of the context, by attribute name; still air and water where it says nothing.
         areas: of the context as drawn; robots flee to its emergency areas.
+        elements: context elements of plug-ins.
         terms: observers of the run, and what cuts it off.
 
     Raises:
@@ -81,6 +83,7 @@ def simulate(
         options=options or {},
         environment=environment or {},
         areas=areas,
+        elements=elements,
     )
     refuse_undecided(program, given, conditions or {})
     made: list[StepRecord] = []
@@ -134,6 +137,7 @@ def inputs_of(
     options: Mapping[str, str],
     environment: Mapping[str, float],
     areas: tuple[Area, ...],
+    elements: tuple[Part, ...] = (),
     extensions: Extensions | None = None,
 ) -> dict[str, VehicleInput]:
     """Return what the backend of each robot may use; see `simulate` for the arguments.
@@ -159,6 +163,7 @@ def inputs_of(
             areas,
             extensions=extensions or {},
             types=types,
+            elements=elements,
         )
     return found
 

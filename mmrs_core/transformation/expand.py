@@ -7,14 +7,26 @@ from dataclasses import replace
 from itertools import pairwise
 from math import dist, inf, isfinite
 
-from mmrs_core.contributions.rules import RobotKind, Rule, barriers, most_specific, robot_kind_of
+from mmrs_core.contributions.rules import (
+    ElementKind,
+    RobotKind,
+    Rule,
+    barriers,
+    most_specific,
+    robot_kind_of,
+)
 from mmrs_core.errors import InfeasibleError, MmrsError, PluginError
 from mmrs_core.scene import Device, Kinematics, Name, Part, Robot, Scene, Stroke, Task, Value, Work
 
 CONTROL_TASK = ("urn:mmrs:mission:1.0", "ControlTask")
 
 
-def expand(scene: Scene, rules: Mapping[Name, Rule], robot_kinds: Mapping[Name, RobotKind]) -> Scene:
+def expand(
+    scene: Scene,
+    rules: Mapping[Name, Rule],
+    robot_kinds: Mapping[Name, RobotKind],
+    element_kinds: Mapping[Name, ElementKind],
+) -> Scene:
     """Return the scene with every robot's kinematics and barriers, and the work of every task for each.
 
     Raises:
@@ -23,7 +35,7 @@ def expand(scene: Scene, rules: Mapping[Name, Rule], robot_kinds: Mapping[Name, 
     """
     robots = tuple(_with_kinematics(robot, scene, robot_kinds) for robot in scene.robots)
     types = {robot.type.name: robot.type for robot in robots}
-    barred = barriers(scene.elements, types.values(), robot_kinds)
+    barred = barriers(scene.elements, scene.areas, types.values(), robot_kinds, element_kinds)
     scene = replace(scene, robots=robots, areas=(*scene.areas, *barred))
     works: dict[tuple[str, str], Work] = {}
     refusals: dict[tuple[str, str], str] = {}

@@ -84,6 +84,7 @@ def test_every_field_of_what_is_declared_is_told():
         "mmrs_rules": rules.Rule,
         "mmrs_robot_kinds": rules.RobotKind,
         "mmrs_move_kinds": rules.MoveKind,
+        "mmrs_element_kinds": rules.ElementKind,
         "mmrs_checks": checks.Check,
         "mmrs_device_actions": DeviceWiring,
         "mmrs_vehicle_profiles": VehicleProfile,

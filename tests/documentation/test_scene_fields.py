@@ -53,6 +53,7 @@ TOLD = {
         attributes.ring,
         attributes.holes,
         attributes.pairs,
+        attributes.element_called,
         positions.refuse_heights,
         positions.refuse_blocked,
         positions.refuse_unsteady,

@@ -84,6 +84,7 @@ def planned_for(
             conditions=choosing.conditions,
             environment=place.environment,
             areas=place.areas or (),
+            elements=place.elements,
         )
     except MmrsError as error:
         return Planned(None, (*notes, f"planned times and energy are unknown: {error}"))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from itertools import pairwise
 from math import dist
@@ -25,7 +25,7 @@ from mmrs_core.pictures.preview.from_run import (
 )
 from mmrs_core.pictures.preview.picture import Arm, Bar, Leg, Mark, Picture, RobotPicture
 from mmrs_core.pipeline import BehaviourContext
-from mmrs_core.scene import Name, Part
+from mmrs_core.scene import Name
 
 _HOLD = (BEHAVIOUR, "HoldPosition")
 _STILL = 0.3
@@ -41,7 +41,6 @@ def picture_of_flight(
     planned: Planned,
     contributed: Contributions,
     place: BehaviourContext,
-    elements: Iterable[Part] = (),
 ) -> Picture:
     """Return what to show of a flight; tracks are thinned out by a tolerance that a note gives."""
     run = planned.run
@@ -52,7 +51,6 @@ def picture_of_flight(
         contributed.move_kinds,
         contributed.map_symbols,
         place,
-        elements,
     )
     kinds = contributed.move_kinds
     shots = shots_in(program, flight, place.types, contributed)

@@ -26,7 +26,7 @@ from mmrs_core.pictures.preview.features import (
 )
 from mmrs_core.pictures.preview.picture import Bar, Handover, Leg, Picture, RobotPicture
 from mmrs_core.pipeline import BehaviourContext
-from mmrs_core.scene import Name, Part, Position
+from mmrs_core.scene import Name, Position
 from mmrs_runtime.records.steps import StepRecord
 
 _STANDSTILL = 1e-3
@@ -42,7 +42,6 @@ def picture_of_run(
     move_kinds: Mapping[Name, MoveKind],
     symbols: Mapping[Name, MapSymbol],
     place: BehaviourContext,
-    elements: Iterable[Part] = (),
 ) -> Picture:
     """Return what to show of a run.
 
@@ -53,7 +52,6 @@ def picture_of_run(
         move_kinds: what tells launches and recoveries apart from other moves.
         symbols: how things look, by metaclass.
         place: what it took place in.
-        elements: context elements of plug-ins.
     """
     by_robot: dict[str, list[StepRecord]] = {robot.id: [] for robot in program.robots}
     for record in records:
@@ -79,7 +77,7 @@ def picture_of_run(
         robots=robots,
         zones=zones,
         gaps=gap_of_clearances(zones) if place.areas is not None else (NO_CONTEXT,),
-        elements=elements_of(elements, symbols),
+        elements=elements_of(place.elements, symbols),
         handovers=tuple(handovers_of(program, by_robot)),
         makespan=max((steps[-1].time for steps in by_robot.values() if steps), default=0.0),
     )

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from dataclasses import replace
 from pathlib import Path
 
@@ -16,23 +15,16 @@ from mmrs_core.pictures.preview.picture import MapGap, Picture
 from mmrs_core.pictures.report.assembly import Given
 from mmrs_core.pictures.report.contents import Report, TaskStatus
 from mmrs_core.pipeline import check_models, ground, read_models
-from mmrs_core.scene import Part, Scene
+from mmrs_core.scene import Scene
 
 
-def flight_picture(
-    given: Given, report: Report, contributions: Contributions, elements: Iterable[Part], folder: Path
-) -> Picture:
+def flight_picture(given: Given, report: Report, contributions: Contributions, folder: Path) -> Picture:
     """Return the picture of a flight, with the tasks of the mission in a folder and when they were done.
 
     A mission that cannot be read, is not valid, lies in another frame, or does not have these tasks
     adds no tasks, which is one of the picture's gaps.
-
-    Args:
-        elements: context elements of plug-ins.
     """
-    picture = picture_of_flight(
-        given.program, given.flight, given.planned, contributions, given.place, elements
-    )
+    picture = picture_of_flight(given.program, given.flight, given.planned, contributions, given.place)
     scene = _scene_in(folder, contributions, given, report)
     if not isinstance(scene, Scene):
         return replace(picture, gaps=(*picture.gaps, MapGap("tasks", scene))) if scene else picture

@@ -10,6 +10,7 @@ _MODULES = (
     "checks",
     "constraints",
     "declared",
+    "element_kinds",
     "fixes",
     "metamodels",
     "missions",
@@ -24,6 +25,7 @@ pytest.register_assert_rewrite(*(f"{__name__}.{module}" for module in _MODULES))
 
 from mmrs_core.testing.conformance.checks import CheckCase, CheckConformance  # noqa: E402
 from mmrs_core.testing.conformance.constraints import Case, ConstraintConformance  # noqa: E402
+from mmrs_core.testing.conformance.element_kinds import ElementKindConformance  # noqa: E402
 from mmrs_core.testing.conformance.fixes import FixCase, FixConformance  # noqa: E402
 from mmrs_core.testing.conformance.metamodels import MetamodelConformance  # noqa: E402
 from mmrs_core.testing.conformance.missions import MissionConformance  # noqa: E402
@@ -39,6 +41,7 @@ __all__ = [
     "CheckCase",
     "CheckConformance",
     "ConstraintConformance",
+    "ElementKindConformance",
     "FixCase",
     "FixConformance",
     "MetamodelConformance",

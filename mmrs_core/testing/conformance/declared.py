@@ -29,6 +29,7 @@ SORTS = {
     "fix": "fixes",
     "robot_kind": "robot_kinds",
     "move_kind": "move_kinds",
+    "element_kind": "element_kinds",
     "check": "checks",
     "device_action": "device_actions",
     "target": "targets",

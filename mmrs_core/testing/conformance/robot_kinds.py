@@ -32,7 +32,7 @@ class RobotKindConformance(Conformance):
 
     Attributes:
         robots: a robot of each kind, by the kind's name; its kinematics do not matter.
-        scene: that they are in.
+        scene: that they are in, with the context elements that a kind reads.
     """
 
     robots: ClassVar[Mapping[str, Robot]]
@@ -51,6 +51,12 @@ class RobotKindConformance(Conformance):
         assert min(found.endurance, found.energy) > 0.0
         assert min(found.launch, found.recovery, found.power) >= 0.0
         assert found.draw >= 1.0
+
+    def test_figures_are_the_same_in_plans_and_checks(self, robot_kind: RobotKind) -> None:
+        """They depend on nothing that a check of the behaviour does not know: tasks and the other robots."""
+        robot = self.robots[robot_kind.name]
+        alone = replace(self.scene, tasks=(), dependencies=(), robots=(robot,), transit_altitude=None)
+        assert robot_kind.kinematics(robot, alone) == robot_kind.kinematics(robot, self.scene)
 
     def test_bolder_travel_is_no_slower(self, robot_kind: RobotKind) -> None:
         """SAFE, NORMAL, AGGRESSIVE is the order of cruise speeds."""

@@ -140,4 +140,4 @@ def test_a_rover_that_wades_deeper_meets_no_more_barriers(everything, scene):
 def pipeline_areas(scene, contributions, wades):
     from mmrs_core.contributions.rules import barriers
 
-    return barriers(scene.elements, [rovers(1.0, wades, None)], contributions.robot_kinds)
+    return barriers(scene.elements, (), [rovers(1.0, wades, None)], contributions.robot_kinds, {})

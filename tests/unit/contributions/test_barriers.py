@@ -6,12 +6,15 @@ from dataclasses import replace
 
 import pytest
 
-from mmrs_core.contributions.rules import barriers
+from mmrs_core.contributions.rules import ElementKind, barriers
 from mmrs_core.scene import Area, AreaUse, Capability, Frame, Part, Robot, RobotType, Scene
+from mmrs_core.scene.attributes import element_called
 from mmrs_core.transformation.kinds import PLAIN_ROBOT, ROBOT
 
 POND, ROCK = ("urn:test:1.0", "Pond"), ("urn:test:1.0", "Rock")
+LINE, ELEMENT = ("urn:test:1.0", "Line"), ("urn:test:1.0", "Element")
 SQUARE = ((0.0, 0.0), (9.0, 0.0), (9.0, 9.0))
+AREA = Area("mast", AreaUse.OBSTACLE, SQUARE)
 
 
 def robot_type(name):
@@ -34,21 +37,35 @@ def kinds():
 
 
 def test_an_element_bars_every_type_that_cannot_pass_it(kinds):
-    found = barriers([Part((POND,), {})], [robot_type("b"), robot_type("a")], kinds)
+    found = barriers((Part((POND,), {}),), (), [robot_type("b"), robot_type("a")], kinds, {})
     assert [each.types for each in found] == [frozenset({"a"}), frozenset({"b"})]
 
 
 def test_an_element_that_hinders_nobody_bars_nobody(kinds):
-    assert barriers([Part((ROCK,), {})], [robot_type("a")], kinds) == ()
+    assert barriers((Part((ROCK,), {}),), (), [robot_type("a")], kinds, {}) == ()
 
 
 def test_a_kind_without_barriers_may_go_anywhere():
-    assert barriers([Part((POND,), {})], [robot_type("a")], {ROBOT: PLAIN_ROBOT}) == ()
+    assert barriers((Part((POND,), {}),), (), [robot_type("a")], {ROBOT: PLAIN_ROBOT}, {}) == ()
 
 
 def test_a_robot_of_no_known_kind_has_no_barrier(kinds):
     stranger = replace(robot_type("a"), metaclasses=(("urn:test:1.0", "Stranger"),))
-    assert barriers([Part((POND,), {})], [stranger], kinds) == ()
+    assert barriers((Part((POND,), {}),), (), [stranger], kinds, {}) == ()
+
+
+def test_an_element_of_a_kind_bars_everybody_where_the_elements_that_it_names_are():
+    def wires(line, everything):
+        ends = [element_called(everything, name) for name in line.attributes["pylons"]]
+        shell = tuple((each.attributes["east"], 0.0) for each in ends if each is not None)
+        yield Area("wires", AreaUse.OBSTACLE, shell)
+
+    pylon = Part((POND,), {"name": "west", "east": 1.0})
+    mast = replace(AREA, part=Part((POND,), {"name": "east", "east": 9.0}))
+    line = Part((LINE, ELEMENT), {"pylons": ("west", "east", "fallen")})
+    kinds = {ELEMENT: ElementKind(ELEMENT, lambda *given: ()), LINE: ElementKind(LINE, wires)}
+    (found,) = barriers((line, pylon), (mast,), [robot_type("a")], {}, kinds)
+    assert (found.shell, found.types) == (((1.0, 0.0), (9.0, 0.0)), None)
 
 
 def test_a_robot_keeps_only_from_the_areas_that_concern_its_type():

@@ -16,7 +16,7 @@ from mmrs_core.contributions.constraints import Constraint
 from mmrs_core.contributions.execution import Condition
 from mmrs_core.contributions.fixes import Fix
 from mmrs_core.contributions.hooks import Hook
-from mmrs_core.contributions.rules import MoveKind, RobotKind, Rule
+from mmrs_core.contributions.rules import ElementKind, MoveKind, RobotKind, Rule
 from mmrs_core.contributions.symbols import MapSymbol
 from mmrs_core.contributions.targets import Target
 from mmrs_core.contributions.vehicles import VehicleFactory
@@ -143,6 +143,11 @@ def test_hook_mmrs_robot_kinds():
 def test_hook_mmrs_move_kinds():
     kind = MoveKind(KITE, unused, unused, frozenset({"airborne"}))
     assert contributions_with("mmrs_move_kinds", kind).move_kinds[KITE] == kind
+
+
+def test_hook_mmrs_element_kinds():
+    kind = ElementKind(KITE, unused)
+    assert contributions_with("mmrs_element_kinds", kind).element_kinds[KITE] == kind
 
 
 def test_hook_mmrs_checks():

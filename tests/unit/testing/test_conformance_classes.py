@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from types import SimpleNamespace
 
 import pytest
 from mmrs_multicopter import plugin as multicopter
 
-from mmrs_core.contributions.rules import MoveKind
+from mmrs_core.contributions.rules import ElementKind, MoveKind
 from mmrs_core.hookspecs import hookimpl
 from mmrs_core.languages.sources import MetamodelSource
-from mmrs_core.testing.conformance import MetamodelConformance, PluginConformance
+from mmrs_core.scene import AreaUse, Part
+from mmrs_core.testing.conformance import ElementKindConformance, MetamodelConformance, PluginConformance
+from mmrs_core.testing.scenes import square
 from mmrs_core.transformation.kinds import no_time, stays
 
 BALLOON = "urn:mmrs:testing:balloon:1.0"
@@ -58,3 +61,42 @@ def test_what_a_plugin_builds_on_is_loaded_and_not_tested(balloons, more):
 def test_a_missing_metamodel_is_named_with_what_loads_it(balloons):
     with pytest.raises(pytest.fail.Exception, match=r"multicopter:1\.0.*more_plugins"):
         kit_for(balloons, MetamodelConformance).with_core()
+
+
+MAST = Part((("urn:mmrs:testing:masts:1.0", "Mast"),), {"name": "mast"})
+
+
+def kit_for_masts(areas):
+    """Return the conformance class for a plug-in whose masts make these areas."""
+    kind = ElementKind(MAST.metaclasses[0], lambda element, everything: areas)
+    plugin = SimpleNamespace(mmrs_element_kinds=hookimpl(lambda: (kind,)))
+    return kit_for(plugin, ElementKindConformance, elements={"Mast": (MAST,)})(), kind
+
+
+def test_areas_of_elements_are_obstacles_to_planner_and_checks():
+    kit, kind = kit_for_masts((square("mast", 30.0, 0.0, 1.0, 20.0),))
+    kit.test_areas_are_sound_and_named(kind)
+    kit.test_planning_keeps_out_of_it(kind)
+    kit.test_checks_find_a_robot_that_enters_it(kind)
+
+
+@pytest.mark.parametrize(
+    "area",
+    [
+        replace(square("mast", 0.0, 0.0, 1.0), shell=((0.0, 0.0), (1.0, 1.0), (1.0, 0.0), (0.0, 1.0))),
+        replace(square("mast", 0.0, 0.0, 1.0), low=5.0, high=4.0),
+        replace(square("mast", 0.0, 0.0, 1.0), use=AreaUse.EMERGENCY),
+        square("", 0.0, 0.0, 1.0),
+    ],
+    ids=["crossed", "upside down", "emergency", "unnamed"],
+)
+def test_an_unsound_area_of_an_element_is_found(area):
+    kit, kind = kit_for_masts((area,))
+    with pytest.raises(AssertionError):
+        kit.test_areas_are_sound_and_named(kind)
+
+
+def test_an_area_that_concerns_some_robots_only_is_found():
+    kit, kind = kit_for_masts((replace(square("mast", 30.0, 0.0, 1.0), types=frozenset({"other"})),))
+    with pytest.raises(pytest.fail.Exception, match="DID NOT RAISE"):
+        kit.test_planning_keeps_out_of_it(kind)

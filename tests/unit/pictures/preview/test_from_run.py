@@ -111,7 +111,9 @@ def test_robots_and_things_have_their_symbols():
     tree = Part((("urn:test", "OldTree"),), {"name": "oak", "position": (1.0, 2.0, 0.0)})
     program = Program("relay", Frame("EPSG:4326", None, None), (A, B))
     symbols = {drone.metaclass: drone}
-    shown = picture_of_run(program, RECORDS, TRACKS, KINDS, symbols, BehaviourContext({"quad": quad}), [tree])
+    shown = picture_of_run(
+        program, RECORDS, TRACKS, KINDS, symbols, BehaviourContext({"quad": quad}, elements=(tree,))
+    )
     assert shown.robots[0].symbol == drone
     assert [(thing.name, thing.symbol.label) for thing in shown.elements] == [("oak", "old tree")]
 

@@ -75,7 +75,7 @@ def connect(given: VehicleInput, live: Live) -> ThreadedVehicle:
     options = link_options(given.options)
     types = {**given.types, given.type.name: given.type}
     input = TargetInput(given.program, types, given.robot_kinds, given.move_kinds)
-    input = replace(input, areas=given.areas, extensions=given.extensions)
+    input = replace(input, areas=given.areas, extensions=given.extensions, elements=given.elements)
     _refuse(given, input, options)
     program = robot_of(given.robot, input)
     fleet = _fleet(live, options, given.program)
