@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from mmrs_core.diagnostics import Diagnostic
 
 NOT_INSTALLED = "XMI001"
+_ENDINGS = (".xmi", ".json")
 
 Metamodels = Annotated[
     list[Path] | None,
@@ -59,6 +60,19 @@ def read_foreign(
     for ns_uri in sorted(_strange(found)):
         tell(f"{file}: note: if you have the .ecore file of {ns_uri}, give it by --metamodel")
     return found
+
+
+def models_in(folder: Path) -> list[Path]:
+    """Return the files of a project's models, sorted.
+
+    Raises:
+        UnreadableError: if the folder has none.
+    """
+    files = sorted([*folder.glob("*.*"), *(folder / "robots").glob("*.*")])
+    models = [file for file in files if file.suffix.lower() in _ENDINGS and not file.name.startswith(".")]
+    if not models:
+        raise UnreadableError(f"{folder}: no model (*.xmi, *.json) in this folder")
+    return models
 
 
 def is_metamodel(file: Path) -> bool:

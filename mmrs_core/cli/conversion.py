@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import shlex
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 from pathlib import Path
@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from mmrs_core.cli.any_model import is_mistake, read_foreign
+from mmrs_core.cli.any_model import is_mistake, models_in, read_foreign
 from mmrs_core.cli.protection import ProtectedError, refuse_inputs
 from mmrs_core.diagnostics import Diagnostic, in_order
 from mmrs_core.errors import InvalidModelError, UnreadableError, UnsupportedError
@@ -27,8 +27,6 @@ if TYPE_CHECKING:
     from mmrs_core.languages.element import Element
     from mmrs_core.languages.model import Model
     from mmrs_core.languages.registry import Registry
-
-_ENDINGS = (".xmi", ".json")
 
 
 class Form(StrEnum):
@@ -80,7 +78,9 @@ def targets_in(directory: Path, given: Sequence[Path], form: Form | None) -> dic
     Raises:
         UnreadableError: if a folder has no model, or two models would go to one file.
     """
-    files = list(dict.fromkeys(file for each in given for file in _models_at(each)))
+    files = list(
+        dict.fromkeys(file for each in given for file in (models_in(each) if each.is_dir() else [each]))
+    )
     wanted = form or other_form(files[0])
     base = Path(os.path.commonpath([file.resolve().parent for file in files]))
     targets: dict[Path, Path] = {}
@@ -91,17 +91,6 @@ def targets_in(directory: Path, given: Sequence[Path], form: Form | None) -> dic
             raise UnreadableError(f"{file}: would be written to {target}, and so would {twin}")
         targets[file] = target
     return targets
-
-
-def _models_at(place: Path) -> Iterator[Path]:
-    if not place.is_dir():
-        yield place
-        return
-    files = sorted([*place.glob("*.*"), *(place / "robots").glob("*.*")])
-    models = [file for file in files if file.suffix.lower() in _ENDINGS and not file.name.startswith(".")]
-    if not models:
-        raise UnreadableError(f"{place}: no model (*.xmi, *.json) in this folder")
-    yield from models
 
 
 def refuse_existing(targets: Sequence[Path], force: bool) -> None:

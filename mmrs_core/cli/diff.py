@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from mmrs_core.cli.any_model import Metamodels, is_metamodel, is_mistake, read_foreign
+from mmrs_core.cli.any_model import Metamodels, is_metamodel, is_mistake, models_in, read_foreign
 from mmrs_core.cli.metamodel import diff as between_metamodels
 from mmrs_core.cli.output import report, say, say_json
 from mmrs_core.cli.session import Session
@@ -23,8 +23,6 @@ from mmrs_core.languages.metaclass import Metaclass
 
 if TYPE_CHECKING:
     from mmrs_core.languages.element import Element
-
-_ENDINGS = (".xmi", ".json")
 
 Pair = tuple[str, Path | None, Path | None]
 """What two files are called, and where each is, if it is there."""
@@ -89,26 +87,14 @@ def _pairs(before: Path, after: Path) -> Iterator[Pair]:
     if not before.is_dir():
         yield "", before, after
         return
-    ours, theirs = _models_in(before), _models_in(after)
+    ours, theirs = _by_name(before), _by_name(after)
     for name in sorted({*ours, *theirs}):
         yield name, ours.get(name), theirs.get(name)
 
 
-def _models_in(folder: Path) -> dict[str, Path]:
-    """Return the models of a project by path without ending.
-
-    Raises:
-        UnreadableError: if the folder has none.
-    """
-    files = sorted([*folder.glob("*.*"), *(folder / "robots").glob("*.*")])
-    models = {
-        file.relative_to(folder).with_suffix("").as_posix(): file
-        for file in files
-        if file.suffix.lower() in _ENDINGS and not file.name.startswith(".")
-    }
-    if not models:
-        raise UnreadableError(f"{folder}: no model (*.xmi, *.json) in this folder")
-    return models
+def _by_name(folder: Path) -> dict[str, Path]:
+    """Return the models of a project by path without ending."""
+    return {file.relative_to(folder).with_suffix("").as_posix(): file for file in models_in(folder)}
 
 
 def _roots(session: Session, file: Path | None, metamodels: Sequence[Path] | None) -> tuple[Element, ...]:

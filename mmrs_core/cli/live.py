@@ -12,7 +12,15 @@ from mmrs_core.cli.buses import BusOptions
 from mmrs_core.cli.completion import backend_names, one_of, robot_names
 from mmrs_core.cli.flying import carry_out
 from mmrs_core.cli.output import say_json
-from mmrs_core.cli.parameters import Assume, Behaviour, Context, Robots, behaviour_file, robot_files
+from mmrs_core.cli.parameters import (
+    Assume,
+    BackendOptions,
+    Behaviour,
+    Context,
+    Robots,
+    behaviour_file,
+    robot_files,
+)
 from mmrs_core.cli.run_options import ON_STOP, RunOptions, default_backend
 from mmrs_core.cli.session import Session
 from mmrs_core.cli.settings import Json, settings_of
@@ -130,14 +138,7 @@ def run(
     assume: Assume = None,
     context: Context = None,
     robots: Robots = None,
-    backend_option: Annotated[
-        _Texts,
-        typer.Option(
-            "--backend-option",
-            metavar="[ROBOT:]KEY=VALUE",
-            help="Backend option of all robots or one. Repeatable.",
-        ),
-    ] = None,
+    backend_option: BackendOptions = None,
     json: Json = False,
 ) -> int:
     """Run a behaviour on real or simulated vehicles.

@@ -35,6 +35,16 @@ Assume = Annotated[
 ]
 
 
+BackendOptions = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--backend-option",
+        metavar="[ROBOT:]KEY=VALUE",
+        help="Backend option of all robots or one. Repeatable.",
+    ),
+]
+
+
 def robot_files(given: Iterable[Path] | None) -> tuple[Path, ...]:
     """Return the files of robot types that were named; a folder stands for all models in it.
 

@@ -10,7 +10,15 @@ import typer
 from mmrs_core.cli.behaviours import load_behaviour
 from mmrs_core.cli.completion import backend_names
 from mmrs_core.cli.output import say, say_json
-from mmrs_core.cli.parameters import Assume, Behaviour, Context, Robots, behaviour_file, robot_files
+from mmrs_core.cli.parameters import (
+    Assume,
+    BackendOptions,
+    Behaviour,
+    Context,
+    Robots,
+    behaviour_file,
+    robot_files,
+)
 from mmrs_core.cli.protection import refuse_inputs
 from mmrs_core.cli.session import Session
 from mmrs_core.cli.settings import Json, settings_of
@@ -51,14 +59,7 @@ def simulate(
             autocompletion=backend_names,
         ),
     ] = None,
-    backend_option: Annotated[
-        list[str] | None,
-        typer.Option(
-            "--backend-option",
-            metavar="[ROBOT:]KEY=VALUE",
-            help="Backend option of all robots or one. Repeatable.",
-        ),
-    ] = None,
+    backend_option: BackendOptions = None,
     json: Json = False,
 ) -> int:
     """Simulate a behaviour faster than real time.

@@ -9,7 +9,7 @@ import typer
 
 from mmrs_core.cli import run
 from mmrs_core.cli.app import program_for
-from mmrs_core.cli.as_typed import take_as_typed
+from mmrs_core.cli.running import take_as_typed
 from mmrs_core.cli.settings import Settings
 from mmrs_core.contributions.commands import CORE_COMMANDS
 

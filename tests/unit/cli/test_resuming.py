@@ -6,7 +6,7 @@ import pytest
 import typer
 from mmrs_multicopter.testing import two_drones
 
-from mmrs_core.cli.resuming import resumed_steps
+from mmrs_core.cli.flying import resumed_steps
 from mmrs_core.cli.run_options import RunOptions
 from mmrs_runtime.records.log import LogWriter
 from mmrs_runtime.records.steps import StepRecord

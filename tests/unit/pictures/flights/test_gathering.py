@@ -8,8 +8,7 @@ import pytest
 
 from mmrs_core.behaviour.box_files import black_boxes
 from mmrs_core.cli.protection import ProtectedError
-from mmrs_core.cli.simulated_boxes import write_boxes
-from mmrs_core.cli.simulation import write_logs
+from mmrs_core.cli.simulation import write_boxes, write_logs
 from mmrs_core.errors import InvalidModelError, UnreadableError
 from mmrs_core.pictures.flights.gathering import read_flight
 
