@@ -10,7 +10,7 @@ from math import isfinite
 from pathlib import PurePath
 
 from mmrs_core.languages.element import Element, Hidden, Unknown, get, is_set, metaclass_of, path_of
-from mmrs_core.languages.json_form.values import written
+from mmrs_core.languages.json_form.scalars import written
 from mmrs_core.languages.metaclass import Feature, Metaclass
 
 Plain = object

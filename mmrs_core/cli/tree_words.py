@@ -17,8 +17,8 @@ from mmrs_core.languages.element import (
     metaclass_of,
     path_of,
 )
+from mmrs_core.languages.json_form.scalars import is_character
 from mmrs_core.languages.json_form.unknown import kept_name
-from mmrs_core.languages.json_form.values import is_character
 from mmrs_core.languages.metaclass import Feature, Metaclass
 
 _LONGEST = 70

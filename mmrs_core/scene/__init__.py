@@ -10,16 +10,7 @@ metaclass without seeing a model.
 from typing import TYPE_CHECKING
 
 from mmrs_core.scene.missions import Area, AreaUse, Dependency, Frame, Scene, Task
-from mmrs_core.scene.robots import (
-    Battery,
-    Capability,
-    Device,
-    DeviceAction,
-    Kinematics,
-    Robot,
-    RobotType,
-)
-from mmrs_core.scene.values import (
+from mmrs_core.scene.primitives import (
     AltitudeReference,
     Metaclasses,
     Name,
@@ -29,6 +20,15 @@ from mmrs_core.scene.values import (
     Ring,
     TravelMode,
     Value,
+)
+from mmrs_core.scene.robots import (
+    Battery,
+    Capability,
+    Device,
+    DeviceAction,
+    Kinematics,
+    Robot,
+    RobotType,
 )
 from mmrs_core.scene.works import ActionAt, Coverage, Gap, Look, Stroke, Work
 from mmrs_runtime.policies import Policy, PolicyEvent, PolicyResponse

@@ -9,7 +9,7 @@ from collections.abc import Iterable
 from typing import TypeGuard
 
 from mmrs_core.errors import InfeasibleError
-from mmrs_core.scene.values import Part, Position, Ring, Value
+from mmrs_core.scene.primitives import Part, Position, Ring, Value
 
 
 def number(part: Part, name: str) -> float | None:

@@ -8,8 +8,8 @@ from enum import Enum
 from math import inf
 
 from mmrs_core.diagnostics import Place
+from mmrs_core.scene.primitives import AltitudeReference, Part, Ring
 from mmrs_core.scene.robots import Robot
-from mmrs_core.scene.values import AltitudeReference, Part, Ring
 from mmrs_core.scene.works import Work
 from mmrs_runtime.policies import Policy
 

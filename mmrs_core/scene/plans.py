@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from mmrs_core.scene.values import Position
+from mmrs_core.scene.primitives import Position
 from mmrs_core.scene.works import Stroke
 
 

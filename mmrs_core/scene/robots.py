@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from math import inf
 
 from mmrs_core.diagnostics import Place
-from mmrs_core.scene.values import Metaclasses, Part, Position, TravelMode
+from mmrs_core.scene.primitives import Metaclasses, Part, Position, TravelMode
 from mmrs_runtime.policies import Policy
 
 

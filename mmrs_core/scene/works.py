@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from mmrs_core.scene.values import Position, Ring
+from mmrs_core.scene.primitives import Position, Ring
 
 
 @dataclass(frozen=True, slots=True)

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from mmrs_core.languages.element import Element, held, metaclass_of
 from mmrs_core.languages.metaclass import Feature, Metaclass
 from mmrs_core.testing.kinds import Kinds, Step, crowds, needed_references
-from mmrs_core.testing.values import Values, values_of, writable
+from mmrs_core.testing.strategies import Values, values_of, writable
 
 _MOST_ROUNDS = 20
 """Rounds in which elements that a reference needs are made, each of which may need others."""

@@ -9,7 +9,7 @@ from mmrs_core.languages.metaclass import Metaclass
 from mmrs_core.languages.registry import Registry
 from mmrs_core.testing.growth import Growth
 from mmrs_core.testing.kinds import Kinds, all_kinds, fits, kinds_below
-from mmrs_core.testing.values import Values
+from mmrs_core.testing.strategies import Values
 
 _NO_ELEMENT = "{}#{}: no class that elements can be made of"
 

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from mmrs_core.analysis.fixes import figures, spelling, values
+from mmrs_core.analysis.fixes import figures, meanings, spelling
 from mmrs_core.contributions.fixes import Fix
 
 FIXES: tuple[Fix, ...] = tuple(
-    sorted((*spelling.FIXES, *values.FIXES, *figures.FIXES), key=lambda each: each.code)
+    sorted((*spelling.FIXES, *meanings.FIXES, *figures.FIXES), key=lambda each: each.code)
 )
 """The fixes of the core, by code."""

@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterator, Mapping
 from typing import NamedTuple
 
 from mmrs_core.languages.element import Element, label_of
+from mmrs_core.languages.json_form.scalars import is_character, parsed, takes_numbers
 from mmrs_core.languages.json_form.stream import (
     END,
     HEAD,
@@ -24,7 +25,6 @@ from mmrs_core.languages.json_form.stream import (
     skip,
 )
 from mmrs_core.languages.json_form.tree import Words
-from mmrs_core.languages.json_form.values import is_character, parsed, takes_numbers
 from mmrs_core.languages.metaclass import Enumeration, Feature, Metaclass, is_null
 from mmrs_core.languages.naming import nearest
 from mmrs_core.languages.references.documents import Draft, Pending

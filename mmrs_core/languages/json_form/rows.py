@@ -8,8 +8,8 @@ from typing import Any, NamedTuple
 
 from mmrs_core.languages.datatypes import DataType
 from mmrs_core.languages.element import Element
+from mmrs_core.languages.json_form.scalars import EXACT, is_character
 from mmrs_core.languages.json_form.stream import key_of, quoted
-from mmrs_core.languages.json_form.values import EXACT, is_character
 from mmrs_core.languages.metaclass import Enumeration, Feature, Metaclass
 from mmrs_core.languages.values.codecs import render_boolean
 from mmrs_core.languages.values.real import (

@@ -7,10 +7,10 @@ from pathlib import Path
 
 from mmrs_core.languages.element import Element, Unknown, held, holds, metaclass_of, path_of
 from mmrs_core.languages.json_form.rows import Row, rows_of
+from mmrs_core.languages.json_form.scalars import written
 from mmrs_core.languages.json_form.stream import ID, LANGUAGES, PLACES, REF, ROOTS, TYPE, key_of, quoted
 from mmrs_core.languages.json_form.tree import formatted, laid_out
 from mmrs_core.languages.json_form.unknown import stated
-from mmrs_core.languages.json_form.values import written
 from mmrs_core.languages.metaclass import Feature, Metaclass, is_null
 from mmrs_core.languages.references.addresses import Addresses, Positions
 from mmrs_core.languages.registry import Registry

@@ -14,10 +14,15 @@ from mmrs_core.languages import classes
 from mmrs_core.languages.datatypes import BUILT_IN, ECORE, DataType, builtin_type, refusal
 from mmrs_core.languages.element import Element
 from mmrs_core.languages.metaclass import MAP_ENTRY, Enumeration, Feature, Metaclass, Package
+from mmrs_core.languages.metamodels.attribute_types import (
+    data_type,
+    default_of,
+    documentation_of,
+    enumeration_of,
+)
 from mmrs_core.languages.metamodels.ecore_itself import built_in
 from mmrs_core.languages.metamodels.loading import LoadedPackages, epackage_of, load
 from mmrs_core.languages.metamodels.locating import Address, Located, located_in
-from mmrs_core.languages.metamodels.values import data_type, default_of, documentation_of, enumeration_of
 from mmrs_core.languages.naming import nearest, python_name
 from mmrs_core.languages.values.texts import described
 

@@ -19,7 +19,7 @@ from mmrs_core.languages.reading import read_model
 from mmrs_core.languages.writing import write_model
 from mmrs_core.languages.xmi import quick_reader, quick_writer
 from mmrs_core.testing.instances import drafts_of, instances_of
-from mmrs_core.testing.values import WORDS
+from mmrs_core.testing.strategies import WORDS
 
 pytestmark = [pytest.mark.together("emf"), pytest.mark.peer]
 

@@ -11,7 +11,7 @@ from mmrs_core.languages.element import descendants, held, metaclass_of
 from mmrs_core.languages.reading import read_text
 from mmrs_core.languages.writing import to_xmi
 from mmrs_core.testing.instances import instances_of
-from mmrs_core.testing.values import values_of
+from mmrs_core.testing.strategies import values_of
 
 LANGUAGES = ("urn:mmrs:mission:1.0", "urn:mmrs:robot:1.0", "urn:mmrs:behaviour:1.0", "urn:test:zoo")
 RELAXED = settings(deadline=None, suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large])

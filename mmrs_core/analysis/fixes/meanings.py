@@ -10,8 +10,8 @@ from mmrs_core.contributions.fixes import Edit, Fix, Wrong, with_attribute, with
 from mmrs_core.languages.datatypes import DataType
 from mmrs_core.languages.element import metaclass_of
 from mmrs_core.languages.json_form.markup import Member
+from mmrs_core.languages.json_form.scalars import written
 from mmrs_core.languages.json_form.stream import quoted
-from mmrs_core.languages.json_form.values import written
 from mmrs_core.languages.metaclass import Enumeration, Metaclass
 from mmrs_core.languages.xmi.events import XSI
 from mmrs_core.languages.xmi.markup import Attribute, Tag
