@@ -1,14 +1,15 @@
-"""Probes of a behaviour as a whole, of its robots, and of the context."""
+"""Probes of a behaviour as a whole, of its robots and their policies, and of the context."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
 
-from mmrs_core.behaviour.program import MoveTarget, Program
+from mmrs_core.behaviour.program import MoveTarget, Program, Transition
 from mmrs_core.contributions.targets import TargetInput
-from mmrs_core.generation.capabilities.probes import BETA, Probe, Samples, changed, with_move
-from mmrs_core.scene import Area, AreaUse, Frame, Ring
+from mmrs_core.generation.capabilities.probes import ALPHA, BETA, Probe, Samples, changed, with_move
+from mmrs_core.scene import Area, AreaUse, Frame, Policy, Ring
+from mmrs_runtime.policies import EVENTS, RESPONSES
 
 LOCAL = Frame("EPSG:4326", None, None)
 SQUARE: Ring = ((100.0, 0.0), (140.0, 0.0), (140.0, 40.0), (100.0, 40.0))
@@ -90,6 +91,28 @@ def of_places(samples: Samples) -> Iterator[Probe]:
         "ObjectTarget.tolerance": MoveTarget(there, "a buoy", 2.0),
     }.items():
         yield Probe("place", element, with_move(base, "a", target=target), base)
+
+
+def of_policies(samples: Samples) -> Iterator[Probe]:
+    """Yield a probe for each event, response and robot kind, and for those of single waits."""
+    for sample in samples.carried:
+        base = replace(sample.plain, areas=(Area("meadow", AreaUse.EMERGENCY, MEADOW),))
+        for event in EVENTS:
+            for response in RESPONSES:
+                policy = Policy(event, response)
+                other = changed(base, lambda r, policy=policy: replace(r, policies=(policy,)))  # type: ignore[misc]
+                yield Probe(f"policy ({sample.name})", f"{event}: {response}", other, base)
+    base_sample = samples.base
+    waiting = Transition(0, base_sample.after("a"), waits=("go",))
+    patient = Policy("WAIT_TOO_LONG", "LAND", 9.0)
+    inputs = [
+        changed(
+            base_sample.given(base_sample.robot(ALPHA, base_sample.journey, a=each)),
+            lambda r: replace(r, slots=("go",)),
+        )
+        for each in (replace(waiting, policies=(patient,)), waiting)
+    ]
+    yield Probe("transition", "MoveTransition.policies", *inputs)
 
 
 def _with(base: TargetInput, frame: Frame) -> TargetInput:

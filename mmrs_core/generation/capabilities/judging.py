@@ -9,7 +9,7 @@ from typing import Literal, TypeAlias
 from mmrs_core.contributions.registry import Contributions
 from mmrs_core.contributions.targets import Target, TargetInput
 from mmrs_core.errors import UnsupportedError
-from mmrs_core.generation.capabilities import actions, behaviours, moves, policies
+from mmrs_core.generation.capabilities import actions, behaviours, moves
 from mmrs_core.generation.capabilities.probes import Probe, samples_of
 from mmrs_core.generation.environment import environment_of
 from mmrs_core.generation.render import Press
@@ -53,7 +53,7 @@ def probes(target: Target, contributions: Contributions) -> tuple[Probe, ...]:
             moves.of_transitions(samples),
             actions.of_devices(samples),
             actions.of_actions(samples),
-            policies.of_policies(samples),
+            behaviours.of_policies(samples),
         )
     )
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 from typing import Any
@@ -14,7 +14,6 @@ from mmrs_core.errors import UnsupportedError
 from mmrs_core.generation.context import RobotContext, homeless, require_home
 from mmrs_core.generation.deployment import deployment_of
 from mmrs_core.generation.escaping import file_stems
-from mmrs_core.generation.python.capabilities import OF_PROGRAMS
 from mmrs_core.generation.python.driver import PythonDriver
 from mmrs_core.generation.python.moves import action_losses, losses_of
 from mmrs_core.generation.python.program import deciding, robot_view, seeking, trace_of
@@ -23,6 +22,36 @@ from mmrs_core.scene import Policy
 from mmrs_runtime.conditions import is_standard
 
 FINDING_ITS_WAY = frozenset({"RETURN", "EMERGENCY_AREA"})
+
+OF_PROGRAMS: Mapping[str, str] = {
+    "Behaviour.name": "in descriptions and messages",
+    "Behaviour.minimumSeparation": "is for the planner and the checks",
+    "Behaviour.acceptedUnknowns": "is for the checks",
+    "Behaviour.idleRobots": "are for the checks; they are not run",
+    "Behaviour.reserve": "a battery with no more left is low",
+    "Behaviour.robots": "a controller each, and one for the fleet",
+    "Robot.id": "name of the controller and of its logs",
+    "Robot.slots": "kept by the controller, served to others",
+    "Target.name": "is informative",
+    "Start, Stop": "beginning and end of the program",
+    "GoTo.distance": "the robot stops short of the position",
+    "Recharge": "stays until the battery is full, and at least so long",
+    "Move.name": "in logs and messages",
+    "Move.task": "in logs and comments",
+    "Move.rule": "in comments",
+    "MoveTransition.fluid": "continues without a stop",
+    "MoveTransition.to": "steps in any order",
+    "MoveTransition.policies": "before those of the robot",
+    "Choice.conditionIdentifier": "a function of yours in conditions.py",
+    "Choice by a standard condition": "known to the runtime",
+    "UnicastNotify": "acknowledged command to the slot's owner",
+    "MulticastNotify": "acknowledged commands to the slots' owners",
+    "BroadcastNotify": "acknowledged commands to the slots' owners",
+    "Notify.active": "takes the slot back",
+    "Move.preActions": "done before the movement",
+    "Move.postActions": "done after the movement",
+}
+"""How programs in Python express elements of behaviours, whatever they drive."""
 
 
 @dataclass(frozen=True, slots=True)

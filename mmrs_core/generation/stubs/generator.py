@@ -11,8 +11,7 @@ from multigen.jinja import JinjaGenerator
 from pyecoregen.ecore import EcorePackageModuleTask, EcoreTask
 
 from mmrs_core.generation.environment import environment_in, rendered
-from mmrs_core.generation.stubs.docstrings import docstring
-from mmrs_core.generation.stubs.view import module_view
+from mmrs_core.generation.stubs.view import docstring, module_view
 from mmrs_core.languages.metaclass import Package
 from mmrs_core.resources import shipped
 

@@ -6,7 +6,6 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 from mmrs_core.generation.escaping import python_literal
-from mmrs_core.generation.stubs.bases import Lineage
 from mmrs_core.generation.stubs.names import Scope, member_names
 from mmrs_core.languages.datatypes import BUILT_IN, DataType
 from mmrs_core.languages.element import Element
@@ -135,3 +134,54 @@ def referred(package: Package) -> Iterable[str]:
         for kind in kinds:
             if not isinstance(kind, DataType) and kind.ns_uri not in (*BUILT_IN, package.ns_uri):
                 yield kind.ns_uri
+
+
+class Lineage:
+    """Finds which supertypes Python can have as bases: Ecore's order need not be one of Python's."""
+
+    def __init__(self) -> None:
+        self._shapes: dict[Metaclass, type] = {}
+
+    def bases(self, metaclass: Metaclass) -> tuple[Metaclass, ...]:
+        """Return the supertypes that can be bases together, in their order; the first always can.
+
+        Those of Ecore itself have no stub, hence are none.
+        """
+        chosen: tuple[Metaclass, ...] = ()
+        for above in dict.fromkeys(metaclass.supertypes):
+            if above.ns_uri in BUILT_IN:
+                continue
+            if any(above.key in other.ancestry[1:] for other in metaclass.supertypes):
+                continue
+            if self._fit((*chosen, above)):
+                chosen = (*chosen, above)
+        return chosen
+
+    def own_features(self, metaclass: Metaclass) -> tuple[Feature, ...]:
+        """Return the features that none of the bases has."""
+        inherited = {feature for base in self.bases(metaclass) for feature in base.features}
+        return tuple(feature for feature in metaclass.features if feature not in inherited)
+
+    def _fit(self, bases: tuple[Metaclass, ...]) -> bool:
+        try:
+            type("Shape", tuple(map(self._shape, bases)), {})
+        except TypeError:
+            return False
+        return True
+
+    def _shape(self, metaclass: Metaclass) -> type:
+        if metaclass not in self._shapes:
+            above = tuple(map(self._shape, self.bases(metaclass)))
+            self._shapes[metaclass] = type(metaclass.name, above, {})
+        return self._shapes[metaclass]
+
+
+def docstring(text: object, indent: int = 0) -> str:
+    """Return a text as a docstring that nothing in the text can end, its further lines indented."""
+    safe = str(text).strip().replace("\\", "\\\\")
+    if '"""' in safe or safe.endswith('"'):
+        safe = safe.replace('"', '\\"')
+    lines = [line.strip() for line in safe.splitlines()]
+    body = f"\n{' ' * indent}".join(lines).replace(f"\n{' ' * indent}\n", "\n\n")
+    shown = (each if each.isprintable() or each == "\n" else ascii(each)[1:-1] for each in body)
+    return f'"""{"".join(shown)}"""'

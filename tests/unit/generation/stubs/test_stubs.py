@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from mmrs_core.errors import MmrsError, PluginError
-from mmrs_core.generation.stubs.docstrings import docstring
+from mmrs_core.generation.stubs.view import docstring
 from mmrs_core.generation.stubs.write import write_stubs
 from mmrs_core.languages.metamodels.gathering import registry_of_files
 
