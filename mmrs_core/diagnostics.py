@@ -6,9 +6,14 @@ import re
 from collections.abc import Iterable
 from dataclasses import dataclass
 from enum import Enum
+from itertools import combinations
 
 LONGEST_TEXT = 2000
 """Characters of a message or a hint, in which a model may say a megabyte, and that ten thousand times."""
+
+
+SAME_LENGTH = 1e-6
+"""Metres by which lengths differ that messages need not tell from each other."""
 
 
 class Severity(Enum):
@@ -106,3 +111,17 @@ def _counted(text: str) -> tuple[tuple[int, int, str], ...]:
     return tuple(
         (0, len(part.lstrip("0")), part.lstrip("0")) if odd % 2 else (1, 0, part) for odd, part in parts
     )
+
+
+def lengths(*metres: float) -> tuple[str, ...]:
+    """Return lengths for a message: with two digits, or as many as distinguish them and 0.
+
+    >>> lengths(7.64, 5.0)
+    ('7.64 m', '5.00 m')
+    >>> lengths(7.6399715, 7.64)
+    ('7.63997 m', '7.64000 m')
+    """
+    different = [(a, b) for a, b in combinations((0.0, *metres), 2) if abs(a - b) > SAME_LENGTH]
+    digits = (n for n in range(2, 7) if all(f"{a:.{n}f}" != f"{b:.{n}f}" for a, b in different))
+    chosen = next(digits, 6)
+    return tuple(f"{each:.{chosen}f} m" for each in metres)

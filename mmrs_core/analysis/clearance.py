@@ -21,6 +21,7 @@ from mmrs_core.analysis.motion import Motion, MovePath, motions
 from mmrs_core.analysis.verdicts import TOLERANCE, Margin, for_each_robot, judged, not_checked, safe
 from mmrs_core.behaviour.program import RobotProgram
 from mmrs_core.contributions.checks import Check, CheckInput, Status, Verdict
+from mmrs_core.diagnostics import lengths
 from mmrs_core.scene import Area, AreaUse, Position
 
 NAME = "clearance"
@@ -127,10 +128,8 @@ def _least_margins(segments: _Segments, area: Area, own: float) -> Floats:
 
 def _described(robot: RobotProgram, approach: _Approach, error: float) -> Margin:
     move = robot.moves[approach.move]
-    message = (
-        f"{move.kind} '{move.id}' keeps {approach.kept:.2f} m from '{approach.area.name}',"
-        f" {approach.required:.2f} m are required"
-    )
+    kept, required = lengths(approach.kept, approach.required)
+    message = f"{move.kind} '{move.id}' keeps {kept} from '{approach.area.name}', {required} are required"
     return Margin(approach.kept - approach.required, approach.move, message, approach.area.name, error)
 
 

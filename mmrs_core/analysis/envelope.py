@@ -19,6 +19,7 @@ from mmrs_core.analysis.verdicts import (
 from mmrs_core.behaviour.program import RobotProgram
 from mmrs_core.contributions.checks import Check, CheckInput, Verdict
 from mmrs_core.contributions.rules import robot_kind_of
+from mmrs_core.diagnostics import lengths
 from mmrs_core.scene import Part
 from mmrs_core.scene.attributes import number
 
@@ -50,10 +51,12 @@ def _judge_altitude(input: CheckInput, robot: RobotProgram) -> Iterator[Verdict]
         move = robot.moves[leg.move]
         low, high = _lowest(leg), _highest(leg)
         if isfinite(ceiling):
-            words = f"{move.kind} '{move.id}' goes up to {high:.2f} m, {ceiling:.2f} m is the ceiling"
+            reached, limit = lengths(high, ceiling)
+            words = f"{move.kind} '{move.id}' goes up to {reached}, {limit} is the ceiling"
             margins.append(Margin(ceiling - high, leg.move, words))
         if isfinite(floor) and not states.touches_ground(leg.move):
-            words = f"{move.kind} '{move.id}' goes down to {low:.2f} m, {floor:.2f} m is the floor"
+            reached, limit = lengths(low, floor)
+            words = f"{move.kind} '{move.id}' goes down to {reached}, {limit} is the floor"
             margins.append(Margin(low - floor, leg.move, words))
     yield from judged(ALTITUDE_NAME, robot, "m", margins, motion.gaps)
 
@@ -76,6 +79,8 @@ def _judge_depth(input: CheckInput, robot: RobotProgram) -> Iterator[Verdict]:
         return
     depth, index = deepest
     pressure = ATMOSPHERE + density * GRAVITY * depth
+    if allowed < pressure <= allowed + density * GRAVITY * TOLERANCE:
+        pressure = allowed
     move = robot.moves[index]
     words = (
         f"{move.kind} '{move.id}' goes to a depth of {depth:.2f} m and {pressure:.0f} Pa,"
@@ -156,7 +161,8 @@ def _judge_range(input: CheckInput, robot: RobotProgram) -> Iterator[Verdict]:
 
 def _range_margin(robot: RobotProgram, index: int, away: float, reach: float) -> Margin:
     move = robot.moves[index]
-    words = f"{move.kind} '{move.id}' leads {away:.2f} m away from home, the radio reaches {reach:.2f} m"
+    led, limit = lengths(away, reach)
+    words = f"{move.kind} '{move.id}' leads {led} away from home, the radio reaches {limit}"
     return Margin(reach - away, index, words)
 
 

@@ -34,6 +34,7 @@ from mmrs_core.analysis.passing import in_sequence, must_meet
 from mmrs_core.analysis.verdicts import TOLERANCE, UnknownMove, unknown, unknown_moves
 from mmrs_core.behaviour.program import RobotProgram
 from mmrs_core.contributions.checks import Check, CheckInput, Status, Verdict
+from mmrs_core.diagnostics import lengths
 
 NAME = "separation"
 
@@ -197,10 +198,11 @@ def _verdict(input: CheckInput, encounter: Encounter) -> Verdict:
     meeting = input.program.robot(other.robot).moves[other.move]
     exact = encounter.anyhow or one.radius + other.radius == 0.0
     most = "at most " if encounter.decided and not exact else ""
+    apart, needed = lengths(max(0.0, encounter.apart), encounter.needed)
     words = (
-        f"{one.robot}: {_words(one)} '{move.id}' is {most}{max(0.0, encounter.apart):.2f} m from"
+        f"{one.robot}: {_words(one)} '{move.id}' is {most}{apart} from"
         f" {other.robot} {_words(other)} '{meeting.id}' at {encounter.time:.1f} s,"
-        f" {encounter.needed:.2f} m are required"
+        f" {needed} are required"
     )
     status = Status.VIOLATED if encounter.decided else Status.UNKNOWN
     if status is Status.UNKNOWN:

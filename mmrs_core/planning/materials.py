@@ -9,6 +9,7 @@ from math import inf
 
 from mmrs_core.errors import UnreachableError
 from mmrs_core.planning.pacing import paced
+from mmrs_core.planning.positions import SLACK
 from mmrs_core.planning.sorties import Pilot
 from mmrs_core.planning.states import ApproachRoute
 from mmrs_core.planning.strokes import (
@@ -214,10 +215,10 @@ def faults(work: Work, pilot: Pilot) -> Iterator[str]:
 def _height_faults(strokes: Iterable[Stroke], pilot: Pilot) -> Iterator[str]:
     heights = [point[2] for stroke in strokes for point in stroke.points]
     lowest, highest = pilot.kinematics.floor, pilot.kinematics.ceiling
-    if max(heights) > highest + 1e-6:
+    if max(heights) > highest + SLACK:
         short = max(heights) - highest
         yield f"it may go up to {highest:g} m, {max(heights):g} m are needed: {short:.1f} m short"
-    if min(heights) < lowest - 1e-6:
+    if min(heights) < lowest - SLACK:
         short = lowest - min(heights)
         yield f"it may go down to {lowest:g} m, {min(heights):g} m are needed: {short:.1f} m short"
 

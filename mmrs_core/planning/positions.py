@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 from math import atan2, cos, pi, sin
 
+from mmrs_core.diagnostics import lengths
 from mmrs_core.errors import InfeasibleError
 from mmrs_core.geometry.segments import legs_of, prism_distance
 from mmrs_core.scene import Area, Position, Robot, Scene
@@ -13,6 +14,9 @@ MARGIN = 1.01
 """Stand-off positions keep a little more than the clearance, because planners round it up."""
 
 BEARINGS = 24
+
+SLACK = 5e-7
+"""Metres that may be lost by rounding; with what written coordinates lose, checks still tolerate it."""
 
 
 def refuse_heights(robot: Robot, points: Iterable[Position]) -> None:
@@ -25,14 +29,15 @@ def refuse_heights(robot: Robot, points: Iterable[Position]) -> None:
         return
     floor, ceiling = robot.kinematics.floor, robot.kinematics.ceiling
     for _, _, up in points:
-        if floor == ceiling and abs(up - floor) > 1e-6:
-            raise InfeasibleError(f"stays on its level at {_metres(floor)}, cannot get to {_metres(up)}")
-        if up > ceiling + 1e-6:
-            raise InfeasibleError(
-                f"{_metres(up)} is {_metres(up - ceiling)} above the ceiling {_metres(ceiling)}"
-            )
-        if up < floor - 1e-6:
-            raise InfeasibleError(f"{_metres(up)} is {_metres(floor - up)} below the floor {_metres(floor)}")
+        if floor == ceiling and abs(up - floor) > SLACK:
+            own, other = lengths(floor, up)
+            raise InfeasibleError(f"stays on its level at {own}, cannot get to {other}")
+        if up > ceiling + SLACK:
+            reached, over, limit = lengths(up, up - ceiling, ceiling)
+            raise InfeasibleError(f"{reached} is {over} above the ceiling {limit}")
+        if up < floor - SLACK:
+            reached, under, limit = lengths(up, floor - up, floor)
+            raise InfeasibleError(f"{reached} is {under} below the floor {limit}")
 
 
 def refuse_unsteady(robot: Robot) -> None:
@@ -46,15 +51,15 @@ def refuse_unsteady(robot: Robot) -> None:
 
 
 def refuse_blocked(robot: Robot, scene: Scene, points: Sequence[Position], what: str) -> None:
-    """Check that a polyline keeps the robot's clearance from every area as drawn.
+    """Check that a polyline keeps the robot's clearance from every area as drawn, if only just.
 
     Raises:
         InfeasibleError: it does not; names the area and what is short.
     """
     for area in scene.kept_from(robot):
         short = area.safety_distance + robot.clearance - _distance(points, area)
-        if short > 1e-6:
-            raise InfeasibleError(f"{what} comes {_metres(short)} too near to '{area.name}'")
+        if short > SLACK:
+            raise InfeasibleError(f"{what} comes {lengths(short)[0]} too near to '{area.name}'")
 
 
 def stand_off(
@@ -73,11 +78,7 @@ def stand_off(
         end = (point[0] + near * east, point[1] + near * north, point[2])
         if _is_clear(robot, scene, (begin, end)):
             return begin, end
-    raise InfeasibleError(f"no clear place is {_metres(far)} from the point on any side")
-
-
-def _metres(value: float) -> str:
-    return f"{value:.2f} m"
+    raise InfeasibleError(f"no clear place is {lengths(far)[0]} from the point on any side")
 
 
 def _distance(points: Sequence[Position], area: Area) -> float:

@@ -261,10 +261,16 @@ def _policy(policy: Policy) -> rl.Policy:
     return rl.Policy(event=event, response=response, after=policy.after)
 
 
-DEGREE_DIGITS = 9
-"""Digits after the point of a degree: a tenth of a millimetre on the ground."""
+DEGREE_DIGITS = 12
+"""Digits after the point of a degree: a tenth of a micrometre on the ground."""
 
-METRE_DIGITS = 4
+METRE_DIGITS = 7
+"""Digits after the point of a metre.
+
+A position is rounded up to three times: in metres, in degrees, and with the altitude of the origin. That
+moves it by a quarter of a micrometre at most. Checks tolerate a whole one
+(`mmrs_core.analysis.verdicts.TOLERANCE`), and so accept what is planned exactly at a limit.
+"""
 
 
 class Coordinates:

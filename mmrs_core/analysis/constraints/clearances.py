@@ -15,7 +15,7 @@ from mmrs_core.analysis.constraints.capabilities import able
 from mmrs_core.analysis.constraints.findings import BEHAVIOUR, MISSION, called, finding
 from mmrs_core.analysis.constraints.sketch import DrawnArea, Sketch, polygon_of, sketch_of
 from mmrs_core.contributions.constraints import Constraint, Finding
-from mmrs_core.diagnostics import Severity
+from mmrs_core.diagnostics import Severity, lengths
 from mmrs_core.geometry.polygons import parts
 from mmrs_core.grounding.features import child, children, number
 from mmrs_core.languages.element import Element
@@ -37,15 +37,12 @@ def _home(robot: Element, models: ModelSet) -> Iterator[Finding]:
     for area, distance in sketch.distances(drawn.home):
         needed = area.safety_distance + drawn.clearance
         if distance < needed - EXACT:
-            yield finding(robot, f"its home is {_from(distance, area)}; it must keep {needed:.2f} m")
+            away, required = lengths(distance, needed)
+            yield finding(robot, f"its home is {_from(distance, away, area)}; it must keep {required}")
 
 
-def _from(distance: float, area: DrawnArea) -> str:
-    return (
-        f"inside {called(area.element)}"
-        if distance == 0.0
-        else f"{distance:.2f} m from {called(area.element)}"
-    )
+def _from(distance: float, words: str, area: DrawnArea) -> str:
+    return f"inside {called(area.element)}" if distance == 0.0 else f"{words} from {called(area.element)}"
 
 
 def _point(task: Element, models: ModelSet) -> Iterator[Finding]:
@@ -74,7 +71,8 @@ def unreachable(task: Element, point: Element, what: str, models: ModelSet) -> I
     for area, distance in sketch.distances(position):
         needed = area.safety_distance + smallest
         if distance < needed - EXACT:
-            yield f"{what} is {_from(distance, area)}; every robot that can do it must keep {needed:.2f} m"
+            away, required = lengths(distance, needed)
+            yield f"{what} is {_from(distance, away, area)}; every robot that can do it must keep {required}"
 
 
 def _at_work(task: Element, position: Position | None, sketch: Sketch) -> Position | None:
@@ -216,10 +214,11 @@ def _crowded(team: Element, models: ModelSet) -> Iterator[Finding]:
             continue
         apart, needed = dist(one.home, other.home), one.clearance + other.clearance
         if apart < needed - EXACT:
+            between, required = lengths(apart, needed)
             yield finding(
                 other.element,
-                f"its home is {apart:.2f} m from that of {called(one.element)}, "
-                f"but the two need {needed:.2f} m for their sizes",
+                f"its home is {between} from that of {called(one.element)}, "
+                f"but the two need {required} for their sizes",
             )
 
 
@@ -232,7 +231,7 @@ def _separated(mission: Element, models: ModelSet) -> Iterator[Finding]:
         if apart < separation - EXACT:
             yield finding(
                 other.element,
-                f"its home is {apart:.2f} m from that of {called(one.element)}, "
+                f"its home is {lengths(apart, separation)[0]} from that of {called(one.element)}, "
                 f"less than the minimumSeparation of {separation:g} m",
             )
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from math import ceil, cos, floor, hypot, radians, sin
 
+from mmrs_core.diagnostics import lengths
 from mmrs_core.errors import InfeasibleError
 from mmrs_core.scene import Position, Robot
 from mmrs_solar.groups import Group
@@ -22,7 +23,7 @@ def refuse_near(robot: Robot, group: Group, place: Position, what: str) -> None:
     for row in _rows_below(group, place, robot.clearance):
         short = robot.clearance - panel_distance(group, row, place)
         if short > 1e-6:
-            raise InfeasibleError(f"{what} comes {short:.2f} m too near to the panels of row {row}")
+            raise InfeasibleError(f"{what} comes {lengths(short)[0]} too near to the panels of row {row}")
 
 
 def _rows_below(group: Group, place: Position, clearance: float) -> range:

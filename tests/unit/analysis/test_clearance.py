@@ -42,6 +42,7 @@ def test_a_millimetre_too_near_is_violated():
     verdict = past(go("by", (20.0, 0.0, 0.0)), area=square(at=(10.0, 1.499)))
     assert verdict.status is Status.VIOLATED
     assert verdict.margin == pytest.approx(-0.001)
+    assert verdict.message == "a: GoTo 'by' keeps 0.499 m from 'tower', 0.500 m are required"
 
 
 def test_an_obstacle_may_be_passed_above_with_the_same_distance():

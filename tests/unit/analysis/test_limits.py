@@ -62,6 +62,12 @@ def test_pressure_follows_from_density_and_the_depth_below_the_surface(surface, 
     assert verdict.margin == pytest.approx(1000.0 * GRAVITY * spare)
 
 
+def test_a_dive_to_the_limit_is_safe_though_its_coordinates_are_rounded():
+    deep = rover(attributes={"maxOperatingPressure": ATMOSPHERE + 1000.0 * GRAVITY * 10.0})
+    assert finding("depth", dive(10.0 + 2e-7, type=deep, density=1000.0)).status is Status.SAFE
+    assert finding("depth", dive(10.0 + 2e-6, type=deep, density=1000.0)).status is Status.VIOLATED
+
+
 def test_a_dive_without_figures_is_unknown_and_says_which():
     verdict = finding("depth", dive(10.0))
     assert verdict.status is Status.UNKNOWN
