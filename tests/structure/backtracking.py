@@ -256,6 +256,8 @@ class _Ambiguity:
         self._letters = self._representatives()
         self._edges: dict[tuple[int, str], dict[str, list[tuple[int, str]]]] = {}
         self._accepting: set[tuple[int, str]] = set()
+        self._predecessors: dict[tuple[int, str], set[tuple[int, str]]] = defaultdict(set)
+        self._leading: dict[tuple[int, str], set[tuple[int, str]]] = {}
         self._explore()
 
     def found(self) -> str:
@@ -284,6 +286,8 @@ class _Ambiguity:
 
     def _pair(self, q: tuple[int, str], p: tuple[int, str], number: dict[tuple[int, str], int]) -> str:
         start, goal = (q, q, p), (q, p, p)
+        if q not in (towards := self._towards(p)):
+            return ""
         seen = {start}
         stack = [start]
         while stack:
@@ -296,6 +300,7 @@ class _Ambiguity:
                     for one in firsts
                     for three in thirds
                     for two in self._edges[second][letter]
+                    if two in towards
                 }:
                     if end == goal:
                         return f"two loops read the same, such as {letter!r}"
@@ -303,6 +308,21 @@ class _Ambiguity:
                         seen.add(end)
                         stack.append(end)
         return ""
+
+    def _towards(self, goal: tuple[int, str]) -> set[tuple[int, str]]:
+        """Return the states that lead to another, and that one."""
+        if goal not in self._leading:
+            if not self._predecessors:
+                for state in self._edges:
+                    for end in self._successors(state):
+                        self._predecessors[end].add(state)
+            found, stack = {goal}, [goal]
+            while stack:
+                new = self._predecessors[stack.pop()] - found
+                found |= new
+                stack += new
+            self._leading[goal] = found
+        return self._leading[goal]
 
     def _successors(self, state: tuple[int, str]) -> set[tuple[int, str]]:
         return {end for ends in self._edges[state].values() for end in ends}
