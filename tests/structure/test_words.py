@@ -6,49 +6,58 @@ import ast
 import re
 import subprocess
 from collections.abc import Iterator
+from functools import cache
 from pathlib import Path
 
 import pytest
 
 ROOT = Path(__file__).parents[2]
 
-AVOIDED = (
-    r"\b(?:no|some|every|any)body(?:'s)?\b",
-    r"\bmend(?:s|ed|ing)?\b",
-    r"\b(?:un)?heed(?:s|ed|ing)?\b",
-    r"\b(?:is|are|was|were|be|been|not) told\b",
-    r"\b(?:hears?|heard)\b",
-    r"\btells? (?:of|what|who|where|how|whether)\b",
-    r"\bsays? (?:what|which|who|where|how|whether|of)\b",
-    r"\bways? (?:back|out|in|home|down|up|to|from)\b",
-    r"\b(?:its|their|no|straight|planned) ways?\b",
-    r"\bunder way\b",
-    r"\bby (?:it|them)sel(?:f|ves)\b",
-    r"\bmay be repeated\b",
-    r"\b(?:for ever|anew|afresh)\b",
-    r"\b(?:in vain|on purpose|stands? against)\b",
-    r"(?<!\bthere )\b(?:is|are) no (?!longer|more|such|faster)\w+\b",
-    r"\bgo(?:es)? on\b",
-    r"\bwhoever\b",
-    r"\b(?:bears?|borne)\b",
-    r"\b(?:kinds?|types?) of robots?\b",
-    r"\btake (?:it|them|the \w+) away\b",
-    r"\bso many (?:seconds|metres|degrees)\b",
-    r"\bfor people\b",
-    r"\bthe place\b",
-    r"\bmotors (?:run|are o(?:n|ff))\b",
-    r"\A(?-i:Have|Be|Know|Hear|Bear|Tell|Say|Do nothing)\b",
-    r"\A(?-i:Of|To|By|Such as|As)\s",
-    r"; else\b",
+AVOIDED = re.compile(
+    r"\b(?:(?:no|some|every|any)body(?:'s)?"
+    r"|mend(?:s|ed|ing)?"
+    r"|(?:un)?heed(?:s|ed|ing)?"
+    r"|(?:is|are|was|were|be|been|not) told"
+    r"|(?:hears?|heard)"
+    r"|tells? (?:of|what|who|where|how|whether)"
+    r"|says? (?:what|which|who|where|how|whether|of)"
+    r"|ways? (?:back|out|in|home|down|up|to|from)"
+    r"|(?:its|their|no|straight|planned) ways?"
+    r"|under way"
+    r"|by (?:it|them)sel(?:f|ves)"
+    r"|may be repeated"
+    r"|(?:for ever|anew|afresh)"
+    r"|(?:in vain|on purpose|stands? against)"
+    r"|(?<!\bthere )(?:is|are) no (?!longer|more|such|faster)\w+"
+    r"|go(?:es)? on"
+    r"|whoever"
+    r"|(?:bears?|borne)"
+    r"|(?:kinds?|types?) of robots?"
+    r"|take (?:it|them|the \w+) away"
+    r"|so many (?:seconds|metres|degrees)"
+    r"|for people"
+    r"|the place"
+    r"|motors (?:run|are o(?:n|ff)))\b"
+    r"|; else\b"
 )
-"""What another word says better: who acts, the field's term, the thing itself."""
-SPOKEN = re.compile("|".join(AVOIDED), re.IGNORECASE | re.MULTILINE)
+"""What another word says better, in lower case: who acts, the field's term, the thing itself."""
+OPENINGS = re.compile(r"(?:Have|Be|Know|Hear|Bear|Tell|Say|Do nothing)\b|(?:Of|To|By|Such as|As)\s")
+"""What no text begins with."""
 
 METAPHORS = re.compile(
     r"(?:^|_)(?:errands?|withdraw\w*|agendas?|wishes|berths?|refuges?|salvage\w*|helms?|habits?|unready|leaps?"
     r"|blam\w+|heed\w*|told|heard)(?:_|$)"
 )
 """Words of names, in snake case, for which the field has terms of its own."""
+
+
+DEFINITIONS = (ast.ClassDef, ast.FunctionDef, ast.AsyncFunctionDef)
+SPOKEN = {
+    ".ecore": r'key="documentation" value="([^"]*)"',
+    ".jinja": r"^ *(?:#|//|--|\*) ([^\n]*)$",
+    ".j2": r">([^<>{}]+)<",
+}
+"""Where files that are neither modules nor pages speak, by their endings."""
 
 
 def tracked(*endings: str) -> list[str]:
@@ -61,10 +70,15 @@ def shipped() -> list[str]:
     return [name for name in tracked(".py") if name.startswith(folders) and "/tests/" not in name]
 
 
+@cache
+def nodes(path: str) -> list[ast.AST]:
+    """Return all nodes of a module."""
+    return list(ast.walk(ast.parse((ROOT / path).read_text("utf-8"))))
+
+
 def sentences(path: str) -> Iterator[tuple[int, str]]:
     """Yield the line and text of each docstring, and of each other string that holds a space, of a module."""
-    tree = ast.parse((ROOT / path).read_text("utf-8"))
-    for node in ast.walk(tree):
+    for node in nodes(path):
         if isinstance(node, ast.Constant) and isinstance(node.value, str) and " " in node.value.strip():
             yield node.lineno, re.sub(r"`[^`\n]+`", "", re.sub(r"^ +", "", node.value, flags=re.MULTILINE))
 
@@ -79,21 +93,29 @@ def paragraphs(path: str) -> Iterator[tuple[int, str]]:
             yield number, re.sub(r"`[^`]*`", "", line.lstrip(" |>*-"))
 
 
+def said(path: str) -> Iterator[tuple[int, str]]:
+    """Yield the line and text of each description of a metamodel, and of each comment of a template."""
+    text = (ROOT / path).read_text("utf-8")
+    for found in re.finditer(SPOKEN[Path(path).suffix], text, re.DOTALL | re.MULTILINE):
+        yield text[: found.start()].count("\n") + 1, found[1]
+
+
 def prose() -> Iterator[str]:
     """Yield the place of each avoided word of the project."""
     pages = [page for page in tracked(".md") if "tests/" not in page]
-    for names, texts in ((shipped(), sentences), (pages, paragraphs)):
+    others = [name for name in tracked(*SPOKEN) if "tests/" not in name]
+    for names, texts in ((shipped(), sentences), (pages, paragraphs), (others, said)):
         for name in names:
             for line, text in texts(name):
-                for found in SPOKEN.finditer(text):
-                    yield f"{name}:{line + text[: found.start()].count(chr(10))}: {found[0]}"
+                for found in (OPENINGS.match(text), *AVOIDED.finditer(text.lower())):
+                    if found:
+                        yield f"{name}:{line + text[: found.start()].count(chr(10))}: {found[0]}"
 
 
 def names() -> Iterator[str]:
     """Yield the place of each metaphor in the name of a module, a class or a function."""
     for name in shipped():
-        nodes = ast.walk(ast.parse((ROOT / name).read_text("utf-8")))
-        defined = [(x.lineno, x.name) for x in nodes if isinstance(x, ast.ClassDef | ast.FunctionDef)]
+        defined = [(x.lineno, x.name) for x in nodes(name) if isinstance(x, DEFINITIONS)]
         for line, word in [(1, Path(name).stem), *defined]:
             if METAPHORS.search(re.sub(r"(?<=[a-z])(?=[A-Z])", "_", word).lower()):
                 yield f"{name}:{line}: {word}"
