@@ -10,6 +10,7 @@ from mmrs_core.planning.planner import plan
 
 
 def check(seed):
+    """Return whether a random scene has a plan, which can be carried out."""
     whole = random_scene(seed)
     try:
         found = plan(whole, seed=seed)
@@ -19,19 +20,15 @@ def check(seed):
     return True
 
 
-@pytest.mark.parametrize("seed", range(20, 25))
+@pytest.mark.parametrize("seed", [1, 3, 4, 6, 8, 9, *range(20, 25)])
 def test_a_random_plan_can_be_carried_out(seed):
-    check(seed)
+    assert check(seed)
 
 
 @pytest.mark.thorough
 @pytest.mark.parametrize("seed", range(40, 440))
 def test_many_random_plans_can_be_carried_out(seed):
     check(seed)
-
-
-def test_most_random_scenes_have_a_plan_that_can_be_carried_out():
-    assert sum(check(seed) for seed in range(10)) >= 6
 
 
 @pytest.mark.parametrize("count", [1, 2, 3, 6])
