@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import chain
 from typing import Literal, TypeAlias
@@ -80,8 +81,8 @@ class Trial:
             words = "; ".join(sorted({_short(each) for each in reasons}))
             return TargetCapability(probe.group, probe.element, verdict, words)
         how = self._how(probe.element)
-        same = self._written(probe.given) == self._written_at_all(probe.without)
-        return TargetCapability(probe.group, probe.element, "no difference" if same else "expressed", how)
+        verdict = "no difference" if self._same(probe) else "expressed"
+        return TargetCapability(probe.group, probe.element, verdict, how)
 
     def _how(self, element: str) -> str:
         words = self._target.capabilities
@@ -92,27 +93,35 @@ class Trial:
         return set(self._target.refusals(input))
 
     def _impossible(self, input: TargetInput) -> bool:
-        return self._written_at_all(input) is None
-
-    def _written_at_all(self, input: TargetInput) -> dict[str, bytes] | None:
-        """Return what is rendered; None where that is impossible."""
+        """Return whether a behaviour cannot be rendered."""
         try:
-            return self._written(input)
+            for _ in self._rendered(input):
+                pass
         except UnsupportedError:
-            return None
+            return True
+        return False
 
-    def _written(self, input: TargetInput) -> dict[str, bytes]:
-        """Return what is rendered for this behaviour.
+    def _same(self, probe: Probe) -> bool:
+        """Return whether the same is rendered with the element and without it."""
+        files, others = self._rendered(probe.given), self._rendered(probe.without)
+        for file in files:
+            try:
+                other = next(others, None)
+            except UnsupportedError:
+                return False
+            if file != other:
+                return False
+        return next(others, None) is None
+
+    def _rendered(self, input: TargetInput) -> Iterator[tuple[str, bytes]]:
+        """Yield the path and content of each file that is rendered for this behaviour.
 
         Not what is copied, which is the same for every behaviour, nor the fingerprint, which never is.
         """
         mark = input.program.fingerprint.encode()
-        specs = self._target.files(input)
-        return {
-            spec.path: self._press.content(spec)[0].replace(mark, b"")
-            for spec in specs
-            if spec.source is None
-        }
+        for spec in self._target.files(input):
+            if spec.source is None:
+                yield spec.path, self._press.content(spec)[0].replace(mark, b"")
 
 
 def _short(reason: str) -> str:
