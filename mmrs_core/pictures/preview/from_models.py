@@ -94,7 +94,9 @@ class _Drawing:
         """Return the picture, without its problems."""
         team = names_of(children(child(self._mission, "team"), "robots"))
         robots = tuple(self._robot(robot, name) for robot, name in team.items())
-        zones = tuple(self._zones({each.name: self._clearance(each.type_name) for each in robots}))
+        error = self._position_error()
+        by_type = {name: self._clearance(name, error) for name in {each.type_name for each in robots}}
+        zones = tuple(self._zones({each.name: by_type[each.type_name] for each in robots}))
         tasks, elements = self._tasks_and_elements()
         gaps = [*self._found, *gap_of_clearances(zones), *self._gaps.others()]
         if self._context is None:
@@ -123,7 +125,7 @@ class _Drawing:
         except (InvalidModelError, ValueError):
             return None
 
-    def _clearance(self, type_name: str) -> float | None:
+    def _clearance(self, type_name: str, error: float | None) -> float | None:
         """Return the clearance of robots of a type; None where it is unknown or contradictory."""
         robot_type = self._type(type_name)
         roots = (root for model in self._models.models for root in model.roots)
@@ -133,7 +135,6 @@ class _Drawing:
             for root in named
             for problem in self._gaps.problems_of(root)
         )
-        error = self._position_error()
         if robot_type is None or error is None or len(named) > 1 or size_in_doubt:
             return None
         return robot_type.half_diagonal + error

@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable, Iterator
-from html import unescape
 from itertools import accumulate
 
 from mmrs_core.diagnostics import Diagnostic, Place, Severity
 from mmrs_core.grounding.coordinates import Ground
 from mmrs_core.grounding.frame import NOWHERE, is_geographic, is_relative
 from mmrs_core.languages.element import Element, Unknown, descendants, place_of
+from mmrs_core.languages.json_form.unknown import kept_name
 from mmrs_core.languages.modelset import ModelSet
 from mmrs_core.pictures.preview.picture import MapGap
 
@@ -18,7 +17,6 @@ _UNREADABLE = ("XMI", "ECO", "FIL", "PRJ", "MIG", "GND")
 """The beginnings of the codes of problems that leave a model without something that its file holds."""
 _CONTRADICTORY = ("CTX003", "CTX004", "CTX005", "CTX007")
 """The codes of areas whose outline, heights or safety distance cannot be meant."""
-_NAME = re.compile(r'\sname="([^"<>]*)"')
 _MOST_REASONS = 5
 
 
@@ -41,9 +39,12 @@ class Gaps:
             if problem.severity is Severity.ERROR and problem.code.startswith(_UNREADABLE + _CONTRADICTORY)
         }
         self._by_path: dict[tuple[str, str], list[Diagnostic]] = {}
+        self._by_line: dict[tuple[str, str, int], list[Diagnostic]] = {}
         for problem in self._problems.values():
-            for path in ("/", *paths_to(problem.place.path)):
-                self._by_path.setdefault((problem.place.file, path), []).append(problem)
+            file, line, path = problem.place.file, problem.place.line, problem.place.path or "/"
+            self._by_line.setdefault((file, path, line), []).append(problem)
+            for each in ("/", *paths_to(path)):
+                self._by_path.setdefault((file, each), []).append(problem)
         self._explained: set[Diagnostic] = set()
 
     def problems_of(self, element: Element) -> list[Diagnostic]:
@@ -51,9 +52,9 @@ class Gaps:
         place = place_of(element)
         found = self._by_path.get((place.file, place.path), [])
         if isinstance(element, Unknown):
-            # What an unknown element is, its owner's problem says.
-            owners = self._by_path.get((place.file, place.path.rpartition("/")[0] or "/"), [])
-            found = [*found, *(each for each in owners if each.place.line == place.line)]
+            # What an unknown element is, a problem of its owner in its line says.
+            owner = place.path.rpartition("/")[0] or "/"
+            found = [*found, *self._by_line.get((place.file, owner, place.line), [])]
         return found
 
     def short(self, element: Element) -> str:
@@ -66,7 +67,7 @@ class Gaps:
 
         Args:
             kind: such as ``forbidden area``.
-            name: of an element whose name is known.
+            name: of an element that has none of its own, or several share it.
         """
         problems = self.problems_of(element)
         self._explained.update(problems)
@@ -76,9 +77,9 @@ class Gaps:
         reasons = [*([lost] if lost else []), *dict.fromkeys(problem.message for problem in causes)]
         more = len(reasons) - _MOST_REASONS
         shown = [*reasons[:_MOST_REASONS], *([f"and {more} more"] if more > 0 else [])]
-        called = (isinstance(element, Unknown) and _NAME.search(element._mmrs_xml.partition(">")[0])) or None
-        what = f"{kind} {(unescape(called[1]) if called else name)!r}"
-        return MapGap(what, "; ".join(shown) or "it has no position", source_of(place), drawn)
+        own = kept_name(element) if isinstance(element, Unknown) else ""
+        otherwise = "its class is unknown" if isinstance(element, Unknown) else "it has no position"
+        return MapGap(f"{kind} {(own or name)!r}", "; ".join(shown) or otherwise, source_of(place), drawn)
 
     def others(self) -> Iterator[MapGap]:
         """Yield every problem that is in no gap so far: what it is about is in no element that is drawn."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import re
 import shutil
 from html import unescape
@@ -123,6 +124,19 @@ def test_areas_and_robots_that_cannot_be_read_whole_are_marked_or_listed(field):
         )
         assert "not drawn: obstacle 'barn' (context.xmi:39): Barn: no class" in document
         assert "not drawn: robot 'Brezza' (mission.xmi:12)" in document
+
+
+def test_models_in_json_are_marked_and_listed_likewise(field, tmp_path):
+    folder = tmp_path / "json"
+    assert run(["convert", str(field()), "--to", "json", "-o", str(folder)]) == 0
+    context = json.loads((folder / "context.json").read_text("utf-8"))
+    context["forbiddenAreas"][0]["shell"][0]["latitude"] = "x42"
+    context["emergencyAreas"][0] = {"$type": "context:Meadow", "name": "football pitch"}
+    (folder / "context.json").write_text(json.dumps(context), "utf-8")
+    assert run(["preview", str(folder)]) == 1
+    page = unescape((folder / "preview.html").read_text("utf-8"))
+    assert "incomplete: forbidden area 'school' (context.json:1): 1 of 4 coordinates" in page
+    assert "not drawn: emergency area 'football pitch' (context.json:1): Meadow: no class" in page
 
 
 def test_what_cannot_be_read_at_all_is_not_drawn(field):

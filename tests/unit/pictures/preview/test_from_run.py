@@ -144,6 +144,20 @@ def test_areas_are_grown_by_clearance_and_safety_distance(shown):
     assert shown.zones[0].clearance == 1.5
 
 
+def test_where_types_or_the_context_are_unknown_the_picture_says_so():
+    program = Program("relay", Frame("EPSG:4326", None, None), (A, replace(B, type_name="sub")))
+    tree = Area("tree", AreaUse.OBSTACLE, ((20.0, 0.0), (21.0, 0.0), (21.0, 1.0)), 0.0, 9.0, 1.0)
+
+    def gaps(types, areas):
+        shown = picture_of_run(program, RECORDS, TRACKS, KINDS, {}, BehaviourContext(types, areas))
+        return [bool(zone.kept) for zone in shown.zones], [(gap.what, gap.reason) for gap in shown.gaps]
+
+    some, none = "unknown; only that of other robots is drawn", "unknown; none is drawn"
+    assert gaps({"quad": QUAD}, (tree,)) == ([True], [("clearance of b", some)])
+    assert gaps({}, (tree,)) == ([False], [("clearance of a, b", none)])
+    assert gaps({"quad": QUAD}, None)[1][0][0] == "context"
+
+
 def test_the_run_ends_with_its_last_step(shown):
     assert shown.makespan == 10.0
 
