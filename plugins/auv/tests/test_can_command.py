@@ -6,7 +6,6 @@ import json
 import os
 import signal
 import subprocess
-import sys
 import threading
 import time
 from pathlib import Path
@@ -19,6 +18,7 @@ from mmrs_auv.commands.can import app
 from mmrs_auv.commands.watching import Monitor
 from typer.main import get_command
 from vessel_sheets import sheet, thruster
+from warm_python import python
 
 from auv_vessel.sheet import to_json
 from auv_vessel.wire.codec import Codec
@@ -225,7 +225,7 @@ def test_load_of_a_bus_that_is_listened_to(vehicle: str, capsys: pytest.CaptureF
 class HubProcess:
     def __init__(self, *options: str) -> None:
         self.process = subprocess.Popen(
-            [sys.executable, "-m", "mmrs_core", "can", "hub", "--port", "0", *options],
+            [python(), "-m", "mmrs_core", "can", "hub", "--port", "0", *options],
             stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, bufsize=1,
         )  # fmt: skip
         assert self.process.stdout is not None

@@ -14,6 +14,7 @@ from mmrs_auv.kinds import AUV_KIND
 from mmrs_auv.targets.can_python.target import CAN_PYTHON
 from mmrs_multicopter.testing import quad, robot_program
 from ports import free_endpoint
+from warm_python import python
 
 from auv_vessel.sheet import from_json
 from mmrs_core.behaviour.log import read_logs
@@ -65,19 +66,16 @@ def generated(behaviour: Program, folder: Path) -> Path:
 
 
 def call(folder: Path, *words: str, timeout: float = 120.0) -> subprocess.CompletedProcess[str]:
-    """Run controllers without this project, or MAVLink's library, in reach."""
+    """Run controllers."""
     process = begun(folder, "fleet.py", *words)
     said, told = process.communicate(timeout=timeout)
     return subprocess.CompletedProcess(process.args, process.returncode, said, told)
 
 
-def begun(folder: Path, module: str, *words: str) -> subprocess.Popen[str]:
-    """Begin controllers without this project, or MAVLink's library, in reach."""
-    environment = {key: value for key, value in os.environ.items() if key != "PYTHONPATH"}
-    command = [sys.executable, "-S", "-c", BOOT.replace("fleet.py", module), *words]
-    return subprocess.Popen(
-        command, cwd=folder, env=environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
-    )
+def begun(folder: Path, *words: str) -> subprocess.Popen[str]:
+    """Begin controllers."""
+    command = [python(), *words]
+    return subprocess.Popen(command, cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
 
 
 BOOT = f"""
@@ -91,11 +89,14 @@ sys.meta_path.insert(0, Barred())
 sys.path[:0] = [".", *glob.glob("wheels/*.whl")]
 runpy.run_path("fleet.py", run_name="__main__")
 """
+"""Runs controllers without this project, or MAVLink's library, in reach."""
 
 
 def test_controllers_stand_alone_and_their_dry_logs_replay(tmp_path: Path) -> None:
     folder = generated(pair(), tmp_path / "code")
-    done = call(folder, "--dry-run", "--log", str(tmp_path / "logs"))
+    environment = {key: value for key, value in os.environ.items() if key != "PYTHONPATH"}
+    command = [sys.executable, "-S", "-c", BOOT, "--dry-run", "--log", str(tmp_path / "logs")]
+    done = subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True, timeout=120)
     assert done.returncode == 0, done.stdout + done.stderr
     judged = replay(pair(), read_logs([tmp_path / "logs"]))
     assert judged.accepted
@@ -150,10 +151,9 @@ def test_controllers_of_a_mixed_team_meet_by_zenoh(tmp_path: Path) -> None:
     common = ("--dry-run", "--log", str(tmp_path / "logs"), "--speedup", "10")
     endpoint = free_endpoint()
     naiad = begun(tmp_path / "can", "robot_naiad.py", *common, "--bus-listen", endpoint)
-    words = [sys.executable, "robot_Kite.py", *common, "--bus-connect", endpoint]
-    kite = subprocess.run(words, cwd=tmp_path / "mavlink", capture_output=True, text=True, timeout=60)
-    _, told = naiad.communicate(timeout=60)
-    assert (naiad.returncode, kite.returncode) == (0, 0), told + kite.stderr
+    kite = begun(tmp_path / "mavlink", "robot_Kite.py", *common, "--bus-connect", endpoint)
+    said = [each.communicate(timeout=60)[1] for each in (naiad, kite)]
+    assert (naiad.returncode, kite.returncode) == (0, 0), said
     judged = replay(mixed(), read_logs([tmp_path / "logs"]))
     assert (judged.accepted, judged.outcome) == (True, Outcome.SUCCESS)
 
