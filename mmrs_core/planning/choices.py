@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import replace
 
 from mmrs_core.planning.jobs import Choice
 from mmrs_core.planning.materials import Material
@@ -58,7 +57,7 @@ def _branched(
 ) -> State | None:
     ends = []
     for _, items in choice.arms:
-        end = _arm(pilot, items, material_of, replace(state, trail=None), record)
+        end = _arm(pilot, items, material_of, state._replace(trail=None), record)
         if end is None:
             return None
         ends.append(end)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from math import inf
 
 from mmrs_core.planning.materials import Material
@@ -134,14 +134,14 @@ class PortionRun:
         lead = state.lead + material.lead(sortie.first, portion)
         if not self._record:
             seconds = material.seconds(sortie.first, portion)
-            return replace(state.later(seconds, 0.0, material.last(portion)), lead=lead)
+            return state.later(seconds, 0.0, material.last(portion))._replace(lead=lead)
         strokes = material.strokes(sortie.first, portion)
         for i, stroke in enumerate(strokes):
             state = self._pilot.hop(state, stroke, material.task)
             first = i == 0 and sortie.first == self.begin
             last = final and i == len(strokes) - 1
             state = self._pilot.serve(state, stroke, material.task, material.rule, first, last)
-        return replace(state, lead=lead)
+        return state._replace(lead=lead)
 
 
 def _largest(low: int, high: int, holds: Callable[[int], bool]) -> int:

@@ -146,8 +146,7 @@ class Pilot:
         longest = max(waited, ready.time - soonest) if ready.signals else waited
         soonest_end = max(soonest if clock is None else clock - state.lead, ready.soonest)
         counts = state.away or not self.kinematics.launches
-        return replace(
-            state,
+        return state._replace(
             time=end,
             used=state.used + (longest if counts else 0.0),
             lead=end - soonest_end,
@@ -176,7 +175,7 @@ class Pilot:
         end = state.time + route.seconds
         if len(route.points) > 1 and route.points[0] != route.points[-1]:
             trail = (trail, Transit(time, end, task, route.points, speed))
-        return replace(state.after(route, goal, trail), sorties=state.sorties + 1)
+        return state.after(route, goal, trail)._replace(sorties=state.sorties + 1)
 
     def _follow(self, state: State, route: Route, task: str, speed: float | None) -> State:
         route = self.travel.at_speed(route, speed)
@@ -208,7 +207,7 @@ class Pilot:
         end = state.time + seconds
         step = Serve(state.time, end, task, stroke, speed, rule, first, last)
         done = state.later(seconds, length_of(stroke.points), stroke.points[-1])
-        return replace(done, trail=(state.trail, step))
+        return done._replace(trail=(state.trail, step))
 
     def home(self, state: State, task: str = "") -> State:
         """Return the state at home, after recovery.
@@ -253,11 +252,11 @@ class Pilot:
             trail = (trail, Transit(state.time, end - down, task, route.points))
         if self.kinematics.launches:
             trail = (trail, Recover(end - down, end, task, last, at[2]))
-        return replace(state.after(route, at, trail), away=False)
+        return state.after(route, at, trail)._replace(away=False)
 
     def _recharged(self, state: State, task: str) -> State:
         end = state.time + (self.kinematics.recharge or 0.0)
-        return replace(state, time=end, used=0.0, trail=(state.trail, Recharge(state.time, end, task)))
+        return state._replace(time=end, used=0.0, trail=(state.trail, Recharge(state.time, end, task)))
 
 
 def _remembered(

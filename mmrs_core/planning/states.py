@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
-from typing import TypeAlias
+from dataclasses import dataclass
+from typing import NamedTuple, TypeAlias
 
 from mmrs_core.planning.travel import Route
 from mmrs_core.scene import Position, Step
@@ -12,8 +12,7 @@ from mmrs_core.scene import Position, Step
 Trail: TypeAlias = "tuple[Trail, Step] | None"
 
 
-@dataclass(frozen=True, slots=True)
-class State:
+class State(NamedTuple):
     """Where a robot is in its plan.
 
     Attributes:
@@ -38,17 +37,12 @@ class State:
 
     def after(self, route: Route, at: Position, trail: Trail) -> State:
         """Return the state at the end of a route that ends there, with the steps of it."""
-        return replace(
-            self.later(route.seconds, route.length, at),
-            away=True,
-            lead=self.lead + route.lead,
-            trail=trail,
-        )
+        there = self.later(route.seconds, route.length, at)
+        return there._replace(away=True, lead=self.lead + route.lead, trail=trail)
 
     def later(self, seconds: float, length: float, at: Position) -> State:
         """Return the state `seconds` and `length` metres later, without steps."""
-        return replace(
-            self,
+        return self._replace(
             time=self.time + seconds,
             at=at,
             used=self.used + seconds,
