@@ -97,7 +97,7 @@ def test_what_was_asked_for_long_ago_is_a_pilots_again(late):
     mode_control, link, telemetry, wire = late
     broken_off(mode_control, link, wire, modes.HOLD)
     mode_control.enter(modes.LAND)
-    threading.Event().wait(1.0)
+    link.clock.skip(10.0)
     show(wire, telemetry, BRAKE)
     with pytest.raises(FaultError, match="left mode land for hold: it is under external control"):
         mode_control.check()
