@@ -75,14 +75,16 @@ class Rule:
         work: the work of that task for that robot, whose kinematics are known. It leaves open
             who does it, when, and how to get there. Raises InfeasibleError if that robot cannot do the task;
             the reason is shown to the operator when no robot can.
-        moves: the moves of a stroke, for tasks whose moves are not GoTo with actions; the robot is
-            at the stroke's first point. None: the engine's own.
+        moves: the moves of a stroke, for tasks whose moves are not GoTo with actions. The robot is at the
+            stroke's first point already, and must be at its last point afterwards. Plans and timelines
+            count the stroke, not the moves: `Stroke.hold` must contain every second that the moves take
+            beyond the way along the stroke's points and its actions. None: the engine's own.
     """
 
     name: str
     metaclass: Name
     work: Callable[[Task, Robot, Scene], Work]
-    moves: Callable[[Stroke, Robot], tuple[MoveSpec, ...]] | None = None
+    moves: Callable[[Stroke, Task, Robot, Scene], tuple[MoveSpec, ...]] | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -140,7 +142,9 @@ class MoveKind:
             launch begin), ``airborne``, ``moving`` (where all others are throughout).
         leaves: state it is in afterwards; None: as before.
         manoeuvre: what a vehicle does to make the move: ``take_off`` to the end of its path, ``land`` at the
-            end of its path, or ``go_to`` its target along its path; empty for other moves.
+            end of its path, or ``go_to`` its target along its path; empty for other moves. Targets ask for
+            the path of a take-off, and of a GoTo, at the origin and without a home: it must be known there.
+            The end of a take-off is a height above where the robot stands, whatever its home.
     """
 
     metaclass: Name

@@ -21,6 +21,7 @@ from mmrs_core.scene import (
     Recover,
     Robot,
     RobotPlan,
+    Scene,
     Serve,
     Signal,
     Step,
@@ -30,14 +31,15 @@ from mmrs_core.scene import (
 from mmrs_core.transformation.chain import Chain, OpenEnd, SendFeedback, SendSignal, UseDevice
 
 
-def draft(plan: RobotPlan, robot: Robot, kind: RobotKind, rules: Mapping[str, Rule]) -> Chain:
+def draft(plan: RobotPlan, scene: Scene, kind: RobotKind, rules: Mapping[str, Rule]) -> Chain:
     """Return the moves of one robot.
 
     Args:
+        scene: with the robot and the tasks.
         kind: of that robot; makes its launches, recoveries and ways.
         rules: by name; one that has `moves` makes those of its strokes itself.
     """
-    drafting = _Drafting(robot, kind, rules)
+    drafting = _Drafting(scene.robot(plan.robot), scene, kind, rules)
     for step in plan.steps:
         drafting.add(step)
     drafting.chain.add(MoveSpec((BEHAVIOUR, "Stop")), "", "recover")
@@ -45,9 +47,9 @@ def draft(plan: RobotPlan, robot: Robot, kind: RobotKind, rules: Mapping[str, Ru
 
 
 class _Drafting:
-    def __init__(self, robot: Robot, kind: RobotKind, rules: Mapping[str, Rule]) -> None:
+    def __init__(self, robot: Robot, scene: Scene, kind: RobotKind, rules: Mapping[str, Rule]) -> None:
         self.chain = Chain()
-        self._robot, self._kind, self._rules = robot, kind, rules
+        self._robot, self._scene, self._kind, self._rules = robot, scene, kind, rules
 
     @singledispatchmethod
     def add(self, step: Step) -> None:
@@ -69,7 +71,7 @@ class _Drafting:
     def _(self, step: Serve) -> None:
         rule = self._rules.get(step.rule)
         if rule is not None and rule.moves is not None:
-            specs = rule.moves(step.stroke, self._robot)
+            specs = rule.moves(step.stroke, self._scene.task(step.task), self._robot, self._scene)
         else:
             specs = moves_of(step.stroke, self._kind, self._commanded(step.speed))
         for spec in specs:

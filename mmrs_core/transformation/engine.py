@@ -76,8 +76,7 @@ def transform(
     kinds = {kind.name: kind for kind in robot_kinds.values()}
     by_name = {rule.name: rule for rule in rules.values()}
     chains = {
-        each.robot: draft(each, scene.robot(each.robot), kinds[scene.robot(each.robot).kind], by_name)
-        for each in plan.robots
+        each.robot: draft(each, scene, kinds[scene.robot(each.robot).kind], by_name) for each in plan.robots
     }
     with registry.in_use():
         return _Assembly(scene, plan, chains, registry).behaviour()

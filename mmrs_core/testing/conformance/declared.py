@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from functools import cache
 from types import SimpleNamespace
 from typing import Any, ClassVar
@@ -10,17 +10,35 @@ from typing import Any, ClassVar
 import pytest
 
 from mmrs_core import builtin
+from mmrs_core.behaviour.program import Move, MoveTarget
 from mmrs_core.contributions.registry import Contributions
+from mmrs_core.contributions.rules import MoveKind, MoveSpec, most_specific
 from mmrs_core.errors import PluginError
 from mmrs_core.hookspecs import hookimpl
 from mmrs_core.languages.registry import MetamodelSource, Registry
 from mmrs_core.plugins import load_plugins
+from mmrs_core.scene import Position
 
 
 def declared(plugin: object, sort: str) -> tuple[Any, ...]:
     """Return what a plug-in declares of a sort, such as ``rules``; nothing where it has no such hook."""
     hook = getattr(plugin, f"mmrs_{sort}", None)
     return tuple(hook()) if hook is not None else ()
+
+
+def made_by(
+    specs: Iterable[MoveSpec], here: Position, home: Position, known: Contributions
+) -> Iterator[tuple[MoveKind, Move, tuple[Position, ...] | None]]:
+    """Yield each move with its kind and its path, for a robot that is `here` first; None: path unknown."""
+    for spec in specs:
+        metaclasses = known.languages.metaclass(*spec.metaclass).ancestry
+        name = most_specific(metaclasses, known.move_kinds)
+        assert name is not None, f"no kind of move for {spec.metaclass[1]}"
+        target = MoveTarget(spec.target) if spec.target is not None else None
+        move = Move("m", metaclasses, spec.attributes, target=target, distance=spec.distance)
+        path = known.move_kinds[name].path(move, here, home)
+        yield known.move_kinds[name], move, path
+        here = path[-1] if path else here
 
 
 SORTS = {

@@ -12,7 +12,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from mmrs_core.behaviour.program import Move
+from mmrs_core.behaviour.program import Move, MoveTarget
 from mmrs_core.contributions.rules import MoveKind
 from mmrs_core.scene import Kinematics, Position
 from mmrs_core.testing.conformance.declared import Conformance, declared
@@ -61,6 +61,23 @@ class MoveKindConformance(Conformance):
             assert path == move_kind.path(self._move(move_kind), here, home)
 
         law()
+
+    def test_what_vehicles_make_of_it_is_known_without_a_home(self, move_kind: MoveKind) -> None:
+        """Targets ask for a path at the origin, without a home: how high a take-off rises, how a GoTo bends.
+
+        A take-off rises by as much wherever the robot stands.
+        """
+        origin, move = (0.0, 0.0, 0.0), self._move(move_kind)
+        if move_kind.manoeuvre == "go_to":
+            aimed = replace(move, target=MoveTarget((10.0, 10.0, 10.0)), distance=0.0)
+            assert move_kind.path(aimed, origin, None) is not None, "path unknown without a home"
+        if move_kind.manoeuvre == "take_off":
+            path = move_kind.path(move, origin, None)
+            assert path is not None, "path unknown without a home"
+            assert path[-1][:2] == origin[:2]
+            assert path[-1][2] > 0.0
+            elsewhere = move_kind.path(move, (3.0, 4.0, 50.0), (7.0, 8.0, 9.0)) or path
+            assert elsewhere[-1] == pytest.approx((3.0, 4.0, 50.0 + path[-1][2]), abs=SMALL)
 
     @pytest.mark.parametrize("mode", MODES)
     def test_a_move_takes_no_less_time_than_the_robot_needs_for_its_path(

@@ -13,12 +13,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from mmrs_core.behaviour.program import Move, MoveTarget
 from mmrs_core.contributions.registry import Contributions
-from mmrs_core.contributions.rules import MoveSpec, RobotKind, most_specific
+from mmrs_core.contributions.rules import MoveSpec, RobotKind
 from mmrs_core.errors import InfeasibleError
 from mmrs_core.scene import Kinematics, PolicyEvent, PolicyResponse, Position, Robot, Scene, TravelMode
-from mmrs_core.testing.conformance.declared import Conformance, declared
+from mmrs_core.testing.conformance.declared import Conformance, declared, made_by
 from mmrs_core.testing.scenes import sample_scene
 
 SMALL = 1e-6
@@ -148,13 +147,7 @@ def _passed(
 ) -> list[Position]:
     """Return the places that a robot passes that makes some moves, where it is first."""
     passed = [here]
-    for spec in specs:
-        metaclasses = known.languages.metaclass(*spec.metaclass).ancestry
-        kind = most_specific(metaclasses, known.move_kinds)
-        assert kind is not None, f"no kind of move for {spec.metaclass[1]}"
-        target = MoveTarget(spec.target) if spec.target is not None else None
-        move = Move("m", metaclasses, spec.attributes, target=target, distance=spec.distance)
-        path = known.move_kinds[kind].path(move, passed[-1], home)
+    for _, _, path in made_by(specs, here, home, known):
         assert path is not None
         passed += path[1:]
     return passed

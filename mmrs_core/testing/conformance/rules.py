@@ -13,12 +13,14 @@ import shapely
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from mmrs_core.contributions.rules import Rule
+from mmrs_core.contributions.registry import Contributions
+from mmrs_core.contributions.rules import Rule, barriers
 from mmrs_core.errors import InfeasibleError
 from mmrs_core.geometry.segments import legs_of, prism_distance
 from mmrs_core.languages.registry import Registry
+from mmrs_core.planning.strokes import serve_seconds
 from mmrs_core.scene import Area, Kinematics, Part, Position, Robot, Scene, Task, Value, Work
-from mmrs_core.testing.conformance.declared import Conformance, declared
+from mmrs_core.testing.conformance.declared import Conformance, declared, made_by
 from mmrs_core.testing.scenes import FLYER, sample_robot, sample_scene, sample_task, square
 
 SMALL = 1e-6
@@ -32,7 +34,7 @@ class RuleConformance(Conformance):
         tasks: the attributes of a task that the rule serves, by the rule's name. A robot at the origin
             must be able to do it where nothing is in the way.
         robot: that does them; with whatever devices they need.
-        elements: of the context, that the tasks refer to.
+        elements: of the context, that the tasks refer to; the areas that they make are added to `areas`.
         areas: of the context, such as obstacles that the rule itself reads.
     """
 
@@ -76,6 +78,28 @@ class RuleConformance(Conformance):
             for each in stroke.actions:
                 able = [devices[each.device]] if each.device else devices.values()
                 assert any(each.action in device.actions for device in able)
+
+    def test_moves_of_its_own_end_with_the_stroke_and_fit_into_its_seconds(
+        self, rule: Rule, alone: Contributions
+    ) -> None:
+        """Planning counts the strokes: moves that need longer than their stroke make its times wrong.
+
+        Not asked of a stroke to an object, which may be found anywhere.
+        """
+        if rule.moves is None:
+            return
+        limits, task, scene = self._limits(), self._task(rule), self._scene()
+        for stroke in (each for each in self._work(rule).strokes if each.object is None):
+            specs = rule.moves(stroke, task, self.robot, scene)
+            steps = list(made_by(specs, stroke.points[0], self.robot.home, alone))
+            paths = [path for _, _, path in steps if path is not None]
+            least = sum(
+                kind.seconds(move, path, limits, self.robot.travel_mode)[0]
+                for kind, move, path in steps
+                if path is not None
+            )
+            assert (paths[-1] if paths else stroke.points)[-1] == pytest.approx(stroke.points[-1], abs=SMALL)
+            assert least <= serve_seconds(stroke, self.robot, limits) + SMALL, "hold lacks seconds"
 
     def test_coverage_lies_in_the_area_asked_for(self, rule: Rule) -> None:
         """What is covered is inside the shell and outside of its holes."""
@@ -130,7 +154,10 @@ class RuleConformance(Conformance):
         return sample_task(rule.metaclass, **self.tasks[rule.name])
 
     def _scene(self, *areas: Area) -> Scene:
-        return sample_scene(self.robot, areas=(*self.areas, *areas), elements=self.elements)
+        known, drawn = self.with_core(), (*self.areas, *areas)
+        kinds = known.robot_kinds, known.element_kinds
+        made = barriers(tuple(self.elements), drawn, (self.robot.type,), *kinds)
+        return sample_scene(self.robot, areas=(*drawn, *made), elements=self.elements)
 
     def _work(self, rule: Rule) -> Work:
         return rule.work(self._task(rule), self.robot, self._scene())
@@ -155,7 +182,7 @@ class RuleConformance(Conformance):
     def _try(self, rule: Rule, task: Task, robot: Robot) -> Work | None:
         """Return the work; None where it is refused."""
         try:
-            return rule.work(task, robot, sample_scene(robot, areas=self.areas, elements=self.elements))
+            return rule.work(task, robot, replace(self._scene(), robots=(robot,)))
         except InfeasibleError:
             return None
 

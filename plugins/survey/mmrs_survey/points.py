@@ -76,7 +76,7 @@ def approach_work(task: Task, robot: Robot, scene: Scene) -> Work:
     return Work((there, Stroke((begin,))), divisible=False, rule="approach")
 
 
-def approach_moves(stroke: Stroke, robot: Robot) -> tuple[MoveSpec, ...]:
+def approach_moves(stroke: Stroke, task: Task, robot: Robot, scene: Scene) -> tuple[MoveSpec, ...]:
     """Return the move up to the object with the actions there; a hold ends the return."""
     if stroke.object is None or stroke.look is None:
         return (MoveSpec((BEHAVIOUR, "HoldPosition"), {"duration": 0.0}),)

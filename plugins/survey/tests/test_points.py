@@ -106,15 +106,15 @@ def test_an_approach_begins_outside_of_where_the_object_may_be(robot, scene, tas
 def test_an_approach_is_one_move_to_the_object_then_its_action(robot, scene, task):
     asked = approach(task, deviceId="camera", actionName="TakePicture")
     there, back = approach_work(asked, robot(), scene()).strokes
-    (spec,) = approach_moves(there, robot())
+    (spec,) = approach_moves(there, asked, robot(), scene())
     assert (spec.object, spec.target, spec.distance, spec.object_tolerance) == ("buoy", POINT, 2.0, 3.0)
     assert (spec.look.at, spec.look.device) == (POINT, "camera")
     assert [(each.action, each.device) for each in spec.after] == [("TakePicture", "camera")]
-    assert [each.metaclass[1] for each in approach_moves(back, robot())] == ["HoldPosition"]
+    assert [each.metaclass[1] for each in approach_moves(back, asked, robot(), scene())] == ["HoldPosition"]
 
 
 def test_an_object_that_may_be_anywhere_stays_unknown(robot, scene, task):
     there, _ = approach_work(approach(task, tolerance=None), robot(), scene()).strokes
-    (spec,) = approach_moves(there, robot())
+    (spec,) = approach_moves(there, approach(task), robot(), scene())
     assert spec.object_tolerance is None
     assert spec.look is None

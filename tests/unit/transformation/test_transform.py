@@ -34,6 +34,7 @@ from mmrs_core.scene import (
     Serve,
     Signal,
     Stroke,
+    Task,
     Transit,
 )
 from mmrs_core.transformation.engine import transform
@@ -68,7 +69,9 @@ def robot(name="one", home=HOME, **features):
 def behaviour_of(*plans, robots=None, areas=(), frame=None, rules=(), kinds=(PLAIN_ROBOT,), registry=None):
     robots = robots or tuple(robot(plan.robot) for plan in plans)
     frame = frame or Frame("EPSG:4326", None, None)
-    scene = Scene("test", frame, (), (), tuple(robots), areas=tuple(areas))
+    scene = Scene(
+        "test", frame, (Task("t", Part((), {}), longest=7.0),), (), tuple(robots), areas=tuple(areas)
+    )
     model, trace = transform(
         scene,
         Plan(tuple(plans), 0.0, {}, {}),
@@ -269,9 +272,11 @@ def test_a_rule_may_make_its_moves_itself():
         "dance",
         ("urn:t", "Dance"),
         None,
-        lambda stroke, robot: (
+        lambda stroke, task, robot, scene: (
             MoveSpec(
-                ("urn:mmrs:behaviour:1.0", "HoldPosition"), {"duration": 7.0}, after=(ActionAt(0, "Photo"),)
+                ("urn:mmrs:behaviour:1.0", "HoldPosition"),
+                {"duration": task.longest},
+                after=(ActionAt(0, "Photo"),),
             ),
         ),
     )

@@ -94,7 +94,7 @@ def _leg(
     return leg
 
 
-def align_moves(stroke: Stroke, robot: Robot) -> tuple[MoveSpec, ...]:
+def align_moves(stroke: Stroke, task: Task, robot: Robot, scene: Scene) -> tuple[MoveSpec, ...]:
     """Return the moves to the object: go, face it, hold; a hold for the end of the path back."""
     if stroke.object is None or stroke.look is None:
         return (MoveSpec((BEHAVIOUR, "HoldPosition"), {"duration": 0.0}),)

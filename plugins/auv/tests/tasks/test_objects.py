@@ -62,7 +62,7 @@ def align(task, **more):
 def test_aligning_goes_to_the_object_faces_it_holds_and_then_acts(robot, scene, task):
     asked = align(task, tolerance=1.0, actionName="TakePicture")
     there, back = align_work(asked, robot(), scene()).strokes
-    go, turn, hold = align_moves(there, robot())
+    go, turn, hold = align_moves(there, asked, robot(), scene())
     assert (go.object, go.target, go.distance, go.object_tolerance) == ("gate", POINT, 2.0, 1.0)
     assert (turn.metaclass[1], turn.look.at) == ("HeadTo", POINT)
     assert (turn.facing, turn.object, turn.object_tolerance) == (True, "gate", 1.0)

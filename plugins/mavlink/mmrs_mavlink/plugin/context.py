@@ -47,8 +47,12 @@ class VehicleContext(RobotContext):
 
     def climb(self, move: Move) -> float:
         """Return how far a move climbs, metres; 0 for one without a movement of its own."""
-        path = self.moves[move.metaclasses[0]].path(move, (0.0, 0.0, 0.0), None)
+        path = self.path(move)
         return path[-1][2] if path else 0.0
+
+    def path(self, move: Move) -> tuple[Position, ...] | None:
+        """Return the path of a move from the origin, whatever the home; None where it is unknown."""
+        return self.moves[move.metaclasses[0]].path(move, (0.0, 0.0, 0.0), None)
 
     def legs(self, move: Move) -> str:
         """Return how a move goes to a target at another height: ``direct``, ``level first``, ``climb first``.

@@ -129,8 +129,12 @@ class MavlinkPython(PythonDriver[VehicleContext]):
                 yield "a gimbal is pointed at places on the Earth, and the behaviour is local"
 
     def unsaid(self, move: Move, context: VehicleContext) -> Iterator[str]:
-        """Yield that a vehicle takes off to where it stands."""
-        if context.manoeuvre(move) == "take_off" and context.climb(move) <= 0:
+        """Yield that a vehicle takes off to where it stands, or to an unknown height."""
+        if context.manoeuvre(move) != "take_off":
+            return
+        if context.path(move) is None:
+            yield "its path is unknown where no home is given, and a take-off counts from the ground"
+        elif context.climb(move) <= 0:
             yield f"takes off to {context.climb(move):g} m above the ground"
 
     def unanswerable(self, policy: Policy, context: VehicleContext) -> str:
