@@ -2,17 +2,25 @@
 
 from __future__ import annotations
 
+from contextlib import nullcontext
 from dataclasses import replace
 from types import SimpleNamespace
 
 import pytest
 from mmrs_multicopter import plugin as multicopter
 
-from mmrs_core.contributions.rules import ElementKind, MoveKind
+from mmrs_core.behaviour.program import Move
+from mmrs_core.contributions.rules import ElementKind, MoveKind, MoveSpec, Rule
 from mmrs_core.hookspecs import hookimpl
 from mmrs_core.languages.sources import MetamodelSource
-from mmrs_core.scene import AreaUse, Part
-from mmrs_core.testing.conformance import ElementKindConformance, MetamodelConformance, PluginConformance
+from mmrs_core.scene import AreaUse, Part, Stroke, Work
+from mmrs_core.testing.conformance import (
+    ElementKindConformance,
+    MetamodelConformance,
+    MoveKindConformance,
+    PluginConformance,
+    RuleConformance,
+)
 from mmrs_core.testing.scenes import square
 from mmrs_core.transformation.kinds import no_time, stays
 
@@ -100,3 +108,42 @@ def test_an_area_that_concerns_some_robots_only_is_found():
     kit, kind = kit_for_masts((replace(square("mast", 30.0, 0.0, 1.0), types=frozenset({"other"})),))
     with pytest.raises(pytest.fail.Exception, match="DID NOT RAISE"):
         kit.test_planning_keeps_out_of_it(kind)
+
+
+def rises_by(up):
+    """Return the path of a take-off whose end is as high as `up` states."""
+    return lambda move, here, home: (
+        (here, (*here[:2], up(here, home))) if up(here, home) is not None else None
+    )
+
+
+@pytest.mark.parametrize(
+    ("up", "fault"),
+    [
+        (lambda here, home: home and home[2] + 9.0, "unknown without a home"),
+        (lambda here, home: 9.0, "approx"),
+        (lambda here, home: here[2], "assert 0.0 > 0.0"),
+    ],
+    ids=["above home", "above the origin", "nowhere"],
+)
+def test_a_take_off_that_targets_cannot_express_is_found(up, fault):
+    kind = MoveKind((BALLOON, "Release"), rises_by(up), no_time, frozenset(), manoeuvre="take_off")
+    kit = kit_for(None, MoveKindConformance, moves={"Release": Move("up", (kind.metaclass,), {})})()
+    with pytest.raises(AssertionError, match=fault):
+        kit.test_what_vehicles_make_of_it_is_known_without_a_home(kind)
+
+
+@pytest.mark.parametrize(
+    ("seconds", "east", "fault"), [(4.0, 0.0, None), (4.1, 0.0, "hold lacks"), (4.0, 1.0, "approx")]
+)
+def test_moves_of_a_rule_that_do_not_fit_its_stroke_are_found(seconds, east, fault):
+    def moves(stroke, task, robot, scene):
+        hold = MoveSpec(("urn:mmrs:behaviour:1.0", "HoldPosition"), {"duration": seconds})
+        there = (east, *stroke.points[0][1:])
+        return (*((MoveSpec(("urn:mmrs:behaviour:1.0", "GoTo"), target=there),) if east else ()), hold)
+
+    work = Work((Stroke(((0.0, 0.0, 5.0),), hold=4.0),), divisible=False, rule="rest")
+    rule = Rule("rest", (BALLOON, "Rest"), lambda task, robot, scene: work, moves)
+    kit = kit_for(SimpleNamespace(), RuleConformance, tasks={"rest": {}})()
+    with pytest.raises(AssertionError, match=fault) if fault else nullcontext():
+        kit.test_moves_of_its_own_end_with_the_stroke_and_fit_into_its_seconds(rule, kit.with_core())

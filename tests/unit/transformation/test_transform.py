@@ -69,9 +69,8 @@ def robot(name="one", home=HOME, **features):
 def behaviour_of(*plans, robots=None, areas=(), frame=None, rules=(), kinds=(PLAIN_ROBOT,), registry=None):
     robots = robots or tuple(robot(plan.robot) for plan in plans)
     frame = frame or Frame("EPSG:4326", None, None)
-    scene = Scene(
-        "test", frame, (Task("t", Part((), {}), longest=7.0),), (), tuple(robots), areas=tuple(areas)
-    )
+    tasks = (Task("t", Part((), {}), longest=7.0),)
+    scene = Scene("test", frame, tasks, (), tuple(robots), areas=tuple(areas))
     model, trace = transform(
         scene,
         Plan(tuple(plans), 0.0, {}, {}),
