@@ -68,7 +68,7 @@ class Conformance:
         more_sorts: as `SORTS`, for hooks of plug-ins.
     """
 
-    plugin: ClassVar[object]
+    plugin: object
     name: ClassVar[str] = "tested"
     more_plugins: ClassVar[Iterable[object]] = ()
     more_metamodels: ClassVar[Iterable[MetamodelSource]] = ()
