@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import pytest
 from lxml import etree
+from svg_reading import with_class
 
 from mmrs_core.contributions.symbols import MapSymbol
 from mmrs_core.pictures.palette import SYMBOL
@@ -86,16 +87,14 @@ def with_elements(picture):
     return lambda *parts: replace(picture, elements=of(*parts))
 
 
-def shown(picture, kind, **options):
-    root = etree.fromstring(map_of(picture, **options).encode())
-    return [e for e in root.iter() if isinstance(e.tag, str) and kind in e.get("class", "").split()]
-
-
 def test_an_element_is_drawn_in_its_colour_with_its_icon(with_elements):
     picture = with_elements(part(GROUP, name="west", shell=SHELL), part(GROUP, name="mast", at=SHELL[1]))
-    (outline,) = shown(picture, "element")
+    (outline,) = with_class(map_of(picture), "element")
     assert (outline.get("stroke"), outline.get("fill")) == ("#123456", "#123456")
-    assert [icon.text for icon in shown(picture, "icon") if icon.get("fill") == "#123456"] == ["P", "P\u00a0"]
+    assert [icon.text for icon in with_class(map_of(picture), "icon") if icon.get("fill") == "#123456"] == [
+        "P",
+        "P\u00a0",
+    ]
 
 
 def test_an_element_tells_what_it_is(with_elements):
@@ -106,7 +105,7 @@ def test_an_element_tells_what_it_is(with_elements):
 def test_the_key_and_the_legend_name_its_kind(with_elements):
     picture = with_elements(part(GROUP, name="west", shell=SHELL))
     assert "panel group</li>" in page(picture)
-    assert "panel group" in "".join(shown(picture, "legend", standalone=True)[0].itertext())
+    assert "panel group" in "".join(with_class(map_of(picture, standalone=True), "legend")[0].itertext())
 
 
 def test_the_page_lists_elements_and_those_without_a_position(with_elements):

@@ -2,8 +2,8 @@
 
 from dataclasses import replace
 
-from lxml import etree
 from shapely.geometry import Point, Polygon
+from svg_reading import SVG, parsed, tip, with_class
 
 from mmrs_core.pictures.preview.labels import Label, Labels, around, width_of
 from mmrs_core.pictures.preview.map import map_of
@@ -11,21 +11,12 @@ from mmrs_core.pictures.preview.picture import Leg, Picture, Zone
 from mmrs_core.pictures.preview.projection import projection_of
 from mmrs_core.scene import AreaUse
 
-SVG = "{http://www.w3.org/2000/svg}"
 A_NAME = Label("a name", around((200.0, 200.0), 5.0), "name")
 HOSTILE = "</title><script>alert('x')</script>]]>&\"\x07\u202e"
 
 
-def parsed(picture, **options):
-    return etree.fromstring(map_of(picture, **options).encode())
-
-
-def with_class(root, kind):
-    return [e for e in root.iter() if isinstance(e.tag, str) and kind in e.get("class", "").split()]
-
-
 def test_every_leg_of_every_robot_is_drawn(picture):
-    drawn = with_class(parsed(picture), "leg")
+    drawn = with_class(map_of(picture), "leg")
     seen_from_above = [
         leg for robot in picture.robots for leg in robot.legs if leg.kind in ("transit", "work")
     ]
@@ -33,25 +24,25 @@ def test_every_leg_of_every_robot_is_drawn(picture):
 
 
 def test_robots_differ_in_colour_and_in_dashes(picture):
-    robots = with_class(parsed(picture), "robot")
+    robots = with_class(map_of(picture), "robot")
     assert len({robot.get("stroke") for robot in robots}) == len(robots) == 2
     dashes = {tuple(leg.get("stroke-dasharray") for leg in with_class(robot, "leg")) for robot in robots}
     assert len(dashes) == 2
 
 
 def test_areas_are_drawn_as_drawn_and_with_their_clearance(picture):
-    root = parsed(picture)
+    root = parsed(map_of(picture))
     assert len(with_class(root, "zone")) == 3
     assert len(with_class(root, "kept")) == 3
 
 
 def test_obstacles_tell_their_heights(picture):
-    words = " ".join(parsed(picture).itertext())
+    words = " ".join(parsed(map_of(picture)).itertext())
     assert "tower (0.0 m to 35.0 m)" in words
 
 
 def test_covered_ground_is_one_shape_for_each_robot_that_covers(picture):
-    covered = with_class(parsed(picture), "covered")
+    covered = with_class(map_of(picture), "covered")
     assert [shape.get("data-robot") for shape in covered] == ["0"]
     assert covered[0].get("d").count("M") == 2
 
@@ -62,13 +53,13 @@ def _extent(picture):
 
 
 def test_a_leg_says_who_what_and_when(picture):
-    tips = [title.text for title in parsed(picture).iter(f"{SVG}title")]
+    tips = [title.text for title in parsed(map_of(picture)).iter(f"{SVG}title")]
     assert "Alba: work for field, 0:11 to 0:31, up 20.0 m, 2 actions" in tips
 
 
 def test_hostile_names_stay_words(picture_named):
     picture = picture_named(Alba=HOSTILE, field=HOSTILE, tower=HOSTILE, mission=HOSTILE)
-    root = parsed(picture, standalone=True)
+    root = parsed(map_of(picture, standalone=True))
     assert not list(root.iter(f"{SVG}script"))
     words = "".join(root.itertext())
     assert "<script>alert('x')</script>" in words
@@ -76,7 +67,7 @@ def test_hostile_names_stay_words(picture_named):
 
 
 def test_the_legend_names_every_robot(picture):
-    root = parsed(picture, standalone=True)
+    root = parsed(map_of(picture, standalone=True))
     words = "".join(with_class(root, "legend")[0].itertext())
     assert "Alba" in words
     assert "Brezza" in words
@@ -84,7 +75,7 @@ def test_the_legend_names_every_robot(picture):
 
 
 def test_a_map_without_anything_is_still_a_map():
-    root = parsed(Picture("", "local coordinates", ()))
+    root = parsed(map_of(Picture("", "local coordinates", ())))
     assert float(root.get("width")) > 0
 
 
@@ -106,12 +97,12 @@ def test_words_do_not_cover_each_other():
 
 
 def test_an_obstacle_that_robots_pass_over_is_drawn_lightly(picture):
-    root = parsed(picture)
-    assert [zone.findtext(f"{SVG}title")[:5] for zone in with_class(root, "passed")] == []
+    root = parsed(map_of(picture))
+    assert [tip(zone)[:5] for zone in with_class(root, "passed")] == []
     over = Leg("transit", ((50.0, 25.0, 50.0), (80.0, 25.0, 50.0)), 0.0, 3.0)
     robots = (replace(picture.robots[0], legs=(over,)),)
-    light = with_class(parsed(replace(picture, robots=robots)), "passed")
-    assert [zone.findtext(f"{SVG}title")[:5] for zone in light] == ["tower"]
+    light = with_class(map_of(replace(picture, robots=robots)), "passed")
+    assert [tip(zone)[:5] for zone in light] == ["tower"]
 
 
 def test_nothing_in_the_map_comes_from_elsewhere(picture):
@@ -122,9 +113,9 @@ def test_nothing_in_the_map_comes_from_elsewhere(picture):
 
 
 def test_a_task_is_drawn_as_its_symbol_says(picture):
-    root = parsed(picture)
+    root = parsed(map_of(picture))
     (area,) = with_class(root, "area")
-    assert (area.get("stroke"), area.findtext(f"{SVG}title")) == (
+    assert (area.get("stroke"), tip(area)) == (
         "#c2571a",
         "field: photo grid, 0:11 to 0:31",
     )
@@ -199,6 +190,6 @@ def test_words_are_placed_on_what_is_large_enough_for_them():
 def test_tasks_at_one_point_stand_side_by_side(picture):
     point = {"rings": (), "lines": (), "point": (30.0, 30.0)}
     tasks = tuple(replace(picture.tasks[0], name=name, **point) for name in ("first", "second"))
-    badges = with_class(parsed(replace(picture, tasks=tasks)), "badge")
-    assert [badge.findtext(f"{SVG}title").split(":")[0] for badge in badges] == ["first", "second"]
+    badges = with_class(map_of(replace(picture, tasks=tasks)), "badge")
+    assert [tip(badge).split(":")[0] for badge in badges] == ["first", "second"]
     assert badges[0].get("transform") != badges[1].get("transform")

@@ -1,7 +1,7 @@
 """Every way of a choice is shown, and every place at which a robot stays."""
 
 import pytest
-from lxml import etree
+from svg_reading import tip, with_class
 
 from mmrs_core.pictures.preview.from_plan import arms_of, picture_of_plan
 from mmrs_core.pictures.preview.map import map_of
@@ -32,15 +32,6 @@ def chooser(scene):
     """Return a picture in which one robot has a choice."""
     plan = Plan((RobotPlan("Alba", STEPS), RobotPlan("Brezza", ())), 55.0, {}, {})
     return picture_of_plan(scene, plan, {})
-
-
-def with_class(markup, kind):
-    root = etree.fromstring(markup.encode())
-    return [e for e in root.iter() if isinstance(e.tag, str) and kind in e.get("class", "").split()]
-
-
-def tip(element):
-    return element.findtext("{http://www.w3.org/2000/svg}title")
 
 
 def test_every_way_of_a_choice_has_its_bars():

@@ -3,19 +3,12 @@
 import re
 from dataclasses import replace
 
-from lxml import etree
+from svg_reading import SVG, parsed, tip, with_class
 
 from mmrs_core.pictures.preview.page import page
 from mmrs_core.pictures.preview.picture import Arm, Bar
 from mmrs_core.pictures.preview.profile import profile_of
 from mmrs_core.pictures.preview.timeline import TimeAxis, stretches, timeline_of
-
-SVG = "{http://www.w3.org/2000/svg}"
-
-
-def with_class(markup, kind):
-    root = etree.fromstring(markup.encode())
-    return [e for e in root.iter() if isinstance(e.tag, str) and kind in e.get("class", "").split()]
 
 
 def test_a_bar_begins_and_ends_with_its_step(picture):
@@ -27,9 +20,7 @@ def test_a_bar_begins_and_ends_with_its_step(picture):
 
 def test_an_arrow_leads_from_the_teller_to_the_waiter(picture):
     arrows = with_class(timeline_of(picture), "handover")
-    assert [arrow.findtext(f"{SVG}title") for arrow in arrows] == [
-        "Alba releases Brezza at 0:31: field has ended"
-    ]
+    assert [tip(arrow) for arrow in arrows] == ["Alba releases Brezza at 0:31: field has ended"]
 
 
 def test_an_arrow_is_dashed_where_nobody_has_to_wait_for_it(picture):
@@ -41,14 +32,14 @@ def test_an_arrow_is_dashed_where_nobody_has_to_wait_for_it(picture):
 
 def test_a_task_without_duration_is_a_mark(picture):
     marks = with_class(timeline_of(picture), "task-mark")
-    assert [mark.findtext(f"{SVG}title") for mark in marks] == ["fork: fork, 0:31 to 0:31"]
+    assert [tip(mark) for mark in marks] == ["fork: fork, 0:31 to 0:31"]
 
 
 def test_a_task_that_was_done_in_part_says_how_much(picture):
     tasks = tuple(replace(task, part=0.934) for task in picture.tasks if task.name == "field")
     markup = timeline_of(replace(picture, tasks=tasks))
     (bar,) = with_class(markup, "partly")
-    assert bar.findtext(f"{SVG}title").endswith(", done to 93 %")
+    assert tip(bar).endswith(", done to 93 %")
     assert "93 %" in [words.text for words in with_class(markup, "task-name")]
 
 
@@ -80,7 +71,7 @@ def test_a_recharge_parts_the_stretches_of_a_task():
 
 
 def test_a_timeline_without_robots_is_still_a_picture(without_robots):
-    assert etree.fromstring(timeline_of(without_robots).encode()).tag == f"{SVG}svg"
+    assert parsed(timeline_of(without_robots)).tag == f"{SVG}svg"
 
 
 def test_marks_of_time_are_about_a_dozen_at_most():
@@ -101,7 +92,7 @@ def test_each_robot_has_a_line_of_heights(picture):
 
 
 def test_limits_outside_the_chart_are_left_out(picture):
-    limits = [line.findtext(f"{SVG}title") for line in with_class(profile_of(picture), "limit")]
+    limits = [tip(line) for line in with_class(profile_of(picture), "limit")]
     assert limits == ["floor of Alba: 1.0 m", "floor of Brezza: 1.0 m"]
 
 
