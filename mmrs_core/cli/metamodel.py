@@ -19,7 +19,7 @@ from mmrs_core.languages.evolution.migration import Migration
 from mmrs_core.languages.evolution.versions import pairs_of, version_of
 from mmrs_core.languages.metamodels.export import export_metamodels
 from mmrs_core.languages.metamodels.gathering import registry_of_files
-from mmrs_core.pictures.pages.languages_page import pages
+from mmrs_core.pictures.pages.languages import pages
 
 app = typer.Typer(
     rich_markup_mode=None,

@@ -8,7 +8,7 @@ from lxml import etree
 
 from mmrs_core.cli import run
 from mmrs_core.languages.registry import MetamodelSource, registry_with
-from mmrs_core.pictures.pages.languages_page import pages
+from mmrs_core.pictures.pages.languages import pages
 
 ROOT = Path(__file__).parents[2]
 PLUGINS = {

@@ -1,21 +1,34 @@
-"""What should have happened: the behaviour as simulated, choosing as the flight did, and its paths."""
+"""What should have happened: the behaviour as simulated, choosing as the flight did, and its paths.
+
+Robots are off their paths while they follow a policy: returning, at home, and coming back.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import zip_longest
+
+import numpy as np
 
 from mmrs_core.behaviour.program import Move, Program, RobotProgram
 from mmrs_core.contributions.execution import Condition, RobotState
 from mmrs_core.contributions.registry import Contributions
 from mmrs_core.contributions.rules import MoveKind, most_specific
 from mmrs_core.errors import MmrsError
+from mmrs_core.geometry.frames import Floats
 from mmrs_core.pictures.flights.flight import Flight, Flown
+from mmrs_core.pictures.flights.tracks import Track, nearest
 from mmrs_core.pipeline import BehaviourContext, conditions_for
 from mmrs_core.scene import Name, Position
 from mmrs_core.simulation.run import SimulatedRun, refuse_unasked, simulate
 
+AWAY = frozenset({"RETURN", "LAND", "EMERGENCY_AREA", "SURFACE", "STOP_THRUST"})
+"""Responses by which a robot leaves its path."""
+BACK = 2.0
+"""Metres from its path within which a robot that was away is back."""
+
+Stretch = tuple[float, float]
 BACKEND = "simulation"
 _LONGEST = 100
 """How often a Choice repeats its last logged answer before it answers otherwise.
@@ -220,3 +233,60 @@ def _in_order(answers: Sequence[bool]) -> Callable[[RobotState], bool]:
         return answers[-1] is (asked <= len(answers) + _LONGEST)
 
     return holds
+
+
+def away_of(flown: Flown, legs: Sequence[PlannedLeg]) -> tuple[Stretch, ...]:
+    """Return when a robot was off its paths, by the decisions in its black box.
+
+    It is back at the nearest point to the path that it left, or to the position at which it waited. A
+    robot that never comes back is away to the end.
+    """
+    stretches: list[Stretch] = []
+    for decision in flown.of_kind("decision"):
+        done = stretches and decision.time <= stretches[-1][1]
+        if decision.content.get("response") in AWAY and not done:
+            stretches.append((decision.time, _back(flown, decision.time, legs)))
+    return tuple(stretches)
+
+
+def without(stretch: Stretch, away: Iterable[Stretch]) -> list[Stretch]:
+    """Return what is left of a stretch of time.
+
+    >>> without((0.0, 10.0), [(2.0, 4.0), (9.0, 20.0)])
+    [(0.0, 2.0), (4.0, 9.0)]
+    """
+    since, end = stretch
+    left: list[Stretch] = []
+    for begin, until in away:
+        if until > since and begin < end:
+            left += [(since, begin)] if begin > since else []
+            since = max(since, until)
+    return [*left, (since, end)] if since < end else left
+
+
+def _back(flown: Flown, time: float, legs: Sequence[PlannedLeg]) -> float:
+    track = flown.track
+    way = _left_path(track, time, legs)
+    first = int(np.searchsorted(track.times, time))
+    if way is None or first >= len(track.times):
+        return flown.end
+    positions = track.positions[first:]
+    off = np.linalg.norm(positions - nearest(positions, way)[0], axis=1)
+    gone = np.flatnonzero(off > BACK)
+    if not len(gone):
+        return time
+    near = np.flatnonzero(off[gone[0] :] <= BACK)
+    if not len(near):
+        return flown.end
+    at = int(gone[0] + near[0])
+    while at + 1 < len(off) and off[at + 1] < off[at]:
+        at += 1
+    return float(track.times[first + at])
+
+
+def _left_path(track: Track, time: float, legs: Sequence[PlannedLeg]) -> Floats | None:
+    on = next((leg.way for leg in legs if leg.begin <= time <= leg.end and leg.way), None)
+    at = track.at(time)
+    if on is not None:
+        return np.array(on)
+    return None if at is None else np.array([at])

@@ -11,10 +11,9 @@ from mmrs_core.behaviour.program import BEHAVIOUR, Program, RobotProgram
 from mmrs_core.contributions.registry import Contributions
 from mmrs_core.contributions.rules import MoveKind
 from mmrs_core.pictures.figures import clock, length
-from mmrs_core.pictures.flights.away import away_of, without
 from mmrs_core.pictures.flights.flight import Flight, Flown
 from mmrs_core.pictures.flights.photos import SIMULATED, UNCONFIRMED, Shot, shots_in
-from mmrs_core.pictures.flights.planned import Planned, legs_of
+from mmrs_core.pictures.flights.planned import Planned, away_of, legs_of, without
 from mmrs_core.pictures.flights.tracks import pieces, stretches_of, thinned
 from mmrs_core.pictures.preview.from_run import (
     bars_of_records,

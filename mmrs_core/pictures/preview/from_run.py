@@ -14,7 +14,7 @@ from mmrs_core.contributions.execution import Sample
 from mmrs_core.contributions.rules import MoveKind, most_specific
 from mmrs_core.contributions.symbols import MapSymbol
 from mmrs_core.pictures.figures import clock, length
-from mmrs_core.pictures.flights.away import Stretch, without
+from mmrs_core.pictures.flights.planned import Stretch, without
 from mmrs_core.pictures.flights.tracks import Track, stretches_of
 from mmrs_core.pictures.preview.features import (
     NO_CONTEXT,

@@ -13,11 +13,10 @@ import numpy as np
 from mmrs_core.behaviour.program import Program, RobotProgram
 from mmrs_core.behaviour.replay import ReplayResult, replay
 from mmrs_core.contributions.registry import Contributions
-from mmrs_core.pictures.flights.away import AWAY
 from mmrs_core.pictures.flights.fixes import Datum, datum_of
 from mmrs_core.pictures.flights.flight import Flight, Flown
 from mmrs_core.pictures.flights.photos import shots_in
-from mmrs_core.pictures.flights.planned import Planned, PlannedLeg, legs_of
+from mmrs_core.pictures.flights.planned import AWAY, Planned, PlannedLeg, legs_of
 from mmrs_core.pictures.flights.positions import Locator
 from mmrs_core.pictures.flights.tracks import pieces
 from mmrs_core.pictures.report.contents import (

@@ -8,9 +8,8 @@ import numpy as np
 
 from mmrs_core.behaviour.program import BEHAVIOUR
 from mmrs_core.geometry.frames import Floats
-from mmrs_core.pictures.flights.away import away_of, without
 from mmrs_core.pictures.flights.flight import Flown
-from mmrs_core.pictures.flights.planned import PlannedLeg
+from mmrs_core.pictures.flights.planned import PlannedLeg, away_of, without
 from mmrs_core.pictures.flights.positions import GeoPosition
 from mmrs_core.pictures.flights.tracks import nearest
 from mmrs_core.pictures.report.contents import Deviation, Spread

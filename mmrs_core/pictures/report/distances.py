@@ -11,9 +11,8 @@ from numpy.typing import NDArray
 from mmrs_core.analysis.distance import prism_distances
 from mmrs_core.behaviour.program import BEHAVIOUR
 from mmrs_core.geometry.frames import Floats
-from mmrs_core.pictures.flights.away import Stretch, without
 from mmrs_core.pictures.flights.flight import Flown
-from mmrs_core.pictures.flights.planned import PlannedLeg
+from mmrs_core.pictures.flights.planned import PlannedLeg, Stretch, without
 from mmrs_core.pictures.flights.positions import GeoPosition
 from mmrs_core.pictures.flights.tracks import Flags, Track
 from mmrs_core.pictures.report.contents import Approach, Separation

@@ -1,4 +1,4 @@
-"""Draws a language as SVG: its classes with their features, inheritance and containment."""
+"""Makes the page about the languages: every class and feature, with a diagram of each language."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from itertools import pairwise
 from markupsafe import Markup
 
 from mmrs_core.languages.metaclass import Feature, Metaclass, Package
+from mmrs_core.languages.registry import Registry
 from mmrs_core.pictures.documents import number, render, style_sheets
 from mmrs_core.pictures.pages.layout import Box, Placed, layout
 
@@ -17,6 +18,9 @@ _TITLE = 24.0
 _LETTER = 6.7
 _TITLE_LETTER = 7.9
 _MARGIN = 20.0
+
+PAGE = "languages.md"
+DIAGRAMS = "diagrams"
 
 ClassKey = tuple[str, str]
 
@@ -30,7 +34,53 @@ class _Link:
     feature: Feature | None = None
 
 
-def diagram(package: Package) -> Markup:
+def pages(registry: Registry) -> dict[str, str]:
+    """Return the contents by path below the documentation's folder."""
+    drawings = {f"{DIAGRAMS}/{package.name}.svg": _diagram(package) + "\n" for package in registry.packages}
+    page = render(
+        PAGE, packages=registry.packages, diagrams=DIAGRAMS, cell=_cell, features=_features, extends=_extends
+    )
+    return {PAGE: str(page)} | drawings
+
+
+def _extends(metaclass: Metaclass, package: Package) -> str:
+    parents = (
+        parent.name if parent.ns_uri == package.ns_uri else f"{parent.ns_uri}#{parent.name}"
+        for parent in metaclass.supertypes
+    )
+    names = ", ".join(f"`{name}`" for name in parents)
+    return f" Extends {names}." if names else ""
+
+
+def _features(metaclass: Metaclass, package: Package) -> list[tuple[str, ...]]:
+    """Return the cells of the row of each feature that a class does not inherit."""
+    return [_cells(feature, package) for feature in _own_features(metaclass)]
+
+
+def _cells(feature: Feature, package: Package) -> tuple[str, ...]:
+    held = "" if not feature.is_reference else ("holds " if feature.containment else "refers to ")
+    return (
+        f"`{feature.name}`",
+        f"{held}{_type_name(feature, package)}",
+        _multiplicity(feature),
+        "" if feature.default is None or feature.many else f"`{_default(feature.default)}`",
+        _cell(feature.documentation),
+    )
+
+
+def _default(value: object) -> str:
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    return f"{value:g}" if isinstance(value, float) else str(value)
+
+
+def _cell(words: str) -> str:
+    """Return words as they may stand in a table of Markdown."""
+    one_line = " ".join(words.split())
+    return one_line.replace("\\", "\\\\").replace("|", "\\|").replace("<", "&lt;").replace("*", "\\*")
+
+
+def _diagram(package: Package) -> Markup:
     """Return a class diagram of a language, left to right, as one ``svg`` element.
 
     Superclasses in other languages are drawn in grey.
@@ -67,12 +117,12 @@ def diagram(package: Package) -> Markup:
     )
 
 
-def own_features(metaclass: Metaclass) -> tuple[Feature, ...]:
+def _own_features(metaclass: Metaclass) -> tuple[Feature, ...]:
     """Return the features that a class itself declares."""
     return tuple(feature for feature in metaclass.features if feature.owner is metaclass)
 
 
-def multiplicity(feature: Feature) -> str:
+def _multiplicity(feature: Feature) -> str:
     """Return how many values a feature has, as UML writes it.
 
     An upper bound of -1 is written as a star, and equal bounds once.
@@ -81,7 +131,7 @@ def multiplicity(feature: Feature) -> str:
     return upper if upper == str(feature.lower) else f"{feature.lower}..{upper}"
 
 
-def type_name(feature: Feature, package: Package) -> str:
+def _type_name(feature: Feature, package: Package) -> str:
     """Return the name of a feature's type, with its language if that is another one."""
     found = feature.type
     name = found.name
@@ -113,7 +163,7 @@ def _links(package: Package, classes: Mapping[ClassKey, Metaclass]) -> Iterator[
     for metaclass in package.metaclasses:
         for parent in metaclass.supertypes:
             yield _Link(parent.key, metaclass.key)
-        for feature in own_features(metaclass):
+        for feature in _own_features(metaclass):
             if feature.containment and isinstance(feature.type, Metaclass) and feature.type.key in classes:
                 yield _Link(metaclass.key, feature.type.key, feature)
 
@@ -121,12 +171,12 @@ def _links(package: Package, classes: Mapping[ClassKey, Metaclass]) -> Iterator[
 def _rows(metaclass: Metaclass, package: Package) -> list[str]:
     if metaclass.ns_uri != package.ns_uri:
         return []
-    return [_row(feature, package) for feature in own_features(metaclass)]
+    return [_row(feature, package) for feature in _own_features(metaclass)]
 
 
 def _row(feature: Feature, package: Package) -> str:
     arrow = "→ " if feature.is_reference and not feature.containment else ""
-    return f"{feature.name}: {arrow}{type_name(feature, package)} [{multiplicity(feature)}]"
+    return f"{feature.name}: {arrow}{_type_name(feature, package)} [{_multiplicity(feature)}]"
 
 
 def _title(metaclass: Metaclass, package: Package) -> str:
@@ -159,7 +209,7 @@ def _line(
     to_x, to_y = placed.corners[target.name]
     row = _TITLE / 2
     if link.feature is not None:
-        row = _TITLE + 11 + own_features(classes[link.start]).index(link.feature) * _ROW
+        row = _TITLE + 11 + _own_features(classes[link.start]).index(link.feature) * _ROW
     points = [(placed.rights[box.name], y + row), *placed.ways.get(index, ()), (to_x, to_y + _TITLE / 2)]
     return f"M{number(x + box.width)} {number(y + row)}H{number(points[0][0])}{_curve(points)}"
 
