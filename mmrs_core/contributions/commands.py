@@ -38,7 +38,8 @@ class Command:
         help: one line.
         entry: ``package.module:function``; called with the remaining arguments as a list of strings,
             returns the exit code. Or ``package.module:app``, an application of typer, whose commands
-            find the global options by `mmrs_core.cli.settings.settings_of`.
+            find the global options by `mmrs_core.cli.settings.settings_of`; shells complete its commands,
+            options and values.
     """
 
     name: str

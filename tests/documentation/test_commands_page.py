@@ -37,7 +37,8 @@ def from_plugins():
 def names_of_all():
     """Yield the names of all commands, those of a group behind it."""
     for name in (*names_of_core(), *sorted(from_plugins())):
-        yield from (f"{name} {inner}".strip() for inner in getattr(called(name)[name], "commands", [""]))
+        yield name
+        yield from (f"{name} {inner}" for inner in getattr(called(name)[name], "commands", ()))
 
 
 def names_of_core():

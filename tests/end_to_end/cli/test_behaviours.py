@@ -16,16 +16,11 @@ def test_validate_takes_the_file_or_a_folder_without_a_mission(mmrs, project):
     assert "mission.xmi:1: error" in mmrs("validate", project)[2]
 
 
-def test_check_takes_the_folder_or_the_file(mmrs, project):
+def test_check_takes_the_folder_or_the_file_and_lists_every_property_as_json(mmrs, project):
     of_folder, of_file = mmrs("check", project), mmrs("check", project / "behaviour.xmi")
     assert of_folder == of_file
     assert of_folder[0] == 0
-
-
-def test_check_tells_every_property_as_json(mmrs, project):
-    code, out, err = mmrs("check", project, "--json")
-    told = json.loads(out)
-    assert (code, err) == (0, "")
+    told = json.loads(mmrs("check", project, "--json")[1])
     assert told["safe"] is True
     assert {"structure", "synchronisation", "clearance"} <= {each["property"] for each in told["verdicts"]}
 
@@ -74,16 +69,19 @@ def test_a_backend_that_nobody_contributed_is_named(mmrs, project, command, opti
     assert not (project / "logs").exists()
 
 
-def test_an_option_that_the_backend_does_not_know_is_named(mmrs, project):
-    code, _, err = mmrs("simulate", project, "--backend-option", "rain=1")
+@pytest.mark.parametrize(
+    ("option", "value", "said"),
+    [
+        ("--backend-option", "rain=1", "option 'rain': unknown"),
+        ("--backend-option", "rain", "--backend-option rain: expected KEY=VALUE"),
+        ("--assume", f"{CHOICE}=perhaps", f"--assume {CHOICE}=perhaps: expected CONDITION=yes or"),
+        ("--assume", "raining=yes", f"condition 'raining': no Choice uses it; conditions in use: '{CHOICE}'"),
+    ],
+)
+def test_an_option_with_a_value_that_makes_no_sense_is_wrong_usage(mmrs, project, option, value, said):
+    code, _, err = mmrs("simulate", project, option, value)
     assert code == 2
-    assert "option 'rain': unknown" in err
-
-
-def test_an_option_of_a_backend_has_a_value(mmrs, project):
-    code, _, err = mmrs("simulate", project, "--backend-option", "rain")
-    assert code == 2
-    assert "--backend-option rain: expected KEY=VALUE" in err
+    assert said in err
 
 
 def test_a_simulated_run_replays(mmrs, project):
@@ -106,18 +104,6 @@ def test_conditions_can_be_told_what_to_answer(mmrs, project):
     logs = ["".join(path.read_text() for path in (project / name).iterdir()) for name in ("yes", "no")]
     assert '"detail":"true"' in logs[0]
     assert '"detail":"false"' in logs[1]
-
-
-def test_an_answer_that_is_neither_yes_nor_no_is_wrong_usage(mmrs, project):
-    code, _, err = mmrs("simulate", project, "--assume", f"{CHOICE}=perhaps")
-    assert code == 2
-    assert "perhaps" in err
-
-
-def test_an_answer_that_no_choice_asks_for_is_wrong_usage(mmrs, project):
-    code, _, err = mmrs("simulate", project, "--assume", "raining=yes")
-    assert code == 2
-    assert f"condition 'raining': no Choice uses it; conditions in use: '{CHOICE}'" in err
 
 
 def test_an_altered_log_does_not_replay(mmrs, project):
@@ -171,20 +157,14 @@ def test_a_behaviour_can_be_drawn(mmrs, project):
     assert "move to my side" in words
 
 
-def test_show_prints_a_tree(mmrs, project):
+def test_show_prints_a_tree_down_to_a_depth_or_one_object(mmrs, project):
     code, out, _ = mmrs("show", project / "behaviour.xmi")
     assert code == 0
     assert out.startswith("Behaviour ")
     assert "\n├─ robots: Robot id=left" in out
-
-
-def test_show_can_stop_at_a_depth(mmrs, project):
     shallow = mmrs("show", "--depth", "1", project / "behaviour.xmi")[1]
     assert "robots: Robot id=left" in shallow
     assert "moves: " not in shallow
-
-
-def test_show_as_json_is_one_object(mmrs, project):
     told = json.loads(mmrs("show", "--json", project / "behaviour.xmi")[1])
     assert told["roots"][0]["$type"] == "urn:mmrs:behaviour:1.0#Behaviour"
 
@@ -225,9 +205,3 @@ def test_generate_does_not_write_for_an_unsafe_behaviour(mmrs, project):
     assert code == 1
     assert "the behaviour is not safe\n  - clearance: violated" in err
     assert not (project / "out").exists()
-
-
-def test_targets_are_listed(mmrs):
-    code, out, _ = mmrs("--list-targets", program="mmrs-gen")
-    assert code == 0
-    assert "mavlink-python" in out

@@ -34,16 +34,19 @@ def test_a_negative_safety_distance_is_refused(mmrs, project, tmp_path, monkeypa
     assert list(tmp_path.iterdir()) == [project]
 
 
-def test_an_obstacle_upside_down_is_refused(mmrs, project):
-    put(project / "context.xmi", "obstacles", minHeight="30", maxHeight="0")
-    code, _, err = mmrs("check", project)
-    assert (code, "[CTX007]" in err) == (1, True)
-
-
-def test_a_robot_type_without_a_size_is_refused(mmrs, project):
-    put(next((project / "robots").glob("*.xmi")), "size", height="0")
-    code, _, err = mmrs("check", project)
-    assert (code, "[RL006]" in err) == (1, True)
+@pytest.mark.parametrize(
+    ("file", "tag", "values", "code"),
+    [
+        ("context.xmi", "obstacles", {"minHeight": "30", "maxHeight": "0"}, "[CTX007]"),
+        ("robots/*.xmi", "size", {"height": "0"}, "[RL006]"),
+    ],
+)
+def test_an_obstacle_upside_down_and_a_robot_type_without_size_are_refused(
+    mmrs, project, file, tag, values, code
+):
+    put(next(project.glob(file)), tag, **values)
+    ended, _, err = mmrs("check", project)
+    assert (ended, code in err) == (1, True)
 
 
 def test_two_robot_types_of_one_name_are_refused(mmrs, project):

@@ -52,6 +52,10 @@ def test_a_line_is_explained_by_its_move_and_the_line_of_the_model(capsys):
     assert "move '" in told
     assert "move in behaviour.xmi:" in told
     assert "from robot.py.jinja of target mavlink-python" in told
+    explained(f"{controller()}:{go_to()}", "--json")
+    (served,) = json.loads(capsys.readouterr().out)["serves"]
+    file, line = served["model"].split(":")
+    assert f'"{served["move"]}"' in (Path("project") / file).read_text().splitlines()[int(line) - 1]
 
 
 def test_a_line_about_a_robot_is_explained_by_the_line_of_the_robot(capsys):
@@ -61,13 +65,6 @@ def test_a_line_about_a_robot_is_explained_by_the_line_of_the_robot(capsys):
     (served,) = json.loads(capsys.readouterr().out)["serves"]
     file, line = served["model"].split(":")
     assert f'id="{served["robot"]}"' in (Path("project") / file).read_text().splitlines()[int(line) - 1]
-
-
-def test_the_model_line_holds_the_move(capsys):
-    explained(f"{controller()}:{go_to()}", "--json")
-    (served,) = json.loads(capsys.readouterr().out)["serves"]
-    file, line = served["model"].split(":")
-    assert f'"{served["move"]}"' in (Path("project") / file).read_text().splitlines()[int(line) - 1]
 
 
 def test_the_lines_of_a_move_are_listed(capsys):

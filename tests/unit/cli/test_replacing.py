@@ -55,33 +55,17 @@ def test_files_and_their_folders_are_made(tmp_path, texts, before):
     assert sorted(all_in(tmp_path)) == ["kept", "kept/old", "new", "new/deep", "new/deep/a", "new/deep/b"]
 
 
-@pytest.mark.parametrize("number", [1, 2])
-def test_a_folder_that_cannot_be_made_leaves_all_as_it_was(tmp_path, texts, before, monkeypatch, number):
+STEPS = {(Path, "mkdir"): 2, (os, "fdopen"): 3, (os, "fsync"): 3, (Path, "replace"): 3}
+"""What is done to make two folders and three files, and how often."""
+
+
+@pytest.mark.parametrize(
+    ("module", "step", "number"),
+    [(*step, number) for step, count in STEPS.items() for number in range(1, count + 1)],
+)
+def test_a_step_that_fails_leaves_all_as_it_was(tmp_path, texts, before, monkeypatch, module, step, number):
     with monkeypatch.context() as patched:
-        patched.setattr(Path, "mkdir", Failing(Path.mkdir, number))
-        with pytest.raises(OSError, match="No space"):
-            replace_files(texts)
-    assert all_in(tmp_path) == before
-
-
-@pytest.mark.parametrize("number", [1, 2, 3])
-@pytest.mark.parametrize("step", ["fsync", "fdopen"])
-def test_a_file_that_cannot_be_written_leaves_all_as_it_was(
-    tmp_path, texts, before, monkeypatch, step, number
-):
-    with monkeypatch.context() as patched:
-        patched.setattr(os, step, Failing(getattr(os, step), number))
-        with pytest.raises(OSError, match="No space"):
-            replace_files(texts)
-    assert all_in(tmp_path) == before
-
-
-@pytest.mark.parametrize("number", [1, 2, 3])
-def test_a_file_that_cannot_be_put_in_its_place_leaves_all_as_it_was(
-    tmp_path, texts, before, monkeypatch, number
-):
-    with monkeypatch.context() as patched:
-        patched.setattr(Path, "replace", Failing(Path.replace, number))
+        patched.setattr(module, step, Failing(getattr(module, step), number))
         with pytest.raises(OSError, match="No space"):
             replace_files(texts)
     assert all_in(tmp_path) == before
