@@ -12,6 +12,7 @@ from itertools import pairwise
 from pathlib import Path
 
 import pytest
+import warm_python
 
 pytestmark = [pytest.mark.long, pytest.mark.timeout(600)]
 TUTORIAL = Path(__file__).parents[2] / "docs" / "tutorial"
@@ -21,10 +22,14 @@ BLOCK = re.compile(
 )
 PICTURE = re.compile(r"<!-- picture: (?P<made>\S+) is (?P<shown>\S+) -->")
 PROGRAMS = {
-    "mmrs": "from mmrs_core.cli import main",
     "pip": "from pip._internal.cli.main import main",
     "pytest": "from pytest import main",
 }
+COMMAND = """import site, sys
+site.addsitedir({packages!r})
+from mmrs_core.cli import main
+sys.exit(main())
+"""
 OFFLINE = {
     "PIP_NO_DEPS": "1",
     "PIP_NO_INDEX": "1",
@@ -96,6 +101,10 @@ def environment(tmp_path_factory):
         script = home / "bin" / name
         script.write_text(f"#!{home}/bin/python\nimport sys\n{entry}\nsys.exit(main())\n", encoding="utf-8")
         script.chmod(0o755)
+    (home / "mmrs.py").write_text(COMMAND.format(packages=str(packages)), encoding="utf-8")
+    script = home / "bin" / "mmrs"
+    script.write_text(f'#!/bin/sh\nexec {warm_python.python()} {home}/mmrs.py "$@"\n', encoding="utf-8")
+    script.chmod(0o755)
     path = f"{home / 'bin'}{os.pathsep}{os.environ['PATH']}"
     return {**os.environ, **OFFLINE, "PATH": path, "NO_COLOR": "1", "COLUMNS": "120"}
 
