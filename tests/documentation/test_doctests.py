@@ -2,19 +2,19 @@
 
 import doctest
 import importlib
-import pkgutil
+from pathlib import Path
 
 import pytest
 
-import mmrs_core
-import mmrs_runtime
-
-MODULES = [
-    name
-    for package in (mmrs_core, mmrs_runtime)
-    for _, name, _ in pkgutil.walk_packages(package.__path__, f"{package.__name__}.")
-    if not name.endswith("__main__")
-]
+ROOT = Path(__file__).parents[2]
+FOLDERS = (ROOT, ROOT / "runtime", *sorted((ROOT / "plugins").iterdir()))
+MODULES = sorted(
+    ".".join(path.relative_to(folder).with_suffix("").parts).removesuffix(".__init__")
+    for folder in FOLDERS
+    for package in (*folder.glob("mmrs_*"), *folder.glob("auv_*"))
+    for path in package.rglob("*.py")
+    if ">>>" in path.read_text("utf-8")
+)
 
 
 @pytest.mark.parametrize("name", MODULES)
@@ -24,6 +24,4 @@ def test_examples_in_docstrings_hold(name):
 
 
 def test_there_are_examples():
-    finder = doctest.DocTestFinder(exclude_empty=True)
-    found = [test for name in MODULES for test in finder.find(importlib.import_module(name)) if test.examples]
-    assert len(found) > 10
+    assert len(MODULES) > 10

@@ -334,6 +334,7 @@ def is_broken(value: Value) -> bool:
 def pieces_of(value: Value, *, closed: bool = False) -> tuple[tuple[Point, ...], ...]:
     """Return the stretches of a line, or of a closed outline, between its unknown positions.
 
+    >>> from math import nan
     >>> pieces_of(((0.0, 0.0, 0.0), (9.0, 0.0, 0.0), (nan, nan, nan), (0.0, 9.0, 0.0)), closed=True)
     (((0.0, 9.0), (0.0, 0.0), (9.0, 0.0)),)
     """

@@ -31,8 +31,8 @@ class Footprint:
 def footprint_at(properties: Mapping[str, str], distance: float) -> Footprint | None:
     """Return what the camera sees from a distance; None where its optics are not described.
 
-    >>> footprint_at({"sensor.width": "13.2", "sensor.height": "8.8", "focal.length": "8.8"}, 40.0)
-    Footprint(width=60.0, length=40.0)
+    >>> footprint_at({"sensor.width": "17.6", "sensor.height": "8.8", "focal.length": "8.8"}, 40.0)
+    Footprint(width=80.0, length=40.0)
     """
     figures = [figure(properties, key) for key in (*SENSOR_KEYS, FOCAL_KEY)]
     if None in figures or distance <= 0.0:
