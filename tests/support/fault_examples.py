@@ -15,6 +15,7 @@ from checking import given, rover
 from diagnostics_page import Example
 from mmrs_flyaq.importing import importer_of
 
+from mmrs_core.analysis.constraints import CONSTRAINTS
 from mmrs_core.behaviour.log import read_log
 from mmrs_core.behaviour.program import Action, RobotProgram
 from mmrs_core.contributions.checks import Check, CheckInput, Verdict
@@ -114,12 +115,13 @@ def _word(value: object, here: Sequence[Element]) -> str:
 def core_examples(fresh_models: Callable[[], object]) -> dict[str, Example]:
     """Return an example of each constraint of the core."""
     found = {}
+    by_code = {constraint.code: constraint for constraint in CONSTRAINTS}
     for file in sorted(CASES.glob("*_cases.py")):
         for code, (breach, near, *_) in runpy.run_path(str(file))["CASES"].items():
             failing, passing = fresh_models(), fresh_models()
             breach(failing)
             near(passing)
-            message = next(fault.message for fault in failing.faults() if fault.code == code)
+            message = failing.faults([by_code[code]])[0].message
             roots = [(m.mission, m.context, m.quad, m.behaviour) for m in (failing, passing)]
             found[code] = Example(message, *_texts(*roots, failing.registry))
     return found
