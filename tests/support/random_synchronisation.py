@@ -40,7 +40,7 @@ def _once(robots):
 
 @st.composite
 def _robots(draw, name, slots, choices, loops, resets, most):
-    moves = [f"m{number}" for number in range(draw(st.integers(1, 5)))]
+    moves = [f"m{number}" for number in range(draw(st.integers(1, 4)))]
     own = [slot.partition(".")[2] for slot in slots if slot.startswith(f"{name}.")]
     made = [
         hold(move, before=_actions(draw, slots, resets, most), after=_actions(draw, slots, resets, most))
@@ -65,7 +65,7 @@ def _actions(draw, slots, resets, most):
     return (notify(*chosen, active=not (resets and kind == 0)),)
 
 
-def deadlocks(behaviour, limit=4_000):
+def deadlocks(behaviour, limit=1_500):
     """Return whether some run of the behaviour ends with a robot waiting; None: too many states."""
     behaviour = behaviour.executable
     first = _settled(behaviour, initial(behaviour))

@@ -70,7 +70,7 @@ def run(behaviour, random):
     return (begun, ended, left, used) if stopped else None
 
 
-@settings(max_examples=80, deadline=None)
+@settings(max_examples=40, deadline=None)
 @for_all(behaviours(resets=True), st.integers(0, 10**6))
 def test_no_run_leaves_the_bounds(behaviour, seed):
     made = run(behaviour, Random(seed))
@@ -82,7 +82,7 @@ def test_no_run_leaves_the_bounds(behaviour, seed):
         assert times.earliest_end(*at) - SLACK <= ended[at] <= times.latest_end(*at) + SLACK
 
 
-@settings(max_examples=80, deadline=None)
+@settings(max_examples=40, deadline=None)
 @for_all(behaviours(resets=True, single=True), st.integers(0, 10**6))
 def test_no_run_takes_longer_on_one_charge_than_is_reckoned_with(behaviour, seed):
     made = run(behaviour, Random(seed))
@@ -123,7 +123,7 @@ def test_no_run_uses_less_of_a_charge_than_is_certain(behaviour, seed, data):
                 assert seconds >= least[index] - SLACK
 
 
-@settings(max_examples=80, deadline=None)
+@settings(max_examples=40, deadline=None)
 @for_all(behaviours(single=True), st.integers(0, 10**6))
 def test_what_is_certainly_over_is_over_in_every_run(behaviour, seed):
     made = run(behaviour, Random(seed))

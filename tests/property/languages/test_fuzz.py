@@ -23,7 +23,7 @@ def judged(contributions, folder, cases, seed):
 
 def test_damaged_models_never_break_us(contributions, tmp_path):
     """Migration goes on with other files, so that one that cannot be read is a fault to it."""
-    tallies = judged(contributions, tmp_path, 300, seed=1)
+    tallies = judged(contributions, tmp_path, 150, seed=1)
     assert all("faults" in tally.ends for tally in tallies.values())
     assert all("unreadable" in tally.ends for name, tally in tallies.items() if name != "migrate")
 
