@@ -8,6 +8,11 @@ FAST_MOST = 100
 """More examples of one test take too long for the fast profile."""
 
 
-def many(full: int) -> int:
-    """Return how many examples a test draws: `full` if thorough, else a tenth, at most `FAST_MOST`."""
-    return full if settings.get_current_profile_name() == "thorough" else min(full // 10, FAST_MOST)
+def many(full: int, fast: int | None = None) -> int:
+    """Return how many examples a test draws: `full` if thorough, else `fast`.
+
+    By default, that is a tenth of the full count, at most `FAST_MOST`.
+    """
+    if settings.get_current_profile_name() == "thorough":
+        return full
+    return min(full // 10, FAST_MOST) if fast is None else fast

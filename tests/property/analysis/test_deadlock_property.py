@@ -2,7 +2,7 @@
 
 from dataclasses import replace
 
-import pytest
+from counts import many
 from hypothesis import assume, given, settings
 from random_synchronisation import behaviours, deadlocks
 
@@ -54,68 +54,47 @@ def waits_of(robot):
     return {slot for transition in reached for slot in transition.waits}
 
 
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=many(200))
 @given(behaviours(choices=False))
 def test_without_choices_the_check_finds_deadlocks_exactly(behaviour):
     agrees(behaviour)
 
 
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=many(200))
 @given(behaviours())
 def test_with_choices_the_check_finds_deadlocks_exactly(behaviour):
     agrees(behaviour)
 
 
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=many(2000, fast=20))
 @given(behaviours(loops=True))
 def test_with_loops_the_check_finds_deadlocks_exactly(behaviour):
     agrees(behaviour)
 
 
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=many(200))
 @given(behaviours(resets=True, loops=True))
 def test_with_resets_a_deadlock_is_never_called_safe(behaviour):
     if deadlocks(behaviour):
         assert found(behaviour) != {Status.SAFE}
 
 
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=many(200))
 @given(behaviours(resets=True, loops=True).filter(lambda made: may_fixpoint(network_of(made)).blocked))
 def test_robots_that_wait_for_ever_at_the_latest_make_a_deadlock(behaviour):
     assume(all(reachable_moves(robot) <= moves_reaching_stop(robot) for robot in behaviour.robots))
     assert deadlocks(behaviour) is not False
 
 
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=many(1500, fast=20))
 @given(behaviours(resets=True, loops=True, most=1))
 def test_with_resets_and_notifies_to_single_slots_the_check_is_exact(behaviour):
     agrees(behaviour)
 
 
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=many(200))
 @given(behaviours())
 def test_knowing_what_is_certain_does_not_change_what_the_search_finds(behaviour):
     network = network_of(behaviour)
     certain = must_fixpoint(network).active
     assert (find_trap(network, certain) is None) == (find_trap(network, frozenset()) is None)
-
-
-@pytest.mark.thorough
-@settings(max_examples=2000, deadline=None)
-@given(behaviours(loops=True))
-def test_many_behaviours_with_loops_and_choices_agree_with_the_exploration(behaviour):
-    agrees(behaviour)
-
-
-@pytest.mark.thorough
-@settings(max_examples=200, deadline=None)
-@given(behaviours(choices=False))
-def test_many_behaviours_without_choices_agree_with_the_exploration(behaviour):
-    agrees(behaviour)
-
-
-@pytest.mark.thorough
-@settings(max_examples=1500, deadline=None)
-@given(behaviours(resets=True, loops=True, most=1))
-def test_many_behaviours_with_resets_agree_with_the_exploration(behaviour):
-    agrees(behaviour)

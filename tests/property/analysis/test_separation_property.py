@@ -6,6 +6,7 @@ from random import Random
 
 import numpy as np
 from checking import findings, given, uneven
+from counts import many
 from hypothesis import assume, settings
 from hypothesis import given as for_all
 from hypothesis import strategies as st
@@ -68,7 +69,7 @@ def excused(first, second, one, other, least):
     return (one == first[0][0]).all(axis=1) & (other == second[0][0]).all(axis=1)
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=many(300))
 @for_all(tours(), tours(), st.floats(0.5, 6.0))
 def test_robots_with_certain_times_are_too_near_exactly_if_they_ever_are(first, second, least):
     times = np.arange(0.0, 200.0, STEP)
@@ -84,7 +85,7 @@ def test_robots_with_certain_times_are_too_near_exactly_if_they_ever_are(first, 
         assert verdict.status is Status.SAFE
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=many(300))
 @for_all(tours(), tours(), st.floats(0.5, 4.0), st.integers(0, 10**6))
 def test_robots_called_safe_keep_apart_however_long_their_moves_take(first, second, least, seed):
     random = Random(seed)
@@ -105,7 +106,7 @@ def test_robots_called_safe_keep_apart_however_long_their_moves_take(first, seco
         assert not (near & ~excused(first, second, one, other, least)).any()
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=many(300))
 @for_all(tours(), POINTS, st.floats(0.5, 4.0), st.integers(0, 10**6))
 def test_robots_called_violated_beside_one_that_stands_come_too_near_however_long_their_moves_take(
     tour, place, least, seed
@@ -138,7 +139,7 @@ def shuttles(draw):
     return [(*place, 0.0) for place in places], [draw(st.floats(0.0, 5.0)) for _ in places]
 
 
-@settings(max_examples=15, deadline=None)
+@settings(max_examples=many(150))
 @for_all(shuttles(), shuttles(), st.floats(1.5, 4.0), st.integers(0, 10**6))
 def test_robots_called_violated_on_one_line_come_too_near_however_long_their_moves_take(
     first, second, least, seed

@@ -7,6 +7,7 @@ from random import Random
 
 from checking import given as input_of
 from checking import kind, recharge, uneven
+from counts import many
 from hypothesis import assume, settings
 from hypothesis import given as for_all
 from hypothesis import strategies as st
@@ -70,7 +71,7 @@ def run(behaviour, random):
     return (begun, ended, left, used) if stopped else None
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=many(400))
 @for_all(behaviours(resets=True), st.integers(0, 10**6))
 def test_no_run_leaves_the_bounds(behaviour, seed):
     made = run(behaviour, Random(seed))
@@ -82,7 +83,7 @@ def test_no_run_leaves_the_bounds(behaviour, seed):
         assert times.earliest_end(*at) - SLACK <= ended[at] <= times.latest_end(*at) + SLACK
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=many(400))
 @for_all(behaviours(resets=True, single=True), st.integers(0, 10**6))
 def test_no_run_takes_longer_on_one_charge_than_is_reckoned_with(behaviour, seed):
     made = run(behaviour, Random(seed))
@@ -108,7 +109,7 @@ def recharging(robot, data):
     return replace(robot, moves=tuple(moves))
 
 
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=many(200))
 @for_all(behaviours(loops=True, resets=True), st.integers(0, 10**6), st.data())
 def test_no_run_uses_less_of_a_charge_than_is_certain(behaviour, seed, data):
     robots = [recharging(each, data) for each in behaviour.robots]
@@ -123,7 +124,7 @@ def test_no_run_uses_less_of_a_charge_than_is_certain(behaviour, seed, data):
                 assert seconds >= least[index] - SLACK
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=many(400))
 @for_all(behaviours(single=True), st.integers(0, 10**6))
 def test_what_is_certainly_over_is_over_in_every_run(behaviour, seed):
     made = run(behaviour, Random(seed))

@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from math import inf
 
-import pytest
 from carried_out import carried_out
+from counts import many
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from live_runs import Idle
@@ -238,7 +238,12 @@ BEGUN = tuple(
 """What the robots had done where their run was broken off before."""
 
 
-def check(events, armed, stays, resumed):
+AT_ONCE = st.lists(EVENTS, min_size=1, max_size=3)
+
+
+@settings(max_examples=many(5_000))
+@given(st.lists(AT_ONCE, max_size=12), *[st.booleans()] * 3)
+def test_every_order_is_answered_once_and_confirmed_only_when_it_is_obeyed(events, armed, stays, resumed):
     vehicles = {id: Vehicle(armed=armed, stays_armed=stays) for id in ROBOTS}
     world = World(vehicles, list(events))
     terms = Terms(
@@ -257,20 +262,3 @@ def check(events, armed, stays, resumed):
         overtaken_by, ordered, _ = (why or "").partition(" was ordered since")
         later = {order.kind for order in world.given[number + 1 :] if id in order.robots}
         assert not ordered or overtaken_by in later
-
-
-AT_ONCE = st.lists(EVENTS, min_size=1, max_size=3)
-SEQUENCES = given(st.lists(AT_ONCE, max_size=12), *[st.booleans()] * 3)
-
-
-@settings(max_examples=200, deadline=None)
-@SEQUENCES
-def test_every_order_is_answered_once_and_confirmed_only_when_it_is_obeyed(events, armed, stays, resumed):
-    check(events, armed, stays, resumed)
-
-
-@pytest.mark.thorough
-@settings(max_examples=5_000, deadline=None)
-@SEQUENCES
-def test_orders_in_many_sequences_are_answered_once_each(events, armed, stays, resumed):
-    check(events, armed, stays, resumed)
