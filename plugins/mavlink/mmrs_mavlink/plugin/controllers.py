@@ -232,8 +232,8 @@ def _rehearsal(driver: MavlinkPython, input: TargetInput) -> Iterator[str]:
             continue
         port = FIRST_PORT + PORT_STEP * number
         given = f"--port {port} --system {number + 1} --kind {profile.rehearsed_as}"
-        if profile.autopilot.name != ARDUPILOT.name:
-            given += f" --firmware {profile.autopilot.name}"
+        if profile.rehearsed_with != ARDUPILOT.name:
+            given += f" --firmware {profile.rehearsed_with}"
         if not frame.is_local:
             ((latitude, longitude),) = degrees_of([require_home(robot)[:2]], frame)
             given += f" --home={latitude:.7f},{longitude:.7f}"

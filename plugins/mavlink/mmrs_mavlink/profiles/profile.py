@@ -137,6 +137,7 @@ class VehicleProfile:
         carries: further words of `RobotKind.vehicle` whose robots it carries.
         source: ``module:name`` from which programs import a profile of a plug-in; it needs no core.
         rehearsed_as: class of vehicle that `mmrs sitl` simulates instead; empty: none.
+        rehearsed_with: firmware of that: ``ardupilot`` or ``px4``.
         flies: whether the vehicle takes off and lands.
         dives: whether its heights count from the water surface.
         turns: whether it turns to a heading on command.
@@ -173,6 +174,7 @@ class VehicleProfile:
     carries: tuple[str, ...] = ()
     source: str = ""
     rehearsed_as: str = ""
+    rehearsed_with: str = "ardupilot"
     flies: bool = False
     dives: bool = False
     turns: bool = True

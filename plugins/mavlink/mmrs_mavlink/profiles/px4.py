@@ -245,6 +245,6 @@ def _on_px4(name: str, profile: VehicleProfile) -> VehicleProfile:
     )
 
 
-PX4_MULTICOPTER = _on_px4("px4-multicopter", ARDUCOPTER)
+PX4_MULTICOPTER = replace(_on_px4("px4-multicopter", ARDUCOPTER), rehearsed_with=PX4.name)
 PX4_ROVER = _on_px4("px4-rover", ARDUROVER)
 PX4_SUB = _on_px4("px4-sub", ARDUSUB)

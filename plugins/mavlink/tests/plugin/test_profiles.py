@@ -27,6 +27,8 @@ from mmrs_mavlink.plugin.controllers import MAVLINK_PYTHON
 from mmrs_mavlink.plugin.plans.qgc import QGC_PLAN
 from mmrs_mavlink.profiles import ARDUCOPTER, ARDUPILOT, PROFILES, modes
 from mmrs_mavlink.profiles.profile import LostLinkFailsafe, Safeguard, Timing
+from mmrs_mavlink.sitl.autopilot import SimulatedAutopilot
+from mmrs_mavlink.sitl.settings import Settings
 from mmrs_mavlink.vehicles.guidance import ArduPilotGuidance
 from mmrs_mavlink.vehicles.mavlink_vehicle import MavlinkVehicle
 from mmrs_mavlink.vehicles.preparation import check_identity, report_failsafes
@@ -271,3 +273,9 @@ def test_a_profile_of_a_plug_in_that_is_missing_is_named():
 def test_what_a_vehicle_does_by_its_failsafes_it_does_on_command(profile):
     assert profile.alone <= profile.responses
     assert {profile.down, *profile.breach} <= profile.responses
+
+
+@pytest.mark.parametrize("profile", PROFILES.values(), ids=PROFILES)
+def test_there_is_a_simulated_vehicle_to_rehearse_with(profile):
+    pilot = SimulatedAutopilot(Settings(kind=profile.rehearsed_as, firmware=profile.rehearsed_with))
+    assert pilot.settings.kind == profile.vehicle
