@@ -9,7 +9,7 @@ from math import dist
 import numpy as np
 
 from mmrs_core.errors import InfeasibleError
-from mmrs_core.planning.proximity import ClosePairs, TimedTrack, near_pairs, track_of
+from mmrs_core.planning.proximity import ClosePairs, Floats, TimedTrack, near_pairs, track_of
 from mmrs_core.planning.schedule import Decisions
 from mmrs_core.planning.timeline import rides_of
 from mmrs_core.scene import Plan, Position, Scene
@@ -108,11 +108,8 @@ def _resolved(
     One of the two robots starts later, by as little as would do if all else stayed; where it waits for
     the other anyway, that changes nothing, and the other one is tried.
     """
-    first, second = tracks[conflict.first], tracks[conflict.second]
-    shifts = [
-        (_shift(first, second, least), conflict.second),
-        (_shift(second, first, least), conflict.first),
-    ]
+    pairs = near_pairs(tracks[conflict.first], tracks[conflict.second], least, finest=_finest(least))
+    shifts = [(_shift(pairs.one, pairs.two), conflict.second), (_shift(pairs.two, pairs.one), conflict.first)]
     for shift, name in sorted(shifts):
         delays = {**decisions.delays, name: decisions.delays.get(name, 0.0) + shift}
         later = replace(decisions, delays=delays)
@@ -128,11 +125,14 @@ def _is_progress(before: Conflict, after: Conflict) -> bool:
     return not alike or after.time > before.time + 0.5
 
 
-def _shift(fixed: TimedTrack, late: TimedTrack, least: float) -> float:
-    """Return by how many whole seconds a track must come later to keep apart from another; inf: never."""
-    pairs = near_pairs(fixed, late, least, finest=_finest(least))
-    begins = pairs.one[:, 0] - pairs.two[:, 1] - _SPARE
-    ends = pairs.one[:, 1] - pairs.two[:, 0] + _SPARE
+def _shift(fixed: Floats, late: Floats) -> float:
+    """Return by how many whole seconds a robot must come later to keep apart from another; inf: never.
+
+    Args:
+        fixed: (n, 2): when the other one begins and ends each piece that is near to one of it.
+        late: (n, 2): the same of those pieces of its own.
+    """
+    begins, ends = fixed[:, 0] - late[:, 1] - _SPARE, fixed[:, 1] - late[:, 0] + _SPARE
     shift = 1.0
     for i in np.argsort(begins).tolist():
         if begins[i] < shift < ends[i]:
