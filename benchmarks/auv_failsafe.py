@@ -23,8 +23,9 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "support"))
 
+from patience import wait_for
 from sample_vessels import heavy_sheet, pool_sheet
-from vessel_processes import Boat, until
+from vessel_processes import Boat
 
 from auv_vessel.control import failsafe
 from auv_vessel.sheet import Sheet
@@ -209,13 +210,13 @@ def dived(sheet: Sheet, fail: Callable[[Diver], object]) -> Dive:
     with tempfile.TemporaryDirectory() as folder:
         diver = Diver(sheet, Path(folder))
         try:
-            assert until(lambda: diver.craft.state().trusted, 30.0)
+            assert wait_for(lambda: diver.craft.state().trusted, 30.0)
             diver.craft.go_to(60.0, 0.0, 2.0, heading=0.0)
             begun = time.monotonic()
-            assert until(lambda: diver.ear.last_thrust(begun) > begun + 2.0, 20.0)
+            assert wait_for(lambda: diver.ear.last_thrust(begun) > begun + 2.0, 20.0)
             begin = time.time()
             fail(diver)
-            up = until(lambda: diver.is_up(sheet), LONGEST)
+            up = wait_for(lambda: diver.is_up(sheet), LONGEST)
             surfaced = time.time() - begin if up else LONGEST
         finally:
             diver.close()

@@ -5,8 +5,7 @@ from __future__ import annotations
 import asyncio
 import socket
 import threading
-import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
 
 from auv_vessel.wire.hub import Hub
@@ -84,13 +83,3 @@ class Raw:
 
     def __exit__(self, *_: object) -> None:
         self.close()
-
-
-def eventually(true: Callable[[], bool], seconds: float = 10.0) -> bool:
-    """Return whether something becomes true in time."""
-    until = time.monotonic() + seconds
-    while not true():
-        if time.monotonic() > until:
-            return False
-        time.sleep(0.005)
-    return True

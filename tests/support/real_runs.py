@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from math import dist
 
-from fault_table.fleet import wait_for
 from fault_table.project import Pad
+from patience import wait_for
 
 from mmrs_mavlink.sitl.commands import execute
 from mmrs_runtime.orders.ordering import give

@@ -7,7 +7,7 @@ import signal
 import subprocess
 import threading
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -133,13 +133,3 @@ def boat(sheet: Sheet, folder: Path, drives: Path | None = None) -> Iterator[Boa
         yield found
     finally:
         found.close()
-
-
-def until(true: Callable[[], bool], seconds: float) -> bool:
-    """Return whether something becomes true in time."""
-    end = time.monotonic() + seconds
-    while not true():
-        if time.monotonic() > end:
-            return False
-        time.sleep(0.02)
-    return True

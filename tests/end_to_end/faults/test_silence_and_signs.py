@@ -9,8 +9,9 @@ import time
 from contextlib import ExitStack
 
 import pytest
-from fault_table.fleet import GENERATED, Fleet, wait_for
+from fault_table.fleet import GENERATED, Fleet
 from fault_table.project import Pad
+from patience import wait_for
 from stalls import Stalls
 
 from mmrs_runtime.orders.ordering import give

@@ -5,8 +5,9 @@ from __future__ import annotations
 import threading
 
 import pytest
-from fault_table.fleet import GENERATED, Fleet, wait_for
+from fault_table.fleet import GENERATED, Fleet
 from fault_table.project import Pad
+from patience import wait_for
 
 from mmrs_runtime.orders.ordering import give
 

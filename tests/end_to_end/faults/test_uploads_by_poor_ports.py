@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import pytest
-from fault_table.fleet import GENERATED, Fleet, wait_for
+from fault_table.fleet import GENERATED, Fleet
 from fault_table.project import Pad
+from patience import wait_for
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from mmrs_mavlink.sitl.items import MISSION, RALLY

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import pytest
-from fault_table.fleet import wait_for
 from fault_table.project import Pad
+from patience import wait_for
 from real_runs import PATIENCE, begun, judged, ordered
 
 from mmrs_runtime.semantics import Outcome

@@ -9,8 +9,9 @@ import subprocess
 from math import hypot
 
 import pytest
-from fault_table.fleet import GENERATED, Fleet, wait_for
+from fault_table.fleet import GENERATED, Fleet
 from fault_table.project import LATITUDE, LONGITUDE, OUT, Pad
+from patience import wait_for
 from warm_python import python
 
 from mmrs_runtime.semantics import Outcome

@@ -8,8 +8,8 @@ import subprocess
 import time
 
 import pytest
-from fault_table.fleet import wait_for
 from fault_table.project import Pad
+from patience import wait_for
 from real_runs import AT_HOME, HOLDING, PATIENCE, UNHURRIED, begun, judged, landed, ordered
 from stalls import Stalls
 from warm_python import python

@@ -6,8 +6,8 @@ import json
 import subprocess
 
 import pytest
-from fault_table.fleet import wait_for
 from fault_table.project import Pad
+from patience import wait_for
 from warm_python import python
 
 from mmrs_runtime.semantics import Outcome

@@ -6,8 +6,8 @@ import signal
 from math import dist
 
 import pytest
-from fault_table.fleet import wait_for
 from fault_table.project import OUT, TOUR, Pad, home_of
+from patience import wait_for
 from real_runs import (
     AT_HOME,
     HOLDING,

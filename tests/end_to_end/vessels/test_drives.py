@@ -9,8 +9,9 @@ from pathlib import Path
 
 import pytest
 from c_drives import need_compiler, written
+from patience import wait_for
 from sample_vessels import pool_sheet
-from vessel_processes import Boat, boat, until
+from vessel_processes import Boat, boat
 
 from auv_vessel.control import failsafe
 
@@ -30,7 +31,7 @@ def drives(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 def goes(vehicle: Boat, north: float, depth: float) -> None:
     """Wait until the vehicle knows where it is; send it there."""
-    assert until(lambda: vehicle.craft.state().trusted, 30)
+    assert wait_for(lambda: vehicle.craft.state().trusted, 30)
     vehicle.craft.go_to(north, 0.0, depth)
 
 
@@ -38,7 +39,7 @@ def goes(vehicle: Boat, north: float, depth: float) -> None:
 def test_a_dive_is_made_with_them(drives: Path, tmp_path: Path) -> None:
     with boat(pool_sheet(), tmp_path, drives) as vehicle:
         goes(vehicle, 0.6, 0.6)
-        assert until(lambda: vehicle.craft.state().progress == "REACHED", 60)
+        assert wait_for(lambda: vehicle.craft.state().progress == "REACHED", 60)
         assert vehicle.craft.state().depth == pytest.approx(0.6, abs=0.15)
         assert vehicle.craft.state().emergency is None
         says = [said for _, said in vehicle.ear.said("Thruster") if said.name.endswith("Status")]
@@ -47,7 +48,7 @@ def test_a_dive_is_made_with_them(drives: Path, tmp_path: Path) -> None:
 
         vehicle.craft.go_to(20.0, 0.0, 0.6)
         begun = time.monotonic()
-        assert until(lambda: vehicle.ear.last_thrust(begun) > begun + 1.0, 20)
+        assert wait_for(lambda: vehicle.ear.last_thrust(begun) > begun + 1.0, 20)
         killed = vehicle.kill("actuators")
         time.sleep(pool_sheet().watchdog + failsafe.MARGIN + BUSY + 0.5)
         assert (

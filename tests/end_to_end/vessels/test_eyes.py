@@ -10,8 +10,8 @@ from pathlib import Path
 import cv2
 import numpy as np
 import pytest
+from patience import wait_for
 from sample_vessels import pool_sheet
-from vessel_processes import until
 from vision_processes import POOL, Head, eyes
 
 from auv_vision.cameras import Pose, cameras_of
@@ -25,11 +25,11 @@ HALF_A_CORE = 0.5
 
 
 def sees_all(head: Head) -> bool:
-    return until(lambda: head.detections.seen() == NAMES, 40)
+    return wait_for(lambda: head.detections.seen() == NAMES, 40)
 
 
 def sees_nothing(head: Head) -> bool:
-    return until(lambda: not head.detections.seen(), 10)
+    return wait_for(lambda: not head.detections.seen(), 10)
 
 
 def test_three_processes_tell_where_things_are_within_half_a_core(tmp_path: Path) -> None:
@@ -56,7 +56,7 @@ def test_whichever_is_killed_the_others_go_on_and_it_can_begin_again(tmp_path: P
         head.restart("frames")
         assert sees_all(head)
         head.kill("front")
-        assert until(lambda: head.detections.seen() == {"path"}, 10)
+        assert wait_for(lambda: head.detections.seen() == {"path"}, 10)
         head.restart("front")
         assert sees_all(head)
 
@@ -69,7 +69,7 @@ def test_nothing_is_told_while_nobody_knows_where_the_vehicle_is(tmp_path: Path)
         head.told.trusted = True
         assert sees_all(head)
         head.told.pose = replace(HERE, heading=185.0)
-        assert until(lambda: head.detections.seen() == {"path"}, 10)
+        assert wait_for(lambda: head.detections.seen() == {"path"}, 10)
 
 
 def film(path: Path, pictures: int) -> Path:
@@ -92,7 +92,7 @@ def test_a_dark_film_stands_for_cameras_and_ends_the_process_when_it_ends(tmp_pa
         head.parts["frames"].communicate(timeout=20)
         assert sees_nothing(head)
         head.parts["frames"] = head.start("frames", "--front", str(film(tmp_path / "pool.avi", 40)))
-        assert until(lambda: head.detections.seen() >= NAMES - {"path"}, 30)
+        assert wait_for(lambda: head.detections.seen() >= NAMES - {"path"}, 30)
         assert head.parts["frames"].wait(timeout=40) == 0
 
 

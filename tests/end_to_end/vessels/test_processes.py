@@ -6,8 +6,9 @@ import time
 from pathlib import Path
 
 import pytest
+from patience import wait_for
 from sample_vessels import pool_sheet
-from vessel_processes import Boat, boat, until
+from vessel_processes import Boat, boat
 
 from auv_vessel.control import failsafe
 
@@ -19,11 +20,11 @@ BUSY = 0.6
 
 
 def under_way(vehicle: Boat) -> None:
-    assert until(lambda: vehicle.craft.state().trusted, 30)
+    assert wait_for(lambda: vehicle.craft.state().trusted, 30)
     vehicle.craft.go_to(30.0, 0.0, 1.5)
     begun = time.monotonic()
-    assert until(lambda: vehicle.ear.last_thrust(begun) > begun, 20)
-    assert until(lambda: vehicle.craft.state().depth > 0.6, 30)
+    assert wait_for(lambda: vehicle.ear.last_thrust(begun) > begun, 20)
+    assert wait_for(lambda: vehicle.craft.state().depth > 0.6, 30)
 
 
 @pytest.mark.parametrize(
@@ -44,7 +45,7 @@ def test_no_thrust_in_time_when_a_part_is_killed_and_the_vehicle_comes_up(
         assert vehicle.ear.last_thrust(killed) - killed <= declared + failsafe.MARGIN + BUSY
         if part != "sensors":
             deepest = vehicle.craft.state().depth
-            assert until(lambda: vehicle.craft.state().depth < deepest - 0.1, 40)
+            assert wait_for(lambda: vehicle.craft.state().depth < deepest - 0.1, 40)
 
 
 def test_no_thrust_in_time_when_the_bus_is_cut(tmp_path: Path) -> None:
@@ -59,7 +60,7 @@ def test_no_thrust_in_time_when_the_bus_is_cut(tmp_path: Path) -> None:
         time.sleep(WATCHDOG + failsafe.MARGIN + BUSY)
         vehicle.order("clear")
         mended = time.monotonic()
-        assert until(lambda: len(vehicle.ear.said("Thruster", mended)) >= 6, 5)
+        assert wait_for(lambda: len(vehicle.ear.said("Thruster", mended)) >= 6, 5)
         drives = [said for _, said in vehicle.ear.said("Thruster", mended)]
         assert {said.values["Drive"] for said in drives} <= {"WATCHDOG", "OFF"}
         assert {said.values["Thrust"] for said in drives} == {0.0}
@@ -70,9 +71,9 @@ def test_it_arrives_though_frames_are_lost_late_and_wrong(tmp_path: Path) -> Non
     with boat(pool_sheet(), tmp_path) as vehicle:
         for trouble in ("loss 0.05", "delay 0.01", "corruption 0.05"):
             vehicle.order(trouble)
-        assert until(lambda: vehicle.craft.state().trusted, 30)
+        assert wait_for(lambda: vehicle.craft.state().trusted, 30)
         goal = vehicle.craft.go_to(1.5, 0.5, 1.0)
-        assert until(
+        assert wait_for(
             lambda: vehicle.craft.state().goal == goal and vehicle.craft.state().progress == "REACHED", 60
         )
         assert vehicle.craft.state().emergency is None

@@ -13,8 +13,9 @@ from pathlib import Path
 
 import pytest
 from mmrs_auv.commands.modelled import sheets_in
+from patience import wait_for
 from ports import free_port
-from vessel_processes import Ear, until
+from vessel_processes import Ear
 
 from auv_vessel.wire.catalogue import EMERGENCIES
 from auv_vessel.wire.ports import open_port
@@ -90,16 +91,16 @@ def test_what_is_typed_happens():
             sitl.type("Naiad flood", "flood: no such fault; known are thruster-dead")
             sitl.type("Naiad loss 2", "loss 2.0 is not 0 to 1\n")
             sitl.type("all thruster-dead 0", "Naiad: thruster-dead 0\n")
-            assert until(lambda: "FAULT" in drives(ear), 20)
+            assert wait_for(lambda: "FAULT" in drives(ear), 20)
             sitl.type("status", "; thruster T1 dead\n")
             sitl.type("Naiad clear thruster-dead T1", "Naiad: clear thruster-dead T1\n")
             sitl.type("Naiad leak", "Naiad: leak\n")
-            assert until(lambda: "LEAK" in reasons(ear), 20)
+            assert wait_for(lambda: "LEAK" in reasons(ear), 20)
             sitl.type("Naiad cut", "Naiad: cut\n")
             cut = len(ear.heard) + 20
-            assert not until(lambda: any(said.name == "Pressure" for _, said in ear.heard[cut:]), 0.5)
+            assert not wait_for(lambda: any(said.name == "Pressure" for _, said in ear.heard[cut:]), 0.5)
             sitl.type("Naiad clear bus", "Naiad: clear bus\n")
-            assert until(lambda: any(said.name == "Pressure" for _, said in ear.heard[cut:]), 20)
+            assert wait_for(lambda: any(said.name == "Pressure" for _, said in ear.heard[cut:]), 20)
         assert sitl.quit() == 0
         assert [line for line in sitl.lines if "incomplete message" in line or "bus is gone" in line] == []
 

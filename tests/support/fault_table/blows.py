@@ -9,9 +9,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from patience import wait_for
 from warm_python import FREEZE, THAW
 
-from fault_table.fleet import Fleet, wait_for
+from fault_table.fleet import Fleet
 from fault_table.links import SILENCE
 from fault_table.orders import RESUMED_AFTER, to_all
 from fault_table.process import Process

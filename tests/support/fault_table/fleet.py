@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import json
 import subprocess
-import time
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from functools import cache
 from pathlib import Path
 from typing import IO
@@ -154,13 +153,3 @@ def mmrs(*arguments: str) -> str:
     done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=120)
     assert done.returncode == 0, f"{arguments}: {done.stdout}{done.stderr}"
     return done.stdout
-
-
-def wait_for(test: Callable[[], bool], seconds: float) -> bool:
-    """Return whether a test has come true in that many real seconds."""
-    until = time.monotonic() + seconds
-    while not test():
-        if time.monotonic() > until:
-            return False
-        time.sleep(0.02)
-    return True

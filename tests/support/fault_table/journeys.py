@@ -11,10 +11,11 @@ from functools import partial
 from math import dist
 from pathlib import Path
 
+from patience import wait_for
 from ports import free_endpoint
 from warm_python import FREEZE
 
-from fault_table.fleet import GENERATED, Fleet, wait_for
+from fault_table.fleet import GENERATED, Fleet
 from fault_table.project import OUT, TOUR, Pad
 from fault_table.record import MOMENTS, Answer, answered, ending, story, struck
 from fault_table.row import Outcome, within

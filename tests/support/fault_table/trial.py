@@ -6,7 +6,9 @@ import signal
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
-from fault_table.fleet import GENERATED, Fleet, wait_for
+from patience import wait_for
+
+from fault_table.fleet import GENERATED, Fleet
 from fault_table.process import Process
 from fault_table.project import Pad
 from fault_table.row import Outcome, Row

@@ -13,9 +13,10 @@ from itertools import pairwise
 
 import can
 import pytest
-from can_hub import Raw, eventually, running
+from can_hub import Raw, running
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
+from patience import wait_for
 
 from auv_vessel.wire import hub as hubs
 from auv_vessel.wire.frame import Frame
@@ -55,7 +56,7 @@ def test_a_client_that_never_hears_the_bus_takes_no_room(said: str) -> None:
         words = [idle.word(), idle.word(), idle.word()]
         assert any("no channel and rawmode within 0.1 s" in word for word in words)
         assert words[-1] == ""
-        assert eventually(lambda: hub.hub.clients == 0)
+        assert wait_for(lambda: hub.hub.clients == 0)
 
 
 def test_a_client_that_hears_the_bus_may_be_silent_for_long() -> None:
@@ -129,9 +130,9 @@ def test_the_answer_comes_alone_for_clients_that_take_what_they_read_for_one_wor
         late.say("< open can0 >")
         assert late.word() == "< ok >"
         late.say("< rawmode >")
-        assert eventually(lambda: sum(each._raw for each in tuple(hub.hub._clients)) == 2)
+        assert wait_for(lambda: sum(each._raw for each in tuple(hub.hub._clients)) == 2)
         busy.say("< send 100 1 5 >")
-        assert eventually(lambda: hub.hub.counts["frames"] == 1)
+        assert wait_for(lambda: hub.hub.counts["frames"] == 1)
         assert late.socket.recv(4096) == b"< ok >"
         assert late.word().startswith("< frame 100 ")
 
@@ -269,7 +270,7 @@ def test_clients_that_are_killed_are_forgotten() -> None:
         finally:
             os.kill(child.pid, signal.SIGKILL)
             child.communicate()
-        assert eventually(lambda: hub.hub.clients == 2)
+        assert wait_for(lambda: hub.hub.clients == 2)
         said.say("< send 100 1 5 >")
         assert heard.word().startswith("< frame 100 ")
 
@@ -279,7 +280,7 @@ def test_connections_that_are_reset_are_forgotten() -> None:
         rude = Raw(hub.port)
         rude.socket.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, struct.pack("ii", 1, 0))
         rude.close()
-        assert eventually(lambda: hub.hub.clients == 2)
+        assert wait_for(lambda: hub.hub.clients == 2)
         said.say("< send 100 1 5 >")
         assert heard.word().startswith("< frame 100 ")
 
@@ -295,7 +296,7 @@ def test_many_clients_all_hear_and_one_too_many_is_told(monkeypatch: pytest.Monk
             assert late.word() == ""
         for each in clients:
             each.close()
-        assert eventually(lambda: hub.hub.clients == 0)
+        assert wait_for(lambda: hub.hub.clients == 0)
 
 
 def test_the_log_is_one_that_python_can_plays(tmp_path) -> None:

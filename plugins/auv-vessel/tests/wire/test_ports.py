@@ -11,7 +11,8 @@ from uuid import uuid4
 import can
 import pytest
 from can.interfaces.virtual import VirtualBus
-from can_hub import Raw, eventually, running
+from can_hub import Raw, running
+from patience import wait_for
 
 from auv_vessel.wire.frame import Frame
 from auv_vessel.wire.ports import Port, PortError, open_port
@@ -83,7 +84,7 @@ def test_the_oldest_frames_go_when_nobody_takes_them() -> None:
     with open_port("virtual", channel, most_waiting=10) as slow, open_port("virtual", channel) as said:
         for number in range(25):
             said.send(Frame(number, b""))
-        assert eventually(lambda: slow.errors["overrun"] == 15)
+        assert wait_for(lambda: slow.errors["overrun"] == 15)
         assert [slow.receive(0) for _ in range(10)] == [Frame(number, b"") for number in range(15, 25)]
 
 
@@ -104,10 +105,10 @@ def test_each_sort_of_error_is_told_when_it_first_happens_and_counted_until_the_
         port = open_port("virtual", channel, say=told.append)
         for _ in range(3):
             bus.send(can.Message(arbitration_id=1, is_remote_frame=True))
-        assert eventually(lambda: port.errors["remote"] == 3)
+        assert wait_for(lambda: port.errors["remote"] == 3)
         assert told == ["errors of the bus: remote frames"]
         bus.send(can.Message(arbitration_id=1, is_error_frame=True))
-        assert eventually(lambda: port.errors["error"] == 1)
+        assert wait_for(lambda: port.errors["error"] == 1)
         port.close()
         port.close()
     assert told[1:] == ["errors of the bus: error frames", "errors of the bus: 1 error, 3 remote"]
@@ -116,14 +117,14 @@ def test_each_sort_of_error_is_told_when_it_first_happens_and_counted_until_the_
 def test_a_hub_that_ends_is_noticed_by_who_only_listens() -> None:
     with running() as hub, open_port("socketcand", "can0", port=hub.port) as port, Raw(hub.port) as said:
         said.say("< send 100 1 5 >")
-        assert eventually(lambda: len(port._frames) == 1)
+        assert wait_for(lambda: len(port._frames) == 1)
         hub.stop()
         assert port.receive(5) == Frame(0x100, b"\5")
         with pytest.raises(PortError, match="has ended the connection"):
             port.receive(5)
         with pytest.raises(PortError):
             port.send(FRAMES[0])
-        assert eventually(lambda: not port._reader.is_alive())
+        assert wait_for(lambda: not port._reader.is_alive())
 
 
 def test_a_hub_that_takes_nothing_any_more_holds_nobody_up_for_long() -> None:

@@ -6,9 +6,10 @@ import time
 from random import Random
 
 import pytest
-from can_hub import Raw, eventually, running
+from can_hub import Raw, running
 from hypothesis import given
 from hypothesis import strategies as st
+from patience import wait_for
 
 from auv_vessel.hosting import tells_time
 from auv_vessel.wire.frame import Frame
@@ -18,7 +19,7 @@ from auv_vessel.wire.hub import Hub, Troubles, corrupted
 def heard_with(troubles: Troubles, count: int, seed: int = 1) -> list[str]:
     with running(Hub(troubles, seed)) as hub, Raw(hub.port) as said, Raw(hub.port) as heard:
         said.say("".join(f"< send 100 2 {number // 256:x} {number % 256:x} >" for number in range(count)))
-        assert eventually(lambda: hub.hub.counts["frames"] == count)
+        assert wait_for(lambda: hub.hub.counts["frames"] == count)
         time.sleep(troubles.delay)
         said.say("< send 7FF 0 >" * 64)
         words = []
@@ -65,7 +66,7 @@ def test_a_bus_that_is_cut_and_mended() -> None:
     with running() as hub, Raw(hub.port) as said, Raw(hub.port) as heard:
         hub.hub.troubles = Troubles(loss=1.0)
         said.say("< send 100 0 >" * 10)
-        assert eventually(lambda: hub.hub.counts["lost"] == 10)
+        assert wait_for(lambda: hub.hub.counts["lost"] == 10)
         hub.hub.troubles = Troubles()
         said.say("< send 101 0 >")
         assert heard.word().startswith("< frame 101 ")
