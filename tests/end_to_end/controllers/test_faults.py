@@ -155,7 +155,7 @@ def test_a_program_that_crashes_leaves_its_robot_holding(controllers, hangar):
     made = controllers(one_drone(hold=5.0))
     fleet = made.folder / "fleet.py"
     breaks = (
-        "from mmrs_mavlink.vehicles.mavlink_vehicle import MavlinkVehicle\n\ndel MavlinkVehicle.operate\n"
+        "from mmrs_mavlink.vehicles.mavlink_vehicle import MavlinkVehicle\n\nMavlinkVehicle.operate = None\n"
     )
     fleet.write_text(fleet.read_text("utf-8").replace("if __name__", f"{breaks}if __name__"), "utf-8")
     vehicles, links = hangar(made.program)

@@ -291,6 +291,7 @@ def test_the_program_is_a_node_of_the_bus(program):
 
 
 def test_a_program_that_was_stopped_does_not_take_its_own_lateness_for_silence(tmp_path):
+    need_compiler()
     vehicle = sheet(1, extra={"deadman.time": 0.7})
     made, codec = written(vehicle, tmp_path), Codec(vehicle)
     outputs = made / "outputs.c"
