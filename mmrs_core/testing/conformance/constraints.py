@@ -6,7 +6,8 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import ClassVar
 
-from hypothesis import HealthCheck, given, settings
+import pytest
+from hypothesis import HealthCheck, given, note, settings
 from hypothesis import strategies as st
 
 from mmrs_core.contributions.constraints import Constraint
@@ -68,20 +69,23 @@ class ConstraintConformance(Conformance):
         """What is right is not reported."""
         assert breaches(constraint, self.cases[constraint.code].kept(registry)) == []
 
-    def test_half_a_model_crashes_no_constraint(self, constraint: Constraint, registry: Registry) -> None:
+    def test_half_a_model_crashes_no_constraint(
+        self, constraints: Sequence[Constraint], registry: Registry
+    ) -> None:
         """Models are checked while they are being edited."""
-        self._crashes_with_no(
-            constraint, drafts_of(registry, *constraint.metaclass).map(lambda root: (root,))
-        )
+        drafts = drafts_of(registry, *constraints[0].metaclass)
+        _crashes_none_of(constraints, drafts.map(lambda root: (root,)))
 
-    def test_random_models_crash_no_constraint(self, constraint: Constraint, registry: Registry) -> None:
+    def test_random_models_crash_no_constraint(
+        self, constraints: Sequence[Constraint], registry: Registry
+    ) -> None:
         """Whatever a valid model holds; whole projects, where no element of the class can stand alone."""
         try:
-            alone = instances_of(registry, *constraint.metaclass)
+            alone = instances_of(registry, *constraints[0].metaclass)
         except ValueError:
-            self._crashes_with_no(constraint, models_of(registry, *WHOLE))
+            _crashes_none_of(constraints, models_of(registry, *WHOLE))
         else:
-            self._crashes_with_no(constraint, alone.map(lambda root: (root,)))
+            _crashes_none_of(constraints, alone.map(lambda root: (root,)))
 
     def test_the_documentation_tells_what_must_hold_and_how_to_mend_it(self, constraint: Constraint) -> None:
         """The title is a sentence without a full stop; the hint describes the fix."""
@@ -89,14 +93,26 @@ class ConstraintConformance(Conformance):
         assert not constraint.title.endswith(".")
         assert constraint.hint
 
-    def _crashes_with_no(self, constraint: Constraint, models: st.SearchStrategy[Sequence[Element]]) -> None:
-        """Draw models; whatever the constraint finds in them has a place and a message."""
+    def pytest_generate_tests(self, metafunc: pytest.Metafunc) -> None:
+        """Run a test of `constraints` once for each metaclass, with all constraints on its elements."""
+        super().pytest_generate_tests(metafunc)
+        if "constraints" in metafunc.fixturenames:
+            found: dict[tuple[str, str], list[Constraint]] = {}
+            for each in declared(self.plugin, "constraints"):
+                found.setdefault(each.metaclass, []).append(each)
+            metafunc.parametrize("constraints", found.values(), ids=[name for _, name in found])
 
-        @RELAXED
-        @given(models)
-        def law(roots: Sequence[Element]) -> None:
+
+def _crashes_none_of(constraints: Sequence[Constraint], models: st.SearchStrategy[Sequence[Element]]) -> None:
+    """Draw models; whatever constraints find in them has a place and a message."""
+
+    @RELAXED
+    @given(models)
+    def law(roots: Sequence[Element]) -> None:
+        for constraint in constraints:
+            note(f"constraint {constraint.code}")
             for finding in findings(constraint, roots):
                 assert isinstance(finding.element, Element)
                 assert finding.message
 
-        law()
+    law()
