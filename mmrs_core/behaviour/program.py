@@ -59,7 +59,7 @@ class Action:
         name: the device action's name, or the action's own name.
         device: identifier of the device; empty unless a device acts.
         parameters: (key, value) pairs of a device action, or the payload of a feedback.
-        sets: the slots that a notify sets, resolved once; empty for other actions.
+        sets: the slots that a notify sets, each as (robot, slot); empty for other actions.
         active: the value that they are set to.
     """
 

@@ -115,7 +115,8 @@ class Target:
             written.
         capabilities: how elements of the Behaviour Language are expressed, in a few words each, by the
             element as the table of capabilities names it, or by how its name begins: the longest
-            counts. What is expressed, and what is not, is found by trying.
+            counts. What is expressed, and what is not, is found by trying. Whatever makes no difference,
+            though robots need it, has its words under its whole name: why nothing is lost.
         tried_with: class of vehicle, as in `RobotKind.vehicle`, of the robots that it is tried with, by
             `RobotKind.sample`. Default, and where no such kind is installed: the core's plain robot.
         wirings: device wirings that it is tried with, beside a device without wiring.

@@ -52,7 +52,8 @@ class Policy:
     """What a robot does about an event.
 
     Attributes:
-        event: a literal of PolicyEvent; response: one of PolicyResponse, or NOTHING.
+        event: a literal of PolicyEvent, such as ``LINK_LOST``.
+        response: a literal of PolicyResponse, such as ``RETURN``, or NOTHING.
         after: seconds that the event lasts before the robot responds; None: the platform's default.
     """
 

@@ -3,6 +3,7 @@
 import inspect
 import re
 from dataclasses import MISSING, fields, is_dataclass
+from enum import Enum
 from pathlib import Path
 
 import pytest
@@ -12,14 +13,16 @@ from mmrs_core.behaviour import program
 from mmrs_core.contributions.checks import CheckInput, Verdict
 from mmrs_core.contributions.constraints import Finding
 from mmrs_core.contributions.fixes import Wrong
-from mmrs_core.contributions.rules import MoveSpec
+from mmrs_core.contributions.rules import MoveKind, MoveSpec
 from mmrs_core.contributions.targets import FileSpec, GeneratedFile, TargetInput, TracedStep
 from mmrs_core.contributions.vehicles import VehicleInput
 from mmrs_core.diagnostics import Place
+from mmrs_core.generation import planned_moves
 from mmrs_core.planning import coverage, positions
 from mmrs_core.scene import attributes
 from mmrs_core.transformation import kinds
 from mmrs_runtime import vehicle
+from mmrs_runtime.policies import Policy
 
 PAGE = Path(__file__).parents[2] / "docs" / "hooks.md"
 TOLD = {
@@ -38,6 +41,7 @@ TOLD = {
         scene.Gap,
         scene.Scene,
         scene.Area,
+        scene.AreaUse,
         scene.Device,
         scene.DeviceAction,
         scene.Battery,
@@ -45,6 +49,7 @@ TOLD = {
         MoveSpec,
         kinds.kinematics_for,
         kinds.straight_travel,
+        MoveKind,
         attributes.number,
         attributes.text,
         attributes.flag,
@@ -73,6 +78,9 @@ TOLD = {
         CheckInput,
         Verdict,
         TargetInput,
+        planned_moves.planned_moves,
+        planned_moves.PlannedMove,
+        planned_moves.kinematics_of,
         FileSpec,
         GeneratedFile,
         TracedStep,
@@ -83,8 +91,10 @@ TOLD = {
         program.Heading,
         program.Action,
         program.Transition,
+        Policy,
     ),
 }
+WITH_PROPERTIES = (program.Move, program.Action, program.Transition)
 END = "<!-- until here -->\n"
 ENTRY = re.compile(r"(?:^|(?:[.;]) )(\w+(?:, \w+)*): ")
 
@@ -162,6 +172,10 @@ def section_of_methods(told):
 def section_of(told):
     if inspect.isfunction(told):
         return section_of_function(told)
+    if isinstance(told, type) and issubclass(told, Enum):
+        return "\n".join(
+            [f"### `{told.__name__}`", "", inspect.getdoc(told), "", *(f"- `{each}`" for each in told)]
+        )
     if not is_dataclass(told):
         return section_of_methods(told)
     summary, words = words_of(told)
@@ -172,7 +186,15 @@ def section_of(told):
         )
         said = words.get(field.name, "")
         lines.append(f"- `{field.name}: {field.type}{default}`{said and ': '}{said}")
+    for name, each in vars(told).items():
+        if isinstance(each, property) and told in WITH_PROPERTIES:
+            lines.append(f"- `{name}: {each.fget.__annotations__['return']}`: {said_of(each)}")
     return "\n".join(lines)
+
+
+def said_of(property):
+    """Return what a property is, as the docstring of its function says what that returns."""
+    return inspect.getdoc(property).removeprefix("Return ").rstrip(".")
 
 
 def made_of(part):

@@ -108,7 +108,7 @@ MULTICOPTER_KIND = RobotKind(
     vehicle="copter",
     medium="air",
     position_hold="positionHold",
-    sample=sample_type((DRONE, ROBOT)),
+    sample=sample_type((DRONE, ROBOT), attributes={"maxAltitude": 120.0}),
 )
 
 MOVE_KINDS = (

@@ -1,0 +1,104 @@
+"""What targets know of planned moves: where each leads, and how long it takes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from math import inf
+
+from mmrs_core.behaviour.as_scene import scene_of
+from mmrs_core.behaviour.program import Action, Move, RobotProgram
+from mmrs_core.contributions.rules import MoveKind, most_specific, robot_kind_of
+from mmrs_core.contributions.targets import TargetInput
+from mmrs_core.errors import InfeasibleError
+from mmrs_core.scene import Kinematics, Position, RobotType
+
+
+@dataclass(frozen=True, slots=True)
+class PlannedMove:
+    """A move of a robot as it is planned.
+
+    Attributes:
+        index: of the move in the robot.
+        manoeuvre: as in `MoveKind`; empty for other moves, and where no plug-in provides the kind.
+        path: positions that the robot passes, the first one where it is before, metres; None where they are
+            not known.
+        seconds: (shortest, longest) duration of the move with its device actions; waits come on top. None
+            where it is not known.
+    """
+
+    index: int
+    manoeuvre: str
+    path: tuple[Position, ...] | None
+    seconds: tuple[float, float] | None
+
+
+def planned_moves(robot: RobotProgram, input: TargetInput) -> tuple[PlannedMove, ...]:
+    """Return the moves of a robot in the order in which it makes them, each once.
+
+    After a Choice follows the move for a condition that holds; moves that are never reached so, or come
+    round again, are not repeated.
+    """
+    return tuple(_planned(robot, input))
+
+
+def kinematics_of(robot: RobotProgram, input: TargetInput) -> Kinematics | None:
+    """Return the speeds, rates and limits of a robot by its kind; None where they are not known."""
+    type = input.types.get(robot.type_name)
+    kind = robot_kind_of(type, input.robot_kinds) if type is not None else None
+    if type is None or kind is None or robot.home is None:
+        return None
+    alone = replace(input.program, robots=(robot,))
+    scene = scene_of(alone, {robot.type_name: type}, environment=input.environment, elements=input.elements)
+    scene = replace(scene, areas=input.areas)
+    try:
+        return kind.kinematics(scene.robots[0], scene)
+    except InfeasibleError:
+        return None
+
+
+def _planned(robot: RobotProgram, input: TargetInput) -> Iterator[PlannedMove]:
+    kinematics, type = kinematics_of(robot, input), input.types.get(robot.type_name)
+    here = robot.home
+    for index in _order(robot):
+        move = robot.moves[index]
+        name = most_specific(move.metaclasses, input.move_kinds)
+        kind = input.move_kinds[name] if name is not None else None
+        path = kind.path(move, here, robot.home) if kind is not None and here is not None else None
+        seconds = _seconds(robot, move, kind, path, kinematics, type)
+        yield PlannedMove(index, kind.manoeuvre if kind is not None else "", path, seconds)
+        here = path[-1] if path else None
+
+
+def _order(robot: RobotProgram) -> Iterator[int]:
+    passed: set[int] = set()
+    at: int | None = robot.start
+    while at is not None and at not in passed:
+        passed.add(at)
+        yield at
+        transition = robot.transitions.get(at)
+        at = transition.to if transition is not None else None
+
+
+def _seconds(
+    robot: RobotProgram,
+    move: Move,
+    kind: MoveKind | None,
+    path: tuple[Position, ...] | None,
+    kinematics: Kinematics | None,
+    type: RobotType | None,
+) -> tuple[float, float] | None:
+    if kind is None or path is None or kinematics is None:
+        return None
+    shortest, longest = kind.seconds(move, path, kinematics, robot.travel_mode)
+    acting = sum(_acting(action, type) for action in (*move.before, *move.after))
+    return (shortest + acting, longest + acting) if longest + acting < inf else None
+
+
+def _acting(action: Action, type: RobotType | None) -> float:
+    """Return the seconds that an action takes; none unless a device acts, infinity where it is not known."""
+    if not action.device:
+        return 0.0
+    device = type.devices.get(action.device) if type is not None else None
+    known = device.actions.get(action.name) if device is not None else None
+    return known.duration if known is not None else inf
