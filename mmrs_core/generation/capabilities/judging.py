@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from itertools import chain
 from typing import Literal, TypeAlias
@@ -18,11 +18,19 @@ from mmrs_core.generation.render import Press
 Verdict: TypeAlias = Literal["expressed", "no difference", "lossy", "refused"]
 VERDICTS: dict[Verdict, str] = {
     "expressed": "it is in the generated files",
-    "no difference": "the files are the same without it: it is for others than the robot's controller",
+    "no difference": "the files are the same without it: it is for others than the robot's controller, "
+    "or nothing is lost for the reason given",
     "lossy": "refused; with --allow-lossy it is left out, or is done as the list says",
     "refused": "refused, also with --allow-lossy",
 }
 """Meaning of each verdict, as printed."""
+
+
+FOR_OTHERS = ("Move.name", "Move.task", "Move.rule")
+"""Features of moves that robots do not need: they are traced by the manifest."""
+
+SHORT_OF = ("move", "heading", "transition", "device action", "action", "policy")
+"""How the groups of elements begin without which robots do less, or something else, than was planned."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,6 +71,22 @@ def capabilities_of(target: Target, contributions: Contributions) -> tuple[Targe
     """Return what a target does with each element."""
     trial = Trial(target)
     return tuple(trial.judged(probe) for probe in probes(target, contributions))
+
+
+def lost(target: Target, rows: Iterable[TargetCapability]) -> tuple[TargetCapability, ...]:
+    """Return the elements that a target loses silently.
+
+    They make no difference to the files and are not refused, though robots do less or otherwise without
+    them. `Target.capabilities` says why nothing is lost: by the whole name of the element, by the event of a
+    policy, or by an empty name for all.
+    """
+    words = target.capabilities
+    return tuple(
+        row
+        for row in rows
+        if row.verdict == "no difference" and row.group.startswith(SHORT_OF) and row.element not in FOR_OTHERS
+        if not words.keys() & {row.element, row.element.partition(":")[0], ""}
+    )
 
 
 class Trial:

@@ -63,7 +63,7 @@ def of_plugins(samples: Samples, contributions: Contributions) -> Iterator[Probe
         usual: dict[str, Value] = {feature: some[0] for feature, some in values.items()}
         made = Move("m", metaclass.ancestry, usual)
         if metaclass.is_kind(BEHAVIOUR, "GoTo"):
-            made = replace(made, target=MoveTarget(samples.base.there), speed=2.0)
+            made = replace(made, target=MoveTarget(samples.base.above), speed=2.0)
         kind, sample = contributions.move_kinds[uri, name], samples.base
         before = sample.recover if kind.needs == {"grounded"} else ()
         after = sample.launch if kind.leaves == "grounded" else ()
@@ -105,14 +105,24 @@ def of_headings(samples: Samples) -> Iterator[Probe]:
             "of a device that looks aside (mount.yaw)": MOUNTED_ASIDE,
             **{f"of {each}": properties for each, properties in turning.items()},
         }.items():
-            fitted = replace(turned, types={sample.type.name: sample.wired(properties)})
-            yield Probe("heading", f"GoTo.heading {name}, {words}", fitted, turned)
+            wired = {sample.type.name: sample.wired(properties)}
+            fitted = replace(turned, types=wired)
+            without = replace(base, types=wired)
+            yield Probe("heading", f"GoTo.heading {name}, {words}", fitted, without)
             aside = with_move(fitted, "a", heading=ASIDE)
             yield Probe("heading", f"Heading.angle {name}, {words}", aside, fitted)
             facing = replace(move("m", "HeadTo"), heading=AHEAD)
-            ahead = sample.given(sample.robot(ALPHA, sample.journey_with(facing)))
-            other = replace(ahead, types=fitted.types)
-            yield Probe("heading", f"HeadTo.heading {name}, {words}", other, ahead)
+            ahead = sample.given(
+                sample.robot(ALPHA, sample.journey_with(facing)), type=wired[sample.type.name]
+            )
+            yield Probe("heading", f"HeadTo.heading {name}, {words}", ahead, without)
+        mounted = {sample.type.name: sample.wired(MOUNTED_ASIDE)}
+        yield Probe(
+            "heading",
+            f"Heading.deviceId {name}: a device that looks aside (mount.yaw)",
+            replace(turned, types=mounted),
+            turned,
+        )
     base, front = samples.base.plain, replace(AHEAD, device="")
     yield Probe("heading", "Heading.deviceId absent: the front", with_move(base, "a", heading=front), base)
     found = Heading(MoveTarget((0.0, 90.0, 0.0), "a buoy", 2.0))

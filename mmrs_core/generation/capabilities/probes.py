@@ -27,6 +27,8 @@ ALPHA, BETA = "alpha", "beta"
 EARTH = Frame("EPSG:4326", 42.37, 13.35, 720.0, "MSL")
 HEIGHTS: Mapping[Medium, float] = {"air": 20.0, "ground": 0.0, "water": -5.0}
 """Metres above home at which sample robots move."""
+RISE = 3.0
+"""Metres by which a move changes the height of a sample robot, where its path depends on that."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,6 +53,7 @@ class Sample:
         name: of the kind, in words.
         type: of the robots.
         here, there: two positions that they go to.
+        above: a position at another height, for moves that get there in a way of their own.
         launch, recover: moves that bring them to their height, and down.
         first, second: moves to the two positions; the last move of each has the identifier ``a`` or ``b``.
     """
@@ -68,6 +71,7 @@ class Sample:
         self.name = kind.name.replace("_", " ")
         self.type: RobotType = kind.sample
         self.here, self.there = (0.0, 30.0, height), (25.0, 30.0, height)
+        self.above = (25.0, 30.0, height + RISE)
         self.launch = self._made(kind.launch(height), "up")
         self.first = self._made(kind.travel(((0.0, 0.0, height), self.here)), "a")
         self.second = self._made(kind.travel((self.here, self.there)), "b")

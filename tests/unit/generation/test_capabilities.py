@@ -13,7 +13,8 @@ from mmrs_core.behaviour.program import BEHAVIOUR
 from mmrs_core.cli import run
 from mmrs_core.contributions.targets import FileSpec, Target
 from mmrs_core.errors import UnsupportedError
-from mmrs_core.generation.capabilities.judging import capabilities_of, probes
+from mmrs_core.generation.capabilities.judging import capabilities_of, lost, probes
+from mmrs_core.generation.planned_moves import planned_moves
 from mmrs_core.generation.render import render
 from mmrs_core.plugins import load_plugins
 from mmrs_core.testing.programs import installed
@@ -189,6 +190,49 @@ def test_the_target_of_a_plugin_is_tried_in_the_same_way(cards):
     assert (table["Land"].verdict, table["Land"].how) == ("expressed", "a line")
     assert (table["Feedback"].verdict, table["Feedback"].how) == ("lossy", "has actions")
     assert table["GoTo.speed"].verdict == "no difference"
+
+
+def test_what_neither_changes_the_files_nor_is_refused_nor_explained_is_lost(cards):
+    rows = capabilities_of(cards, installed())
+    found = {row.element for row in lost(cards, rows)}
+    assert {"GoTo.speed", "MoveTransition.waitFor", "GoTo.heading (plain robot)", "LINK_LOST: HOLD"} <= found
+    assert not {"GoTo", "Feedback", "Move.task", "Behaviour.reserve", "Target.name"} & found
+
+
+@pytest.mark.parametrize(
+    ("words", "excused"),
+    [
+        ("GoTo.speed", {"GoTo.speed"}),
+        ("LINK_LOST", {"LINK_LOST: HOLD", "LINK_LOST: LAND"}),
+        ("", {"GoTo.speed", "LINK_LOST: HOLD"}),
+        ("GoTo", set()),
+    ],
+)
+def test_words_about_an_element_say_that_nothing_is_lost(cards, words, excused):
+    rows = capabilities_of(cards, installed())
+    told = replace(cards, capabilities={words: "no robot needs it"})
+    names = {row.element for row in lost(told, rows)}
+    assert not excused & names
+    assert "GoTo.distance" in names or not words
+
+
+def test_what_a_move_does_on_its_way_to_another_height_is_tried(cards, tmp_path):
+    (tmp_path / "card.jinja").write_text("{% for each in paths %}{{ each | comment }}\n{% endfor %}")
+
+    def files(given):
+        for number, robot in enumerate(given.program.robots):
+            paths = [each.path for each in planned_moves(robot, given)]
+            yield FileSpec(f"card_{number}.txt", "card.jinja", {"paths": paths})
+
+    rows = {row.element: row for row in capabilities_of(replace(cards, files=files), installed())}
+    assert rows["GoTo.trajectory HORIZONTAL_FIRST"].verdict == "expressed"
+    assert rows["GoTo.trajectory VERTICAL_FIRST"].verdict == "expressed"
+
+
+def test_a_heading_that_is_written_is_expressed_of_devices_on_gimbals_too():
+    of_gimbals = [row for row in table_of("mavlink-python") if row.element.startswith("GoTo.heading (multi")]
+    assert {row.verdict for row in of_gimbals} == {"expressed"}
+    assert any("gimbal" in row.element for row in of_gimbals)
 
 
 def test_moves_that_plugins_have_added_get_a_row_for_themselves_and_for_each_attribute(cards):

@@ -105,6 +105,7 @@ LONGEST = 2000.0
 """Seconds that drives measure, at most: their microseconds have 32 bits."""
 
 CAPABILITIES = {
+    "": "is for the control layer that commands the drives",
     "Behaviour.robots": "a folder each, beside what they share",
     "Robot: auv": "a drive for each of its thrusters",
     "Robot.id": "name of the folder",
