@@ -11,13 +11,16 @@ import pytest
 
 from mmrs_core.contributions.targets import Target, TargetInput
 from mmrs_core.errors import UnsupportedError
-from mmrs_core.generation.capabilities.judging import capabilities_of, probes
+from mmrs_core.generation.capabilities.judging import TargetCapability, capabilities_of, lost, probes
 from mmrs_core.generation.manifest import manifest_in
 from mmrs_core.generation.render import render
 from mmrs_core.testing.conformance.declared import Conformance, declared
 from mmrs_core.testing.programs import installed, two_robots
 
 UNHEARD_OF = (("urn:mmrs:testing:nowhere:1.0", "Somersault"), ("urn:mmrs:behaviour:1.0", "Move"))
+
+LOST = """these make no difference to the files:
+write them, refuse them by name in Target.refusals, or say in Target.capabilities why nothing is lost"""
 
 
 class TargetConformance(Conformance):
@@ -29,6 +32,7 @@ class TargetConformance(Conformance):
     """
 
     inputs: ClassVar[Mapping[str, TargetInput]] = {}
+    _tables: ClassVar[dict[str, tuple[TargetCapability, ...]]] = {}
 
     def test_there_is_a_target(self) -> None:
         """A plug-in whose targets are tested has one, and no input is left over."""
@@ -87,19 +91,47 @@ class TargetConformance(Conformance):
             assert entry.first <= entry.last <= lines[entry.file]
             assert (entry.step.robot, entry.step.move) in moves | robots
 
+    def test_every_step_that_it_declares_is_served_by_lines(self, target: Target) -> None:
+        """Templates mark each step of `FileSpec.trace` by the tag ``serves``, for `mmrs-gen explain`."""
+        given = self._input(target)
+        rendered = {spec.path for spec in target.files(given) if spec.template.endswith(".jinja")}
+        *_, manifest = render(target, given)
+        entries = [each for each in manifest_in(manifest.content).trace if each.file in rendered]
+        steps = [f"{each.file}: {each.step.step}" for each in entries if not each.first]
+        assert not steps, "no lines of the template serve these steps of FileSpec.trace ({% serves step %})"
+
+    def test_nothing_is_lost_silently(self, target: Target) -> None:
+        """What changes what robots do is written or refused, or the capabilities say why nothing is lost.
+
+        Each element is tried: a behaviour with it must not make the same files as one without it.
+        """
+        names = [f"{row.group}: {row.element}" for row in lost(target, self._table(target))]
+        if names:
+            pytest.fail(f"{LOST}\n  " + "\n  ".join(names), pytrace=False)
+
     def test_its_table_of_capabilities_is_about_what_it_expresses_and_refuses(self, target: Target) -> None:
         """The words of a target are for elements that it expresses, or whose absence loses nothing.
 
         A refusal is about something that the behaviour without it is not refused for.
         """
-        contributions = installed()
-        rows = capabilities_of(target, contributions)
+        contributions, rows = installed(), self._table(target)
         kept = [row.element for row in rows if row.verdict in ("expressed", "no difference")]
         for begin in target.capabilities:
             assert any(element.startswith(begin) for element in kept), begin
         for probe, row in zip(probes(target, contributions), rows, strict=True):
             refused = row.verdict in ("lossy", "refused")
             assert bool(tuple(target.refusals(probe.given))) is refused, row.element
+
+    def _table(self, target: Target) -> tuple[TargetCapability, ...]:
+        """Return what the target does with each element, which takes seconds to find out."""
+        if target.name not in self._tables:
+            self._tables[target.name] = capabilities_of(target, installed())
+        return self._tables[target.name]
+
+    @pytest.fixture(scope="class", autouse=True)
+    @classmethod
+    def _tried_once(cls) -> None:
+        cls._tables = {}
 
     def _input(self, target: Target) -> TargetInput:
         return self.inputs.get(target.name) or two_robots(target)

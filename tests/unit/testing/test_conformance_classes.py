@@ -11,6 +11,7 @@ from mmrs_multicopter import plugin as multicopter
 
 from mmrs_core.behaviour.program import Move
 from mmrs_core.contributions.rules import ElementKind, MoveKind, MoveSpec, Rule
+from mmrs_core.contributions.targets import FileSpec, Target, TracedStep
 from mmrs_core.hookspecs import hookimpl
 from mmrs_core.languages.sources import MetamodelSource
 from mmrs_core.scene import AreaUse, Part, Stroke, Work
@@ -20,6 +21,7 @@ from mmrs_core.testing.conformance import (
     MoveKindConformance,
     PluginConformance,
     RuleConformance,
+    TargetConformance,
 )
 from mmrs_core.testing.scenes import square
 from mmrs_core.transformation.kinds import no_time, stays
@@ -147,3 +149,36 @@ def test_moves_of_a_rule_that_do_not_fit_its_stroke_are_found(seconds, east, fau
     kit = kit_for(SimpleNamespace(), RuleConformance, tasks={"rest": {}})()
     with pytest.raises(AssertionError, match=fault) if fault else nullcontext():
         kit.test_moves_of_its_own_end_with_the_stroke_and_fit_into_its_seconds(rule, kit.with_core())
+
+
+@pytest.fixture
+def cards(tmp_path):
+    """Return a function from a template to the conformance class for a target that writes moves with it."""
+
+    def files(given):
+        for number, robot in enumerate(given.program.robots):
+            steps = tuple(TracedStep(move.id, robot.id, move.id) for move in robot.moves)
+            yield FileSpec(f"card_{number}.txt", "card.jinja", {"steps": steps, "robot": robot}, steps)
+
+    def kit(template):
+        (tmp_path / "card.jinja").write_text(template)
+        target = Target("cards", "cards", tmp_path, files, lambda given: ())
+        plugin = SimpleNamespace(mmrs_targets=hookimpl(lambda: (target,)))
+        return kit_for(plugin, TargetConformance)(), target
+
+    return kit
+
+
+def test_a_step_that_no_line_of_the_template_serves_is_found(cards):
+    line = "{{ step.move | comment }}\n"
+    kit, target = cards(f"{{% for step in steps %}}{{% serves step %}}{line}{{% endserves %}}{{% endfor %}}")
+    kit.test_every_step_that_it_declares_is_served_by_lines(target)
+    kit, target = cards(f"{{% for step in steps %}}{line}{{% endfor %}}")
+    with pytest.raises(AssertionError, match=r"no lines of the template serve these steps"):
+        kit.test_every_step_that_it_declares_is_served_by_lines(target)
+
+
+def test_a_target_that_loses_something_silently_is_found(cards):
+    kit, target = cards("{% for move in robot.moves %}{{ move.id | comment }}{% endfor %}")
+    with pytest.raises(pytest.fail.Exception, match=r"make no difference(.|\n)*action: Move\.postActions"):
+        kit.test_nothing_is_lost_silently(target)
