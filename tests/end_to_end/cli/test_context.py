@@ -59,18 +59,11 @@ SPOILT = pytest.mark.parametrize("spoil", [other_name, broken_link, folder, pipe
 
 
 @SPOILT
-@pytest.mark.parametrize("command", ["validate", "plan"])
-def test_a_context_of_a_mission_that_cannot_be_read_is_an_error(mmrs, pool, spoil, command):
-    spoil(pool / "context.xmi")
-    code, _, err = mmrs(command, pool)
-    assert code == 3
-    assert "ontext.xmi" in err
-
-
-@SPOILT
-def test_a_context_of_a_behaviour_that_cannot_be_read_is_an_error(mmrs, project, spoil):
-    spoil(project / "context.xmi")
-    code, _, err = mmrs("check", project)
+@pytest.mark.parametrize("command", ["validate", "plan", "check"])
+def test_a_context_that_cannot_be_read_is_an_error(mmrs, pool, project, spoil, command):
+    folder = project if command == "check" else pool
+    spoil(folder / "context.xmi")
+    code, _, err = mmrs(command, folder)
     assert code == 3
     assert "ontext.xmi" in err
 

@@ -31,6 +31,9 @@ def test_it_is_told_with_code_place_and_hint_beside_the_faults_of_other_files(fi
     assert "colour: no feature of Context" in err
     assert "Mission 'm': team is missing" in err
     assert "error: not well-formed XML: unclosed token [FIL004]\n    expected: well-formed XML" in err
+    code, _, err = mmrs("validate", field, "--fix", "--yes")
+    assert code == 3
+    assert "[FIL004]" in err
 
 
 def test_it_stands_among_the_diagnostics_of_json_and_sarif(field, mmrs, tmp_path):
@@ -41,17 +44,14 @@ def test_it_stands_among_the_diagnostics_of_json_and_sarif(field, mmrs, tmp_path
     assert {"FIL004", "XMI004", "ECO001"} <= {each["ruleId"] for each in results}
 
 
-@pytest.mark.parametrize("command", ["plan", "preview"])
-def test_no_command_goes_on_without_it(field, mmrs, command):
-    code, out, err = mmrs(command, field)
+@pytest.mark.parametrize(
+    "line",
+    [["plan", "field"], ["preview", "field"], ["check", "field/behaviour.xmi"]],
+    ids=lambda line: line[0],
+)
+def test_no_command_continues_without_it(field, mmrs, line):
+    code, out, err = mmrs(*line)
     assert (code, out) == (3, "")
-    assert "[FIL004]" in err
-    assert "[XMI004]" in err
-
-
-def test_a_behaviour_is_not_checked_without_its_robots(field, mmrs):
-    code, _, err = mmrs("check", "field/behaviour.xmi")
-    assert code == 3
     assert "[FIL004]" in err
     assert "[XMI004]" in err
 
@@ -65,24 +65,13 @@ def test_a_behaviour_is_not_checked_without_its_robots(field, mmrs):
         ("mission.json", b'{"$type": }', "FIL007"),
         ("mission.json", b"[" * 5000, "FIL006"),
         ("mission.json", b"\xff\xfe\xff", "FIL007"),
+        ("notes.txt", b"", "PRJ003"),
     ],
 )
 @pytest.mark.parametrize("given", ["file", "folder"])
 def test_each_reason_has_its_code(tmp_path, mmrs, name, content, code, given):
     (tmp_path / name).write_bytes(content)
-    place = tmp_path if given == "folder" else tmp_path / name
+    place = tmp_path if given == "folder" or code == "PRJ003" else tmp_path / name
     ended, out, _ = mmrs("validate", place, "--json")
     assert ended == 3
     assert [each["code"] for each in json.loads(out)["diagnostics"]] == [code]
-
-
-def test_a_project_without_mission_is_told_as_a_fault_of_the_folder(tmp_path, mmrs):
-    ended, out, _ = mmrs("validate", tmp_path, "--json")
-    assert ended == 3
-    assert [each["code"] for each in json.loads(out)["diagnostics"]] == ["PRJ003"]
-
-
-def test_an_unreadable_file_is_mended_by_nobody_but_the_others_are(field, mmrs):
-    code, _, err = mmrs("validate", field, "--fix", "--yes")
-    assert code == 3
-    assert "[FIL004]" in err
