@@ -41,22 +41,20 @@ def test_the_position_error_may_be_used_up(make):
     assert (found.too_near, found.within_error) == (True, False)
 
 
-def test_inside_is_no_distance_at_all(make):
-    assert nearest(make.track([(0, 15, 15, 9), (1, 16, 16, 9)]), SCHOOL)["school"].kept == 0.0
-
-
-def test_above_an_obstacle_its_height_counts(make):
-    found = nearest(make.track([(0, 0, 15, 42), (1, 40, 15, 42)]), TOWER)["tower"]
-    assert found.kept == pytest.approx(12.0)
-
-
-def test_nobody_knows_what_was_between_the_ends_of_a_gap(make):
-    track = make.track([(0, 0, 15, 9), (9, 40, 15, 9)], broken=[0])
-    assert nearest(track, SCHOOL)["school"].kept == pytest.approx(10.0)
-
-
-def test_a_lone_fix_counts_too(make):
-    assert nearest(make.track([(0, 0, 15, 9)]), SCHOOL)["school"].kept == pytest.approx(10.0)
+@pytest.mark.parametrize(
+    ("points", "broken", "area", "kept"),
+    [
+        ([(0, 15, 15, 9), (1, 16, 16, 9)], (), SCHOOL, 0.0),
+        ([(0, 0, 15, 42), (1, 40, 15, 42)], (), TOWER, 12.0),
+        ([(0, 0, 15, 9), (9, 40, 15, 9)], [0], SCHOOL, 10.0),
+        ([(0, 0, 15, 9)], (), SCHOOL, 10.0),
+    ],
+    ids=["inside", "above an obstacle", "unknown between the ends of a gap", "a lone fix"],
+)
+def test_the_closest_approach_is_measured_in_three_dimensions_as_far_as_it_is_known(
+    make, points, broken, area, kept
+):
+    assert nearest(make.track(points, broken=broken), area)[area.name].kept == pytest.approx(kept)
 
 
 def test_emergency_areas_are_not_kept_off(make):

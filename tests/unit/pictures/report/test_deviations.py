@@ -48,23 +48,22 @@ def test_half_and_95_percent_of_the_fixes_are_under_their_figures(make):
     assert found.sideways.most == pytest.approx(9.405)
 
 
-def test_fixes_outside_of_moves_do_not_count(make):
-    found = told(make, [(1, 10, 1, 10), (50, 0, 500, 0)])
-    assert (found.fixes, found.sideways.largest) == (1, pytest.approx(1.0))
-
-
-def test_standing_on_the_ground_does_not_count(make):
-    legs = [leg(of=move("load", "Recharge", duration=5.0), way=WAY[:1])]
-    assert told(make, [(1, 5, 5, 5)], legs=legs) is None
-
-
-def test_a_hold_counts_from_its_place(make):
-    legs = [leg(of=move("stay", "HoldPosition", duration=5.0), way=WAY[:1])]
-    assert told(make, [(1, 3, 4, 10)], legs=legs).sideways.largest == pytest.approx(5.0)
-
-
-def test_a_way_that_nobody_knows_has_no_deviation(make):
-    assert told(make, [(1, 3, 4, 10)], legs=[leg(way=())]) is None
+@pytest.mark.parametrize(
+    ("points", "legs", "fixes", "sideways"),
+    [
+        ([(1, 10, 1, 10), (50, 0, 500, 0)], [leg()], 1, 1.0),
+        ([(1, 3, 4, 10)], [leg(of=move("stay", "HoldPosition", duration=5.0), way=WAY[:1])], 1, 5.0),
+        ([(1, 5, 5, 5)], [leg(of=move("load", "Recharge", duration=5.0), way=WAY[:1])], 0, None),
+        ([(1, 3, 4, 10)], [leg(way=())], 0, None),
+    ],
+    ids=["not outside of moves", "a hold from its place", "not on the ground", "not from an unknown path"],
+)
+def test_fixes_count_where_they_have_a_planned_path(make, points, legs, fixes, sideways):
+    found = told(make, points, legs=legs)
+    assert (found.fixes if found else 0) == fixes
+    assert (found.sideways.largest if found else None) == (
+        None if sideways is None else pytest.approx(sideways)
+    )
 
 
 def test_what_a_policy_made_a_robot_do_does_not_count_until_it_is_back(make):

@@ -26,25 +26,21 @@ def test_the_lowest_level_and_its_time_are_told(make):
     assert (found.planned, found.reserve) == (None, 0.2)
 
 
+SLOWLY = np.concatenate([np.linspace(*each) for each in ((1.0, 0.22, 40), (0.22, 1.0, 200), (1.0, 0.6, 20))])
+
+
 @pytest.mark.parametrize(
-    ("levels", "expected"),
+    ("levels", "expected", "within"),
     [
-        ([0.9, 0.89, 0.9, 0.88, 0.89, 0.87], 0.03),
-        ([1.0, 0.3, 0.99, 0.5], 0.7 + 0.49),
+        ([0.9, 0.89, 0.9, 0.88, 0.89, 0.87], 0.03, 1e-6),
+        ([1.0, 0.3, 0.99, 0.5], 0.7 + 0.49, 1e-6),
+        (SLOWLY, 0.78 + 0.4, 1e-6),
+        (SLOWLY + np.tile([0.0, 0.01, -0.01, 0.005], 65), 0.78 + 0.4, 0.05),
     ],
-    ids=["wavering readings", "a replaced battery"],
+    ids=["wavering readings", "a replaced battery", "charged slowly", "charged slowly, wavering"],
 )
-def test_only_charges_begin_a_new_battery(levels, expected):
-    assert used(np.array(levels)) == pytest.approx(expected)
-
-
-def test_a_battery_that_charges_slowly_is_not_used_meanwhile():
-    levels = np.concatenate(
-        [np.linspace(1.0, 0.22, 40), np.linspace(0.22, 1.0, 200), np.linspace(1.0, 0.6, 20)]
-    )
-    assert used(levels) == pytest.approx(0.78 + 0.4)
-    wavering = levels + np.tile([0.0, 0.01, -0.01, 0.005], 65)
-    assert used(wavering) == pytest.approx(0.78 + 0.4, abs=0.05)
+def test_only_charges_begin_a_new_battery(levels, expected, within):
+    assert used(np.array(levels)) == pytest.approx(expected, abs=within)
 
 
 def test_a_battery_that_nobody_tells_is_not_known(make):
