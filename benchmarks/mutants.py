@@ -127,6 +127,21 @@ MUTANTS = (
         ),
     ),
     *_mutants(
+        "pictures",
+        "mmrs_core/pictures/preview",
+        ("tests/unit/pictures/preview",),
+        (
+            "unknown-clearance",
+            "features.py",
+            "for clearance in clearances.values() if clearance is not None]",
+            "or 0.0 for clearance in clearances.values()]",
+        ),
+        ("unmarked-gap", "from_models.py", "return short if drawn else", "return"),
+        ("unlisted-gap", "from_models.py", "if short or not drawn:", "if short:"),
+        ("closed-over-a-gap", "from_models.py", "lines = pieces if", "lines = () if"),
+        ("late-error", "from_models.py", "errors_first[:MOST]", "errors_first[-MOST:]"),
+    ),
+    *_mutants(
         "vessel",
         "plugins/auv-vessel/auv_vessel",
         VESSEL,

@@ -9,6 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from lxml import etree
+from svg_reading import with_class
 
 from mmrs_core.diagnostics import Diagnostic, Severity
 from mmrs_core.pictures.preview.features import pieces_of, zones_of
@@ -92,7 +93,9 @@ def test_an_area_without_one_of_its_vertices_is_drawn_as_incomplete(field, damag
     assert gap(picture, "forbidden area 'school'").reason.startswith(reason)
     assert gap(picture, "forbidden area 'school'").source == "context.xmi:8"
     drawing = written(map_of(picture, standalone=True))
-    assert 'class="zone forbidden incomplete"' in drawing
+    (outline,) = with_class(map_of(picture), "incomplete")
+    assert outline.get("class") == "zone forbidden incomplete"
+    assert outline.get("d").endswith("Z") is not reason.startswith("1 of 4")
     assert f"school, incomplete: {school.gap}" in drawing
     assert "incomplete: forbidden area 'school' (context.xmi:8)" in drawing
 
