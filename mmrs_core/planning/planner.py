@@ -95,22 +95,22 @@ def _teams(team: Team) -> Iterator[Team]:
 
 
 def _plan_with(team: Team, jobs: Sequence[Job], seed: int) -> Plan:
-    """Return a plan of a team; where robots come too near to each other, of the team told otherwise."""
+    """Return a plan of a team, or of one like it whose robots keep apart where these come too near."""
     try:
         return _plan_of(team, jobs, seed)
     except TooNearError as error:
-        for told, in_turns in _alternatives(team, error):
+        for other, in_turns in _alternatives(team, error):
             try:
-                made = _plan_of(told, jobs, seed, in_turns=in_turns)
+                made = _plan_of(other, jobs, seed, in_turns=in_turns)
             except InfeasibleError:
                 continue
-            return replace(made, notes=(*_unasked_returns(team, told, made), *made.notes))
+            return replace(made, notes=(*_unasked_returns(team, other, made), *made.notes))
         raise InfeasibleError(str(error), error.reasons) from error
 
 
-def _unasked_returns(team: Team, told: Team, made: Plan) -> Iterator[str]:
+def _unasked_returns(team: Team, other: Team, made: Plan) -> Iterator[str]:
     before = {robot.name: robot.return_home for robot in team.scene.robots}
-    returning = {robot.name for robot in told.scene.robots if robot.return_home and not before[robot.name]}
+    returning = {robot.name for robot in other.scene.robots if robot.return_home and not before[robot.name]}
     names = [each.robot for each in made.robots if each.robot in returning and each.steps]
     if names:
         ends = "returns home unasked" if len(names) == 1 else "return home unasked"

@@ -99,9 +99,9 @@ class Slots(Protocol):
         ...
 
 
-def with_own(told: Iterable[Find], state: VehicleState) -> tuple[Find, ...]:
+def with_own(reported: Iterable[Find], state: VehicleState) -> tuple[Find, ...]:
     """Return what those that notified a robot have detected, and then what it has detected itself."""
-    found = {find[0]: find for find in told}
+    found = {find[0]: find for find in reported}
     for name in sorted(state.detected):
         place = state.places.get(name)
         if place is not None or name not in found:

@@ -113,10 +113,11 @@ def prose() -> Iterator[str]:
 
 
 def names() -> Iterator[str]:
-    """Yield the place of each metaphor in the name of a module, a class or a function."""
+    """Yield the place of each metaphor in the name of a module, a class, a function or a parameter."""
     for name in shipped():
         defined = [(x.lineno, x.name) for x in nodes(name) if isinstance(x, DEFINITIONS)]
-        for line, word in [(1, Path(name).stem), *defined]:
+        parameters = [(x.lineno, x.arg) for x in nodes(name) if isinstance(x, ast.arg)]
+        for line, word in [(1, Path(name).stem), *defined, *parameters]:
             if METAPHORS.search(re.sub(r"(?<=[a-z])(?=[A-Z])", "_", word).lower()):
                 yield f"{name}:{line}: {word}"
 

@@ -165,7 +165,7 @@ def _begun(
 
 
 def keep(
-    berths: Mapping[str, VehicleProcesses],
+    fleet: Mapping[str, VehicleProcesses],
     until: float,
     stopped: list[int],
     lines: SimpleQueue[str],
@@ -174,7 +174,7 @@ def keep(
     """Return when the time has come, something was put into `stopped`, or a line says ``quit``.
 
     Args:
-        berths: by robot.
+        fleet: by robot.
         until: by the monotonic clock.
         stopped: filled to end the rehearsal.
         lines: that are typed: ``ROBOT FAULT``, ``all FAULT``, ``ROBOT clear FAULT``, ``status``.
@@ -184,14 +184,14 @@ def keep(
         LinkLostError: a part has ended on its own.
     """
     while not stopped and time.monotonic() < until:
-        for robot, berth in berths.items():
-            for part, code in berth.ended().items():
+        for robot, processes in fleet.items():
+            for part, code in processes.ended().items():
                 if not stopped:
                     raise LinkLostError(f"'{robot}': {part} has ended with {code}")
         while not lines.empty():
             if (line := lines.get().strip()) in QUIT:
                 return
-            _obey(line, berths, say)
+            _obey(line, fleet, say)
         time.sleep(0.1)
 
 
@@ -202,13 +202,13 @@ def _number(text: str) -> float:
         raise ValueError(f"{text} is not a number") from None
 
 
-def _obey(line: str, berths: Mapping[str, VehicleProcesses], say: Callable[[str], None]) -> None:
+def _obey(line: str, fleet: Mapping[str, VehicleProcesses], say: Callable[[str], None]) -> None:
     if line in ("", "status"):
         line = f"{ALL_ROBOTS} status"
     try:
-        robots, what, values = addressed(line, list(berths))
+        robots, what, values = addressed(line, list(fleet))
         for robot in robots:
-            berths[robot].befall((what, *values))
+            fleet[robot].befall((what, *values))
     except ValueError as error:
         say(str(error))
         return

@@ -220,10 +220,10 @@ class _Asking:
         self._learn(found[0][0], asked, found[0][1])
         return found[0][0]
 
-    def _learn(self, answer: Answer, asked: float, heard: float) -> None:
+    def _learn(self, answer: Answer, asked: float, received: float) -> None:
         if answer.what == "begin":
             self.at = answer.at
             self.trips += 1
-        if heard - asked < self.shortest:
-            self.shortest = heard - asked
-            self.offset = answer.time - (asked + heard) / 2
+        if received - asked < self.shortest:
+            self.shortest = received - asked
+            self.offset = answer.time - (asked + received) / 2

@@ -267,9 +267,9 @@ class Owner:
                 return f"{id.sender!r} never {'sets' if active else 'resets'} slot {name!r} of {self.robot!r}"
         return ""
 
-    def _keep_for(self, asked: Prepare, slots: Sequence[Slot], heard: float) -> Answer:
+    def _keep_for(self, asked: Prepare, slots: Sequence[Slot], received: float) -> Answer:
         least = max(asked.lamport, *(slot.state.lamport + 1 for slot in slots))
-        kept = Kept(asked.id, asked.round, asked.active, least + REACH, heard)
+        kept = Kept(asked.id, asked.round, asked.active, least + REACH, received)
         if not asked.active:
             self._keep(replace(asked, lamport=least))
         self._kept.update(asked.slots)

@@ -359,12 +359,12 @@ class Life(Situation):
 
     # Getting ready, and back to work.
 
-    def begin(self, *, unready: bool) -> None:
+    def begin(self, *, prepare: bool) -> None:
         """Begin: get ready first, or go back to where the program was broken off, if that is needed."""
         self.teach()
         if self.point.is_final:
             self._run.dismiss(self, failed=self.point.phase is Phase.FAILED)
-        elif unready:
+        elif prepare:
             self.stage = Stage.AWAY if self.number > 0 else Stage.WORKING
             if self.vehicle.prepare(self.now()):
                 self.stage = Stage.PREPARING

@@ -82,11 +82,11 @@ class EarlyOrders:
         self._later: list[Order] = []
         self._ended: dict[str, Order] = {}
 
-    def look(self, unready: Collection[str]) -> None:
+    def look(self, unsettled: Collection[str]) -> None:
         """Confirm to whom that is ready, and stays, that it does; once all are to end, nothing begins.
 
         Args:
-            unready: robots whose vehicles are not known to stay where they are.
+            unsettled: robots whose vehicles are not known to stay where they are.
 
         Raises:
             KeyboardInterrupt: if every robot was ordered to end its program.
@@ -95,7 +95,7 @@ class EarlyOrders:
             self._take(order)
         for order in self._open:
             for id in order.open:
-                if id not in unready or self._rests(id):
+                if id not in unsettled or self._rests(id):
                     order.confirm(id)
         self._open = [order for order in self._open if order.open]
         if self._ended.keys() >= set(self._live_run.connect):

@@ -211,7 +211,7 @@ class Run:
             self.peers.retire(id, failed=bool(why))
             self.slots.leave(id)
         for life in self._lives:
-            life.begin(unready=self.terms.unready)
+            life.begin(prepare=self.terms.unready)
 
     def _settle(self) -> None:
         """Resume every robot that is due now, the program's first one first."""

@@ -114,7 +114,7 @@ class Stopping:
             self.answer(robot, trouble)
             return
         self._stay_if_lost(robot, trouble)
-        self._tell_link(robot, heard=robot.vehicle.reachable(now))
+        self._tell_link(robot, reachable=robot.vehicle.reachable(now))
 
     def _stay_if_lost(self, robot: Life, trouble: Fault | None) -> None:
         """Listen for a robot whose link is lost, although it might have been left before that."""
@@ -126,8 +126,8 @@ class Stopping:
             self._lost[robot.id] = None
             robot.halt.released = False
 
-    def _tell_link(self, robot: Life, *, heard: bool) -> None:
-        if not heard:
+    def _tell_link(self, robot: Life, *, reachable: bool) -> None:
+        if not reachable:
             self._unheard.add(robot.id)
         elif robot.id in self._unheard and self._needs_company(robot):
             self._say(robot, "link restored: orders are obeyed")

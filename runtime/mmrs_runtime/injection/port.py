@@ -75,13 +75,13 @@ class InjectedPort:
         clock: Clock,
         incoming: Line,
         outgoing: Line,
-        told: Callable[[Mapping[str, int]], None],
+        report: Callable[[Mapping[str, int]], None],
     ) -> None:
-        """Put the lines in front of an open port; `told` gets the counts when it is closed."""
+        """Put the lines in front of an open port; `report` gets the counts when it is closed."""
         self._port = port
         self._clock = clock
         self._incoming, self._outgoing = incoming, outgoing
-        self._told = told
+        self._report = report
         self._arriving = _Queue()
         self._leaving = _Queue()
         self._changed = threading.Condition()
@@ -119,7 +119,7 @@ class InjectedPort:
             self._changed.notify_all()
         self._sender.join()
         self._port.close()
-        self._told(self._incoming.counts + self._outgoing.counts)
+        self._report(self._incoming.counts + self._outgoing.counts)
 
     def _send_late(self) -> None:
         with self._changed:

@@ -272,7 +272,7 @@ class Seek:
         tolerance: float | None,
         sight: Sight,
         way: Callable[[Vector, bool], Duty],
-        told: Vector | None = None,
+        reported: Vector | None = None,
     ) -> None:
         """Seek an object.
 
@@ -282,12 +282,12 @@ class Seek:
             tolerance: None: it may be anywhere.
             sight: who sees it.
             way: how to get to it where it is; False: to where it is expected, to see it from there.
-            told: where another robot has detected it, so that it is sought there first; None: unknown.
+            reported: where another robot has detected it, so that it is sought there first; None: unknown.
         """
         self._name, self._expected, self._tolerance = name, expected, tolerance
         self._sight, self._way = sight, way
-        self._told, self._far = told, ""
-        self._towards = way(expected if told is None else told, False)
+        self._reported, self._far = reported, ""
+        self._towards = way(expected if reported is None else reported, False)
         self._found = False
         self._figures = [False, True]
         self._searching = False
@@ -298,7 +298,7 @@ class Seek:
         Raises:
             FailureError: others have seen it farther from where it is expected than it may be.
         """
-        if self._told is not None and self._is_far(self._told):
+        if self._reported is not None and self._is_far(self._reported):
             raise FailureError(OBJECT_NOT_FOUND, self._far)
         if self._searching and not self._found:
             self._search(craft)

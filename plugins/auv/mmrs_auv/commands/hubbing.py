@@ -112,13 +112,13 @@ def _done(hub: Hub, usual: Troubles, line: str) -> str:
     return f"loss {now.loss:g}, delay {now.delay:g} s, corruption {now.corruption:g}"
 
 
-def _listen(heard: Callable[[str], object]) -> None:
+def _listen(received: Callable[[str], object]) -> None:
     """Carry out every line that is typed."""
 
     def read() -> None:
         with suppress(OSError, RuntimeError):  # in the background of a terminal, or when the hub has ended
             for line in sys.stdin:
-                heard(line)
+                received(line)
 
     if hasattr(signal, "SIGTTIN"):
         signal.signal(signal.SIGTTIN, signal.SIG_IGN)

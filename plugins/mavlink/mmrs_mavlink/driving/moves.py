@@ -42,7 +42,7 @@ from .worker import Job
 IN_THE_AIR = 1.0
 """Metres above home from which on a vehicle climbs by going up, not by taking off."""
 
-Told = Callable[[str, str, Mapping[str, object]], None]
+Log = Callable[[str, str, Mapping[str, object]], None]
 
 
 class Moves:
@@ -58,7 +58,7 @@ class Moves:
         vehicle: Vehicle,
         clock: Clock,
         locators: Mapping[str, Locator],
-        told: Told,
+        log: Log,
         passed: Callable[[Place], None] = lambda place: None,
         guard: Callable[[], None] = lambda: None,
     ) -> None:
@@ -69,7 +69,7 @@ class Moves:
             vehicle: of the robot.
             clock: of the run.
             locators: what finds objects, by description.
-            told: called with what was reported or measured: kind, name, content.
+            log: called with what was reported or measured: kind, name, content.
             passed: called with each place that it has come to.
             guard: called in waits for what locators find.
         """
@@ -80,7 +80,7 @@ class Moves:
         policy = policy_for(DEVICE_SILENT, robot)
         self._silence = seconds_of(policy)
         self._silence_of_values = seconds_of(policy, {DEVICE_SILENT: VALUE_SECONDS})
-        self._vehicle, self._clock, self._locators, self._told = vehicle, clock, locators, told
+        self._vehicle, self._clock, self._locators, self._log = vehicle, clock, locators, log
         self._passed, self._guard = passed, guard
 
     def movement(self, move: str, *, through: bool = False) -> Job:
@@ -113,7 +113,7 @@ class Moves:
         if isinstance(action, Report):
             return Job(lambda: self._report(action))
         if isinstance(action, NoEffect):
-            return Job(lambda: self._told("text", action.name, {"text": f"not supported: {action.why}"}))
+            return Job(lambda: self._log("text", action.name, {"text": f"not supported: {action.why}"}))
         return Job()
 
     def kind(self, move: str) -> type[object]:
@@ -240,11 +240,11 @@ class Moves:
             found = self._vehicle.measure(action.value, self._silence_of_values)
         except UnansweredError as error:
             raise FaultError(DEVICE_SILENT, f"{action.device}: {error}") from error
-        self._told("measured", action.value, {"device": action.device, "result": found})
+        self._log("measured", action.value, {"device": action.device, "result": found})
 
     def _report(self, action: Report) -> None:
         self._vehicle.tell_ground(words_of(self._robot, action.name, dict(action.pairs)))
-        self._told("reported", action.name, dict(action.pairs))
+        self._log("reported", action.name, dict(action.pairs))
 
     def _rest(self, seconds: float) -> Callable[[], None]:
         left = seconds
@@ -275,7 +275,7 @@ class Moves:
                     raise FaultError(BATTERY_LOW, why)
                 self._vehicle.rest(min(5.0, seconds or 5.0))
             if left is None:
-                self._told("text", "charging", {"text": f"charged for {seconds:.0f} s; its range is unknown"})
+                self._log("text", "charging", {"text": f"charged for {seconds:.0f} s; its range is unknown"})
 
         return Job(finish, self._rest(seconds), top_up)
 

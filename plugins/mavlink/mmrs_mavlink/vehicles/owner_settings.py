@@ -156,12 +156,12 @@ def check_listening(link: Link) -> str:
     )
 
 
-def _counted(stations: tuple[str, str, str], told: Mapping[str, float]) -> tuple[str, range]:
+def _counted(stations: tuple[str, str, str], values: Mapping[str, float]) -> tuple[str, range]:
     """Return the parameter that defines which systems count, and these; an empty name: unknown."""
     single, from_, to = stations
-    name = next((each for each in (from_, single) if each in told), "")
-    first = round(told.get(name, 0.0))
-    last = round(told.get(to, 0.0)) if name == from_ else 0
+    name = next((each for each in (from_, single) if each in values), "")
+    first = round(values.get(name, 0.0))
+    last = round(values.get(to, 0.0)) if name == from_ else 0
     return name, range(first, max(first, last) + 1)
 
 

@@ -16,25 +16,25 @@ class Trail:
         begun: where it was then.
     """
 
-    def __init__(self, link: Link, kind: str, begun: Place, told: deque[Message]) -> None:
+    def __init__(self, link: Link, kind: str, begun: Place, reports: deque[Message]) -> None:
         """Read what is collected.
 
         Args:
             link: to the vehicle.
             kind: of message with its position.
             begun: its present position.
-            told: gets such messages, in the order in which the vehicle has sent them.
+            reports: gets such messages, in the order in which the vehicle has sent them.
         """
         self.begun = begun
         self._link = link
         self._kind = kind
-        self._told = told
+        self._reports = reports
 
     def passed(self) -> list[Place]:
         """Return the positions since it was last asked, oldest first."""
         places = []
-        while self._told:
-            message = self._told.popleft()
+        while self._reports:
+            message = self._reports.popleft()
             if tells_place(message):
                 places.append(place_in(message))
         return places
