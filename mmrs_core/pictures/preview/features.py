@@ -31,6 +31,7 @@ from mmrs_core.scene import (
     Task,
     Value,
 )
+from mmrs_core.scene.attributes import element_called
 
 NO_CONTEXT = MapGap("context", "there is none, so areas and obstacles are unknown")
 _RING = ("urn:mmrs:mission:1.0", "Ring")
@@ -147,19 +148,34 @@ def _referred(part: Part, elements: Iterable[Part], gaps: Mapping[Place, str]) -
 
     And what is incomplete, if that element is.
     """
-    values = [value for name, value in part.attributes.items() if name != "name"]
-    listed = chain.from_iterable(value if isinstance(value, tuple) else (value,) for value in values)
-    named = {each for each in listed if isinstance(each, str) and each}
-    for outer in elements:
+    named, known = set(_names_in(part)), tuple(elements)
+    for outer in known:
         for element in _every([outer]):
             name = element.attributes.get("name")
             if name in named or element.place.path in named:
-                shapes = _shapes(element)
-                points = [*shapes.marks, *chain(*shapes.outlines, *shapes.lines)]
+                points = _placed(element, known).points
                 if points:
                     gap = f"{name or element.place.path} is incomplete" if outer.place in gaps else ""
                     return middle_of(points), gap
     return None, ""
+
+
+def _names_in(part: Part) -> list[str]:
+    """Return the texts of an element but its name, in order: what it refers to is among them."""
+    values = [value for name, value in part.attributes.items() if name != "name"]
+    listed = chain.from_iterable(value if isinstance(value, tuple) else (value,) for value in values)
+    return [each for each in listed if isinstance(each, str) and each]
+
+
+def _placed(part: Part, elements: Sequence[Part], depth: int = 3) -> _Shapes:
+    """Return where an element is; one that only refers to others leads from the middle of one to the next."""
+    shapes = _shapes(part)
+    if shapes.points or shapes.parts or not depth:
+        return shapes
+    referred = (element_called(_every(elements), name) for name in _names_in(part))
+    found = (_placed(each, elements, depth - 1).points for each in referred if each is not None)
+    middles = tuple(middle_of(points) for points in found if points)
+    return _Shapes(lines=[middles]) if len(middles) > 1 else _Shapes(marks=[*middles])
 
 
 def _every(elements: Iterable[Part]) -> Iterator[Part]:
@@ -204,6 +220,11 @@ class _Shapes:
     marks: list[Point] = field(default_factory=list)
     parts: list[Part] = field(default_factory=list)
 
+    @property
+    def points(self) -> list[Point]:
+        """Return all points, without those of contained elements."""
+        return [*self.marks, *chain(*self.outlines, *self.lines)]
+
 
 def elements_of(
     elements: Iterable[Part],
@@ -215,16 +236,19 @@ def elements_of(
     An element is found by the shape of its attributes, whichever plug-in it comes from: a coordinate
     is a mark, coordinates called ``shell`` an outline, those called ``points`` a line, others a mark
     each; and what the symbol makes of its figures are outlines too. One that it contains has its own
-    symbol, or else that of what it is in.
+    symbol, or else that of what it is in. One without coordinates that refers to other elements is a
+    line from the middle of one to the middle of the next.
 
     Args:
         gaps: why elements cannot be drawn whole, by where they stand in their files.
     """
+    known = tuple(elements)
     return tuple(
         element
-        for index, part in enumerate(elements)
+        for index, part in enumerate(known)
         for element in _elements(
             part,
+            _placed(part, known),
             _symbol_of(part.metaclasses, symbols),
             symbols,
             gaps.get(part.place, ""),
@@ -234,10 +258,14 @@ def elements_of(
 
 
 def _elements(
-    part: Part, symbol: MapSymbol, symbols: Mapping[Name, MapSymbol], gap: str, otherwise: str = ""
+    part: Part,
+    shapes: _Shapes,
+    symbol: MapSymbol,
+    symbols: Mapping[Name, MapSymbol],
+    gap: str,
+    otherwise: str = "",
 ) -> Iterator[ElementPicture]:
     """Yield an element and what it contains; `otherwise` is what one without a name is called."""
-    shapes = _shapes(part)
     shapes.outlines.extend(_figures(part, symbol, gap))
     own = part.attributes.get("name")
     name = own if isinstance(own, str) and own else otherwise
@@ -247,7 +275,8 @@ def _elements(
         yield ElementPicture(name, symbol, *places, details=details, inner=not otherwise, gap=gap)
     for inner in shapes.parts:
         known = has_symbol(inner.metaclasses, symbols)
-        yield from _elements(inner, _symbol_of(inner.metaclasses, symbols) if known else symbol, symbols, gap)
+        own_symbol = _symbol_of(inner.metaclasses, symbols) if known else symbol
+        yield from _elements(inner, _shapes(inner), own_symbol, symbols, gap)
 
 
 def _shapes(part: Part) -> _Shapes:

@@ -58,6 +58,20 @@ def test_what_it_contains_looks_like_itself_where_nobody_says_otherwise():
     assert (inner.symbol, inner.marks) == (OF_GROUP, (FLAT[1],))
 
 
+def test_an_element_that_only_refers_leads_from_one_to_the_next():
+    pylons = (part(PANEL, name="a", position=SHELL[0]), part(PANEL, name="b", position=SHELL[1]))
+    wires = part(GROUP, name="wires", pylons=("b", "a"))
+    sign = part(GROUP, name="sign", on="wires")
+    *_, line, mark = of(*pylons, wires, sign)
+    assert (line.lines, line.marks) == ((((30.0, 0.0), (0.0, 0.0)),), ())
+    assert (mark.lines, mark.marks) == ((), ((15.0, 0.0),))
+
+
+def test_elements_that_refer_to_each_other_are_nowhere():
+    one, other = of(part(GROUP, name="one", to="other"), part(GROUP, name="other", to="one"))
+    assert not any((*one.lines, *one.marks, *other.lines, *other.marks))
+
+
 def test_a_symbol_without_a_colour_has_that_of_the_palette():
     (mooring,) = of(part((SOLAR, "Mooring"), position=SHELL[0]))
     assert (mooring.symbol.label, mooring.symbol.colour) == ("mooring", SYMBOL)
