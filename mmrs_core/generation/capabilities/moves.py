@@ -60,7 +60,11 @@ def of_plugins(samples: Samples, contributions: Contributions) -> Iterator[Probe
     for uri, name in sorted(each for each in contributions.move_kinds if each[0] != BEHAVIOUR):
         metaclass, group = contributions.languages.metaclass(uri, name), f"move of {uri}"
         values = _values_of(metaclass)
-        usual: dict[str, Value] = {feature: some[0] for feature, some in values.items()}
+        usual: dict[str, Value] = {}
+        for each in metaclass.ancestry:
+            if each[0] != BEHAVIOUR:
+                own = _values_of(contributions.languages.metaclass(*each))
+                usual |= {feature: some[0] for feature, some in own.items() if feature not in usual}
         made = Move("m", metaclass.ancestry, usual)
         if metaclass.is_kind(BEHAVIOUR, "GoTo"):
             made = replace(made, target=MoveTarget(samples.base.above), speed=2.0)
