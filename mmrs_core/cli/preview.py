@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -26,17 +26,12 @@ from mmrs_core.cli.protection import files_of, refuse_inputs
 from mmrs_core.cli.replacing import replace_files
 from mmrs_core.cli.session import Session, Stages
 from mmrs_core.cli.settings import Json, settings_of
-from mmrs_core.cli.simulation import answers, fly
 from mmrs_core.cli.verdict_words import verdict_rows
 from mmrs_core.diagnostics import Diagnostic
 from mmrs_core.errors import InfeasibleError, InvalidModelError
-from mmrs_core.pictures.preview.from_models import picture_of_models, with_problems
-from mmrs_core.pictures.preview.from_plan import picture_of_plan
-from mmrs_core.pictures.preview.from_run import picture_of_run
-from mmrs_core.pictures.preview.map import map_of
-from mmrs_core.pictures.preview.moves import with_moves
-from mmrs_core.pictures.preview.page import page
-from mmrs_core.pictures.preview.picture import Picture
+
+if TYPE_CHECKING:
+    from mmrs_core.pictures.preview.picture import Picture
 
 PAGE = "preview.html"
 MAP = "preview.svg"
@@ -102,6 +97,10 @@ def preview(
 
 def picture_of(stages: Stages) -> Picture:
     """Return the picture of a planned mission, with the moves that carry it out."""
+    from mmrs_core.pictures.preview.from_models import with_problems
+    from mmrs_core.pictures.preview.from_plan import picture_of_plan
+    from mmrs_core.pictures.preview.moves import with_moves
+
     symbols = stages.session.contributions.map_symbols
     picture = with_moves(picture_of_plan(stages.scene, stages.plan, symbols), stages.program)
     picture = with_problems(picture, stages.models, stages.warnings)
@@ -118,6 +117,8 @@ def drawn_on_failure(stages: Stages, folder: Path) -> Iterator[None]:
     try:
         yield
     except (InvalidModelError, InfeasibleError) as error:
+        from mmrs_core.pictures.preview.from_models import picture_of_models
+
         models = stages.readable()
         if models is None:
             raise
@@ -139,6 +140,9 @@ def _of_behaviour(
     robots: tuple[Path, ...],
     assume: list[str] | None,
 ) -> Picture:
+    from mmrs_core.cli.simulation import answers, fly
+    from mmrs_core.pictures.preview.from_run import picture_of_run
+
     conditions = answers(assume)
     loaded = load_behaviour(session, file, context=context, robots=robots)
     run = fly(session, loaded.program, loaded.place, conditions)
@@ -172,6 +176,9 @@ def _of_flight(
 
 def write_pictures(picture: Picture, folder: Path) -> tuple[Path, ...]:
     """Write the page and the map into a folder, which is made where it is missing; return both paths."""
+    from mmrs_core.pictures.preview.map import map_of
+    from mmrs_core.pictures.preview.page import page
+
     contents = {folder / PAGE: page(picture), folder / MAP: map_of(picture, standalone=True) + "\n"}
     replace_files({path: content.encode() for path, content in contents.items()})
     return tuple(contents)

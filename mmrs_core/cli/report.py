@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -17,11 +17,9 @@ from mmrs_core.cli.protection import refuse_inputs
 from mmrs_core.cli.replacing import replace_files
 from mmrs_core.cli.session import Session
 from mmrs_core.cli.settings import Json, settings_of
-from mmrs_core.cli.simulation import answers
-from mmrs_core.pictures.flights.gathering import read_flight
-from mmrs_core.pictures.flights.planned import planned_for
-from mmrs_core.pictures.report.assembly import Given, report_of
-from mmrs_core.pictures.report.map import flight_picture
+
+if TYPE_CHECKING:
+    from mmrs_core.pictures.report.assembly import Given
 
 PAGE = "report.html"
 
@@ -51,6 +49,8 @@ def report(
 
     Example: mmrs report mission/ mission/logs -o report.html
     """
+    from mmrs_core.pictures.report.assembly import report_of
+    from mmrs_core.pictures.report.map import flight_picture
     from mmrs_core.pictures.report.page import page
 
     session, file = Session(settings_of(call)), behaviour_file(behaviour)
@@ -78,6 +78,11 @@ def flown(session: Session, loaded: Loaded, logs: Sequence[Path], assume: Sequen
         InvalidModelError: if none of them is of a robot of the behaviour.
         UsageError: if no Choice has an assumed condition.
     """
+    from mmrs_core.cli.simulation import answers
+    from mmrs_core.pictures.flights.gathering import read_flight
+    from mmrs_core.pictures.flights.planned import planned_for
+    from mmrs_core.pictures.report.assembly import Given
+
     program, place, contributions = loaded.program, loaded.place, session.contributions
     flight = read_flight(logs, program, place.types, contributions.robot_kinds)
     with progress("simulating the plan"):
