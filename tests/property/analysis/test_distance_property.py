@@ -5,6 +5,7 @@ from math import cos, inf, pi, sin
 import numpy as np
 import pytest
 import shapely
+from counts import many
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -46,7 +47,7 @@ def sampled(a, b, ring, low, high, number=2001):
     return float(np.hypot(level, upright).min())
 
 
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=many(750))
 @given(POINTS, POINTS, rings(), bands())
 def test_no_point_of_a_leg_is_nearer_than_the_exact_distance_and_one_is_as_near(a, b, ring, band):
     exact = distance(a, b, ring, *band)
@@ -55,14 +56,14 @@ def test_no_point_of_a_leg_is_nearer_than_the_exact_distance_and_one_is_as_near(
     assert exact - 1e-9 <= near <= exact + step / 2 + 1e-9
 
 
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=many(750))
 @given(POINTS, POINTS, rings(), bands())
 def test_two_implementations_agree(a, b, ring, band):
     other = float(prism_distance([[a, b]], ring, *band)[0])
     assert distance(a, b, ring, *band) == pytest.approx(other, abs=1e-6)
 
 
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=many(500))
 @given(POINTS, POINTS, rings(), bands(), POINTS, st.floats(0.0, 2 * pi))
 def test_moving_and_turning_the_whole_scene_changes_nothing(a, b, ring, band, by, angle):
     def moved(point):
@@ -74,13 +75,13 @@ def test_moving_and_turning_the_whole_scene_changes_nothing(a, b, ring, band, by
     assert turned == pytest.approx(distance(a, b, ring, *band), abs=1e-6)
 
 
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=many(500))
 @given(POINTS, POINTS, rings(), bands())
 def test_the_way_back_is_as_near_as_the_way_there(a, b, ring, band):
     assert distance(a, b, ring, *band) == pytest.approx(distance(b, a, ring, *band), abs=1e-9)
 
 
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=many(500))
 @given(st.tuples(LENGTHS, LENGTHS), rings())
 def test_points_inside_a_polygon_are_told_from_those_outside(point, ring):
     polygon = shapely.Polygon(ring)
@@ -88,7 +89,7 @@ def test_points_inside_a_polygon_are_told_from_those_outside(point, ring):
         assert bool(contains(np.array(ring), np.array([point]))[0]) == polygon.contains(shapely.Point(point))
 
 
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=many(750))
 @given(POINTS, POINTS, POINTS, POINTS)
 def test_segments_are_as_near_as_their_nearest_samples(p, q, c, d):
     exact = float(segment_distances(*(np.array([point]) for point in (p, q, c, d)))[0, 0])
