@@ -297,18 +297,23 @@ import sys
 sys.path.insert(0, {str(SCRIPT.parent)!r})
 from pathlib import Path
 from bus_walking import BEHAVIOURS, RUN, die_after_applying
-from mmrs_core.cli.bus import _gateway, _until_interrupted
+from mmrs_core.cli.bus import _until_interrupted
+from mmrs_runtime.bus.carriers.over_zenoh import ZenohCarrier
 from mmrs_runtime.bus.carriers.sessions import Endpoints
+from mmrs_runtime.bus.gateway.server import Gateway
+from mmrs_runtime.bus.program_bus import node_of
 behaviour, size, robot, folder, die, *ways = sys.argv[1:]
 listen = tuple(ways[i + 1] for i, word in enumerate(ways) if word == "--listen")
 connect = tuple(ways[i + 1] for i, word in enumerate(ways) if word == "--connect")
-config = Path(ways[ways.index("--config") + 1])
+endpoints = Endpoints(listen, connect, Path(ways[ways.index("--config") + 1]))
 made = BEHAVIOURS[behaviour](int(size))
-object.__setattr__(made, "name", "m")
-found = _gateway(made, robot, Endpoints(listen, connect, config), RUN, Path(folder), 0)
-enter = found._enter
-found._enter = lambda recorded: die_after_applying(enter(recorded), die.split(","))
-_until_interrupted(found)
+names = [each.id for each in made.robots]
+def enter(recorded):
+    carrier = ZenohCarrier("m", RUN, names, endpoints, plan=made.fingerprint)
+    given = None if recorded is None else {{robot: recorded}}
+    node = node_of(made.shared, [robot], RUN, Path(folder), carrier, given)
+    return die_after_applying(node, die.split(","))
+_until_interrupted(Gateway(robot, RUN, enter, Path(folder), 0))
 """
 
 FLEETS = {"threads": ThreadFleet, "zenoh": ProcessFleet, "gateway": GatewayFleet}
