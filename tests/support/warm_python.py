@@ -19,6 +19,7 @@ import signal
 import socket
 import subprocess
 import sys
+import threading
 from functools import cache
 from importlib.metadata import EntryPoint, entry_points
 from pathlib import Path
@@ -233,7 +234,30 @@ def become(said: list[str], fds: list[int]) -> None:
     sys.stdin = open(0, closefd=False)  # noqa: SIM115
     sys.stdout = open(1, "w", closefd=False)  # noqa: SIM115
     sys.stderr = open(2, "w", errors="backslashreplace", buffering=1, closefd=False)  # noqa: SIM115
-    run(arguments)
+    try:
+        run(arguments)
+    except SystemExit as ending:
+        if ending.code is not None and not isinstance(ending.code, int):
+            raise
+        leave(ending.code or 0)
+    else:
+        leave(0)
+
+
+def leave(code: int) -> None:
+    """End as Python does, but for taking all apart that was imported, which takes longer than most programs.
+
+    Returns where what was said cannot be written: let Python say so.
+    """
+    threading._shutdown()  # type: ignore[attr-defined]
+    atexit._run_exitfuncs()
+    try:
+        for each in (sys.stdout, sys.stderr):
+            if each is not None and not each.closed:
+                each.flush()
+    except OSError:
+        return
+    os._exit(code & 0xFF)
 
 
 def run(arguments: list[str]) -> None:
