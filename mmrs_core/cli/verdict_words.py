@@ -23,10 +23,10 @@ def hint_of(verdict: Verdict, checks: Iterable[Check]) -> str:
 def verdict_line(verdict: Verdict) -> str:
     """Return a verdict as one line: property, status, message and margin.
 
-    A message names robot, move and area; without one, the line names them.
+    A message names move and area, and the line the robot; without one, the line names them all.
     """
     margin = _margin(verdict, "margin")
-    told = [verdict.message] if verdict.message else [verdict.robot, verdict.move, verdict.area]
+    told = [verdict.finding] if verdict.message else [verdict.robot, verdict.move, verdict.area]
     found = ", ".join(filter(None, (verdict.status.value, *told, margin)))
     return f"{verdict.property}: {found}{f'; {verdict.caveat}' if verdict.caveat else ''}"
 

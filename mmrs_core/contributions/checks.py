@@ -38,7 +38,8 @@ class Verdict:
         margin: what is left before the property breaks, negative where it is violated; None where
             it has no measure. unit: of the margin.
         move: identifier of the move where the margin is smallest; area: name of the area it is to.
-        message: what was found; for unknown: what is missing.
+        message: what was found, in lower case; for unknown: what is missing. It names move and area; the
+            robot is printed before it.
         place: where that move, or else the robot, stands in the user's files.
         caveat: what a safe verdict excuses or leaves out, so that it is always shown.
         error: the part of a required distance that allows for position errors, metres.
@@ -55,6 +56,12 @@ class Verdict:
     place: Place = Place()
     caveat: str = ""
     error: float = 0.0
+
+    @property
+    def finding(self) -> str:
+        """Return the message, the robot before it unless it begins with it; empty without a message."""
+        whose = f"{self.robot}: " if self.robot and self.message else ""
+        return f"{whose}{self.message.removeprefix(whose)}"
 
 
 def is_at_limit(verdict: Verdict) -> bool:

@@ -1,5 +1,6 @@
 """What is said of plans, verdicts and runs is short and complete."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -17,6 +18,12 @@ BROKEN = Verdict(
     "clearance", Status.VIOLATED, "Brezza", -0.5, "m", "m2", "barn", "Brezza: GoTo 'm2' comes too near"
 )
 UNKNOWN = Verdict("depth", Status.UNKNOWN, "Alba", message="Alba: water density is missing")
+
+
+def test_the_robot_of_a_violation_is_named_whether_its_message_does_so_or_not():
+    named = "clearance: violated, Brezza: GoTo 'm2' comes too near, margin -0.5 m"
+    assert verdict_line(BROKEN) == named
+    assert verdict_line(replace(BROKEN, message="GoTo 'm2' comes too near")) == named
 
 
 def test_a_safe_property_is_one_line_with_its_least_margin():

@@ -10,12 +10,15 @@ import pytest
 from mmrs_multicopter import plugin as multicopter
 
 from mmrs_core.behaviour.program import Move
+from mmrs_core.contributions.checks import Check, Status, Verdict
 from mmrs_core.contributions.rules import ElementKind, MoveKind, MoveSpec, Rule
 from mmrs_core.contributions.targets import FileSpec, Target, TracedStep
 from mmrs_core.hookspecs import hookimpl
 from mmrs_core.languages.sources import MetamodelSource
 from mmrs_core.scene import AreaUse, Part, Stroke, Work
 from mmrs_core.testing.conformance import (
+    CheckCase,
+    CheckConformance,
     ElementKindConformance,
     MetamodelConformance,
     MoveKindConformance,
@@ -23,7 +26,9 @@ from mmrs_core.testing.conformance import (
     RuleConformance,
     TargetConformance,
 )
+from mmrs_core.testing.programs import sample_of
 from mmrs_core.testing.scenes import square
+from mmrs_core.testing.small_programs import go, program, robot
 from mmrs_core.transformation.kinds import no_time, stays
 
 BALLOON = "urn:mmrs:testing:balloon:1.0"
@@ -156,9 +161,9 @@ def cards(tmp_path):
     """Return a function from a template to the conformance class for a target that writes moves with it."""
 
     def files(given):
-        for number, robot in enumerate(given.program.robots):
-            steps = tuple(TracedStep(move.id, robot.id, move.id) for move in robot.moves)
-            yield FileSpec(f"card_{number}.txt", "card.jinja", {"steps": steps, "robot": robot}, steps)
+        for number, one in enumerate(given.program.robots):
+            steps = tuple(TracedStep(move.id, one.id, move.id) for move in one.moves)
+            yield FileSpec(f"card_{number}.txt", "card.jinja", {"steps": steps, "robot": one}, steps)
 
     def kit(template):
         (tmp_path / "card.jinja").write_text(template)
@@ -182,3 +187,40 @@ def test_a_target_that_loses_something_silently_is_found(cards):
     kit, target = cards("{% for move in robot.moves %}{{ move.id | comment }}{% endfor %}")
     with pytest.raises(pytest.fail.Exception, match=r"make no difference(.|\n)*action: Move\.postActions"):
         kit.test_nothing_is_lost_silently(target)
+
+
+def kit_for_check(found, made, **attributes):
+    """Return the conformance class for a check with these verdicts, whatever the behaviour."""
+    check = Check("calm", "It is calm.", lambda given: found, "wait")
+    plugin = SimpleNamespace(mmrs_checks=hookimpl(lambda: (check,)))
+    return kit_for(plugin, CheckConformance, cases={"calm": CheckCase(made, made, **attributes)})(), check
+
+
+def test_a_check_that_does_not_know_a_move_is_told_what_is_not_loaded():
+    unknown = Verdict("calm", Status.UNKNOWN, "alpha", message="no plug-in provides the move kind 'TakeOff'")
+    kit, check = kit_for_check((unknown,), sample_of("multicopter").plain.program)
+    words = (
+        r"unknown: alpha: no plug-in provides the move kind 'TakeOff'\n"
+        r"(.|\n)*not loaded: the kind of move TakeOff of urn:mmrs:multicopter:1\.0; name its plug-in in"
+        r"(.|\n)*not given: robot type 'Kind'"
+    )
+    for law in (kit.test_a_violation_is_found_and_located, kit.test_a_behaviour_with_the_property_is_safe):
+        with pytest.raises(pytest.fail.Exception, match=words):
+            law(check)
+
+
+@pytest.mark.parametrize(
+    ("message", "fits"),
+    [
+        ("comes too near", True),
+        ("GoTo 'out' comes too near", True),
+        ("r: GoTo 'out' comes too near", True),
+        ("Comes too near", False),
+        ("comes too near.", False),
+    ],
+)
+def test_messages_of_checks_are_lower_case_but_for_names(message, fits):
+    found = Verdict("calm", Status.VIOLATED, "r", message=message)
+    kit, check = kit_for_check((found,), program(robot("r", [go("out", (30.0, 0.0, 0.0))])))
+    with nullcontext() if fits else pytest.raises(AssertionError):
+        kit.test_verdicts_name_their_check_and_are_lower_case(check)
