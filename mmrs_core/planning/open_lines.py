@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, replace
 from itertools import pairwise
 from math import dist
 
@@ -13,7 +13,7 @@ from mmrs_core.errors import InfeasibleError
 from mmrs_core.geometry.clearance import grow
 from mmrs_core.geometry.stretches import LEAST, between, blocked_stretches, open_stretches, part_of, point_at
 from mmrs_core.planning.pockets import pockets_of
-from mmrs_core.scene import Gap, Position, Robot, Scene
+from mmrs_core.scene import Gap, Position, Robot, Scene, Stroke, Work
 
 
 @dataclass(frozen=True, slots=True)
@@ -122,6 +122,41 @@ def open_lines(
     if refusals and not parts:
         raise refusals[0]
     return OpenLine(tuple(parts), tuple(gaps), tuple(stretches))
+
+
+def work_along(
+    scene: Scene,
+    robot: Robot,
+    lines: Iterable[tuple[str, Sequence[Position]]],
+    stroke: Callable[[str, tuple[Position, ...]], Stroke],
+    *,
+    rule: str,
+    ordered: bool = True,
+) -> Work:
+    """Return the work along lines that areas may block in part: a stroke for each open part, and the gaps.
+
+    A robot keeps its clearance from every area; what comes nearer, and what areas close in, is left out and
+    reported as `Work.gaps`. The planner leads robots around the gaps. Robots of other clearances share the
+    work: each stroke gets the name of its line as `part`, and its `stretch`.
+
+    Args:
+        scene: for its areas.
+        robot: for its clearance.
+        lines: each with its name, such as "row 3"; positions are (east, north, up), metres.
+        stroke: makes a stroke of the name of a line and of the positions of one open part.
+        rule: name of the rule that asks.
+        ordered: whether the strokes must be done in this order.
+
+    Raises:
+        InfeasibleError: nothing is left of all lines; names the areas that are too near.
+    """
+    named = tuple((name, tuple(line)) for name, line in lines)
+    found = open_lines(robot, scene, named)
+    strokes = (
+        replace(stroke(named[index][0], part), part=named[index][0], stretch=stretch)
+        for part, (index, stretch) in zip(found.parts, found.stretches, strict=True)
+    )
+    return Work(tuple(strokes), divisible=True, rule=rule, ordered=ordered, gaps=found.gaps)
 
 
 def _middle(line: Sequence[Position], stretch: tuple[float, float]) -> Position:

@@ -18,7 +18,7 @@ from mmrs_core.contributions.targets import FileSpec, GeneratedFile, TargetInput
 from mmrs_core.contributions.vehicles import VehicleInput
 from mmrs_core.diagnostics import Place
 from mmrs_core.generation import planned_moves
-from mmrs_core.planning import coverage, positions
+from mmrs_core.planning import coverage, open_lines, positions
 from mmrs_core.scene import attributes
 from mmrs_core.transformation import kinds
 from mmrs_runtime import vehicle
@@ -64,6 +64,7 @@ TOLD = {
         positions.refuse_unsteady,
         coverage.work_over,
         coverage.Sweep,
+        open_lines.work_along,
     ),
     "mmrs_runtime.vehicle": (
         VehicleInput,

@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 from mmrs_core.contributions.rules import Rule
 from mmrs_core.errors import InfeasibleError
 from mmrs_core.planning.coverage import Sweep, work_over
 from mmrs_core.planning.devices import device_for
-from mmrs_core.planning.open_lines import open_line
+from mmrs_core.planning.open_lines import work_along
 from mmrs_core.planning.positions import refuse_blocked, refuse_heights
 from mmrs_core.scene import ActionAt, Part, Position, Robot, Scene, Stroke, Task, Work
 from mmrs_core.scene.attributes import number, pairs, positions, ring, text
@@ -31,12 +29,8 @@ def measure_work(task: Task, robot: Robot, scene: Scene) -> Work:
     action = _action(part, robot)
     if spacing is None or len(points) == 1:
         return _at_points(points, action, robot, scene)
-    found = open_line(robot, scene, without_repeats(points), "the line")
-    strokes = tuple(
-        replace(_along(each, spacing, action), part="the line", stretch=stretch)
-        for each, (_, stretch) in zip(found.parts, found.stretches, strict=True)
-    )
-    return Work(strokes, divisible=True, rule=RULE, gaps=found.gaps)
+    lines = [("the line", without_repeats(points))]
+    return work_along(scene, robot, lines, lambda _, line: _along(line, spacing, action), rule=RULE)
 
 
 def _height(part: Part, scene: Scene) -> float | None:
