@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 
-from mmrs_core.contributions.checks import Check, Status, Verdict, is_at_limit
+from mmrs_core.contributions.checks import Check, Status, Verdict, is_at_limit, message_of
 from mmrs_core.pictures.figures import quantity
 
 _RANK = {Status.VIOLATED: 0, Status.UNKNOWN: 1, Status.NOT_CHECKED: 2, Status.SAFE: 3}
@@ -26,7 +26,7 @@ def verdict_line(verdict: Verdict) -> str:
     A message names move and area, and the line the robot; without one, the line names them all.
     """
     margin = _margin(verdict, "margin")
-    told = [verdict.finding] if verdict.message else [verdict.robot, verdict.move, verdict.area]
+    told = [message_of(verdict)] if verdict.message else [verdict.robot, verdict.move, verdict.area]
     found = ", ".join(filter(None, (verdict.status.value, *told, margin)))
     return f"{verdict.property}: {found}{f'; {verdict.caveat}' if verdict.caveat else ''}"
 

@@ -57,11 +57,11 @@ class Verdict:
     caveat: str = ""
     error: float = 0.0
 
-    @property
-    def finding(self) -> str:
-        """Return the message, the robot before it unless it begins with it; empty without a message."""
-        whose = f"{self.robot}: " if self.robot and self.message else ""
-        return f"{whose}{self.message.removeprefix(whose)}"
+
+def message_of(verdict: Verdict) -> str:
+    """Return the message, the robot before it unless it begins with it; empty without a message."""
+    whose = f"{verdict.robot}: " if verdict.robot and verdict.message else ""
+    return f"{whose}{verdict.message.removeprefix(whose)}"
 
 
 def is_at_limit(verdict: Verdict) -> bool:

@@ -10,7 +10,7 @@ from typing import ClassVar
 import pytest
 
 from mmrs_core.behaviour.program import Program, RobotProgram
-from mmrs_core.contributions.checks import Check, CheckInput, Status, Verdict
+from mmrs_core.contributions.checks import Check, CheckInput, Status, Verdict, message_of
 from mmrs_core.contributions.rules import most_specific, robot_kind_of
 from mmrs_core.scene import Area, RobotType
 from mmrs_core.testing.conformance.declared import Conformance, declared
@@ -86,7 +86,7 @@ class CheckConformance(Conformance):
             names = tuple(name for robot in program.robots for name in (robot.id, *_names(robot)))
             for verdict in self._verdicts(check, program):
                 assert verdict.property == check.name
-                words = verdict.finding.removeprefix(f"{verdict.robot}: ")
+                words = message_of(verdict).removeprefix(f"{verdict.robot}: ")
                 assert words[:1] == words[:1].lower() or words.startswith(names)
                 assert not words.endswith(".")
 
@@ -104,7 +104,7 @@ class CheckConformance(Conformance):
     def _shown(self, check: Check, verdicts: Iterable[Verdict], program: Program) -> str:
         """Return what a check found, line by line, and what it lacks, since it is not loaded or given."""
         lines = [
-            f"{each.status.value}: {each.finding or each.robot or 'no message'}"
+            f"{each.status.value}: {message_of(each) or each.robot or 'no message'}"
             f"{'' if each.margin is None else f', margin {each.margin:g} {each.unit}'}"
             for each in verdicts
         ]
