@@ -121,7 +121,7 @@ class CheckConformance(Conformance):
             if type is None:
                 yield f"not given: robot type '{type_name}'; add it to the types of the case"
             elif robot_kind_of(type, known.robot_kinds) is None:
-                yield f"not loaded: the kind of robot type '{type_name}'; name its plug-in in more_plugins"
+                yield f"not loaded: a robot kind for type '{type_name}'; name its plug-in in more_plugins"
 
     def _verdicts(self, check: Check, program: Program) -> tuple[Verdict, ...]:
         case, known = self.cases[check.name], self.with_core()
