@@ -167,10 +167,12 @@ class ElementKind:
         areas: forbidden areas and obstacles that an element makes. Arguments: the element, and all of the
             context, elements first, then what its areas are (`Area.part`): `element_called` finds there
             what a reference names. Raises InfeasibleError where a figure is missing.
+        spares: metaclasses of robot types that may enter the areas, such as airships that moor at a mast.
     """
 
     metaclass: Name
     areas: Callable[[Part, tuple[Part, ...]], Iterable[Area]]
+    spares: frozenset[Name] = frozenset()
 
 
 def most_specific(metaclasses: tuple[Name, ...], registered: Mapping[Name, object]) -> Name | None:
@@ -215,7 +217,10 @@ def barriers(
     for element in elements:
         name = most_specific(element.metaclasses, element_kinds)
         if name is not None:
-            found.extend(element_kinds[name].areas(element, everything))
+            element_kind = element_kinds[name]
+            concerned = [each.name for each in known if element_kind.spares.isdisjoint(each.metaclasses)]
+            only = None if len(concerned) == len(known) else frozenset(concerned)
+            found.extend(replace(area, types=only) for area in element_kind.areas(element, everything))
         for robot_type in known:
             kind = robot_kind_of(robot_type, robot_kinds)
             area = kind.barrier(robot_type, element) if kind is not None and kind.barrier else None

@@ -68,6 +68,14 @@ def test_an_element_of_a_kind_bars_everybody_where_the_elements_that_it_names_ar
     assert (found.shell, found.types) == (((1.0, 0.0), (9.0, 0.0)), None)
 
 
+def test_an_element_of_a_kind_spares_the_robots_that_are_at_home_there():
+    ferry = replace(robot_type("ferry"), metaclasses=(("urn:test:1.0", "Ferry"), ROBOT))
+    kinds = {POND: ElementKind(POND, lambda *given: (AREA,), spares=frozenset({("urn:test:1.0", "Ferry")}))}
+    for types, concerned in (([ferry, robot_type("a")], frozenset({"a"})), ([robot_type("a")], None)):
+        (found,) = barriers((Part((POND,), {}),), (), types, {}, kinds)
+        assert found.types == concerned
+
+
 def test_a_robot_keeps_only_from_the_areas_that_concern_its_type():
     wall = Area("wall", AreaUse.OBSTACLE, SQUARE)
     pond = replace(wall, name="pond", types=frozenset({"a"}))
