@@ -53,6 +53,9 @@ class ModelSet:
     """The models that belong together.
 
     Attributes:
+        mission: an empty one where there is none, as when a behaviour is validated alone.
+        context: None where there is none.
+        behaviour: None where only a mission is validated.
         robots: the robot types, by name.
         models: every file that was read, in the order in which they were read.
     """

@@ -18,6 +18,8 @@ from mmrs_core.contributions.targets import FileSpec, GeneratedFile, TargetInput
 from mmrs_core.contributions.vehicles import VehicleInput
 from mmrs_core.diagnostics import Place
 from mmrs_core.generation import planned_moves
+from mmrs_core.languages.modelset import ModelSet
+from mmrs_core.languages.xmi.markup import Attribute, Tag
 from mmrs_core.planning import coverage, open_lines, positions
 from mmrs_core.scene import attributes
 from mmrs_core.transformation import kinds
@@ -73,7 +75,10 @@ TOLD = {
         vehicle.Fault,
         vehicle.Sample,
         Wrong,
+        Tag,
+        Attribute,
         Finding,
+        ModelSet,
     ),
     "mmrs_core.behaviour.program": (
         CheckInput,

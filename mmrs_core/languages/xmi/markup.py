@@ -20,7 +20,9 @@ class Attribute:
 
     Attributes:
         name: as written, with its prefix.
-        begin, end: bytes of the name; ``value_begin``, ``value_end``: of the value between its quotes.
+        value: without its quotes, escapes resolved.
+        begin, end: bytes of the name.
+        value_begin, value_end: bytes of the value between its quotes.
     """
 
     name: str
@@ -36,8 +38,13 @@ class Tag:
     """An XML element.
 
     Attributes:
-        name: as written, with its prefix. line: on which it begins, from 1.
-        begin, inside: bytes of its opening tag. closing, end: of its closing tag; the same if it has none.
+        name: as written, with its prefix; of an object in JSON, the feature that it stands in.
+        line: on which it begins, from 1.
+        parent: the tag that it stands in; None for the outermost one.
+        attributes: those written, in order; ``attribute(name)`` returns one of them, or None.
+        begin, inside: bytes of its opening tag.
+        closing, end: bytes of its closing tag; the same if it has none.
+        children: the tags in it, in order: what the element contains.
     """
 
     name: str

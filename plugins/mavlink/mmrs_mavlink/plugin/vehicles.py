@@ -70,7 +70,8 @@ def uncarried(
         )
     named = f"names vehicle '{kind.vehicle}'" if kind.vehicle else "names no vehicle"
     known = ", ".join(words)
-    return f"robot '{robot}': is of kind '{kind.name}', which {named}; known are {known} (RobotKind.vehicle)"
+    hint = "RobotKind.vehicle names one; plug-ins add others by mmrs_vehicle_profiles"
+    return f"robot '{robot}': is of kind '{kind.name}', which {named}; known are {known} ({hint})"
 
 
 def manoeuvre_of(metaclass: Name, moves: Mapping[Name, MoveKind]) -> str:
