@@ -77,16 +77,21 @@ def lost(target: Target, rows: Iterable[TargetCapability]) -> tuple[TargetCapabi
     """Return the elements that a target loses silently.
 
     They make no difference to the files and are not refused, though robots do less or otherwise without
-    them. `Target.capabilities` says why nothing is lost: by the whole name of the element, by the event of a
-    policy, or by an empty name for all.
+    them. `Target.capabilities` says why nothing is lost: by the whole name of the element, by what precedes
+    the colon in that of a policy or heading, or by an empty name for everything.
     """
     words = target.capabilities
     return tuple(
         row
         for row in rows
         if row.verdict == "no difference" and row.group.startswith(SHORT_OF) and row.element not in FOR_OTHERS
-        if not words.keys() & {row.element, row.element.partition(":")[0], ""}
+        if not words.keys() & {row.element, _sort(row), ""}
     )
+
+
+def _sort(row: TargetCapability) -> str:
+    """Return what comes before the colon in the name of a policy or heading, else all of the name."""
+    return row.element.partition(":")[0] if row.group.startswith(("policy", "heading")) else row.element
 
 
 class Trial:

@@ -123,7 +123,7 @@ def of_headings(samples: Samples) -> Iterator[Probe]:
         mounted = {sample.type.name: sample.wired(MOUNTED_ASIDE)}
         yield Probe(
             "heading",
-            f"Heading.deviceId {name}: a device that looks aside (mount.yaw)",
+            f"Heading.deviceId: a device that looks aside (mount.yaw) {name}",
             replace(turned, types=mounted),
             turned,
         )

@@ -205,6 +205,7 @@ def test_what_neither_changes_the_files_nor_is_refused_nor_explained_is_lost(car
         ("GoTo.speed", {"GoTo.speed"}),
         ("LINK_LOST", {"LINK_LOST: HOLD", "LINK_LOST: LAND"}),
         ("", {"GoTo.speed", "LINK_LOST: HOLD"}),
+        ("Heading.deviceId", {"Heading.deviceId: a device that looks aside (mount.yaw) (auv)"}),
         ("GoTo", set()),
     ],
 )
