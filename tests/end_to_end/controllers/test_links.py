@@ -201,7 +201,7 @@ def test_a_vehicle_of_another_kind_is_refused(controllers):
             "fleet.py", "--speedup", "20", "--connect", f"udpin:127.0.0.1:{port}"
         )
     assert code == 1
-    assert "the vehicle is a ground rover, and the program is for a copter" in said
+    assert "the vehicle reports the type 'ground rover'; the program is for vehicle 'copter'" in said
 
 
 def test_a_system_is_given_to_one_robot_only(controllers):

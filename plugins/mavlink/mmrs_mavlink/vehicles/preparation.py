@@ -97,7 +97,9 @@ def check_identity(
     if beat is not None and beat.type not in (*profile.mav_types, mavlink.MAV_TYPE_GENERIC):
         entry = mavlink.enums["MAV_TYPE"].get(beat.type)
         shown = entry.name.removeprefix("MAV_TYPE_").lower().replace("_", " ") if entry else beat.type
-        raise RefusedError(f"the vehicle is a {shown}, and the program is for a {profile.vehicle}")
+        raise RefusedError(
+            f"the vehicle reports the type '{shown}'; the program is for vehicle '{profile.vehicle}'"
+        )
     if beat is not None and profile.autopilot.number not in (beat.autopilot, GENERIC.number):
         wanted = f"a {profile.vehicle} with {profile.autopilot.title}"
         raise RefusedError(

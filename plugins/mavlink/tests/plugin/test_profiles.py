@@ -254,7 +254,7 @@ def test_it_is_guided_by_the_guidance_of_its_autopilot():
     [
         (
             {"kind": mavlink.MAV_TYPE_QUADROTOR},
-            "the vehicle is a quadrotor, and the program is for a airship",
+            "the vehicle reports the type 'quadrotor'; the program is for vehicle 'airship'",
         ),
         ({"autopilot": 3}, "the vehicle has autopilot 3 .* is for a airship with Airship Pilot"),
     ],
