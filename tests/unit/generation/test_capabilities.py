@@ -297,9 +297,9 @@ def test_the_command_line_prints_the_table_of_a_target(capsys):
 
 @pytest.mark.thorough
 def test_the_command_line_prints_all_tables_for_programs(capsys):
-    assert run(["--capabilities", "--json", "--no-plugins"], program="mmrs-gen") == 0
+    assert run(["--capabilities", "--json"], program="mmrs-gen") == 0
     targets = json.loads(capsys.readouterr().out)["targets"]
-    assert {name: len(rows) for name, rows in targets.items()} == dict.fromkeys(BY_NAME, 1)
+    assert targets.keys() >= BY_NAME.keys() and all(targets.values())
 
 
 def test_an_unknown_target_has_no_table(capsys):
