@@ -7,7 +7,9 @@ from dataclasses import dataclass, field, replace
 from itertools import pairwise
 from math import dist, hypot, inf
 
-from shapely import box
+import numpy as np
+from numpy.typing import NDArray
+from shapely import STRtree, box
 from shapely.geometry import Point as ShapelyPoint
 from shapely.geometry import Polygon
 
@@ -78,8 +80,9 @@ class Labels:
     width: float
     height: float = inf
     _taken: list[Box] = field(default_factory=list)
-    _lines: list[Point] = field(default_factory=list)
+    _lines: list[NDArray[np.float64]] = field(default_factory=list)
     _areas: list[Polygon] = field(default_factory=list)
+    _tree: STRtree | None = None
     placed: list[Label] = field(default_factory=list)
 
     def keep_off(self, box: Box) -> None:
@@ -90,21 +93,23 @@ class Labels:
         """Place later words where they cover little of a line."""
         for (x1, y1), (x2, y2) in pairwise(line):
             count = int(hypot(x2 - x1, y2 - y1) / _SAMPLE) + 1
-            self._lines += [(x1 + (x2 - x1) * i / count, y1 + (y2 - y1) * i / count) for i in range(count)]
+            share = np.arange(count) / count
+            self._lines.append(np.stack((x1 + (x2 - x1) * share, y1 + (y2 - y1) * share), axis=1))
 
     def lay_out(self, outline: Sequence[Point]) -> None:
         """Keep later words off an area, except those that name something inside of it."""
         area = Polygon(outline) if len(outline) > 2 else Polygon()
         if area.is_valid and not area.is_empty:
             self._areas.append(area)
+            self._tree = None
 
     def put(self, label: Label) -> None:
         """Place words on what they name if it is large enough, else next to it: where they cover least."""
         shown = shortened(label.words) + label.note
         half = width_of(f"{label.icon[0]} {shown}" if label.icon[0] else shown) / 2
         places = [(rank, self._inside(place, half)) for rank, place in _places(label.around, half)]
-        others = self._others(label.around)
-        _, at = min((self._cost(rank, place, half, others), place) for rank, place in places)
+        costs = self._costs([_box(place, half) for _, place in places], label.around)
+        _, at = min((cost + rank, place) for cost, (rank, place) in zip(costs, places, strict=True))
         self._taken.append(_box(at, half + _GAP))
         leader = _leader(label.around, _box(at, half))
         self.placed.append(replace(label, words=shown, at=at, leader=leader))
@@ -113,21 +118,31 @@ class Labels:
         x = min(max(place[0], half + 4), max(self.width - half - 4, half + 4))
         return x, min(max(place[1], FONT + 2), max(self.height - 5, FONT + 2))
 
-    def _others(self, around: Box) -> list[Polygon]:
-        """Return the areas that do not contain what is to be named."""
-        middle = ShapelyPoint((around[0] + around[2]) / 2, (around[1] + around[3]) / 2)
-        return [area for area in self._areas if not area.covers(middle)]
+    def _costs(self, boxes: Sequence[Box], around: Box) -> list[float]:
+        """Return what is lost where words cover each of the boxes, and name what is around."""
+        left, top, right, bottom = np.array(boxes).T[:, :, None]
+        taken = np.array(self._taken).reshape(-1, 4).T
+        covered = (left <= taken[2]) & (right >= taken[0]) & (top <= taken[3]) & (bottom >= taken[1])
+        x, y = self._points().T
+        crossed = (left < x) & (x < right) & (top < y) & (y < bottom)
+        misleading = self._misleading(boxes, around)
+        costs = _COVERING * covered.sum(1) + _MISLEADING * misleading + _CROSSING * crossed.sum(1)
+        return [float(cost) for cost in costs]
 
-    def _cost(self, rank: float, place: Point, half: float, others: Sequence[Polygon]) -> float:
-        left, top, right, bottom = _box(place, half)
-        words = box(left, top, right, bottom)
-        misleading = sum(area.intersects(words) for area in others)
-        covered = sum(
-            not (right < taken[0] or left > taken[2] or bottom < taken[1] or top > taken[3])
-            for taken in self._taken
-        )
-        crossed = sum(left < x < right and top < y < bottom for x, y in self._lines)
-        return _COVERING * covered + _MISLEADING * misleading + _CROSSING * crossed + rank
+    def _points(self) -> NDArray[np.float64]:
+        """Return points on all lines, east and down in pixels, shape (n, 2)."""
+        if len(self._lines) != 1:
+            self._lines = [np.concatenate([np.empty((0, 2)), *self._lines])]
+        return self._lines[0]
+
+    def _misleading(self, boxes: Sequence[Box], around: Box) -> NDArray[np.int64]:
+        """Return how many areas each box meets that do not contain the middle of what is to be named."""
+        if self._tree is None:
+            self._tree = STRtree(self._areas)
+        middle = ShapelyPoint((around[0] + around[2]) / 2, (around[1] + around[3]) / 2)
+        box_indices, areas = self._tree.query(box(*np.array(boxes).T), predicate="intersects")
+        others = ~np.isin(areas, self._tree.query(middle, predicate="covered_by"))
+        return np.bincount(box_indices[others], minlength=len(boxes))
 
 
 def _leader(named: Box, words: Box) -> tuple[Point, Point] | None:
