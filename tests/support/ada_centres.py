@@ -157,7 +157,7 @@ class World:
                 until.wait(30)
                 return
             if self.rehearsal.now >= orders.get("strange", seconds):
-                self._port.send(replace(self._emergency, extended=True))
+                self._port.send(self._emergency._replace(extended=True))
             meddle(self, until)
             self.rehearsal.run(0.05)
             time.sleep(max(0.0, self.rehearsal.now + behind - time.monotonic()))
