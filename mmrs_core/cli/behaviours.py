@@ -7,19 +7,11 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from mmrs_core.analysis.constraints import check_behaviour
 from mmrs_core.cli.output import report
 from mmrs_core.contributions.rules import barriers
 from mmrs_core.diagnostics import Diagnostic, has_errors, in_order
 from mmrs_core.errors import InvalidModelError, UnreadableError
 from mmrs_core.grounding.features import children
-from mmrs_core.grounding.scenes import (
-    areas_of,
-    environment_of,
-    ground_of,
-    part_of,
-    robot_type_of,
-)
 from mmrs_core.languages import behaviour as bl
 from mmrs_core.languages import context as contexts
 from mmrs_core.languages import mission as missions
@@ -35,7 +27,6 @@ if TYPE_CHECKING:
     from mmrs_core.cli.session import Session
     from mmrs_core.languages.model import Model
     from mmrs_core.languages.registry import Registry
-    from mmrs_core.scene import Area, Part
 
 
 @dataclass(frozen=True, slots=True)
@@ -158,6 +149,8 @@ def faults_of(session: Session, files: BehaviourFiles) -> tuple[Diagnostic, ...]
     Raises:
         InvalidModelError: if the behaviour's file holds no behaviour, or more than one.
     """
+    from mmrs_core.analysis.constraints import check_behaviour
+
     contributions = session.contributions
     faults: list[Diagnostic] = []
     told: list[Diagnostic] = []
@@ -213,24 +206,16 @@ def _valid(session: Session, files: BehaviourFiles) -> tuple[Program, bl.Behavio
 
 
 def _place(behaviour: bl.Behaviour, files: BehaviourFiles, session: Session) -> BehaviourContext:
+    from mmrs_core.grounding.scenes import areas_of, environment_of, ground_of, part_of, robot_type_of
+
     types = {name: robot_type_of(root) for name, root in files.types.items()}
-    if files.context is None:
+    context, known = files.context, session.contributions
+    if context is None:
         return BehaviourContext(types)
-    elements = _elements(behaviour, files.context)
-    drawn, known = _areas(behaviour, files.context), session.contributions
+    ground = ground_of(behaviour, context)
+    if ground.faults:
+        raise InvalidModelError("the context has no place beside the behaviour", in_order(ground.faults))
+    elements = tuple(part_of(element, ground) for element in children(context, "elements"))
+    drawn = areas_of(context, ground)
     barred = barriers(elements, drawn, types.values(), known.robot_kinds, known.element_kinds)
-    return BehaviourContext(types, (*drawn, *barred), environment_of(files.context), elements)
-
-
-def _areas(behaviour: bl.Behaviour, context: contexts.Context) -> tuple[Area, ...]:
-    laid = ground_of(behaviour, context)
-    if laid.faults:
-        raise InvalidModelError("the context has no place beside the behaviour", in_order(laid.faults))
-    return areas_of(context, laid)
-
-
-def _elements(behaviour: bl.Behaviour, context: contexts.Context) -> tuple[Part, ...]:
-    if not children(context, "elements"):
-        return ()
-    laid = ground_of(behaviour, context)
-    return tuple(part_of(element, laid) for element in children(context, "elements"))
+    return BehaviourContext(types, (*drawn, *barred), environment_of(context), elements)

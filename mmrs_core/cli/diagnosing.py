@@ -7,7 +7,6 @@ from contextlib import suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from mmrs_core.analysis.constraints import check_constraints
 from mmrs_core.analysis.fixes.repair import Diagnosis
 from mmrs_core.cli.any_model import faults_in, is_foreign, read_foreign
 from mmrs_core.cli.behaviours import faults_of, read_behaviour_files
@@ -137,6 +136,8 @@ def diagnosed_parts(session: Session, files: Iterable[Path], unsaved: Mapping[Pa
     Args:
         unsaved: texts to be read instead of what files hold, by real path.
     """
+    from mmrs_core.analysis.constraints import check_constraints
+
     contributions = session.contributions
     registry = contributions.languages
     models = tuple(read_model(file, registry, unsaved=unsaved) for file in files)

@@ -9,7 +9,6 @@ from typing import Annotated
 
 import typer
 
-from mmrs_core.analysis.constraints import check_planned
 from mmrs_core.cli.conversion import SchemaLocation, places_in
 from mmrs_core.cli.output import say, say_json
 from mmrs_core.cli.parameters import Context, Project, Robots, Seed, robot_files
@@ -139,6 +138,8 @@ def require_sound(stages: Stages, name: str) -> None:
         RefusedError: if the behaviour is not safe, or not known to be.
         InvalidModelError: if it breaks a constraint, with all diagnostics.
     """
+    from mmrs_core.analysis.constraints import check_planned
+
     require_safe(stages.program, stages.verdicts, name)
     contributions = stages.session.contributions
     faults = check_planned(
