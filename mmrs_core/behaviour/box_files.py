@@ -13,6 +13,9 @@ from mmrs_runtime.records.blackbox import BOX, BOX_SUFFIX
 from mmrs_runtime.records.entries import Entry, Tell, entries_of
 from mmrs_runtime.records.steps import SUFFIX
 
+SIMULATION = "simulation"
+"""The link of a robot without a vehicle, as its box names it."""
+
 _PART = re.compile(rf"(?P<stem>.+){re.escape(BOX)}(?:\.(?P<number>\d+))?{re.escape(BOX_SUFFIX)}")
 
 

@@ -10,10 +10,11 @@ from itertools import pairwise
 from math import dist
 from pathlib import Path
 from tempfile import TemporaryDirectory
+from typing import TYPE_CHECKING
 
 import typer
 
-from mmrs_core.behaviour.box_files import black_boxes
+from mmrs_core.behaviour.box_files import SIMULATION, black_boxes
 from mmrs_core.behaviour.log import read_log
 from mmrs_core.behaviour.program import Program
 from mmrs_core.cli.output import progress
@@ -23,8 +24,6 @@ from mmrs_core.contributions.execution import Sample
 from mmrs_core.contributions.rules import RobotKind, robot_kind_of
 from mmrs_core.errors import MmrsError
 from mmrs_core.pictures.figures import clock, length
-from mmrs_core.pictures.flights.fixes import Datum, datum_of
-from mmrs_core.pictures.flights.gathering import SIMULATION
 from mmrs_core.pipeline import BehaviourContext, simulate
 from mmrs_core.resources import named, new_folders
 from mmrs_core.scene import Name, RobotType
@@ -33,6 +32,9 @@ from mmrs_runtime.records.blackbox import black_box_path
 from mmrs_runtime.records.log import LogWriter
 from mmrs_runtime.records.steps import SUFFIX, StepRecord, log_name
 from mmrs_runtime.semantics import Outcome
+
+if TYPE_CHECKING:
+    from mmrs_core.pictures.flights.fixes import Datum
 
 _HOLDS = {"yes": True, "true": True, "no": False, "false": False}
 
@@ -248,6 +250,8 @@ def write_boxes(
 
     Places are metres from home; between two of them a robot went straight. There is no time of day.
     """
+    from mmrs_core.pictures.flights.fixes import datum_of
+
     name = run.records[0].run if run.records else ""
     written = []
     for robot in program.robots:

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from types import MappingProxyType
 
-from mmrs_core.behaviour.box_files import BlackBox, black_boxes, is_part
+from mmrs_core.behaviour.box_files import SIMULATION, BlackBox, black_boxes, is_part
 from mmrs_core.behaviour.log import logs_in, recover_log
 from mmrs_core.behaviour.program import Program, RobotProgram
 from mmrs_core.contributions.rules import RobotKind
@@ -20,8 +20,6 @@ from mmrs_core.scene import Name, RobotType
 from mmrs_runtime.records.entries import Damage, Entry, number_of
 from mmrs_runtime.records.steps import StepRecord
 
-SIMULATION = "simulation"
-"""The link of a robot without a vehicle."""
 MOST_ENTRIES = 100_000
 """Entries of one robot that are kept, without fixes and messages."""
 _MOST_DAMAGES = 20
