@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -18,14 +19,11 @@ from mmrs_core.cli.parameters import Behaviour, behaviour_file
 from mmrs_core.cli.session import Session
 from mmrs_core.cli.settings import Json, settings_of
 from mmrs_core.pictures.figures import clock
-from mmrs_core.pictures.flights.gathering import read_flight
-from mmrs_core.pictures.flights.positions import steps_of
-from mmrs_core.pictures.report.wording import place
 from mmrs_runtime.semantics import Outcome
 
 if TYPE_CHECKING:
-    from mmrs_core.behaviour.program import Program
     from mmrs_core.pictures.flights.flight import Flight
+    from mmrs_core.pictures.flights.positions import PlacedStep
 
 
 def replay(
@@ -45,20 +43,24 @@ def replay(
 
     Example: mmrs replay field field/logs
     """
+    from mmrs_core.pictures.flights.gathering import read_flight
+    from mmrs_core.pictures.flights.positions import steps_of
+
     session = Session(settings_of(call))
     program = load_program(session, behaviour_file(behaviour))
     given = [path for path in logs if not is_part(path)]
     result = replayed(program, read_logs(given, partial=partial), partial=partial)
     flight = read_flight(logs, program, {}) if steps or black_boxes(logs) else None
+    placed = steps_of(flight, program) if flight is not None and steps else None
     if json:
-        _say_json(result, flight, program, steps=steps)
+        _say_json(result, flight, placed)
     else:
         _say(result, flight)
         if partial and flight is None:
             for damage in (each for path in logs_in(given) for each in recover_log(path)[1]):
                 tell(str(damage))
-        if flight is not None and steps:
-            _say_steps(flight, program)
+        if placed is not None:
+            _say_steps(placed)
     cut = partial and result.outcome is Outcome.INCOMPLETE
     return 0 if result.accepted and (cut or result.outcome is Outcome.SUCCESS) else 1
 
@@ -79,19 +81,19 @@ def _say(result: ReplayResult, flight: Flight | None) -> None:
         tell(damage)
 
 
-def _say_steps(flight: Flight, program: Program) -> None:
-    rows = [
-        (clock(step.time), step.robot, place(step.where), step.words) for step in steps_of(flight, program)
-    ]
+def _say_steps(steps: Sequence[PlacedStep]) -> None:
+    from mmrs_core.pictures.report.wording import place
+
+    rows = [(clock(step.time), step.robot, place(step.where), step.words) for step in steps]
     for line in table(("time", "robot", "where", "step"), rows):
         say(line)
 
 
-def _say_json(result: ReplayResult, flight: Flight | None, program: Program, *, steps: bool) -> None:
+def _say_json(result: ReplayResult, flight: Flight | None, steps: Sequence[PlacedStep] | None) -> None:
     told = plain(result)
     assert isinstance(told, dict)
     if flight is not None:
         told |= {"boxes": flight.boxes, "damages": list(flight.damages)}
-    if flight is not None and steps:
-        told["where"] = plain(steps_of(flight, program))
+    if steps is not None:
+        told["where"] = plain(steps)
     say_json(told)

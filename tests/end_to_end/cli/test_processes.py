@@ -65,6 +65,31 @@ def test_help_imports_nothing_heavy():
     assert done.stderr == "[]\n"
 
 
+HELP_OF_EVERY_COMMAND = """
+import io, re, sys
+from contextlib import redirect_stdout
+from mmrs_core.cli import run
+
+def printed(*arguments):
+    with redirect_stdout(io.StringIO()) as out:
+        run([*arguments, "--help"])
+    return out.getvalue()
+
+names = re.findall(r"(?m)^  ([a-z]+)  ", printed().partition("Commands:")[2])
+for name in names:
+    assert f"mmrs {name}" in printed(name)
+print(len(names), [each for each in sys.argv[1:] if each in sys.modules])
+"""
+
+
+def test_help_of_every_command_imports_nothing_that_only_running_it_needs():
+    heavy = ("numpy", "shapely", "pyproj", "pyecore", "pymavlink", "zenoh", "cv2", "cantools")
+    done = call("python", "-c", HELP_OF_EVERY_COMMAND, *heavy)
+    number, _, imported = done.stdout.partition(" ")
+    assert int(number) > 20, done.stderr
+    assert imported == "[]\n"
+
+
 def test_validating_imports_nothing_that_other_commands_need():
     others = ("pydantic", "jinja2", "rich", "mmrs_core.analysis.checks", "mmrs_core.behaviour.program")
     others += ("mmrs_core.scene.plans", "mmrs_core.planning.coverage", "mmrs_core.languages.json_form.reader")
