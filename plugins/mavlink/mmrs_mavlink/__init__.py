@@ -9,42 +9,40 @@ the core is in ``plugin/``.
 from importlib import import_module
 from typing import TYPE_CHECKING
 
-from mmrs_runtime.conditions import standard, undecided
-
-from .program import (
-    Choose,
-    Geographic,
-    GoTo,
-    Hold,
-    Land,
-    Local,
-    Look,
-    Measure,
-    NoEffect,
-    Notify,
-    Object,
-    Operate,
-    Place,
-    Policy,
-    Recharge,
-    Report,
-    Robot,
-    Run,
-    Skip,
-    Start,
-    Step,
-    Stop,
-    TakeOff,
-    Then,
-    Travel,
-    Turn,
-)
-
 if TYPE_CHECKING:
+    from mmrs_runtime.conditions import standard, undecided
     from mmrs_runtime.controllers.state import State
     from mmrs_runtime.controllers.user_functions import Condition, Locator, not_looked_for, where_expected
 
     from .driver import main
+    from .program import (
+        Choose,
+        Geographic,
+        GoTo,
+        Hold,
+        Land,
+        Local,
+        Look,
+        Measure,
+        NoEffect,
+        Notify,
+        Object,
+        Operate,
+        Place,
+        Policy,
+        Recharge,
+        Report,
+        Robot,
+        Run,
+        Skip,
+        Start,
+        Step,
+        Stop,
+        TakeOff,
+        Then,
+        Travel,
+        Turn,
+    )
 
 __all__ = [
     "Choose",
@@ -89,14 +87,16 @@ _IN = {
     "State": "mmrs_runtime.controllers.state",
     "main": "mmrs_mavlink.driver",
     "not_looked_for": "mmrs_runtime.controllers.user_functions",
+    "standard": "mmrs_runtime.conditions",
+    "undecided": "mmrs_runtime.conditions",
     "where_expected": "mmrs_runtime.controllers.user_functions",
 }
 
 
 def __getattr__(name: str) -> object:
-    """Return what runs programs when it is asked for: to read one, its words are enough."""
-    if name not in _IN:
+    """Return what is asked for: to plan a mission, or to run it, a part is enough."""
+    if name not in __all__:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    found = getattr(import_module(_IN[name]), name)
+    found = getattr(import_module(_IN.get(name, "mmrs_mavlink.program")), name)
     globals()[name] = found
     return found
