@@ -2,10 +2,14 @@
 
 from dataclasses import replace
 
+from counts import many
 from hypothesis import strategies as st
 
 from mmrs_core.testing.small_programs import hold, notify, program, robot
 from mmrs_runtime.semantics import apply, enabled, initial, is_deadlock
+
+MOST_STATES = many(4_000, fast=1_500)
+"""States of a behaviour that are looked at before it counts as too large."""
 
 SILENT = {"begin", "end", "act"}
 
@@ -40,7 +44,7 @@ def _once(robots):
 
 @st.composite
 def _robots(draw, name, slots, choices, loops, resets, most):
-    moves = [f"m{number}" for number in range(draw(st.integers(1, 4)))]
+    moves = [f"m{number}" for number in range(draw(st.integers(1, many(5, fast=4))))]
     own = [slot.partition(".")[2] for slot in slots if slot.startswith(f"{name}.")]
     made = [
         hold(move, before=_actions(draw, slots, resets, most), after=_actions(draw, slots, resets, most))
@@ -65,7 +69,7 @@ def _actions(draw, slots, resets, most):
     return (notify(*chosen, active=not (resets and kind == 0)),)
 
 
-def deadlocks(behaviour, limit=1_500):
+def deadlocks(behaviour):
     """Return whether some run of the behaviour ends with a robot waiting; None: too many states."""
     behaviour = behaviour.executable
     first = _settled(behaviour, initial(behaviour))
@@ -78,7 +82,7 @@ def deadlocks(behaviour, limit=1_500):
         for step in enabled(behaviour, state):
             after = _settled(behaviour, apply(behaviour, state, step))
             if after not in seen:
-                if len(seen) >= limit:
+                if len(seen) >= MOST_STATES:
                     return None
                 seen.add(after)
                 pending.append(after)

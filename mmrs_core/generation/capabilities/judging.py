@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
-from itertools import chain
+from itertools import chain, zip_longest
 from typing import Literal, TypeAlias
 
 from mmrs_core.contributions.registry import Contributions
@@ -132,15 +132,15 @@ class Trial:
 
     def _same(self, probe: Probe) -> bool:
         """Return whether the same is rendered with the element and without it."""
-        files, others = self._rendered(probe.given), self._rendered(probe.without)
-        for file in files:
-            try:
-                other = next(others, None)
-            except UnsupportedError:
-                return False
-            if file != other:
-                return False
-        return next(others, None) is None
+        files, others = self._rendered(probe.given), self._rendered_at_all(probe.without)
+        return all(file == other for file, other in zip_longest(files, others))
+
+    def _rendered_at_all(self, input: TargetInput) -> Iterator[tuple[str, bytes] | UnsupportedError]:
+        """Yield each file, then the reason why a behaviour cannot be rendered, if it cannot."""
+        try:
+            yield from self._rendered(input)
+        except UnsupportedError as error:
+            yield error
 
     def _rendered(self, input: TargetInput) -> Iterator[tuple[str, bytes]]:
         """Yield the path and content of each file that is rendered for this behaviour.

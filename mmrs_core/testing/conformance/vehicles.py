@@ -81,7 +81,7 @@ class VehicleConformance(Conformance):
         """The robot holds its pose until the next movement."""
         driven = self._simulated(vehicle)
         driven.wait(0.0)
-        assert driven.state(STOPPED_SECONDS).position == driven.state(0.0).position
+        assert driven.state(100.0).position == driven.state(0.0).position
 
     @pytest.mark.parametrize("response", ["HOLD", "RETURN", "LAND", "SURFACE", "STOP_THRUST"])
     @pytest.mark.parametrize("share", [0.0, 0.3, 1.0])

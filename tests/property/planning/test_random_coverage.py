@@ -82,6 +82,6 @@ def test_a_random_target_is_covered_clear_of_what_is_closed(seed):
 
 
 @pytest.mark.thorough
-@pytest.mark.parametrize("seed", range(14, 440))
+@pytest.mark.parametrize("seed", [2, 3, *range(14, 440)])
 def test_many_random_targets_are_covered_clear_of_what_is_closed(seed):
     check(seed)

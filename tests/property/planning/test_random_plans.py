@@ -26,7 +26,7 @@ def test_a_random_plan_can_be_carried_out(seed):
 
 
 @pytest.mark.thorough
-@pytest.mark.parametrize("seed", range(40, 440))
+@pytest.mark.parametrize("seed", [0, 2, 5, 7, *range(40, 440)])
 def test_many_random_plans_can_be_carried_out(seed):
     check(seed)
 

@@ -182,7 +182,7 @@ def break_off(link: Link, kind: int) -> None:
 
 def left_of(link: Link, kind: int) -> str:
     """Clear a plan of which the vehicle took only a part; return what it has now, in words."""
-    # No answer to this either is told as what it is: nobody knows what is left.
+    # Without an answer to this either, what the vehicle has kept is unknown, and reported as such.
     with suppress(RefusedError):
         for _ in range(link.retries.tries):
             break_off(link, kind)

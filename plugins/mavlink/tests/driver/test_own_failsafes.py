@@ -79,7 +79,7 @@ def test_a_px4_does_too_and_may_hold_before(action, names):
 
 
 BY_HAND = {"poshold", "alt_hold", "stabilize"}
-"""Modes that a PX4 leaves the vehicle in for its pilot: nobody takes that for the vehicle's own doing."""
+"""Modes in which a PX4 leaves the vehicle to its pilot: they are not taken for a failsafe."""
 
 
 @pytest.mark.parametrize(("action", "names"), px4_failsafes.ON_SETPOINT_LOSS.items())
