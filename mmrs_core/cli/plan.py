@@ -10,14 +10,14 @@ from typing import Annotated
 import typer
 
 from mmrs_core.cli.conversion import SchemaLocation, places_in
-from mmrs_core.cli.output import say, say_json
+from mmrs_core.cli.output import say, say_json, tell
 from mmrs_core.cli.parameters import Context, Project, Robots, Seed, robot_files
 from mmrs_core.cli.plan_words import plan_lines, plan_summary
 from mmrs_core.cli.protection import files_of, refuse_handwritten, refuse_inputs, refuse_inside
 from mmrs_core.cli.session import Session, Stages, require_safe
 from mmrs_core.cli.settings import Json, settings_of
 from mmrs_core.diagnostics import has_errors, in_order
-from mmrs_core.errors import InvalidModelError
+from mmrs_core.errors import InvalidModelError, MmrsError
 from mmrs_core.languages.modelset import model_in
 from mmrs_core.pipeline import save
 
@@ -80,7 +80,12 @@ def plan(
     file = output or model_in(folder, "behaviour") or folder / "behaviour.xmi"
     require_writable(stages, file, "" if force else "--force replaces it")
     places = places_in(schema_location, session.contributions.languages, file)
-    require_sound(stages, str(project))
+    try:
+        require_sound(stages, str(project))
+    except MmrsError:
+        if file.exists():
+            tell(f"unchanged: {file} is of an earlier plan")
+        raise
     save(stages.transformed[0], file, session.contributions, places)
     if json:
         summary = plan_summary(stages.scene, stages.plan)

@@ -54,7 +54,8 @@ def ground(models: ModelSet) -> Scene:
     faults = [*laid.faults, *_incomplete(models), *_misdirected(mission), *_unknown_types(models)]
     if faults:
         found = in_order(faults)
-        rest = f", and {len(found) - 1} more faults" if len(found) > 1 else ""
+        others = len(found) - 1
+        rest = f", and {others} more {'fault' if others == 1 else 'faults'}" if others else ""
         raise InvalidModelError(f"{found[0].place}: {found[0].message}{rest}", found)
     tasks = names_of(children(mission, "tasks"))
     return Scene(

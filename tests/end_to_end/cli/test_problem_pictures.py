@@ -146,3 +146,14 @@ def test_what_cannot_be_read_at_all_is_not_drawn(field):
     (folder / MISSION).write_text("<mission", "utf-8")
     assert run(["preview", str(folder)]) == 3
     assert not (folder / "preview.html").exists()
+
+
+def test_a_refused_plan_says_that_an_earlier_behaviour_is_unchanged(field, capsys):
+    folder = field(only="east terrace")
+    assert run(["plan", str(folder)]) == 0
+    behaviour = folder / "behaviour.xmi"
+    before = behaviour.read_bytes()
+    assert "unchanged" not in capsys.readouterr().err
+    assert run(["plan", str(field(LATE, only="east terrace"))]) == 4
+    assert f"unchanged: {behaviour} is of an earlier plan" in capsys.readouterr().err
+    assert behaviour.read_bytes() == before

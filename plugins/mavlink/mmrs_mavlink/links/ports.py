@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import socket
+from errno import EADDRINUSE
 from typing import Any
 
 from mmrs_runtime.ports import NOTHING, Address, Port, Received
@@ -79,7 +80,13 @@ class UdpPort:
         self._socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
         self._peer = None if listens else address
         if listens:
-            self._socket.bind(address)
+            try:
+                self._socket.bind(address)
+            except OSError as error:
+                self._socket.close()
+                if error.errno != EADDRINUSE:
+                    raise
+                raise OSError("another program listens there: end it, or choose another port") from error
 
     def read(self, seconds: float) -> Received:
         """Return the next datagram."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import socket
 import threading
 
 import pytest
@@ -10,7 +11,7 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from mmrs_mavlink.links.link import Link
 from mmrs_mavlink.links.messages import ANYBODY
-from mmrs_mavlink.links.ports import split_system
+from mmrs_mavlink.links.ports import open_port, split_system
 from mmrs_mavlink.links.radio import Radio
 from mmrs_mavlink.links.radios import Radios
 from mmrs_mavlink.vehicles.preparation import HEARING_SECONDS, hear_out
@@ -35,6 +36,13 @@ def test_each_link_hears_its_own_vehicle_only(shared):
     shared.wire.say(ITEM, system=2, sender=THERE)
     assert shared.second.wait(lambda: shared.second.latest("MISSION_CURRENT"), 5.0)
     assert shared.first.latest("MISSION_CURRENT") is None
+
+
+def test_a_port_that_another_program_listens_on_is_refused_with_the_way_out():
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as other:
+        other.bind(("127.0.0.1", 0))
+        with pytest.raises(OSError, match="another program listens there: end it, or choose another port"):
+            open_port(f"udpin:127.0.0.1:{other.getsockname()[1]}")
 
 
 def test_what_is_sent_goes_to_where_the_system_speaks_from(shared):
