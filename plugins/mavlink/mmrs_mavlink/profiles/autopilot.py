@@ -104,6 +104,7 @@ class Autopilot:
         number: of MAV_AUTOPILOT, which heartbeats report.
         guidance: its `vehicles.guidance.Guidance`, as ``module:class``: how it is steered, step by step.
         streams: whether it is steered by a stream of set-points that move towards their target.
+        restores_mode: whether it returns, as it disarms, to the last mode that it may be armed in.
         streamed: messages that it alone knows, with the rate at which they are requested, hertz.
         integers: parameters of 32-bit whole numbers; others are of single precision.
         copies_bytes: whether the bytes of whole numbers are copied into parameters, and not their values.
@@ -125,6 +126,7 @@ class Autopilot:
     number: int
     guidance: str
     streams: bool = False
+    restores_mode: bool = False
     streamed: Mapping[str, float] = field(default_factory=dict)
     integers: frozenset[str] = frozenset()
     copies_bytes: bool = False

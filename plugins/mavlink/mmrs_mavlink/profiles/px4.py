@@ -72,6 +72,7 @@ PX4 = Autopilot(
     12,
     "mmrs_mavlink.vehicles.px4:Px4Guidance",
     streams=True,
+    restores_mode=True,
     streamed={"ESTIMATOR_STATUS": 1.0, "WIND_COV": 1.0},
     integers=frozenset(
         {
@@ -125,8 +126,9 @@ PX4 = Autopilot(
 )
 """It takes the commands of ``mavlink_mission.cpp`` (``parse_mavlink_mission_item``), and refuses a mission
 with any other; what it keeps of them was read there too: numbers of single precision, headings between -180
-and 180 degrees. It reports the commanded item (``mission.cpp``, ``set_current_mission_index``); with
-COM_TAKEOFF_ACT = 1 it begins its mission as soon as it has taken off (``Commander.cpp``,
+and 180 degrees. It cannot be armed in the modes that land or return, so that it leaves them as it disarms
+(``UserModeIntention.cpp``). It reports the commanded item (``mission.cpp``, ``set_current_mission_index``);
+with COM_TAKEOFF_ACT = 1 it begins its mission as soon as it has taken off (``Commander.cpp``,
 ``checkForMissionUpdate``), of whichever run. A run restores the speed that was last set before its item, of
 whichever run (``mission_base.cpp``, ``on_activation``). A radius of 0 is NAV_ACC_RAD, which is 10 m at
 first.

@@ -28,6 +28,9 @@ EQUATOR, SQUARED_ECCENTRICITY = 6_378_137.0, 6.694_379_990_14e-3
 
 NEAR_GROUND = 0.05
 
+NOT_TO_BE_ARMED_IN = frozenset({"land", "return"})
+"""Modes that a PX4 refuses to be armed in (``mode_requirements.cpp``)."""
+
 SPEEDS = (("WP_SPD", 1.0), ("WPNAV_SPEED", 0.01), ("WP_SPEED", 1.0), ("MPC_XY_CRUISE", 1.0))
 """Parameters of the default speed, with their units in m/s; the first is that of copters from 4.7 on."""
 
@@ -60,7 +63,7 @@ class SimulatedAutopilot:
         history: (seconds, command, parameters) of every executed command and mission item.
         visited: (seconds, item) of every completed mission item.
         track: (seconds, north, east, up) while armed, ten times a second.
-        modes: (seconds, number) of every mode change.
+        modes: (seconds, number) of every mode change. armable_mode: the last mode that a PX4 may be armed in.
         texts: (severity, text) of STATUSTEXTs to be sent. said: (seconds, severity, text) of all of them.
         stores: items by mission type.
         item: current mission item. held: seconds at its position. finished: whether the mission is over.
@@ -95,6 +98,7 @@ class SimulatedAutopilot:
         self.numbers = numbers(settings)
         self.mode_name = first_mode(settings)
         self.mode = self.numbers[self.mode_name]
+        self.armable_mode = self.mode_name
         self.history: list[tuple[float, int, tuple[float, ...]]] = []
         self.visited: list[tuple[float, int]] = []
         self.track: list[tuple[float, float, float, float]] = []
@@ -247,6 +251,8 @@ class SimulatedAutopilot:
             self.heartbeat_due = True
             self._resume_mission(name)
         self.mode, self.mode_name = number, name
+        if name not in NOT_TO_BE_ARMED_IN:
+            self.armable_mode = name
         self.body.target = self.body.onward = self.body.origin = None
         self.body.speed = self._entry_speed(name)
         self.body.adrift = self.aimed = False
@@ -285,9 +291,16 @@ class SimulatedAutopilot:
         return (*self.degrees(), self.settings.altitude + height)
 
     def disarm(self) -> None:
-        """Disarm; the mission restarts at its first item."""
+        """Disarm; the mission restarts at its first item.
+
+        A PX4 returns to the last mode that it may be armed in (``UserModeIntention::onDisarm``).
+        """
         if self.armed:
             self.say(mavlink.MAV_SEVERITY_INFO, "Disarming motors")
+            if self.px4 and self.mode_name != self.armable_mode:
+                self.mode_name, self.mode = self.armable_mode, self.numbers[self.armable_mode]
+                self.modes.append((self.time, self.mode))
+                self.heartbeat_due = True
         self.armed, self.item, self.finished = False, 0, False
         self.body.rest_at(self.body.position[2])
 

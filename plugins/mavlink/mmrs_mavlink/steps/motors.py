@@ -20,12 +20,16 @@ COMES_DOWN_IN = frozenset({modes.LAND, modes.SURFACE, "return", "smart return"})
 
 
 class Motors:
-    """Keeps whether a vehicle is in flight, or below the surface."""
+    """Keeps whether a vehicle is in flight, or below the surface, and the mode in which it was armed last.
+
+    A PX4 shows another one as soon as it has disarmed.
+    """
 
     def __init__(self, vehicle: MavlinkVehicle, profile: VehicleProfile) -> None:
         """Look at a vehicle of a class."""
         self._vehicle, self._profile = vehicle, profile
         self._flown = False
+        self._ran_in = ""
 
     def renew(self) -> None:
         """Forget what was: the vehicle is on the ground."""
@@ -45,7 +49,10 @@ class Motors:
         """
         tells, state = self._vehicle.telemetry, self._vehicle.state()
         below = self._profile.dives and state.place.height < -TOUCHING
-        if self._profile.drives or not moving or state.mode in COMES_DOWN_IN:
+        if tells.armed():
+            self._ran_in = state.mode
+        comes_down = not COMES_DOWN_IN.isdisjoint((self._ran_in, state.mode))
+        if self._profile.drives or not moving or comes_down:
             low = not below and (tells.grounded() or state.place.height < TOUCHING)
             self._flown = self._flown and moving and not low
         elif tells.armed():

@@ -133,7 +133,7 @@ class ModeControl:
         number, mode = self._telemetry.mode(), self._mode or "take-off"
         if (glimpse := self._glimpse()) not in (None, number):
             raise self._overtaken(glimpse, mode)
-        if not self._accepted or number in self._accepted:
+        if not self._accepted or number in self._accepted or self._restored(number):
             self._requests.is_back()
         elif not self._strays():
             self._ask_again(number)
@@ -143,7 +143,15 @@ class ModeControl:
     def _strays(self) -> bool:
         """Return whether the vehicle is in a mode that was not commanded here."""
         number = self._telemetry.mode()
-        return bool(self._accepted) and number not in self._accepted and not self._requests.own(number)
+        if not self._accepted or number in self._accepted or self._restored(number):
+            return False
+        return not self._requests.own(number)
+
+    def _restored(self, number: int) -> bool:
+        """Return whether a vehicle may have entered the mode of a number by disarming."""
+        profile = self._link.profile
+        restores = profile.autopilot.restores_mode and not self._telemetry.armed()
+        return restores and not profile.is_pilots(number)
 
     def _glimpse(self) -> int | None:
         """Return a mode that only a pilot chooses, if one was shown since the last call.

@@ -175,6 +175,28 @@ def test_a_take_off_goes_straight_up_to_a_height_above_sea_level_and_may_change_
         mode_control.check()
 
 
+@pytest.mark.parametrize("restored", [OFFBOARD, MISSION, LOITER])
+def test_a_mode_that_it_restores_as_it_disarms_is_not_a_pilots(px4, restored):
+    mode_control, telemetry, autopilot = px4
+    mode_control.enter(modes.LAND)
+    autopilot.wire.beat(autopilot=PX4, mode=restored, armed=False)
+    eventually(lambda: telemetry.mode() == restored)
+    mode_control.check()
+    asked = len(autopilot.wire.of("COMMAND_LONG"))
+    mode_control.check()
+    assert len(autopilot.wire.of("COMMAND_LONG")) == asked
+
+
+@pytest.mark.parametrize(("mode", "armed"), [(POSITION, False), (POSITION, True), (MISSION, True)])
+def test_another_mode_while_it_lands_is_a_pilots(px4, mode, armed):
+    mode_control, telemetry, autopilot = px4
+    mode_control.enter(modes.LAND)
+    autopilot.wire.beat(autopilot=PX4, mode=mode, armed=armed)
+    eventually(lambda: telemetry.mode() == mode)
+    with pytest.raises(FaultError, match="left mode land"):
+        mode_control.check()
+
+
 def test_a_mission_has_no_home():
     items = [Item(16, x=n) for n in range(3)]
     assert [item.x for item in items_for(PX4_AUTOPILOT, items)] == [1, 2]
