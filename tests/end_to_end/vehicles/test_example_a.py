@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import os
-
 import pytest
 from example_flight.fleets import FLEETS
 from example_flight.mission import SLACK, Mission
@@ -17,12 +15,11 @@ pytestmark = pytest.mark.real_time("faults")
 
 
 def _needs(fleet: str) -> list[pytest.MarkDecorator]:
-    variable = getattr(FLEETS[fleet], "variable", "")
-    if not variable:
+    firmware = getattr(FLEETS[fleet], "firmware", None)
+    if firmware is None:
         return []
-    missing = not os.environ.get(variable)
-    reason = f"{variable} names no binary: the example was not flown on {fleet}"
-    return [pytest.mark.peer, pytest.mark.skipif(missing, reason=reason)]
+    reason = f"{firmware.variable} names no binary: the example was not flown on {fleet}"
+    return [pytest.mark.peer, pytest.mark.skipif(not firmware.binary, reason=reason)]
 
 
 VEHICLES = [pytest.param(fleet, marks=_needs(fleet)) for fleet in FLEETS]

@@ -25,7 +25,7 @@ def test_its_vehicles_are_started_reached_and_recorded(tmp_path, monkeypatch):
     binary = tmp_path / "arducopter"
     binary.write_text(f'#!/bin/sh\nexec "{sys.executable}" "{PEERS}/arducopter_stand_in.py" "$@"\n')
     binary.chmod(0o755)
-    monkeypatch.setenv(ArduCopter.variable, str(binary))
+    monkeypatch.setenv(ArduCopter.firmware.variable, str(binary))
     program = two_drones()
     write(render(MAVLINK_PYTHON, target_input(program)), tmp_path / "controllers")
     degrees = degrees_of([robot.home[:2] for robot in program.robots], program.frame)

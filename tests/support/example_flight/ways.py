@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import subprocess
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from ports import free_endpoint
@@ -12,21 +12,39 @@ from warm_python import python
 from example_flight.mission import Mission
 
 PATIENCE = 280.0
+RUN = ("-W", "error", "-m", "mmrs_core", "run")
 
 
 def by_controllers(mission: Mission, links: Mapping[str, str], speedup: float) -> tuple[dict[str, int], str]:
     """Start a controller for each robot, which keep their slots by Zenoh; return exit codes and words."""
-    endpoint = free_endpoint()
     folder = mission.folder / "controllers"
-    processes = {}
+    commands = controller_commands(folder, links, speedup, mission.folder / "logs")
+    processes = {
+        robot: subprocess.Popen(
+            [python(), *command], cwd=folder, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True
+        )
+        for robot, command in commands.items()
+    }
+    return _ends(processes)
+
+
+def controller_commands(
+    folder: Path, links: Mapping[str, str], speedup: float, logs: Path
+) -> dict[str, list[str]]:
+    """Return what starts the generated controllers in a folder, by robot, behind the interpreter."""
+    endpoint = free_endpoint()
+    commands = {}
     for number, (robot, link) in enumerate(links.items()):
         bus = ("--bus-connect" if number else "--bus-listen", endpoint)
-        command = [python(), str(_script(folder, robot)), "--connect", link]
-        command += ["--speedup", f"{speedup:g}", "--log", str(mission.folder / "logs"), *bus]
-        processes[robot] = subprocess.Popen(
-            command, cwd=folder, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True
-        )
-    return _ends(processes)
+        command = [str(_script(folder, robot)), "--connect", link, "--speedup", f"{speedup:g}"]
+        commands[robot] = [*command, "--log", str(logs), *(bus if len(links) > 1 else ())]
+    return commands
+
+
+def run_command(models: Sequence[str], links: Mapping[str, str], speedup: float, logs: Path) -> list[str]:
+    """Return what starts `mmrs run` for the models, behind the interpreter."""
+    connect = [part for robot, link in links.items() for part in ("--connect", f"{robot}={link}")]
+    return [*RUN, *models, "--speedup", f"{speedup:g}", "--log", str(logs), *connect]
 
 
 def by_run(mission: Mission, links: Mapping[str, str], speedup: float) -> tuple[dict[str, int], str]:
@@ -43,10 +61,7 @@ def by_behaviour(mission: Mission, links: Mapping[str, str], speedup: float) -> 
 def _run(
     mission: Mission, links: Mapping[str, str], speedup: float, *models: str
 ) -> tuple[dict[str, int], str]:
-    command = [python(), "-W", "error", "-m", "mmrs_core", "run", *models, "--speedup", f"{speedup:g}"]
-    command += ["--log", str(mission.folder / "logs")]
-    for robot, link in links.items():
-        command += ["--connect", f"{robot}={link}"]
+    command = [python(), *run_command(models, links, speedup, mission.folder / "logs")]
     run = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
     return _ends({"all": run})
 

@@ -1,0 +1,163 @@
+"""Behaviours of one robot or a few, as short routes, and the shipped examples."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from shutil import copy, copytree
+
+from mmrs_core.resources import shipped
+
+Place = tuple[float, float, float]
+"""Metres east, north and up of the robot's home; under water, up of the surface."""
+
+ORIGIN = 'latitude="42.35" longitude="13.39" altitude="630.0"'
+AT_SEA = 'latitude="40.66" longitude="14.30" altitude="0.0"'
+
+
+@dataclass(frozen=True, slots=True)
+class Craft:
+    """A robot type of an example, and what its behaviours begin and end with.
+
+    Attributes:
+        example, file: where the type stands. type: its name.
+        goes: metaclass of its legs. up, down: its first and last moves, with their attributes.
+        origin: where it is.
+    """
+
+    example: str
+    file: str
+    type: str
+    goes: str = "behaviour:GoTo"
+    up: str = ""
+    down: str = ""
+    origin: str = ORIGIN
+
+
+COPTER = Craft(
+    "carbon-dioxide",
+    "quad-650.xmi",
+    "Quad 650",
+    "multicopter:GoTo",
+    '<moves xsi:type="multicopter:TakeOff" name="up" altitude="12.0"/>',
+    '<moves xsi:type="multicopter:Land" name="down"/>',
+)
+ROVER = Craft("drone-and-rover", "field-rover.xmi", "Field rover")
+SUB = Craft("outfall", "survey-auv.xmi", "Survey AUV", origin=AT_SEA)
+
+
+@dataclass(frozen=True, slots=True)
+class Route:
+    """What one robot does.
+
+    Attributes:
+        robot: its name.
+        craft: that goes.
+        places: in this order; the moves are ``p0``, ``p1`` and so on.
+        speed: metres per second.
+        fluid: whether it passes all places but the last.
+        stays: seconds that it stays at the first place (move ``stay``).
+        policies: event, response, seconds.
+        home: metres east and north of the origin.
+    """
+
+    robot: str
+    craft: Craft
+    places: Sequence[Place]
+    speed: float
+    fluid: bool = False
+    stays: float = 0.0
+    policies: Sequence[tuple[str, str, float]] = ()
+    home: tuple[float, float] = (0.0, 0.0)
+
+
+def routes(*given: Route, forbidden: Sequence[Place] = ()) -> Callable[[Path], None]:
+    """Return what writes a behaviour of these routes; `forbidden` is the shell of an area, of the origin."""
+
+    def write(folder: Path) -> None:
+        (folder / "robots").mkdir(parents=True)
+        for craft in {route.craft for route in given}:
+            copy(shipped("examples") / craft.example / "robots" / craft.file, folder / "robots")
+        (folder / "context.xmi").write_text(_context(given[0].craft.origin, forbidden), "utf-8")
+        (folder / "behaviour.xmi").write_text(_behaviour(given), "utf-8")
+
+    return write
+
+
+def example(name: str) -> Callable[[Path], None]:
+    """Return what copies a shipped example."""
+    return lambda folder: Path(copytree(shipped("examples") / name, folder)) and None
+
+
+HEAD = (
+    '<?xml version="1.0" encoding="UTF-8"?>\n<{root} xmi:version="2.0" xmlns:xmi="http://www.omg.org/XMI"'
+    ' xmlns:xsi="http://www.w3.org/2001/XMLSchema-instance" xmlns:behaviour="urn:mmrs:behaviour:1.0"'
+    ' xmlns:multicopter="urn:mmrs:multicopter:1.0" xmlns:context="urn:mmrs:context:1.0"'
+    ' xmlns:mission="urn:mmrs:mission:1.0" {rest}>\n'
+)
+
+
+def _behaviour(given: Sequence[Route]) -> str:
+    targets = [f'<targets xsi:type="behaviour:GeoCoordinate" name="origin" {given[0].craft.origin}/>']
+    robots = [_robot(number, route, targets) for number, route in enumerate(given)]
+    rest = 'name="Route" altitudeReference="MSL" origin="//@targets.0" positionError="0.5" reserve="0.2"'
+    accepted = "".join(
+        f"<acceptedUnknowns>{each}</acceptedUnknowns>\n" for each in ("endurance", "energy", "range")
+    )
+    body = "\n".join((accepted, *robots, *targets))
+    return HEAD.format(root="behaviour:Behaviour", rest=rest) + body + "\n</behaviour:Behaviour>\n"
+
+
+def _robot(number: int, route: Route, targets: list[str]) -> str:
+    (east, north), craft = route.home, route.craft
+    home = _target(targets, f"{route.robot} home", (east, north, 0.0))
+    moves = ['<moves xsi:type="behaviour:Start" name="start"/>', *filter(None, [craft.up])]
+    fluid: list[bool] = [False] * len(moves)
+    for index, (x, y, z) in enumerate(route.places):
+        target = _target(targets, f"{route.robot} p{index}", (east + x, north + y, z))
+        moves.append(
+            f'<moves xsi:type="{craft.goes}" name="p{index}" target="{target}" speed="{route.speed:g}"/>'
+        )
+        fluid.append(route.fluid and index < len(route.places) - 1)
+        if index == 0 and route.stays:
+            moves.append(f'<moves xsi:type="behaviour:HoldPosition" name="stay" duration="{route.stays:g}"/>')
+            fluid[-1] = False
+            fluid.append(False)
+    moves += [*filter(None, [craft.down]), '<moves xsi:type="behaviour:Stop" name="stop"/>']
+    fluid += [False] * (len(moves) - len(fluid))
+    at = f"//@robots.{number}/@moves."
+    following = [
+        f'<moveTransitions from="{at}{index}" to="{at}{index + 1}"{_fluid(fluid[index])}/>'
+        for index in range(len(moves) - 1)
+    ]
+    policies = [
+        f'<policies event="{event}" response="{response}" after="{after:g}"/>'
+        for event, response, after in route.policies
+    ]
+    opening = f'<robots id="{route.robot}" typeName="{craft.type}" home="{home}">'
+    return "\n".join((opening, *moves, *following, *policies, "</robots>"))
+
+
+def _fluid(passes: bool) -> str:
+    return ' fluid="true"' if passes else ""
+
+
+def _target(targets: list[str], name: str, place: Place) -> str:
+    x, y, z = place
+    targets.append(
+        f'<targets xsi:type="behaviour:RelativeCoordinate" name="{name}" x="{x:g}" y="{y:g}" z="{z:g}"'
+        ' reference="//@targets.0"/>'
+    )
+    return f"//@targets.{len(targets) - 1}"
+
+
+def _context(origin: str, forbidden: Sequence[Place]) -> str:
+    shell = "".join(
+        f'<shell xsi:type="mission:RelativeCoordinate" x="{x:g}" y="{y:g}"/>' for x, y, _ in forbidden
+    )
+    area = f'<forbiddenAreas name="school" safetyDistance="1.0">{shell}</forbiddenAreas>\n' if shell else ""
+    rest = 'name="Route" crs="EPSG:4326"'
+    weather = '<environment windSpeed="0.0" windDirection="0.0" temperature="20.0"/>\n'
+    zero = f'<origin xsi:type="mission:GeoCoordinate" {origin}/>\n'
+    return HEAD.format(root="context:Context", rest=rest) + zero + area + weather + "</context:Context>\n"

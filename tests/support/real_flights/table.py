@@ -1,0 +1,233 @@
+"""The flights: examples, ways of flying, and what goes wrong with each class of vehicle."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from real_flights.flight import (
+    AWAY,
+    CONTROLLERS,
+    HOLDS,
+    HOME,
+    MEND,
+    PLAN,
+    SURFACE,
+    Begun,
+    Change,
+    Cut,
+    Flight,
+    Happening,
+    Kill,
+    Later,
+    Order,
+    Pilot,
+    Reboot,
+    Resume,
+    When,
+)
+from real_flights.routes import COPTER, ROVER, SUB, Craft, Route, example, routes
+
+SQUARE = ((0.0, 30.0, 12.0), (25.0, 30.0, 12.0), (25.0, 0.0, 12.0), (0.0, 0.0, 12.0))
+LAWN = tuple(
+    (18.0 * row, 60.0 * (row % 2 if end == 0 else 1 - row % 2), 12.0) for row in range(6) for end in (0, 1)
+)
+YARD = ((0.0, 25.0, 0.0), (20.0, 35.0, 0.0), (35.0, 20.0, 0.0), (20.0, 5.0, 0.0), (0.0, 0.0, 0.0))
+STREET = ((0.0, 12.0, 0.0), (0.0, 26.0, 0.0), (10.0, 30.0, 0.0), (22.0, 30.0, 0.0), (30.0, 20.0, 0.0))
+ARCS = tuple(
+    (x, y, 0.0)
+    for x, y in ((0, 12), (0.08, 12.63), (0.33, 13.2), (0.7, 13.7), (1.2, 14.1), (1.8, 14.3), (15, 14.4))
+)
+REEF = ((0.0, 20.0, -3.0), (15.0, 20.0, -5.0), (15.0, 0.0, -5.0), (0.0, 0.0, -3.0), (0.0, 0.0, 0.0))
+
+
+def _short(craft: Craft, *policies: tuple[str, str, float], stays: float = 0.0, fluid: bool = False) -> Route:
+    """Return a short route of a class of vehicle."""
+    places, speed = {
+        COPTER: (SQUARE, 5.0),
+        ROVER: (YARD, 1.5),
+        SUB: (REEF, 0.8),
+    }[craft]
+    name = {COPTER: "Alba", ROVER: "Badger", SUB: "Nereid"}[craft]
+    return Route(name, craft, places, speed, fluid=fluid, stays=stays, policies=policies)
+
+
+NAMES: Mapping[Craft, str] = {COPTER: "copter", ROVER: "rover", SUB: "sub"}
+AT_LEG = Begun("p1", 3.0)
+"""On the second leg, under way."""
+
+NO_POSITION = {"SIM_GPS1_ENABLE": 0.0}
+LOW_BATTERY = {"SIM_BATT_VOLTAGE": 9.0}
+
+
+def _upset(
+    craft: Craft,
+    name: str,
+    *happens: tuple[When, Happening],
+    ends: str,
+    fault: str = "",
+    policy: tuple[str, str, float] | None = None,
+    parameters: Mapping[str, float] | None = None,
+    resumed: bool = False,
+) -> Flight:
+    """Return a flight on the short route in which something happens."""
+    return Flight(
+        f"{NAMES[craft]}: {name}",
+        routes(_short(craft, *filter(None, [policy]))),
+        happens=happens,
+        ends=ends,
+        fault=fault,
+        deviation=None if not resumed else 3.0,
+        landing=4.0 if craft is not COPTER else 1.0,
+        parameters=parameters or {},
+    )
+
+
+def _faults(craft: Craft) -> tuple[Flight, ...]:
+    back = {COPTER: HOME, ROVER: HOME, SUB: SURFACE}[craft]
+    response = {COPTER: "RETURN", ROVER: "RETURN", SUB: "SURFACE"}[craft]
+    halt = {COPTER: AWAY, ROVER: HOLDS, SUB: SURFACE}[craft]
+    return (
+        _upset(
+            craft,
+            "link cut for 40 s",
+            (AT_LEG, Cut()),
+            (Later(40.0), MEND),
+            ends=back,
+            fault="LINK_LOST",
+            policy=("LINK_LOST", response, 5.0),
+        ),
+        _upset(
+            craft,
+            "telemetry lost",
+            (AT_LEG, Cut(outwards=False)),
+            (Later(60.0), MEND),
+            ends=back,
+            fault="LINK_LOST",
+            policy=("LINK_LOST", response, 5.0),
+        ),
+        _upset(craft, "process killed", (AT_LEG, Kill()), ends=back, policy=("LINK_LOST", response, 5.0)),
+        _upset(craft, "satellites lost", (AT_LEG, Change(NO_POSITION)), ends=halt, fault="POSITION_LOST"),
+        _upset(
+            craft,
+            "battery low",
+            (AT_LEG, Change({"SIM_BATT_CAP_AH": 100.0, "BATT_LOW_MAH": 99_999.0, "BATT_CAPACITY": 100.0})),
+            ends=back,
+            policy=("BATTERY_LOW", response, 1.0),
+        ),
+        _upset(craft, "autopilot restarts", (AT_LEG, Reboot()), ends=HOLDS, fault="VEHICLE_RESTARTED"),
+    )
+
+
+def _orders(craft: Craft) -> tuple[Flight, ...]:
+    land = {COPTER: AWAY, ROVER: HOLDS, SUB: SURFACE}[craft]
+    return (
+        Flight(
+            f"{NAMES[craft]}: hold, then resume",
+            routes(_short(craft)),
+            happens=((AT_LEG, Order("hold")), (Later(10.0), Order("resume"))),
+            deviation=3.0,
+            landing=4.0 if craft is not COPTER else 1.0,
+        ),
+        _upset(craft, "order return", (AT_LEG, Order("return")), ends=HOME, fault="ORDERED"),
+        _upset(craft, "order stop", (AT_LEG, Order("stop")), ends=HOLDS, fault="STOPPED"),
+        _upset(craft, "order land", (AT_LEG, Order("land")), ends=land, fault="ORDERED"),
+        _upset(
+            craft,
+            "pilot takes over",
+            (AT_LEG, Pilot({COPTER: 5, ROVER: 4, SUB: 19}[craft])),
+            ends=HOLDS,
+            fault="TAKEN_OVER",
+        ),
+    )
+
+
+def _resumes(craft: Craft) -> tuple[Flight, ...]:
+    moments = {
+        "on a leg": Begun("p1", 3.0),
+        "at a place": Begun("p1", 0.2),
+        "on the first leg": Begun("p0", 1.0),
+        "on the last leg": Begun(f"p{len({COPTER: SQUARE, ROVER: YARD, SUB: REEF}[craft]) - 1}", 2.0),
+    }
+    if craft is COPTER:
+        moments |= {"climbing": Begun("up", 3.0), "landing": Begun("down", 3.0)}
+    return tuple(
+        _upset(
+            craft,
+            f"killed and resumed, {moment}",
+            (when, Kill()),
+            (Later(1.0), Resume()),
+            ends="done",
+            resumed=True,
+        )
+        for moment, when in moments.items()
+    )
+
+
+def _ways(craft: Craft) -> tuple[Flight, ...]:
+    landing = 1.0 if craft is COPTER else 4.0
+    given = [
+        Flight(f"{NAMES[craft]}: legs", routes(_short(craft)), landing=landing),
+        Flight(f"{NAMES[craft]}: fluid", routes(_short(craft, fluid=True)), landing=landing, deviation=3.0),
+        Flight(
+            f"{NAMES[craft]}: plan in AUTO", routes(_short(craft)), way=PLAN, landing=landing, deviation=3.0
+        ),
+        Flight(f"{NAMES[craft]}: signed link", routes(_short(craft)), signed=True, landing=landing),
+    ]
+    return tuple(given)
+
+
+EXAMPLES = (
+    Flight("carbon-dioxide", example("carbon-dioxide"), speedup=3.0),
+    Flight("carbon-dioxide, controllers", example("carbon-dioxide"), way=CONTROLLERS, speedup=3.0),
+    Flight("carbon-dioxide, plan in AUTO", example("carbon-dioxide"), robots=("Alba",), way=PLAN),
+    Flight("handwritten", example("handwritten"), speedup=4.0),
+    Flight("solar-park", example("solar-park"), speedup=4.0),
+    Flight("drone-and-rover", example("drone-and-rover"), speedup=4.0, deviation=3.0, landing=4.0),
+    Flight("mixed-team", example("mixed-team"), speedup=2.0, deviation=3.0, landing=4.0),
+    Flight("outfall", example("outfall"), deviation=3.0, landing=4.0),
+    Flight("outfall, plan in AUTO", example("outfall"), way=PLAN, deviation=3.0, landing=4.0),
+)
+LAWNS = (
+    Flight(
+        "lawn of three",
+        routes(
+            *(
+                Route(name, COPTER, (*LAWN, (0.0, 0.0, 12.0)), 6.0, fluid=True, home=(150.0 * number, 0.0))
+                for number, name in enumerate(("Uno", "Due", "Tre"))
+            )
+        ),
+        deviation=2.0,
+        speedup=4.0,
+    ),
+)
+ROVERS = (
+    Flight("rover: long legs", routes(Route("Badger", ROVER, STREET, 1.5)), deviation=3.0, landing=4.0),
+    Flight("rover: arcs", routes(Route("Badger", ROVER, ARCS, 1.0)), deviation=3.0, landing=4.0),
+)
+FENCES = tuple(
+    _upset(
+        craft,
+        "fence broken",
+        (AT_LEG, Change({"FENCE_TYPE": 6.0, "FENCE_RADIUS": 15.0, "FENCE_ENABLE": 1.0})),
+        ends=HOME,
+        fault="FENCE_BREACHED",
+        policy=("FENCE_BREACHED", "RETURN", 0.0),
+    )
+    for craft in (COPTER, ROVER)
+)
+PX4S = (
+    Flight("PX4: legs", routes(_short(COPTER)), px4=True, deviation=3.0, speedup=1.0),
+    Flight("PX4: fluid", routes(_short(COPTER, fluid=True)), px4=True, deviation=3.0, speedup=1.0),
+)
+
+FLIGHTS = (
+    *(flight for craft in (COPTER, ROVER, SUB) for flight in _ways(craft)),
+    *ROVERS,
+    *LAWNS,
+    *(flight for craft in (COPTER, ROVER, SUB) for flight in _orders(craft)),
+    *(flight for craft in (COPTER, ROVER, SUB) for flight in _faults(craft)),
+    *FENCES,
+    *(flight for craft in (COPTER, ROVER, SUB) for flight in _resumes(craft)),
+    *EXAMPLES,
+    *PX4S,
+)
