@@ -15,6 +15,8 @@ from __future__ import annotations
 
 import argparse
 import os
+import re
+import signal
 import sys
 import tempfile
 import time
@@ -94,6 +96,7 @@ def main() -> int:
             file=sys.stderr,
         )
         return 2
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))  # vehicles and programs end with it
     print(f"# Flights on autopilots' own simulations ({datetime.now(UTC):%Y-%m-%d %H:%M} UTC)\n")
     print(line(HEAD), line(("---",) * len(HEAD)), sep="\n", flush=True)
     versions: set[str] = set()
@@ -101,7 +104,7 @@ def main() -> int:
     begun = time.monotonic()
     with tempfile.TemporaryDirectory() as temporary:
         for flight in flights:
-            folder = (given.keep or Path(temporary)) / flight.name.replace(":", "").replace(" ", "-")
+            folder = (given.keep or Path(temporary)) / re.sub(r"\W+", "-", flight.name)
             if lacking := missing(flight, folder):
                 left_out[flight.name] = lacking
                 continue

@@ -122,5 +122,5 @@ class Flight:
     parameters: Mapping[str, float] = field(default_factory=dict)
     arguments: tuple[str, ...] = ()
     signed: bool = False
-    speedup: float = 6.0
+    speedup: float = 4.0
     px4: bool = False

@@ -68,6 +68,7 @@ def _upset(
     policy: tuple[str, str, float] | None = None,
     parameters: Mapping[str, float] | None = None,
     resumed: bool = False,
+    speedup: float = 4.0,
 ) -> Flight:
     """Return a flight on the short route in which something happens."""
     return Flight(
@@ -79,6 +80,7 @@ def _upset(
         deviation=None if not resumed else 3.0,
         landing=4.0 if craft is not COPTER else 1.0,
         parameters=parameters or {},
+        speedup=speedup,
     )
 
 
@@ -114,7 +116,14 @@ def _faults(craft: Craft) -> tuple[Flight, ...]:
             ends=back,
             policy=("BATTERY_LOW", response, 1.0),
         ),
-        _upset(craft, "autopilot restarts", (AT_LEG, Reboot()), ends=HOLDS, fault="VEHICLE_RESTARTED"),
+        _upset(
+            craft,
+            "autopilot restarts",
+            (AT_LEG, Reboot()),
+            ends=AWAY if craft is COPTER else HOLDS,
+            fault="VEHICLE_RESTARTED",
+            speedup=1.0,
+        ),
     )
 
 
@@ -135,7 +144,7 @@ def _orders(craft: Craft) -> tuple[Flight, ...]:
             craft,
             "pilot takes over",
             (AT_LEG, Pilot({COPTER: 5, ROVER: 4, SUB: 19}[craft])),
-            ends=HOLDS,
+            ends=AWAY if craft is COPTER else HOLDS,
             fault="TAKEN_OVER",
         ),
     )
@@ -164,14 +173,20 @@ def _resumes(craft: Craft) -> tuple[Flight, ...]:
 
 
 def _ways(craft: Craft) -> tuple[Flight, ...]:
-    landing = 1.0 if craft is COPTER else 4.0
+    landing, deviation = (1.0, 1.5) if craft is COPTER else (4.0, 3.0)
     given = [
-        Flight(f"{NAMES[craft]}: legs", routes(_short(craft)), landing=landing),
+        Flight(f"{NAMES[craft]}: legs", routes(_short(craft)), landing=landing, deviation=deviation),
         Flight(f"{NAMES[craft]}: fluid", routes(_short(craft, fluid=True)), landing=landing, deviation=3.0),
         Flight(
             f"{NAMES[craft]}: plan in AUTO", routes(_short(craft)), way=PLAN, landing=landing, deviation=3.0
         ),
-        Flight(f"{NAMES[craft]}: signed link", routes(_short(craft)), signed=True, landing=landing),
+        Flight(
+            f"{NAMES[craft]}: signed link",
+            routes(_short(craft)),
+            signed=True,
+            landing=landing,
+            deviation=deviation,
+        ),
     ]
     return tuple(given)
 
