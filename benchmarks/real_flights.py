@@ -105,6 +105,8 @@ def main() -> int:
     with tempfile.TemporaryDirectory() as temporary:
         for flight in flights:
             folder = (given.keep or Path(temporary)) / re.sub(r"\W+", "-", flight.name)
+            if folder.exists():
+                parser.error(f"{folder}: exists already; choose another folder for --keep")
             if lacking := missing(flight, folder):
                 left_out[flight.name] = lacking
                 continue

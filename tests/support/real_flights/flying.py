@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import gzip
 import json
+import signal
 import subprocess
 import sys
 import time
@@ -60,6 +61,9 @@ AT_HOME = {"copter": 1.0, "rover": 4.0, "sub": 4.0}
 """Metres from home, in the plane, at which a vehicle counts as being there."""
 
 SURFACE_METRES = 1.0
+WATCHED = "interrupt to end"
+"""What a program says that has nothing left to do but to watch its vehicle."""
+
 ENDS = "log ends although"
 """What the replay says of the log of a program that was killed, or waits for a new battery."""
 
@@ -135,6 +139,7 @@ class Flying:
         self.links: dict[str, str] = {}
         self.processes: dict[str, subprocess.Popen[bytes]] = {}
         self.killed = False
+        self.interrupts = 0.0
         self._key = token_bytes(32) if flight.signed else b""
 
     @property
@@ -153,6 +158,7 @@ class Flying:
                 happens = self._happening(said)
                 until = time.monotonic() + self._patience()
                 while next(happens, None) is not None or self._working():
+                    self._leave_the_watched(said)
                     if time.monotonic() > until:
                         self.result.deviates.append("did not come to its end in time")
                         break
@@ -166,6 +172,16 @@ class Flying:
                     process.wait(30.0)
         self._judge()
         return self.result
+
+    def _leave_the_watched(self, said: IO[bytes]) -> None:
+        """Interrupt a program that only watches its vehicle, once that is at rest; twice, as operators do."""
+        running = [process for process in self.processes.values() if process.poll() is None]
+        if time.monotonic() < self.interrupts or not running:
+            return
+        self.interrupts = time.monotonic() + 3.0
+        if WATCHED in Path(said.name).read_text("utf-8") and all(map(self._still, self.robots)):
+            for process in running:
+                process.send_signal(signal.SIGINT)
 
     def _patience(self) -> float:
         longest = max(self.plan.seconds.values(), default=0.0)
@@ -308,20 +324,17 @@ class Flying:
         return True
 
     def _at_rest(self, robot: str) -> bool:
-        vehicle = self.vehicles[robot]
-        track = vehicle.observer.track
-        if not track or track[-1].t < STILL_SECONDS:
+        """Return whether a vehicle has come to rest, a copter on the ground or where it is to hold."""
+        observer, kind = self.vehicles[robot].observer, self.plan.vehicle(robot)
+        if self.flight.way == PLAN and kind != "copter" and observer.item < self.items - 1:
             return False
-        latest = [fix for fix in track[-400:] if fix.t > track[-1].t - STILL_SECONDS]
-        still = all(hypot(fix.vx, fix.vy, fix.vz) < STILL for fix in latest)
-        kind = self.plan.vehicle(robot)
-        if self.flight.way == PLAN and kind == "rover":
-            return still and vehicle.observer.item >= self.items - 1
-        flew = any(fix.armed for fix in track)
-        return still and flew and (not vehicle.observer.armed or kind != "copter" or self._may_hold())
+        return self._still(robot) and (not observer.armed or kind != "copter" or self.flight.ends == HOLDS)
 
-    def _may_hold(self) -> bool:
-        return self.flight.ends == HOLDS
+    def _still(self, robot: str) -> bool:
+        track = self.vehicles[robot].observer.track
+        latest = [fix for fix in track[-400:] if fix.t > track[-1].t - STILL_SECONDS]
+        flew = any(fix.armed for fix in track)
+        return flew and all(hypot(fix.vx, fix.vy, fix.vz) < STILL for fix in latest)
 
     def _wait_for_rest(self) -> None:
         self._wait(lambda: all(map(self._at_rest, self.robots)), 30.0 + REST_SECONDS / self.speedup)

@@ -223,7 +223,7 @@ FENCES = tuple(
     _upset(
         craft,
         "fence broken",
-        (AT_LEG, Change({"FENCE_TYPE": 6.0, "FENCE_RADIUS": 15.0, "FENCE_ENABLE": 1.0})),
+        (Begun("p1", 0.5), Change({"FENCE_TYPE": 6.0, "FENCE_RADIUS": 33.0, "FENCE_ENABLE": 1.0})),
         ends=HOME,
         fault="FENCE_BREACHED",
         policy=("FENCE_BREACHED", "RETURN", 0.0),
