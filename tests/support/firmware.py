@@ -18,11 +18,11 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import NamedTuple
 
-from ports import free_port
+from ports import free_port, is_free
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-FIRST_INSTANCE = 80
-"""Of ArduPilot's simulations: its ports are rarely those of one that was started by hand."""
+FIRST_INSTANCE, INSTANCES, VEHICLES = 80, 160, 8
+"""Of ArduPilot's simulations: rarely those of one that was started by hand; of a process, at most eight."""
 
 RATE = 10.0
 ASK_SECONDS = 2.0
@@ -390,12 +390,10 @@ class InstalledVehicle:
 
 
 def _instance(number: int) -> int:
-    """Return a number of ArduPilot's instances whose port for a remote control is free."""
-    for instance in range(FIRST_INSTANCE + number, 250, 3):
-        with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
-            try:
-                probe.bind(("0.0.0.0", 5501 + 10 * instance))
-            except OSError:
-                continue
+    """Return a number of ArduPilot's instances whose ports are free; another process begins with another."""
+    begin = os.getpid() * VEHICLES + number
+    for instance in (FIRST_INSTANCE + (begin + more) % INSTANCES for more in range(0, INSTANCES, VEHICLES)):
+        remote_control, serial2 = 5501 + 10 * instance, 5763 + 10 * instance
+        if is_free(remote_control, socket.SOCK_DGRAM) and is_free(serial2, socket.SOCK_STREAM):
             return instance
     raise RuntimeError("no instance of ArduPilot's simulation is left")

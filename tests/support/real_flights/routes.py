@@ -158,6 +158,6 @@ def _context(origin: str, forbidden: Sequence[Place]) -> str:
     )
     area = f'<forbiddenAreas name="school" safetyDistance="1.0">{shell}</forbiddenAreas>\n' if shell else ""
     rest = 'name="Route" crs="EPSG:4326"'
-    weather = '<environment windSpeed="0.0" windDirection="0.0" temperature="20.0"/>\n'
+    weather = '<environment windSpeed="0.0" windDirection="0.0" temperature="20.0" waterDensity="1025.0"/>\n'
     zero = f'<origin xsi:type="mission:GeoCoordinate" {origin}/>\n'
     return HEAD.format(root="context:Context", rest=rest) + zero + area + weather + "</context:Context>\n"
