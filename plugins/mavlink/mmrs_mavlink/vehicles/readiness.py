@@ -30,6 +30,8 @@ NEAR = 8
 """The bit for a horizontal position relative to the start, which is enough for local programs."""
 
 CONSTANT, UNINITIALISED = 128, 1024
+"""Bits of EKF_STATUS_REPORT alone: a PX4 sets the former in ESTIMATOR_STATUS also where it knows its position
+and stands still (``ekf_helper.cpp``, ``get_ekf_soln_status``)."""
 
 SENSORS: Mapping[int, str] = {
     1: "gyroscope",
@@ -96,7 +98,7 @@ def _estimate_trouble(link: Link, *, geographic: bool) -> Iterator[str]:
     missing = [name for bit, name in needed.items() if not known & bit]
     if missing:
         yield f"its estimator (EKF) knows no {' and no '.join(missing)}"
-    elif estimate.flags & CONSTANT:
+    elif ekf is not None and ekf.flags & CONSTANT:
         yield "its estimator (EKF) only assumes that it stands still"
 
 

@@ -114,6 +114,12 @@ def test_a_px4_that_holds_must_say_so_too_until_it_is_armed(told):
     assert told(*READY[1:], status(0, 0), beat={**holds, "armed": True}).lacks() == ()
 
 
+def test_a_px4_that_stands_still_may_know_its_position(told):
+    found = mavlink.MAVLink_estimator_status_message(0, ALL_KNOWN | 128, 0, 0, 0, 0, 0, 0, 0, 0)
+    others = [message for message in READY if message.get_type() != "EKF_STATUS_REPORT"]
+    assert told(*others, status(PREARM), found, autopilot=PX4).lacks() == ()
+
+
 def test_a_local_program_needs_no_place_on_the_earth(told):
     local = mavlink.MAVLink_local_position_ned_message(0, 1, 2, -3, 0, 0, 0)
     flags = ALL_KNOWN & ~16
