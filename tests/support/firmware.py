@@ -7,6 +7,7 @@ a firmware is part of this project.
 
 from __future__ import annotations
 
+import json
 import os
 import socket
 import struct
@@ -377,16 +378,25 @@ class InstalledVehicle:
         return command, {}
 
     def _px4(self) -> tuple[list[str], dict[str, str]]:
+        build = Path(self.firmware.binary).parents[1]
+        latitude, longitude = _home_for_px4(build, self._stand.latitude, self._stand.longitude)
         environment = {
             "PX4_SIM_MODEL": self.firmware.model,
-            "PX4_HOME_LAT": str(round(self._stand.latitude * 1e7)),
-            "PX4_HOME_LON": str(round(self._stand.longitude * 1e7)),
+            "PX4_HOME_LAT": latitude,
+            "PX4_HOME_LON": longitude,
             "PX4_HOME_ALT": f"{self._stand.altitude:g}",
             "PX4_SIM_SPEED_FACTOR": f"{self.speedup:g}",
             **{f"PX4_PARAM_{name}": f"{value:g}" for name, value in self._parameters.items()},
         }
-        etc = Path(self.firmware.binary).parents[1] / "etc"
-        return [self.firmware.binary, "-i", str(self.number), "-d", str(etc)], environment
+        return [self.firmware.binary, "-i", str(self.number), "-d", str(build / "etc")], environment
+
+
+def _home_for_px4(build: Path, *degrees: float) -> list[str]:
+    """Return coordinates in the units of a PX4's parameters: degrees, or up to 1.15 degrees × 10⁷."""
+    listed = json.loads((build / "parameters.json").read_text("utf-8"))["parameters"]
+    types = {parameter["name"]: parameter["type"] for parameter in listed}
+    whole = types["SIH_LOC_LAT0"] == "Int32"
+    return [str(round(each * 1e7)) if whole else f"{each:.7f}" for each in degrees]
 
 
 def _instance(number: int) -> int:
