@@ -61,6 +61,9 @@ AT_HOME = {"copter": 1.0, "rover": 4.0, "sub": 4.0}
 """Metres from home, in the plane, at which a vehicle counts as being there."""
 
 SURFACE_METRES = 1.0
+ORDER_SECONDS = 30.0
+"""Real seconds in which an order must be confirmed."""
+
 WATCHED = "interrupt to end"
 """What a program says that has nothing left to do but to watch its vehicle."""
 
@@ -299,7 +302,9 @@ class Flying:
 
     def _order(self, order: str, robot: str, *, question: str = "", answer: bool = False) -> None:
         try:
-            for reply in give(self.logs, order, [robot], question=question, answer=answer):
+            for reply in give(
+                self.logs, order, [robot], question=question, answer=answer, seconds=ORDER_SECONDS
+            ):
                 self.result.confirmed[order] = reply["seconds"]
                 if not reply["confirmed"]:
                     self.result.deviates.append(f"{order} not confirmed: {reply['why']}")

@@ -191,15 +191,18 @@ def _ways(craft: Craft) -> tuple[Flight, ...]:
     return tuple(given)
 
 
+EXPECTED = ("--backend-option", "objects=expected")
+"""Fly to where objects are expected: no simulation of an autopilot finds any."""
+
 EXAMPLES = (
     Flight("carbon-dioxide", example("carbon-dioxide"), speedup=3.0),
     Flight("carbon-dioxide, controllers", example("carbon-dioxide"), way=CONTROLLERS, speedup=3.0),
     Flight("carbon-dioxide, plan in AUTO", example("carbon-dioxide"), robots=("Alba",), way=PLAN),
-    Flight("handwritten", example("handwritten"), speedup=4.0),
+    Flight("handwritten", example("handwritten"), arguments=EXPECTED),
     Flight("solar-park", example("solar-park"), speedup=4.0),
     Flight("drone-and-rover", example("drone-and-rover"), speedup=4.0, deviation=3.0, landing=4.0),
     Flight("mixed-team", example("mixed-team"), speedup=2.0, deviation=3.0, landing=4.0),
-    Flight("outfall", example("outfall"), deviation=3.0, landing=4.0),
+    Flight("outfall", example("outfall"), arguments=EXPECTED, deviation=3.0, landing=4.0),
     Flight("outfall, plan in AUTO", example("outfall"), way=PLAN, deviation=3.0, landing=4.0),
 )
 LAWNS = (
