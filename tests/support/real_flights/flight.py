@@ -67,6 +67,11 @@ class Pilot:
 
 
 @dataclass(frozen=True, slots=True)
+class Disarm:
+    """A pilot disarms the vehicle."""
+
+
+@dataclass(frozen=True, slots=True)
 class Kill:
     """The program's process is killed."""
 
@@ -81,11 +86,12 @@ class Reboot:
     """The autopilot restarts."""
 
 
+DISARM = Disarm()
 MEND = Cut(inwards=False, outwards=False)
 """The link is whole again."""
 
 When: TypeAlias = Begun | Later
-Happening: TypeAlias = Order | Answer | Change | Cut | Pilot | Kill | Resume | Reboot
+Happening: TypeAlias = Order | Answer | Change | Cut | Pilot | Disarm | Kill | Resume | Reboot
 
 
 @dataclass(frozen=True, slots=True)

@@ -39,6 +39,7 @@ from real_flights.flight import (
     Begun,
     Change,
     Cut,
+    Disarm,
     Flight,
     Happening,
     Kill,
@@ -289,6 +290,8 @@ class Flying:
                 self.straits[robot].inwards, self.straits[robot].outwards = inwards, outwards
             case Pilot(mode):
                 observer.command(176, 1, mode)
+            case Disarm():
+                observer.command(mavlink.MAV_CMD_COMPONENT_ARM_DISARM, 0)
             case Kill():
                 self.killed = True
                 for process in self.processes.values():

@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from real_flights.flight import (
     AWAY,
     CONTROLLERS,
+    DISARM,
     HOLDS,
     HOME,
     MEND,
@@ -144,7 +145,8 @@ def _orders(craft: Craft) -> tuple[Flight, ...]:
             craft,
             "pilot takes over",
             (AT_LEG, Pilot({COPTER: 5, ROVER: 4, SUB: 19}[craft])),
-            ends=AWAY if craft is COPTER else HOLDS,
+            *([] if craft is COPTER else [(Later(15.0), DISARM)]),
+            ends=HOLDS if craft is ROVER else AWAY,
             fault="TAKEN_OVER",
         ),
     )
