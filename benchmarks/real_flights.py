@@ -71,7 +71,8 @@ def chosen(names: list[str]) -> list[Flight]:
     """Return the flights of these names, or whose names begin with them; all where none is given."""
     unknown = [name for name in names if not any(flight.name.startswith(name) for flight in FLIGHTS)]
     if unknown:
-        raise SystemExit(f"real_flights: no flight '{unknown[0]}'; see --list")
+        print(f"real_flights: no flight '{unknown[0]}'; see --list", file=sys.stderr)
+        raise SystemExit(2)
     return [flight for flight in FLIGHTS if not names or any(flight.name.startswith(name) for name in names)]
 
 

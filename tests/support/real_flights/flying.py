@@ -204,7 +204,8 @@ class Flying:
             key=self._key,
         )
         self.links[robot] = vehicle.link
-        if any(isinstance(what, Cut) for _, what in self.flight.happens) and number == 0:
+        # As behind a radio: a simulation that restarts sends from another port.
+        if any(isinstance(what, Cut | Reboot) for _, what in self.flight.happens) and number == 0:
             self.straits[robot] = stack.enter_context(Strait(vehicle.port))
             vehicle.port = self.straits[robot].port
         self.vehicles[robot] = stack.enter_context(vehicle)
@@ -301,6 +302,7 @@ class Flying:
                 self.killed = False
                 self._begin(said, "--resume")
             case Reboot():
+                self.result.kept = self._kept()
                 observer.command(mavlink.MAV_CMD_PREFLIGHT_REBOOT_SHUTDOWN, 1, 0, 0, 0, 0, 20190226)
 
     def _order(self, order: str, robot: str, *, question: str = "", answer: bool = False) -> None:
@@ -347,9 +349,12 @@ class Flying:
     def _wait_for_rest(self) -> None:
         self._wait(lambda: all(map(self._at_rest, self.robots)), 30.0 + REST_SECONDS / self.speedup)
 
+    def _kept(self) -> float:
+        return min(vehicle.observer.pace / self.speedup for vehicle in self.vehicles.values())
+
     def _judge(self) -> None:
         result, flight = self.result, self.flight
-        result.kept = min(v.observer.pace / self.speedup for v in self.vehicles.values())
+        result.kept = result.kept or self._kept()
         if result.kept < KEPT:
             result.deviates.append(f"only {result.kept:.0%} of the speed-up kept")
         all_rows: list[np.ndarray] = []

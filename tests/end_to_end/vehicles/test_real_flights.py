@@ -1,0 +1,82 @@
+"""The harness of flights on real firmware, with a stand-in for the firmware that is ours."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+from example_flight.fleets import PEERS
+from firmware import ARDUCOPTER, FIRMWARES
+from real_flights.flight import Begun
+from real_flights.judging import distances
+from real_flights.table import FLIGHTS
+
+HARNESS = Path(__file__).parents[3] / "benchmarks" / "real_flights.py"
+
+
+def fly(*arguments, **binaries):
+    names = {f"{each.variable}{end}" for each in FIRMWARES for end in ("", "_PARAMETERS")}
+    environment = {name: value for name, value in os.environ.items() if name not in names}
+    return subprocess.run(
+        [sys.executable, str(HARNESS), *arguments],
+        env=environment | binaries,
+        capture_output=True,
+        text=True,
+        check=False,
+        timeout=240,
+    )
+
+
+@pytest.fixture(scope="module")
+def stand_in(tmp_path_factory):
+    binary = tmp_path_factory.mktemp("binary") / "arducopter"
+    binary.write_text(f'#!/bin/sh\nexec "{sys.executable}" "{PEERS}/arducopter_stand_in.py" "$@"\n')
+    binary.chmod(0o755)
+    return {ARDUCOPTER.variable: str(binary)}
+
+
+def test_without_a_binary_it_names_the_variables():
+    done = fly()
+    assert done.returncode == 2
+    assert all(each.variable in done.stderr for each in FIRMWARES)
+
+
+def test_an_unknown_flight_is_a_usage_error():
+    done = fly("copter: nowhere")
+    assert (done.returncode, done.stdout) == (2, "")
+    assert "copter: nowhere" in done.stderr
+
+
+@pytest.mark.thorough
+@pytest.mark.real_time("faults")
+def test_a_flight_as_declared_is_measured_and_kept(stand_in, tmp_path):
+    done = fly("copter: legs", "rover: legs", "--speedup", "8", "--keep", str(tmp_path / "kept"), **stand_in)
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert "| copter: legs | run | " in done.stdout
+    assert "not flown: rover: legs: set MMRS_ARDUROVER" in done.stdout
+    assert (tmp_path / "kept" / "copter-legs" / "Alba.track.csv.gz").exists()
+
+
+@pytest.mark.thorough
+@pytest.mark.real_time("faults")
+def test_a_flight_that_does_not_end_as_declared_is_told_by_the_exit_code(stand_in):
+    done = fly("copter: satellites lost", "--speedup", "8", **stand_in)
+    assert done.returncode == 1
+    assert "NO: " in done.stdout
+
+
+def test_distances_are_those_to_the_nearest_leg():
+    line = [(0.0, 0.0, 0.0), (10.0, 0.0, 0.0), (10.0, 0.0, 0.0), (10.0, 10.0, 0.0)]
+    rows = np.array([(5.0, 2.0, 1.0), (13.0, 5.0, 4.0), (-3.0, -4.0, 0.0)])
+    assert distances(rows, line, plane=True).tolist() == pytest.approx([2.0, 3.0, 5.0])
+    assert distances(rows, line, plane=False).tolist() == pytest.approx([5.0**0.5, 5.0, 5.0])
+
+
+def test_names_of_flights_are_unique_and_happenings_wait_for_something():
+    assert len({flight.name for flight in FLIGHTS}) == len(FLIGHTS)
+    for flight in FLIGHTS:
+        assert not flight.happens or isinstance(flight.happens[0][0], Begun), flight.name
