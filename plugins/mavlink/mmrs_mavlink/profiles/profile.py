@@ -81,7 +81,7 @@ class Timing:
     mode: float = 5.0
     arming: float = 3.0
     resend: float = 1.0
-    restart: float = 4.0
+    restart: float = 5.0
     cause: float = 1.5
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import Any
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
@@ -27,12 +27,15 @@ class Streams:
     def __init__(self, pilot: SimulatedAutopilot, send: Callable[[Message], None]) -> None:
         self._pilot = pilot
         self._send = send
-        self.begin()
+        self._begin(telemetry.usual_rates(pilot.settings))
 
-    def begin(self) -> None:
-        """Forget all requests, as after a boot."""
+    def reboot(self) -> None:
+        """Forget all requests: an ArduPilot then sends heartbeats only."""
         usual = telemetry.usual_rates(self._pilot.settings)
-        self._periods = {name: 1.0 / rate for name, rate in usual.items()}
+        self._begin(usual if self._pilot.px4 else {"HEARTBEAT": usual["HEARTBEAT"]})
+
+    def _begin(self, rates: Mapping[str, float]) -> None:
+        self._periods = {name: 1.0 / rate for name, rate in rates.items()}
         self._due = dict.fromkeys(self._periods, 0.0)
         self._refusal_due = 0.0
 

@@ -113,7 +113,7 @@ class SimulatedVehicle:
         self._parameters.changed = self._switch_gps
         self.streams = Streams(pilot, self._router.send)
         self._host: Host | None = None
-        self._begin()
+        self._booted = pilot.booted
 
     def start(self) -> None:
         """Start the vehicle in a thread of its own."""
@@ -161,7 +161,7 @@ class SimulatedVehicle:
             advance(pilot, real_seconds * self.speedup)
             self.on_tick()
             if pilot.booted != self._booted:
-                self._begin()
+                self._reboot()
             self._transfers.busy = pilot.uptime < pilot.settings.boot
             self._transfers.advance(pilot.time, pilot.link_timeout / 4.0)
             while self._delayed and self._delayed[0][0] <= pilot.time:
@@ -181,10 +181,10 @@ class SimulatedVehicle:
         made.home = self._home
         return made
 
-    def _begin(self) -> None:
-        """Forget all requests, as after a boot."""
+    def _reboot(self) -> None:
+        """Forget all requests."""
         self._booted = self.autopilot.booted
-        self.streams.begin()
+        self.streams.reboot()
         self._parameters.begin()
 
     def _take(self, message: Message) -> None:

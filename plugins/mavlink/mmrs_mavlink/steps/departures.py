@@ -87,11 +87,7 @@ class Departures:
         """
         mode = self._vehicle.state().mode
         event, why = self._find(left)
-        return (
-            left
-            if event == left.event
-            else FaultError(event, f"{why}; a failsafe switched it to mode {mode}")
-        )
+        return left if event == left.event else FaultError(event, switched(event, why, mode))
 
     def _find(self, left: FaultError) -> Cause:
         """Return the event that the vehicle has answered by its mode, or by another one since.
@@ -114,7 +110,9 @@ class Departures:
     def _await_cause(self, mode: int) -> Cause | None:
         signs, link = self._signs, self._link
         if not self._vehicle.telemetry.armed() or mode == link.profile.starts_in:
-            # One that has started anew has lost its position, too: that is no cause.
+            # One that has started anew reports no time until it is asked for messages again. It has lost its
+            # position, too: that is no cause.
+            self._vehicle.reports.request_at_once()
             anew = link.wait(lambda: signs.restarted, self._clock.patience(link.profile.timing.restart))
             return (VEHICLE_RESTARTED, STARTED_ANEW) if anew else None
         by_itself = mode in link.profile.failsafe_modes | self._vehicle.modes_alone
@@ -135,6 +133,15 @@ class Departures:
                 if said:
                     return event, said
         return None
+
+
+def switched(event: str, why: str, mode: str) -> str:
+    """Return why a vehicle is in a mode that was not commanded: its failsafe for an event, or its restart."""
+    return (
+        f"{why}, in mode {mode}"
+        if event == VEHICLE_RESTARTED
+        else f"{why}; a failsafe switched it to mode {mode}"
+    )
 
 
 def _taken_over(left: FaultError, vehicle: MavlinkVehicle) -> FaultError:

@@ -22,7 +22,7 @@ from mmrs_runtime.policies import COMES_DOWN, CONTINUE, LAND, UNDECLARED_AFTER, 
 
 from ..program import Policy, Robot
 from ..vehicles.failsafe_events import Signs
-from .departures import Departures
+from .departures import Departures, switched
 from .energy import Reserve
 from .ground import WATCHED, Ground
 from .motors import Motors
@@ -188,7 +188,10 @@ class Watch:
             FaultError: something should.
         """
         watched = self._watched
-        if watched is None or self.looking:
+        if watched is None:
+            return
+        watched.vehicle.reports.renew()
+        if self.looking:
             return
         self._check_link(watched.link)
         if self._hands_off:
@@ -275,7 +278,7 @@ class Watch:
             FaultError: what is to be answered, or DisplacedError.
         """
         vehicle = watched.vehicle
-        why = f"{said}; a failsafe switched it to mode {vehicle.state().mode}"
+        why = switched(event, said, vehicle.state().mode)
         if event == VEHICLE_RESTARTED:
             self._note_restart()
             if not self.moving:

@@ -44,6 +44,7 @@ class MavlinkVehicle(Vehicle):
 
     Attributes:
         start: where it is to stand before it takes off: home, or where its program has landed it.
+        reports: the messages that it sends on request.
     """
 
     def __init__(
@@ -73,6 +74,7 @@ class MavlinkVehicle(Vehicle):
         self._link = link
         link.expect(profile)
         self._telemetry = Telemetry(link, home)
+        self.reports = preparation.Reports(link, geographic=isinstance(home, Geographic))
         self._mode_control = ModeControl(link, self._telemetry)
         self._acceptance = travel.acceptance if acceptance is None else acceptance
         self._steering = Steering(link, self._telemetry, self._mode_control, self._acceptance)
@@ -93,7 +95,7 @@ class MavlinkVehicle(Vehicle):
                 it is to, or it does not become ready.
         """
         geographic = isinstance(self._home, Geographic)
-        preparation.ask_for_messages(self._link, geographic=geographic)
+        self.reports.request()
         preparation.await_position(self._link, self._telemetry)
         tolerance = inf if self._telemetry.airborne() else self._home_tolerance
         preparation.check_identity(self._link, self._telemetry, tolerance, self._home, self.start)

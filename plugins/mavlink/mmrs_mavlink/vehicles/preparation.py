@@ -40,19 +40,52 @@ STREAMED = {
 STREAMED_LOCAL = {"LOCAL_POSITION_NED": 5.0}
 
 
-def ask_for_messages(link: Link, *, geographic: bool) -> None:
-    """Ask for every message at its rate; a vehicle that refuses sends it as it likes, or does without.
+CEASED_SECONDS = 2.0
+"""For how long a vehicle that is received may report no position until its messages are requested again."""
 
-    The position is asked for as often as anything: at the rate at which vehicles tell it otherwise, a poor
-    link makes it look lost.
-    """
-    position = "GLOBAL_POSITION_INT" if geographic else "LOCAL_POSITION_NED"
-    own = link.profile.autopilot.streamed
-    for name, rate in (STREAMED | {**own} | ({} if geographic else STREAMED_LOCAL)).items():
-        number = getattr(mavlink, f"MAVLINK_MSG_ID_{name}")
-        with suppress(RefusedError):
-            tries = None if name == position else 2
-            command(link, mavlink.MAV_CMD_SET_MESSAGE_INTERVAL, number, 1e6 / rate, tries=tries)
+
+class Reports:
+    """The messages that a vehicle sends on request; it forgets all requests when it restarts."""
+
+    def __init__(self, link: Link, *, geographic: bool) -> None:
+        """Request nothing yet; `geographic`: whether the program's positions are."""
+        self._link = link
+        self._position = "GLOBAL_POSITION_INT" if geographic else "LOCAL_POSITION_NED"
+        self._local = {} if geographic else STREAMED_LOCAL
+        self._requested: float | None = None
+
+    def request(self) -> None:
+        """Request every message at its rate; a vehicle that refuses sends it as it likes, or does without.
+
+        The position is requested as often as anything: at the rate at which vehicles report it otherwise, a
+        poor link makes it look lost.
+        """
+        for name, interval in self._intervals():
+            tries = None if name == self._position else 2
+            with suppress(RefusedError):
+                command(self._link, mavlink.MAV_CMD_SET_MESSAGE_INTERVAL, *interval, tries=tries)
+        self._requested = self._link.clock.now()
+
+    def renew(self) -> None:
+        """Request them again, without waiting, while heartbeats arrive and positions do not."""
+        link = self._link
+        limit = link.clock.patience(CEASED_SECONDS)
+        if self._requested is None or link.since("HEARTBEAT") > limit:
+            return
+        if min(link.since(self._position), link.clock.now() - self._requested) > limit:
+            self.request_at_once()
+
+    def request_at_once(self) -> None:
+        """Request every message at its rate, without waiting for acknowledgements."""
+        self._requested = self._link.clock.now()
+        for _, interval in self._intervals():
+            ask(self._link, mavlink.MAV_CMD_SET_MESSAGE_INTERVAL, *interval)
+
+    def _intervals(self) -> Iterator[tuple[str, tuple[float, float]]]:
+        """Yield each message with the parameters of its request: its number, and microseconds."""
+        rates = STREAMED | {**self._link.profile.autopilot.streamed} | self._local
+        for name, rate in rates.items():
+            yield name, (getattr(mavlink, f"MAVLINK_MSG_ID_{name}"), 1e6 / rate)
 
 
 def replace_all(link: Link, mission: Sequence[Item], fence: Sequence[Item], rally: Sequence[Item]) -> int:

@@ -11,7 +11,7 @@ from mmrs_runtime.records.entries import entry_in
 
 from ..links.link import Link
 from ..profiles import modes
-from ..program import Geographic, Place, Robot
+from ..program import Place, Robot
 from ..services import parameters
 from ..vehicles import preparation
 from .footing import LANDED, aside
@@ -49,7 +49,7 @@ def recognise(
         RefusedError: it is not, or it may be.
     """
     telemetry = vehicle.telemetry
-    preparation.ask_for_messages(link, geographic=isinstance(robot.home, Geographic))
+    vehicle.reports.request()
     preparation.await_position(link, telemetry)
     preparation.hear_out(link)
     if system and link.system != system:

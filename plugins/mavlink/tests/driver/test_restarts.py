@@ -54,8 +54,7 @@ def test_a_rover_that_is_being_charged_may_start_anew(on_the_ground):
     made.vehicle._mode_control.enter("guided")
     made.watch.moving = False
     restart(made, armed=False)
-    until(lambda: made.watch.restarted)
-    made.quiet(SPEEDUP)
+    made.quiet(2.0 * SPEEDUP)
     assert made.watch.restarted
 
 
@@ -65,3 +64,22 @@ def test_people_are_told_before_that_carrying_on_counts_on_the_ground_only(on_th
     made.watch.say = told.append
     made.watch.forewarn()
     assert told == ["carries on after VEHICLE_RESTARTED before it sets out only; in motion it does LAND then"]
+
+
+def test_a_vehicle_that_forgot_in_flight_what_it_was_to_report_has_restarted_and_reports_again(in_the_air):
+    made = in_the_air(Policy("VEHICLE_RESTARTED", "LAND"), PATIENT)
+    made.quiet(2.0)
+    restart(made, armed=False)
+    fault = made.caught()
+    assert (fault.event, str(fault)) == ("VEHICLE_RESTARTED", "the vehicle has restarted, in mode stabilize")
+    asked = made.clock.now()
+    until(lambda: made.clock.now() - made.link.since("SYS_STATUS") > asked)
+
+
+def test_a_vehicle_that_forgot_on_the_ground_what_it_was_to_report_is_asked_again(on_the_ground):
+    made = on_the_ground
+    made.watch.moving = False
+    restart(made, armed=False)
+    until(lambda: made.link.since("SYS_STATUS") > 2.0 * SPEEDUP)
+    made.quiet(2.0 * SPEEDUP)
+    assert made.link.since("SYS_STATUS") < SPEEDUP

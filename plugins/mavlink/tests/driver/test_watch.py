@@ -214,8 +214,8 @@ def test_a_restart_on_the_ground_is_kept_for_later(in_the_air):
     made.watch.moving = False
     grow_old(made)
     made.simulated.faults.begin("restart")
-    until(lambda: made.watch.restarted)
-    made.quiet(5.0)
+    made.quiet(2.0 * SPEEDUP)
+    assert made.watch.restarted
     made.watch.renew()
     assert not made.watch.restarted
 
