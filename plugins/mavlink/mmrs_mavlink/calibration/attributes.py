@@ -1,0 +1,62 @@
+"""The attributes of a robot type that hold figures, as they are written."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+
+from .figures import MISSION, STEP, Figure
+
+CAPABILITY = ("lifetime", "maxTurnRate")
+"""Attributes of a movement capability that a flight tells."""
+
+TIMING = (
+    "maxAcceleration",
+    "maxDeceleration",
+    "maxJerk",
+    "maxClimbRate",
+    "maxDescentRate",
+    "maxVerticalAcceleration",
+    "cornerRadius",
+    "settlingTime",
+)
+"""Attributes of its timing of legs, for each way of flying them."""
+
+VEHICLE = ("spinUpTime", "landingRate", "landingHeight", "touchDownTime")
+"""Attributes of a type of vehicle that takes off and lands."""
+
+
+def shown(value: float) -> str:
+    """Return a value with three digits, and never an exponent.
+
+    >>> shown(3.47159), shown(2005.46), shown(-0.00004)
+    ('3.47', '2010', '0')
+    """
+    digits = float(f"{value:.3g}")
+    return f"{digits:.4f}".rstrip("0").rstrip(".") if abs(digits) >= 0.00005 else "0"
+
+
+def written(figures: Iterable[Figure], names: Iterable[str], flown_as: str = "") -> dict[str, str]:
+    """Return attributes that have a value, by name.
+
+    Args:
+        names: that are asked for, in the order in which they are written.
+        flown_as: how the legs were flown.
+    """
+    found = {each.name: each for each in figures if each.values and each.flown_as == flown_as}
+    return {name: shown(found[name].median) for name in names if name in found}
+
+
+def element_lines(figures: tuple[Figure, ...]) -> Iterator[str]:
+    """Yield the lines of a robot type that hold the figures."""
+    vehicle = written(figures, VEHICLE)
+    if vehicle:
+        yield f"of the robot type:{_attributes(vehicle)}"
+    yield f"<movementCapabilities{_attributes(written(figures, CAPABILITY))}>"
+    for flown_as in (STEP, MISSION):
+        if timing := written(figures, TIMING, flown_as):
+            yield f'  <legTimings flownAs="{flown_as}"{_attributes(timing)}/>'
+    yield "</movementCapabilities>"
+
+
+def _attributes(values: dict[str, str]) -> str:
+    return "".join(f' {name}="{value}"' for name, value in values.items())

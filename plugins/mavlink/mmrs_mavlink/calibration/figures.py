@@ -1,0 +1,256 @@
+"""Figures of a robot type from one flight: each with its unit, its number of values, median and spread."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from math import degrees, inf, isfinite
+
+import numpy as np
+
+from ..profiles import VehicleProfile
+from ..profiles.modes import AUTO, GUIDED
+from .curves import FEWEST, LARGEST_JERK, Ramp, plateaus_in, ramp_seconds, ramps_in, with_jerk
+from .flight import Flags, Flight, Floats
+from .motion import (
+    Leg,
+    climbs_of,
+    corners_passed,
+    landings_of,
+    legs_of,
+    level_speeds,
+    spin_ups_of,
+    turns_of,
+    vertical_ramps,
+)
+
+STEP, MISSION = "STEP", "MISSION"
+WAYS = {STEP: GUIDED, MISSION: AUTO}
+"""Modes of a vehicle's profile, by how its legs are flown: one target at a time, or as a mission."""
+
+SLOWEST_RATE = 3.0
+"""Positions per second below which changes of speed cannot be judged."""
+
+_USUAL_STILL = 0.3
+
+
+@dataclass(frozen=True, slots=True)
+class Figure:
+    """A figure of a robot type.
+
+    Attributes:
+        name: of the attribute of the robot language. unit: of its value.
+        flown_as: how the legs were flown that it holds for; empty: any.
+        values: every time that it was seen, in ascending order.
+        missing: why there is none; empty where there are values.
+    """
+
+    name: str
+    unit: str
+    flown_as: str = ""
+    values: tuple[float, ...] = ()
+    missing: str = ""
+
+    @property
+    def median(self) -> float:
+        """Return the median of the values."""
+        return float(np.median(self.values))
+
+    @property
+    def spread(self) -> tuple[float, float]:
+        """Return what lies between the lowest and the highest tenth of the values."""
+        low, high = np.percentile(self.values, (10.0, 90.0))
+        return float(low), float(high)
+
+
+def _figure(name: str, unit: str, values: Iterable[float], missing: str, flown_as: str = "") -> Figure:
+    found = tuple(sorted(each for each in values if isfinite(each)))
+    return Figure(name, unit, flown_as, found, "" if found else missing)
+
+
+def fastest(values: Sequence[float], part: float = 0.9) -> list[float]:
+    """Return the values that come near to the largest one: others were not meant to be as fast."""
+    return [each for each in values if each >= part * max(values)]
+
+
+def figures_of(flight: Flight) -> tuple[Figure, ...]:
+    """Return the figures of a flight: those of each way of flying legs, then those of all."""
+    return (
+        *_leg_figures(flight, STEP),
+        *_leg_figures(flight, MISSION),
+        _turn_rate(flight),
+        *_end_figures(flight),
+        *_energy_figures(flight),
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class _Levels:
+    """The level motion of one way of flying.
+
+    Attributes:
+        chosen: samples that count. speeds: in the plane. ramps: changes of it of at least `least`.
+        missing: why there are none; empty where there may be.
+    """
+
+    chosen: Flags
+    speeds: Floats
+    ramps: tuple[Ramp, ...]
+    missing: str
+    least: float = 0.0
+
+
+def _levels(flight: Flight, flown_as: str) -> _Levels:
+    speeds, mode = level_speeds(flight), WAYS[flown_as]
+    nothing = np.zeros(len(speeds), dtype=np.bool_)
+    if flight.profile is None:
+        return _Levels(nothing, speeds, (), "unknown vehicle: its modes have no names")
+    chosen = flight.in_mode(flight.profile.modes[mode].number, flight.times)
+    chosen &= flight.while_armed(flight.times)
+    if not chosen.any():
+        return _Levels(chosen, speeds, (), f"not flown in {mode}")
+    if flight.rate < SLOWEST_RATE:
+        return _Levels(chosen, speeds, (), f"{flight.rate:.1f} positions per second are too few")
+    least = max(0.15, 0.15 * float(np.percentile(speeds[chosen], 98.0)))
+    found = (each for each in ramps_in(flight.times, speeds, least) if chosen[[each.first, each.last]].all())
+    return _Levels(chosen, speeds, tuple(found), "", least)
+
+
+def _leg_figures(flight: Flight, flown_as: str) -> Iterator[Figure]:
+    level = _levels(flight, flown_as)
+    still = _still(flight.profile)
+
+    def figure(name: str, unit: str, values: Iterable[float], missing: str) -> Figure:
+        return _figure(name, unit, () if level.missing else values, level.missing or missing, flown_as)
+
+    fitting = [each for each in level.ramps if each.fits]
+    rising = [each for each in fitting if each.rising]
+    jerks = [each.jerk for each in rising]
+    speeding = [each.acceleration for each in rising if each.keeps]
+    kept = plateaus_in(flight.times, np.where(level.chosen, level.speeds, 0.0), 2.0 * still, 2.0)
+    tops = [each.value for each in kept]
+    slowing = _decelerations(flight, level, fitting, float(np.median(jerks)) if jerks else 0.0)
+    short = "no leg was long enough for it"
+    yield figure("speed.max", "m/s", fastest(tops) if tops else (), "no speed was kept for 2 s")
+    yield figure("maxAcceleration", "m/s²", fastest(speeding, 0.8) if speeding else (), short)
+    yield figure(
+        "maxDeceleration",
+        "m/s²",
+        fastest(slowing, 0.8) if slowing else (),
+        f"{short}, so take it for maxAcceleration",
+    )
+    yield figure("maxJerk", "m/s³", jerks, "no change of speed is an S-curve")
+    yield from _vertical_figures(flight, level, figure, float(np.median(jerks)) if jerks else inf)
+    if flown_as == MISSION:
+        passed = corners_passed(flight, level.chosen, max(2.0 * still, level.least))
+        yield figure("cornerRadius", "m", passed, "no corner was passed without a stop")
+    settled: list[float] = []
+    if speeding and jerks:
+        curve = tuple(float(np.median(each)) for each in (speeding, slowing or speeding, jerks))
+        settled = [_settling(each, curve) for each in legs_of(flight, level.ramps, still)]
+    yield figure(
+        "settlingTime",
+        "s",
+        settled,
+        "no straight leg between two stops, or the log does not hold when targets were given",
+    )
+
+
+def _still(profile: VehicleProfile | None) -> float:
+    return profile.still if profile is not None else _USUAL_STILL
+
+
+def _decelerations(flight: Flight, level: _Levels, fitting: Iterable[Ramp], jerk: float) -> list[float]:
+    """Return how fast the vehicle slows down, by curves of the jerk at which it speeds up."""
+    if jerk <= 0.0:
+        return []
+    slowing = [each for each in fitting if not each.rising]
+    found = [(each, with_jerk(flight.times, level.speeds, each, jerk)) for each in slowing]
+    return [value for each, value in found if each.change * jerk >= 1.5 * value**2]
+
+
+def _settling(leg: Leg, curve: tuple[float, ...]) -> float:
+    """Return what a leg takes beside its S-curves, before the first and after the last of them.
+
+    Args:
+        curve: acceleration, deceleration and jerk.
+    """
+    acceleration, deceleration, jerk = curve
+    up, down = leg.speeding_up, leg.slowing_down
+    begins = up.middle - ramp_seconds(up.high, acceleration, jerk) / 2.0
+    ends = down.middle + ramp_seconds(down.high, deceleration, jerk) / 2.0
+    return (begins - leg.begun) + (leg.done - ends)
+
+
+_MakesFigure = Callable[[str, str, Iterable[float], str], Figure]
+
+
+def _vertical_figures(flight: Flight, level: _Levels, figure: _MakesFigure, jerk: float) -> Iterator[Figure]:
+    accelerations: list[float] = []
+    for name, sign in (("maxClimbRate", 1.0), ("maxDescentRate", -1.0)):
+        rates = [each.value for each in climbs_of(flight, level.chosen, sign)]
+        yield figure(name, "m/s", fastest(rates) if rates else (), "no upright leg was long enough for it")
+        ramps = vertical_ramps(flight, level.chosen, sign)
+        speeds = np.maximum(sign * flight.velocities[:, 2], 0.0)
+        accelerations += [with_jerk(flight.times, speeds, each, min(jerk, LARGEST_JERK)) for each in ramps]
+    missing = "no upright leg was long enough for it"
+    yield figure("maxVerticalAcceleration", "m/s²", accelerations, missing)
+
+
+def _turn_rate(flight: Flight) -> Figure:
+    rates = [degrees(each) for each in turns_of(flight)]
+    missing = "the heading never changed by 45°" if np.isfinite(flight.headings).any() else "no headings"
+    return _figure("maxTurnRate", "°/s", fastest(rates, 0.8) if rates else (), missing)
+
+
+def _end_figures(flight: Flight) -> Iterator[Figure]:
+    """Yield the figures of take-offs and landings, of a vehicle that flies."""
+    if flight.profile is None or not flight.profile.flies:
+        return
+    landings = list(landings_of(flight))
+    none = "no landing until the motors stopped"
+    yield _figure("spinUpTime", "s", spin_ups_of(flight), "no command to take off")
+    yield _figure("landingRate", "m/s", (each.rate for each in landings), none)
+    yield _figure("landingHeight", "m", (each.height for each in landings), none)
+    yield _figure("touchDownTime", "s", (each.stopping for each in landings), none)
+
+
+def _energy_figures(flight: Flight) -> Iterator[Figure]:
+    yield _figure("meanPower", "W", _powers(flight), "no voltage and current while it moved")
+    lifetime, missing = _lifetime(flight)
+    yield _figure("lifetime", "s", lifetime, missing)
+
+
+def in_flight(flight: Flight, times: Floats) -> Flags:
+    """Return at which times the vehicle was on its way: armed, between its first and its last motion."""
+    moving = np.flatnonzero(np.linalg.norm(flight.velocities, axis=1) > _still(flight.profile))
+    if not len(moving):
+        return np.zeros(len(times), dtype=np.bool_)
+    first, last = flight.times[moving[0]], flight.times[moving[-1]]
+    found: Flags = flight.while_armed(times) & (times >= first) & (times <= last)
+    return found
+
+
+def _powers(flight: Flight) -> Iterator[float]:
+    """Yield the mean power of each ten seconds."""
+    taken = flight.power[in_flight(flight, flight.power[:, 0])]
+    if len(taken) < FEWEST or not (taken[:, 2] > 0.0).any():
+        return
+    watts = taken[:, 1] * taken[:, 2]
+    tens = ((taken[:, 0] - taken[0, 0]) // 10.0).astype(int)
+    for number in np.unique(tens):
+        part = watts[tens == number]
+        if len(part) >= FEWEST:
+            yield float(part.mean())
+
+
+def _lifetime(flight: Flight) -> tuple[tuple[float, ...], str]:
+    """Return how long a full battery lasts, by its capacity and the current, or else by its charge."""
+    taken = flight.power[in_flight(flight, flight.power[:, 0])]
+    capacity = flight.parameters.get("BATT_CAPACITY", 0.0) * 3.6
+    if len(taken) >= FEWEST and capacity > 0.0 and (current := float(taken[:, 2].mean())) > 0.0:
+        return (capacity / current,), ""
+    charges = flight.charges[in_flight(flight, flight.charges[:, 0])]
+    if len(charges) >= 2 and (used := float(charges[0, 1] - charges[-1, 1])) >= 0.1:
+        return (float(charges[-1, 0] - charges[0, 0]) / used,), ""
+    return (), "no current with the battery's capacity (BATT_CAPACITY), and no tenth of a charge was used"

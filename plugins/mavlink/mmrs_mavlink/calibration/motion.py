@@ -1,0 +1,236 @@
+"""What a vehicle did in a flight: legs from stop to stop, corners passed, turns, take-offs and landings."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+from math import hypot, nan, radians
+
+import numpy as np
+
+from .curves import Plateau, Ramp, extremes, plateaus_in, ramps_in, slopes_of, smoothed, steepest
+from .flight import Flags, Flight, Floats
+
+STRAIGHT = 0.98
+"""Distance between the ends of a leg over the distance flown, from which the leg is straight."""
+
+LEAST_CORNER = radians(20.0)
+LEAST_TURN = radians(45.0)
+
+_UPRIGHT = 0.5
+"""Metres per second level, below which a climb or a descent is upright."""
+
+_LONGEST_PAUSE = 3.0
+"""Seconds between a stop and the next target, above which the vehicle had something else to do there."""
+
+_CLIMBING = 0.2
+"""Metres per second from which a vehicle climbs or descends."""
+
+
+@dataclass(frozen=True, slots=True)
+class Leg:
+    """A straight leg from a stop to a stop.
+
+    Attributes:
+        speeding_up, slowing_down: how it begins and ends.
+        length: metres.
+        begun: when the vehicle was given its target; NaN where the log does not tell.
+        done: when it was given the next one, or its next mode; NaN likewise.
+    """
+
+    speeding_up: Ramp
+    slowing_down: Ramp
+    length: float
+    begun: float
+    done: float
+
+
+def level_speeds(flight: Flight) -> Floats:
+    """Return the speeds in the plane."""
+    speeds: Floats = np.hypot(flight.velocities[:, 0], flight.velocities[:, 1])
+    return speeds
+
+
+def legs_of(flight: Flight, ramps: Sequence[Ramp], still: float) -> Iterator[Leg]:
+    """Yield the straight legs that begin and end with a stop.
+
+    Args:
+        ramps: changes of the level speed, in their order.
+        still: metres per second up to which the vehicle stands.
+    """
+    speeds = level_speeds(flight)
+    for before, after in pairwise(ramps):
+        if not before.rising or after.rising or max(before.low, after.low) > still:
+            continue
+        along = flight.places[before.first : after.last + 1, :2]
+        length = float(np.hypot(*(along[-1] - along[0])))
+        if length < STRAIGHT * float(np.hypot(*np.diff(along, axis=0).T).sum()):
+            continue
+        stands = np.flatnonzero(speeds[after.first :] <= still)
+        stood = float(flight.times[after.first + stands[0]]) if len(stands) else float(flight.times[-1])
+        yield Leg(
+            before, after, length, *_bounds(flight, before.middle, float(flight.times[before.first]), stood)
+        )
+
+
+def _bounds(flight: Flight, moving: float, began: float, stood: float) -> tuple[float, float]:
+    """Return when a leg was commanded, and when it was done."""
+    commanded = sorted((*flight.targets, *(since for since, _ in flight.modes)))
+    given = [each for each in commanded if began - _LONGEST_PAUSE <= each <= moving]
+    following = [each for each in commanded if moving < each <= stood + _LONGEST_PAUSE]
+    return (given[-1] if given else nan), (following[0] if following else nan)
+
+
+def corners_passed(flight: Flight, chosen: Flags, slowest: float) -> Iterator[float]:
+    """Yield how near the vehicle came to the corners that it passed without a stop, metres.
+
+    A corner is where the straight lines before and after it meet.
+
+    Args:
+        chosen: samples that count.
+        slowest: metres per second below which it has nearly stopped.
+    """
+    for first, last in stretches(chosen & (level_speeds(flight) > slowest)):
+        times, places = flight.times[first : last + 1], flight.places[first : last + 1, :2]
+        velocities = flight.velocities[first : last + 1, :2]
+        courses = np.unwrap(np.arctan2(velocities[:, 0], velocities[:, 1]))
+        for begin, end in _changes(times, courses, LEAST_CORNER):
+            corner = _meeting(places[begin], velocities[begin], places[end], velocities[end])
+            if corner is not None:
+                yield float(np.hypot(*(places[begin : end + 1] - corner).T).min())
+
+
+def turns_of(flight: Flight) -> Iterator[float]:
+    """Yield the rates of turns about the vertical axis, radians per second."""
+    known = np.isfinite(flight.headings)
+    times, headings = flight.times[known], flight.headings[known]
+    if len(times) < 3:
+        return
+    for begin, end in _changes(times, headings, LEAST_TURN):
+        yield abs(float((headings[end] - headings[begin]) / (times[end] - times[begin])))
+
+
+def climbs_of(flight: Flight, chosen: Flags, sign: float, seconds: float = 1.0) -> Iterator[Plateau]:
+    """Yield where the vehicle climbs upright at even speed, or descends.
+
+    Args:
+        chosen: samples that count.
+        sign: 1 for climbs, -1 for descents.
+        seconds: for which the speed is kept at least.
+    """
+    yield from plateaus_in(flight.times, vertical_speeds(flight, chosen, sign), _CLIMBING, seconds)
+
+
+def vertical_speeds(flight: Flight, chosen: Flags, sign: float) -> Floats:
+    """Return the speeds of upright climbs (sign 1) or descents (-1); 0 elsewhere."""
+    speeds: Floats = np.where(_upright(flight, chosen), np.maximum(sign * flight.velocities[:, 2], 0.0), 0.0)
+    return speeds
+
+
+def vertical_ramps(flight: Flight, chosen: Flags, sign: float) -> Iterator[Ramp]:
+    """Yield the changes of speed of upright climbs (sign 1) or descents (-1), but not those at the ground."""
+    speeds = np.maximum(sign * flight.velocities[:, 2], 0.0)
+    upright = _upright(flight, chosen)
+    if not upright.any():
+        return
+    least = max(0.3, 0.6 * float(speeds[upright].max()))
+    for each in ramps_in(flight.times, speeds, least):
+        if each.fits and upright[each.first : each.last + 1].all():
+            yield each
+
+
+def _upright(flight: Flight, chosen: Flags) -> Flags:
+    upright: Flags = chosen & (level_speeds(flight) < _UPRIGHT)
+    return upright
+
+
+def spin_ups_of(flight: Flight) -> Iterator[float]:
+    """Yield the seconds from each command to take off until the vehicle climbs."""
+    for commanded in flight.take_offs:
+        climbing = np.flatnonzero((flight.times >= commanded) & (flight.velocities[:, 2] > _CLIMBING))
+        if len(climbing):
+            yield float(flight.times[climbing[0]]) - commanded
+
+
+@dataclass(frozen=True, slots=True)
+class Landing:
+    """The end of a landing.
+
+    Attributes:
+        rate: of the final descent, metres per second.
+        height: above the ground at which that begins, metres; NaN where the descent was even all along.
+        stopping: seconds from standing on the ground until the motors have stopped.
+    """
+
+    rate: float
+    height: float
+    stopping: float
+
+
+def landings_of(flight: Flight) -> Iterator[Landing]:
+    """Yield the landings at whose ends the motors were stopped."""
+    descents = smoothed(flight.times, -flight.velocities[:, 2])
+    for disarmed in (since for since, armed in flight.armed if not armed):
+        last = int(np.searchsorted(flight.times, disarmed, side="right")) - 1
+        while last > 0 and descents[last] < _CLIMBING:
+            last -= 1
+        first = last
+        while first > 0 and descents[first - 1] >= _CLIMBING:
+            first -= 1
+        times, heights = flight.times[first : last + 1], flight.places[first : last + 1, 2]
+        if len(times) < 5 or float(level_speeds(flight)[first : last + 1].max()) > 2.0:
+            continue
+        final = _final(times, descents[first : last + 1])
+        if final is None:
+            continue
+        begin, rate = final
+        height = float(heights[begin] - heights[-1]) if begin > 0 else float("nan")
+        yield Landing(rate, height, disarmed - float(times[-1]))
+
+
+def _final(times: Floats, descents: Floats) -> tuple[int, float] | None:
+    """Return where the final descent begins, and its rate; None where it is not even."""
+    half = times >= times[-1] - 2.0
+    rate = float(np.median(descents[half]))
+    begin = len(times) - 1
+    while begin > 0 and descents[begin - 1] <= 1.2 * rate:
+        begin -= 1
+    return (begin, rate) if times[-1] - times[begin] >= 2.0 else None
+
+
+def stretches(chosen: Flags) -> Iterator[tuple[int, int]]:
+    """Yield first and last of the samples that are chosen one after the other.
+
+    >>> list(stretches(np.array([False, True, True, False, True])))
+    [(1, 2), (4, 4)]
+    """
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], chosen, [False]]).astype(np.int8)))
+    for first, behind in edges.reshape(-1, 2).tolist():
+        yield first, behind - 1
+
+
+def _changes(times: Floats, angles: Floats, least: float) -> Iterator[tuple[int, int]]:
+    """Yield where an angle changes by at least some radians: begin and end of each change."""
+    if len(times) < 3:
+        return
+    slopes = slopes_of(times, angles)
+    for before, after in pairwise(extremes(angles, least)):
+        sign = 1.0 if angles[after] > angles[before] else -1.0
+        begin, end = steepest(sign * slopes, before, after)
+        if abs(angles[end] - angles[begin]) >= 0.7 * least and end > begin:
+            yield begin, end
+
+
+def _meeting(a: Floats, along: Floats, b: Floats, onwards: Floats) -> Floats | None:
+    """Return where two lines meet, ahead of one and behind the other; None where they do not."""
+    across = float(along[0] * onwards[1] - along[1] * onwards[0])
+    if abs(across) < 0.1 * hypot(*along) * hypot(*onwards):
+        return None
+    gap = b - a
+    ahead = float(gap[0] * onwards[1] - gap[1] * onwards[0]) / across
+    behind = float(gap[0] * along[1] - gap[1] * along[0]) / across
+    if ahead < 0.0 or behind > 0.0:
+        return None
+    corner: Floats = a + ahead * along
+    return corner

@@ -1,0 +1,127 @@
+"""Figures of flights whose figures are known."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from flight_logs import Sample, dataflash, telemetry
+from flown_curves import Curve, flown
+
+from mmrs_mavlink.calibration.figures import fastest, figures_of
+from mmrs_mavlink.calibration.reading import flight_in
+
+OUT_AND_BACK = [(0.0, 0.0, 20.0), (80.0, 0.0, 20.0), (0.0, 0.0, 20.0), (0.0, 60.0, 20.0), (0.0, 15.0, 20.0)]
+UP_AND_DOWN = [(0.0, 0.0, 10.0), (0.0, 0.0, 40.0), (0.0, 0.0, 10.0), (0.0, 0.0, 40.0)]
+COPTER = Curve()
+GUIDED, AUTO, LAND = 4, 3, 9
+
+
+def figures(tmp_path, data):
+    (tmp_path / "flight").write_bytes(data)
+    return {(each.flown_as, each.name): each for each in figures_of(flight_in(tmp_path / "flight"))}
+
+
+@pytest.mark.parametrize("made", [dataflash, telemetry])
+@pytest.mark.parametrize(("rate", "noise"), [(4.0, 0.02), (10.0, 0.0), (10.0, 0.05)])
+def test_the_figures_of_level_legs_are_found_again(made, rate, noise, tmp_path):
+    found = figures(tmp_path, made(flown(OUT_AND_BACK, COPTER, rate=rate, noise=noise)))
+    assert found["STEP", "speed.max"].median == pytest.approx(8.0, rel=0.02)
+    assert found["STEP", "maxAcceleration"].median == pytest.approx(2.5, rel=0.1)
+    assert found["STEP", "maxDeceleration"].median == pytest.approx(1.5, rel=0.1)
+    assert found["STEP", "maxJerk"].median == pytest.approx(5.0, rel=0.5)
+    assert found["STEP", "settlingTime"].median == pytest.approx(COPTER.pause, abs=2.0 / rate)
+    assert len(found["STEP", "maxAcceleration"].values) == 4
+    assert {each.missing for (flown_as, _), each in found.items() if flown_as == "MISSION"} == {
+        "not flown in auto"
+    }
+
+
+def test_a_mission_has_figures_of_its_own(tmp_path):
+    steps = list(flown(OUT_AND_BACK, COPTER))
+    gentle = Curve(acceleration=2.0, deceleration=2.0, jerk=1.2)
+    mission = flown(OUT_AND_BACK, gentle, mode=AUTO, begin=steps[-1].time + 0.1)
+    found = figures(tmp_path, dataflash([*steps, *mission]))
+    assert found["STEP", "maxJerk"].median == pytest.approx(5.0, rel=0.5)
+    assert found["MISSION", "maxJerk"].median == pytest.approx(1.2, rel=0.15)
+    assert found["MISSION", "maxAcceleration"].median == pytest.approx(2.0, rel=0.1)
+    assert found["MISSION", "cornerRadius"].missing == "no corner was passed without a stop"
+
+
+def test_upright_legs_tell_climb_and_descent(tmp_path):
+    curve = Curve(speed=2.5, acceleration=1.0, deceleration=1.0)
+    found = figures(tmp_path, dataflash(flown(UP_AND_DOWN, curve)))
+    assert found["STEP", "maxClimbRate"].median == pytest.approx(2.5, rel=0.02)
+    assert found["STEP", "maxDescentRate"].median == pytest.approx(2.5, rel=0.02)
+    assert found["STEP", "maxVerticalAcceleration"].median == pytest.approx(1.0, rel=0.15)
+    assert found["STEP", "maxAcceleration"].values == ()
+
+
+def test_a_slow_leg_does_not_lower_the_largest_speed(tmp_path):
+    quick = list(flown(OUT_AND_BACK, COPTER))
+    slow = flown(OUT_AND_BACK, replace(COPTER, speed=3.0), begin=quick[-1].time + 0.1)
+    found = figures(tmp_path, dataflash([*quick, *slow]))
+    assert found["STEP", "speed.max"].median == pytest.approx(8.0, rel=0.02)
+
+
+def test_a_corner_that_is_passed_tells_its_radius(tmp_path):
+    found = figures(tmp_path, dataflash(_round_a_corner(radius=6.0, speed=5.0)))
+    nearest = 6.0 * (2.0**0.5 - 1.0)
+    assert found["MISSION", "cornerRadius"].median == pytest.approx(nearest, abs=0.2)
+
+
+def _round_a_corner(radius, speed, rate=10.0):
+    """Yield a mission that goes east, turns north by an arc without a stop, and goes on."""
+    length, arc = 40.0, radius * np.pi / 2.0
+    for number in range(int((2 * length + arc) / speed * rate)):
+        along = number * speed / rate
+        angle = np.clip((along - length) / radius, 0.0, np.pi / 2.0)
+        east = min(along, length) + radius * np.sin(angle)
+        north = radius * (1.0 - np.cos(angle)) + max(0.0, along - length - arc)
+        velocity = (speed * np.cos(angle), speed * np.sin(angle), 0.0)
+        yield Sample(10.0 + number / rate, (east, north, 20.0), velocity, 90.0 - np.degrees(angle), AUTO)
+
+
+def test_turns_tell_their_rate(tmp_path):
+    headings = np.concatenate([np.zeros(30), np.linspace(0.0, 120.0, 21), np.full(30, 120.0)])
+    samples = [
+        Sample(n / 10.0, (0.0, 0.0, 20.0), (0.0, 0.0, 0.0), float(each)) for n, each in enumerate(headings)
+    ]
+    rate = figures(tmp_path, dataflash(samples))["", "maxTurnRate"]
+    assert rate.median == pytest.approx(60.0, rel=0.1)
+
+
+def test_a_landing_tells_its_end(tmp_path):
+    heights = np.concatenate([np.arange(30.0, 10.0, -0.15), np.arange(10.0, 0.0, -0.05), np.zeros(60)])
+    rates = np.gradient(heights, 0.1)
+    samples = [
+        Sample(n / 10.0, (0.0, 0.0, height), (0.0, 0.0, rate), mode=LAND, armed=n < len(heights) - 30)
+        for n, (height, rate) in enumerate(zip(heights.tolist(), rates.tolist(), strict=True))
+    ]
+    found = figures(tmp_path, dataflash(samples))
+    assert found["", "landingRate"].median == pytest.approx(0.5, rel=0.05)
+    assert found["", "landingHeight"].median == pytest.approx(10.0, rel=0.1)
+    assert found["", "touchDownTime"].median == pytest.approx(3.0, abs=0.4)
+
+
+def test_power_tells_how_long_the_battery_lasts(tmp_path):
+    found = figures(tmp_path, dataflash(flown(OUT_AND_BACK, COPTER), watts=444.0))
+    assert found["", "meanPower"].median == pytest.approx(444.0, rel=1e-5)
+    assert found["", "lifetime"].median == pytest.approx(16.0 * 3600.0 / (444.0 / 22.2), rel=1e-5)
+
+
+def test_what_a_log_does_not_hold_is_named(tmp_path):
+    found = figures(tmp_path, dataflash(flown(OUT_AND_BACK, COPTER)))
+    assert found["", "meanPower"].missing == "no voltage and current while it moved"
+    assert found["", "landingRate"].missing == "no landing until the motors stopped"
+    assert found["STEP", "maxClimbRate"].missing == "no upright leg was long enough for it"
+
+
+def test_too_few_positions_a_second_are_refused_figures_of_legs(tmp_path):
+    found = figures(tmp_path, dataflash(flown([*OUT_AND_BACK, *OUT_AND_BACK], COPTER, rate=2.0)))
+    assert found["STEP", "maxAcceleration"].missing == "2.0 positions per second are too few"
+
+
+def test_the_fastest_are_those_near_the_largest():
+    assert fastest([1.0, 9.5, 10.0, 8.0]) == [9.5, 10.0]
