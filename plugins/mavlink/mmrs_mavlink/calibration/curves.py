@@ -1,8 +1,8 @@
 """Speeds over time: where they change, how fast, and where they are kept.
 
 A change from one speed to another is taken for half of an S-curve: the acceleration grows at a largest jerk,
-stays at its largest value, and falls again. A curve that is fitted to all samples of a change bears noise and
-few samples better than differences do, and yields both figures at once.
+stays at its largest value, and falls again. A curve that is fitted to all samples of a change is less
+sensitive to noise and to few samples than differences are, and yields both figures at once.
 """
 
 from __future__ import annotations

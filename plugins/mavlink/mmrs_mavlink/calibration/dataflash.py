@@ -2,7 +2,7 @@
 
 A message is A3 95, the number of its type, and its fields. A message FMT (128) gives a type its name, its
 length, the code of each field and their names. pymavlink's own reader expects an undamaged log: it prints
-each bad byte, and a format of length 0 holds it up for ever.
+each bad byte, and never comes to an end where a format has length 0.
 """
 
 from __future__ import annotations
@@ -52,7 +52,7 @@ def messages_in(data: bytes, wanted: Collection[str], damages: Damages) -> Itera
     Args:
         data: of the log.
         wanted: names of types.
-        damages: counts what is no message.
+        damages: counts bytes that hold no message.
     """
     formats = {_FORMAT: _Format("FMT", _FORMAT_LENGTH)}
     offset, end = 0, len(data)

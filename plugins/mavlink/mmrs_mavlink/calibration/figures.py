@@ -222,7 +222,7 @@ def _energy_figures(flight: Flight) -> Iterator[Figure]:
 
 
 def in_flight(flight: Flight, times: Floats) -> Flags:
-    """Return at which times the vehicle was on its way: armed, between its first and its last motion."""
+    """Return at which times the vehicle was armed, between its first and its last motion."""
     moving = np.flatnonzero(np.linalg.norm(flight.velocities, axis=1) > _still(flight.profile))
     if not len(moving):
         return np.zeros(len(times), dtype=np.bool_)

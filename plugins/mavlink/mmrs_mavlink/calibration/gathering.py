@@ -1,4 +1,4 @@
-"""Gathers what a log says of a flight, message by message, and makes a flight of it."""
+"""Gathers the contents of a log, message by message, and makes a flight of them."""
 
 from __future__ import annotations
 
@@ -66,7 +66,7 @@ class Gathered:
             self.now = time
 
     def add_by_speed(self, time: float, place: Sequence[float], speed: float, heading: float) -> None:
-        """Add a sample whose velocity leads here from the place before, with a speed that was measured."""
+        """Add a sample whose velocity leads here from the sample before, with a speed that was measured."""
         before = self.samples[-1][1:4] if self.samples else tuple(place)
         length = dist(before, place)
         part = speed / length if length > 0.0 else 0.0

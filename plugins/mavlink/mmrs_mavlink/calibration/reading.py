@@ -52,7 +52,7 @@ def flight_in(path: Path, system: int | None = None) -> Flight:
         system: MAVLink's number of the vehicle, where a .tlog holds several.
 
     Raises:
-        UnreadableError: there is no such file, it is no log that is read, or it holds no flight.
+        UnreadableError: there is no such file, its format is not read, or it holds no flight.
     """
     if is_part(path):
         return _box_flight(path)

@@ -30,7 +30,7 @@ def messages_in(data: bytes, wanted: Collection[str], damages: Damages) -> Itera
     Args:
         data: of the log.
         wanted: names of messages.
-        damages: counts what is no message.
+        damages: counts bytes that hold no message.
     """
     numbers = {number for number, each in mavlink.mavlink_map.items() if each.msgname in wanted}
     decoder = mavlink.MAVLink(None)

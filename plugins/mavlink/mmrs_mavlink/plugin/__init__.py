@@ -46,8 +46,15 @@ def mmrs_vehicles() -> Iterable[VehicleFactory]:
 
 @hookimpl
 def mmrs_commands() -> Iterable[Command]:
-    """Contribute simulated vehicles at the ends of MAVLink links."""
-    return (Command("sitl", "Start simulated MAVLink vehicles.", "mmrs_mavlink.commands.sitl:app"),)
+    """Contribute simulated vehicles, and figures of real ones from their flight logs."""
+    return (
+        Command("sitl", "Start simulated MAVLink vehicles.", "mmrs_mavlink.commands.sitl:app"),
+        Command(
+            "calibrate",
+            "Calculate the figures of a robot type from a flight log.",
+            "mmrs_mavlink.commands.calibrate:app",
+        ),
+    )
 
 
 @hookimpl

@@ -1,0 +1,121 @@
+"""``mmrs calibrate``: figures of a robot type from the log of one flight."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from mmrs_core.cli.output import say, say_json, table, tell
+from mmrs_core.cli.settings import Json
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator
+
+    from mmrs_mavlink.calibration.figures import Figure
+    from mmrs_mavlink.calibration.flight import Flight
+
+app = typer.Typer(rich_markup_mode=None, add_completion=False)
+
+
+@app.command()
+def calibrate(
+    log: Annotated[
+        Path,
+        typer.Argument(
+            metavar="LOG",
+            help="Log of one flight: ArduPilot's .bin, a ground station's .tlog, or a black box of MMRS.",
+        ),
+    ],
+    system: Annotated[
+        int | None,
+        typer.Option(
+            "--system",
+            metavar="N",
+            min=1,
+            max=255,
+            help="MAVLink system id, if a .tlog holds several vehicles.",
+        ),
+    ] = None,
+    json: Json = False,
+) -> int:
+    """Calculate the figures of a robot type from a flight log.
+
+    Prints acceleration, jerk, speeds, turn rate, settling time and power as the vehicle really flew them, for
+    single targets (STEP) and missions (MISSION), each with its number of values, median and spread.
+
+    Example: mmrs calibrate 00000042.BIN
+    """
+    from mmrs_mavlink.calibration.figures import figures_of
+    from mmrs_mavlink.calibration.reading import flight_in
+
+    flight = flight_in(log, system)
+    for damage in flight.damages:
+        tell(damage)
+    figures = figures_of(flight)
+    if json:
+        say_json(_plain(log, flight, figures))
+        return 0
+    for line in _lines(flight, figures):
+        say(line)
+    return 0
+
+
+def _plain(log: Path, flight: Flight, figures: Iterable[Figure]) -> dict[str, object]:
+    """Return the result as plain values."""
+    return {
+        "log": log,
+        "vehicle": flight.vehicle,
+        "seconds": round(flight.seconds, 3),
+        "rate": round(flight.rate, 3),
+        "figures": [_plain_figure(each) for each in figures],
+        "damages": flight.damages,
+    }
+
+
+def _plain_figure(figure: Figure) -> dict[str, object]:
+    found: dict[str, object] = {
+        "name": figure.name,
+        "unit": figure.unit,
+        "flown_as": figure.flown_as or None,
+        "n": len(figure.values),
+    }
+    if figure.missing:
+        return found | {"missing": figure.missing}
+    low, high = figure.spread
+    return found | {"median": round(figure.median, 4), "low": round(low, 4), "high": round(high, 4)}
+
+
+def _lines(flight: Flight, figures: tuple[Figure, ...]) -> Iterator[str]:
+    """Yield what is printed: the flight, the figures, those that are missing, and the attributes to copy."""
+    from mmrs_mavlink.calibration.attributes import element_lines
+
+    yield f"{flight.vehicle}: {flight.seconds:.0f} s, {flight.rate:.1f} positions a second"
+    yield ""
+    known = [each for each in figures if not each.missing]
+    rows = [(each.flown_as, each.name, each.unit, str(len(each.values)), *_numbers(each)) for each in known]
+    yield from table(("flown as", "figure", "unit", "n", "median", "10 % … 90 %"), rows)
+    yield ""
+    for why, names in _missing(figures).items():
+        yield f"not in this log: {', '.join(names)}: {why}"
+    yield ""
+    yield from element_lines(figures)
+
+
+def _numbers(figure: Figure) -> tuple[str, str]:
+    """Return the median and the spread, which one value has not."""
+    from mmrs_mavlink.calibration.attributes import shown
+
+    low, high = figure.spread
+    return shown(figure.median), f"{shown(low)} … {shown(high)}" if len(figure.values) > 1 else ""
+
+
+def _missing(figures: Iterable[Figure]) -> dict[str, list[str]]:
+    """Return the figures without values, by the cause."""
+    found: dict[str, list[str]] = {}
+    for each in figures:
+        if each.missing:
+            cause = f"{each.missing} ({each.flown_as})" if each.flown_as else each.missing
+            found.setdefault(cause, []).append(each.name)
+    return found
