@@ -33,7 +33,7 @@ from .autopilot import (
     always,
 )
 from .modes import Mode
-from .profile import Delay, Exemption, LostLinkFailsafe, Safeguard, VehicleProfile
+from .profile import Delay, Exemption, LostLinkFailsafe, Safeguard, Timing, VehicleProfile
 
 ARDUPILOT = Autopilot(
     "ardupilot",
@@ -289,6 +289,8 @@ ARDUSUB = VehicleProfile(
     safeguards=SUB_SAFEGUARDS,
     rehearsed_as="sub",
     dives=True,
+    heads_apart=True,
+    timing=Timing(resend=2.0),
     radii=_RADII,
     highest_item=-0.01,
     watches_jumps=False,
@@ -297,9 +299,11 @@ ARDUSUB = VehicleProfile(
     usual_responses={OBJECT_NOT_FOUND: "SURFACE"},
     starts_in=STARTS_IN,
 )
-"""It surfaces instead of returning. It takes its home to be at the surface, wherever it is armed, and skips
-what is above that. A height of exactly 0 is to it the one that it is at: so an item at the surface is a bit
-below it, by the least that ArduSub distinguishes, as it counts in centimetres.
+"""It surfaces instead of returning. It ignores the heading of a SET_POSITION_TARGET_GLOBAL_INT, and turns by
+CONDITION_YAW (``GCS_MAVLink_Sub.cpp``). With each target that it receives it plans its path from rest: it is
+judged less often than others whether it has received one. It takes its home to be at the surface, wherever
+it is armed, and skips what is above that. A height of exactly 0 is to it the one that it is at: so an item at
+the surface is a bit below it, by the least that ArduSub distinguishes, as it counts in centimetres.
 """
 
 _STOPS = frozenset({4, 11, 12})

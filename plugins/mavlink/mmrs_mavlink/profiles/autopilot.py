@@ -103,7 +103,8 @@ class Autopilot:
         title: as printed.
         number: of MAV_AUTOPILOT, which heartbeats report.
         guidance: its `vehicles.guidance.Guidance`, as ``module:class``: how it is steered, step by step.
-        streams: whether it is steered by a stream of set-points that move towards their target.
+        streams: whether it is steered by a stream of set-points that move towards their target; otherwise a
+            target is sent once, and again only where the vehicle does not go there.
         restores_mode: whether it returns, as it disarms, to the last mode that it may be armed in.
         streamed: messages that it alone knows, with the rate at which they are requested, hertz.
         integers: parameters of 32-bit whole numbers; others are of single precision.

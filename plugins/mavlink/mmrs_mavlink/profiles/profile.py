@@ -73,7 +73,7 @@ class Timing:
     Attributes:
         mode: until it shows a mode that was requested, or that it has disarmed.
         arming: until it shows that it is armed, or has left the ground.
-        resend: after which a target is sent again that it has not reached.
+        resend: after which a target is sent again, unless the vehicle is on its way there.
         restart: until its time since its start tells that it has restarted.
         cause: until it tells why it has left its mode as its failsafe would.
     """
@@ -141,6 +141,7 @@ class VehicleProfile:
         flies: whether the vehicle takes off and lands.
         dives: whether its heights count from the water surface.
         turns: whether it turns to a heading on command.
+        heads_apart: whether it ignores the heading of a target, so that it is commanded separately.
         in_plane: whether it is at a place whatever its height: it is as high as the ground takes it.
         still: metres per second up to which it stands still.
         timing: how long it may take.
@@ -178,6 +179,7 @@ class VehicleProfile:
     flies: bool = False
     dives: bool = False
     turns: bool = True
+    heads_apart: bool = False
     in_plane: bool = False
     still: float = 0.3
     timing: Timing = Timing()

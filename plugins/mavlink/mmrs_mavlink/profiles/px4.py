@@ -241,6 +241,7 @@ def _on_px4(name: str, profile: VehicleProfile) -> VehicleProfile:
         lost_link=LOST_LINK,
         event_modes=None,
         named_modes={},
+        heads_apart=False,
         breach=BREACH,
         safeguards=SAFEGUARDS,
         radii={"NAV_ACC_RAD": 1.0},

@@ -206,7 +206,7 @@ class SimulatedVehicle:
             case "SET_POSITION_TARGET_GLOBAL_INT":
                 up = pilot.above_ground(message.alt, above_sea=message.coordinate_frame in ABOVE_SEA)
                 place = pilot.local(message.lat_int * 1e-7, message.lon_int * 1e-7, up)
-                steer(pilot, place, _heading(message))
+                steer(pilot, place, None if pilot.settings.kind == "sub" else _heading(message))
             case "SET_POSITION_TARGET_LOCAL_NED":
                 steer(pilot, (message.x, message.y, -message.z), _heading(message))
             case "MANUAL_CONTROL":

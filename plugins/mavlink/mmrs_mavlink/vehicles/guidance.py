@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from math import degrees
 from typing import Protocol
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
@@ -73,17 +74,26 @@ class ArduPilotGuidance:
     def __init__(self, link: Link, telemetry: Telemetry) -> None:
         """Steer the vehicle at a link."""
         self._link = link
+        self._yaw: float | None = None
 
     def begin_guiding(self) -> None:
-        """Return at once: targets may follow the change of mode."""
+        """Forget the heading, as the vehicle does: targets may follow the change of mode."""
+        self._yaw = None
 
     def end_guiding(self) -> None:
         """Return at once: a target that was sent is forgotten with the mode."""
 
     def aim(self, place: Place, yaw: float, speed: float | None) -> None:
-        """Send a target; the speed needs another command."""
+        """Send a target; the speed needs another command, and so does the heading of some vehicles.
+
+        Raises:
+            RefusedError: the vehicle does not take the heading.
+        """
         frame = mavlink.MAV_FRAME_GLOBAL_RELATIVE_ALT_INT
         self._link.send(target(self._link, place, yaw, frame))
+        if self._link.profile.heads_apart and yaw != self._yaw:
+            command(self._link, mavlink.MAV_CMD_CONDITION_YAW, degrees(yaw) % 360.0)
+            self._yaw = yaw
 
     def take_off(self, height: float) -> tuple[float, ...]:
         """Return the parameters of NAV_TAKEOFF."""

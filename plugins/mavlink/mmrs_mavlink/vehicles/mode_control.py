@@ -327,19 +327,24 @@ class ModeControl:
         self._arming = False
         return True
 
-    def pace(self, speed: float | None) -> None:
+    def pace(self, speed: float | None, *, again: bool = False) -> None:
         """Set the speed, metres per second, towards the target just sent and later ones; None: unchanged.
 
         With the first target that it receives in a mode, or after a take-off, an ArduCopter returns to its
         default speed (``ModeGuided::pva_control_start``), and a Rover obeys no speed before one
-        (``ModeGuided::set_desired_speed``). As any target may be lost, the speed is sent after several.
+        (``ModeGuided::set_desired_speed``). As any target may be lost, the speed is sent several
+        times.
+
+        Args:
+            speed: of the target.
+            again: whether the target was sent again.
 
         Raises:
             RefusedError: the vehicle takes no such speed.
         """
         if speed is None or self._link.profile.autopilot.streams:
             return
-        if speed != self._speed:
+        if again or speed != self._speed:
             self._speed, self._told = speed, 0
         if self._told == self._link.profile.speed_repeats:
             return

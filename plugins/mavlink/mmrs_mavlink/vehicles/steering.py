@@ -23,8 +23,46 @@ ABREAST_METRES = 0.1
 """How near a place must be that is gone through: chains of short legs around a corner would add up more."""
 
 
+ADVANCE_SPEED = 0.05
+"""Metres per second by which a vehicle on its way to a target comes nearer at least."""
+
+ADVANCE_PART = 0.9
+"""Metres by which it comes nearer with every metre covered, at least: up to 25 degrees beside the line."""
+
+
+class Advance:
+    """Whether a vehicle is on its way to a target: one that is not may never have received it."""
+
+    def __init__(self, telemetry: Telemetry, place: Place) -> None:
+        """Judge by what is reported from now on whether it comes nearer to a place."""
+        self._telemetry, self._place = telemetry, place
+        self._here, self._since = telemetry.here(), telemetry.time()
+
+    def ceased(self, seconds: float) -> bool:
+        """Return whether it has not come nearer since the last judgement.
+
+        One whose positions do not arrive is not judged.
+
+        Args:
+            seconds: between two judgements, of which half must lie between the positions that are compared.
+        """
+        here, now = self._telemetry.here(), self._telemetry.time()
+        if now - self._since < seconds / 2.0:
+            return False
+        nearer = distance(self._here, self._place) - distance(here, self._place)
+        least = max(ADVANCE_SPEED * (now - self._since), ADVANCE_PART * distance(self._here, here))
+        self._here, self._since = here, now
+        return nearer < least
+
+
 class Steering:
-    """Steers a vehicle by position targets, which are sent again until it is there."""
+    """Steers a vehicle by position targets.
+
+    A target is sent once, and again where the vehicle evidently does not go there, since it may be lost: an
+    ArduSub plans its path from rest with each target that it receives, and goes at a third of its speed if it
+    receives one a second (``AC_WPNav::set_wp_destination_NEU_cm``). ArduSub reports no target
+    (POSITION_TARGET_GLOBAL_INT), so its motion is what shows that it has one. Streams of set-points go on.
+    """
 
     def __init__(
         self,
@@ -62,9 +100,10 @@ class Steering:
         way = distance(begun, place)
         limit = self._link.clock.now() + PATIENCE_SECONDS + PATIENCE_FACTOR * way / max(0.2, speed or 1.0)
         resend = self._link.profile.timing.resend
+        advance, lost = Advance(self._telemetry, place), False
+        self._steer(place, look)
         while True:
-            self._steer(place, look)
-            self._mode_control.pace(speed)
+            self._mode_control.pace(speed, again=lost)
             if look is not None and isinstance(look.at, Local):
                 self._point(look)
             if self._link.wait(lambda: self._arrived(place, begun if through else None), resend):
@@ -75,6 +114,9 @@ class Steering:
                 raise FaultError(
                     NO_PROGRESS, f"still {self._away(self._telemetry.here(), place):.1f} m from {place}"
                 )
+            lost = advance.ceased(resend)
+            if lost or self._must_turn(look):
+                self._steer(place, look)
         self._unpoint(look)
 
     def turn(self, look: Look) -> None:
@@ -143,6 +185,12 @@ class Steering:
             self._yaw = bearing(here, place)
         self._send_target(place, self._heading() if self._yaw is None else self._yaw)
 
+    def _must_turn(self, look: Look | None) -> bool:
+        """Return whether a device without a gimbal points elsewhere by now than at its target."""
+        if look is None or look.gimbal or self._yaw is None:
+            return False
+        return _angle(self._yaw, _yaw(self._telemetry.here(), look)) >= CLOSE_DEGREES
+
     def _send_target(self, place: Place, yaw: float) -> None:
         self._mode_control.guidance.aim(place, radians(yaw), self._speed)
 
@@ -157,7 +205,7 @@ class Steering:
         return begun is not None and (away <= ABREAST_METRES or _is_past(begun, here, place))
 
     def _faces(self, wanted: float) -> bool:
-        return abs((self._heading() - wanted + 180.0) % 360.0 - 180.0) < CLOSE_DEGREES
+        return _angle(self._heading(), wanted) < CLOSE_DEGREES
 
     def _heading(self) -> float:
         told = self._telemetry.heading()
@@ -168,6 +216,11 @@ def _is_past(begun: Place, here: Place, place: Place) -> bool:
     """Return whether a vehicle on a leg from `begun` is abreast of its end, or has passed it."""
     leg, left = offset(begun, place), offset(here, place)
     return sum(p * q for p, q in zip(leg, left, strict=True)) <= 0.0
+
+
+def _angle(a: float, b: float) -> float:
+    """Return the degrees between two headings."""
+    return abs((a - b + 180.0) % 360.0 - 180.0)
 
 
 def _yaw(here: Place, look: Look) -> float:

@@ -194,6 +194,11 @@ class Telemetry:
         told = self._link.clock.now() - self._link.since(self._position)
         return told > begun and self.speed() <= pace
 
+    def time(self) -> float:
+        """Return the second since its start at which the vehicle was at its last reported position."""
+        found = self._link.latest(self._position)
+        return 0.0 if found is None else float(found.time_boot_ms) * 1e-3
+
     def aim(self) -> Place | None:
         """Return the vehicle's last reported target position; None where it has reported none.
 

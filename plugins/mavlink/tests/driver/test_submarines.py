@@ -7,7 +7,7 @@ from dataclasses import replace
 import pytest
 from flight_crew import manned, robot_of
 
-from mmrs_mavlink.program import Geographic, GoTo, Run, Start, Step, Stop, Then
+from mmrs_mavlink.program import Geographic, GoTo, Look, Run, Start, Step, Stop, Then
 from mmrs_mavlink.services.uploads import Uploads, mission_of
 from mmrs_mavlink.steps.obeying import undone
 from mmrs_runtime.faults import MOTORS_OFF, RefusedError
@@ -61,6 +61,11 @@ def test_motors_that_stop_at_the_surface_are_not(below):
     with below.simulated.lock:
         below.simulated.autopilot.disarm()
     below.quiet(5.0)
+
+
+def test_a_submarine_turns_to_what_a_device_without_a_gimbal_looks_at(below):
+    below.vehicle.turn(Look(Geographic(42.37, 13.351, -4.0)))
+    assert abs(below.simulated.autopilot.body.heading - 90.0) < 5.0
 
 
 WAYPOINT = 16
