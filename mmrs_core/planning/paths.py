@@ -11,6 +11,7 @@ import numpy as np
 from mmrs_core.errors import UnreachableError
 from mmrs_core.geometry.clearance import EPSILON
 from mmrs_core.geometry.segments import legs_of
+from mmrs_core.planning.curves import with_fewer_corners
 from mmrs_core.planning.layers import Layers, Rates
 from mmrs_core.planning.obstacles import Flags, Obstacles
 from mmrs_core.planning.visibility import Visibility, shortest_path
@@ -40,6 +41,7 @@ class Space:
         ceiling: float = inf,
         *,
         rates: Rates | None = None,
+        turning_radius: float = 0.0,
     ) -> None:
         """Grow the areas.
 
@@ -49,9 +51,11 @@ class Space:
             floor: lowest height at which the robot travels, metres.
             ceiling: highest height, metres.
             rates: of travel, which decide between going around and going over; None: 1 m/s each.
+            turning_radius: of the robot's narrowest curve, metres; 0: it turns on the spot.
         """
         self.floor, self.ceiling = floor, ceiling
         self.rates = rates or Rates(1.0, 1.0, 1.0)
+        self._least = 2.0 * turning_radius
         self._obstacles = Obstacles(tuple(areas), clearance)
         self._visibility = Visibility(self._obstacles)
         self._routes: dict[tuple[Position, Position], tuple[Position, ...] | str] = {}
@@ -83,10 +87,15 @@ class Space:
         """
         found = self._routes.get((start, goal))
         if found is None:
-            found = self._routes[start, goal] = self._search(start, goal)
+            found = self._routes[start, goal] = self._drivable(self._search(start, goal))
         if isinstance(found, str):
             raise UnreachableError(found)
         return found
+
+    def _drivable(self, found: tuple[Position, ...] | str) -> tuple[Position, ...] | str:
+        if isinstance(found, str) or not self._least:
+            return found
+        return with_fewer_corners(found, self._least, lambda path: not self._blockers(path).any())
 
     def _search(self, start: Position, goal: Position) -> tuple[Position, ...] | str:
         for end, name in ((start, "start"), (goal, "goal")):

@@ -51,7 +51,7 @@ class Spaces:
                 their own; None: homes are free space.
         """
         self._scene, self._from_homes = scene, from_homes
-        self._spaces: dict[tuple[float, float, float, Rates, frozenset[int]], Space] = {}
+        self._spaces: dict[tuple[float, float, float, Rates, float, frozenset[int]], Space] = {}
 
     def of(self, robot: Robot) -> Space:
         """Return the space of a robot whose kinematics are known."""
@@ -59,9 +59,10 @@ class Spaces:
         rates = rates_of(kinematics, kinematics.cruise)
         areas = (*self._scene.kept_from(robot), *self._homes_kept_from(robot))
         alike = frozenset(map(id, areas))
-        key = (robot.clearance, kinematics.floor, kinematics.ceiling, rates, alike)
+        radius = kinematics.turning_radius
+        key = (robot.clearance, kinematics.floor, kinematics.ceiling, rates, radius, alike)
         if key not in self._spaces:
-            self._spaces[key] = Space(areas, *key[:3], rates=rates)
+            self._spaces[key] = Space(areas, *key[:3], rates=rates, turning_radius=radius)
         return self._spaces[key]
 
     def _homes_kept_from(self, robot: Robot) -> Iterator[Area]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from math import inf
+from math import dist, inf, sqrt, tan
 
 from mmrs_core.diagnostics import Place
 from mmrs_core.scene.primitives import Metaclasses, Part, Position, TravelMode
@@ -110,6 +110,8 @@ class Kinematics:
             `fastest` is what is left of it against the wind or the current. None: nothing is lost.
         turning_radius: of its narrowest curve, metres; 0: it turns on the spot. Else it shunts where it
             stops: it keeps within so far of that place, and takes up to 180° / `turn_rate`.
+        overshoot: seconds; times its largest level speed on a leg, the metres by which it overshoots the end
+            where it stops.
     """
 
     cruise: float
@@ -131,6 +133,35 @@ class Kinematics:
     launches: bool = False
     own_speed: float | None = None
     turning_radius: float = 0.0
+    overshoot: float = 0.0
+
+    def fits_curve(self, turn: float, leg: float) -> bool:
+        """Return whether the robot can pass a corner in its narrowest curve without leaving the legs before.
+
+        Args:
+            turn: at the corner, radians, less than pi.
+            leg: metres of the shorter of its two legs, of which half belongs to the next corner.
+        """
+        return self.turning_radius * tan(turn / 2.0) <= leg / 2.0 + 1e-9
+
+    def beyond(self, start: Position, end: Position, speed: float) -> Position:
+        """Return where a robot turns back that sets out from a standstill, and stops at the end of a leg.
+
+        Args:
+            start: of the leg.
+            end: of the leg.
+            speed: commanded, metres per second; a short leg does not get it so fast.
+        """
+        east, north, length = end[0] - start[0], end[1] - start[1], dist(start, end)
+        if length <= 0.0 or self.overshoot <= 0.0:
+            return end
+        share = self.overshoot * min(speed, sqrt(self.acceleration * length)) / length
+        return end[0] + share * east, end[1] + share * north, end[2]
+
+    @property
+    def room(self) -> float:
+        """Return the metres by which its paths keep more than its clearance: to turn, and to stop late."""
+        return self.turning_radius + self.overshoot * self.cruise
 
     @property
     def shunting(self) -> float:
@@ -149,7 +180,7 @@ class Robot:
         name: unique in the team.
         kind: name of its robot kind; empty until the scene is expanded.
         clearance: half the robot's diagonal plus the mission's position error, metres, and once it is
-            expanded the radius that it turns in; the safety distance of each area comes on top.
+            expanded the room that its kinematics want; the safety distance of each area comes on top.
         kinematics: None until the scene is expanded.
     """
 

@@ -82,7 +82,10 @@ class Escapes:
     @cached_property
     def _space(self) -> Space:
         kept_from = (*self._areas(AreaUse.FORBIDDEN), *self._areas(AreaUse.OBSTACLE))
-        return Space(kept_from, self._clearance, self._kinematics.floor, self._kinematics.ceiling)
+        known = self._kinematics
+        return Space(
+            kept_from, self._clearance, known.floor, known.ceiling, turning_radius=known.turning_radius
+        )
 
     def _areas(self, use: AreaUse) -> tuple[Area, ...]:
         concerned = self._given.type.name

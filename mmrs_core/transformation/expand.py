@@ -58,7 +58,7 @@ def _with_kinematics(robot: Robot, scene: Scene, kinds: Mapping[Name, RobotKind]
         kinematics = kind.kinematics(robot, scene)
     except InfeasibleError as error:
         raise InfeasibleError(f"robot '{robot.name}': {error}") from error
-    clearance = robot.clearance + kinematics.turning_radius
+    clearance = robot.clearance + kinematics.room
     return replace(robot, kind=kind.name, kinematics=kinematics, clearance=clearance)
 
 

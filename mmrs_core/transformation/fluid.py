@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from math import acos, hypot, pi
+from math import acos, dist, hypot, pi
 
 import numpy as np
 import shapely
 
 from mmrs_core.contributions.rules import MoveSpec
-from mmrs_core.scene import Position, Robot, Scene
+from mmrs_core.scene import Kinematics, Position, Robot, Scene
 from mmrs_core.transformation.chain import Chain, DraftTransition
 
 LEAST_CUT = 2.0
@@ -23,8 +23,9 @@ class Corners:
     """Corners of a robot's moves, and whether it may pass them without a stop.
 
     A robot that goes round a corner without a stop cuts it by up to v² / 2a, or by the radius within which
-    its autopilot counts the corner as passed. Where robots must keep apart
-    they stop at every corner, so that it is certain when they are where.
+    its autopilot counts the corner as passed. One that needs room to turn passes where its narrowest curve
+    fits into the corner, which it then cuts by less than the radius that it keeps everywhere. Where robots
+    must keep apart they stop at every corner, so that it is certain when they are where.
     """
 
     def __init__(self, robot: Robot, scene: Scene, chain: Chain) -> None:
@@ -50,8 +51,18 @@ class Corners:
         if start is not None and _turn(start, corner, end) < STRAIGHT:
             return True
         if self._robot.kinematics is not None and self._robot.kinematics.turning_radius > 0.0:
-            return False
+            return _fits(self._robot.kinematics, self._place_before(edge.source), corner, end)
         return self._is_clear(corner, first.spec.speed)
+
+    def _place_before(self, node: int) -> Position:
+        """Return where the robot is when a move begins: its home, unless a move before has led elsewhere."""
+        at = self._before.get(node)
+        while at is not None:
+            target = self._chain.nodes[at].spec.target
+            if target is not None:
+                return target
+            at = self._before.get(at)
+        return self._robot.home
 
     def _is_clear(self, corner: Position, speed: float | None) -> bool:
         kinematics = self._robot.kinematics
@@ -67,6 +78,12 @@ class Corners:
 
 def _travels(spec: MoveSpec) -> bool:
     return spec.metaclass[1] == "GoTo" and spec.object is None and spec.target is not None
+
+
+def _fits(kinematics: Kinematics, start: Position, corner: Position, end: Position) -> bool:
+    shorter = min(dist(start[:2], corner[:2]), dist(corner[:2], end[:2]))
+    turn = _turn(start, corner, end)
+    return turn < pi and kinematics.fits_curve(turn, shorter)
 
 
 def _turn(start: Position, corner: Position, end: Position) -> float:

@@ -18,7 +18,14 @@ OF_PROGRAMS = ("minimum_separation", "position_error", "reserve", "idle")
 
 
 def kind(
-    metaclass=ROBOT, launches=False, floor=-inf, ceiling=inf, speed=2.0, acceleration=inf, turning_radius=0.0
+    metaclass=ROBOT,
+    launches=False,
+    floor=-inf,
+    ceiling=inf,
+    speed=2.0,
+    acceleration=inf,
+    turning_radius=0.0,
+    overshoot=0.0,
 ):
     """Return a kind of robots that move at one speed in every direction."""
     return RobotKind(
@@ -35,6 +42,7 @@ def kind(
             ceiling=ceiling,
             launches=launches,
             turning_radius=turning_radius,
+            overshoot=overshoot,
         ),
         launch=lambda height: (),
         recover=lambda: (),

@@ -1,7 +1,7 @@
 """Distances kept from areas, worked out by hand."""
 
 from dataclasses import replace
-from math import sqrt
+from math import inf, sqrt
 
 import pytest
 from checking import finding, findings, given, kind, land, rover, square, strange, take_off
@@ -236,6 +236,53 @@ def test_a_way_that_goes_straight_on_cuts_nothing():
     flows = round_a_corner(fluid=True, away=3.0, end=(40.0, 0.0, 0.0))
     stops = round_a_corner(fluid=False, away=3.0, end=(40.0, 0.0, 0.0))
     assert flows.margin == pytest.approx(stops.margin)
+
+
+def round_a_corner_like_a_car(*, fluid: bool, then: float):
+    """Return the verdict on ten metres to the east and then some to the north, with a turning radius of 2."""
+    flown = robot("a", [go("to", (10.0, 0.0, 0.0)), go("on", (10.0, then, 0.0))])
+    flows = {index: replace(each, fluid=fluid and index == 1) for index, each in flown.transitions.items()}
+    area = square(at=(10.0, -10.0))
+    made = given(replace(flown, transitions=flows), areas=(area,), robot_kind=kind(turning_radius=2.0))
+    return finding("clearance", made)
+
+
+def test_a_corner_that_the_narrowest_curve_fits_into_needs_no_more_room_than_to_turn():
+    stops, flows = (round_a_corner_like_a_car(fluid=fluid, then=4.0) for fluid in (False, True))
+    assert flows.margin == pytest.approx(stops.margin)
+
+
+def test_a_corner_that_the_narrowest_curve_does_not_fit_into_is_overrun_by_the_turning_circle():
+    stops, flows = (round_a_corner_like_a_car(fluid=fluid, then=3.0) for fluid in (False, True))
+    assert flows.margin == pytest.approx(stops.margin - 4.0)
+
+
+def before_an_area(*, length: float = 20.0, acceleration=inf, then=None, fluid=False, speed=4.0):
+    """Return the margin to an area ten metres beyond the end of a leg to the east, at 0.1 s of overshoot."""
+    end = (length, 0.0, 0.0)
+    moves = [replace(go("to", end), speed=speed), *([] if then is None else [go("on", then)])]
+    flown = robot("a", moves)
+    flows = {index: replace(each, fluid=fluid and index == 1) for index, each in flown.transitions.items()}
+    found = kind(acceleration=acceleration, overshoot=0.1)
+    areas = (square(at=(length + 11.0, 0.0)),)
+    made = given(replace(flown, transitions=flows), areas=areas, robot_kind=found)
+    return finding("clearance", made).margin
+
+
+def test_a_robot_that_stops_late_comes_nearer_to_what_is_ahead():
+    assert before_an_area() == pytest.approx(10.0 - 0.5 - 0.1 * 4.0)
+
+
+def test_a_robot_that_stops_late_does_so_less_where_it_is_slower_or_its_leg_too_short_to_be_fast():
+    assert before_an_area(speed=1.0) == pytest.approx(10.0 - 0.5 - 0.1)
+    assert before_an_area(length=2.0, acceleration=2.0) == pytest.approx(10.0 - 0.5 - 0.1 * 2.0)
+
+
+def test_a_robot_that_passes_a_place_without_a_stop_does_not_stop_late_there():
+    on = (20.0, 0.5, 0.0)
+    stops, flows = (before_an_area(then=on, fluid=fluid, speed=30.0) for fluid in (False, True))
+    assert stops == pytest.approx(10.0 - 0.5 - 3.0)
+    assert flows > stops
 
 
 def test_a_way_through_an_obstacle_is_violated_though_the_type_is_not_described():

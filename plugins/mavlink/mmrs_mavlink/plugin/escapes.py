@@ -14,6 +14,7 @@ from mmrs_core.behaviour.program import BEHAVIOUR, Move, RobotProgram
 from mmrs_core.behaviour.travel import capability_of
 from mmrs_core.contributions.targets import TargetInput
 from mmrs_core.errors import UnreachableError
+from mmrs_core.generation.planned_moves import kinematics_of
 from mmrs_core.generation.safety import areas_of, clearance_of
 from mmrs_core.planning.layers import Rates
 from mmrs_core.planning.paths import Space
@@ -75,8 +76,10 @@ def escapes_of(robot: RobotProgram, input: TargetInput, points: Sequence[Point])
         return ()
     low, high = min(end[2] for _, end in ends), max(end[2] for _, end in ends)
     kept_from = [area for area in areas_of(robot, input) if area.use is not AreaUse.EMERGENCY]
-    clearance = clearance_of(context.type, input.program.position_error)
-    space = Space(kept_from, clearance, low, high, rates=_rates(context))
+    kinematics = kinematics_of(robot, input)
+    radius = 0.0 if kinematics is None else kinematics.turning_radius
+    clearance = clearance_of(context.type, input.program.position_error) + radius
+    space = Space(kept_from, clearance, low, high, rates=_rates(context), turning_radius=radius)
     clear = [
         p for p in points if space.is_clear(((*p, min(low, context.zero)), (*p, max(high, context.zero))))
     ]
