@@ -38,14 +38,15 @@ def cells(flight: Flight, result: Result) -> tuple[str, ...]:
     """Return the cells of a flight's line."""
     ends = sorted(set(result.end.values()))
     faults = sorted(set(result.faults.values()))
+    judged = result.deviation is not None and flight.deviation is not None
     orders = [f"{order} after {seconds:.2f} s" for order, seconds in result.confirmed.items()]
     return (
         flight.name,
         flight.way + (f" × {len(result.end)}" if len(result.end) > 1 else ""),
         f"{result.planned:.0f} s",
         f"{result.flown:.0f} s",
-        "{:.2f} / {:.2f} m".format(*result.deviation) if result.deviation is not None else "",
-        f"{result.landing:.2f} m" if result.landing is not None else "",
+        "{:.2f} / {:.2f} m".format(*result.deviation) if judged else "",
+        f"{result.landing:.2f} m" if judged else "",
         f"{result.margin:+.2f} m" if result.margin is not None else "",
         "; ".join([*ends, *faults, *orders]),
         f"{result.kept:.0%}",

@@ -16,10 +16,14 @@ DONE, HOME, AWAY, HOLDS, SURFACE = "done", "home", "away", "holds", "surface"
 
 @dataclass(frozen=True, slots=True)
 class Begun:
-    """Once a robot has begun a move, and so many seconds of the vehicle have passed since."""
+    """Once a robot has begun a move, and so many seconds of the vehicle have passed since.
+
+    What happens then, and until the next one, concerns this robot; empty: the first one.
+    """
 
     move: str
     seconds: float = 0.0
+    robot: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,6 +76,11 @@ class Disarm:
 
 
 @dataclass(frozen=True, slots=True)
+class Charge:
+    """The battery is full again."""
+
+
+@dataclass(frozen=True, slots=True)
 class Kill:
     """The program's process is killed."""
 
@@ -91,7 +100,7 @@ MEND = Cut(inwards=False, outwards=False)
 """The link is whole again."""
 
 When: TypeAlias = Begun | Later
-Happening: TypeAlias = Order | Answer | Change | Cut | Pilot | Disarm | Kill | Resume | Reboot
+Happening: TypeAlias = Order | Answer | Change | Cut | Pilot | Disarm | Charge | Kill | Resume | Reboot
 
 
 @dataclass(frozen=True, slots=True)
@@ -103,7 +112,7 @@ class Flight:
         models: writes the models into a folder: a mission, or a behaviour.
         robots: that take part; empty: all. Of an example whose other robots no firmware simulates.
         way: one of `RUN`, `CONTROLLERS`, `PLAN`.
-        happens: in this order, each with its time; it concerns the first robot.
+        happens: in this order, each with its time.
         ends: how each robot ends; its own where `ends_of` names it.
         fault: that the log must hold; empty: none may.
         deviation: metres from the planned line, at most; None: what happens leads away from it.

@@ -38,6 +38,7 @@ from real_flights.flight import (
     Answer,
     Begun,
     Change,
+    Charge,
     Cut,
     Disarm,
     Flight,
@@ -145,11 +146,6 @@ class Flying:
         self.killed = False
         self.interrupts = 0.0
         self._key = token_bytes(32) if flight.signed else b""
-
-    @property
-    def first(self) -> InstalledVehicle:
-        """Return the vehicle of the first robot, which everything happens to."""
-        return self.vehicles[self.robots[0]]
 
     def fly(self) -> Result:
         """Fly it."""
@@ -263,21 +259,21 @@ class Flying:
 
     def _happening(self, said: IO[bytes]) -> Iterator[bool]:
         """Let happen what happens, each once its time has come; yield while there is more to come."""
-        robot = self.robots[0]
-        last = self.first.observer.now
+        robot, since = self.robots[0], 0.0
         for when, what in self.flight.happens:
-            since = last
             if isinstance(when, Begun):
+                robot = when.robot or self.robots[0]
                 while not self._has_begun(robot, when.move):
                     yield True
-                since = self.first.observer.now
-            while self.first.observer.now < since + when.seconds:
+                since = self.vehicles[robot].observer.now
+            observer = self.vehicles[robot].observer
+            while observer.now < since + when.seconds:
                 yield True
-            self._let_happen(what, said)
-            last = self.first.observer.now
+            self._let_happen(what, robot, said)
+            since = observer.now
 
-    def _let_happen(self, what: Happening, said: IO[bytes]) -> None:
-        robot, observer = self.robots[0], self.first.observer
+    def _let_happen(self, what: Happening, robot: str, said: IO[bytes]) -> None:
+        observer = self.vehicles[robot].observer
         said.write(f"--- {observer.now:.1f} s: {what}\n".encode())
         said.flush()
         match what:
@@ -293,6 +289,8 @@ class Flying:
                 observer.command(176, 1, mode)
             case Disarm():
                 observer.command(mavlink.MAV_CMD_COMPONENT_ARM_DISARM, 0)
+            case Charge():
+                observer.command(mavlink.MAV_CMD_BATTERY_RESET, 0xFFFF, 100)
             case Kill():
                 self.killed = True
                 for process in self.processes.values():
@@ -318,7 +316,7 @@ class Flying:
 
     def _has_begun(self, robot: str, move: str) -> bool:
         if self.flight.way == PLAN:
-            return self.first.observer.armed
+            return self.vehicles[robot].observer.armed
         return any(step.label == "begin" and step.move == move for step in self._steps(robot))
 
     def _steps(self, robot: str) -> list[object]:

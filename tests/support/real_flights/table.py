@@ -15,6 +15,7 @@ from real_flights.flight import (
     SURFACE,
     Begun,
     Change,
+    Charge,
     Cut,
     Flight,
     Happening,
@@ -55,6 +56,9 @@ def _short(craft: Craft, *policies: tuple[str, str, float], stays: float = 0.0, 
 NAMES: Mapping[Craft, str] = {COPTER: "copter", ROVER: "rover", SUB: "sub"}
 AT_LEG = Begun("p1", 3.0)
 """On the second leg, under way."""
+
+FENCE = {"FENCE_TYPE": 6.0, "FENCE_RADIUS": 33.0, "FENCE_ENABLE": 1.0, "AVOID_ENABLE": 0.0}
+"""A circle that the second leg leaves; a rover would otherwise stop in front of it for good."""
 
 NO_POSITION = {"SIM_GPS1_ENABLE": 0.0}
 LOW_BATTERY = {"SIM_BATT_VOLTAGE": 9.0}
@@ -202,7 +206,13 @@ EXAMPLES = (
     Flight("carbon-dioxide, plan in AUTO", example("carbon-dioxide"), robots=("Alba",), way=PLAN),
     Flight("handwritten", example("handwritten"), arguments=EXPECTED),
     Flight("solar-park", example("solar-park"), speedup=4.0),
-    Flight("drone-and-rover", example("drone-and-rover"), speedup=4.0, deviation=3.0, landing=4.0),
+    Flight(
+        "drone-and-rover",
+        example("drone-and-rover"),
+        happens=((Begun("recharge_049", 30.0), Charge()),),
+        deviation=3.0,
+        landing=4.0,
+    ),
     Flight("mixed-team", example("mixed-team"), speedup=2.0, deviation=3.0, landing=4.0),
     Flight("outfall", example("outfall"), arguments=EXPECTED, deviation=3.0, landing=4.0),
     Flight("outfall, plan in AUTO", example("outfall"), way=PLAN, deviation=3.0, landing=4.0),
@@ -228,7 +238,7 @@ FENCES = tuple(
     _upset(
         craft,
         "fence broken",
-        (Begun("p1", 0.5), Change({"FENCE_TYPE": 6.0, "FENCE_RADIUS": 33.0, "FENCE_ENABLE": 1.0})),
+        (Begun("p1", 0.5), Change(FENCE)),
         ends=HOME,
         fault="FENCE_BREACHED",
         policy=("FENCE_BREACHED", "RETURN", 0.0),
