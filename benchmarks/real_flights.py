@@ -27,7 +27,7 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "support"))
 
 from firmware import FIRMWARES
-from real_flights.flight import Flight
+from real_flights.flight import DONE, HOME, Flight
 from real_flights.flying import Result, fly, missing
 from real_flights.table import FLIGHTS
 
@@ -46,7 +46,7 @@ def cells(flight: Flight, result: Result) -> tuple[str, ...]:
         f"{result.planned:.0f} s",
         f"{result.flown:.0f} s",
         "{:.2f} / {:.2f} m".format(*result.deviation) if judged else "",
-        f"{result.landing:.2f} m" if judged else "",
+        f"{result.landing:.2f} m" if result.landing is not None and flight.ends in (DONE, HOME) else "",
         f"{result.margin:+.2f} m" if result.margin is not None else "",
         "; ".join([*ends, *faults, *orders]),
         f"{result.kept:.0%}",
