@@ -246,8 +246,10 @@ FENCES = tuple(
     for craft in (COPTER, ROVER)
 )
 PX4S = (
-    Flight("PX4: legs", routes(_short(COPTER)), px4=True, deviation=3.0, speedup=1.0),
-    Flight("PX4: fluid", routes(_short(COPTER, fluid=True)), px4=True, deviation=3.0, speedup=1.0),
+    Flight("PX4: legs", routes(_short(COPTER)), px4=True, deviation=3.0, landing=2.0, speedup=1.0),
+    Flight(
+        "PX4: fluid", routes(_short(COPTER, fluid=True)), px4=True, deviation=3.0, landing=2.0, speedup=1.0
+    ),
 )
 
 FLIGHTS = (
