@@ -42,6 +42,7 @@ class TargetInput:
         extensions: what plug-ins contribute by hooks of plug-ins, by `Hook.sort`, then by key.
         environment: weather and water, by attribute name, as far as the context states them.
         elements: context elements of plug-ins; empty where no context was given.
+        shared: what the targets of one rendering, or run, keep for each other, by the function that found it.
     """
 
     program: Program
@@ -52,6 +53,7 @@ class TargetInput:
     extensions: Extensions = field(default_factory=dict)
     environment: Mapping[str, float] = field(default_factory=dict)
     elements: tuple[Part, ...] = ()
+    shared: dict[Callable[..., object], object] = field(default_factory=dict, compare=False, repr=False)
 
 
 @dataclass(frozen=True, slots=True)

@@ -77,7 +77,7 @@ def _battery(battery: Element) -> Battery:
     capacity, voltage = number(battery, "capacity"), number(battery, "voltage")
     if capacity is None or voltage is None:
         raise _missing(battery, "capacity" if capacity is None else "voltage")
-    return Battery(capacity * MILLIAMPERE_HOUR * voltage, number(battery, "rechargeTime"))
+    return Battery(capacity * MILLIAMPERE_HOUR * voltage, number(battery, "rechargeTime"), voltage)
 
 
 def _device(device: Element) -> Device:

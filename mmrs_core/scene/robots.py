@@ -36,10 +36,17 @@ class Capability:
 
 @dataclass(frozen=True, slots=True)
 class Battery:
-    """A battery: joules when full, seconds to recharge or None where that is impossible."""
+    """A battery.
+
+    Attributes:
+        energy: joules when full.
+        recharge_time: seconds; None where it cannot be recharged.
+        voltage: nominal; None where unknown.
+    """
 
     energy: float
     recharge_time: float | None
+    voltage: float | None = None
 
 
 @dataclass(frozen=True, slots=True)

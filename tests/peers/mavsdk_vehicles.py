@@ -225,7 +225,14 @@ def main(vehicles: str, speedup: str) -> None:
     made = {}
     for number, given in enumerate(json.loads(vehicles), start=1):
         settings = Settings(
-            "copter", given["latitude"], given["longitude"], number, recharge=60.0, energy=20_000.0
+            "copter",
+            given["latitude"],
+            given["longitude"],
+            number,
+            recharge=60.0,
+            energy=20_000.0,
+            capacity=16_000.0,
+            cells=6,
         )
         made[given["robot"]] = MavsdkVehicle(given["port"], settings, float(speedup))
     host = Host(list(made.values()))

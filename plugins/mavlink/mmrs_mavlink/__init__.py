@@ -16,6 +16,7 @@ if TYPE_CHECKING:
 
     from .driver import main
     from .program import (
+        Charge,
         Choose,
         Geographic,
         GoTo,
@@ -45,6 +46,7 @@ if TYPE_CHECKING:
     )
 
 __all__ = [
+    "Charge",
     "Choose",
     "Condition",
     "Geographic",

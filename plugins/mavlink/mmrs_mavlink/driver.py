@@ -17,7 +17,7 @@ from mmrs_runtime.injection.spec import OF_STATIONS, OF_VEHICLE
 from mmrs_runtime.records.blackbox import BlackBox, black_box_path
 from mmrs_runtime.vehicle import Position
 
-from .driving.equipment import Equipment, Guard, RadioLink
+from .driving.equipment import Equipment, Guard, Precautions, RadioLink
 from .driving.threaded import ThreadedVehicle
 from .options import Reach, add_reach, reach_of
 from .program import Place, Robot
@@ -111,6 +111,7 @@ class MavlinkDriver(Driver):
             box=box,
             home_tolerance=options.home_tolerance,
             fence=self._reach.fence,
+            precautions=Precautions(self._reach.device_check, self._reach.battery_check, self._reach.tried),
             dry=options.dry,
             records=live.records,
             let_go=lambda: outfit.rehearsal.forget(robot.id),

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 
 FIRST_PORT = 14_550
 PORT_STEP = 10
+SWITCHES = {"yes": True, "no": False}
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,6 +33,8 @@ class Reach:
         signer: None: no signatures.
         acceptance: metres from a place that count as there; None: the robot's travel mode says it.
         fence: whether to upload it.
+        device_check, battery_check: whether what is found wrong keeps a vehicle on the ground.
+        tried: devices whose actions are carried out on the ground, before take-off.
     """
 
     urls: Mapping[str, str]
@@ -40,6 +43,9 @@ class Reach:
     signer: Signer | None
     acceptance: float | None
     fence: bool
+    device_check: bool
+    battery_check: bool
+    tried: frozenset[str]
 
     def sharers(self, url: str) -> list[str]:
         """Return the robots that are reached by a url."""
@@ -89,6 +95,26 @@ def add_reach(parser: argparse.ArgumentParser) -> None:
     )
     add("--no-fence", action="store_true", help="do not upload the geofence")
     add(
+        "--device-check",
+        choices=tuple(SWITCHES),
+        default="yes",
+        help="no: take off although a device cannot do what the program asks of it. Default: yes",
+    )
+    add(
+        "--battery-check",
+        choices=tuple(SWITCHES),
+        default="yes",
+        help="no: take off although the battery does not suffice for the first sortie. Default: yes",
+    )
+    add(
+        "--try-device",
+        action="append",
+        default=[],
+        metavar="DEVICE",
+        help="carry out the actions of a device on the ground, before take-off, to see whether it works."
+        " Repeatable",
+    )
+    add(
         "--acceptance",
         type=positive,
         metavar="METRES",
@@ -106,6 +132,9 @@ def reach_of(parser: argparse.ArgumentParser, robots: Sequence[Robot], given: An
         signer,
         given.acceptance,
         fence=not given.no_fence,
+        device_check=SWITCHES[given.device_check],
+        battery_check=SWITCHES[given.battery_check],
+        tried=frozenset(given.try_device),
     )
 
 

@@ -49,6 +49,7 @@ class Operate:
         more: further commands with their parameters, which follow at once.
         confirmed: whether the vehicle reports each image that it takes (CAMERA_IMAGE_CAPTURED
             or CAMERA_FEEDBACK), so that silence is a fault.
+        trial: whether it may be tried on the ground, before take-off.
     """
 
     device: str
@@ -58,6 +59,7 @@ class Operate:
     seconds: float = 0.0
     more: tuple[tuple[int, tuple[float, ...]], ...] = ()
     confirmed: bool = False
+    trial: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -103,12 +105,31 @@ class Travel:
     margin: float = 0.0
 
 
+@dataclass(frozen=True, slots=True)
+class Charge:
+    """What full batteries hold, and what sorties take of them.
+
+    Attributes:
+        energy: joules in full batteries of the robot's type.
+        voltage: nominal; None where unknown, or where batteries differ.
+        least, most: seconds that the first sortie takes; `most` is None where nothing bounds it.
+        longest: seconds that any sortie takes at most; None where nothing bounds it.
+    """
+
+    energy: float
+    voltage: float | None
+    least: float
+    most: float | None
+    longest: float | None
+
+
 @dataclass(frozen=True)
 class Robot(words.Robot):
     """One robot whose vehicle speaks MAVLink, such as a ``copter``, and all its moves.
 
     Attributes:
         endurance: seconds that a full battery lasts at the type's mean power; None where unknown.
+        charge: what its batteries are to hold, and what its sorties take of that; None where unknown.
         fastest: its type's largest speed through air or water, metres per second; None where unknown.
         descent: speed of its descent, metres per second; None where unknown.
         fence: polygons to stay out of; rally: emergency positions.
@@ -120,6 +141,7 @@ class Robot(words.Robot):
     """
 
     endurance: float | None = field(default=None, kw_only=True)
+    charge: Charge | None = field(default=None, kw_only=True)
     fastest: float | None = field(default=None, kw_only=True)
     descent: float | None = field(default=None, kw_only=True)
     runs: tuple[Run, ...] = field(default=(), kw_only=True)

@@ -21,6 +21,7 @@ class Wired:
         seconds: None: the duration that the device gives the action.
         more: further commands with their parameters, which follow the first one at once.
         confirmed: whether the vehicle promises to tell each image that it takes.
+        trial: whether the action may be tried on the ground, before take-off.
     """
 
     command: int
@@ -28,6 +29,7 @@ class Wired:
     seconds: float | None = None
     more: tuple[tuple[int, tuple[float, ...]], ...] = ()
     confirmed: bool = False
+    trial: bool = False
 
 
 @dataclass(frozen=True, slots=True)

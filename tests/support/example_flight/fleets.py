@@ -24,6 +24,9 @@ from mmrs_mavlink.sitl import Host, Settings, SimulatedVehicle
 
 PEERS = Path(__file__).parents[2] / "peers"
 ENERGY = 20_000.0
+CAPACITY, CELLS = 16_000.0, 6
+"""Of the batteries of the example's drones, milliampere-hours and in series."""
+
 ALTITUDE = 720.0
 WGS84 = Geod(ellps="WGS84")
 
@@ -60,6 +63,8 @@ class Ours:
                     number,
                     energy=ENERGY,
                     recharge=60.0,
+                    capacity=CAPACITY,
+                    cells=CELLS,
                     gusts=(gusts, 5.0),
                 ),
                 speedup=self.speedup,

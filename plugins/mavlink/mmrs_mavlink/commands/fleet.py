@@ -20,7 +20,7 @@ from mmrs_core.scene import RobotType
 from mmrs_mavlink.plugin.vehicles import profile_of, profile_of_type, uncarried
 from mmrs_mavlink.sitl.battery import load_at
 from mmrs_mavlink.sitl.parameters import defaults
-from mmrs_mavlink.sitl.settings import Settings
+from mmrs_mavlink.sitl.settings import USUAL_CAPACITY, USUAL_CELLS, Settings
 from mmrs_mavlink.sitl.vehicle import SimulatedVehicle
 from mmrs_runtime.sights import Sight
 
@@ -31,6 +31,8 @@ LAST_PORT = 65_535
 GUST_SECONDS = 5.0
 """Default duration of a gust."""
 
+MILLIAMPERE_HOUR = 3.6
+CELL_VOLTS = 3.7
 USUAL_ENERGY = 1200.0
 """Default hover time of a battery, seconds."""
 
@@ -43,6 +45,7 @@ class Member:
         kind: ``copter``, ``sub`` or ``rover``.
         home: latitude and longitude, degrees. offset: of it from the mission's origin, metres north and east.
         energy: hover time of a full battery, seconds; recharge: recharge time, seconds; 0: never.
+        capacity: of the battery, mAh. cells: of it, in series.
     """
 
     robot: str
@@ -50,6 +53,8 @@ class Member:
     home: tuple[float, float]
     energy: float = USUAL_ENERGY
     recharge: float = 0.0
+    capacity: float = USUAL_CAPACITY
+    cells: int = USUAL_CELLS
     offset: tuple[float, float] = (0.0, 0.0)
 
 
@@ -117,6 +122,8 @@ class SimulatedFleet:
                 seed=self.seed,
                 energy=member.energy if self.energy is None else self.energy,
                 recharge=member.recharge if self.recharge is None else self.recharge,
+                capacity=member.capacity,
+                cells=member.cells,
                 parameters=dict(map(_parameter, self.parameters)),
                 sights=sights,
             )
@@ -185,7 +192,7 @@ def members_of(settings: CliSettings, path: Path) -> list[Member]:
         raise UnsupportedError(f"{path}: no home for {', '.join(homeless)}")
     homes = [home[:2] for _, _, home, _ in crew if home is not None]
     return [
-        Member(name, profile.rehearsed_as, place, *_battery(payload, type), (north, east))
+        Member(name, profile.rehearsed_as, place, *_battery(payload, type), *_capacity(type), (north, east))
         for (name, type, _, payload), profile, place, (east, north) in zip(
             crew, profiles, degrees_of(homes, frame), homes, strict=True
         )
@@ -200,6 +207,16 @@ def _battery(payload: float, type: RobotType | None) -> tuple[float, float]:
     if not able or able[0].lifetime is None:
         return USUAL_ENERGY, charging
     return able[0].lifetime * load_at(able[0].speed[1]), charging
+
+
+def _capacity(type: RobotType | None) -> tuple[float, int]:
+    """Return the milliampere-hours of a type's batteries at the voltage of the first, and its cells."""
+    batteries = type.batteries if type is not None else ()
+    voltage = batteries[0].voltage if batteries else None
+    if voltage is None:
+        return USUAL_CAPACITY, USUAL_CELLS
+    joules = sum(battery.energy for battery in batteries)
+    return joules / (MILLIAMPERE_HOUR * voltage), max(1, round(voltage / CELL_VOLTS))
 
 
 def pair(text: str, option: str) -> tuple[float, float]:

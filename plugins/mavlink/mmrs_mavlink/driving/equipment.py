@@ -51,6 +51,21 @@ class RadioLink:
 
 
 @dataclass(frozen=True, slots=True)
+class Precautions:
+    """What keeps a vehicle on the ground before its first take-off; otherwise it is only reported.
+
+    Attributes:
+        devices: whether a device that cannot do what the program asks of it does.
+        battery: whether a battery that does not suffice for the first sortie does.
+        tried: devices whose actions are carried out on the ground to see whether they work.
+    """
+
+    devices: bool = True
+    battery: bool = True
+    tried: frozenset[str] = frozenset()
+
+
+@dataclass(frozen=True, slots=True)
 class Equipment:
     """What a robot's driver works with.
 
@@ -63,6 +78,7 @@ class Equipment:
         box: None where no logs are kept.
         home_tolerance: metres that a vehicle may be from where it is to stand.
         fence: whether forbidden areas are uploaded.
+        precautions: before it takes off.
         dry: whether there is no vehicle.
         records: the steps that it made before; the vehicle may be in the air then.
         start: to be called once the robot gets ready, for injected faults.
@@ -81,6 +97,7 @@ class Equipment:
     box: BlackBox | None = None
     home_tolerance: float = 20.0
     fence: bool = True
+    precautions: Precautions = Precautions()
     dry: bool = False
     records: tuple[StepRecord, ...] = ()
     start: Callable[[], None] = lambda: None

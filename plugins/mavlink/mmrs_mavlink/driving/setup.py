@@ -78,6 +78,7 @@ class Setup:
             vehicle.hold()
         self._lost_link.tell()
         equip(self._robot, vehicle, self._uploads, self._with.say)
+        self._inspect()
         self.is_done = True
         if vehicle.state().energy is None and not self._with.dry:
             self._with.say("does not report its battery: a low battery will go unnoticed")
@@ -100,6 +101,36 @@ class Setup:
         self._restarted = False
         self._watch.renew()
         self._watch.moving = True
+
+    def _inspect(self) -> None:
+        """Inspect the devices and the batteries of a vehicle on the ground.
+
+        Raises:
+            RefusedError: it cannot do what its program asks of it.
+        """
+        if (radio := self._with.radio) is None or radio.vehicle.state().armed:
+            return
+        from ..vehicles.batteries import inspect_batteries  # needs MAVLink's library
+        from ..vehicles.inspection import inspect_devices
+
+        link, vehicle, precautions = radio.link, radio.vehicle, self._with.precautions
+        at_start = not (self.is_done or self._with.resumed)
+        devices = inspect_devices(link, vehicle, self._robot, precautions.tried)
+        batteries = inspect_batteries(link, vehicle.telemetry, self._robot, at_start=at_start)
+        refused: list[str] = []
+        for found, option, refuses in (
+            (devices, "device-check", precautions.devices),
+            (batteries, "battery-check", precautions.battery),
+        ):
+            for line in found.lines:
+                self._with.say(line)
+            if found.defects and refuses:
+                refused += [*found.defects, f"{option}=no takes off all the same"]
+            else:
+                for defect in found.defects:
+                    self._with.say(f"{defect} (warning: {option}=no)")
+        if refused:
+            raise RefusedError("; ".join(refused))
 
     def _recognise(self) -> None:
         """Refuse a vehicle that is not the robot's, or under external control, before it is touched."""

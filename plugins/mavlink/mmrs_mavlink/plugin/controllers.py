@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from typing import Any
 
 from mmrs_core.behaviour.earth import degrees_of, metres
@@ -22,6 +22,7 @@ from mmrs_core.scene import Name, Point, Policy
 from mmrs_mavlink import program as words
 from mmrs_mavlink.options import FIRST_PORT, PORT_STEP
 from mmrs_mavlink.plugin.capabilities import OF_CONTROLLERS, WIRINGS
+from mmrs_mavlink.plugin.charges import charge_of
 from mmrs_mavlink.plugin.context import VehicleContext, context_of, neighbours_of, templates_of, vehicleless
 from mmrs_mavlink.plugin.escapes import Escape, escapes_of, straight_lines_are_clear
 from mmrs_mavlink.plugin.fencing import Fence, fence_faults, fences_of
@@ -159,6 +160,11 @@ class MavlinkPython(PythonDriver[VehicleContext]):
             yield "driven_by", context.profile.source
         yield "neighbours", tuple((name, place_of(home, context)) for name, home in homes)
         yield from _endurance(context)
+        if (charge := charge_of(robot, input)) is not None:
+            yield (
+                "charge",
+                Call("Charge", (), tuple((each.name, getattr(charge, each.name)) for each in fields(charge))),
+            )
         margins = travel_margins_of(robot, input.program.position_error)
         names = ("acceptance", "radius", "margin")
         how = tuple((name, getattr(margins, name)) for name in names)
@@ -215,6 +221,8 @@ def _operate(action: Action, wiring: Wired) -> Call:
         named.append(("more", more))
     if wiring.confirmed:
         named.append(("confirmed", True))
+    if wiring.trial:
+        named.append(("trial", True))
     given = (_named(wiring.command), tuple(map(float, wiring.params)), wiring.seconds)
     return Call("Operate", (action.device, action.name, *given), tuple(named))
 

@@ -18,6 +18,9 @@ LARGEST = 3.4028234e38
 
 MOST_PARAMETERS = 7
 
+TRIAL = "mavlink.trial"
+"""The property of a device that names its actions, between spaces, that may be tried on the ground."""
+
 
 def wiring_of(action: Action, type: RobotType | None, wirings: Wirings | None = None) -> Wiring:
     """Return how a device action of a robot of that type is carried out.
@@ -89,6 +92,8 @@ def _finished(wiring: Wiring, action: Action, device: Device) -> Wiring:
         return wiring
     if why := _unfit(wiring):
         return Unwired(f"device {device.id!r}: {action.name!r} {why}")
+    if isinstance(wiring, Wired) and action.name in device.properties.get(TRIAL, "").split():
+        wiring = replace(wiring, trial=True)
     if wiring.seconds is not None:
         return wiring
     known = device.actions.get(action.name)

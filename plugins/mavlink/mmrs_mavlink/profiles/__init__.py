@@ -43,6 +43,8 @@ GENERIC = replace(
     streamed={},
     keeping=Keeping(),
     must_report_checks=never,
+    needs={},
+    capacities=(),
     refusals=(*ARDUPILOT.refusals, *PX4.refusals),
     announcements={
         event: (*parts, *PX4.announcements[event]) for event, parts in ARDUPILOT.announcements.items()

@@ -33,6 +33,7 @@ from .autopilot import (
     always,
 )
 from .modes import Mode
+from .needs import ON_ARDUPILOT
 from .profile import Delay, Exemption, LostLinkFailsafe, Safeguard, Timing, VehicleProfile
 
 ARDUPILOT = Autopilot(
@@ -76,6 +77,8 @@ ARDUPILOT = Autopilot(
         BATTERY_LOW: ("battery failsafe", *(f"battery {number} is" for number in range(1, 10))),
         LINK_LOST: ("gcs failsafe", "heartbeat lost"),
     },
+    needs=ON_ARDUPILOT,
+    capacities=(("BATT_CAPACITY", "BATT_MONITOR", 0), ("BATT2_CAPACITY", "BATT2_MONITOR", 0)),
 )
 """What it keeps of items was read in ``AP_Mission.cpp`` (``mavlink_int_to_mission_cmd``,
 ``mission_cmd_to_mavlink_int``), ``AC_PolyFence_loader.cpp`` and ``AP_Rally.h``: centimetres; of rally

@@ -6,6 +6,8 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Literal
 
+from .needs import Needs
+
 WAYPOINT, LOITER_UNLIMITED, LOITER_TIME, RETURN_TO_LAUNCH, LAND, TAKE_OFF = 16, 17, 19, 20, 21, 22
 ROI_LOCATION, CAMERA_TRIGGER_DISTANCE, RALLY_POINT = 195, 206, 5100
 """Numbers of MAV_CMD: what reads a program needs no library of MAVLink."""
@@ -120,6 +122,9 @@ class Autopilot:
         must_report_checks: whether a vehicle that may be armed, in a mode, must report that its checks pass.
         refusals: beginnings of texts about why it does not arm, in lower case.
         announcements: parts of its texts when a failsafe acts, in lower case, by event of policies.
+        needs: what commands to devices need of its parameters; what is not here is unknown.
+        capacities: for each battery, the parameter for its milliampere-hours, the one for its monitor, and
+            the value of that without a battery.
     """
 
     name: str
@@ -141,3 +146,5 @@ class Autopilot:
     must_report_checks: Callable[[bool, int], bool] = never
     refusals: tuple[str, ...] = ()
     announcements: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    needs: Needs = field(default_factory=dict)
+    capacities: tuple[tuple[str, str, int], ...] = ()

@@ -23,6 +23,7 @@ from .autopilot import (
     OwnFence,
 )
 from .modes import Mode
+from .needs import ON_PX4
 from .profile import Answers, Delay, Exemption, LostLinkFailsafe, Safeguard, VehicleProfile
 
 
@@ -123,6 +124,8 @@ PX4 = Autopilot(
             "data link lost",
         ),
     },
+    needs=ON_PX4,
+    capacities=(("BAT1_CAPACITY", "BAT1_SOURCE", -1), ("BAT2_CAPACITY", "BAT2_SOURCE", -1)),
 )
 """It takes the commands of ``mavlink_mission.cpp`` (``parse_mavlink_mission_item``), and refuses a mission
 with any other; what it keeps of them was read there too: numbers of single precision, headings between -180

@@ -90,7 +90,7 @@ class SimulatedAutopilot:
         self.settings = settings
         self.body = Body(wind=wind_of(*settings.wind))
         self.gusts = Gusts(*settings.gusts, seed=f"{settings.seed} {settings.system}")
-        self.battery = Battery(settings.energy, settings.capacity)
+        self.battery = Battery(settings.energy, settings.capacity, settings.cells)
         self.camera = Camera()
         self.parameters = parameters.defaults(settings)
         self.stores: dict[int, list[StoredItem]] = {MISSION: [], FENCE: [], RALLY: []}

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from mmrs_mavlink.sitl.body import Body
 
-CELLS = 3
 FULL, EMPTY = 4.2, 3.4
 """Volts of a cell without load; the voltage falls linearly between them."""
 
@@ -25,17 +24,17 @@ class Battery:
         used: mAh since the battery was full.
     """
 
-    def __init__(self, hover_seconds: float, capacity: float) -> None:
+    def __init__(self, hover_seconds: float, capacity: float, cells: int) -> None:
         self.level = 1.0
         self.current = IDLE_AMPERES
         self.used = 0.0
         self._hover = hover_seconds
-        self._capacity = capacity
+        self._capacity, self._cells = capacity, cells
 
     @property
     def voltage(self) -> float:
         """Return the voltage under the present load."""
-        return max(0.0, CELLS * (EMPTY + (FULL - EMPTY) * self.level) - RESISTANCE * self.current)
+        return max(0.0, self._cells * (EMPTY + (FULL - EMPTY) * self.level) - RESISTANCE * self.current)
 
     def drain(self, seconds: float, load: float) -> None:
         """Deliver `load` times the power of hovering."""

@@ -19,6 +19,9 @@ Message = Any
 AT_ONCE = 10
 """Parameters of a list that are sent in one step."""
 
+LOW_CELL = 3.5
+"""Volts of a cell at which a battery is low."""
+
 _COMMON: Mapping[str, float] = {
     "SYSID_THISMAV": 1,
     "SYSID_MYGCS": 255,
@@ -45,7 +48,21 @@ _COMMON: Mapping[str, float] = {
     "MIS_TOTAL": 0,
     "MIS_RESTART": 0,
     "SIM_GPS1_ENABLE": 1,
+    **{f"RELAY{number}_FUNCTION": 1 for number in range(1, 7)},
+    **{f"RELAY{number}_PIN": 49 + number for number in range(1, 7)},
+    **{f"SERVO{number}_FUNCTION": 0 for number in range(5, 10)},
+    "CAM1_TYPE": 1,
+    "CAM2_TYPE": 6,
+    "SERVO10_FUNCTION": 10,
+    "GRIP_ENABLE": 1,
+    "GRIP_TYPE": 1,
+    "SERVO11_FUNCTION": 28,
+    "WINCH_TYPE": 1,
+    "SERVO12_FUNCTION": 88,
+    "MNT1_TYPE": 1,
 }
+"""Every device that a program may use is set up: two cameras, of which the second records videos."""
+
 _COPTER: Mapping[str, float] = {
     "FS_THR_ENABLE": 1,
     "FS_OPTIONS": 16,
@@ -111,6 +128,10 @@ _PX4: Mapping[str, float] = {
     "RTL_TYPE": 0,
     "MPC_XY_CRUISE": 5.0,
     "MPC_LAND_SPEED": 0.7,
+    "TRIG_MODE": 1,
+    "PD_GRIPPER_EN": 1,
+    "BAT1_CAPACITY": 5000.0,
+    "BAT1_SOURCE": 0,
 }
 _BY_KIND: Mapping[str, Mapping[str, float]] = {"copter": _COPTER, "rover": _ROVER, "sub": _SUB}
 
@@ -124,6 +145,8 @@ def defaults(settings: Settings) -> dict[str, float]:
         "DISARM_DELAY": settings.disarm_delay,
         "COM_DISARM_PRFLT": settings.disarm_delay,
         "BATT_CAPACITY": settings.capacity,
+        "BAT1_CAPACITY": settings.capacity,
+        "BATT_LOW_VOLT": LOW_CELL * settings.cells,
     }
     found.update({name: value for name, value in own.items() if name in found})
     return {**found, **settings.parameters}

@@ -9,6 +9,7 @@ from mmrs_runtime.sights import Sight
 
 KINDS = ("copter", "sub", "rover")
 ARDUPILOT, PX4 = "ardupilot", "px4"
+USUAL_CAPACITY, USUAL_CELLS = 5000.0, 3
 
 
 @dataclass(frozen=True, slots=True)
@@ -22,7 +23,7 @@ class Settings:
         boot: seconds after boot in which uploads are refused and mode changes are lost.
         ready: seconds after boot until it has a position and can be armed.
         disarm_delay: seconds on the ground after which it disarms.
-        energy: seconds of hovering until the battery is empty. capacity: of the battery, mAh.
+        energy: seconds of hovering until the battery is empty. capacity: of the battery, mAh; cells: of it.
         recharge: seconds disarmed until the battery is full; 0: never.
         tells_battery: whether it measures its battery.
         falls: whether its motors stop in the air when the battery is empty.
@@ -49,7 +50,8 @@ class Settings:
     ready: float = 2.0
     disarm_delay: float = 10.0
     energy: float = 1200.0
-    capacity: float = 5000.0
+    capacity: float = USUAL_CAPACITY
+    cells: int = USUAL_CELLS
     recharge: float = 0.0
     tells_battery: bool = True
     falls: bool = True

@@ -53,6 +53,7 @@ class Batteries:
 
 NO_HEADING = 65_535
 NO_DISTANCE = 65_535
+NO_VOLTAGE = 65_535
 STALE_SECONDS = 3.0
 """Seconds after which a position without an update counts as lost, while the vehicle is received."""
 
@@ -241,6 +242,12 @@ class Telemetry:
         if told is not None and told.battery_remaining >= 0:
             return float(told.battery_remaining) / 100.0
         return self._batteries.left
+
+    def voltage(self) -> float | None:
+        """Return the volts of the battery; None where the vehicle does not say."""
+        told = self._link.latest("SYS_STATUS")
+        known = told is not None and 0 < told.voltage_battery < NO_VOLTAGE
+        return told.voltage_battery * 1e-3 if told is not None and known else None
 
     def battery_trouble(self) -> str:
         """Return what the vehicle itself says against its battery; empty if nothing."""

@@ -237,3 +237,10 @@ def test_a_plugins_wiring_with_parameters_that_no_vehicle_takes_is_not_wired(par
     wirings = {"k": DeviceWiring("k", "wrong", lambda action, device: Wired(183, params))}
     device = Device("d", {}, {"k": ""})
     assert isinstance(wiring_of(photo("d"), replace(quad(), devices={"d": device}), wirings), Unwired)
+
+
+@pytest.mark.parametrize(("named", "trial"), [("takePhoto zoom", True), ("zoom", False), ("", False)])
+def test_an_action_may_be_tried_on_the_ground_where_the_device_says_so(named, trial):
+    found = wired(**{"mavlink.camera": "1", "mavlink.trial": named})
+    assert isinstance(found, Wired)
+    assert found.trial is trial

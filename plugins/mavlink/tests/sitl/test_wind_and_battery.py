@@ -82,7 +82,7 @@ def test_a_battery_recharges_on_the_ground_if_configured(recharge, level):
 
 
 def test_voltage_falls_with_use_and_under_load():
-    battery = Battery(1200.0, 5000.0)
+    battery = Battery(1200.0, 5000.0, 3)
     full = battery.voltage
     battery.drain(600.0, 1.0)
     half = battery.voltage

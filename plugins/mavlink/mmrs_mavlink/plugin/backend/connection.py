@@ -20,7 +20,7 @@ from mmrs_core.generation.python.program import built, objects_in
 from mmrs_core.geometry.frames import LocalFrame
 from mmrs_core.scene import Frame, Position
 from mmrs_mavlink import program as words
-from mmrs_mavlink.driving.equipment import Equipment, Guard, RadioLink
+from mmrs_mavlink.driving.equipment import Equipment, Guard, Precautions, RadioLink
 from mmrs_mavlink.driving.threaded import ThreadedVehicle
 from mmrs_mavlink.linked import at_end_of
 from mmrs_mavlink.links.link import Link
@@ -75,7 +75,14 @@ def connect(given: VehicleInput, live: Live) -> ThreadedVehicle:
     options = link_options(given.options)
     types = {**given.types, given.type.name: given.type}
     input = TargetInput(given.program, types, given.robot_kinds, given.move_kinds)
-    input = replace(input, areas=given.areas, extensions=given.extensions, elements=given.elements)
+    input = replace(
+        input,
+        areas=given.areas,
+        extensions=given.extensions,
+        environment=given.environment,
+        elements=given.elements,
+        shared=_shared(live),
+    )
     _refuse(given, input, options)
     program = robot_of(given.robot, input)
     fleet = _fleet(live, options, given.program)
@@ -168,6 +175,13 @@ def _fleet(live: Live, options: LinkOptions, program: Program) -> Fleet:
     return fleet
 
 
+def _shared(live: Live) -> dict[Callable[..., object], object]:
+    """Return what the robots of a run keep for each other about their program."""
+    found = live.shared.setdefault(f"{SHARED} program", {})
+    assert isinstance(found, dict)
+    return found
+
+
 def _signer(path: Path | None) -> Signer | None:
     if path is None:
         return None
@@ -231,6 +245,7 @@ def _equipment(
         box=box,
         home_tolerance=options.home_tolerance,
         fence=options.fence,
+        precautions=Precautions(options.device_check, options.battery_check, options.try_devices),
         records=live.records,
         start=_once(fleet.rehearsal.start, live.shared),
         let_go=lambda: fleet.let_go(given.robot.id),

@@ -8,8 +8,7 @@ from math import inf
 from pathlib import Path
 
 from mmrs_core.errors import UsageError
-
-_SWITCHES = {"yes": True, "no": False}
+from mmrs_mavlink.options import SWITCHES
 
 
 @dataclass(frozen=True, slots=True)
@@ -24,6 +23,9 @@ class LinkOptions:
         answer_seconds: how long to wait for an answer.
         item_seconds: how long to wait for an item of a mission that is read back.
         fence: whether forbidden areas are uploaded as a fence.
+        device_check: whether a device that cannot do what is asked of it keeps a vehicle on the ground.
+        battery_check: whether a battery that does not suffice for the first sortie does.
+        try_devices: devices whose actions are carried out on the ground, before take-off, by their ids.
         objects: ``expected`` takes objects to be at their expected positions, without a search.
         signing_key: file of 32 bytes to sign with; empty: no signing.
         inject: faults to inject.
@@ -36,6 +38,9 @@ class LinkOptions:
     answer_seconds: float = 1.5
     item_seconds: float = 0.25
     fence: bool = True
+    device_check: bool = True
+    battery_check: bool = True
+    try_devices: frozenset[str] = frozenset()
     objects: str = ""
     signing_key: Path | None = None
     inject: str = ""
@@ -81,9 +86,13 @@ def _count(text: str) -> int:
 
 
 def _switch(text: str) -> bool:
-    if text not in _SWITCHES:
+    if text not in SWITCHES:
         raise ValueError(f"{text} is neither yes nor no")
-    return _SWITCHES[text]
+    return SWITCHES[text]
+
+
+def _names(text: str) -> frozenset[str]:
+    return frozenset(filter(None, text.split(",")))
 
 
 def _objects(text: str) -> str:
@@ -95,6 +104,9 @@ def _objects(text: str) -> str:
 _READ: Mapping[str, Callable[[str], object]] = {
     "tries": _count,
     "fence": _switch,
+    "device-check": _switch,
+    "battery-check": _switch,
+    "try-devices": _names,
     "objects": _objects,
     "signing-key": Path,
     "inject": str,

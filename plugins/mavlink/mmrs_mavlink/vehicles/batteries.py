@@ -1,0 +1,120 @@
+"""Whether the batteries of a vehicle suffice for its program: compared before it takes off."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from ..links.link import Link
+from ..program import Charge, Robot
+from ..services import parameters
+from .inspection import Findings
+from .telemetry import Telemetry
+
+MILLIAMPERE_HOUR = 3.6
+WATT_HOUR = 3600.0
+LEAST_CAPACITY = 10.0
+"""Milliampere-hours up to which a capacity is none, as to ArduPilot (``AP_BattMonitor_Backend.cpp``)."""
+
+SAME = 0.95
+"""Part of the energy of the type's batteries from which on the vehicle's count as such."""
+
+
+@dataclass(frozen=True, slots=True)
+class _Held:
+    """What the batteries of a vehicle hold when full, as it is set up.
+
+    Attributes:
+        names: of the parameters that say so.
+        milliampere_hours: of all that are monitored. voltage: at which they are given.
+    """
+
+    names: tuple[str, ...]
+    milliampere_hours: float
+    voltage: float
+
+    @property
+    def joules(self) -> float:
+        return self.milliampere_hours * MILLIAMPERE_HOUR * self.voltage
+
+    def __str__(self) -> str:
+        return f"{self.milliampere_hours:g} mAh at {self.voltage:.1f} V, {' + '.join(self.names)}"
+
+
+def inspect_batteries(link: Link, telemetry: Telemetry, robot: Robot, *, at_start: bool) -> Findings:
+    """Return whether what is left suffices for the first sortie of a program, and what is unknown of that.
+
+    The energy is that of the capacity that the vehicle is set up with, at the nominal voltage of the robot's
+    type, or at its own where that is lower.
+
+    Args:
+        link: to the vehicle, which stands on the ground.
+        telemetry: of the vehicle.
+        robot: its program.
+        at_start: whether the first sortie is about to begin.
+    """
+    left, held = telemetry.energy(), _held(link, telemetry, robot.charge)
+    if left is None:
+        return Findings(lines=["unknown: battery: the vehicle does not report how much of it is left"])
+    if held is None:
+        told = f"{left:.0%} is left, and the vehicle does not report the capacity"
+        names = [capacity for capacity, _, _ in link.profile.autopilot.capacities[:1]]
+        return Findings(lines=[f"unknown: battery: {' '.join([told, *(f'({name})' for name in names)])}"])
+    found = Findings()
+    charge, lasts = robot.charge, robot.endurance
+    has = f"battery: {_shown(left * held.joules)} are left ({left:.0%} of {held})"
+    if charge is None or not lasts:
+        found.lines.append(f"{has}; unknown: what the program takes, which its robot type does not state")
+        return found
+    if held.joules < SAME * charge.energy:
+        has += f", and full batteries of its type hold {_shown(charge.energy)}"
+    power, usable = charge.energy / lasts, (left - robot.reserve) * held.joules
+    if at_start:
+        _compare(found, has, charge, power, left * held.joules, usable, robot.reserve)
+    else:
+        found.lines.append(has)
+    most = None if charge.longest is None else charge.longest * power
+    if most is not None and (1.0 - robot.reserve) * held.joules < most and not found.defects:
+        found.lines.append(
+            f"battery: a sortie of the program takes up to {_shown(most)} (warning: a full battery holds"
+            f" {_shown(held.joules)}, of which {robot.reserve:.0%} is the reserve)"
+        )
+    return found
+
+
+def _compare(
+    found: Findings, has: str, charge: Charge, power: float, left: float, usable: float, reserve: float
+) -> None:
+    """Add whether what is left, and what of that is usable, suffices for the first sortie; joules."""
+    least = charge.least * power
+    if charge.most is None:
+        takes = f"the first sortie takes {_shown(least)} at least"
+        unknown = "; unknown: how much at most"
+    else:
+        takes, unknown = f"the first sortie takes up to {_shown(charge.most * power)}", ""
+    kept = f"{takes}, with a reserve of {reserve:.0%}"
+    if left < (charge.most or 0.0) * power or usable < least:
+        found.defects.append(f"{has}; {kept}")
+    elif usable < (charge.most or 0.0) * power:
+        found.lines.append(f"{has}; {kept} (warning: it may not suffice)")
+    else:
+        found.lines.append(f"{has}; {takes}{unknown}")
+
+
+def _held(link: Link, telemetry: Telemetry, charge: Charge | None) -> _Held | None:
+    """Return what the batteries of a vehicle hold; None where it does not report them."""
+    known = link.profile.autopilot.capacities
+    values = parameters.read(link, [name for capacity, monitor, _ in known for name in (capacity, monitor)])
+    found = {
+        capacity: values[capacity]
+        for capacity, monitor, off in known
+        if values.get(capacity, 0.0) > LEAST_CAPACITY and round(values.get(monitor, off)) != off
+    }
+    nominal, measured = None if charge is None else charge.voltage, telemetry.voltage()
+    voltage = min((each for each in (nominal, measured) if each is not None), default=None)
+    if not found or voltage is None:
+        return None
+    return _Held(tuple(found), sum(found.values()), voltage)
+
+
+def _shown(joules: float) -> str:
+    return f"{joules / WATT_HOUR:.0f} Wh"
