@@ -23,7 +23,7 @@ def control(
         str,
         typer.Argument(
             metavar="ORDER",
-            help="Command: hold, resume, return, land, stop, answer or status.",
+            help="Command: hold, resume, return, land, stop, answer, battery-changed or status.",
             autocompletion=one_of(*ORDERS),
         ),
     ],
@@ -63,7 +63,8 @@ def control(
     Prints which robots have executed it. hold: stop moving and wait. resume: continue after a hold or a
     battery change. return: abort the program, retrace the path and return home. land: abort the program and
     land. stop: abort the program with the --on-stop response of 'mmrs run'. answer: answer the question of a
-    Choice. status: print the state of each robot.
+    Choice. battery-changed: confirm that the battery was changed for a full one. status: print the state of
+    each robot.
 
     Example: mmrs control hold Drone1 --log logs
     """

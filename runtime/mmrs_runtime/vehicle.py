@@ -187,6 +187,13 @@ class Vehicle(ABC):
         """Return whether the robot was seen in motion, or able to move at any moment."""
         return False
 
+    def change_battery(self, now: float) -> None:  # noqa: B027
+        """Begin to count the batteries as changed for full ones, which an operator confirms."""
+
+    def battery_change(self, now: float) -> str | None:
+        """Return why the batteries do not count as changed; empty: they do; None: not known yet."""
+        return "its charge counts as its battery reports it"
+
     # Holding in the middle of anything.
 
     @property

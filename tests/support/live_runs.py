@@ -46,6 +46,7 @@ class Walker(Idle):
         self.recovered, self.astray, self.heard, self.armed = None, "", True, True
         self.elsewhere = ""
         self.recognised = False
+        self.changes = 0
         self.noted = []
         script.robots[given.robot.id] = self
 
@@ -111,6 +112,12 @@ class Walker(Idle):
     def status(self):
         return {"armed": self.armed} if self.armed is not None else {}
 
+    def change_battery(self, now):
+        self.changes += 1
+
+    def battery_change(self, now):
+        return self.script.battery_change
+
     def pause(self, now):
         self.halted = True
 
@@ -137,7 +144,7 @@ class Script:
 
     def __init__(self, **seconds):
         self.seconds = {name.replace("_", " "): value for name, value in seconds.items()}
-        self.robots, self.charge = {}, 0.5
+        self.robots, self.charge, self.battery_change = {}, 0.5, ""
 
     @property
     def factory(self):

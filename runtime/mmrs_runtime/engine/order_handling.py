@@ -9,7 +9,7 @@ from ..policies import NOTHING
 from ..vehicle import Fault, LinkLost
 from .clocks import RunClock
 from .life import Life
-from .orders import ANSWER, ENDINGS, HOLD, RESUME, RETURN, STOP, Order, Orders
+from .orders import ANSWER, BATTERY_CHANGED, ENDINGS, HOLD, RESUME, RETURN, STOP, Order, Orders
 from .responses import HaltProgress
 from .situation import Stage
 
@@ -103,6 +103,8 @@ class OrderHandler:
             order.refuse(id, f"it did not get ready: {robot.halt.fault}")
         elif order.kind == ANSWER:
             self._answer(order, robot)
+        elif order.kind == BATTERY_CHANGED:
+            self._change_battery(order, robot)
         elif order.kind == HOLD and robot.halt.response != NOTHING:
             self._hold(order, robot)
         elif robot.halt.response == NOTHING:
@@ -125,6 +127,15 @@ class OrderHandler:
             order.refuse(robot.id, why)
         else:
             order.confirm(robot.id)
+
+    def _change_battery(self, order: Order, robot: Life) -> None:
+        """Make a robot that stands disarmed count its batteries as changed."""
+        if robot.point.is_final:
+            order.refuse(robot.id, "its program has ended")
+        elif not robot.rests:
+            order.refuse(robot.id, "it is not seen to be disarmed")
+        else:
+            robot.vehicle.change_battery(self._clock.now())
 
     def _hold(self, order: Order, robot: Life) -> None:
         if robot.point.is_final:
@@ -219,7 +230,9 @@ class OrderHandler:
             robot = self._robots.get(id)
             if robot is None or self._confirm_rest(order, robot) or (order, id) in self._waiting:
                 continue
-            if id in order.responses:
+            if order.kind == BATTERY_CHANGED:
+                self._see_change(order, robot, now)
+            elif id in order.responses:
                 self._look_at_response(order, robot, now)
             elif robot.halt.fault is not None:
                 order.refuse(id, f"something has happened since: {robot.halt.fault}")
@@ -227,6 +240,15 @@ class OrderHandler:
                 self._see_halt(order, robot, now)
             elif self._goes_on(robot, now):
                 order.confirm(id)
+
+    def _see_change(self, order: Order, robot: Life, now: float) -> None:
+        """Report whether a robot's batteries count as changed, once that is known."""
+        if (why := robot.vehicle.battery_change(now)) is None:
+            return
+        if why:
+            order.refuse(robot.id, why)
+        else:
+            order.confirm(robot.id)
 
     def _see_halt(self, order: Order, robot: Life, now: float) -> None:
         if robot.held:

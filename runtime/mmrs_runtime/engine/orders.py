@@ -12,7 +12,8 @@ from ..orders.orders import ordered
 from ..vehicle import Vehicle
 
 HOLD, RESUME, RETURN, LAND, STOP, ANSWER = "hold", "resume", "return", "land", "stop", "answer"
-KINDS = (HOLD, RESUME, RETURN, LAND, STOP, ANSWER)
+BATTERY_CHANGED = "battery-changed"
+KINDS = (HOLD, RESUME, RETURN, LAND, STOP, ANSWER, BATTERY_CHANGED)
 ENDINGS: Mapping[str, str] = {RETURN: "RETURN", LAND: "LAND", STOP: "HOLD"}
 """Orders that end a robot's program, and the response that it then gives."""
 

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 from ..faults import LINK_LOST, ORDERED, PEER_LOST, STOPPED
 from ..policies import NOTHING
 from ..vehicle import Fault, Vehicle
-from .orders import ANSWER, ENDINGS, HOLD, RESUME, STOP, Order
+from .orders import ANSWER, BATTERY_CHANGED, ENDINGS, HOLD, RESUME, STOP, Order
 
 if TYPE_CHECKING:
     from .live import LiveRun
@@ -129,6 +129,10 @@ class EarlyOrders:
             order.refuse(id, "no such robot here")
         if order.kind == RESUME:
             self._let_go(order)
+            return
+        if order.kind == BATTERY_CHANGED:
+            for id in order.open:
+                order.refuse(id, "it has not begun: its battery is compared when it gets ready")
             return
         if order.kind == HOLD:
             self.held.update(order.open)

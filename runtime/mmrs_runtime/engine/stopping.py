@@ -172,7 +172,11 @@ class Stopping:
         """Report the next step for a robot that landed for its battery."""
         if robot.suspended and robot.halt.is_for(BATTERY_LOW) and robot.halt.response in COMES_DOWN:
             words = self._came_down[robot.id] = _came_down(robot)
-            self._say(robot, f"{words}; change it, then order resume, or start again with --resume")
+            self._say(
+                robot,
+                f"{words}; change it, order battery-changed if its charge does not rise, then resume,"
+                " or start again with --resume",
+            )
 
     def _needs_company(self, robot: Life) -> bool:
         """Return whether this process must not end yet, since the robot was not released."""

@@ -16,6 +16,7 @@ RETURN = "return"
 LAND = "land"
 STOP = "stop"
 ANSWER = "answer"
+BATTERY_CHANGED = "battery-changed"
 STATUS = "status"
 
 ORDERS = {
@@ -25,6 +26,7 @@ ORDERS = {
     LAND: "abort the program and land",
     STOP: "abort the program with the --on-stop response",
     ANSWER: "answer the question of a Choice",
+    BATTERY_CHANGED: "confirm that the battery was changed for a full one",
     STATUS: "print the state of each robot",
 }
 """What can be ordered, and what it means."""

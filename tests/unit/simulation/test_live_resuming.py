@@ -68,7 +68,10 @@ def test_where_a_robot_came_down_for_its_battery_is_told_by_what_happened(live):
     run.script.robots["a"].fail("BATTERY_LOW")
     words = "came down for its battery, but it stands 30 m from its home: carry it home"
     assert run.end().came_down == {"a": words}
-    assert f"'a': {words}; change it, then order resume, or start again with --resume" in run.said
+    assert (
+        f"'a': {words}; change it, order battery-changed if its charge does not rise, then resume,"
+        " or start again with --resume"
+    ) in run.said
 
 
 def test_a_robot_whose_sortie_began_away_from_home_came_down_there(live):

@@ -8,7 +8,7 @@ from functools import partial
 from mmrs_runtime.clock import Clock
 from mmrs_runtime.controllers.geodesy import at_height, ends_of
 from mmrs_runtime.controllers.user_functions import Locator, look_at, place_of
-from mmrs_runtime.faults import BATTERY_LOW, DEVICE_SILENT, FaultError, UnansweredError
+from mmrs_runtime.faults import DEVICE_SILENT, FaultError, UnansweredError
 from mmrs_runtime.policies import VALUE_SECONDS, seconds_of
 from mmrs_runtime.screen import words_of
 
@@ -33,10 +33,10 @@ from ..program import (
     Turn,
 )
 from ..services.uploads import UploadedRun
-from ..steps.energy import FULL, RECHARGE_FACTOR
 from ..steps.responses import policy_for
 from ..vehicles.corners import goes_through
 from ..vehicles.vehicle import Vehicle
+from .charging import Charging
 from .worker import Job
 
 IN_THE_AIR = 1.0
@@ -50,6 +50,7 @@ class Moves:
 
     Attributes:
         track: places passed since the last take-off, with the moves that ended there.
+        charging: the last stay at a charger; None: there was none.
     """
 
     def __init__(
@@ -74,6 +75,7 @@ class Moves:
             guard: called in waits for what locators find.
         """
         self.track: list[tuple[str, Place]] = []
+        self.charging: Charging | None = None
         self._found: dict[GoTo, Place] = {}
         self._steps = {step.move: step for step in robot.steps}
         self._robot, self._home = robot.id, robot.home
@@ -260,24 +262,17 @@ class Moves:
         return rest
 
     def _recharge(self, seconds: float) -> Job:
-        begun: list[float] = []
+        self.charging = charging = Charging(self._vehicle, self._clock, seconds, self._tell_charging)
 
         def finish() -> None:
             self.track = []
-            begun.append(self._clock.now())
+            charging.begin()
             self._vehicle.finish()
 
-        def top_up() -> None:
-            while (left := self._vehicle.state().energy) is not None and left < FULL:
-                taken = self._clock.now() - begun[0]
-                if taken >= RECHARGE_FACTOR * seconds:
-                    why = f"after {taken:.0f} s of charging the battery is at {left:.0%}"
-                    raise FaultError(BATTERY_LOW, why)
-                self._vehicle.rest(min(5.0, seconds or 5.0))
-            if left is None:
-                self._log("text", "charging", {"text": f"charged for {seconds:.0f} s; its range is unknown"})
+        return Job(finish, charging.stay)
 
-        return Job(finish, self._rest(seconds), top_up)
+    def _tell_charging(self, text: str) -> None:
+        self._log("text", "charging", {"text": text})
 
 
 class _Flight:

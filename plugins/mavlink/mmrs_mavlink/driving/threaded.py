@@ -75,6 +75,7 @@ class ThreadedVehicle(Vehicle):
         self._reception = Reception(self._link, equipment.clock)
         self._brakes: Callable[[], bool] = lambda: False
         self._seen: FaultError | None = None
+        self._battery_change: str | None = None
         self._left: FaultError | None = None
         # Last: it looks at all of the above from now on.
         self._worker = Worker(
@@ -150,6 +151,25 @@ class ThreadedVehicle(Vehicle):
         self._with.say(f"carries on although {found}")
         self._worker.forgive(found)
         return True
+
+    def change_battery(self, now: float) -> None:
+        """Begin to have the vehicle count its batteries as full, in the midst of charging or at rest."""
+        self._battery_change = None
+        charging = self._moves.charging
+        if self._worker.fault is not None:
+            self._battery_change = str(self._worker.fault)
+        elif self._worker.done:
+            self._begin(Job(lambda: self._note_change(self._with.vehicle.renew_battery())))
+        elif charging is not None and not charging.is_over:
+            charging.confirm(self._note_change)
+        else:
+            self._battery_change = "it is doing something else"
+
+    def battery_change(self, now: float) -> str | None:
+        """Return why the batteries do not count as changed; empty: they do; None: not known yet."""
+        if self._battery_change is None and self._worker.fault is not None:
+            return str(self._worker.fault)
+        return self._battery_change
 
     def wait(self, now: float) -> None:
         """Hold the pose, with the policies of the wait."""
@@ -345,6 +365,10 @@ class ThreadedVehicle(Vehicle):
         if job is not None:
             job.append(lambda: self._with.say(f"has done {name}"))
             self._worker.instead(lost, job)
+
+    def _note_change(self, why: str) -> None:
+        self._battery_change = why
+        self._with.wake()
 
     def _note_failure(self, error: BaseException) -> None:
         """Report an error of the program itself, and record it in the black box."""

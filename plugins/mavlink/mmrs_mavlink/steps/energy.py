@@ -72,9 +72,6 @@ LEAST_USED = 0.05
 
 RECOUNT_SECONDS = 1.0
 
-FULL = 0.99
-"""Part of a battery from which on it counts as charged."""
-
 RECHARGE_FACTOR = 3.0
 """How many times as long as expected charging may take."""
 

@@ -4,16 +4,24 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from mmrs_runtime.faults import RefusedError
+
 from ..links.link import Link
 from ..program import Charge, Robot
 from ..services import parameters
+from ..services.commands import command
 from .inspection import Findings
 from .telemetry import Telemetry
+from .vehicle import FULL
 
 MILLIAMPERE_HOUR = 3.6
 WATT_HOUR = 3600.0
 LEAST_CAPACITY = 10.0
 """Milliampere-hours up to which a capacity is none, as to ArduPilot (``AP_BattMonitor_Backend.cpp``)."""
+
+BATTERY_RESET, ALL_BATTERIES = 42_651, 65_535.0
+RENEWAL_SECONDS = 5.0
+"""Within which a vehicle tells the new charge."""
 
 SAME = 0.95
 """Part of the energy of the type's batteries from which on the vehicle's count as such."""
@@ -79,6 +87,25 @@ def inspect_batteries(link: Link, telemetry: Telemetry, robot: Robot, *, at_star
             f" {_shown(held.joules)}, of which {robot.reserve:.0%} is the reserve)"
         )
     return found
+
+
+def renew_battery(link: Link, telemetry: Telemetry) -> str:
+    """Make a vehicle count its batteries as full; return why it does not; empty: it does, or never tells.
+
+    What integrates the current, as an ArduPilot does, counts on after a change without a restart.
+    """
+    left, why = telemetry.energy(), ""
+    if left is None or left >= FULL:
+        return ""
+    try:
+        command(link, BATTERY_RESET, ALL_BATTERIES, 100.0)
+    except RefusedError as error:
+        why = f" ({error})"
+    link.wait(lambda: (telemetry.energy() or 0.0) >= FULL, link.clock.patience(RENEWAL_SECONDS))
+    left = telemetry.energy()
+    if left is None or left >= FULL:
+        return ""
+    return f"its vehicle still reports {left:.0%}{why}: restart it with its new battery"
 
 
 def _compare(

@@ -25,6 +25,7 @@ from ..services.commands import command, name_of
 from ..services.telling import tell
 from ..services.uploads import Uploads
 from . import preparation
+from .batteries import renew_battery
 from .evidence import LinkEvidence
 from .mission import Mission
 from .mode_control import ModeControl
@@ -269,6 +270,10 @@ class MavlinkVehicle(Vehicle):
     def tell_ground(self, text: str) -> None:
         """Send a text to ground stations, without an acknowledgement."""
         tell(self._link, text)
+
+    def renew_battery(self) -> str:
+        """Make the vehicle count its batteries as full; return why it does not; empty: it does."""
+        return renew_battery(self._link, self._telemetry)
 
     def hold(self) -> bool:
         """Halt and hold, and return when the vehicle does; on the ground, when it is disarmed.

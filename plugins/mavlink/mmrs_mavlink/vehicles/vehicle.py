@@ -13,6 +13,10 @@ if TYPE_CHECKING:
     from ..services.uploads import Uploads
 
 
+FULL = 0.99
+"""Part of a battery from which on it counts as charged."""
+
+
 class Evidence(Protocol):
     """Shows whether a vehicle obeys, by what it has told since an instant."""
 
@@ -78,6 +82,10 @@ class Vehicle:
 
     def tell_ground(self, text: str) -> None:
         """Send a text to ground stations."""
+
+    def renew_battery(self) -> str:
+        """Count the batteries as changed for full ones; return why they do not; empty: they do."""
+        return ""
 
     def hold(self) -> bool:
         """Halt and stay, on the ground with the motors off; return, when it does, whether they run."""
