@@ -19,9 +19,8 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 from mmrs_mavlink.links.retries import Retries
 from mmrs_mavlink.profiles import ARDUCOPTER, VehicleProfile, on_autopilot
 from mmrs_mavlink.sitl.items import StoredItem
-from mmrs_mavlink.sitl.px4_transfers import Px4Transfers
 from mmrs_mavlink.sitl.radio import packed
-from mmrs_mavlink.sitl.transfers import ArduPilotTransfers
+from mmrs_mavlink.sitl.transfers import Transfers
 
 TICK = 0.05
 """Seconds between two looks of the vehicle at what it waits for."""
@@ -72,11 +71,7 @@ class VirtualLink:
         self._its = mavlink.MAVLink(None, srcSystem=1, srcComponent=1)
         self._beat = heartbeat(autopilot=PX4 if firmware == "px4" else ARDUPILOT)
         say = lambda severity, text: self.said.append(text)  # noqa: E731
-        self.vehicle = (
-            Px4Transfers(self.stores, self._answer, say)
-            if firmware == "px4"
-            else ArduPilotTransfers(self.stores, self._answer, say, old=old)
-        )
+        self.vehicle = Transfers(self.stores, self._answer, say, self.profile.autopilot, old=old)
         self._flying: list[tuple[float, int, bytes, bool]] = []
         self._order = 0
         self._look = 0.0
@@ -120,7 +115,7 @@ class VirtualLink:
         self.wait(lambda: None, seconds)
 
     def _answer(self, message) -> None:
-        data = packed(message, 1, 1, 0) if self._old else bytes(message.pack(self._its))
+        data = packed(message, self._its) if self._old else bytes(message.pack(self._its))
         if data is not None:
             self._fly(data, outwards=False)
 

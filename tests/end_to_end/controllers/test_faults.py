@@ -180,7 +180,7 @@ def test_stop_before_there_is_a_vehicle_ends_the_program(controllers):
 @pytest.mark.parametrize(
     ("fault", "mode", "policy"),
     [
-        ("gps-lost", "alt_hold", Policy("POSITION_LOST", "LAND")),
+        ("gps-lost", "altitude_hold", Policy("POSITION_LOST", "LAND")),
         thorough("gps-lost", "stabilize", Policy("POSITION_LOST", "LAND", 5.0)),
         thorough("obstacle", "loiter", Policy("OBSTACLE", "HOLD", 10.0)),
     ],
@@ -207,7 +207,7 @@ def test_a_pilot_who_takes_over_because_of_a_fault_keeps_the_vehicle(
 @pytest.mark.parametrize("airborne", [True, thorough(False)])
 def test_a_vehicle_that_somebody_else_has_is_told_nothing(controllers, hangar, airborne):
     made = controllers(one_drone())
-    vehicles, links = hangar(made.program, disarm_delay=1000.0)
+    vehicles, links = hangar(made.program, parameters={"DISARM_DELAY": 1000.0})
     foreign = vehicles["alpha"].autopilot
     until(lambda: foreign.ready)
     with vehicles["alpha"].lock:

@@ -96,7 +96,7 @@ def test_a_vehicle_that_is_driven_home_but_does_not_obey_confirms_no_return(fly)
 
 @pytest.mark.thorough
 def test_a_vehicle_that_obeys_confirms_a_return_within_a_second(fly):
-    fleet, vehicle = fly(speedup=1.0, gusts=(2.0, 5.0))
+    fleet, vehicle = fly(speedup=1.0)
     assert wait_for(lambda: vehicle.autopilot.airborne and vehicle.autopilot.body.position[2] > 5.0, PATIENCE)
     stalls = Stalls()
     (reply,) = give(fleet.logs, "return", seconds=4.0)

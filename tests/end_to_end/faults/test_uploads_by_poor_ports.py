@@ -9,7 +9,7 @@ from patience import wait_for
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from mmrs_mavlink.sitl.items import MISSION, RALLY
-from mmrs_mavlink.sitl.transfers import ArduPilotTransfers
+from mmrs_mavlink.sitl.transfers import Transfers
 
 pytestmark = pytest.mark.real_time("faults")
 
@@ -22,13 +22,13 @@ SLOW = 0.15
 def refusals(monkeypatch):
     """Return the results of all that vehicles answer by, but that they accept something."""
     results = []
-    acknowledge = ArduPilotTransfers._acknowledge
+    acknowledge = Transfers._acknowledge
 
     def noted(transfers, peer, result, kind):
         results.append(result)
         acknowledge(transfers, peer, result, kind)
 
-    monkeypatch.setattr(ArduPilotTransfers, "_acknowledge", noted)
+    monkeypatch.setattr(Transfers, "_acknowledge", noted)
     return results
 
 

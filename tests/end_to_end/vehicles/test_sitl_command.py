@@ -113,7 +113,6 @@ def test_typed_lines_inject_faults_and_report_errors():
         (["--speedup", "0"], "speedup"),
         (["--host", "nowhere.invalid"], "nowhere.invalid: cannot be resolved"),
         (["--fault", "battery=2"], "--fault battery 2: 2 is not from 0 to 1"),
-        (["--fault", "slow-upload=-3"], "-3 is negative"),
         (["--fault", "obstacle=nan"], "'nan' is not a finite number"),
         (["--home", "91,0"], "--home 91,0: not a position"),
         (("carbon-dioxide", "--kind", "rover"), "--kind: not allowed with 'carbon-dioxide'"),

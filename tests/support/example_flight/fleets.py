@@ -48,7 +48,7 @@ class Ours:
 
     speedup = 20.0
 
-    def __init__(self, homes: Sequence[Home], folder: Path, *, gusts: float = 0.0) -> None:
+    def __init__(self, homes: Sequence[Home], folder: Path) -> None:
         ports = [free_port() for _ in homes]
         self.links = links_of(homes, ports)
         self.armed: dict[str, bool] = {}
@@ -65,7 +65,6 @@ class Ours:
                     recharge=60.0,
                     capacity=CAPACITY,
                     cells=CELLS,
-                    gusts=(gusts, 5.0),
                 ),
                 speedup=self.speedup,
             )

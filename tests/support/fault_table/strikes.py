@@ -30,7 +30,7 @@ def stick(vehicle: SimulatedVehicle) -> None:
 
 
 def by_hand(vehicle: SimulatedVehicle) -> None:
-    vehicle.faults.begin("stick", "alt_hold")
+    vehicle.faults.begin("stick", "altitude_hold")
 
 
 def battery(vehicle: SimulatedVehicle) -> None:

@@ -28,9 +28,6 @@ SPACING = 0.0001
 """Degrees of longitude between vehicles without a model."""
 
 LAST_PORT = 65_535
-GUST_SECONDS = 5.0
-"""Default duration of a gust."""
-
 MILLIAMPERE_HOUR = 3.6
 CELL_VOLTS = 3.7
 USUAL_ENERGY = 1200.0
@@ -78,7 +75,6 @@ class SimulatedFleet:
     seed: int = 0
     firmware: str = "ardupilot"
     wind: str = "0,0"
-    gusts: str = "0"
     energy: float | None = None
     recharge: float | None = None
     parameters: tuple[str, ...] = ()
@@ -110,7 +106,6 @@ class SimulatedFleet:
     def _vehicle(self, number: int, member: Member) -> SimulatedVehicle:
         north, east = member.offset
         sights = tuple(replace(s, north=s.north - north, east=s.east - east) for s in self.sights)
-        gusts = self.gusts if "," in self.gusts else f"{self.gusts},{GUST_SECONDS}"
         try:
             settings = Settings(
                 member.kind,
@@ -118,8 +113,6 @@ class SimulatedFleet:
                 system=number + 1,
                 firmware=self.firmware,
                 wind=pair(self.wind, "--wind"),
-                gusts=pair(gusts, "--gusts"),
-                seed=self.seed,
                 energy=member.energy if self.energy is None else self.energy,
                 recharge=member.recharge if self.recharge is None else self.recharge,
                 capacity=member.capacity,

@@ -30,7 +30,7 @@ QUIT = frozenset({"quit", "exit"})
 def fault_list() -> None:
     """Print the names of all faults."""
     for name, fault in FAULTS.items():
-        say(f"{name}{'  (one-shot)' if fault.cleared_by is None else ''}")
+        say(f"{name}{'  (one-shot)' if fault.clear is None else ''}")
 
 
 class Rehearsal:

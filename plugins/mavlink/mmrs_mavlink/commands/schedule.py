@@ -56,7 +56,7 @@ def scheduled(text: str) -> ScheduledFault:
         raise ValueError(f"{text}: not [ROBOT:]FAULT[=VALUE,…][@SECONDS[+SECONDS]]")
     if found["name"] not in FAULTS:
         raise ValueError(f"{text}: unknown fault; known are {', '.join(FAULTS)}")
-    if found["lasts"] and FAULTS[found["name"]].cleared_by is None:
+    if found["lasts"] and FAULTS[found["name"]].clear is None:
         raise ValueError(f"{text}: {found['name']} is one-shot and cannot last")
     values = tuple(found["values"].split(",")) if found["values"] else ()
     robot = "" if found["robot"] in (None, ALL_ROBOTS) else found["robot"]

@@ -85,14 +85,6 @@ def sitl(
     wind: Annotated[
         str, typer.Option("--wind", metavar="SPEED,FROM", help="Wind speed (m/s) and origin (degrees).")
     ] = "0,0",
-    gusts: Annotated[
-        str,
-        typer.Option(
-            "--gusts",
-            metavar="SPEED[,SECONDS]",
-            help="Turbulence: standard deviation (m/s) and duration of a gust (default 5 s).",
-        ),
-    ] = "0",
     energy: Annotated[
         float | None,
         typer.Option(
@@ -125,9 +117,7 @@ def sitl(
         float,
         typer.Option("--delay", metavar="SECONDS", min=0.0, max=10.0, help="Packet latency in real seconds."),
     ] = 0.0,
-    seed: Annotated[
-        int, typer.Option("--seed", metavar="N", min=0, help="Random seed for packet loss and gusts.")
-    ] = 0,
+    seed: Annotated[int, typer.Option("--seed", metavar="N", min=0, help="Random seed for packet loss.")] = 0,
     fault: Annotated[
         _Texts,
         typer.Option(
@@ -176,7 +166,6 @@ def sitl(
         seed=seed,
         firmware=firmware,
         wind=wind,
-        gusts=gusts,
         energy=energy,
         recharge=recharge,
         parameters=tuple(parameter or ()),

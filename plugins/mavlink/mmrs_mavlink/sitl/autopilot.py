@@ -7,19 +7,17 @@ boot, accepts a mission without a take-off and then never leaves the ground, and
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
 from functools import lru_cache
 from math import atan2, cos, degrees, hypot, radians, remainder, sin, sqrt
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
+from mmrs_mavlink.profiles import VehicleProfile
 from mmrs_mavlink.sitl import parameters
 from mmrs_mavlink.sitl.battery import Battery
 from mmrs_mavlink.sitl.body import Body, Vector, wind_of
 from mmrs_mavlink.sitl.camera import Camera
-from mmrs_mavlink.sitl.gusts import Gusts
 from mmrs_mavlink.sitl.items import FENCE, MISSION, MOVING, RALLY, StoredItem
-from mmrs_mavlink.sitl.modes import BLIND, first_mode, numbers
 from mmrs_mavlink.sitl.settings import PX4, Settings
 from mmrs_mavlink.sitl.sticks import ManualControl
 
@@ -39,20 +37,11 @@ CHANGE_SPEED = int(mavlink.MAV_CMD_DO_CHANGE_SPEED)
 STREAM_SECONDS, STREAM_GAP, STREAM_LEAST = 1.0, 0.5, 2
 """PX4 accepts set-points that have come for a second, with gaps of at most half a second."""
 
+MANUAL = frozenset({"stabilize", "acro", "altitude_hold", "depth_hold", "altitude", "manual", "steering"})
+"""Modes in which a pilot steers, and a copter drifts with the wind."""
 
-@dataclass(frozen=True, slots=True)
-class Failsafe:
-    """An active failsafe of a PX4.
-
-    Attributes:
-        mode: number of the mode that it has entered; None: it has entered none.
-        then: modes of which it enters the first possible one after its hold; empty: it does not hold.
-        until: end of the hold, seconds.
-    """
-
-    mode: int | None = None
-    then: tuple[str, ...] = ()
-    until: float = 0.0
+BLIND = MANUAL | {"land", "surface"}
+"""Modes that need no position."""
 
 
 class SimulatedAutopilot:
@@ -63,23 +52,23 @@ class SimulatedAutopilot:
         history: (seconds, command, parameters) of every executed command and mission item.
         visited: (seconds, item) of every completed mission item.
         track: (seconds, north, east, up) while armed, ten times a second.
-        modes: (seconds, number) of every mode change. armable_mode: the last mode that a PX4 may be armed in.
+        modes: (seconds, number) of every mode change. numbers: of its modes, by name.
+        armable_mode: the last mode that a PX4 may be armed in.
         texts: (severity, text) of STATUSTEXTs to be sent. said: (seconds, severity, text) of all of them.
         stores: items by mission type.
         item: current mission item. held: seconds at its position. finished: whether the mission is over.
-        jumps_made: number of jumps by DO_JUMP item.
         pending: mission item whose completion is not yet reported; None: none.
         return_path: positions to pass on a return. breadcrumbs: positions for SmartRTL.
         located: whether it has a position. arming_fault: failed pre-arm check; empty: none.
         obstacle: metres, and degrees clockwise from its nose.
         breached: whether it is outside its fence. forced_breach: whether an injected fault says so.
+        fence_due: time of the next fence check.
         silent: commands that it does not answer.
         clock_error: error of its time of day, seconds.
         link_timeout: shortest timeout of its link, seconds, whatever its parameters say.
         heartbeat_due: whether a mode change is to be reported at once.
-        failed: time at which each failure was detected or answered.
-        failsafe: of a PX4; None: none is active.
-        fence_due: time of the next fence check.
+        failing: time since which each failure is present. answered: failures that it has answered.
+        after_hold: end of a PX4's hold before its failsafe, and modes of which it then enters one.
         home: latitude, longitude, metres above mean sea level. home_set: whether a command has set it.
         last_heartbeat: time of the last heartbeat of its ground station; None: none received.
         setpoints: times of the last set-points, oldest first. aimed: whether it has followed one in its mode.
@@ -89,16 +78,13 @@ class SimulatedAutopilot:
         """Stand at home after boot."""
         self.settings = settings
         self.body = Body(wind=wind_of(*settings.wind))
-        self.gusts = Gusts(*settings.gusts, seed=f"{settings.seed} {settings.system}")
         self.battery = Battery(settings.energy, settings.capacity, settings.cells)
         self.camera = Camera()
         self.parameters = parameters.defaults(settings)
         self.stores: dict[int, list[StoredItem]] = {MISSION: [], FENCE: [], RALLY: []}
         self.time = self.booted = 0.0
-        self.numbers = numbers(settings)
-        self.mode_name = first_mode(settings)
-        self.mode = self.numbers[self.mode_name]
-        self.armable_mode = self.mode_name
+        self.numbers = _numbers(settings.profile)
+        self.mode, self.mode_name = 0, ""
         self.history: list[tuple[float, int, tuple[float, ...]]] = []
         self.visited: list[tuple[float, int]] = []
         self.track: list[tuple[float, float, float, float]] = []
@@ -106,7 +92,6 @@ class SimulatedAutopilot:
         self.said: list[tuple[float, int, str]] = []
         self.located, self.arming_fault = True, ""
         self.obstacle: tuple[float, float] | None = None
-        self.breached, self.breaches, self.forced_breach = False, 0, False
         self.fence_due = 0.0
         self.silent = settings.silent
         self.clock_error = 0.0
@@ -114,10 +99,10 @@ class SimulatedAutopilot:
         self._clear_memory()
 
     def _clear_memory(self) -> None:
-        self.armed = False
+        self.armed = self.breached = self.forced_breach = False
+        self.start_mode()
         self.texts: list[tuple[int, str]] = []
         self.item, self.held, self.finished = 0, 0.0, False
-        self.jumps_made: dict[int, int] = {}
         self.pending: int | None = None
         self.roi: Vector | None = None
         self.return_path: list[Vector] = []
@@ -130,8 +115,9 @@ class SimulatedAutopilot:
         self.home = self._here()
         self.home_set = False
         self.heartbeat_due = False
-        self.failed: dict[str, float] = {}
-        self.failsafe: Failsafe | None = None
+        self.failing: dict[str, float] = {}
+        self.answered: set[str] = set()
+        self.after_hold: tuple[float, list[str]] | None = None
         self.body.target = self.body.onward = self.body.origin = self.body.wanted_heading = None
 
     @property
@@ -167,7 +153,7 @@ class SimulatedAutopilot:
     @property
     def first_item(self) -> int:
         """Return the number of a mission's first item: item 0 is home on ArduPilot."""
-        return 0 if self.px4 else 1
+        return int(self.settings.profile.autopilot.missions.begins_with_home)
 
     @property
     def current_item(self) -> int:
@@ -182,7 +168,7 @@ class SimulatedAutopilot:
     @property
     def flies(self) -> bool:
         """Return whether its kind takes off and lands."""
-        return self.settings.kind == "copter"
+        return self.settings.profile.flies
 
     @property
     def airborne(self) -> bool:
@@ -311,10 +297,13 @@ class SimulatedAutopilot:
         self._clear_memory()
         self.armed = stays_armed
         self.home = home if self.armed else self.home
-        self.breached = self.forced_breach = False
-        self.mode_name = first_mode(self.settings)
-        self.mode = self.numbers[self.mode_name]
         self.modes.append((self.time, self.mode))
+
+    def start_mode(self) -> None:
+        """Enter the mode of a vehicle after boot."""
+        self.mode = self.numbers["hold"] if self.px4 else self.settings.profile.starts_in
+        self.mode_name = next(name for name, its in self.numbers.items() if its == self.mode)
+        self.armable_mode = self.mode_name
 
     def usual_speed(self) -> float:
         """Return the default speed, metres per second."""
@@ -327,7 +316,6 @@ class SimulatedAutopilot:
         """Restart the mission if it is over, or if MIS_RESTART says so."""
         if mode == "auto" and (self.finished or self.parameters.get("MIS_RESTART") == 1):
             self.item, self.finished = self.first_item, False
-            self.jumps_made.clear()
 
     def _entry_speed(self, mode: str) -> float:
         """Return the speed on entry into a mode: a PX4 keeps that set by completed mission items."""
@@ -336,7 +324,7 @@ class SimulatedAutopilot:
         return speeds[-1] if speeds else self.usual_speed()
 
     def _may_enter(self, name: str) -> bool:
-        blind = name in BLIND or (self.settings.kind == "rover" and name == "brake")
+        blind = name in BLIND or (self.settings.profile.drives and name == "hold")
         if not blind and self.armed and not self.located:
             self.say(mavlink.MAV_SEVERITY_WARNING, f"Mode change to {name.upper()} failed: requires position")
             return False
@@ -353,6 +341,14 @@ class SimulatedAutopilot:
             return False
         self.say(mavlink.MAV_SEVERITY_CRITICAL, "Auto: Missing Takeoff Cmd")
         return True
+
+
+def _numbers(profile: VehicleProfile) -> dict[str, int]:
+    """Return the numbers of a vehicle's modes by the names that its profile gives them."""
+    others = {
+        name.replace(" ", "_").replace("-", "_"): number for number, name in profile.other_modes.items()
+    }
+    return {name: mode.number for name, mode in profile.modes.items()} | others
 
 
 @lru_cache(maxsize=1024)

@@ -40,12 +40,10 @@ class Body:
         target: destination; None: it brakes.
         onward: destination after the target, which it passes without a stop; None: it stops at the target.
         origin: start of the leg that it tracks; None: it heads straight for its target.
-        post: position that it holds in gusts.
         corner_pace: metres per second in the turn from the previous leg.
         cut: metres from a corner at which it passes.
         speed: commanded ground speed, metres per second; climb, descent: limits of the vertical speed.
         wind: mean velocity of the air, metres per second north, east and up.
-        gust: velocity of the air relative to that; push: displacement by gusts, metres per second.
         airspeed: greatest air speed.
         adrift: whether it drifts with the wind.
     """
@@ -65,9 +63,6 @@ class Body:
     acceleration: float = 2.5
     turn_rate: float = 90.0
     wind: Vector = STILL
-    gust: Vector = STILL
-    push: Vector = STILL
-    post: Vector | None = None
     airspeed: float = 18.0
     adrift: bool = False
     error: tuple[float, float] = (0.0, 0.0)
@@ -78,7 +73,7 @@ class Body:
             step = min(seconds, STEP)
             seconds -= step
             self._accelerate(self._in_the_wind(self._wanted_velocity()), step)
-            self.position = plus(self.position, self.motion, step)
+            self.position = plus(self.position, self.velocity, step)
             self._turn(step)
 
     @property
@@ -97,30 +92,19 @@ class Body:
         return hypot(*plus(place, self.position, -1.0))
 
     @property
-    def motion(self) -> Vector:
-        """Return the ground velocity, gusts included."""
-        return plus(self.velocity, self.push, 1.0)
-
-    @property
-    def air(self) -> Vector:
-        """Return the velocity of the air."""
-        return plus(self.wind, self.gust, 1.0)
-
-    @property
     def pace(self) -> float:
         """Return the ground speed."""
-        return hypot(*self.motion)
+        return hypot(*self.velocity)
 
     @property
     def air_pace(self) -> float:
         """Return the horizontal air speed."""
-        air = self.air
-        return hypot(self.velocity[0] - air[0], self.velocity[1] - air[1])
+        return hypot(self.velocity[0] - self.wind[0], self.velocity[1] - self.wind[1])
 
     def rest_at(self, up: float) -> None:
         """Stop at a height."""
         self.position = (self.position[0], self.position[1], up)
-        self.velocity = self.push = STILL
+        self.velocity = STILL
         self.target = self.onward = self.origin = None
 
     def start_next_leg(self) -> None:
@@ -136,8 +120,7 @@ class Body:
 
     def _wanted_velocity(self) -> Vector:
         if self.target is None:
-            return self._holding()
-        self.post = None
+            return STILL
         path = plus(self.target, self.position, -1.0)
         left = hypot(*path)
         if left < 1e-3:
@@ -153,15 +136,6 @@ class Body:
         """Return the greatest speed along a path within the limits of the vertical speed."""
         limit = self.climb if path[2] > 0 else self.descent
         return min(self.speed, limit * hypot(*path) / abs(path[2])) if path[2] else self.speed
-
-    def _holding(self) -> Vector:
-        """Return a velocity that stops it, then returns it to where it stopped when gusts displace it."""
-        if self.push == STILL or hypot(*self.velocity) > BACK_PACE:
-            self.post = None
-            return STILL
-        self.post = self.post or self.position
-        back = plus(self.post, self.position, -1.0)
-        return plus(STILL, back, min(BACK_RATE, BACK_PACE / max(hypot(*back), 1e-6)))
 
     def _along_the_leg(self, origin: Vector, target: Vector, pace: float) -> Vector:
         """Return a velocity along the leg that also corrects the cross-track error."""
@@ -206,7 +180,7 @@ class Body:
 
     def _in_the_wind(self, wanted: Vector) -> Vector:
         """Return the ground velocity that the air speed allows in this wind."""
-        air = self.air
+        air = self.wind
         if self.adrift:
             return (air[0], air[1], wanted[2])
         if air == STILL:

@@ -6,12 +6,11 @@ from collections.abc import Callable, Mapping
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from mmrs_mavlink.sitl.autopilot import SimulatedAutopilot
+from mmrs_mavlink.sitl.autopilot import MANUAL, SimulatedAutopilot
 from mmrs_mavlink.sitl.body import Vector
-from mmrs_mavlink.sitl.failsafes import outside_fence
+from mmrs_mavlink.sitl.fences import outside_fence
 from mmrs_mavlink.sitl.items import MISSION
 from mmrs_mavlink.sitl.missions import jump
-from mmrs_mavlink.sitl.modes import BLIND
 
 ACCEPTED = int(mavlink.MAV_RESULT_ACCEPTED)
 DENIED = int(mavlink.MAV_RESULT_DENIED)
@@ -60,11 +59,10 @@ def arming_refusal(pilot: SimulatedAutopilot) -> str:
     """Return why a vehicle refuses to arm; empty if it does not."""
     if pilot.arming_fault:
         return pilot.arming_fault
-    manual = pilot.settings.kind == "sub" and pilot.mode_name in BLIND
+    manual = pilot.settings.kind == "sub" and pilot.mode_name in MANUAL
     if not (pilot.located or manual) or not pilot.initialised:
         return "Need Position Estimate"
-    fenced = not pilot.px4 and pilot.parameters["FENCE_ENABLE"]
-    return "vehicle outside Polygon fence" if fenced and outside_fence(pilot) else ""
+    return "vehicle outside Polygon fence" if not pilot.px4 and outside_fence(pilot) else ""
 
 
 def _arm(pilot: SimulatedAutopilot, params: Params) -> int:
@@ -138,8 +136,6 @@ def _set_current(pilot: SimulatedAutopilot, params: Params) -> int:
     if not pilot.px4 and not any(item.is_flown for item in items[int(params[0]) :]):
         return FAILED
     jump(pilot, int(params[0]))
-    if params[1] == 1.0:
-        pilot.jumps_made.clear()
     return ACCEPTED
 
 

@@ -7,11 +7,10 @@ from math import hypot
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from mmrs_mavlink.sitl.autopilot import SimulatedAutopilot, bearing
+from mmrs_mavlink.sitl.autopilot import MANUAL, SimulatedAutopilot, bearing
 from mmrs_mavlink.sitl.body import Vector
 from mmrs_mavlink.sitl.items import RALLY
 from mmrs_mavlink.sitl.missions import fly_mission
-from mmrs_mavlink.sitl.modes import MANUAL
 from mmrs_mavlink.sitl.sticks import follow_sticks
 
 NEAR, CLIMBED = 1.0, 0.3
@@ -63,7 +62,7 @@ def _guided(pilot: SimulatedAutopilot, seconds: float) -> None:
 def _take_off(pilot: SimulatedAutopilot, seconds: float) -> None:
     target = pilot.body.target
     if target is not None and pilot.body.distance_to(target) < CLIMBED:
-        pilot.enter(*(("auto",) if pilot.parameters["COM_TAKEOFF_ACT"] == 1 else ()), "loiter")
+        pilot.enter(*(("auto",) if pilot.parameters["COM_TAKEOFF_ACT"] == 1 else ()), "hold")
 
 
 def _land(pilot: SimulatedAutopilot, seconds: float) -> None:

@@ -1,152 +1,208 @@
-"""Failsafes of a simulated ArduPilot, as its parameters configure them."""
+"""Failsafes of a simulated vehicle, as its parameters configure them.
+
+Its answers to a lost link are those of its profile. A PX4 holds for COM_FAIL_ACT_T before it returns or
+lands, unless its mode cannot continue without set-points or a position.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from mmrs_mavlink.sitl.autopilot import SimulatedAutopilot
-from mmrs_mavlink.sitl.fences import inside_zones, watch_fence
-from mmrs_mavlink.sitl.modes import BLIND
+from mmrs_mavlink.sitl.autopilot import BLIND, SimulatedAutopilot
+from mmrs_mavlink.sitl.fences import outside_fence
+from mmrs_mavlink.sitl.settings import ARDUPILOT, PX4
 
-CRITICAL, WARNING = mavlink.MAV_SEVERITY_CRITICAL, mavlink.MAV_SEVERITY_WARNING
-EKF_SECONDS = 1.0
 DISARM = "disarm"
+EXEMPT = {"auto": 1, "hold": 2, "take_off": 2, "return": 2, "guided": 4}
+"""Bits of COM_DLL_EXCEPT that exempt a PX4's mode."""
 
-Answers = Mapping[int, tuple[str, ...]]
+PREFERRED = ("smart_return", "return", "loiter", "depth_hold", "surface", "hold", "land")
+"""Order in which the modes of a profile's failsafe are tried."""
+
+FENCE_SECONDS = 1.0
+"""Time between two checks of the fence."""
+
+Answers = Mapping[int, str]
 """Modes of which the first possible one is entered, by the value of a parameter."""
 
-ON_LINK_LOSS: Mapping[str, Answers] = {
-    "copter": {
-        1: ("return", "land"),
-        2: ("return", "land"),
-        3: ("smart_return", "return", "land"),
-        4: ("smart_return", "land"),
-        5: ("land",),
-        6: ("return", "land"),
-        7: ("brake", "land"),
+_COPTER = {2: "return land", 3: "smart_return return land", 4: "smart_return land"}
+_ROVER = {1: "return hold", 2: "hold", 3: "smart_return return hold", 4: "smart_return hold", 5: DISARM}
+_SUB = {2: DISARM, 3: "surface"}
+ANSWERS: Mapping[str, Mapping[str, Answers]] = {
+    "arducopter": {
+        "BATT_FS_LOW_ACT": {1: "land", **_COPTER, 5: DISARM},
+        "BATT_FS_CRT_ACT": {1: "land", **_COPTER, 5: DISARM},
+        "FENCE_ACTION": {1: "return land", 2: "land", 3: _COPTER[3], 4: "hold land", 5: _COPTER[4]},
+        "FS_EKF_ACTION": {1: "land", 2: "altitude_hold", 3: "land"},
     },
-    "sub": {1: (), 2: (DISARM,), 3: ("alt_hold",), 4: ("surface",)},
-}
-ROVER_ACTIONS: Answers = {
-    1: ("return", "brake"),
-    2: ("brake",),
-    3: ("smart_return", "return", "brake"),
-    4: ("smart_return", "brake"),
-    5: (DISARM,),
-    6: ("loiter", "brake"),
-}
-ON_BATTERY: Mapping[str, Answers] = {
-    "copter": {**ON_LINK_LOSS["copter"], 1: ("land",), 5: (DISARM,)},
-    "sub": {2: (DISARM,), 3: ("surface",)},
-    "rover": ROVER_ACTIONS,
-}
-ON_BREACH: Mapping[str, Answers] = {
-    "copter": {
-        1: ("return", "land"),
-        2: ("land",),
-        3: ("smart_return", "return", "land"),
-        4: ("brake", "land"),
-        5: ("smart_return", "land"),
+    "ardurover": {
+        "BATT_FS_LOW_ACT": _ROVER,
+        "BATT_FS_CRT_ACT": _ROVER,
+        "FENCE_ACTION": _ROVER,
+        "FS_EKF_ACTION": {1: "hold"},
     },
-    "sub": {},
-    "rover": ROVER_ACTIONS,
+    "ardusub": {"BATT_FS_LOW_ACT": _SUB, "BATT_FS_CRT_ACT": _SUB, "FS_EKF_ACTION": {2: DISARM}},
+    "px4-multicopter": {
+        "COM_LOW_BAT_ACT": {2: "land", 3: "return land"},
+        "COM_OBL_RC_ACT": {0: "position", 1: "altitude", 2: "stabilize"},
+        "COM_POS_FS_DELAY": {1: "land"},
+        "GF_ACTION": {2: "hold", 3: "return land", 4: DISARM, 5: "land"},
+    },
 }
-"""A submarine only reports a breach (``ArduSub/fence.cpp``)."""
-
-CONTINUE_IN_AUTO = 2
-"""Bit of a copter's FS_OPTIONS: a mission continues without a ground station."""
+"""Answers by profile and parameter, where the profile's failsafe for a lost link does not know it."""
 
 
-def watch(pilot: SimulatedAutopilot, seconds: float) -> None:
+@dataclass(frozen=True, slots=True)
+class Failure:
+    """A failure that an armed vehicle detects.
+
+    Attributes:
+        present: returns whether it is present.
+        text: reported when it is answered. cleared: reported when it is over; empty: nothing.
+        parameter: its value chooses the answer; empty: that of the failsafe for a lost link.
+        lasting: seconds, or the parameter for them, until it is answered.
+        at_once: whether a PX4 answers without a hold.
+    """
+
+    present: Callable[[SimulatedAutopilot], bool]
+    text: str
+    parameter: str = ""
+    cleared: str = ""
+    lasting: str | float = 0.0
+    at_once: bool = False
+
+
+def watch(pilot: SimulatedAutopilot) -> None:
     """Detect failures, and answer each once."""
-    _watch_position(pilot, seconds)
-    watch_fence(pilot, "FENCE_ENABLE", outside_fence, _answer_breach)
-    if not pilot.armed:
-        pilot.failed.pop("gcs", None)
-        return
-    _watch_link(pilot)
-    if pilot.settings.tells_battery:
-        _watch_battery(pilot, "CRT", "critical")
-        _watch_battery(pilot, "LOW", "low")
+    if pilot.forced_breach or pilot.time >= pilot.fence_due:
+        pilot.fence_due = pilot.time + FENCE_SECONDS
+        pilot.breached = pilot.forced_breach or (pilot.located and outside_fence(pilot))
+    for name, failure in FAILURES[pilot.settings.firmware].items():
+        if not (pilot.armed and failure.present(pilot)):
+            pilot.failing.pop(name, None)
+            if name in pilot.answered:
+                pilot.answered.remove(name)
+                if failure.cleared and pilot.armed:
+                    pilot.say(mavlink.MAV_SEVERITY_WARNING, failure.cleared)
+            continue
+        since = pilot.failing.setdefault(name, pilot.time)
+        lasting = pilot.parameters[failure.lasting] if isinstance(failure.lasting, str) else failure.lasting
+        if name not in pilot.answered and pilot.time - since >= lasting:
+            pilot.answered.add(name)
+            _answer(pilot, failure)
+    _end_hold(pilot)
 
 
-def _watch_position(pilot: SimulatedAutopilot, seconds: float) -> None:
-    if pilot.located:
-        pilot.failed.pop("position", None)
-        pilot.failed.pop("ekf", None)
-        return
-    lost = pilot.failed["position"] = pilot.failed.get("position", 0.0) + seconds
-    if not pilot.armed or pilot.mode_name in BLIND or lost <= EKF_SECONDS or "ekf" in pilot.failed:
-        return
-    pilot.failed["ekf"] = pilot.time
-    action = pilot.parameters["FS_EKF_ACTION"]
-    if action:
-        pilot.enter(*(("alt_hold",) if action == 2.0 else ("land", "surface", "brake", "manual")))
-        pilot.say(CRITICAL, f"EKF Failsafe: changed to {pilot.mode_name.upper()} Mode")
-
-
-def _watch_link(pilot: SimulatedAutopilot) -> None:
-    if pilot.last_heartbeat is None:
-        return
-    limit = pilot.parameters["FS_GCS_TIMEOUT"] + pilot.parameters.get("FS_TIMEOUT", 0.0)
-    if pilot.time - pilot.last_heartbeat < max(limit, pilot.link_timeout):
-        if pilot.failed.pop("gcs", None) is not None and pilot.settings.kind != "sub":
-            pilot.say(WARNING, "GCS Failsafe Cleared")
-        return
-    enabled = int(pilot.parameters["FS_GCS_ENABLE"])
-    if not enabled or "gcs" in pilot.failed:
-        return
-    pilot.failed["gcs"] = pilot.time
-    in_auto = pilot.mode_name == "auto"
-    if pilot.settings.kind == "sub":
-        pilot.say(WARNING, f"MYGCS: {pilot.parameters['SYSID_MYGCS']:.0f}, heartbeat lost")
-    elif pilot.flies and in_auto and int(pilot.parameters["FS_OPTIONS"]) & CONTINUE_IN_AUTO:
-        pilot.say(WARNING, "GCS Failsafe - Continuing Auto Mode")
-        return
-    else:
-        pilot.say(WARNING, "GCS Failsafe")
-    if pilot.settings.kind != "rover":
-        _answer(pilot, ON_LINK_LOSS[pilot.settings.kind].get(enabled, ()))
-    elif not (enabled == 2 and in_auto):
-        _answer(pilot, ROVER_ACTIONS.get(int(pilot.parameters["FS_ACTION"]), ()))
-
-
-def _watch_battery(pilot: SimulatedAutopilot, level: str, word: str) -> None:
-    volts, reserve = pilot.parameters[f"BATT_{level}_VOLT"], pilot.parameters[f"BATT_{level}_MAH"]
-    left = pilot.parameters["BATT_CAPACITY"] - pilot.battery.used
-    if not (pilot.battery.voltage < volts or left < reserve):
-        pilot.failed.pop(f"{level} since", None)
-        return
-    since = pilot.failed.setdefault(f"{level} since", pilot.time)
-    if pilot.time - since < pilot.parameters["BATT_LOW_TIMER"] or level in pilot.failed:
-        return
-    pilot.failed[level] = pilot.time
-    used = f"{pilot.battery.voltage:.2f}V used {pilot.battery.used:.0f} mAh"
-    pilot.say(CRITICAL, f"Battery 1 is {word} {used}")
-    _answer(pilot, ON_BATTERY[pilot.settings.kind].get(int(pilot.parameters[f"BATT_FS_{level}_ACT"]), ()))
-
-
-def outside_fence(pilot: SimulatedAutopilot) -> bool:
-    """Return whether a vehicle is outside the parts of its fence that FENCE_TYPE enables."""
-    enabled = int(pilot.parameters["FENCE_TYPE"])
-    north, east, up = pilot.body.position
-    if enabled & 1 and pilot.flies and up > pilot.parameters["FENCE_ALT_MAX"]:
-        return True
-    if enabled & 2 and (north**2 + east**2) ** 0.5 > pilot.parameters["FENCE_RADIUS"]:
-        return True
-    return bool(enabled & 4) and not inside_zones(pilot)
-
-
-def _answer_breach(pilot: SimulatedAutopilot) -> None:
-    pilot.say(mavlink.MAV_SEVERITY_NOTICE, "Polygon fence breached")
-    if pilot.armed and pilot.parameters["FENCE_ENABLE"]:
-        _answer(pilot, ON_BREACH[pilot.settings.kind].get(int(pilot.parameters["FENCE_ACTION"]), ()))
-
-
-def _answer(pilot: SimulatedAutopilot, names: tuple[str, ...]) -> None:
-    if (pilot.flies and not pilot.airborne and names) or names == (DISARM,):
+def _answer(pilot: SimulatedAutopilot, failure: Failure) -> None:
+    names = _modes(pilot, failure.parameter)
+    if names == [DISARM] or (names and pilot.flies and not pilot.airborne):
         pilot.disarm()
+    elif pilot.px4 and not failure.at_once and names and names[0] != "hold" and pilot.mode_name not in names:
+        pilot.enter("hold")
+        pilot.after_hold = (pilot.time + pilot.parameters["COM_FAIL_ACT_T"], names)
     else:
         pilot.enter(*names)
+    pilot.say(mavlink.MAV_SEVERITY_CRITICAL, failure.text.format(mode=pilot.mode_name.upper()))
+
+
+def _modes(pilot: SimulatedAutopilot, parameter: str) -> list[str]:
+    """Return the modes with which a vehicle answers by the value of a parameter."""
+    profile, failsafe = pilot.settings.profile, pilot.settings.profile.lost_link
+    parameter = parameter or next(iter(failsafe.modes))
+    value = int(pilot.parameters[parameter])
+    if parameter == "FENCE_ACTION" and not pilot.parameters["FENCE_ENABLE"]:
+        return []
+    own = ANSWERS[profile.name].get(parameter, {}).get(value)
+    if own is not None:
+        return own.split()
+    if value and failsafe.answers.get("STOP_THRUST", {}).get(parameter) == value:
+        return [DISARM]
+    numbers = failsafe.modes.get(parameter, {}).get(value, frozenset())
+    found = [name for name in PREFERRED if pilot.numbers.get(name) in numbers]
+    return [name for name in found if name != "hold"] or found if pilot.px4 else found
+
+
+def _end_hold(pilot: SimulatedAutopilot) -> None:
+    """Enter the chosen mode of a PX4 after its hold, unless another mode was set meanwhile."""
+    if pilot.after_hold is None:
+        return
+    until, names = pilot.after_hold
+    over = pilot.time >= until
+    if over or pilot.mode_name != "hold" or not pilot.armed:
+        pilot.after_hold = None
+    if over and pilot.armed and pilot.mode_name == "hold":
+        pilot.enter(*names)
+
+
+def _has_no_position(pilot: SimulatedAutopilot) -> bool:
+    return not pilot.located and pilot.mode_name not in BLIND
+
+
+def _has_no_link(pilot: SimulatedAutopilot) -> bool:
+    """Return whether heartbeats are missing for long enough, and its failsafe is on and not exempt."""
+    values, failsafe = pilot.parameters, pilot.settings.profile.lost_link
+    if pilot.last_heartbeat is None or not values.get(failsafe.enabled_by, 1):
+        return False
+    limit = sum(values.get(name, 0.0) for name in ("FS_GCS_TIMEOUT", "FS_TIMEOUT", "COM_DL_LOSS_T"))
+    return pilot.time - pilot.last_heartbeat >= max(limit, pilot.link_timeout) and not _is_exempt(pilot)
+
+
+def _is_exempt(pilot: SimulatedAutopilot) -> bool:
+    exemption = pilot.settings.profile.lost_link.exemption
+    if exemption is None:
+        return False
+    bits = EXEMPT.get(pilot.mode_name, 0) if pilot.px4 else exemption.bits * (pilot.mode_name == "auto")
+    return bool(int(pilot.parameters[exemption.parameter]) & bits)
+
+
+def _has_no_setpoints(pilot: SimulatedAutopilot) -> bool:
+    if pilot.mode_name != "guided" or not pilot.setpoints:
+        return False
+    limit = max(pilot.parameters["COM_OF_LOSS_T"], pilot.link_timeout)
+    return pilot.time - pilot.setpoints[-1] > limit
+
+
+def _is_low(level: str) -> Callable[[SimulatedAutopilot], bool]:
+    def is_low(pilot: SimulatedAutopilot) -> bool:
+        volts, reserve = pilot.parameters[f"BATT_{level}_VOLT"], pilot.parameters[f"BATT_{level}_MAH"]
+        left = pilot.parameters["BATT_CAPACITY"] - pilot.battery.used
+        return pilot.settings.tells_battery and (pilot.battery.voltage < volts or left < reserve)
+
+    return is_low
+
+
+FAILURES: Mapping[str, Mapping[str, Failure]] = {
+    ARDUPILOT: {
+        "position": Failure(
+            _has_no_position, "EKF Failsafe: changed to {mode} Mode", "FS_EKF_ACTION", lasting=1.0
+        ),
+        "fence": Failure(lambda pilot: pilot.breached, "Polygon fence breached", "FENCE_ACTION"),
+        "link": Failure(_has_no_link, "GCS Failsafe", cleared="GCS Failsafe Cleared"),
+        "critical": Failure(
+            _is_low("CRT"), "Battery 1 is critical", "BATT_FS_CRT_ACT", lasting="BATT_LOW_TIMER"
+        ),
+        "low": Failure(_is_low("LOW"), "Battery 1 is low", "BATT_FS_LOW_ACT", lasting="BATT_LOW_TIMER"),
+    },
+    PX4: {
+        "position": Failure(
+            _has_no_position,
+            "Position lost",
+            "COM_POS_FS_DELAY",
+            lasting="COM_POS_FS_DELAY",
+            at_once=True,
+        ),
+        "fence": Failure(
+            lambda pilot: pilot.breached, "Geofence: approaching or outside geofence", "GF_ACTION"
+        ),
+        "link": Failure(_has_no_link, "Connection to ground station lost", cleared="GCS connection regained"),
+        "critical": Failure(
+            lambda pilot: pilot.battery.level < pilot.parameters["BAT_CRIT_THR"],
+            "Critical battery",
+            "COM_LOW_BAT_ACT",
+        ),
+        "setpoints": Failure(_has_no_setpoints, "Failsafe activated", "COM_OBL_RC_ACT", at_once=True),
+    },
+}

@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from contextlib import AbstractContextManager
 from dataclasses import dataclass
-from inspect import signature
-from math import cos, isfinite, nan, radians, sin
+from math import cos, isfinite, radians, sin
 
 from mmrs_mavlink.sitl.autopilot import SimulatedAutopilot
 from mmrs_mavlink.sitl.body import wind_of
@@ -18,7 +17,6 @@ class Faults:
     Attributes:
         link_down: whether the link to the controller is cut. ground_down: that to the ground station.
         send_down: whether nothing that it sends arrives.
-        answer_delay: delay of every answer to an upload, seconds.
         watched: whether it has a radio to a ground station.
     """
 
@@ -27,7 +25,6 @@ class Faults:
     ) -> None:
         """Create without a fault; `lock` is held while the time of the autopilot advances."""
         self.link_down = self.ground_down = self.send_down = False
-        self.answer_delay = 0.0
         self.watched = watched
         self.pilot = pilot
         self._lock = lock
@@ -38,11 +35,11 @@ class Faults:
         Raises:
             ValueError: there is no such fault, or it does not take these values.
         """
-        begin = _fault(name).begin
+        fault = _fault(name)
         try:
-            arguments = _converted(begin, [str(value) for value in values])
+            arguments = _converted(fault.values, [str(value) for value in values])
             with self._lock:
-                begin(self, *arguments)
+                fault.set(self, *arguments)
         except ValueError as error:
             raise ValueError(f"{' '.join((name, *map(str, values)))}: {error}") from error
 
@@ -53,9 +50,9 @@ class Faults:
             ValueError: there is no such fault.
         """
         fault = _fault(name)
-        if fault.cleared_by is not None:
+        if fault.clear is not None:
             with self._lock:
-                fault.begin(self, **fault.cleared_by)
+                fault.clear(self)
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,42 +60,34 @@ class Fault:
     """A fault.
 
     Attributes:
-        begin: injects it; its positional parameters after the first are the values of the fault.
-        cleared_by: arguments with which `begin` clears it; None: it is one-shot.
+        set: injects it with its values. clear: clears it; None: it is one-shot.
+        values: defaults of its values; `REQUIRED`: there is none; ``...``: any number of texts.
     """
 
-    begin: Callable[..., None]
-    cleared_by: Mapping[str, object] | None = None
+    set: Callable[..., None]
+    clear: Callable[[Faults], None] | None = None
+    values: tuple[object, ...] = ()
 
 
-def _lose_position(faults: Faults, *, lost: bool = True) -> None:
-    faults.pilot.located = not lost
+REQUIRED = float("nan")
 
 
-def _shift_position(faults: Faults, metres: float = 40.0, bearing: float = 0.0) -> None:
+def _shift(faults: Faults, metres: float, bearing: float) -> None:
     angle = radians(bearing)
     faults.pilot.body.shift_estimate(metres * cos(angle), metres * sin(angle))
 
 
-def _restart(faults: Faults, armed: str = "") -> None:
+def _restart(faults: Faults, armed: str) -> None:
     if armed not in ("", "armed"):
         raise ValueError(f"'{armed}' is not armed")
     faults.pilot.restart(armed == "armed")
 
 
-def _change_mode(faults: Faults, mode: str = "loiter") -> None:
+def _change_mode(faults: Faults, mode: str) -> None:
     numbers = faults.pilot.numbers
     if mode not in numbers:
         raise ValueError(f"{mode}: unknown mode; this vehicle has {', '.join(numbers)}")
     faults.pilot.set_mode(numbers[mode])
-
-
-def _meet_obstacle(faults: Faults, metres: float = 3.0, bearing: float = 0.0, *, gone: bool = False) -> None:
-    faults.pilot.obstacle = None if gone else (_not_negative(metres), bearing)
-
-
-def _breach_fence(faults: Faults, *, outside: bool = True) -> None:
-    faults.pilot.forced_breach = outside
 
 
 def _change_battery(faults: Faults, level: float) -> None:
@@ -107,61 +96,62 @@ def _change_battery(faults: Faults, level: float) -> None:
     faults.pilot.battery.change(level)
 
 
-def _ignore_commands(faults: Faults, *commands: int) -> None:
-    faults.pilot.silent = frozenset(commands)
-
-
-def _cut_link(faults: Faults, *, down: bool = True) -> None:
-    faults.link_down = down
-
-
-def _stop_sending(faults: Faults, *, down: bool = True) -> None:
-    faults.send_down = down
-
-
-def _cut_ground(faults: Faults, *, down: bool = True) -> None:
-    if not faults.watched:
-        raise ValueError("the vehicle has no radio to a ground station")
-    faults.ground_down = down
-
-
-def _jump_clock(faults: Faults, seconds: float = 3600.0) -> None:
+def _jump_clock(faults: Faults, seconds: float) -> None:
     faults.pilot.clock_error += seconds
 
 
-def _refuse_arming(faults: Faults, *words: str, passes: bool = False) -> None:
-    faults.pilot.arming_fault = "" if passes else " ".join(words) or "Compass not calibrated"
+def _ignore_commands(faults: Faults, *commands: str) -> None:
+    if wrong := [each for each in commands if not (each.isdecimal() and len(each) < 10)]:
+        raise ValueError(f"'{wrong[0]}' is not the number of a command")
+    faults.pilot.silent = frozenset(map(int, commands))
 
 
-def _slow_uploads(faults: Faults, seconds: float = 3.0) -> None:
-    faults.answer_delay = _not_negative(seconds)
+def _cut_ground(faults: Faults) -> None:
+    if not faults.watched:
+        raise ValueError("the vehicle has no radio to a ground station")
+    faults.ground_down = True
 
 
-def _break_camera(faults: Faults, *, works: bool = False) -> None:
-    faults.pilot.camera.works = works
-
-
-def _change_wind(faults: Faults, speed: float, bearing: float = 0.0) -> None:
-    faults.pilot.body.wind = wind_of(_not_negative(speed), bearing)
+def _setter(name: str, value: object, *, pilots: bool = False) -> Callable[[Faults], None]:
+    """Return a function that sets an attribute of the faults, or of the autopilot."""
+    return lambda faults: setattr(faults.pilot if pilots else faults, name, value)
 
 
 FAULTS: Mapping[str, Fault] = {
-    "gps-lost": Fault(_lose_position, {"lost": False}),
-    "position-shift": Fault(_shift_position, {"metres": 0.0}),
-    "restart": Fault(_restart),
-    "stick": Fault(_change_mode),
-    "obstacle": Fault(_meet_obstacle, {"gone": True}),
-    "breach": Fault(_breach_fence, {"outside": False}),
-    "battery": Fault(_change_battery),
-    "silent": Fault(_ignore_commands, {}),
-    "link-down": Fault(_cut_link, {"down": False}),
-    "dumb": Fault(_stop_sending, {"down": False}),
-    "ground-down": Fault(_cut_ground, {"down": False}),
-    "clock-jump": Fault(_jump_clock),
-    "refuse-arming": Fault(_refuse_arming, {"passes": True}),
-    "slow-upload": Fault(_slow_uploads, {"seconds": 0.0}),
-    "camera-dead": Fault(_break_camera, {"works": True}),
-    "wind": Fault(_change_wind, {"speed": 0.0}),
+    "gps-lost": Fault(_setter("located", False, pilots=True), _setter("located", True, pilots=True)),
+    "position-shift": Fault(_shift, lambda faults: _shift(faults, 0.0, 0.0), (40.0, 0.0)),
+    "restart": Fault(_restart, values=("",)),
+    "stick": Fault(_change_mode, values=("loiter",)),
+    "obstacle": Fault(
+        lambda faults, *place: setattr(faults.pilot, "obstacle", place),
+        _setter("obstacle", None, pilots=True),
+        (3.0, 0.0),
+    ),
+    "breach": Fault(
+        _setter("forced_breach", True, pilots=True), _setter("forced_breach", False, pilots=True)
+    ),
+    "battery": Fault(_change_battery, values=(REQUIRED,)),
+    "silent": Fault(_ignore_commands, _ignore_commands, (...,)),
+    "link-down": Fault(_setter("link_down", True), _setter("link_down", False)),
+    "dumb": Fault(_setter("send_down", True), _setter("send_down", False)),
+    "ground-down": Fault(_cut_ground, _setter("ground_down", False)),
+    "clock-jump": Fault(_jump_clock, values=(3600.0,)),
+    "refuse-arming": Fault(
+        lambda faults, *words: setattr(
+            faults.pilot, "arming_fault", " ".join(words) or "Compass not calibrated"
+        ),
+        _setter("arming_fault", "", pilots=True),
+        (...,),
+    ),
+    "camera-dead": Fault(
+        lambda faults: setattr(faults.pilot.camera, "works", False),
+        lambda faults: setattr(faults.pilot.camera, "works", True),
+    ),
+    "wind": Fault(
+        lambda faults, *wind: setattr(faults.pilot.body, "wind", wind_of(*wind)),
+        lambda faults: setattr(faults.pilot.body, "wind", wind_of(0.0, 0.0)),
+        (REQUIRED, 0.0),
+    ),
 }
 """All faults, by name."""
 
@@ -172,47 +162,27 @@ def _fault(name: str) -> Fault:
     return FAULTS[name]
 
 
-def _converted(begin: Callable[..., None], values: list[str]) -> list[object]:
-    """Return the values of a fault in the types of its parameters.
+def _converted(defaults: tuple[object, ...], values: list[str]) -> list[object]:
+    """Return the values of a fault, in the types of its defaults.
 
     Raises:
-        ValueError: there are too few or too many, or one is not of its type.
+        ValueError: there are too few or too many, or one is not a number.
     """
-    wanted = signature(begin)
-    try:
-        bound = wanted.bind(None, *values).arguments
-    except TypeError:
-        named = [each for each in wanted.parameters.values() if each.kind is not each.KEYWORD_ONLY][1:]
-        usage = [each.name + ("" if each.default is each.empty else " (optional)") for each in named]
-        raise ValueError(f"takes {' and '.join(usage) or 'no value'}") from None
-    found: list[object] = []
-    for name, given in list(bound.items())[1:]:
-        convert = _CONVERSIONS[wanted.parameters[name].annotation]
-        found += map(convert, [given] if isinstance(given, str) else given)
-    return found
+    if ... in defaults:
+        return list(values)
+    if len(values) > len(defaults) or (REQUIRED in defaults[len(values) :]):
+        raise ValueError(f"takes {len(defaults)} value{'s' if len(defaults) != 1 else ''}")
+    given = [
+        text if isinstance(kind, str) else _number(text) for text, kind in zip(values, defaults, strict=False)
+    ]
+    return [*given, *defaults[len(values) :]]
 
 
 def _number(text: str) -> float:
     try:
         number = float(text)
     except ValueError:
-        number = nan
+        number = REQUIRED
     if not isfinite(number):
         raise ValueError(f"'{text}' is not a finite number")
     return number
-
-
-def _command(text: str) -> int:
-    if not text.isdecimal() or len(text) > 9:
-        raise ValueError(f"'{text}' is not the number of a command")
-    return int(text)
-
-
-def _not_negative(number: float) -> float:
-    if number < 0.0:
-        raise ValueError(f"{number:g} is negative")
-    return number
-
-
-_CONVERSIONS: Mapping[str, Callable[[str], object]] = {"str": str, "float": _number, "int": _command}
-"""Conversions of values, by annotation of the parameter."""

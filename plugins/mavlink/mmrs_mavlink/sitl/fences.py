@@ -1,21 +1,16 @@
-"""Fences of a simulated vehicle: polygons and circles to stay in or out of."""
+"""Fences of a simulated vehicle: limits about its home, and polygons and circles to stay in or out of."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
-from math import dist
+from collections.abc import Sequence
+from math import dist, hypot
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from mmrs_mavlink.sitl.autopilot import SimulatedAutopilot
 from mmrs_mavlink.sitl.items import FENCE
 
-FENCE_SECONDS = 1.0
-"""Time between two checks of the fence."""
-
 Point = tuple[float, float]
-
 INCLUSIONS = {
     int(mavlink.MAV_CMD_NAV_FENCE_POLYGON_VERTEX_INCLUSION),
     int(mavlink.MAV_CMD_NAV_FENCE_CIRCLE_INCLUSION),
@@ -26,71 +21,40 @@ CIRCLES = {
 }
 
 
-@dataclass(frozen=True, slots=True)
-class Zone:
-    """A polygon or, with one point, a circle; `inside`: whether to stay inside it."""
-
-    points: tuple[Point, ...]
-    radius: float
-    inside: bool
-
-    def allows(self, place: Point) -> bool:
-        """Return whether a position is on the permitted side."""
-        if len(self.points) == 1:
-            return (dist(place, self.points[0]) <= self.radius) == self.inside
-        edges = zip(self.points, (*self.points[1:], self.points[0]), strict=True)
-        return (sum(_crosses(place, a, b) for a, b in edges) % 2 == 1) == self.inside
+def outside_fence(pilot: SimulatedAutopilot) -> bool:
+    """Return whether a vehicle is outside the parts of its fence that its parameters enable."""
+    fence, values = pilot.settings.profile.autopilot.fence, pilot.parameters
+    if not values.get(fence.enabled_by, 1):
+        return False
+    enabled = int(values[fence.types]) if fence.types else -1
+    north, east, up = pilot.body.position
+    extents = {"radius": hypot(north, east), "height": up if pilot.flies else 0.0}
+    limited = [each for each in fence.limits if not fence.types or enabled & each.bit]
+    if any(0.0 < values[each.parameter] < extents[each.of] for each in limited):
+        return True
+    return bool(not fence.types or enabled & fence.polygons) and not _inside_zones(pilot)
 
 
-def inside_zones(pilot: SimulatedAutopilot) -> bool:
+def _inside_zones(pilot: SimulatedAutopilot) -> bool:
     """Return whether the zones of its fence permit a vehicle's position."""
-    place = pilot.body.position[:2]
-    return all(zone.allows(place) for zone in _zones(pilot))
-
-
-def watch_fence(
-    pilot: SimulatedAutopilot,
-    switch: str,
-    outside: Callable[[SimulatedAutopilot], bool],
-    answer: Callable[[SimulatedAutopilot], None],
-) -> None:
-    """Check the fence at intervals, and answer a breach once.
-
-    Args:
-        pilot: of the vehicle.
-        switch: parameter that enables the fence.
-        outside: returns whether it is outside the fence.
-        answer: reports a breach and takes the configured action.
-    """
-    if pilot.time < pilot.fence_due and not pilot.forced_breach:
-        return
-    pilot.fence_due = pilot.time + FENCE_SECONDS
-    forced = pilot.forced_breach
-    is_out = forced or (bool(pilot.parameters[switch]) and pilot.located and outside(pilot))
-    if is_out and not pilot.breached and (pilot.armed or forced):
-        pilot.breached = True
-        pilot.breaches += 1
-        answer(pilot)
-    elif not is_out:
-        pilot.breached = False
-
-
-def _zones(pilot: SimulatedAutopilot) -> Sequence[Zone]:
-    zones: list[Zone] = []
-    corners: list[Point] = []
+    place, corners = pilot.body.position[:2], list[Point]()
     for item in pilot.stores[FENCE]:
-        inside = item.command in INCLUSIONS
         corners.append(pilot.place_of(item)[:2])
         if item.command in CIRCLES:
-            zones.append(Zone((corners.pop(),), item.params[0], inside))
+            within = dist(place, corners.pop()) <= item.params[0]
         elif len(corners) >= item.params[0]:
-            zones.append(Zone(tuple(corners), 0.0, inside))
-            corners = []
-    return zones
+            within, corners = _surround(corners, place), []
+        else:
+            continue
+        if within != (item.command in INCLUSIONS):
+            return False
+    return True
 
 
-def _crosses(place: Point, a: Point, b: Point) -> bool:
-    """Return whether a ray to the east from a position crosses an edge."""
-    if (a[0] > place[0]) == (b[0] > place[0]):
-        return False
-    return place[1] < a[1] + (place[0] - a[0]) / (b[0] - a[0]) * (b[1] - a[1])
+def _surround(corners: Sequence[Point], place: Point) -> bool:
+    """Return whether a position is inside a polygon: a ray to the east crosses an odd number of edges."""
+    crossed = 0
+    for a, b in zip(corners, (*corners[1:], corners[0]), strict=True):
+        if (a[0] > place[0]) != (b[0] > place[0]):
+            crossed += place[1] < a[1] + (place[0] - a[0]) / (b[0] - a[0]) * (b[1] - a[1])
+    return crossed % 2 == 1

@@ -12,6 +12,7 @@ from typing import Any
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
+from mmrs_mavlink.profiles import Autopilot
 from mmrs_mavlink.sitl.settings import PX4, Settings
 
 Message = Any
@@ -27,7 +28,6 @@ _COMMON: Mapping[str, float] = {
     "SYSID_MYGCS": 255,
     "FS_GCS_ENABLE": 0,
     "FS_GCS_TIMEOUT": 5.0,
-    "BATT_MONITOR": 4,
     "BATT_CAPACITY": 5000,
     "BATT_LOW_VOLT": 10.5,
     "BATT_LOW_MAH": 0.0,
@@ -42,10 +42,8 @@ _COMMON: Mapping[str, float] = {
     "FENCE_ALT_MAX": 100.0,
     "FENCE_RADIUS": 300.0,
     "FENCE_MARGIN": 2.0,
-    "RALLY_TOTAL": 0,
     "RALLY_LIMIT_KM": 0.3,
     "RALLY_INCL_HOME": 1,
-    "MIS_TOTAL": 0,
     "MIS_RESTART": 0,
     "SIM_GPS1_ENABLE": 1,
     **{f"RELAY{number}_FUNCTION": 1 for number in range(1, 7)},
@@ -64,31 +62,25 @@ _COMMON: Mapping[str, float] = {
 """Every device that a program may use is set up: two cameras, of which the second records videos."""
 
 _COPTER: Mapping[str, float] = {
-    "FS_THR_ENABLE": 1,
     "FS_OPTIONS": 16,
     "FS_EKF_ACTION": 1,
     "DISARM_DELAY": 10,
     "AUTO_OPTIONS": 0,
     "RTL_ALT": 1500,
-    "LAND_SPEED": 50,
     "WPNAV_SPEED": 500.0,
     "WPNAV_RADIUS": 200.0,
-    "AVOID_ENABLE": 3,
     "AVOID_MARGIN": 2.0,
     "OA_TYPE": 0,
     "OA_MARGIN_MAX": 5.0,
-    "FLTMODE_GCSBLOCK": 0,
 }
 _ROVER: Mapping[str, float] = {
     "FS_ACTION": 2,
     "FS_TIMEOUT": 1.5,
     "FS_OPTIONS": 0,
     "RALLY_LIMIT_KM": 0.5,
-    "FS_THR_ENABLE": 1,
     "FS_EKF_ACTION": 1,
     "WP_SPEED": 2.0,
     "WP_RADIUS": 2.0,
-    "AVOID_ENABLE": 0,
     "AVOID_MARGIN": 2.0,
     "OA_TYPE": 0,
     "OA_MARGIN_MAX": 5.0,
@@ -97,20 +89,16 @@ _SUB: Mapping[str, float] = {
     "FS_GCS_ENABLE": 1,
     "FS_GCS_TIMEOUT": 3.0,
     "FS_EKF_ACTION": 0,
-    "FS_LEAK_ENABLE": 1,
     "WPNAV_SPEED": 50.0,
     "WPNAV_RADIUS": 200.0,
 }
 _PX4: Mapping[str, float] = {
     "MAV_SYS_ID": 1,
     "NAV_DLL_ACT": 0,
-    "NAV_RCL_ACT": 2,
     "COM_DL_LOSS_T": 10,
     "COM_DLL_EXCEPT": 0,
     "COM_LOW_BAT_ACT": 0,
-    "BAT_LOW_THR": 0.15,
     "BAT_CRIT_THR": 0.07,
-    "BAT_EMERGEN_THR": 0.05,
     "GF_ACTION": 2,
     "GF_MAX_HOR_DIST": 0.0,
     "GF_MAX_VER_DIST": 0.0,
@@ -119,7 +107,6 @@ _PX4: Mapping[str, float] = {
     "COM_FAIL_ACT_T": 5.0,
     "COM_TAKEOFF_ACT": 0,
     "COM_DISARM_PRFLT": 10.0,
-    "COM_DISARM_LAND": 2.0,
     "COM_OBS_AVOID": 0,
     "COM_POS_FS_DELAY": 1,
     "NAV_ACC_RAD": 2.0,
@@ -127,7 +114,6 @@ _PX4: Mapping[str, float] = {
     "RTL_RETURN_ALT": 15.0,
     "RTL_TYPE": 0,
     "MPC_XY_CRUISE": 5.0,
-    "MPC_LAND_SPEED": 0.7,
     "TRIG_MODE": 1,
     "PD_GRIPPER_EN": 1,
     "BAT1_CAPACITY": 5000.0,
@@ -142,8 +128,6 @@ def defaults(settings: Settings) -> dict[str, float]:
     own = {
         "SYSID_THISMAV": settings.system,
         "MAV_SYS_ID": settings.system,
-        "DISARM_DELAY": settings.disarm_delay,
-        "COM_DISARM_PRFLT": settings.disarm_delay,
         "BATT_CAPACITY": settings.capacity,
         "BAT1_CAPACITY": settings.capacity,
         "BATT_LOW_VOLT": LOW_CELL * settings.cells,
@@ -152,31 +136,22 @@ def defaults(settings: Settings) -> dict[str, float]:
     return {**found, **settings.parameters}
 
 
-def encoded(name: str, value: float, firmware: str) -> tuple[float, int]:
+def encoded(name: str, value: float, autopilot: Autopilot) -> tuple[float, int]:
     """Return a parameter as PARAM_VALUE carries it, and its MAV_PARAM_TYPE.
 
-    ArduPilot sends every number as a float; PX4 puts the bytes of an integer into that float.
+    PX4 puts the bytes of an integer into the float; ArduPilot sends every number as a float.
     """
-    if not _is_whole(name, firmware):
+    if name not in autopilot.integers:
         return value, int(mavlink.MAV_PARAM_TYPE_REAL32)
-    if firmware == PX4:
-        (packed,) = struct.unpack("<f", struct.pack("<i", round(value)))
-        return packed, int(mavlink.MAV_PARAM_TYPE_INT32)
-    return float(value), int(mavlink.MAV_PARAM_TYPE_INT32)
+    (packed,) = struct.unpack("<f", struct.pack("<i", round(value)))
+    return packed, int(mavlink.MAV_PARAM_TYPE_INT32)
 
 
-def decoded(name: str, value: float, kind: int, firmware: str) -> float:
-    """Return the value that a PARAM_SET sets; ArduPilot truncates that of an integer."""
-    if not _is_whole(name, firmware):
-        return value
-    if firmware == PX4 and kind == mavlink.MAV_PARAM_TYPE_INT32:
+def decoded(value: float, kind: int, autopilot: Autopilot) -> float:
+    """Return the value that a PARAM_SET sets."""
+    if autopilot.copies_bytes and kind == mavlink.MAV_PARAM_TYPE_INT32:
         return float(struct.unpack("<i", struct.pack("<f", value))[0])
-    return float(int(value))
-
-
-def _is_whole(name: str, firmware: str) -> bool:
-    tables = (_PX4,) if firmware == PX4 else (_COMMON, _COPTER, _ROVER, _SUB)
-    return any(isinstance(table.get(name), int) for table in tables)
+    return value
 
 
 class ParameterService:
@@ -186,10 +161,11 @@ class ParameterService:
         changed: called with the name of each parameter that is set, before the answer.
     """
 
-    def __init__(self, values: dict[str, float], firmware: str, send: Callable[[Message], None]) -> None:
+    def __init__(
+        self, values: dict[str, float], autopilot: Autopilot, send: Callable[[Message], None]
+    ) -> None:
         self.changed: Callable[[str], None] = lambda name: None
-        self._values, self._firmware = values, firmware
-        self._send = send
+        self._values, self._autopilot, self._send = values, autopilot, send
         self._listed: list[str] = []
 
     def begin(self) -> None:
@@ -207,7 +183,7 @@ class ParameterService:
             self._answer(names[message.param_index] if found else message.param_id)
         elif kind == "PARAM_SET" and message.param_id in self._values:
             name = str(message.param_id)
-            self._values[name] = decoded(name, message.param_value, message.param_type, self._firmware)
+            self._values[name] = decoded(message.param_value, message.param_type, self._autopilot)
             self.changed(name)
             self._answer(name)
 
@@ -219,7 +195,7 @@ class ParameterService:
 
     def _answer(self, name: str) -> None:
         if name in self._values:
-            value, kind = encoded(name, self._values[name], self._firmware)
+            value, kind = encoded(name, self._values[name], self._autopilot)
             index = list(self._values).index(name)
             self._send(
                 mavlink.MAVLink_param_value_message(name.encode(), value, kind, len(self._values), index)

@@ -1,4 +1,4 @@
-"""Radios of a simulated vehicle: MAVLink over UDP with packet loss, latency and routing."""
+"""Radios of a simulated vehicle: MAVLink over UDP with packet loss, latency and forwarding."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import heapq
 import random
 import socket
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from typing import Any
 
 from pymavlink.dialects.v10 import ardupilotmega as old
@@ -17,9 +17,6 @@ Message = Any
 LARGEST = 65_535
 SIGNATURE_EPOCH = 1_420_070_400
 COMPONENT = 1
-BROADCAST = 0
-NEVER_ROUTED = frozenset({"RADIO", "RADIO_STATUS"})
-"""Messages of a radio about itself."""
 
 
 class SimulatedRadio:
@@ -85,16 +82,13 @@ class SimulatedRadio:
 
     def send(self, message: Message) -> None:
         """Send a message, unless it is lost."""
-        if self._old:
-            data = packed(message, self._mav.srcSystem, COMPONENT, self._mav.seq)
-        else:
-            data = bytes(message.pack(self._mav))
+        data = packed(message, self._mav) if self._old else bytes(message.pack(self._mav))
         if data is not None:
             self._mav.seq = (self._mav.seq + 1) % 256
             self.relay(data)
 
     def relay(self, data: bytes) -> None:
-        """Send a frame of another sender unchanged, unless it is lost."""
+        """Send a frame unchanged, unless it is lost."""
         if self._loses():
             return
         if self._delay:
@@ -148,77 +142,28 @@ class SimulatedRadio:
         return self.down() or (self._loss > 0.0 and self._random.random() < self._loss)
 
 
-class Router:
-    """Routes messages between a vehicle and its radios by the rules of ArduPilot's ``MAVLink_routing``.
-
-    Heartbeats go to every other radio by which their sender was not received; other messages go to the radios
-    by which their target was received, and broadcasts to all by which any system was received.
-    """
-
-    def __init__(self, system: int, *radios: SimulatedRadio) -> None:
-        self.radios = radios
-        self._own = (system, COMPONENT)
-        self._routes: dict[tuple[int, int], set[SimulatedRadio]] = {}
-
-    def send(self, message: Message) -> None:
-        """Send a message to its target; one that was never received is sought by all radios."""
-        for radio in self._towards(*_target(message)) or self.radios:
-            radio.send(message)
-
-    def receive(self) -> Iterator[Message]:
-        """Yield the messages that have arrived, for any target, and forward them."""
-        for radio in self.radios:
-            for message in radio.receive():
-                source = (message.get_srcSystem(), message.get_srcComponent())
-                if source == self._own:
-                    continue
-                self._routes.setdefault(source, set()).add(radio)
-                for other in self._further(message, source) - {radio}:
-                    other.relay(bytes(message.get_msgbuf()))
-                yield message
-
-    def _further(self, message: Message, source: tuple[int, int]) -> set[SimulatedRadio]:
-        """Return the radios to which a message is forwarded."""
-        if message.get_type() in NEVER_ROUTED:
-            return set()
-        if message.get_type() == "HEARTBEAT":
-            return set(self.radios) - self._routes[source]
-        system, component = _target(message)
-        if system == BROADCAST:
-            return set().union(*self._routes.values())
-        return set() if (system, component) == self._own else self._towards(system, component)
-
-    def _towards(self, system: int, component: int) -> set[SimulatedRadio]:
-        """Return the radios by which a target was received."""
-        found = [
-            radios
-            for (its, part), radios in self._routes.items()
-            if its == system and (component in (BROADCAST, part) or system != self._own[0])
-        ]
-        return set().union(*found)
+def receive(radios: Sequence[SimulatedRadio], system: int) -> Iterator[Message]:
+    """Yield the messages that have arrived by a vehicle's radios, and forward those not only for it."""
+    for radio in radios:
+        for message in radio.receive():
+            if (message.get_srcSystem(), message.get_srcComponent()) == (system, COMPONENT):
+                continue
+            if getattr(message, "target_system", 0) != system and message.get_type() != "RADIO_STATUS":
+                for other in radios:
+                    if other is not radio:
+                        other.relay(bytes(message.get_msgbuf()))
+            yield message
 
 
-def packed(message: Message, system: int, component: int, number: int) -> bytes | None:
-    """Return a MAVLink 2 message as MAVLink 1 frame, without extension fields; None if MAVLink 1 lacks it.
-
-    Args:
-        message: to be sent.
-        system: of the sender. component: of the sender.
-        number: sequence number of the frame, 0 to 255.
-    """
+def packed(message: Message, sender: Any) -> bytes | None:
+    """Return a message as MAVLink 1 frame, without extension fields; None if MAVLink 1 lacks it."""
     kind = getattr(old, type(message).__name__, None)
     if kind is None:
         return None
-    values = message.to_dict()
-    fields = {name: values[name] for name in kind.fieldnames}
-    plain = {name: value.encode() if isinstance(value, str) else value for name, value in fields.items()}
-    packer = old.MAVLink(None, srcSystem=system, srcComponent=component)
-    packer.seq = number
-    return bytes(kind(**plain).pack(packer))
-
-
-def _target(message: Message) -> tuple[int, int]:
-    return getattr(message, "target_system", BROADCAST), getattr(message, "target_component", BROADCAST)
+    values = [getattr(message, name) for name in kind.fieldnames]
+    packer = old.MAVLink(None, srcSystem=sender.srcSystem, srcComponent=sender.srcComponent)
+    packer.seq = sender.seq
+    return bytes(kind(*(each.encode() if isinstance(each, str) else each for each in values)).pack(packer))
 
 
 def _resolved(address: tuple[str, int]) -> tuple[str, int]:

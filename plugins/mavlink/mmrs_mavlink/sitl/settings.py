@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 
+from mmrs_mavlink.profiles import PROFILES, VehicleProfile
 from mmrs_runtime.sights import Sight
 
 KINDS = ("copter", "sub", "rover")
@@ -19,19 +20,14 @@ class Settings:
     Attributes:
         kind: ``copter``, ``sub`` or ``rover``.
         latitude, longitude: of its home, degrees. altitude: of its home above mean sea level, metres.
-        firmware: ``ardupilot``, or ``px4`` for copters, which follows PX4's documentation and source.
+        firmware: ``ardupilot``, or ``px4`` for copters.
         boot: seconds after boot in which uploads are refused and mode changes are lost.
         ready: seconds after boot until it has a position and can be armed.
-        disarm_delay: seconds on the ground after which it disarms.
         energy: seconds of hovering until the battery is empty. capacity: of the battery, mAh; cells: of it.
         recharge: seconds disarmed until the battery is full; 0: never.
         tells_battery: whether it measures its battery.
         falls: whether its motors stop in the air when the battery is empty.
         wind: metres per second, and degrees that it comes from.
-        gusts: standard deviation of the air speed on each axis, metres per second, and correlation time,
-            seconds; only copters are displaced.
-        seed: of the gusts, together with the system.
-        rate: of telemetry until another is requested, hertz.
         values: sensors by name, published as NAMED_VALUE_FLOAT: functions of the time in seconds.
         sights: objects that its photos can show, in metres from its home.
         refuse: commands answered with UNSUPPORTED. silent: commands that are never answered.
@@ -48,7 +44,6 @@ class Settings:
     firmware: str = ARDUPILOT
     boot: float = 1.0
     ready: float = 2.0
-    disarm_delay: float = 10.0
     energy: float = 1200.0
     capacity: float = USUAL_CAPACITY
     cells: int = USUAL_CELLS
@@ -56,9 +51,6 @@ class Settings:
     tells_battery: bool = True
     falls: bool = True
     wind: tuple[float, float] = (0.0, 0.0)
-    gusts: tuple[float, float] = (0.0, 5.0)
-    seed: int = 0
-    rate: float = 4.0
     values: Mapping[str, Callable[[float], float]] = field(default_factory=dict)
     sights: tuple[Sight, ...] = ()
     refuse: frozenset[int] = frozenset()
@@ -72,10 +64,11 @@ class Settings:
             raise ValueError(f"{self.kind}: unknown vehicle type; known are {', '.join(KINDS)}")
         if self.firmware not in (ARDUPILOT, PX4) or (self.firmware == PX4 and self.kind != "copter"):
             raise ValueError(f"{self.firmware}: not a firmware for a {self.kind}")
-        if not (0.0 <= self.gusts[0] <= 20.0 and self.gusts[1] > 0.0):
-            gusts = f"{self.gusts[0]:g},{self.gusts[1]:g}"
-            raise ValueError(f"gusts {gusts}: not a speed of 0 to 20 m/s and a time above 0 s")
-        if self.mavlink not in (1, 2):
-            raise ValueError(f"MAVLink {self.mavlink}: not a MAVLink version; those are 1 and 2")
         if not 1 <= self.system <= 255:
             raise ValueError(f"system {self.system}: not a MAVLink system; those are 1 to 255")
+
+    @property
+    def profile(self) -> VehicleProfile:
+        """Return the profile of the vehicle that it imitates."""
+        like = (self.kind, self.firmware)
+        return next(each for each in PROFILES.values() if (each.rehearsed_as, each.rehearsed_with) == like)

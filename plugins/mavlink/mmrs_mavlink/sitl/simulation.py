@@ -6,12 +6,10 @@ from math import dist
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from mmrs_mavlink.sitl import failsafes, px4_failsafes
-from mmrs_mavlink.sitl.autopilot import SimulatedAutopilot
+from mmrs_mavlink.sitl.autopilot import MANUAL, SimulatedAutopilot
 from mmrs_mavlink.sitl.battery import load_of
-from mmrs_mavlink.sitl.body import STILL
 from mmrs_mavlink.sitl.control import decide
-from mmrs_mavlink.sitl.modes import MANUAL, first_mode
+from mmrs_mavlink.sitl.failsafes import watch
 
 CONTROL_SECONDS = 0.05
 """Longest time between two decisions."""
@@ -25,12 +23,11 @@ FALL_SPEED = 10.0
 
 def advance(pilot: SimulatedAutopilot, seconds: float) -> None:
     """Simulate that many seconds."""
-    watch = px4_failsafes.watch if pilot.px4 else failsafes.watch
     while seconds > 1e-9:
         step = min(seconds, CONTROL_SECONDS)
         seconds -= step
         pilot.time += step
-        watch(pilot, step)
+        watch(pilot)
         if pilot.armed:
             decide(pilot, step)
         if pilot.armed:
@@ -42,7 +39,6 @@ def advance(pilot: SimulatedAutopilot, seconds: float) -> None:
 def _move(pilot: SimulatedAutopilot, seconds: float) -> None:
     body = pilot.body
     body.adrift = pilot.airborne and (not pilot.located or pilot.mode_name in MANUAL)
-    _apply_gusts(pilot, seconds)
     body.advance(seconds)
     pilot.battery.drain(seconds, load_of(body) if pilot.flies else 0.3 + 0.7 * min(1.0, body.pace))
     pilot.camera.move(body)
@@ -52,17 +48,6 @@ def _move(pilot: SimulatedAutopilot, seconds: float) -> None:
     if pilot.flies:
         _touch_ground(pilot)
     _record_track(pilot)
-
-
-def _apply_gusts(pilot: SimulatedAutopilot, seconds: float) -> None:
-    """Apply gusts to a vehicle in the air; one that drifts moves with the air itself."""
-    if pilot.flies and pilot.airborne:
-        pilot.gusts.advance(seconds)
-        pilot.body.gust = (*pilot.gusts.air, 0.0)
-        pilot.body.push = STILL if pilot.body.adrift else (*pilot.gusts.push, 0.0)
-    else:
-        pilot.gusts.rest()
-        pilot.body.gust = pilot.body.push = STILL
 
 
 def _idle(pilot: SimulatedAutopilot, seconds: float) -> None:
@@ -75,8 +60,7 @@ def _idle(pilot: SimulatedAutopilot, seconds: float) -> None:
     else:
         pilot.body.rest_at(0.0 if pilot.flies else pilot.body.position[2])
     if pilot.uptime < pilot.settings.boot:
-        pilot.mode_name = first_mode(pilot.settings)
-        pilot.mode = pilot.numbers[pilot.mode_name]
+        pilot.start_mode()
 
 
 def _touch_ground(pilot: SimulatedAutopilot) -> None:

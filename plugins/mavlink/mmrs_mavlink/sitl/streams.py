@@ -90,7 +90,7 @@ class Streams:
 
     def _name(self, number: float) -> str | None:
         name = telemetry.NUMBERS.get(int(number))
-        return None if name in telemetry.MISSING[self._pilot.settings.firmware] else name
+        return None if name in telemetry.missing(self._pilot.settings) else name
 
     def _send_events(self) -> None:
         pilot = self._pilot

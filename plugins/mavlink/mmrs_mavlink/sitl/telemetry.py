@@ -11,21 +11,17 @@ from typing import Any
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
+from mmrs_mavlink.profiles import ARDUPILOT, PX4
 from mmrs_mavlink.sitl.autopilot import SimulatedAutopilot
 from mmrs_mavlink.sitl.camera import Photo
 from mmrs_mavlink.sitl.commands import arming_refusal
 from mmrs_mavlink.sitl.items import MISSION
-from mmrs_mavlink.sitl.settings import PX4, Settings
+from mmrs_mavlink.sitl.settings import Settings
 
 Message = Any
 Maker = Callable[[SimulatedAutopilot], Message | None]
 """Makes a message; None if a vehicle has nothing to report."""
 
-TYPES = {
-    "copter": int(mavlink.MAV_TYPE_QUADROTOR),
-    "sub": int(mavlink.MAV_TYPE_SUBMARINE),
-    "rover": int(mavlink.MAV_TYPE_GROUND_ROVER),
-}
 LOCATED, LOST = 0x33F, 0xA7
 """Flags of the position estimate."""
 
@@ -37,10 +33,10 @@ TARGET_MASK = 0xDF8
 
 SECTOR_FREE = 6_001
 UNKNOWN = 65_535
+GPS, FENCE_BIT, PREARM = 0x20, 0x0010_0000, 0x1000_0000
+SENSORS = 0x0200_002F
+"""Gyroscope, accelerometer, compass, pressure, satellites and battery."""
 
-GYRO, ACCELEROMETER, COMPASS, PRESSURE, GPS = 0x01, 0x02, 0x04, 0x08, 0x20
-FENCE_BIT, BATTERY, PREARM = 0x0010_0000, 0x0200_0000, 0x1000_0000
-SENSORS = GYRO | ACCELEROMETER | COMPASS | PRESSURE | GPS
 NO_ROTATION = (1.0, 0.0, 0.0, 0.0)
 CAPABILITIES = (
     mavlink.MAV_PROTOCOL_CAPABILITY_MISSION_INT
@@ -75,14 +71,13 @@ def _scaled(latitude: float, longitude: float) -> dict[str, int]:
 
 def _heartbeat(pilot: SimulatedAutopilot) -> Message:
     armed = mavlink.MAV_MODE_FLAG_SAFETY_ARMED if pilot.armed else 0
-    active = mavlink.MAV_STATE_ACTIVE if pilot.failsafe is None else mavlink.MAV_STATE_CRITICAL
     return message(
         "heartbeat",
-        type=TYPES[pilot.settings.kind],
-        autopilot=mavlink.MAV_AUTOPILOT_PX4 if pilot.px4 else mavlink.MAV_AUTOPILOT_ARDUPILOTMEGA,
+        type=pilot.settings.profile.mav_types[0],
+        autopilot=pilot.settings.profile.autopilot.number,
         base_mode=mavlink.MAV_MODE_FLAG_CUSTOM_MODE_ENABLED | armed,
         custom_mode=pilot.mode,
-        system_status=active if pilot.armed else mavlink.MAV_STATE_STANDBY,
+        system_status=mavlink.MAV_STATE_ACTIVE if pilot.armed else mavlink.MAV_STATE_STANDBY,
         mavlink_version=3,
     )
 
@@ -92,7 +87,7 @@ def _global_position(pilot: SimulatedAutopilot) -> Message | None:
     if not pilot.initialised and pilot.px4:
         return None
     up = pilot.settings.altitude + pilot.body.position[2]
-    north, east, climb = pilot.body.motion
+    north, east, climb = pilot.body.velocity
     return message(
         "global_position_int",
         time_boot_ms=milliseconds(pilot),
@@ -110,7 +105,7 @@ def _local_position(pilot: SimulatedAutopilot) -> Message | None:
     if not pilot.initialised:
         return None
     north, east, up = pilot.body.position
-    v_north, v_east, v_up = pilot.body.motion
+    v_north, v_east, v_up = pilot.body.velocity
     now = milliseconds(pilot)
     return mavlink.MAVLink_local_position_ned_message(now, north, east, -up, v_north, v_east, -v_up)
 
@@ -153,19 +148,6 @@ def _attitude(pilot: SimulatedAutopilot) -> Message:
     return message("attitude", time_boot_ms=milliseconds(pilot), yaw=yaw)
 
 
-def _hud(pilot: SimulatedAutopilot) -> Message:
-    body = pilot.body
-    return message(
-        "vfr_hud",
-        airspeed=body.air_pace,
-        groundspeed=hypot(*body.motion[:2]),
-        heading=round(body.heading) % 360,
-        throttle=50 if pilot.armed else 0,
-        alt=pilot.settings.altitude + body.position[2],
-        climb=body.velocity[2],
-    )
-
-
 def mission_current(pilot: SimulatedAutopilot) -> Message:
     """Return the current mission item, and the state of the mission."""
     total = max(0, len(pilot.stores[MISSION]) - pilot.first_item)
@@ -178,9 +160,8 @@ def mission_current(pilot: SimulatedAutopilot) -> Message:
 def _status(pilot: SimulatedAutopilot) -> Message:
     """Return the health of its sensors, its pre-arm check and its battery."""
     health = SENSORS if pilot.located else SENSORS & ~GPS
-    health |= BATTERY | (0 if pilot.breached else FENCE_BIT)
-    health |= 0 if arming_refusal(pilot) else PREARM
-    present = SENSORS | BATTERY | FENCE_BIT | (0 if pilot.px4 else PREARM)
+    health |= (0 if pilot.breached else FENCE_BIT) | (0 if arming_refusal(pilot) else PREARM)
+    present = SENSORS | FENCE_BIT | (0 if pilot.px4 else PREARM)
     measures = pilot.settings.tells_battery
     return message(
         "sys_status",
@@ -239,7 +220,7 @@ def _satellites(pilot: SimulatedAutopilot) -> Message:
         alt=round((pilot.settings.altitude + pilot.body.position[2]) * 1000),
         eph=80 if located else 9_999,
         epv=UNKNOWN,
-        vel=round(hypot(*pilot.body.motion[:2]) * 100),
+        vel=round(hypot(*pilot.body.velocity[:2]) * 100),
         cog=UNKNOWN,
         satellites_visible=14 if located else 0,
     )
@@ -255,17 +236,17 @@ def _fence(pilot: SimulatedAutopilot) -> Message | None:
     if not pilot.breached and not pilot.parameters.get("FENCE_ENABLE"):
         return None
     kind = mavlink.FENCE_BREACH_BOUNDARY if pilot.breached else mavlink.FENCE_BREACH_NONE
-    return mavlink.MAVLink_fence_status_message(pilot.breached, pilot.breaches, kind, 0)
+    return mavlink.MAVLink_fence_status_message(pilot.breached, pilot.breached, kind, 0)
 
 
 def _wind(pilot: SimulatedAutopilot) -> Message:
-    north, east, _ = pilot.body.air
+    north, east, _ = pilot.body.wind
     comes_from = degrees(atan2(-east, -north)) % 360.0
     return mavlink.MAVLink_wind_message(comes_from, hypot(north, east), 0.0)
 
 
 def _wind_estimate(pilot: SimulatedAutopilot) -> Message:
-    north, east, _ = pilot.body.air
+    north, east, _ = pilot.body.wind
     return message("wind_cov", time_usec=milliseconds(pilot) * 1000, wind_x=north, wind_y=east)
 
 
@@ -348,7 +329,6 @@ MAKERS: Mapping[str, Maker] = {
     "GLOBAL_POSITION_INT": _global_position,
     "LOCAL_POSITION_NED": _local_position,
     "ATTITUDE": _attitude,
-    "VFR_HUD": _hud,
     "MISSION_CURRENT": mission_current,
     "SYS_STATUS": _status,
     "BATTERY_STATUS": _battery_status,
@@ -368,17 +348,20 @@ MAKERS: Mapping[str, Maker] = {
 }
 NUMBERS: Mapping[int, str] = {getattr(mavlink, f"MAVLINK_MSG_ID_{name}"): name for name in MAKERS}
 ON_REQUEST = frozenset({"AUTOPILOT_VERSION", "POSITION_TARGET_GLOBAL_INT", "POSITION_TARGET_LOCAL_NED"})
+RATE, USUAL_RATE = 4.0, 2.0
+"""Hertz, of `FAST` messages and of others, until another rate is requested."""
+
 SLOW = {"HEARTBEAT": 1.0, "SYSTEM_TIME": 1.0, "BATTERY_STATUS": 1.0, "HOME_POSITION": 0.5}
-FAST = frozenset({"GLOBAL_POSITION_INT", "LOCAL_POSITION_NED", "ATTITUDE", "VFR_HUD", "MISSION_CURRENT"})
-MISSING = {
-    PX4: frozenset({"EKF_STATUS_REPORT", "WIND", "FENCE_STATUS"}),
-    "ardupilot": frozenset({"ESTIMATOR_STATUS", "WIND_COV"}),
-}
-"""Messages that a firmware does not have."""
+FAST = frozenset({"GLOBAL_POSITION_INT", "LOCAL_POSITION_NED", "ATTITUDE", "MISSION_CURRENT"})
+
+
+def missing(settings: Settings) -> frozenset[str]:
+    """Return the messages that only another firmware has, by the profiles."""
+    own = settings.profile.autopilot.streamed
+    return frozenset(name for each in (ARDUPILOT, PX4) for name in each.streamed if name not in own)
 
 
 def usual_rates(settings: Settings) -> dict[str, float]:
     """Return the rates of messages that no one has requested, hertz."""
-    names = [name for name in MAKERS if name not in ON_REQUEST | MISSING[settings.firmware]]
-    usual = {name: settings.rate if name in FAST else min(2.0, settings.rate) for name in names}
-    return usual | {name: min(rate, settings.rate) for name, rate in SLOW.items()} | {"HEARTBEAT": 1.0}
+    names = [name for name in MAKERS if name not in ON_REQUEST | missing(settings)]
+    return {name: RATE if name in FAST else SLOW.get(name, USUAL_RATE) for name in names}

@@ -1,4 +1,4 @@
-"""Mission protocol of a simulated vehicle: what both firmwares share, and ArduPilot's side of it."""
+"""A simulated vehicle's side of the mission protocol: missions, fences and rally points by one mechanism."""
 
 from __future__ import annotations
 
@@ -8,8 +8,8 @@ from typing import Any
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
+from mmrs_mavlink.profiles import Autopilot
 from mmrs_mavlink.sitl.items import FENCE, MISSION, RALLY, StoredItem, fault_of, kept
-from mmrs_mavlink.sitl.settings import ARDUPILOT
 
 Message = Any
 Address = tuple[int, int]
@@ -18,109 +18,7 @@ Address = tuple[int, int]
 Stores = dict[int, list[StoredItem]]
 """Items by mission type."""
 
-Send = Callable[[Message], None]
-Say = Callable[[int, str], None]
-"""Sends a STATUSTEXT of a severity."""
-
-RETRY_SECONDS = 1.0
-TIMEOUT_SECONDS = 8.0
 NAMES = {MISSION: "Mission", FENCE: "Fence", RALLY: "Rally"}
-
-
-class Transfers:
-    """A vehicle's side of the mission protocol.
-
-    Attributes:
-        stores: items by mission type.
-        busy: whether uploads are refused for lack of space, as just after a boot.
-        finished: called with the type of each upload and each cleared list.
-        home: returns item 0 of a mission, which is ArduPilot's home; None: it is returned as uploaded.
-    """
-
-    def __init__(self, stores: Stores, send: Send, say: Say) -> None:
-        self.stores = stores
-        self.busy = False
-        self.finished: Callable[[int], None] = lambda kind: None
-        self.home: Callable[[], StoredItem] | None = None
-        self._send, self._say = send, say
-
-    def take(self, message: Message) -> None:
-        """Answer a message of the protocol, and ignore others."""
-        kind, peer = message.get_type(), (message.get_srcSystem(), message.get_srcComponent())
-        if kind == "MISSION_COUNT":
-            self._start(message, peer)
-        elif kind in ("MISSION_ITEM_INT", "MISSION_ITEM"):
-            self._receive(message, peer)
-        elif kind == "MISSION_CLEAR_ALL":
-            self._clear(message, peer)
-        elif kind == "MISSION_ACK":
-            self._end(message, peer)
-        elif kind == "MISSION_REQUEST_LIST":
-            self._list(message, peer)
-        elif kind in ("MISSION_REQUEST_INT", "MISSION_REQUEST"):
-            self._request(message, peer)
-
-    def advance(self, now: float, timeout: float) -> None:
-        """Repeat unanswered requests, and abort a transfer that times out, after `timeout` s at least."""
-        raise NotImplementedError
-
-    def _start(self, message: Message, peer: Address) -> None:
-        raise NotImplementedError
-
-    def _receive(self, message: Message, peer: Address) -> None:
-        raise NotImplementedError
-
-    def _clear(self, message: Message, peer: Address) -> None:
-        raise NotImplementedError
-
-    def _end(self, message: Message, peer: Address) -> None:
-        """Accept that a transfer has ended."""
-
-    def _list(self, message: Message, peer: Address) -> None:
-        raise NotImplementedError
-
-    def _request(self, message: Message, peer: Address) -> None:
-        raise NotImplementedError
-
-    def _acknowledge(self, peer: Address, result: int, kind: int) -> None:
-        self._send(mavlink.MAVLink_mission_ack_message(*peer, int(result), kind))
-
-    def _ask(self, peer: Address, seq: int, kind: int) -> None:
-        self._send(mavlink.MAVLink_mission_request_int_message(*peer, seq, kind))
-
-    def _count(self, peer: Address, kind: int) -> None:
-        number = len(self.stores.get(kind, ()))
-        self._send(mavlink.MAVLink_mission_count_message(*peer, number, kind))
-
-    def _give(self, peer: Address, asked: Message) -> None:
-        """Send a requested item, as MISSION_ITEM if it was requested so."""
-        kind, seq = asked.mission_type, int(asked.seq)
-        items = self.stores.get(kind, [])
-        if not 0 <= seq < len(items):
-            self._acknowledge(peer, mavlink.MAV_MISSION_INVALID_SEQUENCE, kind)
-            return
-        item = self.home() if seq == 0 and kind == MISSION and self.home is not None else items[seq]
-        head = (*peer, seq, item.frame, item.command, 0, 1, *item.params)
-        if asked.get_type() == "MISSION_REQUEST":
-            self._send(
-                mavlink.MAVLink_mission_item_message(*head, item.x * 1e-7, item.y * 1e-7, item.z, kind)
-            )
-        else:
-            self._send(mavlink.MAVLink_mission_item_int_message(*head, item.x, item.y, item.z, kind))
-
-    def _clear_stores(self, peer: Address, kind: int) -> None:
-        for each in list(self.stores) if kind == mavlink.MAV_MISSION_TYPE_ALL else [kind]:
-            self.stores[each] = []
-            self.finished(each)
-        self._acknowledge(peer, mavlink.MAV_MISSION_ACCEPTED, kind)
-
-
-def item_of(message: Message) -> StoredItem:
-    """Return the item in a MISSION_ITEM or MISSION_ITEM_INT."""
-    old = message.get_type() == "MISSION_ITEM"
-    x, y = (round(message.x * 1e7), round(message.y * 1e7)) if old else (message.x, message.y)
-    params = (message.param1, message.param2, message.param3, message.param4)
-    return StoredItem(message.frame, message.command, params, x, y, message.z)
 
 
 @dataclass
@@ -134,109 +32,178 @@ class _Upload:
     since: float = -1.0
 
 
-class ArduPilotTransfers(Transfers):
-    """ArduPilot's side of the mission protocol, as its ``MissionItemProtocol.cpp`` has it.
+class Transfers:
+    """A vehicle's side of the mission protocol.
 
-    Each mission type has a transfer of its own. Missions and rally points are written item by item, so that
-    an aborted upload leaves a mixture of old and new; fences are replaced as a whole. An item out of sequence
-    is rejected, and the upload continues; its sender can restart it. Nothing is cleared or sent during an
-    upload.
+    ArduPilot (``MissionItemProtocol.cpp``) has a transfer of each mission type. It writes missions and rally
+    points item by item, so that an aborted upload leaves a mixture of old and new, and rejects an item out of
+    sequence. PX4 (``mavlink_mission.cpp``) has one transfer at a time, replaces lists as a whole, and ignores
+    items out of sequence.
+
+    Attributes:
+        stores: items by mission type.
+        busy: whether uploads are refused for lack of space, as just after a boot.
+        home: returns item 0 of a mission, which is ArduPilot's home; None: it is returned as uploaded.
     """
 
-    def __init__(self, stores: Stores, send: Send, say: Say, *, old: bool = False) -> None:
+    def __init__(
+        self,
+        stores: Stores,
+        send: Callable[[Message], None],
+        say: Callable[[int, str], None],
+        autopilot: Autopilot,
+        *,
+        old: bool = False,
+    ) -> None:
         """Create without a transfer; `old`: on a MAVLink 1 port, which accepts missions only."""
-        super().__init__(stores, send, say)
-        self._old = old
+        self.stores = stores
+        self.busy = False
+        self.home: Callable[[], StoredItem] | None = None
+        self._send, self._say, self._autopilot, self._old = send, say, autopilot, old
+        self._px4 = autopilot.copies_bytes
+        self._retry, self._timeout = (0.25, 5.0) if self._px4 else (1.0, 8.0)
         self._uploads: dict[int, _Upload] = {}
+        self._last = (-1, -1)
+        """Mission type and number of the last item of the last upload."""
 
     def take(self, message: Message) -> None:
         """Answer a message of the protocol, and ignore others."""
-        ends = message.get_type() == "MISSION_ACK"
-        if self._old and not ends and getattr(message, "mission_type", MISSION) != MISSION:
+        handler = {
+            "MISSION_COUNT": self._start,
+            "MISSION_ITEM_INT": self._receive,
+            "MISSION_ITEM": self._receive,
+            "MISSION_CLEAR_ALL": self._clear,
+            "MISSION_ACK": self._end,
+            "MISSION_REQUEST_LIST": self._list,
+            "MISSION_REQUEST_INT": self._give,
+            "MISSION_REQUEST": self._give,
+        }.get(message.get_type())
+        if handler is None:
+            return
+        peer, kind = (message.get_srcSystem(), message.get_srcComponent()), message.mission_type
+        if self._old and kind != MISSION and handler != self._end:
             self._say(mavlink.MAV_SEVERITY_WARNING, "Need mavlink2 for item transfer")
-            peer = (message.get_srcSystem(), message.get_srcComponent())
-            self._acknowledge(peer, mavlink.MAV_MISSION_UNSUPPORTED, message.mission_type)
+            self._acknowledge(peer, mavlink.MAV_MISSION_UNSUPPORTED, kind)
         else:
-            super().take(message)
+            handler(message, peer, kind)
 
     def advance(self, now: float, timeout: float) -> None:
         """Repeat unanswered requests, and abort a transfer that times out, after `timeout` s at least."""
         for kind, upload in list(self._uploads.items()):
-            if upload.asked < 0.0:
-                upload.asked = now
-                upload.since = now if upload.since < 0.0 else upload.since
-            if now - upload.since > max(TIMEOUT_SECONDS, 2.0 * timeout):
+            upload.asked = now if upload.asked < 0.0 else upload.asked
+            upload.since = now if upload.since < 0.0 else upload.since
+            if now - upload.since > max(self._timeout, 2.0 * timeout):
                 del self._uploads[kind]
                 self._say(mavlink.MAV_SEVERITY_WARNING, f"{NAMES[kind]} upload timeout")
-                self._acknowledge(upload.peer, mavlink.MAV_MISSION_OPERATION_CANCELLED, kind)
-            elif now - upload.asked > max(RETRY_SECONDS, timeout / 2.0):
+                if not self._px4:
+                    self._acknowledge(upload.peer, mavlink.MAV_MISSION_OPERATION_CANCELLED, kind)
+            elif now - upload.asked > max(self._retry, timeout / 2.0):
                 upload.asked = now
-                self._ask(upload.peer, len(upload.items), kind)
+                self._ask(upload, kind)
 
-    def _start(self, message: Message, peer: Address) -> None:
-        kind = message.mission_type
-        upload = self._uploads.get(kind)
+    def _start(self, message: Message, peer: Address, kind: int) -> None:
+        begun = next(iter(self._uploads.values()), None) if self._px4 else self._uploads.get(kind)
         if self.busy:
             self._acknowledge(peer, mavlink.MAV_MISSION_NO_SPACE, kind)
         elif kind not in self.stores:
             self._acknowledge(peer, mavlink.MAV_MISSION_UNSUPPORTED, kind)
-        elif upload is not None and upload.peer != peer:
-            self._acknowledge(peer, mavlink.MAV_MISSION_DENIED, kind)
+        elif begun is not None and (begun.peer != peer or (self._px4 and begun.items)):
+            begun.since = -1.0
+            self._acknowledge(
+                peer, mavlink.MAV_MISSION_ERROR if self._px4 else mavlink.MAV_MISSION_DENIED, kind
+            )
         else:
             self._uploads[kind] = upload = _Upload(message.count, peer)
-            if kind != FENCE:
+            if not self._replaces_whole(kind):
                 self.stores[kind] = self.stores[kind][: upload.expected]
             self._continue(kind, upload)
+
+    def _receive(self, message: Message, peer: Address, kind: int) -> None:
+        item, upload = item_of(message), self._uploads.get(kind)
+        if upload is None:
+            again = self._px4 and self._last == (kind, message.seq)
+            self._acknowledge(
+                peer, mavlink.MAV_MISSION_ACCEPTED if again else mavlink.MAV_MISSION_ERROR, kind
+            )
+        elif message.seq != len(upload.items) or peer != upload.peer:
+            upload.since = -1.0 if self._px4 else upload.since
+            if not self._px4:
+                self._acknowledge(peer, mavlink.MAV_MISSION_INVALID_SEQUENCE, kind)
+        elif fault := fault_of(item, kind, self._autopilot):
+            del self._uploads[kind]
+            self._acknowledge(peer, fault, kind)
+        else:
+            upload.items.append(kept(item, kind, self._autopilot))
+            if not self._replaces_whole(kind):
+                self.stores[kind][message.seq : message.seq + 1] = upload.items[-1:]
+            upload.since = -1.0
+            self._continue(kind, upload)
+
+    def _replaces_whole(self, kind: int) -> bool:
+        return self._px4 or kind == FENCE
 
     def _continue(self, kind: int, upload: _Upload) -> None:
         """Request the next item, or end the upload after the last."""
         if len(upload.items) < upload.expected:
             upload.asked = -1.0
-            self._ask(upload.peer, len(upload.items), kind)
+            self._ask(upload, kind)
             return
         del self._uploads[kind]
+        self._last = (kind, upload.expected - 1)
         self.stores[kind] = list(upload.items)
         self._acknowledge(upload.peer, mavlink.MAV_MISSION_ACCEPTED, kind)
-        self.finished(kind)
 
-    def _receive(self, message: Message, peer: Address) -> None:
-        kind, item = message.mission_type, item_of(message)
-        upload = self._uploads.get(kind)
-        if upload is None:
-            self._acknowledge(peer, mavlink.MAV_MISSION_ERROR, kind)
-        elif message.seq != len(upload.items):
-            self._acknowledge(peer, mavlink.MAV_MISSION_INVALID_SEQUENCE, kind)
-        elif peer != upload.peer:
-            self._acknowledge(peer, mavlink.MAV_MISSION_DENIED, kind)
-        elif fault := fault_of(item, kind):
-            del self._uploads[kind]
-            self._acknowledge(peer, fault, kind)
-        else:
-            stored = kept(item, kind, ARDUPILOT)
-            if kind != FENCE:
-                self.stores[kind][message.seq : message.seq + 1] = [stored]
-            upload.items.append(stored)
-            upload.since = -1.0
-            self._continue(kind, upload)
-
-    def _clear(self, message: Message, peer: Address) -> None:
-        kind = message.mission_type
-        receives = self._uploads if kind == mavlink.MAV_MISSION_TYPE_ALL else kind in self._uploads
+    def _clear(self, message: Message, peer: Address, kind: int) -> None:
+        kinds = list(self.stores) if kind == mavlink.MAV_MISSION_TYPE_ALL else [kind]
         if self.busy:
             self._acknowledge(peer, mavlink.MAV_MISSION_NO_SPACE, kind)
-        elif receives:
+        elif any(each in self._uploads for each in kinds):
             self._acknowledge(peer, mavlink.MAV_MISSION_ERROR, kind)
         else:
-            self._clear_stores(peer, kind)
+            self.stores.update({each: [] for each in kinds})
+            self._acknowledge(peer, mavlink.MAV_MISSION_ACCEPTED, kind)
 
-    def _list(self, message: Message, peer: Address) -> None:
-        if message.mission_type in self._uploads:
-            self._acknowledge(peer, mavlink.MAV_MISSION_DENIED, message.mission_type)
-        else:
-            self._count(peer, message.mission_type)
+    def _end(self, message: Message, peer: Address, kind: int) -> None:
+        """Abort an upload that its sender cancels."""
+        upload = self._uploads.get(kind)
+        cancelled = message.type == mavlink.MAV_MISSION_OPERATION_CANCELLED
+        if self._px4 and cancelled and upload is not None and upload.peer == peer:
+            del self._uploads[kind]
 
-    def _request(self, message: Message, peer: Address) -> None:
-        if message.mission_type in self._uploads and message.get_type() == "MISSION_REQUEST_INT":
-            self._acknowledge(peer, mavlink.MAV_MISSION_DENIED, message.mission_type)
+    def _list(self, message: Message, peer: Address, kind: int) -> None:
+        if kind in self._uploads:
+            self._acknowledge(peer, mavlink.MAV_MISSION_DENIED, kind)
         else:
-            self._give(peer, message)
+            number = len(self.stores.get(kind, ()))
+            self._send(mavlink.MAVLink_mission_count_message(*peer, number, kind))
+
+    def _give(self, message: Message, peer: Address, kind: int) -> None:
+        """Send a requested item, as MISSION_ITEM if it was requested so."""
+        seq, items = int(message.seq), self.stores.get(kind, [])
+        if kind in self._uploads or not 0 <= seq < len(items):
+            refused = (
+                mavlink.MAV_MISSION_DENIED if kind in self._uploads else mavlink.MAV_MISSION_INVALID_SEQUENCE
+            )
+            self._acknowledge(peer, refused, kind)
+            return
+        item = self.home() if seq == 0 and kind == MISSION and self.home is not None else items[seq]
+        head = (*peer, seq, item.frame, item.command, 0, 1, *item.params)
+        if message.get_type() == "MISSION_REQUEST":
+            x, y = item.x * 1e-7, item.y * 1e-7
+            self._send(mavlink.MAVLink_mission_item_message(*head, x, y, item.z, kind))
+        else:
+            self._send(mavlink.MAVLink_mission_item_int_message(*head, item.x, item.y, item.z, kind))
+
+    def _ask(self, upload: _Upload, kind: int) -> None:
+        self._send(mavlink.MAVLink_mission_request_int_message(*upload.peer, len(upload.items), kind))
+
+    def _acknowledge(self, peer: Address, result: int, kind: int) -> None:
+        self._send(mavlink.MAVLink_mission_ack_message(*peer, int(result), kind))
+
+
+def item_of(message: Message) -> StoredItem:
+    """Return the item in a MISSION_ITEM or MISSION_ITEM_INT."""
+    old = message.get_type() == "MISSION_ITEM"
+    x, y = (round(message.x * 1e7), round(message.y * 1e7)) if old else (message.x, message.y)
+    params = (message.param1, message.param2, message.param3, message.param4)
+    return StoredItem(message.frame, message.command, params, x, y, message.z)

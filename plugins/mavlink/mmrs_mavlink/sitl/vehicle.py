@@ -16,28 +16,24 @@ from mmrs_mavlink.sitl import telemetry
 from mmrs_mavlink.sitl.autopilot import SimulatedAutopilot
 from mmrs_mavlink.sitl.commands import execute, steer
 from mmrs_mavlink.sitl.faults import Faults
-from mmrs_mavlink.sitl.items import MISSION, RALLY, StoredItem
+from mmrs_mavlink.sitl.items import ABOVE_SEA, StoredItem
 from mmrs_mavlink.sitl.parameters import ParameterService
-from mmrs_mavlink.sitl.px4_transfers import Px4Transfers
-from mmrs_mavlink.sitl.radio import COMPONENT, Router, SimulatedRadio
+from mmrs_mavlink.sitl.radio import COMPONENT, SimulatedRadio, receive
 from mmrs_mavlink.sitl.settings import Settings
 from mmrs_mavlink.sitl.simulation import advance
 from mmrs_mavlink.sitl.sticks import sticks_of
 from mmrs_mavlink.sitl.streams import Streams
-from mmrs_mavlink.sitl.transfers import ArduPilotTransfers, Transfers
+from mmrs_mavlink.sitl.transfers import Transfers
 
 Message = Any
 
-YAW_IGNORED = mavlink.POSITION_TARGET_TYPEMASK_YAW_IGNORE
-ABOVE_SEA = frozenset({0, 5})
 LINK_TIMEOUT = 2.0
 """Shortest timeout of its link in real seconds, whatever its speed-up."""
 
 GPS_SWITCH = "SIM_GPS1_ENABLE"
 """Parameter with which ArduPilot's simulation switches its GPS receiver."""
 
-TICK_SECONDS = 0.05
-SHORTEST_TICK = 0.01
+TICK_SECONDS, SHORTEST_TICK = 0.05, 0.01
 LONGEST_STEP = 0.25
 """Longest step in real seconds, so that vehicles do not jump when their process was suspended."""
 
@@ -48,7 +44,7 @@ class SimulatedVehicle:
     Attributes:
         autopilot: its state, which any thread may read.
         faults: injects faults.
-        radio: the radio to its controller.
+        radio: the radio to its controller. radios: all.
         streams: its telemetry.
         received: (seconds, name) of every message for it, except heartbeats.
         on_tick: called in its thread after each step of its time.
@@ -90,30 +86,23 @@ class SimulatedVehicle:
         self.on_tick: Callable[[], None] = lambda: None
         self.lock = threading.RLock()
         self.faults = Faults(pilot, self.lock, watched=ground is not None)
+        old, key = given.mavlink == 1, given.key
         self.radio = SimulatedRadio(
-            (host, port),
-            given.system,
-            key=given.key,
-            loss=loss,
-            delay=delay,
-            seed=seed,
-            old=given.mavlink == 1,
+            (host, port), given.system, key=key, loss=loss, delay=delay, seed=seed, old=old
         )
         self.radio.silent = lambda: self.faults.send_down
         self.radio.down = lambda: self.faults.link_down or pilot.booting
-        radios = [self.radio]
+        self.radios = [self.radio]
         if ground is not None:
-            radios.append(SimulatedRadio(ground, given.system, key=given.key))
-            radios[1].down = lambda: self.faults.ground_down or pilot.booting
-        self._router = Router(given.system, *radios)
-        self._transfers = self._made_transfers(given)
-        self._transfers.finished = self._count_items
-        self._delayed: list[tuple[float, Message]] = []
-        self._parameters = ParameterService(pilot.parameters, given.firmware, self._router.send)
-        self._parameters.changed = self._switch_gps
-        self.streams = Streams(pilot, self._router.send)
-        self._host: Host | None = None
+            self.radios.append(SimulatedRadio(ground, given.system, key=key))
+            self.radios[1].down = lambda: self.faults.ground_down or pilot.booting
+        like = given.profile.autopilot
+        self._transfers = Transfers(pilot.stores, self._send, pilot.say, like, old=old)
+        self._transfers.home = self._home if like.missions.begins_with_home else None
+        self._parameters = ParameterService(pilot.parameters, like, self._send)
+        self.streams = Streams(pilot, self._send)
         self._booted = pilot.booted
+        self._host: Host | None = None
 
     def start(self) -> None:
         """Start the vehicle in a thread of its own."""
@@ -131,11 +120,6 @@ class SimulatedVehicle:
         for radio in self.radios:
             radio.close()
 
-    @property
-    def radios(self) -> Sequence[SimulatedRadio]:
-        """Return its radios."""
-        return self._router.radios
-
     def __enter__(self) -> SimulatedVehicle:
         self.start()
         return self
@@ -147,11 +131,11 @@ class SimulatedVehicle:
 
     def receive(self) -> None:
         """Process the messages that have arrived."""
+        own = self.autopilot.settings.system
         with self.lock:
-            for message in self._router.receive():
+            for message in receive(self.radios, own):
                 system = getattr(message, "target_system", 0)
-                component = getattr(message, "target_component", 0)
-                if system in (0, self.autopilot.settings.system) and component in (0, COMPONENT):
+                if system in (0, own) and getattr(message, "target_component", 0) in (0, COMPONENT):
                     self._take(message)
 
     def advance(self, real_seconds: float) -> None:
@@ -161,11 +145,11 @@ class SimulatedVehicle:
             advance(pilot, real_seconds * self.speedup)
             self.on_tick()
             if pilot.booted != self._booted:
-                self._reboot()
+                self._booted = pilot.booted
+                self.streams.reboot()
+                self._parameters.begin()
             self._transfers.busy = pilot.uptime < pilot.settings.boot
             self._transfers.advance(pilot.time, pilot.link_timeout / 4.0)
-            while self._delayed and self._delayed[0][0] <= pilot.time:
-                self._router.send(self._delayed.pop(0)[1])
             self.streams.advance()
             self._parameters.advance()
             for radio in self.radios:
@@ -173,24 +157,17 @@ class SimulatedVehicle:
             if any(radio.pending for radio in self.radios):
                 self.receive()
 
-    def _made_transfers(self, given: Settings) -> Transfers:
-        stores, say = self.autopilot.stores, self.autopilot.say
-        if self.autopilot.px4:
-            return Px4Transfers(stores, self._answer, say)
-        made = ArduPilotTransfers(stores, self._answer, say, old=given.mavlink == 1)
-        made.home = self._home
-        return made
-
-    def _reboot(self) -> None:
-        """Forget all requests."""
-        self._booted = self.autopilot.booted
-        self.streams.reboot()
-        self._parameters.begin()
+    def _send(self, message: Message) -> None:
+        for radio in self.radios:
+            radio.send(message)
 
     def _take(self, message: Message) -> None:
         pilot, kind = self.autopilot, message.get_type()
         if kind == "HEARTBEAT":
-            self._take_heartbeat(message)
+            station = pilot.parameters.get("SYSID_MYGCS")
+            is_gcs = message.type == mavlink.MAV_TYPE_GCS
+            if is_gcs if station is None else message.get_srcSystem() == station:
+                pilot.last_heartbeat = pilot.time
             return
         self.received.append((pilot.time, kind))
         match kind:
@@ -215,59 +192,31 @@ class SimulatedVehicle:
             case "TIMESYNC":
                 if message.tc1 == 0:
                     now = telemetry.milliseconds(pilot) * 1_000_000
-                    self._router.send(mavlink.MAVLink_timesync_message(now, message.ts1))
+                    self._send(mavlink.MAVLink_timesync_message(now, message.ts1))
             case _:
                 self._parameters.take(message)
                 self._transfers.take(message)
-
-    def _take_heartbeat(self, message: Message) -> None:
-        pilot = self.autopilot
-        station = pilot.parameters.get("SYSID_MYGCS")
-        is_gcs = message.type == mavlink.MAV_TYPE_GCS
-        if is_gcs if station is None else message.get_srcSystem() == station:
-            pilot.last_heartbeat = pilot.time
+                if kind == "PARAM_SET" and message.param_id == GPS_SWITCH:
+                    pilot.located = bool(message.param_value)
 
     def _command(self, message: Message, params: tuple[float, ...]) -> None:
         number, pilot = message.command, self.autopilot
         if number in pilot.silent:
             return
-        request = None if number in pilot.settings.refuse else self._requested(number, params)
-        result = execute(pilot, number, params) if request is None else request
-        ack = mavlink.MAVLink_command_ack_message(
-            number,
-            result,
-            target_system=message.get_srcSystem(),
-            target_component=message.get_srcComponent(),
-        )
-        self._router.send(ack)
-
-    def _requested(self, number: int, params: tuple[float, ...]) -> int | None:
-        """Send what a command requests, and return its MAV_RESULT; None: it requests nothing."""
-        match number:
-            case mavlink.MAV_CMD_SET_MESSAGE_INTERVAL:
-                return self.streams.set_interval(params[0], params[1])
-            case mavlink.MAV_CMD_REQUEST_MESSAGE:
-                return self.streams.send_once(params[0])
-        return None
-
-    def _switch_gps(self, name: str) -> None:
-        if name == GPS_SWITCH:
-            self.autopilot.located = bool(self.autopilot.parameters[name])
-
-    def _answer(self, message: Message) -> None:
-        if self.faults.answer_delay:
-            self._delayed.append((self.autopilot.time + self.faults.answer_delay, message))
+        if number in pilot.settings.refuse:
+            result = int(mavlink.MAV_RESULT_UNSUPPORTED)
+        elif number == mavlink.MAV_CMD_SET_MESSAGE_INTERVAL:
+            result = self.streams.set_interval(params[0], params[1])
+        elif number == mavlink.MAV_CMD_REQUEST_MESSAGE:
+            result = self.streams.send_once(params[0])
         else:
-            self._router.send(message)
+            result = execute(pilot, number, params)
+        sender = {"target_system": message.get_srcSystem(), "target_component": message.get_srcComponent()}
+        self._send(mavlink.MAVLink_command_ack_message(number, result, **sender))
 
     def _home(self) -> StoredItem:
         latitude, longitude, above = self.autopilot.home
         return StoredItem(0, 16, (0.0, 0.0, 0.0, 0.0), round(latitude * 1e7), round(longitude * 1e7), above)
-
-    def _count_items(self, kind: int) -> None:
-        name = {MISSION: "MIS_TOTAL", RALLY: "RALLY_TOTAL"}.get(kind)
-        if name in self.autopilot.parameters:
-            self.autopilot.parameters[name] = len(self.autopilot.stores[kind])
 
 
 class Host:
@@ -320,6 +269,6 @@ class Host:
 
 
 def _heading(message: Message) -> float | None:
-    if message.type_mask & YAW_IGNORED or isnan(message.yaw):
+    if message.type_mask & mavlink.POSITION_TARGET_TYPEMASK_YAW_IGNORE or isnan(message.yaw):
         return None
     return degrees(message.yaw) % 360.0

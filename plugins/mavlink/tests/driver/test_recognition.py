@@ -80,7 +80,7 @@ def test_a_vehicle_that_does_by_itself_what_it_does_about_a_lost_link_is_gone_on
 
 
 @pytest.mark.parametrize(
-    ("mode", "answer"), [("return", 5.0), ("return", 0.0), ("alt_hold", 1.0), ("smart_return", 1.0)]
+    ("mode", "answer"), [("return", 5.0), ("return", 0.0), ("altitude_hold", 1.0), ("smart_return", 1.0)]
 )
 def test_a_vehicle_that_does_otherwise_may_have_a_pilot(found, mode, answer):
     with pytest.raises(RefusedError, match="a pilot may have it"):

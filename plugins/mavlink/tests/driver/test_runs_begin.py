@@ -137,7 +137,7 @@ def test_a_px4_is_set_not_to_begin_its_mission_by_itself_after_take_off():
         assert "COM_TAKEOFF_ACT = 0, which was 1: each run begins with its own first place" in told
         take_off(made)
         until(lambda: made.mode != "take_off")
-        assert made.mode == "loiter"
+        assert made.mode == "hold"
 
 
 def test_a_mission_that_a_px4_has_accepted_and_would_not_fly_is_refused_on_the_ground():

@@ -230,7 +230,7 @@ def back(in_the_air):
         made.simulated.faults.begin("link-down")
         assert made.caught().event == "LINK_LOST"
         made.watch.relax({"LINK_LOST"}, "LAND")
-        until(lambda: made.mode == "brake")
+        until(lambda: made.mode == "hold")
         made.simulated.faults.begin("stick", mode)
         made.simulated.faults.end("link-down")
         until(lambda: made.link.since("HEARTBEAT") < SPEEDUP)
@@ -241,7 +241,7 @@ def back(in_the_air):
 
 
 def test_a_vehicle_that_is_heard_again_in_the_mode_that_it_was_told_for_then_may_be_told_something(back):
-    made = back("brake")
+    made = back("hold")
     made.watch.check_hands("LINK_LOST")
     made.vehicle.land()
     assert not made.simulated.autopilot.armed

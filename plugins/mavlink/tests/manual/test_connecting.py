@@ -23,7 +23,7 @@ pytestmark = pytest.mark.real_time("vessels")
 
 def test_what_it_does_by_itself_is_told():
     with sub(parameters={"FS_PILOT_INPUT": 1.0}) as driven:
-        assert "FS_LEAK_ENABLE = 1: water inside: warn" in driven.said
+        assert "FS_EKF_ACTION = 0: position lost: nothing" in driven.said
         (line,) = (each for each in driven.said if each.startswith("FS_PILOT_INPUT"))
         assert line.startswith(
             "FS_PILOT_INPUT = 1: no sticks any more: warn (warning: nothing stops its motors"

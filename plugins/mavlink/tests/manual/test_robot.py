@@ -18,7 +18,7 @@ pytestmark = pytest.mark.real_time("vessels")
 
 def test_a_program_is_driven_to_its_end_without_any_position():
     with sub() as driven:
-        assert driven.vehicle.autopilot.mode_name == "alt_hold"
+        assert driven.vehicle.autopilot.mode_name == "depth_hold"
         for id, place in (("out", (6.0, 0.0, -2.0)), ("stay", (6.0, 0.0, -2.0))):
             driven.begin(id)
             driven.finish()
@@ -100,7 +100,7 @@ def test_a_vehicle_that_comes_up_can_be_told_to_stay():
         driven.backend.respond("SURFACE", driven.clock.now())
         until(lambda: driven.vehicle.autopilot.mode_name == "surface")
         driven.stop("HOLD")
-        assert driven.vehicle.autopilot.mode_name == "alt_hold"
+        assert driven.vehicle.autopilot.mode_name == "depth_hold"
         assert driven.truth[2] < -0.4
 
 

@@ -39,14 +39,14 @@ def without_link(bench: Bench, seconds: float = 12.0) -> str:
         ("copter", {"FS_GCS_ENABLE": 3}, "smart_return"),
         ("copter", {"FS_GCS_ENABLE": 4}, "smart_return"),
         ("copter", {"FS_GCS_ENABLE": 5}, "land"),
-        ("copter", {"FS_GCS_ENABLE": 7}, "brake"),
+        ("copter", {"FS_GCS_ENABLE": 7}, "hold"),
         ("rover", {"FS_GCS_ENABLE": 0, "FS_ACTION": 1}, "guided"),
         ("rover", {"FS_GCS_ENABLE": 1, "FS_ACTION": 1}, "return"),
-        ("rover", {"FS_GCS_ENABLE": 1, "FS_ACTION": 2}, "brake"),
+        ("rover", {"FS_GCS_ENABLE": 1, "FS_ACTION": 2}, "hold"),
         ("rover", {"FS_GCS_ENABLE": 1, "FS_ACTION": 0}, "guided"),
         ("rover", {"FS_GCS_ENABLE": 1, "FS_ACTION": 6}, "loiter"),
         ("sub", {"FS_GCS_ENABLE": 1}, "guided"),
-        ("sub", {"FS_GCS_ENABLE": 3}, "alt_hold"),
+        ("sub", {"FS_GCS_ENABLE": 3}, "depth_hold"),
         ("sub", {"FS_GCS_ENABLE": 4}, "surface"),
     ],
 )
@@ -72,7 +72,7 @@ def test_a_restored_link_changes_no_mode():
     bench = out(FS_GCS_ENABLE=7)
     without_link(bench)
     bench.wait(2.0)
-    assert bench.pilot.mode_name == "brake"
+    assert bench.pilot.mode_name == "hold"
     assert bench.last_text == "GCS Failsafe Cleared"
 
 
@@ -83,24 +83,6 @@ def test_a_ground_station_that_was_never_connected_is_not_missed():
 
 
 @pytest.mark.parametrize(
-    ("options", "mode", "text"),
-    [(16, "return", "GCS Failsafe"), (18, "auto", "GCS Failsafe - Continuing Auto Mode")],
-)
-def test_a_mission_continues_without_a_link_if_fs_options_say_so(options, mode, text):
-    bench = out(FS_GCS_ENABLE=1, FS_OPTIONS=options)
-    bench.load(bench.item(16, (500.0, 0.0, 12.0)))
-    bench.mode("auto")
-    assert (without_link(bench), bench.last_text) == (mode, text)
-
-
-def test_a_submarine_reports_a_lost_link_in_its_own_words():
-    bench = out("sub", FS_GCS_ENABLE=4)
-    without_link(bench)
-    bench.wait(2.0)
-    assert bench.last_text == "MYGCS: 255, heartbeat lost"
-
-
-@pytest.mark.parametrize(
     ("kind", "action", "mode"),
     [
         ("copter", 0, "guided"),
@@ -108,7 +90,7 @@ def test_a_submarine_reports_a_lost_link_in_its_own_words():
         ("copter", 2, "return"),
         ("copter", 3, "smart_return"),
         ("rover", 1, "return"),
-        ("rover", 2, "brake"),
+        ("rover", 2, "hold"),
         ("sub", 3, "surface"),
     ],
 )
@@ -130,7 +112,7 @@ def test_a_critical_battery_takes_precedence_over_a_low_one():
         assert bench.pilot.mode_name == mode
 
 
-@pytest.mark.parametrize(("action", "mode"), [(0, "guided"), (1, "return"), (2, "land"), (4, "brake")])
+@pytest.mark.parametrize(("action", "mode"), [(0, "guided"), (1, "return"), (2, "land"), (4, "hold")])
 def test_a_breached_fence_is_answered_as_configured(action, mode):
     bench = out(FENCE_ENABLE=1, FENCE_ACTION=action, FENCE_RADIUS=50.0)
     steer(bench.pilot, (60.0, 0.0, 12.0), None)
@@ -153,7 +135,7 @@ def test_an_excluded_area_is_detected_on_entry(circle):
     steer(bench.pilot, (80.0, 0.0, 12.0), None)
     assert bench.wait_for(lambda: bench.pilot.breached, 30.0)
     assert 40.0 <= bench.pilot.body.position[0] <= 47.0
-    assert bench.pilot.mode_name == "brake"
+    assert bench.pilot.mode_name == "hold"
 
 
 def test_a_disabled_fence_is_ignored():
@@ -180,7 +162,7 @@ def test_a_fence_of_polygons_only_has_no_ceiling(enabled, breached):
     assert bench.pilot.breached == breached
 
 
-@pytest.mark.parametrize(("action", "mode"), [(0, "guided"), (1, "land"), (2, "alt_hold")])
+@pytest.mark.parametrize(("action", "mode"), [(0, "guided"), (1, "land"), (2, "altitude_hold")])
 def test_a_lost_position_is_answered_after_a_second(action, mode):
     bench = out(FS_EKF_ACTION=action)
     bench.pilot.located = False

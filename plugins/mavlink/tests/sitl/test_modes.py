@@ -88,7 +88,7 @@ def test_smart_return_retraces_its_path():
     assert min(hypot(point[1] - OUT[0], point[2] - OUT[1]) for point in path) < 2.0
 
 
-@pytest.mark.parametrize("mode", ["brake", "loiter"])
+@pytest.mark.parametrize("mode", ["hold", "loiter"])
 def test_a_vehicle_stops(mode):
     bench = out()
     steer(bench.pilot, (0.0, 0.0, 12.0), None)
@@ -103,11 +103,11 @@ def test_modes_are_refused_without_the_position_or_mission_that_they_need():
     assert bench.mode("auto") != 0
     bench.pilot.located = False
     assert bench.mode("return") != 0
-    assert bench.mode("alt_hold") == 0
+    assert bench.mode("altitude_hold") == 0
 
 
 def test_an_idle_vehicle_disarms():
-    bench = Bench(disarm_delay=10.0)
+    bench = Bench()
     bench.mode("guided")
     bench.command(400, 1)
     assert not bench.wait_for(lambda: not bench.pilot.armed, 9.0)

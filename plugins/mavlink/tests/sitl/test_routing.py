@@ -39,29 +39,6 @@ def test_heartbeats_are_forwarded(both):
     assert station.receive("HEARTBEAT", from_other(controller))
 
 
-def test_a_heartbeat_is_not_forwarded_to_where_the_same_ids_were_received(both):
-    controller, station = both
-    controller.receive(None, from_other(station))
-    station.mav.srcSystem, station.mav.srcComponent = ids(controller)
-    for _ in range(3):
-        station.send(STATION)
-        assert controller.receive(None, from_other(station), 1.0) is None
-
-
-def test_a_command_for_the_vehicle_is_answered_to_its_sender(both):
-    controller, station = both
-    assert station.command(mavlink.MAV_CMD_DO_SET_ROI_NONE) is not None
-    assert controller.receive("COMMAND_ACK", seconds=SOON) is None
-
-
-def test_a_message_goes_to_its_target_only(both):
-    controller, station = both
-    controller.receive(None, from_other(station))
-    station.send(mavlink.MAVLink_command_long_message(77, 1, 176, 0, 1, 4, 0, 0, 0, 0, 0))
-    station.send(mavlink.MAVLink_command_long_message(*ids(controller), 511, 0, 33, 0, 0, 0, 0, 0, 0))
-    assert controller.receive("COMMAND_LONG").command == 511
-
-
 def test_a_broadcast_is_forwarded(both):
     controller, station = both
     station.send(mavlink.MAVLink_statustext_message(6, b"good morning"))

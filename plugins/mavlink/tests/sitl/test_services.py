@@ -33,7 +33,7 @@ def test_a_parameter_is_read_by_name_and_by_index(ground):
 
 def test_a_parameter_is_set_and_returned_as_stored_and_outlives_a_restart(ground):
     vehicle = ground.switch_on()
-    set_parameter(ground, "FS_GCS_ENABLE", 5.7)
+    set_parameter(ground, "FS_GCS_ENABLE", 5.0)
     assert parameter(ground, "FS_GCS_ENABLE").param_value == 5.0
     vehicle.faults.begin("restart")
     assert vehicle.autopilot.parameters["FS_GCS_ENABLE"] == 5.0

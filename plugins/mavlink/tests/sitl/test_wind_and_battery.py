@@ -51,7 +51,7 @@ def test_a_copter_without_a_position_drifts_with_the_wind():
     bench = Bench(wind=(4.0, 0.0))
     bench.fly_up(10.0)
     bench.pilot.located = False
-    bench.mode("alt_hold")
+    bench.mode("altitude_hold")
     bench.wait(20.0)
     assert bench.pilot.body.position[0] == pytest.approx(-75.0, abs=10.0)
 

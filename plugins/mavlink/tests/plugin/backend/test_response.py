@@ -38,7 +38,7 @@ def test_a_response_that_fails_itself_halts_the_vehicle_and_is_told_as_not_done(
     response, failed = response_of(made)
     job = response.begin("EMERGENCY_AREA", None, lambda what, why, does: None, restored=True)
     job.run()
-    assert made.mode == "brake"
+    assert made.mode == "hold"
     assert response.holds
     assert response.undone.startswith("the program itself fails: ValueError")
     assert response.undone.endswith(": it does HOLD")
@@ -53,7 +53,7 @@ def test_what_is_told_next_is_done_as_ever(made):
     assert (response.holds, response.undone) == (False, "")
 
 
-@pytest.mark.parametrize("mode", ["return", "alt_hold"])
+@pytest.mark.parametrize("mode", ["return", "altitude_hold"])
 def test_a_vehicle_that_a_pilot_has_just_taken_is_left_to_him_whatever_is_ordered(made, mode):
     response, _ = response_of(made)
     made.simulated.faults.begin("stick", mode)

@@ -1,4 +1,4 @@
-"""Gusts carry a vehicle off its legs, as far as its mission's position error allows."""
+"""The fence of a vehicle keeps the distances that its mission asks for."""
 
 from __future__ import annotations
 
@@ -21,8 +21,6 @@ YARD = Area("yard", AreaUse.FORBIDDEN, SHELL, safety_distance=SAFETY)
 EDGE = 20.0 - SAFETY - ERROR - HALF
 """How far to the east a leg may lead along the yard."""
 
-GUSTS = (2.0, 5.0)
-
 
 def passing(east: float, *, back: bool = True):
     """Return a robot that flies along the yard to the north, and back."""
@@ -37,17 +35,15 @@ def made(controllers, flown):
     return controllers(flown, files=files)
 
 
-@pytest.mark.parametrize("seed", [1, pytest.param(2, marks=pytest.mark.thorough)])
-def test_in_gusts_a_vehicle_keeps_its_safety_distance_and_breaks_no_fence(controllers, hangar, seed):
+def test_a_vehicle_keeps_its_safety_distance_and_breaks_no_fence(controllers, hangar):
     flown = passing(EDGE)
     there = made(controllers, flown)
-    vehicles, links = hangar(flown, speedup=10.0, gusts=GUSTS, seed=seed)
+    vehicles, links = hangar(flown, speedup=10.0)
     code, said = there.run("fleet.py", *links)
     assert code == 0, said
     track = LineString([(east, north) for _, north, east, _ in vehicles["alpha"].autopilot.track])
     assert track.distance(Polygon(SHELL)) >= SAFETY + HALF
-    assert max(abs(east - EDGE) for east, north in track.coords if 0.0 < north < 50.0) > 0.05
-    assert vehicles["alpha"].autopilot.breaches == 0
+    assert not vehicles["alpha"].autopilot.breached
     assert "the fence around" not in said
 
 
