@@ -125,7 +125,7 @@ def _faults(craft: Craft) -> tuple[Flight, ...]:
             craft,
             "autopilot restarts",
             (AT_LEG, Reboot()),
-            ends=AWAY if craft is COPTER else HOLDS,
+            ends=HOLDS if craft is ROVER else AWAY,
             fault="VEHICLE_RESTARTED",
             speedup=1.0,
         ),
