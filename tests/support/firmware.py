@@ -113,7 +113,7 @@ class Observer:
 
     Attributes:
         port: where it listens. track: every fix, about ten a second. texts: with the seconds of the vehicle.
-        version: of the firmware, as it reports it.
+        version: of the firmware, as it reports it. has_been_armed: whether it ever was.
         parameters: that it has reported. requests, mission_acks: of transfers: type, and number or result.
         acks: of commands: number, result. system: of the vehicle.
     """
@@ -123,6 +123,7 @@ class Observer:
         self.track: list[Fix] = []
         self.texts: list[tuple[float, str]] = []
         self.version = ""
+        self.has_been_armed = False
         self.parameters: dict[str, float] = {}
         self.requests: list[tuple[int, int]] = []
         self.acks: list[tuple[int, int]] = []
@@ -234,6 +235,7 @@ class Observer:
         if kind == "HEARTBEAT" and message.autopilot != mavlink.MAV_AUTOPILOT_INVALID:
             self.system = message.get_srcSystem()
             self._armed = bool(message.base_mode & mavlink.MAV_MODE_FLAG_SAFETY_ARMED)
+            self.has_been_armed |= self._armed
             self._mode = message.custom_mode
         elif kind == "GLOBAL_POSITION_INT":
             self._keep_fix(message)

@@ -76,11 +76,6 @@ class Disarm:
 
 
 @dataclass(frozen=True, slots=True)
-class Charge:
-    """The battery is full again."""
-
-
-@dataclass(frozen=True, slots=True)
 class Kill:
     """The program's process is killed."""
 
@@ -100,7 +95,7 @@ MEND = Cut(inwards=False, outwards=False)
 """The link is whole again."""
 
 When: TypeAlias = Begun | Later
-Happening: TypeAlias = Order | Answer | Change | Cut | Pilot | Disarm | Charge | Kill | Resume | Reboot
+Happening: TypeAlias = Order | Answer | Change | Cut | Pilot | Disarm | Kill | Resume | Reboot
 
 
 @dataclass(frozen=True, slots=True)

@@ -38,7 +38,6 @@ from real_flights.flight import (
     Answer,
     Begun,
     Change,
-    Charge,
     Cut,
     Disarm,
     Flight,
@@ -66,7 +65,7 @@ SURFACE_METRES = 1.0
 ORDER_SECONDS = 30.0
 """Real seconds in which an order must be confirmed."""
 
-WATCHED = "interrupt to end"
+WATCHED = ("interrupt to end", "is left alone")
 """What a program says that has nothing left to do but to watch its vehicle."""
 
 ENDS = "log ends although"
@@ -157,8 +156,9 @@ class Flying:
                 self._begin(said)
                 happens = self._happening(said)
                 until = time.monotonic() + self._patience()
-                while next(happens, None) is not None or self._working():
-                    self._leave_the_watched(said)
+                while (more := next(happens, False)) or self._working():
+                    if not more:
+                        self._leave_the_watched(said)
                     if time.monotonic() > until:
                         self.result.deviates.append("did not come to its end in time")
                         break
@@ -179,7 +179,8 @@ class Flying:
         if time.monotonic() < self.interrupts or not running:
             return
         self.interrupts = time.monotonic() + 3.0
-        if WATCHED in Path(said.name).read_text("utf-8") and all(map(self._still, self.robots)):
+        words = Path(said.name).read_text("utf-8")
+        if any(each in words for each in WATCHED) and all(map(self._still, self.robots)):
             for process in running:
                 process.send_signal(signal.SIGINT)
 
@@ -289,8 +290,6 @@ class Flying:
                 observer.command(176, 1, mode)
             case Disarm():
                 observer.command(mavlink.MAV_CMD_COMPONENT_ARM_DISARM, 0)
-            case Charge():
-                observer.command(mavlink.MAV_CMD_BATTERY_RESET, 0xFFFF, 100)
             case Kill():
                 self.killed = True
                 for process in self.processes.values():
@@ -341,11 +340,12 @@ class Flying:
     def _still(self, robot: str) -> bool:
         track = self.vehicles[robot].observer.track
         latest = [fix for fix in track[-400:] if fix.t > track[-1].t - STILL_SECONDS]
-        flew = any(fix.armed for fix in track)
+        flew = self.vehicles[robot].observer.has_been_armed
         return flew and all(hypot(fix.vx, fix.vy, fix.vz) < STILL for fix in latest)
 
     def _wait_for_rest(self) -> None:
-        self._wait(lambda: all(map(self._at_rest, self.robots)), 30.0 + REST_SECONDS / self.speedup)
+        flew = [robot for robot in self.robots if self.vehicles[robot].observer.has_been_armed]
+        self._wait(lambda: all(map(self._at_rest, flew)), 30.0 + REST_SECONDS / self.speedup)
 
     def _kept(self) -> float:
         return min(vehicle.observer.pace / self.speedup for vehicle in self.vehicles.values())

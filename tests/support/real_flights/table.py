@@ -15,7 +15,6 @@ from real_flights.flight import (
     SURFACE,
     Begun,
     Change,
-    Charge,
     Cut,
     Flight,
     Happening,
@@ -209,7 +208,7 @@ EXAMPLES = (
     Flight(
         "drone-and-rover",
         example("drone-and-rover"),
-        happens=((Begun("recharge_049", 30.0), Charge()),),
+        happens=((Begun("recharge_049", 30.0), Order("battery-changed")),),
         deviation=3.0,
         landing=4.0,
     ),

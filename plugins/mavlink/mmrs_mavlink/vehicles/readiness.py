@@ -26,6 +26,9 @@ EKF: Mapping[int, str] = {
 }
 """What the estimator must know, by bit of EKF_STATUS_REPORT (ArduPilot) and ESTIMATOR_STATUS (PX4)."""
 
+ESTIMATE = "EKF_STATUS_REPORT"
+"""In its first seconds an ArduPilot reports a position and passed checks, and no estimate yet."""
+
 NEAR = 8
 """The bit for a horizontal position relative to the start, which is enough for local programs."""
 
@@ -80,13 +83,15 @@ def _unlocated(link: Link, position: str, *, geographic: bool) -> Iterator[str]:
     told = link.latest(position)
     if told is None or not tells_place(told):
         yield f"it has not reported its position ({position})"
+    if ESTIMATE in link.profile.autopilot.streamed and link.latest(ESTIMATE) is None:
+        yield f"it has not reported what its estimator knows ({ESTIMATE})"
     yield from _estimate_trouble(link, geographic=geographic)
     yield from _fix_trouble(link, geographic)
 
 
 def _estimate_trouble(link: Link, *, geographic: bool) -> Iterator[str]:
     """Yield what the estimator does not know; a vehicle that tells nothing of it is believed."""
-    ekf = link.latest("EKF_STATUS_REPORT")
+    ekf = link.latest(ESTIMATE)
     estimate = ekf or link.latest("ESTIMATOR_STATUS")
     if estimate is None:
         return
