@@ -16,7 +16,7 @@ TravelMode: TypeAlias = Literal["SAFE", "NORMAL", "AGGRESSIVE"]
 AltitudeReference: TypeAlias = Literal["ELLIPSOID", "MSL", "ORIGIN"]
 """References of altitudes."""
 
-PolicyEvent: TypeAlias = Literal["LINK_LOST", "PEER_LOST", "BATTERY_LOW", "WAIT_TOO_LONG", "DEVICE_SILENT", "POSITION_LOST", "OBSTACLE", "FENCE_BREACHED", "VEHICLE_RESTARTED", "LOG_FAILED", "GROUND_LOST"]
+PolicyEvent: TypeAlias = Literal["LINK_LOST", "PEER_LOST", "BATTERY_LOW", "WAIT_TOO_LONG", "DEVICE_SILENT", "POSITION_LOST", "OBSTACLE", "FENCE_BREACHED", "VEHICLE_RESTARTED", "LOG_FAILED", "GROUND_LOST", "MOTOR_FAILED"]
 """Faults that a policy responds to."""
 
 PolicyResponse: TypeAlias = Literal["HOLD", "RETURN", "EMERGENCY_AREA", "LAND", "SURFACE", "STOP_THRUST", "CONTINUE"]

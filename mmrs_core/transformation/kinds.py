@@ -253,6 +253,7 @@ PLAIN_ROBOT = RobotKind(
         "VEHICLE_RESTARTED": "HOLD",
         "LOG_FAILED": "HOLD",
         "GROUND_LOST": "CONTINUE",
+        "MOTOR_FAILED": "HOLD",
     },
     vehicle="ground",
     sample=sample_type((ROBOT,)),

@@ -12,6 +12,7 @@ from .faults import (
     DEVICE_SILENT,
     GROUND_LOST,
     LINK_LOST,
+    MOTOR_FAILED,
     PEER_LOST,
     POSITION_LOST,
     VEHICLE_RESTARTED,
@@ -30,6 +31,7 @@ PolicyEvent: TypeAlias = Literal[
     "VEHICLE_RESTARTED",
     "LOG_FAILED",
     "GROUND_LOST",
+    "MOTOR_FAILED",
 ]
 PolicyResponse: TypeAlias = Literal[
     "HOLD", "RETURN", "EMERGENCY_AREA", "LAND", "SURFACE", "STOP_THRUST", "CONTINUE"
@@ -91,13 +93,13 @@ LAST_RESORT = HOLD
 BORNE: Mapping[str, str] = {GROUND_LOST: CONTINUE}
 """Responses that take precedence over it: a robot can finish without a ground station."""
 
-UNDECLARED: Mapping[str, str] = {**BORNE, LINK_LOST: RETURN, BATTERY_LOW: RETURN}
+UNDECLARED: Mapping[str, str] = {**BORNE, LINK_LOST: RETURN, BATTERY_LOW: RETURN, MOTOR_FAILED: LAND}
 """What real robots do where no policy says anything; to anything else they hold."""
 
 COMES_DOWN = frozenset({RETURN, ESCAPE, LAND, SURFACE})
 """Responses after which a battery can be changed."""
 
-OVERTAKES = frozenset({POSITION_LOST, VEHICLE_RESTARTED, BATTERY_LOW, GROUND_LOST})
+OVERTAKES = frozenset({POSITION_LOST, VEHICLE_RESTARTED, MOTOR_FAILED, BATTERY_LOW, GROUND_LOST})
 """Events that are answered although the robot already responds to another."""
 
 CAME_DOWN_AWAY = "came down for its battery where its sortie began, away from home"

@@ -117,6 +117,7 @@ AUV_KIND = RobotKind(
         "VEHICLE_RESTARTED": "SURFACE",
         "LOG_FAILED": "SURFACE",
         "GROUND_LOST": "CONTINUE",
+        "MOTOR_FAILED": "SURFACE",
     },
     vehicle="sub",
     medium="water",

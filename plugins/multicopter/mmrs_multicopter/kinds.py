@@ -114,6 +114,7 @@ MULTICOPTER_KIND = RobotKind(
         "VEHICLE_RESTARTED": "HOLD",
         "LOG_FAILED": "RETURN",
         "GROUND_LOST": "CONTINUE",
+        "MOTOR_FAILED": "LAND",
     },
     vehicle="copter",
     medium="air",

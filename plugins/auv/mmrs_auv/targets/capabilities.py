@@ -24,4 +24,5 @@ OF_VEHICLES: Mapping[str, str] = {
     "VEHICLE_RESTARTED": "no vehicle on a CAN bus tells it, so that it never happens",
     "LOG_FAILED": "a step that cannot be written",
     "GROUND_LOST": "no ground station is received under water, so it never happens",
+    "MOTOR_FAILED": "no thruster on a CAN bus tells it, so that it never happens",
 }

@@ -10,7 +10,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from mmrs_runtime.faults import BATTERY_LOW, FENCE_BREACHED, LINK_LOST, OBJECT_NOT_FOUND, POSITION_LOST
+from mmrs_runtime.faults import (
+    BATTERY_LOW,
+    FENCE_BREACHED,
+    LINK_LOST,
+    MOTOR_FAILED,
+    OBJECT_NOT_FOUND,
+    POSITION_LOST,
+)
 
 from . import modes
 from .autopilot import (
@@ -76,6 +83,7 @@ ARDUPILOT = Autopilot(
         FENCE_BREACHED: ("fence breach",),
         BATTERY_LOW: ("battery failsafe", *(f"battery {number} is" for number in range(1, 10))),
         LINK_LOST: ("gcs failsafe", "heartbeat lost"),
+        MOTOR_FAILED: ("potential thrust loss",),
     },
     needs=ON_ARDUPILOT,
     capacities=(("BATT_CAPACITY", "BATT_MONITOR", 0), ("BATT2_CAPACITY", "BATT2_MONITOR", 0)),

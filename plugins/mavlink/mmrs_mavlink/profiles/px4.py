@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from mmrs_runtime.faults import BATTERY_LOW, FENCE_BREACHED, LINK_LOST, POSITION_LOST
+from mmrs_runtime.faults import BATTERY_LOW, FENCE_BREACHED, LINK_LOST, MOTOR_FAILED, POSITION_LOST
 
 from . import modes
 from .ardupilot import ARDUCOPTER, ARDUROVER, ARDUSUB, NOTHING
@@ -123,6 +123,7 @@ PX4 = Autopilot(
             "connection to ground station lost",
             "data link lost",
         ),
+        MOTOR_FAILED: ("attitude failure", "motor failure"),
     },
     needs=ON_PX4,
     capacities=(("BAT1_CAPACITY", "BAT1_SOURCE", -1), ("BAT2_CAPACITY", "BAT2_SOURCE", -1)),

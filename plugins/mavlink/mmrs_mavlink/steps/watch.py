@@ -12,6 +12,7 @@ from mmrs_runtime.faults import (
     BATTERY_LOW,
     GROUND_LOST,
     LINK_LOST,
+    MOTOR_FAILED,
     POSITION_LOST,
     TAKEN_OVER,
     VEHICLE_RESTARTED,
@@ -26,6 +27,7 @@ from .departures import Departures, switched
 from .energy import Reserve
 from .ground import WATCHED, Ground
 from .motors import Motors
+from .responding import STOP_THRUST
 from .responses import NO_ESCAPE, lacks_escape, policy_for
 
 if TYPE_CHECKING:
@@ -36,7 +38,7 @@ LEAST_SILENCE = 2.0
 BEAT_SECONDS = 3.0
 """For how long a heartbeat tells the mode of a vehicle that was out of reach, and is waited for."""
 
-ANYWHERE = frozenset({LAND, "SURFACE", "STOP_THRUST"})
+ANYWHERE = frozenset({LAND, "SURFACE", STOP_THRUST})
 """Responses that need neither a position nor much energy."""
 
 GROUND_ONLY = f"carries on after {VEHICLE_RESTARTED} before it sets out only; in motion it does {{}} then"
@@ -89,9 +91,10 @@ class Watch:
 
     def begin(self, link: Link, vehicle: MavlinkVehicle) -> None:
         """Watch link and vehicle."""
-        signs = Signs(vehicle.telemetry, jumps=self._robot.profile.watches_jumps)
+        profile = self._robot.profile
+        signs = Signs(vehicle.telemetry, jumps=profile.watches_jumps, flies=profile.flies)
         departures = Departures(link, vehicle, signs, self._answers)
-        motors = Motors(vehicle, self._robot.profile)
+        motors = Motors(vehicle, profile)
         self._watched = _Watched(link, vehicle, signs, departures, Ground(link), motors)
         vehicle.insist(self._insists)
 
@@ -112,7 +115,7 @@ class Watch:
             response: its response; what would prevent or end that is still watched for,
                 and always the link, and external control.
         """
-        watched = {POSITION_LOST, VEHICLE_RESTARTED}
+        watched = {POSITION_LOST, VEHICLE_RESTARTED, MOTOR_FAILED}
         if response not in COMES_DOWN:
             watched |= {BATTERY_LOW, GROUND_LOST}
         self._events = frozenset(watched - set(handled))
@@ -199,12 +202,25 @@ class Watch:
         # Whoever has the vehicle goes before all policies, also where both are seen at once.
         if (departure := watched.departures.find(moving=self.moving)) is not None:
             self._answer(*departure, watched)
-        watched.motors.check(moving=self.moving)
+        if self._response != STOP_THRUST:
+            watched.motors.check(moving=self.moving)
         for event, why in watched.signs.seen(moving=self.moving):
             # A place that has leapt is wrong at once, and may stay so.
             self._weigh(event, why, at_once=event == POSITION_LOST and watched.signs.leapt)
+        self._check_fallen(watched.signs)
         self._weigh(BATTERY_LOW, self._low(watched.vehicle))
         self._check_ground(watched.ground)
+
+    def _check_fallen(self, signs: Signs) -> None:
+        """Stop the motors of a vehicle that does not fly any more, whatever else it is to do about that.
+
+        Raises:
+            FaultError: it lies on the ground, or cannot stop falling.
+        """
+        borne = policy_for(MOTOR_FAILED, self._robot, self.current()).response == CONTINUE
+        why = signs.fallen(in_air=not borne)
+        if why and self._response != STOP_THRUST:
+            raise FaultError(MOTOR_FAILED, why, STOP_THRUST)
 
     def _check_ground(self, ground: Ground) -> None:
         for line in (news := ground.news()):

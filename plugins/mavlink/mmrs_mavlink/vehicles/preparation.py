@@ -38,6 +38,7 @@ STREAMED = {
 """Messages that the program lives by, and how often they are asked for, hertz."""
 
 STREAMED_LOCAL = {"LOCAL_POSITION_NED": 5.0}
+STREAMED_FLYING = {"ATTITUDE": 2.0}
 
 
 CEASED_SECONDS = 2.0
@@ -83,7 +84,9 @@ class Reports:
 
     def _intervals(self) -> Iterator[tuple[str, tuple[float, float]]]:
         """Yield each message with the parameters of its request: its number, and microseconds."""
-        rates = STREAMED | {**self._link.profile.autopilot.streamed} | self._local
+        profile = self._link.profile
+        flying = STREAMED_FLYING if profile.flies else {}
+        rates = STREAMED | {**profile.autopilot.streamed} | flying | self._local
         for name, rate in rates.items():
             yield name, (getattr(mavlink, f"MAVLINK_MSG_ID_{name}"), 1e6 / rate)
 

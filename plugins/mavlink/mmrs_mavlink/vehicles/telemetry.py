@@ -13,8 +13,10 @@ from mmrs_runtime.faults import FENCE_BREACHED, POSITION_LOST
 
 from ..links.link import Link, Message
 from ..links.messages import tells_place
+from ..profiles import modes
 from ..program import Geographic, Local, Place
 from .detections import Detections
+from .motor_failures import MotorFailures
 from .position_jumps import PositionJumps
 from .readiness import lacks, unlocated
 from .texts import Announcements, Texts
@@ -79,6 +81,7 @@ class Telemetry:
         texts: of the vehicle.
         announcements: its texts about its failsafes.
         jumps: jumps of its position estimate.
+        motor_failures: signs that a motor has failed.
     """
 
     def __init__(self, link: Link, home: Place) -> None:
@@ -95,6 +98,10 @@ class Telemetry:
         link.observe(self._batteries)
         self.jumps = PositionJumps(self._position, lambda: link.component, self.armed)
         link.observe(self.jumps)
+        self.motor_failures = MotorFailures(
+            self._position, lambda: link.component, self.armed, self._is_to_land
+        )
+        link.observe(self.motor_failures)
         self._detections = Detections(lambda: self.here() if self.placed() else None)
         link.observe(self._detections)
 
@@ -263,6 +270,9 @@ class Telemetry:
         """Return the number of the mode; -1 before the first heartbeat."""
         beat = self._link.latest("HEARTBEAT")
         return int(beat.custom_mode) if beat is not None else -1
+
+    def _is_to_land(self) -> bool:
+        return self._link.profile.mode_name(self.mode()) == modes.LAND
 
     def grounded(self) -> bool:
         """Return whether the vehicle says that it stands on the ground."""
