@@ -60,6 +60,7 @@ class SimulatedAutopilot:
         pending: mission item whose completion is not yet reported; None: none.
         return_path: positions to pass on a return. breadcrumbs: positions for SmartRTL.
         located: whether it has a position. arming_fault: failed pre-arm check; empty: none.
+        motor_failed: whether a motor has failed, with which it cannot fly.
         obstacle: metres, and degrees clockwise from its nose.
         breached: whether it is outside its fence. forced_breach: whether an injected fault says so.
         fence_due: time of the next fence check.
@@ -91,6 +92,7 @@ class SimulatedAutopilot:
         self.modes: list[tuple[float, int]] = []
         self.said: list[tuple[float, int, str]] = []
         self.located, self.arming_fault = True, ""
+        self.motor_failed = False
         self.obstacle: tuple[float, float] | None = None
         self.fence_due = 0.0
         self.silent = settings.silent

@@ -106,6 +106,12 @@ def _ignore_commands(faults: Faults, *commands: str) -> None:
     faults.pilot.silent = frozenset(map(int, commands))
 
 
+def _fail_motor(faults: Faults) -> None:
+    if not faults.pilot.flies:
+        raise ValueError("the vehicle needs no motor to stay where it is")
+    faults.pilot.motor_failed = True
+
+
 def _cut_ground(faults: Faults) -> None:
     if not faults.watched:
         raise ValueError("the vehicle has no radio to a ground station")
@@ -147,6 +153,7 @@ FAULTS: Mapping[str, Fault] = {
         lambda faults: setattr(faults.pilot.camera, "works", False),
         lambda faults: setattr(faults.pilot.camera, "works", True),
     ),
+    "motor-failed": Fault(_fail_motor, _setter("motor_failed", False, pilots=True)),
     "wind": Fault(
         lambda faults, *wind: setattr(faults.pilot.body, "wind", wind_of(*wind)),
         lambda faults: setattr(faults.pilot.body, "wind", wind_of(0.0, 0.0)),

@@ -19,6 +19,7 @@ CRUMB_METRES = 3.0
 """Distance between two positions that SmartRTL remembers."""
 
 FALL_SPEED = 10.0
+GRAVITY = 9.81
 
 
 def advance(pilot: SimulatedAutopilot, seconds: float) -> None:
@@ -28,7 +29,7 @@ def advance(pilot: SimulatedAutopilot, seconds: float) -> None:
         seconds -= step
         pilot.time += step
         watch(pilot)
-        if pilot.armed:
+        if pilot.armed and not pilot.motor_failed:
             decide(pilot, step)
         if pilot.armed:
             _move(pilot, step)
@@ -37,6 +38,9 @@ def advance(pilot: SimulatedAutopilot, seconds: float) -> None:
 
 
 def _move(pilot: SimulatedAutopilot, seconds: float) -> None:
+    if pilot.motor_failed:
+        _fall(pilot, seconds)
+        return
     body = pilot.body
     body.adrift = pilot.airborne and (not pilot.located or pilot.mode_name in MANUAL)
     body.advance(seconds)
@@ -47,6 +51,17 @@ def _move(pilot: SimulatedAutopilot, seconds: float) -> None:
         pilot.armed = False
     if pilot.flies:
         _touch_ground(pilot)
+    _record_track(pilot)
+
+
+def _fall(pilot: SimulatedAutopilot, seconds: float) -> None:
+    """Fall, and lie on the ground with running motors, as a quadcopter without one of its motors does."""
+    body = pilot.body
+    if pilot.airborne:
+        (north, east, up), speed = body.position, min(FALL_SPEED, GRAVITY * seconds - body.velocity[2])
+        body.position, body.velocity = (north, east, max(0.0, up - speed * seconds)), (0.0, 0.0, -speed)
+    if not pilot.airborne:
+        body.rest_at(0.0)
     _record_track(pilot)
 
 

@@ -31,6 +31,9 @@ STEERED = frozenset({"guided", "auto", "return", "smart_return"})
 TARGET_MASK = 0xDF8
 """Only the position is valid."""
 
+TUMBLING = radians(60.0)
+"""Lean of an ArduCopter 4.7-dev in simulation that falls with one of its four motors off."""
+
 SECTOR_FREE = 6_001
 UNKNOWN = 65_535
 GPS, FENCE_BIT, PREARM = 0x20, 0x0010_0000, 0x1000_0000
@@ -145,7 +148,8 @@ def _local_target(pilot: SimulatedAutopilot) -> Message | None:
 
 def _attitude(pilot: SimulatedAutopilot) -> Message:
     yaw = radians((pilot.body.heading + 180.0) % 360.0 - 180.0)
-    return message("attitude", time_boot_ms=milliseconds(pilot), yaw=yaw)
+    roll = TUMBLING if pilot.motor_failed and pilot.airborne else 0.0
+    return message("attitude", time_boot_ms=milliseconds(pilot), roll=roll, yaw=yaw)
 
 
 def mission_current(pilot: SimulatedAutopilot) -> Message:

@@ -51,6 +51,8 @@ class _Fix:
 class MotorFailures:
     """Notices when a flying vehicle loses its attitude or its thrust; an observer of its link.
 
+    One that has stopped its motors falls, too: it counts only when the next heartbeat says that it is armed.
+
     Attributes:
         failure: what it does as no command makes it, in words; empty as long as it does not.
     """
@@ -71,7 +73,7 @@ class MotorFailures:
 
     def renew(self) -> None:
         """Forget what was."""
-        self.failure = ""
+        self.failure = self._suspected = ""
         self._before: _Fix | None = None
         self._now = 0.0
         self._tilted = self._tipped = self._falling = self._still = self._level = inf
@@ -79,14 +81,17 @@ class MotorFailures:
         self._struck: float | None = None
 
     def __call__(self, message: Message, outgoing: bool) -> None:
-        """Look at an attitude or a position."""
-        if outgoing or message.get_type() not in ("ATTITUDE", self._kind):
+        """Look at an attitude, a position or a heartbeat."""
+        kind = message.get_type()
+        if outgoing or kind not in ("HEARTBEAT", "ATTITUDE", self._kind):
             return
         if message.get_srcComponent() != self._component():
             return
         if not self._armed():
             self.renew()
-        elif message.get_type() == "ATTITUDE":
+        elif kind == "HEARTBEAT":
+            self.failure = self.failure or self._suspected
+        elif kind == "ATTITUDE":
             self._lean(message.time_boot_ms, acos(cos(message.roll) * cos(message.pitch)))
         else:
             unit = 0.01 if self._kind == "GLOBAL_POSITION_INT" else 1.0
@@ -114,7 +119,7 @@ class MotorFailures:
 
     def _lean(self, at: float, tilt: float) -> None:
         if tilt > TILT and self._tilted < at:
-            self.failure = self.failure or f"it tilts by {degrees(tilt):.0f} degrees"
+            self._suspected = self._suspected or f"it tilts by {degrees(tilt):.0f} degrees"
         self._tilted = min(self._tilted, at) if tilt > TILT else inf
         self._tipped = min(self._tipped, at) if tilt > TIPPED else inf
 
@@ -123,7 +128,7 @@ class MotorFailures:
         if before is None or fix.at <= before.at:
             return
         if min(before.sink, fix.sink) > FALL:
-            self.failure = self.failure or f"it falls at {fix.sink:.0f} m/s"
+            self._suspected = self._suspected or f"it falls at {fix.sink:.0f} m/s"
         self._falling = min(self._falling, fix.at) if fix.sink >= UNSTOPPED else inf
         self._note_blow(before, fix)
         if fix.speed > STILL or self._still == inf or abs(fix.height - self._rest) > NEAR:

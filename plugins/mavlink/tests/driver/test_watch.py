@@ -251,3 +251,24 @@ def test_a_vehicle_that_is_heard_again_in_another_mode_is_a_pilots(back):
     made = back("return")
     with pytest.raises(FaultError, match="it is under external control"):
         made.watch.check_hands("LINK_LOST")
+
+
+def test_a_failed_motor_is_answered_and_what_lies_on_the_ground_is_disarmed(in_the_air):
+    made = in_the_air(Policy("MOTOR_FAILED", "LAND"))
+    made.simulated.faults.begin("motor-failed")
+    fault = made.caught()
+    assert (fault.event, fault.instead) == ("MOTOR_FAILED", "")
+    made.watch.relax({"MOTOR_FAILED"}, "LAND")
+    fault = made.caught()
+    assert (fault.event, fault.instead) == ("MOTOR_FAILED", "STOP_THRUST")
+    assert made.simulated.autopilot.body.position[2] == 0.0
+    made.watch.relax({"MOTOR_FAILED"}, "STOP_THRUST")
+    made.vehicle.disarm()
+    made.quiet(2.0)
+
+
+def test_a_failed_motor_that_is_borne_only_stops_the_motors_on_the_ground(in_the_air):
+    made = in_the_air(Policy("MOTOR_FAILED", "CONTINUE"))
+    made.simulated.faults.begin("motor-failed")
+    assert made.caught().instead == "STOP_THRUST"
+    assert made.simulated.autopilot.body.position[2] == 0.0

@@ -34,6 +34,15 @@ def test_a_lost_position_is_reported_and_lands_the_vehicle(airborne, ground):
     assert ground.receive("EKF_STATUS_REPORT", lambda m: m.flags & 16)
 
 
+def test_a_failed_motor_drops_a_copter_that_lies_with_running_motors(airborne, ground):
+    airborne.faults.begin("motor-failed")
+    assert ground.receive("ATTITUDE", lambda m: m.roll > 1.0)
+    assert ground.receive("GLOBAL_POSITION_INT", lambda m: m.relative_alt == 0 and m.vz == 0)
+    ground.wait(20.0)
+    assert airborne.autopilot.armed
+    assert ground.receive("ATTITUDE", lambda m: m.roll == 0.0)
+
+
 def test_a_wrong_position_estimate_moves_the_vehicle_and_ends(airborne, ground):
     body, home = airborne.autopilot.body, airborne.autopilot.settings.longitude
     airborne.faults.begin("position-shift", "40", "90")
