@@ -79,7 +79,7 @@ class Signs:
         return self._telemetry.motor_failures.fallen(in_air=in_air) if self._failed else ""
 
     def _failure(self) -> str:
-        """Return why a motor must have failed since `renew`: none recovers by itself."""
+        """Return why a motor must have failed since `renew`: none recovers."""
         said = (text.text for event, text in self._telemetry.announcements.recent() if event == MOTOR_FAILED)
         self._failed = self._failed or self._telemetry.motor_failures.failure or next(said, "")
         return self._failed

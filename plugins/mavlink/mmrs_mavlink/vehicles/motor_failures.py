@@ -9,6 +9,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from math import acos, cos, degrees, hypot, inf, radians
 
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
+
 from ..links.link import Message
 from .trail import place_in
 
@@ -87,9 +89,10 @@ class MotorFailures:
             return
         if message.get_srcComponent() != self._component():
             return
-        if not self._armed():
+        beats = kind == "HEARTBEAT"
+        if not (message.base_mode & mavlink.MAV_MODE_FLAG_SAFETY_ARMED if beats else self._armed()):
             self.renew()
-        elif kind == "HEARTBEAT":
+        elif beats:
             self.failure = self.failure or self._suspected
         elif kind == "ATTITUDE":
             self._lean(message.time_boot_ms, acos(cos(message.roll) * cos(message.pitch)))

@@ -37,7 +37,7 @@ def sent(message):
     return message
 
 
-def seen(*fixes, armed=True, lands=False, gap=0.25, beats=True) -> MotorFailures:
+def seen(*fixes, armed=True, lands=False, gap=0.25, beats="armed") -> MotorFailures:
     """Return what is noticed of heights, descents and leans, and of a heartbeat after them."""
     found = MotorFailures(KIND, lambda: 1, lambda: armed, lambda: lands)
     for index, (height, sink, lean) in enumerate(fixes):
@@ -46,7 +46,7 @@ def seen(*fixes, armed=True, lands=False, gap=0.25, beats=True) -> MotorFailures
         place = (now, 423_700_000, 133_500_000, 0, round(height * 1000), 0, 0, round(sink * 100), 0)
         found(sent(mavlink.MAVLink_global_position_int_message(*place)), False)
     if beats:
-        found(sent(mavlink.MAVLink_heartbeat_message(2, 3, 209, 4, 4, 3)), False)
+        found(sent(mavlink.MAVLink_heartbeat_message(2, 3, 128 if beats == "armed" else 0, 4, 4, 3)), False)
     return found
 
 
@@ -56,8 +56,9 @@ def test_a_copter_that_falls_is_noticed_by_its_lean_within_a_second():
 
 
 def test_a_fall_counts_only_when_a_heartbeat_says_that_the_motors_run_still():
-    assert not seen(*FALL, beats=False).failure
-    assert not seen(*FALL, armed=False).failure
+    assert seen(*FALL).failure
+    assert not seen(*FALL, beats="").failure
+    assert not seen(*FALL, beats="disarmed").failure
 
 
 def test_one_that_falls_upright_is_noticed_by_its_descent():
