@@ -190,7 +190,8 @@ def manned(robot: Robot | None = None, **settings: object) -> Iterator[Manned]:
         link = Link(Radio(ears, clock), clock, simulated.autopilot.settings.system)
         stack.callback(link.close)
         assert link.wait(lambda: link.component, 10.0 * SPEEDUP)
-        vehicle, watch = MavlinkVehicle(link, robot.profile, robot.home), Watch(robot, clock)
+        vehicle = MavlinkVehicle(link, robot.profile, robot.home, travel=robot.travel)
+        watch = Watch(robot, clock)
         watch.begin(link, vehicle)
         link.guard = watch.check
         made = Manned(robot, vehicle, link, watch, simulated, ears)

@@ -97,12 +97,14 @@ class Travel:
         acceptance: metres from a place at which the controller counts it as reached.
         radius: metres within which the vehicle counts places of a run as passed, at most.
         margin: metres that the vehicle keeps from what it perceives itself, at least.
+        turning_radius: of its narrowest curve, metres; 0: it turns on its own.
     """
 
     mode: str = "NORMAL"
     acceptance: float = 0.5
     radius: float = 2.0
     margin: float = 0.0
+    turning_radius: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)

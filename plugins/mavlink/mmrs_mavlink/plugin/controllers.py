@@ -14,6 +14,7 @@ from mmrs_core.behaviour.travel import capability_of, travel_margins_of
 from mmrs_core.contributions.targets import TargetInput
 from mmrs_core.generation.context import require_home
 from mmrs_core.generation.escaping import Call, Constant
+from mmrs_core.generation.planned_moves import kinematics_of
 from mmrs_core.generation.python import MOVEMENTS, PythonDriver, go_to, place_of, python_target
 from mmrs_core.generation.python.moves import look_of, unturnable
 from mmrs_core.generation.python.program import program_of
@@ -167,9 +168,13 @@ class MavlinkPython(PythonDriver[VehicleContext]):
             )
         margins = travel_margins_of(robot, input.program.position_error)
         names = ("acceptance", "radius", "margin")
-        how = tuple((name, getattr(margins, name)) for name in names)
-        yield "travel", Call("Travel", (robot.travel_mode,), how)
-        yield "runs", tuple(_run(run, robot) for run in runs_of(context))
+        how = [(name, getattr(margins, name)) for name in names]
+        kinematics = kinematics_of(robot, input)
+        turning_radius = 0.0 if kinematics is None else kinematics.turning_radius
+        if turning_radius > 0.0:
+            how.append(("turning_radius", turning_radius))
+        yield "travel", Call("Travel", (robot.travel_mode,), tuple(how))
+        yield "runs", tuple(_run(run, robot) for run in runs_of(context, turning_radius))
         yield (
             "fence",
             tuple(tuple(_ground(each, context) for each in fence.ring) for fence in kept.fences),

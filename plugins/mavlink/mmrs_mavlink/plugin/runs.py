@@ -28,11 +28,16 @@ class MoveRun:
     holds: tuple[float, ...]
 
 
-def runs_of(context: VehicleContext) -> tuple[MoveRun, ...]:
+def runs_of(context: VehicleContext, turning_radius: float = 0.0) -> tuple[MoveRun, ...]:
     """Return the robot's runs, in the order of their first moves; none for a local behaviour.
 
     A run is a longest chain of at least three straight GoTo moves with fluid, unconditional
-    transitions without waits, and without actions inside.
+    transitions without waits, and without actions inside. A vehicle that needs room to turn holds at its end
+    alone: where it stood in a corner, it could not turn to the next leg.
+
+    Args:
+        context: of the robot.
+        turning_radius: of its narrowest curve, metres.
     """
     if context.frame.is_local:
         return ()
@@ -44,7 +49,9 @@ def runs_of(context: VehicleContext) -> tuple[MoveRun, ...]:
         if first in chained and first not in entered:
             moves = _chain(first, chained)
             if len(moves) >= SHORTEST:
-                runs.append(MoveRun(moves, _holds(robot, moves)))
+                passed = (0.0,) * (len(moves) - 1)
+                holds = (*passed, CORNER_SECONDS) if turning_radius > 0.0 else _holds(robot, moves)
+                runs.append(MoveRun(moves, holds))
     return tuple(runs)
 
 

@@ -42,6 +42,7 @@ class Body:
         origin: start of the leg that it tracks; None: it heads straight for its target.
         corner_pace: metres per second in the turn from the previous leg.
         cut: metres from a corner at which it passes.
+        driven: speed ahead, metres per second, and turn rate, degrees per second, commanded instead.
         speed: commanded ground speed, metres per second; climb, descent: limits of the vertical speed.
         wind: mean velocity of the air, metres per second north, east and up.
         airspeed: greatest air speed.
@@ -55,6 +56,7 @@ class Body:
     onward: Vector | None = None
     origin: Vector | None = None
     corner_pace: float = 0.0
+    driven: tuple[float, float] | None = None
     cut: float = CUT
     wanted_heading: float | None = None
     speed: float = 5.0
@@ -119,6 +121,9 @@ class Body:
         return self.distance_to(self.target) <= max(before, PASSING)
 
     def _wanted_velocity(self) -> Vector:
+        if self.driven is not None:
+            ahead = radians(self.heading)
+            return (self.driven[0] * cos(ahead), self.driven[0] * sin(ahead), 0.0)
         if self.target is None:
             return STILL
         path = plus(self.target, self.position, -1.0)
@@ -208,6 +213,9 @@ class Body:
         self.velocity = plus(self.velocity, (north * level, east * level, up * upwards), 1.0)
 
     def _turn(self, step: float) -> None:
+        if self.driven is not None:
+            self.heading = (self.heading + self.driven[1] * step) % 360.0
+            return
         if self.wanted_heading is None:
             return
         left = (self.wanted_heading - self.heading + 180.0) % 360.0 - 180.0

@@ -51,8 +51,16 @@ def steer(pilot: SimulatedAutopilot, target: Vector, heading: float | None) -> N
             pilot.body.speed = pilot.usual_speed()
         pilot.aimed = True
         pilot.body.target, pilot.body.onward, pilot.body.origin = target, None, None
+        pilot.body.driven = None
         if heading is not None:
             pilot.body.wanted_heading = heading
+
+
+def drive(pilot: SimulatedAutopilot, speed: float, rate: float) -> None:
+    """Drive at a speed and a turn rate, degrees per second, if a rover is in GUIDED, and armed."""
+    if pilot.mode_name == "guided" and pilot.armed and pilot.settings.kind == "rover":
+        pilot.body.target = pilot.body.onward = pilot.body.origin = None
+        pilot.body.driven = (speed, rate)
 
 
 def arming_refusal(pilot: SimulatedAutopilot) -> str:

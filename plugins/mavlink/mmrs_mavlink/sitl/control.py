@@ -30,6 +30,8 @@ RALLY_POINT = 1
 
 def decide(pilot: SimulatedAutopilot, seconds: float) -> None:
     """Set the next target of an armed vehicle."""
+    if pilot.mode_name != "guided":
+        pilot.body.driven = None
     if pilot.settings.kind == "sub" and pilot.mode_name in MANUAL:
         _follow_pilot(pilot, seconds)
     else:

@@ -14,7 +14,7 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from mmrs_mavlink.sitl import telemetry
 from mmrs_mavlink.sitl.autopilot import SimulatedAutopilot
-from mmrs_mavlink.sitl.commands import execute, steer
+from mmrs_mavlink.sitl.commands import drive, execute, steer
 from mmrs_mavlink.sitl.faults import Faults
 from mmrs_mavlink.sitl.items import ABOVE_SEA, StoredItem
 from mmrs_mavlink.sitl.parameters import ParameterService
@@ -185,7 +185,10 @@ class SimulatedVehicle:
                 place = pilot.local(message.lat_int * 1e-7, message.lon_int * 1e-7, up)
                 steer(pilot, place, None if pilot.settings.kind == "sub" else _heading(message))
             case "SET_POSITION_TARGET_LOCAL_NED":
-                steer(pilot, (message.x, message.y, -message.z), _heading(message))
+                if message.type_mask & mavlink.POSITION_TARGET_TYPEMASK_X_IGNORE:
+                    drive(pilot, message.vx, degrees(message.yaw_rate))
+                else:
+                    steer(pilot, (message.x, message.y, -message.z), _heading(message))
             case "MANUAL_CONTROL":
                 if message.target in (0, pilot.settings.system):
                     pilot.sticks = sticks_of(message, pilot.time)

@@ -78,7 +78,9 @@ class MavlinkVehicle(Vehicle):
         self.reports = preparation.Reports(link, geographic=isinstance(home, Geographic))
         self._mode_control = ModeControl(link, self._telemetry)
         self._acceptance = travel.acceptance if acceptance is None else acceptance
-        self._steering = Steering(link, self._telemetry, self._mode_control, self._acceptance)
+        self._steering = Steering(
+            link, self._telemetry, self._mode_control, self._acceptance, travel.turning_radius
+        )
         self._travel = travel
         self._home = home
         self._home_tolerance = home_tolerance

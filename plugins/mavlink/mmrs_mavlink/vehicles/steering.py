@@ -14,6 +14,7 @@ from ..program import Geographic, Local, Look, Object, Place
 from ..services.commands import command, command_at
 from .footing import aside
 from .mode_control import ModeControl
+from .shunting import Shunting
 from .telemetry import Telemetry
 
 PATIENCE_FACTOR = 4.0
@@ -70,6 +71,7 @@ class Steering:
         telemetry: Telemetry,
         mode_control: ModeControl,
         acceptance: float,
+        turning_radius: float = 0.0,
     ) -> None:
         """Steer a vehicle by its profile; some are at a place whatever their height.
 
@@ -78,11 +80,13 @@ class Steering:
             telemetry: of the vehicle.
             mode_control: of the vehicle.
             acceptance: metres from a place at which it counts as reached.
+            turning_radius: of its narrowest curve, metres; 0: it turns on its own.
         """
         self._link = link
         self._telemetry = telemetry
         self._mode_control = mode_control
         self._acceptance = acceptance
+        self._shunting = Shunting(link, telemetry, mode_control, turning_radius)
         self._away = aside if link.profile.in_plane else distance
         self._yaw: float | None = None
         self._speed: float | None = None
@@ -96,6 +100,7 @@ class Steering:
         self._mode_control.arm()
         self._speed = speed
         self._point(look)
+        self._shunting.face(place, self._acceptance)
         begun = self._telemetry.here()
         way = distance(begun, place)
         limit = self._link.clock.now() + PATIENCE_SECONDS + PATIENCE_FACTOR * way / max(0.2, speed or 1.0)

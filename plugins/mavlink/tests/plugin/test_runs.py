@@ -14,12 +14,12 @@ from mmrs_mavlink.plugin.runs import runs_of
 EAST = [(float(10 * index), 0.0, 20.0) for index in range(1, 6)]
 
 
-def runs(moves=None, transitions=None, frame: Frame = L_AQUILA, fluid=(1, 2, 3, 4)):
+def runs(moves=None, transitions=None, frame: Frame = L_AQUILA, fluid=(1, 2, 3, 4), turning_radius=0.0):
     made = moves or [go_to(f"m{index}", place) for index, place in enumerate(EAST, start=1)]
     flowing = {index: Transition(index, index + 1, fluid=True) for index in fluid}
     robot = robot_program("alpha", made, transitions=flowing | dict(transitions or {}))
     context = context_of(robot, target_input(program(robot, frame=frame)))
-    return runs_of(context)
+    return runs_of(context, turning_radius)
 
 
 def test_fluid_moves_make_one_run():
@@ -39,6 +39,13 @@ def test_a_corner_inside_is_held():
         go_to(f"m{i}", p) for i, p in enumerate([EAST[0], EAST[1], (20.0, 30.0, 20.0), (20.0, 60.0, 20.0)])
     ]
     assert runs(moves, fluid=(1, 2, 3))[0].holds == (1.0, 1.0, 0.0, 1.0)
+
+
+def test_a_vehicle_that_needs_room_to_turn_holds_at_the_end_alone():
+    moves = [
+        go_to(f"m{i}", p) for i, p in enumerate([EAST[0], EAST[1], (20.0, 30.0, 20.0), (20.0, 60.0, 20.0)])
+    ]
+    assert runs(moves, fluid=(1, 2, 3), turning_radius=1.2)[0].holds == (0.0, 0.0, 0.0, 1.0)
 
 
 def test_a_wait_ends_a_run():

@@ -1,0 +1,125 @@
+"""Rovers that steer like cars turn to their target within their turning radius before they set out."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from math import cos, degrees, hypot, radians, sin
+from types import SimpleNamespace
+
+import pytest
+from flight_crew import manned, robot_of
+from hypothesis import given
+from hypothesis import strategies as st
+
+from mmrs_mavlink.program import Geographic, Local, Travel
+from mmrs_mavlink.services.uploads import Uploads
+from mmrs_mavlink.vehicles.shunting import ASIDE_DEGREES, Shunting
+from mmrs_runtime.controllers.geodesy import bearing, distance, metres_per_degree
+
+HOME = Geographic(42.37, 13.35, 0.0)
+NORTH, EAST = metres_per_degree(HOME.latitude)
+DRIVES = "SET_POSITION_TARGET_LOCAL_NED"
+"""Of a rover with a home on the Earth these command speeds alone, its targets are geographic."""
+
+
+def at(angle: float, metres: float) -> Geographic:
+    """Return a place in a direction from home, degrees clockwise from north."""
+    north, east = metres * cos(radians(angle)), metres * sin(radians(angle))
+    return Geographic(HOME.latitude + north / NORTH, HOME.longitude + east / EAST, 0.0)
+
+
+def sent_to(angle: float, metres: float, radius: float):
+    """Return the rover and what it was sent, once it has driven from home, where it looks north."""
+    robot = replace(robot_of(vehicle="rover"), travel=Travel(turning_radius=radius))
+    with manned(robot, kind="rover") as made:
+        made.vehicle.prepare(Uploads())
+        made.watch.renew()
+        place = at(angle, metres)
+        made.vehicle.go_to(place, 1.0, None, False)
+        simulated = made.simulated
+        kinds = [kind for _, kind in simulated.received]
+        return made.away(place), kinds
+
+
+class Car:
+    """A car on a plane by the bicycle model, in place of a link, its telemetry and the control of its mode.
+
+    It speeds up and slows down at 0.6 m/s², steers no narrower curve than its own, and is asked five
+    times a second, as positions are reported.
+    """
+
+    def __init__(self, radius: float, heading: float) -> None:
+        self.radius, self.yaw, self.pace = radius, radians(heading), 0.0
+        self.north = self.east = self.time = self.farthest = 0.0
+        self.wanted = (0.0, 0.0)
+        self.clock = SimpleNamespace(now=lambda: self.time)
+        self.profile, self.system, self.component = SimpleNamespace(still=0.3), 1, 1
+
+    def send(self, message) -> None:
+        self.wanted = (message.vx, message.yaw_rate)
+
+    def wait(self, test, seconds: float):
+        until = self.time + seconds
+        while not (found := test()) and self.time < until:
+            for _ in range(10):
+                self._roll(0.02)
+        return found
+
+    def _roll(self, step: float) -> None:
+        speed, rate = self.wanted
+        self.pace += max(-0.6 * step, min(0.6 * step, speed - self.pace))
+        narrowest = abs(self.pace) / self.radius
+        self.yaw += max(-narrowest, min(narrowest, rate)) * step
+        self.north += self.pace * cos(self.yaw) * step
+        self.east += self.pace * sin(self.yaw) * step
+        self.time += step
+        self.farthest = max(self.farthest, hypot(self.north, self.east))
+
+    def here(self) -> Local:
+        return Local(self.north, self.east, 0.0)
+
+    def heading(self) -> float:
+        return degrees(self.yaw) % 360.0
+
+    def speed(self) -> float:
+        return abs(self.pace)
+
+    def check(self) -> None:
+        """Nothing else has a say in where it goes."""
+
+
+@given(
+    radius=st.floats(0.8, 6.0),
+    heading=st.floats(0.0, 360.0),
+    angle=st.floats(0.0, 360.0),
+    metres=st.floats(0.5, 60.0),
+)
+def test_a_car_looks_at_its_target_or_is_there_and_has_kept_within_its_turning_radius(
+    radius, heading, angle, metres
+):
+    car = Car(radius, heading)
+    place = Local(metres * cos(radians(angle)), metres * sin(radians(angle)), 0.0)
+    Shunting(car, car, car, radius).face(place, 0.5)
+    aside = (bearing(car.here(), place) - car.heading() + 180.0) % 360.0 - 180.0
+    assert abs(aside) <= ASIDE_DEGREES or distance(car.here(), place) <= 0.5
+    assert car.farthest <= radius
+    assert car.speed() <= 0.1
+
+
+@pytest.mark.parametrize(("angle", "metres"), [(180.0, 6.0), (-90.0, 1.0), (60.0, 3.0)])
+def test_a_rover_turns_to_its_target_first(angle, metres):
+    away, kinds = sent_to(angle, metres, 1.5)
+    assert away <= 0.5
+    assert DRIVES in kinds
+
+
+def test_a_rover_that_turns_on_its_own_is_sent_straight_there():
+    away, kinds = sent_to(180.0, 6.0, 0.0)
+    assert away <= 0.5
+    assert DRIVES not in kinds
+
+
+def test_a_rover_that_looks_there_already_is_sent_straight_there():
+    away, kinds = sent_to(ASIDE_DEGREES - 3.0, 6.0, 1.5)
+    assert away <= 0.5
+    assert DRIVES not in kinds
