@@ -73,7 +73,7 @@ class Timing:
     Attributes:
         mode: until it shows a mode that was requested, or that it has disarmed.
         arming: until it shows that it is armed, or has left the ground.
-        resend: after which a target is sent again, unless the vehicle is on its way there.
+        resend: after which a target is sent again, unless the vehicle approaches it.
         restart: until its time since its start tells that it has restarted.
         cause: until it tells why it has left its mode as its failsafe would.
     """

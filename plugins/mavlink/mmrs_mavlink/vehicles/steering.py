@@ -25,14 +25,14 @@ ABREAST_METRES = 0.1
 
 
 ADVANCE_SPEED = 0.05
-"""Metres per second by which a vehicle on its way to a target comes nearer at least."""
+"""Metres per second by which a vehicle that has a target approaches it at least."""
 
 ADVANCE_PART = 0.9
 """Metres by which it comes nearer with every metre covered, at least: up to 25 degrees beside the line."""
 
 
 class Advance:
-    """Whether a vehicle is on its way to a target: one that is not may never have received it."""
+    """Whether a vehicle approaches a target: one that does not may never have received it."""
 
     def __init__(self, telemetry: Telemetry, place: Place) -> None:
         """Judge by what is reported from now on whether it comes nearer to a place."""
@@ -62,7 +62,7 @@ class Steering:
     A target is sent once, and again where the vehicle evidently does not go there, since it may be lost: an
     ArduSub plans its path from rest with each target that it receives, and goes at a third of its speed if it
     receives one a second (``AC_WPNav::set_wp_destination_NEU_cm``). ArduSub reports no target
-    (POSITION_TARGET_GLOBAL_INT), so its motion is what shows that it has one. Streams of set-points go on.
+    (POSITION_TARGET_GLOBAL_INT), so its motion is what shows that it has one. Streams of set-points continue.
     """
 
     def __init__(
