@@ -49,7 +49,7 @@ def cells(flight: Flight, result: Result) -> tuple[str, ...]:
         f"{result.landing:.2f} m" if result.landing is not None and flight.ends in (DONE, HOME) else "",
         f"{result.margin:+.2f} m" if result.margin is not None else "",
         "; ".join([*ends, *faults, *orders]),
-        f"{result.kept:.0%}",
+        f"{int(100.0 * result.kept)} %",
         "yes" if not result.deviates else "NO: " + "; ".join(result.deviates),
     )
 

@@ -354,7 +354,7 @@ class Flying:
         result, flight = self.result, self.flight
         result.kept = result.kept or self._kept()
         if result.kept < KEPT:
-            result.deviates.append(f"only {result.kept:.0%} of the speed-up kept")
+            result.deviates.append(f"only {int(100.0 * result.kept)} % of the speed-up kept")
         all_rows: list[np.ndarray] = []
         result.planned = max((self.plan.seconds.get(robot, 0.0) for robot in self.robots), default=0.0)
         for robot in self.robots:

@@ -8,6 +8,7 @@ from real_flights.flight import (
     AWAY,
     CONTROLLERS,
     DISARM,
+    DONE,
     HOLDS,
     HOME,
     MEND,
@@ -60,7 +61,8 @@ FENCE = {"FENCE_TYPE": 6.0, "FENCE_RADIUS": 33.0, "FENCE_ENABLE": 1.0, "AVOID_EN
 """A circle that the second leg leaves; a rover would otherwise stop in front of it for good."""
 
 NO_POSITION = {"SIM_GPS1_ENABLE": 0.0}
-LOW_BATTERY = {"SIM_BATT_VOLTAGE": 9.0}
+LOW_BATTERY = {"BATT_CAPACITY": 100.0}
+"""Milliampere-hours, most of which are gone by then."""
 
 
 def _upset(
@@ -72,12 +74,13 @@ def _upset(
     policy: tuple[str, str, float] | None = None,
     parameters: Mapping[str, float] | None = None,
     resumed: bool = False,
+    stays: float = 0.0,
     speedup: float = 4.0,
 ) -> Flight:
     """Return a flight on the short route in which something happens."""
     return Flight(
         f"{NAMES[craft]}: {name}",
-        routes(_short(craft, *filter(None, [policy]))),
+        routes(_short(craft, *filter(None, [policy]), stays=stays)),
         happens=happens,
         ends=ends,
         fault=fault,
@@ -116,7 +119,7 @@ def _faults(craft: Craft) -> tuple[Flight, ...]:
         _upset(
             craft,
             "battery low",
-            (AT_LEG, Change({"SIM_BATT_CAP_AH": 100.0, "BATT_LOW_MAH": 99_999.0, "BATT_CAPACITY": 100.0})),
+            (AT_LEG, Change(LOW_BATTERY)),
             ends=back,
             policy=("BATTERY_LOW", response, 1.0),
         ),
@@ -158,7 +161,7 @@ def _orders(craft: Craft) -> tuple[Flight, ...]:
 def _resumes(craft: Craft) -> tuple[Flight, ...]:
     moments = {
         "on a leg": Begun("p1", 3.0),
-        "at a place": Begun("p1", 0.2),
+        "while it stays": Begun("stay", 3.0),
         "on the first leg": Begun("p0", 1.0),
         "on the last leg": Begun(f"p{len({COPTER: SQUARE, ROVER: YARD, SUB: REEF}[craft]) - 1}", 2.0),
     }
@@ -170,8 +173,9 @@ def _resumes(craft: Craft) -> tuple[Flight, ...]:
             f"killed and resumed, {moment}",
             (when, Kill()),
             (Later(1.0), Resume()),
-            ends="done",
+            ends=DONE,
             resumed=True,
+            stays=10.0 if when.move == "stay" else 0.0,
         )
         for moment, when in moments.items()
     )
