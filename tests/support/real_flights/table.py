@@ -61,6 +61,7 @@ FENCE = {"FENCE_TYPE": 6.0, "FENCE_RADIUS": 33.0, "FENCE_ENABLE": 1.0, "AVOID_EN
 """A circle that the second leg leaves; a rover would otherwise stop in front of it for good."""
 
 NO_POSITION = {"SIM_GPS1_ENABLE": 0.0}
+NO_MOTOR = {"SIM_ENGINE_MUL": 0.0, "SIM_ENGINE_FAIL": 1.0}
 LOW_BATTERY = {"BATT_CAPACITY": 100.0}
 """Milliampere-hours, most of which are gone by then."""
 
@@ -237,6 +238,7 @@ ROVERS = (
     Flight("rover: long legs", routes(Route("Badger", ROVER, STREET, 1.5)), deviation=3.0, landing=4.0),
     Flight("rover: arcs", routes(Route("Badger", ROVER, ARCS, 1.0)), deviation=3.0, landing=4.0),
 )
+MOTORS = (_upset(COPTER, "motor fails", (AT_LEG, Change(NO_MOTOR)), ends=AWAY, fault="MOTOR_FAILED"),)
 FENCES = tuple(
     _upset(
         craft,
@@ -261,6 +263,7 @@ FLIGHTS = (
     *LAWNS,
     *(flight for craft in (COPTER, ROVER, SUB) for flight in _orders(craft)),
     *(flight for craft in (COPTER, ROVER, SUB) for flight in _faults(craft)),
+    *MOTORS,
     *FENCES,
     *(flight for craft in (COPTER, ROVER, SUB) for flight in _resumes(craft)),
     *EXAMPLES,
