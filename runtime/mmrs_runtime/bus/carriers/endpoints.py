@@ -23,11 +23,21 @@ def first_fault(endpoints: Iterable[str]) -> str:
 
 def is_local(endpoint: str) -> bool:
     """Return whether an endpoint is reached from this computer only; unknown names are not."""
-    way, _, address = endpoint.partition("/")
-    host = re.split(r"[?#]", address)[0].rpartition(":")[0].strip("[]")
     with suppress(ValueError):
-        return ip_address(host).is_loopback
-    return way in _OF_THIS_COMPUTER or host == "localhost"
+        return ip_address(_host(endpoint)).is_loopback
+    return endpoint.partition("/")[0] in _OF_THIS_COMPUTER or _host(endpoint) == "localhost"
+
+
+def is_everywhere(endpoint: str) -> bool:
+    """Return whether an endpoint is one of all interfaces."""
+    with suppress(ValueError):
+        return ip_address(_host(endpoint)).is_unspecified
+    return False
+
+
+def _host(endpoint: str) -> str:
+    address = endpoint.partition("/")[2]
+    return re.split(r"[?#]", address)[0].rpartition(":")[0].strip("[]")
 
 
 def _is(text: str) -> bool:

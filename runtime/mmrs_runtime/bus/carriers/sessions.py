@@ -16,7 +16,7 @@ from typing import Any
 import zenoh
 
 from .diagnosis import Papers
-from .endpoints import first_fault, is_local
+from .endpoints import first_fault, is_everywhere, is_local
 from .revocation import REVOKED, read_list, valid_name
 
 LEASE_MILLISECONDS = 1500
@@ -92,8 +92,7 @@ def configuration(endpoints: Endpoints, revoked: bytes = b"") -> Any:
         _insert(config, "listen/retry", RETRY)
     elif not listen and all(map(is_local, connect)):
         listen = (_LOCAL,)
-    if listen:
-        _insert(config, "listen/endpoints", list(listen))
+    _insert(config, "listen/endpoints", list(_also_here(listen or _listened(config))))
     if connect:
         _insert(config, "connect/endpoints", list(connect))
     _insert(config, "scouting/multicast/enabled", False)
@@ -101,6 +100,24 @@ def configuration(endpoints: Endpoints, revoked: bytes = b"") -> Any:
     _insert(config, "connect/timeout_ms", -1)
     _insert(config, "connect/exit_on_failure", False)
     return config
+
+
+def _listened(config: Any) -> tuple[str, ...]:
+    """Return where a peer with a configuration listens; Zenoh's default is by what a session is."""
+    found = json.loads(config.get_json("listen/endpoints"))
+    return tuple(found.get("peer") or () if isinstance(found, dict) else found)
+
+
+def _also_here(listen: tuple[str, ...]) -> tuple[str, ...]:
+    """Return endpoints, and one of the loopback interface beside those of all interfaces.
+
+    For those, Zenoh announces the addresses of all interfaces but this one: on a machine that has no other,
+    peers would learn of each other, and of no address.
+    """
+    everywhere = [each.partition("/")[0] for each in listen if is_everywhere(each)]
+    if not everywhere or any(map(is_local, listen)):
+        return listen
+    return (*listen, f"{everywhere[0]}/127.0.0.1:0")
 
 
 def revoked_by(file: Path | None) -> bytes:
@@ -133,10 +150,8 @@ def admitted(config: Any) -> list[str]:
 
 def exposed(config: Any) -> tuple[str, ...]:
     """Return where a session can be reached from other computers without a certificate."""
-    found = json.loads(config.get_json("listen/endpoints"))
     secured = ("tls/", "quic") if json.loads(config.get_json("transport/link/tls/enable_mtls")) else ()
-    listened = found.get("peer") or () if isinstance(found, dict) else found
-    return tuple(each for each in listened if not is_local(each) and not each.startswith(secured))
+    return tuple(each for each in _listened(config) if not is_local(each) and not each.startswith(secured))
 
 
 def _refuse_ways(endpoints: Endpoints, allowed: Sequence[str] | None) -> None:
