@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from mmrs_core.contributions.rules import ElementKind, MoveKind, RobotKind, Rule
     from mmrs_core.contributions.symbols import MapSymbol
     from mmrs_core.contributions.targets import Target
+    from mmrs_core.contributions.timing import VehicleTiming
     from mmrs_core.contributions.vehicles import VehicleFactory
     from mmrs_core.languages.classes import ElementClass
     from mmrs_core.languages.evolution.migration import Migration
@@ -75,6 +76,11 @@ def mmrs_rules() -> Iterable[Rule]:  # type: ignore[empty-body]
 @hookspec
 def mmrs_robot_kinds() -> Iterable[RobotKind]:  # type: ignore[empty-body]
     """Contribute how robots of a metaclass move; one kind for a metaclass."""
+
+
+@hookspec
+def mmrs_vehicle_timings() -> Iterable[VehicleTiming]:  # type: ignore[empty-body]
+    """Contribute how long autopilots take to carry robots; one timing for a class of vehicle."""
 
 
 @hookspec

@@ -32,6 +32,7 @@ _KINDS: Mapping[str, str] = {
     "fixes": "contributions.fixes.Fix",
     "rules": "contributions.rules.Rule",
     "robot_kinds": "contributions.rules.RobotKind",
+    "vehicle_timings": "contributions.timing.VehicleTiming",
     "move_kinds": "contributions.rules.MoveKind",
     "element_kinds": "contributions.rules.ElementKind",
     "checks": "contributions.checks.Check",

@@ -169,7 +169,7 @@ def stops(input: CheckInput, robot: RobotProgram, motion: Motion) -> Iterator[Pi
         kinematics = kinematics_of(input, robot)
     except MissingFigureError:
         return
-    if kinematics.overshoot <= 0.0:
+    if kinematics.timing.overshoot <= 0.0:
         return
     for leg in motion.paths:
         transition = robot.transitions.get(leg.move)
@@ -216,7 +216,7 @@ def _cut(input: CheckInput, robot: RobotProgram, move: int, turn: float, leg: fl
         fits = turn < UTURN and kinematics.fits_curve(turn, leg)
         return 0.0 if fits else 2.0 * kinematics.turning_radius
     pace = robot.moves[move].speed or kinematics.cruise
-    return max(RADIUS, pace * pace / (2.0 * kinematics.acceleration))
+    return max(RADIUS, kinematics.timing.cut(pace))
 
 
 def _corner(leg: MovePath, after: MovePath) -> tuple[float, float] | None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import inf
 
 from mmrs_core.analysis.figures import (
@@ -19,7 +19,9 @@ from mmrs_core.analysis.verdicts import UnknownMove
 from mmrs_core.behaviour.program import BEHAVIOUR, Action, Move, RobotProgram, SlotId
 from mmrs_core.behaviour.walk import reachable_moves
 from mmrs_core.contributions.checks import CheckInput
+from mmrs_core.contributions.passages import Passages
 from mmrs_core.scene import Kinematics, Name, RobotType
+from mmrs_core.scene.timing import MoveSeconds
 
 HOLD: Name = (BEHAVIOUR, "HoldPosition")
 
@@ -86,12 +88,17 @@ def durations_of(input: CheckInput, robot: RobotProgram, motion: Motion) -> Dura
     legs: dict[int, list[MovePath]] = defaultdict(list)
     for leg in motion.paths:
         legs[leg.move].append(leg)
+    local = input.program.frame.is_local
+    passages = Passages(robot, input.move_kinds, kinematics, local=local)
+    passed = _passed(robot, passages, legs)
     gaps = {gap.move: gap for gap in motion.gaps}
     found: dict[int, Duration] = {}
     for index in moves:
         move = robot.moves[index]
-        moving = _least(move) if index in gaps else _moving(input, robot, move, legs[index], kinematics)
-        found[index] = _with_actions(move, moving, robot_type)
+        flows = replace(move, flows=index in passed)
+        known = passages.kinematics(move)
+        moving = _least(move) if index in gaps else _moving(input, robot, flows, legs[index], known)
+        found[index] = _with_actions(move, moving, robot_type, kinematics.timing.spread)
         if index not in gaps and found[index].whole.high == inf:
             gaps[index] = UnknownMove(index, _why_unbounded(move, robot_type))
     return Durations(found, tuple(gaps[index] for index in sorted(gaps)))
@@ -110,6 +117,16 @@ def _why_unbounded(move: Move, robot_type: RobotType) -> str:
     return "nothing bounds how long it takes"
 
 
+def _passed(robot: RobotProgram, passages: Passages, legs: Mapping[int, list[MovePath]]) -> frozenset[int]:
+    """Return the moves that the robot begins or ends without a stop."""
+    return frozenset(
+        index
+        for source, transition in robot.transitions.items()
+        if any(passages.ahead(robot.moves[source], leg.points) for leg in legs.get(source, ()))
+        for index in (source, transition.to)
+    )
+
+
 def _moving(
     input: CheckInput, robot: RobotProgram, move: Move, legs: Iterable[MovePath], kinematics: Kinematics
 ) -> Span:
@@ -125,29 +142,30 @@ def _moving(
     return Span(min(span.low for span in spans), max(span.high for span in spans))
 
 
-def _spread(leg: MovePath, seconds: tuple[float, float], move: Move, kinematics: Kinematics) -> Span:
-    """Return the span where the way may be longer or shorter by what is not known of its ends."""
+def _spread(leg: MovePath, seconds: MoveSeconds, move: Move, kinematics: Kinematics) -> Span:
+    """Return the span where the path may be longer or shorter by what is not known of its ends."""
     if leg.radius == 0.0 or len(leg.points) == 1:
-        return Span(*seconds)
+        return Span(seconds.shortest, seconds.longest)
     slowest = min(move.speed or kinematics.cruise, kinematics.climb, kinematics.descent)
     more = leg.radius / slowest if slowest > 0.0 else inf
-    return Span(max(0.0, seconds[0] - more), seconds[1] + more)
+    return Span(max(0.0, seconds.shortest - more), seconds.longest + more)
 
 
-def _with_actions(move: Move, moving: Span, robot_type: RobotType | None) -> Duration:
-    before, first = _actions(move.before, Span(), robot_type)
-    after, second = _actions(move.after, before + moving, robot_type)
+def _with_actions(move: Move, moving: Span, robot_type: RobotType | None, spread: float = 0.0) -> Duration:
+    before, first = _actions(move.before, Span(), robot_type, spread)
+    after, second = _actions(move.after, before + moving, robot_type, spread)
     return Duration(before, before + moving, after, (*first, *second))
 
 
 def _actions(
-    actions: Iterable[Action], begin: Span, robot_type: RobotType | None
+    actions: Iterable[Action], begin: Span, robot_type: RobotType | None, spread: float
 ) -> tuple[Span, list[Setting]]:
     settings: list[Setting] = []
     now = begin
     for action in actions:
         seconds = seconds_of(action, robot_type) if robot_type else (None if action.device else 0.0)
-        now = now + (Span(seconds, seconds) if seconds is not None else UNKNOWN)
+        known = None if seconds is None else Span(seconds * (1.0 - spread), seconds * (1.0 + spread))
+        now = now + (known or UNKNOWN)
         if action.sets:
             settings.append(Setting(action.sets, action.active, now))
     return now, settings

@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from mmrs_core.contributions.rules import ElementKind, MoveKind, RobotKind, Rule
     from mmrs_core.contributions.symbols import MapSymbol
     from mmrs_core.contributions.targets import Target
+    from mmrs_core.contributions.timing import VehicleTiming
     from mmrs_core.contributions.vehicles import VehicleFactory
     from mmrs_core.languages.classes import ElementClass
     from mmrs_core.languages.evolution.migration import Migration
@@ -45,6 +46,7 @@ _SHOWN: Mapping[str, Callable[[Any], object]] = {
     "fixes": lambda fix: fix.code,
     "rules": lambda rule: rule.name,
     "robot_kinds": lambda kind: kind.name,
+    "vehicle_timings": lambda timing: timing.vehicle,
     "move_kinds": lambda kind: "#//".join(kind.metaclass),
     "element_kinds": lambda kind: "#//".join(kind.metaclass),
     "checks": lambda check: check.name,
@@ -156,8 +158,17 @@ class Contributions:
 
     @cached_property
     def robot_kinds(self) -> Mapping[Name, RobotKind]:
-        """Return the robot kinds by metaclass."""
-        return self._by_metaclass("robot_kinds")
+        """Return the robot kinds by metaclass; their robots take as long as what drives them does."""
+        from mmrs_core.contributions.timing import as_driven
+
+        kinds: dict[Name, RobotKind] = self._by_metaclass("robot_kinds")
+        timings = self.vehicle_timings
+        return {name: as_driven(kind, timings.get(kind.vehicle)) for name, kind in kinds.items()}
+
+    @cached_property
+    def vehicle_timings(self) -> Mapping[str, VehicleTiming]:
+        """Return how long autopilots take, by class of vehicle."""
+        return self._by("vehicle_timings", lambda timing: timing.vehicle)
 
     @cached_property
     def move_kinds(self) -> Mapping[Name, MoveKind]:

@@ -26,6 +26,7 @@ if TYPE_CHECKING:
         Value,
         Work,
     )
+    from mmrs_core.scene.timing import MoveSeconds
 
 
 Medium: TypeAlias = Literal["ground", "air", "water"]
@@ -136,8 +137,8 @@ class MoveKind:
         path: positions that the robot passes on straight legs, the current one first. Arguments: the
             move, where the robot is, its home or None. None where it is not known, as for an object
             without a place.
-        seconds: (shortest, longest) duration of the move itself, actions aside, given its path, the
-            robot's kinematics and the travel mode.
+        seconds: duration of the move itself, actions aside, given its path, the robot's kinematics and the
+            travel mode: shortest, expected and longest.
         needs: states, one of which the robot must be in before: ``grounded`` (where robots that
             launch begin), ``airborne``, ``moving`` (where all others are throughout).
         leaves: state it is in afterwards; None: as before.
@@ -149,7 +150,7 @@ class MoveKind:
 
     metaclass: Name
     path: Callable[[Move, Position, Position | None], tuple[Position, ...] | None]
-    seconds: Callable[[Move, tuple[Position, ...], Kinematics, str], tuple[float, float]]
+    seconds: Callable[[Move, tuple[Position, ...], Kinematics, str], MoveSeconds]
     needs: frozenset[str]
     leaves: str | None = None
     manoeuvre: Literal["", "take_off", "land", "go_to"] = ""

@@ -8,10 +8,12 @@ from math import inf
 
 from mmrs_core.behaviour.as_scene import scene_of
 from mmrs_core.behaviour.program import Action, Move, RobotProgram
-from mmrs_core.contributions.rules import MoveKind, most_specific, robot_kind_of
+from mmrs_core.contributions.passages import Passages
+from mmrs_core.contributions.rules import most_specific, robot_kind_of
 from mmrs_core.contributions.targets import TargetInput
 from mmrs_core.errors import InfeasibleError
 from mmrs_core.scene import Kinematics, Position, RobotType
+from mmrs_core.scene.timing import MoveSeconds
 
 
 @dataclass(frozen=True, slots=True)
@@ -23,14 +25,14 @@ class PlannedMove:
         manoeuvre: as in `MoveKind`; empty for other moves, and where no plug-in provides the kind.
         path: positions that the robot passes, the first one where it is before, metres; None where they are
             not known.
-        seconds: (shortest, longest) duration of the move with its device actions; waits come on top. None
-            where it is not known.
+        seconds: duration of the move with its device actions, shortest, expected and longest; waits come on
+            top. None where it is not known.
     """
 
     index: int
     manoeuvre: str
     path: tuple[Position, ...] | None
-    seconds: tuple[float, float] | None
+    seconds: MoveSeconds | None
 
 
 def planned_moves(robot: RobotProgram, input: TargetInput) -> tuple[PlannedMove, ...]:
@@ -59,13 +61,21 @@ def kinematics_of(robot: RobotProgram, input: TargetInput) -> Kinematics | None:
 
 def _planned(robot: RobotProgram, input: TargetInput) -> Iterator[PlannedMove]:
     kinematics, type = kinematics_of(robot, input), input.types.get(robot.type_name)
-    here = robot.home
+    here, both = robot.home, 0.0
+    local = input.program.frame.is_local
+    passages = Passages(robot, input.move_kinds, kinematics, local=local) if kinematics is not None else None
     for index in _order(robot):
         move = robot.moves[index]
         name = most_specific(move.metaclasses, input.move_kinds)
         kind = input.move_kinds[name] if name is not None else None
         path = kind.path(move, here, robot.home) if kind is not None and here is not None else None
-        seconds = _seconds(robot, move, kind, path, kinematics, type)
+        seconds = None
+        if kind is not None and path is not None and passages is not None:
+            ahead = passages.ahead(move, path)
+            saved = both + (ahead.settling + ahead.overlap / 2.0 if ahead is not None else 0.0)
+            both = ahead.overlap / 2.0 if ahead is not None else 0.0
+            duration = kind.seconds(move, path, passages.kinematics(move), robot.travel_mode)
+            seconds = _seconds(move, duration, saved, type)
         yield PlannedMove(index, kind.manoeuvre if kind is not None else "", path, seconds)
         here = path[-1] if path else None
 
@@ -80,19 +90,13 @@ def _order(robot: RobotProgram) -> Iterator[int]:
         at = transition.to if transition is not None else None
 
 
-def _seconds(
-    robot: RobotProgram,
-    move: Move,
-    kind: MoveKind | None,
-    path: tuple[Position, ...] | None,
-    kinematics: Kinematics | None,
-    type: RobotType | None,
-) -> tuple[float, float] | None:
-    if kind is None or path is None or kinematics is None:
-        return None
-    shortest, longest = kind.seconds(move, path, kinematics, robot.travel_mode)
+def _seconds(move: Move, duration: MoveSeconds, saved: float, type: RobotType | None) -> MoveSeconds | None:
+    """Return the duration of a move with its actions, where passing its ends saves so many seconds."""
     acting = sum(_acting(action, type) for action in (*move.before, *move.after))
-    return (shortest + acting, longest + acting) if longest + acting < inf else None
+    if duration.longest + acting == inf:
+        return None
+    expected = max(duration.shortest, duration.expected - saved)
+    return MoveSeconds(duration.shortest + acting, expected + acting, duration.longest + acting)
 
 
 def _acting(action: Action, type: RobotType | None) -> float:

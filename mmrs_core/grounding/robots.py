@@ -70,7 +70,43 @@ def _capability(capability: Element) -> Capability:
         descent_rate=number(capability, "maxDescentRate"),
         turn_rate=number(capability, "maxTurnRate"),
         part=part_of(capability, NO_GROUND),
+        leg_timings=_leg_timings(capability),
+        launch=number(capability, "launchTime"),
+        recovery=number(capability, "recoveryTime"),
+        landing_rate=number(capability, "landingRate"),
+        landing_height=number(capability, "landingHeight"),
     )
+
+
+_LEG_FIGURES = {
+    "maxSpeed": "speed",
+    "maxAcceleration": "acceleration",
+    "maxDeceleration": "deceleration",
+    "maxVerticalAcceleration": "vertical_acceleration",
+    "maxJerk": "jerk",
+    "maxClimbRate": "climb",
+    "maxDescentRate": "descent",
+    "cornerRadius": "corner_radius",
+    "settlingTime": "settling",
+    "overshoot": "overshoot",
+    "spread": "spread",
+}
+"""Attributes of `LegTiming`, by feature."""
+
+
+def _leg_timings(capability: Element) -> dict[str, dict[str, float]]:
+    """Return the figures of legs by how they are commanded; those of one way override those of both."""
+    found: dict[str, dict[str, float]] = {"STEP": {}, "MISSION": {}}
+    listed = sorted(children(capability, "legTimings"), key=lambda each: each.eIsSet("flownAs"))
+    for each in listed:
+        values = {name: number(each, feature) for feature, name in _LEG_FIGURES.items()}
+        known = {name: value for name, value in values.items() if value is not None}
+        if "acceleration" in known:
+            known.setdefault("deceleration", known["acceleration"])
+        modes = (text(each, "flownAs"),) if each.eIsSet("flownAs") else tuple(found)
+        for mode in modes:
+            found[mode] |= known
+    return found
 
 
 def _battery(battery: Element) -> Battery:

@@ -16,6 +16,9 @@ TravelMode: TypeAlias = Literal["SAFE", "NORMAL", "AGGRESSIVE"]
 AltitudeReference: TypeAlias = Literal["ELLIPSOID", "MSL", "ORIGIN"]
 """References of altitudes."""
 
+LegMode: TypeAlias = Literal["STEP", "MISSION"]
+"""How an autopilot is commanded to take legs."""
+
 PolicyEvent: TypeAlias = Literal["LINK_LOST", "PEER_LOST", "BATTERY_LOW", "WAIT_TOO_LONG", "DEVICE_SILENT", "POSITION_LOST", "OBSTACLE", "FENCE_BREACHED", "VEHICLE_RESTARTED", "LOG_FAILED", "GROUND_LOST", "MOTOR_FAILED"]
 """Faults that a policy responds to."""
 
@@ -226,6 +229,16 @@ class MovementCapability(Element):
     """Largest downward speed, in metres per second; absent: the largest speed."""
     maxTurnRate: float | None
     """Largest rate of turn about the vertical axis, in degrees per second; absent: 90."""
+    launchTime: float | None
+    """Time from the command to launch until the robot climbs, in seconds; absent: as its autopilot, or its kind, takes."""
+    recoveryTime: float | None
+    """Time from touching the ground until the robot stands still, its motors off, in seconds; absent: as its autopilot, or its kind, takes."""
+    landingRate: float | None
+    """Downward speed of the last part of a landing, in metres per second; absent: as its autopilot lands, or as it descends."""
+    landingHeight: float | None
+    """Height above the ground below which the robot comes down at its landing rate, in metres; absent: as its autopilot lands."""
+    legTimings: list[LegTiming]
+    """How the autopilot takes straight legs, as measured: one entry for legs that are commanded one by one, one for those of missions. What they leave open is as the autopilot takes legs by default, within the limits above."""
     def __init__(
         self,
         *,
@@ -239,6 +252,54 @@ class MovementCapability(Element):
         maxClimbRate: float | None = ...,
         maxDescentRate: float | None = ...,
         maxTurnRate: float | None = ...,
+        launchTime: float | None = ...,
+        recoveryTime: float | None = ...,
+        landingRate: float | None = ...,
+        landingHeight: float | None = ...,
+        legTimings: Iterable[LegTiming] | None = ...,
+    ) -> None: ...
+
+class LegTiming(Element):
+    """How fast an autopilot takes straight legs. Every figure overrides the default of the autopilot."""
+    flownAs: LegMode | None
+    """How the legs are commanded; absent: both ways."""
+    maxSpeed: float | None
+    """Largest level speed that is reached, in metres per second."""
+    maxAcceleration: float | None
+    """Level acceleration, in metres per second squared."""
+    maxDeceleration: float | None
+    """Level deceleration, in metres per second squared; absent: as the acceleration, where that is given."""
+    maxVerticalAcceleration: float | None
+    """Upward and downward acceleration, in metres per second squared."""
+    maxJerk: float | None
+    """Change of the acceleration, in metres per second cubed."""
+    maxClimbRate: float | None
+    """Upward speed, in metres per second."""
+    maxDescentRate: float | None
+    """Downward speed, in metres per second."""
+    cornerRadius: float | None
+    """Distance from a corner within which it is passed without a stop, in metres; 0: every corner is a stop."""
+    settlingTime: float | None
+    """Time from the end of a leg until it is reported as done, in seconds."""
+    overshoot: float | None
+    """How far the robot goes beyond a target, in metres for each metre per second of the leg's largest speed: a time, in seconds."""
+    spread: float | None
+    """Share by which legs take longer or shorter than expected, 0 to 1; checks count with both."""
+    def __init__(
+        self,
+        *,
+        flownAs: LegMode | None = ...,
+        maxSpeed: float | None = ...,
+        maxAcceleration: float | None = ...,
+        maxDeceleration: float | None = ...,
+        maxVerticalAcceleration: float | None = ...,
+        maxJerk: float | None = ...,
+        maxClimbRate: float | None = ...,
+        maxDescentRate: float | None = ...,
+        cornerRadius: float | None = ...,
+        settlingTime: float | None = ...,
+        overshoot: float | None = ...,
+        spread: float | None = ...,
     ) -> None: ...
 
 class Policy(Element):

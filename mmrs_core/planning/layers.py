@@ -7,67 +7,18 @@ goal, or just above or below an area). A* with the exact time of a free path as 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
 from heapq import heappop, heappush
-from math import dist, hypot, sqrt
+from math import hypot
 
 import numpy as np
 
 from mmrs_core.planning.obstacles import HEIGHT_MARGIN, Flags, Floats, Obstacles
 from mmrs_core.planning.visibility import Visibility
 from mmrs_core.scene import Position
+from mmrs_core.scene.timing import Rates
 
 _ABOVE = 1e-3
 """Metres that a height is above or below what an area blocks."""
-
-
-@dataclass(frozen=True, slots=True)
-class Rates:
-    """Metres per second, level, up and down; a rate that is not positive rules that direction out.
-
-    Paths are chosen by even speed; plans count time with a standstill at both ends of every leg, speeding
-    up and slowing down at `acceleration`, metres per second squared, and with `shunting`, the seconds that
-    turning takes before a level leg.
-    """
-
-    cruise: float
-    climb: float
-    descent: float
-    acceleration: float = float("inf")
-    shunting: float = 0.0
-
-    def straight_on(self) -> Rates:
-        """Return the rates where the robot need not turn before it goes."""
-        return replace(self, shunting=0.0)
-
-    def upright(self, rise: float) -> float:
-        """Return the seconds of a vertical leg; inf where it is ruled out."""
-        if abs(rise) <= 1e-6:
-            return 0.0
-        rate = self.climb if rise > 0 else self.descent
-        return abs(rise) / rate if rate > 0 else float("inf")
-
-    def leg(self, start: Position, end: Position) -> float:
-        """Return the seconds of a straight leg: the slower of its level and its upright part."""
-        level = hypot(end[0] - start[0], end[1] - start[1]) / self.cruise
-        return max(level, self.upright(end[2] - start[2]))
-
-    def from_stop_to_stop(self, start: Position, end: Position) -> float:
-        """Return the seconds of a straight leg that begins and ends at a standstill."""
-        turning = self.shunting if start[:2] != end[:2] else 0.0
-        return turning + self._with_stops(dist(start, end), self.leg(start, end))
-
-    def rise(self, metres: float) -> float:
-        """Return the seconds of a vertical leg that begins and ends at a standstill."""
-        return self._with_stops(abs(metres), self.upright(metres))
-
-    def _with_stops(self, length: float, even: float) -> float:
-        if not 0.0 < even < float("inf"):
-            return even
-        speed = length / even
-        if length >= speed**2 / self.acceleration:
-            return even + speed / self.acceleration
-        return 2.0 * sqrt(length / self.acceleration)
 
 
 class Layers:

@@ -15,7 +15,6 @@ from mmrs_core.planning.strokes import (
     continues,
     joined,
     length_of,
-    rates_of,
     stops_of,
     uncertain_seconds,
 )
@@ -81,8 +80,8 @@ class _Line:
 
     def __init__(self, stroke: Stroke, pilot: Pilot, soonest: bool) -> None:
         self._robot = pilot.robot
-        rates = rates_of(pilot.kinematics, commanded_speed(stroke, pilot.kinematics))
-        self._rates = rates.straight_on() if soonest else rates
+        rates = pilot.kinematics.rates(commanded_speed(stroke, pilot.kinematics))
+        self._rates = rates.soonest() if soonest else rates
         self._eased = soonest and pilot.travel.fluid
         self._stops = stops_of(stroke)
         todo = list(stroke.actions)
@@ -102,7 +101,7 @@ class _Line:
         self.whole = self._departures[-1] + stroke.hold + turning
 
     def _leg(self, one: Position, two: Position) -> float:
-        return self._rates.leg(one, two) if self._eased else self._rates.from_stop_to_stop(one, two)
+        return self._rates.eased(one, two) if self._eased else self._rates.from_stop_to_stop(one, two)
 
     def _acting(self, actions: Iterable[ActionAt]) -> float:
         return sum(action_seconds(self._robot.type, action) for action in actions)

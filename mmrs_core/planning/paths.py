@@ -12,10 +12,11 @@ from mmrs_core.errors import UnreachableError
 from mmrs_core.geometry.clearance import EPSILON
 from mmrs_core.geometry.segments import legs_of
 from mmrs_core.planning.curves import with_fewer_corners
-from mmrs_core.planning.layers import Layers, Rates
+from mmrs_core.planning.layers import Layers
 from mmrs_core.planning.obstacles import Flags, Obstacles
 from mmrs_core.planning.visibility import Visibility, shortest_path
 from mmrs_core.scene import Area, Position
+from mmrs_core.scene.timing import Rates
 
 _ABOVE = 1e-3
 """Metres that a height is above or below what an area blocks."""
@@ -103,7 +104,7 @@ class Space:
             if inside:
                 return f"{name} {_words(end)} is within the clearance of {inside}"
         blockers = self._blockers((start, goal))
-        if not blockers.any() and self.rates.leg(start, goal) < inf:
+        if not blockers.any() and self.rates.even(start, goal) < inf:
             return (start, goal)
         path = self._at_one_height(start, goal)
         return self._cut_short(path) if path else self._at_several_heights(start, goal, blockers)
@@ -178,7 +179,7 @@ class Space:
         steps |= {pair for pair, free in zip(pairs, clear.tolist(), strict=True) if free}
         best, came = [0.0, *[inf] * (count - 1)], [0] * count
         for i, j in sorted(steps):
-            reached = best[i] + self.rates.leg(path[i], path[j])
+            reached = best[i] + self.rates.even(path[i], path[j])
             if reached < best[j] - 1e-9:
                 best[j], came[j] = reached, i
         picks = [count - 1]

@@ -246,7 +246,7 @@ class Pilot:
         at = last
         if self.kinematics.launches and route.height is not None:
             ground = self.robot.home[2] if len(route.points) > 1 else route.height
-            down = self.travel.space.rates.rise(ground - last[2]) + self.kinematics.recovery
+            down = self.kinematics.landing(last[2] - ground)
             at = (last[0], last[1], ground)
         if len(route.points) > 1 and route.points[0] != last:
             trail = (trail, Transit(state.time, end - down, task, route.points))

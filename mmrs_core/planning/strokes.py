@@ -7,7 +7,6 @@ from dataclasses import replace
 from itertools import pairwise
 from math import dist, inf
 
-from mmrs_core.planning.layers import Rates
 from mmrs_core.scene import ActionAt, Kinematics, Position, Robot, RobotType, Stroke
 
 _SAME = 1e-9
@@ -51,15 +50,10 @@ def serve_seconds(stroke: Stroke, robot: Robot, kinematics: Kinematics) -> float
     It stops at every vertex and wherever something is done. Where the robot must turn on the spot, half
     a circle is counted; where an object may be anywhere within a tolerance, the search there and back is.
     """
-    rates = rates_of(kinematics, commanded_speed(stroke, kinematics))
+    rates = kinematics.rates(commanded_speed(stroke, kinematics))
     moving = sum(rates.from_stop_to_stop(one, two) for one, two in pairwise(stops_of(stroke)))
     acting = sum(action_seconds(robot.type, action) for action in stroke.actions)
     return moving + acting + stroke.hold + uncertain_seconds(stroke, kinematics)
-
-
-def rates_of(kinematics: Kinematics, speed: float) -> Rates:
-    """Return the rates of a robot at a commanded speed, metres per second."""
-    return Rates(speed, kinematics.climb, kinematics.descent, kinematics.acceleration, kinematics.shunting)
 
 
 def stops_of(stroke: Stroke) -> list[Position]:

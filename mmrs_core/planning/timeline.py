@@ -14,14 +14,15 @@ from dataclasses import dataclass, field
 from enum import IntEnum
 from itertools import groupby, pairwise
 from math import dist, hypot, inf
+from typing import TypeAlias
 
 from mmrs_core.errors import InternalError
-from mmrs_core.planning.layers import Rates
-from mmrs_core.planning.strokes import NEAR, action_seconds, rates_of, stops_of, uncertain_seconds
+from mmrs_core.planning.strokes import NEAR, action_seconds, stops_of, uncertain_seconds
 from mmrs_core.planning.travel import kinematics_of
 from mmrs_core.scene import (
     Await,
     Branch,
+    Kinematics,
     Launch,
     Plan,
     Position,
@@ -32,6 +33,10 @@ from mmrs_core.scene import (
     Step,
     Transit,
 )
+from mmrs_core.scene.timing import Rates
+
+_Given: TypeAlias = tuple[float, float]
+"""Seconds at which a signal is given at the earliest, and at the latest."""
 
 
 class HomeRelation(IntEnum):
@@ -70,11 +75,9 @@ def rides_of(plan: Plan, robots: Mapping[str, Robot]) -> dict[str, tuple[Ride, .
 
     Whatever a robot does last, it then stays where it is; robots without steps stay at home.
     """
-    walks = {
-        each.robot: _Walk(robots[each.robot], rates_of_robot(robots[each.robot])) for each in plan.robots
-    }
+    walks = {each.robot: _Walk(robots[each.robot], kinematics_of(robots[each.robot])) for each in plan.robots}
     left = {each.robot: list(each.steps) for each in plan.robots}
-    given: dict[str, float] = {}
+    given: dict[str, _Given] = {}
     while any(left.values()):
         before = sum(map(len, left.values()))
         for name, steps in left.items():
@@ -87,25 +90,21 @@ def rides_of(plan: Plan, robots: Mapping[str, Robot]) -> dict[str, tuple[Ride, .
     return {name: tuple(walk.rides) for name, walk in walks.items()}
 
 
-def rates_of_robot(robot: Robot) -> Rates:
-    """Return the rates of a robot at its cruise."""
-    kinematics = kinematics_of(robot)
-    return rates_of(kinematics, kinematics.cruise)
-
-
 @dataclass(slots=True)
 class _Walk:
-    """One robot in its steps, as early as it may be.
+    """One robot in its steps, as early and as late as it may be.
 
     Attributes:
-        now: seconds; here: where it is; radius: how far from there it may be.
+        now: seconds at which it is there at the earliest; by: at the latest.
+        here: where it is; radius: how far from there it may be.
         gone: whether it has gone anywhere yet.
     """
 
     robot: Robot
-    rates: Rates
+    kinematics: Kinematics
     rides: list[Ride] = field(default_factory=list)
     now: float = 0.0
+    by: float = 0.0
     here: Position = (0.0, 0.0, 0.0)
     radius: float = 0.0
     gone: bool = False
@@ -113,14 +112,14 @@ class _Walk:
     def __post_init__(self) -> None:
         self.here = self.robot.home
 
-    def may_begin(self, step: Step, given: Mapping[str, float]) -> bool:
+    def may_begin(self, step: Step, given: Mapping[str, _Given]) -> bool:
         return not isinstance(step, Await) or all(signal in given for signal in step.signals)
 
-    def add(self, step: Step, given: dict[str, float]) -> None:
+    def add(self, step: Step, given: dict[str, _Given]) -> None:
         if isinstance(step, Await):
             self._await(step, given)
         elif isinstance(step, Signal):
-            given[step.signal] = self.now
+            given[step.signal] = (self.now, self.by)
         elif isinstance(step, Branch):
             self._branch(step, given)
         elif isinstance(step, Serve):
@@ -130,81 +129,93 @@ class _Walk:
         elif isinstance(step, Launch | Recover):
             self._upright(step)
         else:
-            self._stay(step.end - step.begin, step.end)
+            self._stay(step.end - step.begin)
 
     def stay_to_the_end(self) -> None:
-        self._stay(0.0, inf)
+        self.by = inf
+        self._stay(0.0)
 
     def _upright(self, step: Launch | Recover) -> None:
         column = self.here, (step.at[0], step.at[1], step.up)
         over_home = all(dist(point[:2], self.robot.home[:2]) <= NEAR for point in column)
         relation = HomeRelation.COLUMN if over_home else HomeRelation.ELSEWHERE
-        self._ride(column, step.end - step.begin, step.end, relation=relation)
+        seconds = self.kinematics.timing.bounded(step.end - step.begin)
+        self._ride(column, seconds.shortest, seconds.longest, self.kinematics.rates(), relation=relation)
 
-    def _await(self, step: Await, given: Mapping[str, float]) -> None:
-        own = self.now + (0.0 if step.until is None else max(0.0, step.until - step.begin))
-        self._stay(max([own, *(given[signal] for signal in step.signals)]) - self.now, step.end)
+    def _await(self, step: Await, given: Mapping[str, _Given]) -> None:
+        waits = 0.0 if step.until is None else max(0.0, step.until - step.begin)
+        early, late = self.now + waits, max(self.by + waits, step.end)
+        self.by = max([late, *(given[signal][1] for signal in step.signals)])
+        self._stay(max([early, *(given[signal][0] for signal in step.signals)]) - self.now, 0.0)
 
-    def _branch(self, step: Branch, given: dict[str, float]) -> None:
+    def _branch(self, step: Branch, given: dict[str, _Given]) -> None:
         """Take every arm; continue as soon as the quickest one may."""
-        begin, ends = (self.now, self.here, self.radius), []
+        begin, ends, latest = (self.now, self.by, self.here, self.radius), [], step.end
         for _, arm in step.arms:
-            self.now, self.here, self.radius = begin
+            self.now, self.by, self.here, self.radius = begin
             for inner in arm:
                 self.add(inner, given)
-            self._stay(0.0, step.end)
-            ends.append(self.now)
-        self.now, self.here = min(ends), step.exit
+            latest = max(latest, self.by)
+            ends.append((self.now, self.here, self.radius))
+        for self.now, self.here, self.radius in ends:
+            self.by = latest
+            self._stay(0.0)
+        self.now, self.here = min(now for now, _, _ in ends), step.exit
 
     def _transit(self, step: Transit) -> None:
-        rates = self.rates if step.speed is None else rates_of(kinematics_of(self.robot), step.speed)
-        legs = list(pairwise(step.route))
-        late = step.begin
-        for points in _moves_along(legs):
-            late += sum(rates.from_stop_to_stop(one, two) for one, two in pairwise(points))
-            least = sum(rates.straight_on().from_stop_to_stop(one, two) for one, two in pairwise(points))
-            self._ride(points, least, late, rates)
+        rates = self.kinematics.rates(step.speed)
+        for points in _moves_along(list(pairwise(step.route))):
+            self._go(points, rates)
         self.radius = 0.0
 
     def _serve(self, step: Serve) -> None:
-        rates = rates_of(kinematics_of(self.robot), step.speed)
-        todo, done, late = list(step.stroke.actions), 0.0, step.begin
+        rates = self.kinematics.rates(step.speed)
+        todo, done, planned = list(step.stroke.actions), 0.0, 0.0
         for place in stops_of(step.stroke):
             done += dist(self.here, place)
-            late += rates.from_stop_to_stop(self.here, place)
+            planned += rates.from_stop_to_stop(self.here, place)
             if place != self.here:
-                least = rates.straight_on().from_stop_to_stop(self.here, place)
-                self._ride((self.here, place), least, late, rates)
+                self._go((self.here, place), rates)
             while todo and todo[0].at <= done + NEAR:
                 acting = action_seconds(self.robot.type, todo.pop(0))
-                late += acting
-                self._stay(acting, late)
+                planned += acting
+                self._stay(acting)
         if step.stroke.object is not None:
             self.radius = step.stroke.object_tolerance or 0.0
-        certain = step.end - late - uncertain_seconds(step.stroke, kinematics_of(self.robot))
-        self._stay(max(0.0, certain), step.end)
+        left = step.end - step.begin - planned
+        certain = left - uncertain_seconds(step.stroke, self.kinematics)
+        self._stay(max(0.0, certain), max(0.0, left))
+
+    def _go(self, points: tuple[Position, ...], rates: Rates) -> None:
+        soonest, latest = rates.soonest(), rates.latest()
+        legs = list(pairwise(points))
+        least = sum(soonest.from_stop_to_stop(*leg) for leg in legs)
+        self._ride(points, least, sum(latest.from_stop_to_stop(*leg) for leg in legs), rates)
 
     def _ride(
         self,
         points: tuple[Position, ...],
         seconds: float,
-        late: float,
-        rates: Rates | None = None,
+        longest: float,
+        rates: Rates,
         *,
         relation: HomeRelation = HomeRelation.ELSEWHERE,
     ) -> None:
-        least = tuple((rates or self.rates).leg(one, two) for one, two in pairwise(points))
-        self.rides.append(Ride(points, self.now, late, least, self.radius, relation))
+        """Go along points for so long at least, and at most."""
+        least = tuple(rates.even(one, two) for one, two in pairwise(points))
+        self.by += longest
+        self.rides.append(Ride(points, self.now, self.by, least, self.radius, relation))
         self.now, self.here, self.gone = self.now + seconds, points[-1], True
 
-    def _stay(self, seconds: float, late: float) -> None:
-        """Stay for so long at least; what comes next may begin then, or as late as `late`."""
-        if late > self.now:
+    def _stay(self, seconds: float, longest: float | None = None) -> None:
+        """Stay for so long at least, and at most."""
+        self.by += seconds if longest is None else longest
+        if self.by > self.now:
             relation = (
                 HomeRelation.HOME if dist(self.here, self.robot.home) <= NEAR else HomeRelation.ELSEWHERE
             )
             early = self.now if self.gone else -inf
-            self.rides.append(Ride((self.here,), early, late, (), self.radius, relation))
+            self.rides.append(Ride((self.here,), early, self.by, (), self.radius, relation))
         self.now += seconds
 
 

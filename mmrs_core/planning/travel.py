@@ -9,10 +9,10 @@ from math import dist, inf
 
 from mmrs_core.errors import InternalError, UnreachableError
 from mmrs_core.geometry.ground import ground_height
-from mmrs_core.planning.layers import Rates
 from mmrs_core.planning.paths import Space
-from mmrs_core.planning.strokes import length_of, rates_of
+from mmrs_core.planning.strokes import length_of
 from mmrs_core.scene import Area, AreaUse, Kinematics, Position, Robot, Scene
+from mmrs_core.scene.timing import Rates
 
 _SPECK = 0.01
 """Metres: half the side of the square that stands for a home."""
@@ -56,7 +56,7 @@ class Spaces:
     def of(self, robot: Robot) -> Space:
         """Return the space of a robot whose kinematics are known."""
         kinematics = kinematics_of(robot)
-        rates = rates_of(kinematics, kinematics.cruise)
+        rates = kinematics.rates()
         areas = (*self._scene.kept_from(robot), *self._homes_kept_from(robot))
         alike = frozenset(map(id, areas))
         radius = kinematics.turning_radius
@@ -151,7 +151,7 @@ class Travel:
         """Return the same route, its route gone at a commanded speed; None: at the robot's cruise."""
         if speed is None:
             return route
-        rates = rates_of(self.kinematics, speed)
+        rates = self.kinematics.rates(speed)
         seconds = sum(rates.from_stop_to_stop(one, two) for one, two in pairwise(route.points))
         whole = route.seconds - self.space.seconds(route.points) + seconds
         return replace(route, seconds=whole, lead=self._lead(route.points, rates))
@@ -169,16 +169,21 @@ class Travel:
         below = self.space.blockers(column)
         if below:
             raise UnreachableError(f"the ground below ({start[0]:.1f}, {start[1]:.1f}) is close to {below}")
-        seconds = self.space.seconds(column) + self.kinematics.recovery
-        return Route((start,), seconds, length_of(column), ground)
+        seconds = self.kinematics.landing(start[2] - ground)
+        return Route((start,), seconds, length_of(column), ground, self._spread(seconds))
 
     def _timed(self, route: tuple[Position, ...]) -> Route:
         lead = self._lead(route, self.space.rates)
         return Route(route, self.space.seconds(route), length_of(route), lead=lead)
 
     def _lead(self, route: tuple[Position, ...], rates: Rates) -> float:
-        quickest = rates.leg if self.fluid else rates.straight_on().from_stop_to_stop
+        soonest = rates.soonest()
+        quickest = soonest.eased if self.fluid else soonest.from_stop_to_stop
         return sum(rates.from_stop_to_stop(*leg) - quickest(*leg) for leg in pairwise(route))
+
+    def _spread(self, seconds: float) -> float:
+        """Return by how much quicker than expected what takes so long may be."""
+        return seconds - self.kinematics.timing.bounded(seconds).shortest
 
     def _outward(self, goal: Position) -> Route | str:
         if not self.kinematics.launches:
@@ -191,8 +196,9 @@ class Travel:
                 best = best or route
                 continue
             climb = height - self.robot.home[2]
-            seconds = self.kinematics.launch + self.space.rates.rise(climb) + route.seconds
-            return Route(route.points, seconds, route.length + climb, height, route.lead)
+            up = self.kinematics.launch + self.space.rates.rise(climb)
+            lead = route.lead + self._spread(up)
+            return Route(route.points, up + route.seconds, route.length + climb, height, lead)
         return best
 
     def _inward(self, start: Position) -> Route | str:
@@ -206,8 +212,9 @@ class Travel:
                 best = best or route
                 continue
             drop = height - self.robot.home[2]
-            seconds = route.seconds + self.space.rates.rise(-drop) + self.kinematics.recovery
-            return Route(route.points, seconds, route.length + drop, height, route.lead)
+            down = self.kinematics.landing(drop)
+            lead = route.lead + self._spread(down)
+            return Route(route.points, route.seconds + down, route.length + drop, height, lead)
         return best
 
     def _launch_heights(self, other: Position) -> list[float]:

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from math import dist, inf, sqrt, tan
 
 from mmrs_core.diagnostics import Place
 from mmrs_core.scene.primitives import Metaclasses, Part, Position, TravelMode
+from mmrs_core.scene.timing import IDEAL, LegTiming, Rates
 from mmrs_runtime.policies import Policy
 
 
@@ -22,6 +23,9 @@ class Capability:
         acceleration: largest, metres per second squared.
         climb_rate, descent_rate: largest, metres per second.
         turn_rate: largest, degrees per second.
+        leg_timings: what the type states of how its autopilot takes legs, by way of being commanded
+            (``STEP``, ``MISSION``) and by attribute of `LegTiming`.
+        launch, recovery, landing_rate, landing_height: as in `Kinematics`.
     """
 
     payload: float
@@ -32,6 +36,30 @@ class Capability:
     descent_rate: float | None = None
     turn_rate: float | None = None
     part: Part = field(default_factory=lambda: Part((), {}))
+    leg_timings: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
+    launch: float | None = None
+    recovery: float | None = None
+    landing_rate: float | None = None
+    landing_height: float | None = None
+
+    def timing(self, mode: str, autopilot: LegTiming = IDEAL) -> LegTiming:
+        """Return how legs are taken: as the type states, else by its autopilot within the type's limits.
+
+        Args:
+            mode: ``STEP`` or ``MISSION``.
+            autopilot: how its autopilot takes them, in that mode.
+        """
+        largest, upright = self.acceleration or inf, autopilot.vertical_acceleration
+        limited = replace(
+            autopilot,
+            acceleration=min(autopilot.acceleration, largest),
+            deceleration=None if autopilot.deceleration is None else min(autopilot.deceleration, largest),
+            vertical_acceleration=None if upright is None else min(upright, largest),
+            speed=min(autopilot.speed, self.speed[1]),
+            climb=min(autopilot.climb, self.climb_rate or self.speed[1]),
+            descent=min(autopilot.descent, self.descent_rate or self.speed[1]),
+        )
+        return replace(limited, **self.leg_timings.get(mode, {}))
 
 
 @dataclass(frozen=True, slots=True)
@@ -101,11 +129,13 @@ class Kinematics:
         cruise: metres per second by travel mode, within the capability's limits.
         slowest, fastest: limits of commanded speed over ground, metres per second.
         climb, descent: metres per second, vertical.
-        acceleration: metres per second squared; inf where it does not matter.
+        timing: of legs that are commanded one by one.
         turn_rate: degrees per second.
         floor, ceiling: heights above the origin between which the robot may move, metres.
         launch: seconds that launching takes beside the climb; recovery: likewise for landing.
-        endurance: usable seconds of one sortie, reserve taken off; inf for wired robots.
+        landing_rate: metres per second of the descent below `landing_height`, metres above the ground.
+        endurance: usable seconds of one sortie, reserve and the spread of flown times taken off; inf for
+            wired robots.
         energy: usable joules of one sortie, reserve taken off; inf for wired robots.
         power: mean power in watts; 0 where nothing is known of energy.
         draw: by how much the power may exceed the mean for long, as a factor of one or more: what it
@@ -117,8 +147,8 @@ class Kinematics:
             `fastest` is what is left of it against the wind or the current. None: nothing is lost.
         turning_radius: of its narrowest curve, metres; 0: it turns on the spot. Else it shunts where it
             stops: it keeps within so far of that place, and takes up to 180° / `turn_rate`.
-        overshoot: seconds; times its largest level speed on a leg, the metres by which it overshoots the end
-            where it stops.
+        rounds: whether it drives round instead of shunting, if there is room.
+        mission: timing of the legs of a mission that is uploaded; None: as that of single ones.
     """
 
     cruise: float
@@ -126,12 +156,14 @@ class Kinematics:
     fastest: float
     climb: float
     descent: float
-    acceleration: float = inf
+    timing: LegTiming = IDEAL
     turn_rate: float = 90.0
     floor: float = -inf
     ceiling: float = inf
     launch: float = 0.0
     recovery: float = 0.0
+    landing_rate: float = inf
+    landing_height: float = 0.0
     endurance: float = inf
     energy: float = inf
     power: float = 0.0
@@ -140,7 +172,8 @@ class Kinematics:
     launches: bool = False
     own_speed: float | None = None
     turning_radius: float = 0.0
-    overshoot: float = 0.0
+    rounds: bool = False
+    mission: LegTiming | None = None
 
     def fits_curve(self, turn: float, leg: float) -> bool:
         """Return whether the robot can pass a corner in its narrowest curve without leaving the legs before.
@@ -160,15 +193,15 @@ class Kinematics:
             speed: commanded, metres per second; a short leg does not get it so fast.
         """
         east, north, length = end[0] - start[0], end[1] - start[1], dist(start, end)
-        if length <= 0.0 or self.overshoot <= 0.0:
+        if length <= 0.0 or self.timing.overshoot <= 0.0:
             return end
-        share = self.overshoot * min(speed, sqrt(self.acceleration * length)) / length
+        share = self.timing.overshoot * min(speed, sqrt(self.timing.acceleration * length)) / length
         return end[0] + share * east, end[1] + share * north, end[2]
 
     @property
     def room(self) -> float:
         """Return the metres by which its paths keep more than its clearance: to turn, and to stop late."""
-        return self.turning_radius + self.overshoot * self.cruise
+        return self.turning_radius + self.timing.overshoot * self.cruise
 
     @property
     def shunting(self) -> float:
@@ -177,6 +210,33 @@ class Kinematics:
         These turn while they set out, which is not counted.
         """
         return 180.0 / self.turn_rate if self.turning_radius > 0.0 else 0.0
+
+    def rates(self, speed: float | None = None) -> Rates:
+        """Return how fast it goes along legs at a commanded speed, metres per second; None: at its cruise."""
+        wanted = self.cruise if speed is None else min(max(speed, self.slowest), self.fastest)
+        return Rates(wanted, self.climb, self.descent, self.timing, self.shunting, self.rounds)
+
+    def flown_by(self, timing: LegTiming) -> Kinematics:
+        """Return what it can do where its autopilot takes legs in this way."""
+        return replace(
+            self,
+            timing=timing,
+            cruise=min(self.cruise, timing.speed),
+            fastest=min(self.fastest, timing.speed),
+            climb=min(self.climb, timing.climb),
+            descent=min(self.descent, timing.descent),
+        )
+
+    def in_mission(self) -> Kinematics:
+        """Return what it can do on a mission that is uploaded."""
+        return self if self.mission is None else self.flown_by(self.mission)
+
+    def landing(self, height: float) -> float:
+        """Return the seconds of coming down to the ground from a height, metres, until it stands still."""
+        slow = min(height, self.landing_height)
+        later = slow / self.landing_rate if self.landing_rate < inf else 0.0
+        rates = self.rates()
+        return rates.rise(slow - height) + later + self.recovery
 
 
 @dataclass(frozen=True, slots=True)

@@ -9,11 +9,13 @@ holds its position has the whole wind against it.
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from itertools import pairwise
 from math import atan2, cos, degrees, hypot, inf, radians, sin, sqrt
 from typing import NamedTuple, TypeAlias
 
 from mmrs_core.scene import Kinematics, Position
+from mmrs_core.scene.timing import Rates
 
 CLIMBING = 0.3
 """How much more power a robot takes when it climbs as fast as it can, as a part of the mean power."""
@@ -95,32 +97,24 @@ class Stretch(NamedTuple):
 
 def stretches(
     path: tuple[Position, ...],
-    speed: float,
+    rates: Rates,
+    seconds: float,
     kinematics: Kinematics,
-    bounds: tuple[float, float],
     *,
     flow: Flow = STILL,
-    stops: int = 2,
 ) -> tuple[Stretch, ...]:
     """Return how a robot travels along a path; empty if the flow is too strong for it.
 
     Args:
         path: straight legs; one position: it stays there.
-        speed: commanded, over ground, metres per second.
+        rates: at its commanded speed.
+        seconds: of the whole path in still air or water.
         kinematics: of the robot.
-        bounds: shortest and longest duration in still air or water, which its move kind declares.
         flow: velocity of the air or water, east and north, metres per second.
-        stops: at how many ends of the path the robot stands still: accelerating takes time.
     """
     legs = ((path[0], path[-1]),) if len(path) < 3 else tuple(pairwise(path))
-    nominal = [_leg_seconds(a, b, speed, kinematics) for a, b in legs]
+    nominal = [rates.from_stop_to_stop(a, b) for a, b in legs]
     whole = sum(nominal)
-    wanted = whole
-    if stops and kinematics.acceleration < inf:
-        length = sum([_length(a, b) for a, b in legs])
-        pace = length / whole if 0.0 < whole < inf else speed
-        wanted += _acceleration_seconds(length, pace, kinematics.acceleration, stops)
-    seconds = min(max(wanted, bounds[0]), bounds[1])
     found = []
     for (start, finish), share in zip(legs, nominal, strict=True):
         own = seconds * (share / whole if whole > 0.0 else 1.0 / len(legs))
@@ -146,9 +140,10 @@ def response_stretches(
         moving: whether it is already in motion.
     """
     found: list[Stretch] = []
-    for number, leg in enumerate(pairwise(path)):
-        stops = 0 if moving and number == 0 else 2
-        made = stretches(leg, kinematics.cruise, kinematics, (0.0, inf), flow=flow, stops=stops)
+    rates = replace(kinematics.rates(), shunting=0.0)
+    for number, (start, finish) in enumerate(pairwise(path)):
+        seconds = rates.even if moving and number == 0 else rates.from_stop_to_stop
+        made = stretches((start, finish), rates, seconds(start, finish), kinematics, flow=flow)
         if not made:
             return ()
         found += made
@@ -198,31 +193,6 @@ def current(environment: Mapping[str, float]) -> Flow:
 
 def _length(start: Position, finish: Position) -> float:
     return hypot(finish[0] - start[0], finish[1] - start[1], finish[2] - start[2])
-
-
-def _leg_seconds(start: Position, finish: Position, speed: float, kinematics: Kinematics) -> float:
-    level, rise = hypot(finish[0] - start[0], finish[1] - start[1]), finish[2] - start[2]
-    across = _seconds(level, speed)
-    if rise == 0.0:
-        return across
-    return max(
-        across, _seconds(rise, kinematics.climb) if rise > 0.0 else _seconds(-rise, kinematics.descent)
-    )
-
-
-def _seconds(way: float, pace: float) -> float:
-    if way == 0.0:
-        return 0.0
-    return way / pace if pace > 0.0 else inf
-
-
-def _acceleration_seconds(length: float, speed: float, acceleration: float, stops: int) -> float:
-    """Return what `stops` standstills at the ends of a path cost against constant speed."""
-    if length <= 0.0 or speed <= 0.0:
-        return 0.0
-    if length >= stops * speed**2 / (2.0 * acceleration):
-        return stops * speed / (2.0 * acceleration)
-    return sqrt(2.0 * stops * length / acceleration) - length / speed
 
 
 def _own_speed(kinematics: Kinematics) -> float:

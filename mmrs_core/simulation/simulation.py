@@ -12,6 +12,7 @@ surroundings, a robot that flies detects what lies below it whenever one of its 
 from __future__ import annotations
 
 from bisect import bisect_right
+from itertools import pairwise
 from math import hypot, inf
 from operator import attrgetter
 from pathlib import Path
@@ -19,10 +20,12 @@ from pathlib import Path
 from mmrs_core.behaviour.as_scene import robot_of
 from mmrs_core.behaviour.program import BEHAVIOUR, DEVICE_ACTION, Action, Heading, Move
 from mmrs_core.contributions.execution import Fault, RobotState, Sample
+from mmrs_core.contributions.passages import Passages
 from mmrs_core.contributions.rules import MoveKind, robot_kind_of
 from mmrs_core.contributions.vehicles import VehicleFactory, VehicleInput
 from mmrs_core.errors import InternalError, UsageError
 from mmrs_core.scene import Position
+from mmrs_core.scene.timing import MoveSeconds
 from mmrs_core.simulation.battery import SLACK, SimulatedBattery
 from mmrs_core.simulation.escape import Escapes
 from mmrs_core.simulation.known import kinematics_of, move_kinds_of
@@ -73,12 +76,15 @@ class SimulatedRobot(Vehicle):
         self._places: dict[str, Position] = {}
         self._given, self._robot = given, robot_of(given.robot, given.type, given.program.position_error)
         self._kinematics, self._kinds = kinematics_of(given), move_kinds_of(given)
+        local = given.program.frame.is_local
+        self._passages = Passages(given.robot, given.move_kinds, self._kinematics, local=local)
         policies = in_precedence(given.robot.policies, given.policies)
         self._escapes = Escapes(given, self._kinematics, self._robot.home)
         self._battery = SimulatedBattery(self._kinematics, self._escapes, policies)
         self.notes: list[str] = []
         self._wind, self._current = wind(given.environment), current(given.environment)
-        self._grounded, self._stopped, self._halted, self._rolling = True, False, False, False
+        self._grounded, self._stopped, self._halted = True, False, False
+        self._rolling = 0.0
         self._bears = False
         self._move: Move | None = None
         self._fault: Fault | None = None
@@ -210,30 +216,35 @@ class SimulatedRobot(Vehicle):
     def _travel(
         self, move: Move, kind: MoveKind, path: tuple[Position, ...], now: float, through: bool
     ) -> None:
-        kinematics = self._kinematics
-        bounds = kind.seconds(move, path, kinematics, self._robot.travel_mode)
-        speed = min(max(move.speed or kinematics.cruise, kinematics.slowest), kinematics.fastest)
-        stops = 2 - self._rolling - through
-        self._rolling = through
-        found = stretches(path, speed, kinematics, bounds, flow=self._flow(), stops=stops)
+        kinematics = self._passages.kinematics(move)
+        duration = kind.seconds(move, path, kinematics, self._robot.travel_mode)
+        rates = kinematics.rates(move.speed)
+        shunting = sum(rates.turning(*leg) for leg in pairwise(path))
+        stood, ahead = self._rolling == 0.0, self._passages.ahead(move, path) if through else None
+        seconds = duration.expected - shunting - self._rolling
+        self._rolling = 0.0
+        if ahead is not None:
+            seconds -= ahead.settling + ahead.overlap / 2.0
+            self._rolling = ahead.overlap / 2.0
+        found = stretches(path, rates, max(0.0, seconds), kinematics, flow=self._flow())
         if not found:
             self._fault = Fault("WIND", "too strong to make headway")
             return
         if len(path) == 1:
-            found = (self._turning(move, found[0], bounds),)
-        elif stops == 2 and kinematics.turning_radius > 0.0:
+            found = (self._turning(move, found[0], duration),)
+        elif stood and shunting > 0.0 and not through:
             found = (*self._shunted(found[0]), *found)
         self._append(found, now, move.heading, free=move.is_a(RECHARGE))
         if all(bearing(each.start, each.finish) is None for each in found):
             self._hold_against_wind(sum(each.seconds for each in found))
 
-    def _turning(self, move: Move, stretch: Stretch, bounds: tuple[float, float]) -> Stretch:
+    def _turning(self, move: Move, stretch: Stretch, duration: MoveSeconds) -> Stretch:
         """Return a stay on the spot, as long as a turn to the move's heading takes at least."""
         goal = self._aim(move.heading, stretch.finish)
         if goal is None:
             return stretch
         seconds = abs(turn(self._legs[-1].headings[1], goal)) / self._kinematics.turn_rate
-        seconds = min(max(seconds, bounds[0]), bounds[1])
+        seconds = min(max(seconds, duration.shortest), duration.longest)
         return Stretch(stretch.start, stretch.finish, seconds, stretch.rate)
 
     def _shunted(self, first: Stretch) -> tuple[Stretch, ...]:
@@ -265,7 +276,7 @@ class SimulatedRobot(Vehicle):
         here = self._legs[-1].finish
         rate = cost(here, here, seconds, self._kinematics, self._flow())
         self._append((Stretch(here, here, seconds, rate),), now)
-        self._rolling = False
+        self._rolling = 0.0
         self._hold_against_wind(seconds)
 
     def _arrive(self, move: Move) -> None:

@@ -39,7 +39,11 @@ def sample_type(
     devices: Mapping[str, Device] | None = None,
     speed: tuple[float, float] = (0.0, 10.0),
     lifetime: float = 1000.0,
-    **capability: float,
+    payload: float = 1.0,
+    acceleration: float | None = None,
+    climb_rate: float | None = None,
+    descent_rate: float | None = None,
+    turn_rate: float | None = None,
 ) -> RobotType:
     """Return a robot type with one capability and no battery; half its diagonal is half a metre.
 
@@ -51,17 +55,17 @@ def sample_type(
         devices: that it carries, by identifier.
         speed: smallest and largest, metres per second.
         lifetime: on full batteries, seconds.
-        capability: further figures of `Capability`, by name.
+        payload, acceleration, climb_rate, descent_rate, turn_rate: as in `Capability`.
     """
     part = movement or Part((), {})
-    figures = {"payload": 1.0, **capability}
+    rates = climb_rate, descent_rate, turn_rate
     return RobotType(
         name,
         metaclasses,
         part.metaclasses,
         0.5,
         None,
-        (Capability(lifetime=lifetime, speed=speed, part=part, **figures),),
+        (Capability(payload, lifetime, speed, acceleration, *rates, part),),
         (),
         devices or {},
         Part(metaclasses, attributes or {}),

@@ -69,7 +69,7 @@ class Corners:
         if kinematics is None:
             return False
         pace = speed or kinematics.cruise
-        cut = max(LEAST_CUT, pace**2 / (2 * kinematics.acceleration))
+        cut = max(LEAST_CUT, kinematics.timing.cut(pace))
         point = shapely.Point(corner[:2])
         return all(
             shape.distance(point) >= keep + cut for shape, keep in zip(self._shapes, self._keep, strict=True)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from itertools import pairwise
-from math import dist, hypot, inf, sqrt
+from math import dist, inf
 from typing import TYPE_CHECKING
 
 from mmrs_core.behaviour.travel import SHARE_OF_LARGEST_SPEED
@@ -12,6 +12,7 @@ from mmrs_core.contributions.rules import MoveKind, MoveSpec, RobotKind
 from mmrs_core.contributions.samples import sample_type
 from mmrs_core.errors import InfeasibleError
 from mmrs_core.scene import Capability, Kinematics, Position, Robot, RobotType, Scene
+from mmrs_core.scene.timing import MoveSeconds
 
 if TYPE_CHECKING:
     from mmrs_core.behaviour.program import Move
@@ -20,6 +21,9 @@ ROBOT = ("urn:mmrs:robot:1.0", "Robot")
 BEHAVIOUR = "urn:mmrs:behaviour:1.0"
 ANYWHERE = frozenset({"grounded", "airborne", "moving"})
 AFLOAT = frozenset({"airborne", "moving"})
+
+_NOTICING = 0.5
+"""Seconds after which the end of a hold is noticed, at most."""
 
 _HEADWAY = 0.1
 """Metres per second that a robot must make against wind or current to go anywhere."""
@@ -86,6 +90,7 @@ def kinematics_for(
     slowest, own_speed = capability.speed
     against = scene.environment.get(flow, 0.0)
     fastest = _over_ground(slowest, own_speed, against)
+    timing = capability.timing("STEP")
     stored = sum(battery.energy for battery in robot.type.batteries)
     lifetime = capability.lifetime
     usable = 1.0 - scene.reserve
@@ -93,14 +98,16 @@ def kinematics_for(
         cruise=min(fastest, max(slowest, SHARE_OF_LARGEST_SPEED[robot.travel_mode] * own_speed)),
         slowest=slowest,
         fastest=fastest,
-        climb=capability.climb_rate or own_speed,
-        descent=capability.descent_rate or own_speed,
-        acceleration=capability.acceleration or inf,
+        climb=timing.climb,
+        descent=timing.descent,
+        timing=timing,
         turn_rate=capability.turn_rate or 90.0,
         floor=floor,
         ceiling=ceiling,
-        launch=launch,
-        recovery=recovery,
+        launch=launch if capability.launch is None else capability.launch,
+        recovery=recovery if capability.recovery is None else capability.recovery,
+        landing_rate=inf if capability.landing_rate is None else capability.landing_rate,
+        landing_height=capability.landing_height or 0.0,
         endurance=inf if lifetime is None else lifetime * usable,
         energy=stored * usable if stored else inf,
         power=stored / lifetime if stored and lifetime else 0.0,
@@ -108,6 +115,7 @@ def kinematics_for(
         recharge=_recharge(robot.type),
         launches=launches,
         own_speed=own_speed,
+        mission=capability.timing("MISSION") if capability.leg_timings.get("MISSION") else None,
     )
 
 
@@ -157,43 +165,21 @@ def before_target(here: Position, target: Position, distance: float) -> Position
     )
 
 
-def leg_seconds(start: Position, end: Position, speed: float, kinematics: Kinematics) -> float:
-    """Return how long a straight leg takes at even speed: the slower of its level and its vertical part."""
-    level = hypot(end[0] - start[0], end[1] - start[1]) / speed
-    rise = end[2] - start[2]
-    return max(level, rise / kinematics.climb, -rise / kinematics.descent)
-
-
-def stopping_seconds(start: Position, end: Position, speed: float, kinematics: Kinematics) -> float:
-    """Return how long a straight leg takes that begins and ends at a standstill.
-
-    The robot speeds up and slows down at its largest acceleration, and may be too near to get up to speed.
-    One that cannot turn on the spot may have to turn right round first.
-    """
-    even, length = leg_seconds(start, end, speed, kinematics), dist(start, end)
-    if even <= 0.0:
-        return even
-    pace = length / even
-    turning = kinematics.shunting if start[:2] != end[:2] else 0.0
-    if length >= pace**2 / kinematics.acceleration:
-        return turning + even + pace / kinematics.acceleration
-    return turning + 2.0 * sqrt(length / kinematics.acceleration)
-
-
-def path_seconds(
-    move: Move, path: tuple[Position, ...], kinematics: Kinematics, mode: str
-) -> tuple[float, float]:
+def path_seconds(move: Move, path: tuple[Position, ...], kinematics: Kinematics, mode: str) -> MoveSeconds:
     """Return how long a move along a path takes at its commanded or its robot's cruise speed.
 
     The robot stops after every leg; where the move flows into the next or out of the one before, it may
-    be as quick as at even speed. One that cannot turn on the spot may go the right way already.
+    be quicker. One that cannot turn on the spot may have to turn right round first, or go the right way
+    already.
     """
-    speed = min(max(move.speed or kinematics.cruise, kinematics.slowest), kinematics.fastest)
-    whole = sum(stopping_seconds(a, b, speed, kinematics) for a, b in pairwise(path))
-    if not move.flows:
-        turning = sum(kinematics.shunting for a, b in pairwise(path) if a[:2] != b[:2])
-        return whole - turning, whole
-    return sum(leg_seconds(a, b, speed, kinematics) for a, b in pairwise(path)), whole
+    rates, legs = kinematics.rates(move.speed), list(pairwise(path))
+    soonest = rates.soonest()
+    quickest = soonest.eased if move.flows else soonest.from_stop_to_stop
+    return MoveSeconds(
+        sum(quickest(a, b) for a, b in legs),
+        sum(rates.from_stop_to_stop(a, b) for a, b in legs),
+        sum(rates.latest().from_stop_to_stop(a, b) for a, b in legs),
+    )
 
 
 def stays(move: Move, here: Position, home: Position | None) -> tuple[Position, ...]:
@@ -201,25 +187,22 @@ def stays(move: Move, here: Position, home: Position | None) -> tuple[Position, 
     return (here,)
 
 
-def no_time(move: Move, path: tuple[Position, ...], kinematics: Kinematics, mode: str) -> tuple[float, float]:
+def no_time(move: Move, path: tuple[Position, ...], kinematics: Kinematics, mode: str) -> MoveSeconds:
     """Return the duration of a move that takes none."""
-    return 0.0, 0.0
+    return MoveSeconds.exactly(0.0)
 
 
-def declared_time(
-    move: Move, path: tuple[Position, ...], kinematics: Kinematics, mode: str
-) -> tuple[float, float]:
-    """Return the duration that the move itself declares."""
+def declared_time(move: Move, path: tuple[Position, ...], kinematics: Kinematics, mode: str) -> MoveSeconds:
+    """Return the duration that the move itself declares; that it has passed may be noticed later."""
     duration = move.attributes.get("duration")
     seconds = float(duration) if isinstance(duration, (int, float)) else 0.0
-    return seconds, seconds
+    return MoveSeconds(seconds, seconds, seconds + min(_NOTICING, kinematics.timing.spread * seconds))
 
 
-def turning_time(
-    move: Move, path: tuple[Position, ...], kinematics: Kinematics, mode: str
-) -> tuple[float, float]:
-    """Return the bounds of a turn on the spot: none to half a circle."""
-    return 0.0, 180.0 / kinematics.turn_rate
+def turning_time(move: Move, path: tuple[Position, ...], kinematics: Kinematics, mode: str) -> MoveSeconds:
+    """Return the bounds of a turn on the spot: none to half a circle, which is expected."""
+    half_turn = 180.0 / kinematics.turn_rate
+    return MoveSeconds(0.0, half_turn, half_turn)
 
 
 def _level_kinematics(robot: Robot, scene: Scene) -> Kinematics:
@@ -259,7 +242,7 @@ PLAIN_ROBOT = RobotKind(
     sample=sample_type((ROBOT,)),
 )
 
-_Seconds = Callable[["Move", tuple[Position, ...], Kinematics, str], tuple[float, float]]
+_Seconds = Callable[["Move", tuple[Position, ...], Kinematics, str], MoveSeconds]
 
 
 def _on_the_spot(name: str, seconds: _Seconds, needs: frozenset[str] = ANYWHERE) -> MoveKind:

@@ -9,6 +9,7 @@ from mmrs_core.behaviour.program import BEHAVIOUR, Move
 from mmrs_core.contributions.checks import CheckInput
 from mmrs_core.contributions.rules import MoveKind, RobotKind
 from mmrs_core.scene import Area, AreaUse, Kinematics
+from mmrs_core.scene.timing import LegTiming, MoveSeconds
 from mmrs_core.testing.small_programs import MOVE, ROBOT_TYPE, program, robot_type
 
 ROBOT = ("urn:mmrs:robot:1.0", "Robot")
@@ -37,12 +38,11 @@ def kind(
             speed,
             speed,
             speed,
-            acceleration=acceleration,
+            timing=LegTiming(acceleration, overshoot=overshoot),
             floor=floor,
             ceiling=ceiling,
             launches=launches,
             turning_radius=turning_radius,
-            overshoot=overshoot,
         ),
         launch=lambda height: (),
         recover=lambda: (),
@@ -77,16 +77,15 @@ def down(move, here, home):
 
 
 def nothing(move, path, kinematics, mode):
-    return (0.0, 0.0)
+    return MoveSeconds.exactly(0.0)
 
 
 def travelled(move, path, kinematics, mode):
-    seconds = length(path) / (move.speed or kinematics.cruise)
-    return (seconds, seconds)
+    return MoveSeconds.exactly(length(path) / (move.speed or kinematics.cruise))
 
 
 def declared(move, path, kinematics, mode):
-    return (move.attributes["duration"],) * 2
+    return MoveSeconds.exactly(move.attributes["duration"])
 
 
 def move_kinds(*kinds):
@@ -111,8 +110,8 @@ def uneven(low=0.5, high=2.0):
     return {
         name: replace(
             each,
-            seconds=lambda *args, _seconds=each.seconds: tuple(
-                factor * seconds for factor, seconds in zip((low, high), _seconds(*args), strict=True)
+            seconds=lambda *args, _seconds=each.seconds: MoveSeconds(
+                *(f * seconds for f, seconds in zip((low, 1.0, high), _seconds(*args), strict=True))
             ),
         )
         for name, each in MOVE_KINDS.items()

@@ -70,10 +70,10 @@ class _Walk:
         rise = end[2] - start[2]
         rate = self.kinematics.climb if rise > 0 else self.kinematics.descent
         even, length = max(level, abs(rise) / rate), dist(start, end)
-        if length == 0.0 or self.kinematics.acceleration == inf:
+        if length == 0.0 or self.kinematics.timing.acceleration == inf:
             return even
-        ramp = length / even / self.kinematics.acceleration
-        return even + ramp if ramp <= even else 2.0 * sqrt(length / self.kinematics.acceleration)
+        ramp = length / even / self.kinematics.timing.acceleration
+        return even + ramp if ramp <= even else 2.0 * sqrt(length / self.kinematics.timing.acceleration)
 
     def lasts(self, step, seconds, more=0.0):
         if not seconds - NEAR <= step.end - step.begin <= seconds + more + NEAR:

@@ -180,8 +180,46 @@ CONSTRAINTS = (
         "RL011",
         "Lifetime, acceleration and rates of a movement are more than 0.",
         (ROBOT, "MovementCapability"),
-        _positive("lifetime", "maxAcceleration", "maxClimbRate", "maxDescentRate", "maxTurnRate"),
+        _positive(
+            "lifetime", "maxAcceleration", "maxClimbRate", "maxDescentRate", "maxTurnRate", "landingRate"
+        ),
         "leave out what is not known",
+    ),
+    Constraint(
+        "RL032",
+        "Times of launching and landing, and the height of the last descent, are not negative.",
+        (ROBOT, "MovementCapability"),
+        _at_least_zero("launchTime", "recoveryTime", "landingHeight"),
+        "leave out what is not known",
+    ),
+    Constraint(
+        "RL033",
+        "Speeds, accelerations and jerk of a leg timing are more than 0.",
+        (ROBOT, "LegTiming"),
+        _positive(
+            "maxSpeed",
+            "maxAcceleration",
+            "maxDeceleration",
+            "maxVerticalAcceleration",
+            "maxJerk",
+            "maxClimbRate",
+            "maxDescentRate",
+        ),
+        "leave out what is not known",
+    ),
+    Constraint(
+        "RL034",
+        "The corner radius, the settling time and the overshoot of a leg timing are not negative.",
+        (ROBOT, "LegTiming"),
+        _at_least_zero("cornerRadius", "settlingTime", "overshoot"),
+        "leave out what is not known",
+    ),
+    Constraint(
+        "RL035",
+        "The spread of a leg timing is a share, 0 to less than 1.",
+        (ROBOT, "LegTiming"),
+        _Range(("spread",), low=0.0, high=1.0, without_high=True),
+        "give the share by which legs take longer or shorter than expected, such as 0.1",
     ),
     Constraint(
         "RL012",

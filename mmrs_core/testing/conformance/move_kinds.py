@@ -89,8 +89,10 @@ class MoveKindConformance(Conformance):
         @given(POSITIONS)
         def law(here: Position) -> None:
             path = move_kind.path(self._move(move_kind), here, (0.0, 0.0, 0.0)) or (here,)
-            shortest, longest = move_kind.seconds(self._move(move_kind), path, self.kinematics, mode)
-            assert 0.0 <= shortest <= longest + SMALL
+            seconds = move_kind.seconds(self._move(move_kind), path, self.kinematics, mode)
+            shortest, expected, longest = seconds
+            assert 0.0 <= shortest <= expected + SMALL
+            assert expected <= longest + SMALL
             assert isfinite(longest)
             assert shortest >= _least(path, self.kinematics) - SMALL
 
@@ -101,8 +103,8 @@ class MoveKindConformance(Conformance):
         bare = replace(self._move(move_kind), attributes={}, target=None, distance=0.0, speed=None)
         here = (1.0, 2.0, 3.0)
         path = move_kind.path(bare, here, None) or (here,)
-        shortest, longest = move_kind.seconds(bare, path, self.kinematics, "NORMAL")
-        assert 0.0 <= shortest <= longest
+        shortest, expected, longest = move_kind.seconds(bare, path, self.kinematics, "NORMAL")
+        assert 0.0 <= shortest <= expected <= longest
 
     def _move(self, kind: MoveKind) -> Move:
         return self.moves[kind.metaclass[1]]

@@ -46,7 +46,8 @@ class RobotKindConformance(Conformance):
         found = self._kinematics(robot_kind)
         assert 0.0 <= found.slowest <= found.cruise <= found.fastest
         assert found.floor <= found.ceiling
-        assert min(found.cruise, found.climb, found.descent, found.acceleration, found.turn_rate) > 0.0
+        assert min(found.cruise, found.climb, found.descent, found.turn_rate) > 0.0
+        assert min(found.timing.acceleration, found.timing.braking, found.timing.jerk) > 0.0
         assert min(found.endurance, found.energy) > 0.0
         assert min(found.launch, found.recovery, found.power) >= 0.0
         assert found.draw >= 1.0

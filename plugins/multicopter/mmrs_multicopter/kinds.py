@@ -9,13 +9,14 @@ from mmrs_core.contributions.rules import MoveKind, MoveSpec, RobotKind
 from mmrs_core.contributions.samples import sample_type
 from mmrs_core.errors import InfeasibleError
 from mmrs_core.geometry.ground import ground_height
-from mmrs_core.transformation.kinds import ROBOT, kinematics_for, path_seconds, stopping_seconds
+from mmrs_core.transformation.kinds import ROBOT, kinematics_for, path_seconds
 from mmrs_multicopter import trajectories
 from mmrs_multicopter.names import DRONE, GO_TO, LAND, TAKE_OFF
 
 if TYPE_CHECKING:
     from mmrs_core.behaviour.program import Move
     from mmrs_core.scene import Kinematics, Position, Robot, Scene
+    from mmrs_core.scene.timing import MoveSeconds
 
 LOWEST_FLIGHT = 1.0
 """Metres above home below which a drone only launches and lands."""
@@ -54,7 +55,7 @@ def kinematics(robot: Robot, scene: Scene) -> Kinematics:
         launches=True,
         flow="windSpeed",
     )
-    return replace(known, overshoot=OVERSHOOT)
+    return replace(known, timing=replace(known.timing, overshoot=OVERSHOOT))
 
 
 def launch(height: float) -> tuple[MoveSpec, ...]:
@@ -81,18 +82,15 @@ def land_path(move: Move, here: Position, home: Position | None) -> tuple[Positi
 
 def take_off_seconds(
     move: Move, path: tuple[Position, ...], kinematics: Kinematics, mode: str
-) -> tuple[float, float]:
-    """Return the duration of spinning up and climbing, as the plan counts it."""
-    whole = kinematics.launch + stopping_seconds(path[0], path[-1], kinematics.cruise, kinematics)
-    return whole, whole
+) -> MoveSeconds:
+    """Return the duration of spinning up and climbing."""
+    climbing = kinematics.rates().from_stop_to_stop(path[0], path[-1])
+    return kinematics.timing.bounded(kinematics.launch + climbing)
 
 
-def land_seconds(
-    move: Move, path: tuple[Position, ...], kinematics: Kinematics, mode: str
-) -> tuple[float, float]:
-    """Return the duration of descending and stopping the motors, as the plan counts it."""
-    whole = kinematics.recovery + stopping_seconds(path[0], path[-1], kinematics.cruise, kinematics)
-    return whole, whole
+def land_seconds(move: Move, path: tuple[Position, ...], kinematics: Kinematics, mode: str) -> MoveSeconds:
+    """Return the duration of descending, slowly near the ground, and stopping the motors."""
+    return kinematics.timing.bounded(kinematics.landing(path[0][2] - path[-1][2]))
 
 
 MULTICOPTER_KIND = RobotKind(

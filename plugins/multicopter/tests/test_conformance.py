@@ -7,6 +7,7 @@ from mmrs_multicopter.names import DRONE, GO_TO, LAND, TAKE_OFF
 
 from mmrs_core.behaviour.program import Move, MoveTarget
 from mmrs_core.scene import Battery
+from mmrs_core.scene.timing import LegTiming
 from mmrs_core.testing.conformance import (
     MetamodelConformance,
     MoveKindConformance,
@@ -54,4 +55,4 @@ class TestRobotKinds(RobotKindConformance):
 class TestMoveKinds(MoveKindConformance):
     plugin = plugin
     moves = MOVES
-    kinematics = replace(FLYER, climb=3.0, launch=5.0, recovery=5.0, launches=True, acceleration=2.0)
+    kinematics = replace(FLYER, climb=3.0, launch=5.0, recovery=5.0, launches=True, timing=LegTiming(2.0))

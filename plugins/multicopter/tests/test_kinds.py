@@ -18,6 +18,7 @@ from mmrs_multicopter.names import LAND, TAKE_OFF
 from mmrs_core.behaviour.program import Move
 from mmrs_core.errors import InfeasibleError
 from mmrs_core.scene import Part
+from mmrs_core.scene.timing import MoveSeconds
 
 TAKE_OFF_30 = Move("t", (TAKE_OFF,), {"altitude": 30.0})
 LANDING = Move("l", (LAND,))
@@ -99,10 +100,10 @@ def test_landing_elsewhere_ends_at_the_height_of_the_origin():
 def test_taking_off_lasts_as_long_as_spinning_up_and_climbing(drone, scene):
     found = kinematics(drone(), scene)
     way = take_off_path(TAKE_OFF_30, (0.0, 0.0, 0.0), None)
-    assert take_off_seconds(TAKE_OFF_30, way, found, "NORMAL") == (SPIN_UP + 10.0, SPIN_UP + 10.0)
+    assert take_off_seconds(TAKE_OFF_30, way, found, "NORMAL") == MoveSeconds.exactly(SPIN_UP + 10.0)
 
 
 def test_landing_lasts_as_long_as_descending_and_stopping_the_motors(drone, scene):
     found = kinematics(drone(), scene)
     way = land_path(LANDING, (0.0, 0.0, 30.0), None)
-    assert land_seconds(LANDING, way, found, "NORMAL") == (TOUCH_DOWN + 15.0, TOUCH_DOWN + 15.0)
+    assert land_seconds(LANDING, way, found, "NORMAL") == MoveSeconds.exactly(TOUCH_DOWN + 15.0)

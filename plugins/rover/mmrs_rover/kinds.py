@@ -37,7 +37,7 @@ def kinematics(robot: Robot, scene: Scene) -> Kinematics:
     if radius == 0.0:
         return known
     pace = max(known.slowest, SHUNTING_PACE * known.cruise)
-    half_turn = pi * radius / pace + ARCS * pace / known.acceleration
+    half_turn = pi * radius / pace + ARCS * pace / known.timing.acceleration
     return replace(known, turning_radius=radius, turn_rate=min(known.turn_rate, 180.0 / half_turn))
 
 

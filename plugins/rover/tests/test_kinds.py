@@ -9,6 +9,7 @@ from mmrs_rover.kinds import ROVER_KIND, kinematics
 
 from mmrs_core.behaviour.program import BEHAVIOUR, Move, MoveTarget
 from mmrs_core.errors import InfeasibleError
+from mmrs_core.scene.timing import MoveSeconds
 from mmrs_core.transformation.kinds import path_seconds
 
 TO_TEN = Move("m", ((BEHAVIOUR, "GoTo"),), {}, target=MoveTarget((11.0, 1.0, 2.0)))
@@ -52,8 +53,9 @@ def test_a_leg_takes_up_to_half_a_turn_longer_where_the_rover_shunts(rover, fiel
     way = ((1.0, 1.0, 2.0), (11.0, 1.0, 2.0))
     on_the_spot = kinematics(rover(turningRadius=0.0), field)
     shunting = kinematics(rover(turningRadius=1.5), field)
-    assert path_seconds(TO_TEN, way, on_the_spot, "SAFE") == (10.0, 10.0)
-    assert path_seconds(TO_TEN, way, shunting, "SAFE") == pytest.approx((10.0, 10.0 + shunting.shunting))
+    assert path_seconds(TO_TEN, way, on_the_spot, "SAFE") == MoveSeconds.exactly(10.0)
+    longest = 10.0 + shunting.shunting
+    assert path_seconds(TO_TEN, way, shunting, "SAFE") == pytest.approx((10.0, longest, longest))
 
 
 def test_travel_is_one_go_to_of_the_core_for_each_leg():

@@ -10,6 +10,7 @@ from plain_scenes import photo, road, robot, scene, visit, with_kinematics
 from mmrs_core.planning.pacing import paced
 from mmrs_core.planning.strokes import joined, parts_of, serve_seconds, turned
 from mmrs_core.planning.team import Team
+from mmrs_core.scene.timing import LegTiming
 
 places = st.tuples(st.integers(0, 400), st.integers(0, 400), st.sampled_from([20, 30]))
 
@@ -32,7 +33,7 @@ def seconds_of(parts, pilot):
 
 
 def pilot_with(acceleration):
-    each = with_kinematics(robot(), acceleration=acceleration)
+    each = with_kinematics(robot(), timing=LegTiming(acceleration))
     return Team(scene([each], {"a": visit((0.0, 9.0, 20.0))})).pilots["r1"]
 
 

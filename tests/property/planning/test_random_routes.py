@@ -8,9 +8,9 @@ import pytest
 import shapely
 
 from mmrs_core.errors import UnreachableError
-from mmrs_core.planning.layers import Rates
 from mmrs_core.planning.paths import Space
 from mmrs_core.scene import Area, AreaUse
+from mmrs_core.scene.timing import Rates
 
 CLEARANCE = 1.0
 
@@ -55,7 +55,7 @@ def check(seed):
         assert (route[0], route[-1]) == (start, goal)
         assert min(sampled_margin(route, area) for area in around) >= -1e-9
         assert all(2.0 <= point[2] <= 30.0 for point in route)
-        assert space.seconds(route) >= space.rates.leg(start, goal) - 1e-9
+        assert space.seconds(route) >= space.rates.even(start, goal) - 1e-9
 
 
 @pytest.mark.parametrize("seed", range(10))

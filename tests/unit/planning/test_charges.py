@@ -17,6 +17,7 @@ from sound_plans import sound, steps_of
 from mmrs_core.errors import InfeasibleError
 from mmrs_core.planning.planner import plan
 from mmrs_core.scene import Policy, Recharge
+from mmrs_core.scene.timing import LegTiming
 
 CUTS = tuple(range(50, 1000, 50))
 
@@ -74,7 +75,7 @@ def test_pieces_that_are_too_long_for_different_robots_are_not_told_to_be_too_lo
 
 
 def test_a_robot_does_not_wait_aloft_longer_than_its_charge_bears_if_it_is_early():
-    sluggish = with_kinematics(robot("r1"), acceleration=0.5, endurance=190.0, recharge=60.0)
+    sluggish = with_kinematics(robot("r1"), timing=LegTiming(0.5), endurance=190.0, recharge=60.0)
     other = with_kinematics(robot("r2", (40.0, 0.0, 0.0)), cruise=5.0)
     works = {
         "first": {"r1": visit((150.0, 0.0, 20.0), (150.0, 150.0, 20.0))},
@@ -142,7 +143,7 @@ def test_a_robot_that_need_not_return_can_always_go_home_where_that_is_possible(
 def test_a_charge_that_just_suffices_is_enough():
     works = {name: visit((100.0 * k, 40.0, 20.0)) for k, name in enumerate(("a", "b", "c"), 1)}
     works["d"] = road((0.0, 90.0, 20.0), (400.0, 90.0, 20.0), cuts=CUTS[:7])
-    plenty = with_kinematics(robot(), acceleration=0.5, recharge=None, energy=1e9)
+    plenty = with_kinematics(robot(), timing=LegTiming(0.5), recharge=None, energy=1e9)
     needed = plan(scene([plenty], works)).makespan
     exact = with_kinematics(plenty, endurance=needed)
     assert sound(scene([exact], works)).makespan == pytest.approx(needed)

@@ -4,9 +4,9 @@ import pytest
 
 from mmrs_core.errors import UnreachableError
 from mmrs_core.geometry.segments import legs_of, prism_distance
-from mmrs_core.planning.layers import Rates
 from mmrs_core.planning.paths import Space
 from mmrs_core.scene import Area, AreaUse
+from mmrs_core.scene.timing import Rates
 
 
 def box(west, south, east, north, *, low=-inf, high=inf, safety=0.0, name="box"):

@@ -20,6 +20,7 @@ from mmrs_core.errors import InfeasibleError
 from mmrs_core.planning.planner import plan
 from mmrs_core.planning.separation import first_conflict
 from mmrs_core.scene import Await, Branch, Launch, Recover, Serve, Signal, Transit
+from mmrs_core.scene.timing import LegTiming
 
 TWO = (robot("r1"), robot("r2", (20.0, 0.0, 0.0)))
 FIELD = ((100.0, 100.0), (300.0, 100.0), (300.0, 300.0), (100.0, 300.0))
@@ -177,7 +178,7 @@ def test_an_earliest_time_is_kept_by_the_clock():
 
 
 def test_an_earliest_time_is_kept_even_by_a_robot_that_does_not_stop_at_corners():
-    sluggish = with_kinematics(robot(), acceleration=0.5)
+    sluggish = with_kinematics(robot(), timing=LegTiming(0.5))
     works = {"a": visit((300.0, 0.0, 20.0)), "b": visit((300.0, 300.0, 20.0))}
     after, tasks = [("a", "b")], {"b": task("b", earliest=130.0)}
     found = sound(scene([sluggish], works, after=after, tasks=tasks))

@@ -6,6 +6,7 @@ import sys
 from dataclasses import replace
 from importlib.metadata import EntryPoint
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 
@@ -19,6 +20,7 @@ from mmrs_core.contributions.hooks import Hook
 from mmrs_core.contributions.rules import ElementKind, MoveKind, RobotKind, Rule
 from mmrs_core.contributions.symbols import MapSymbol
 from mmrs_core.contributions.targets import Target
+from mmrs_core.contributions.timing import VehicleTiming
 from mmrs_core.contributions.vehicles import VehicleFactory
 from mmrs_core.errors import PluginError
 from mmrs_core.hookspecs import hookimpl
@@ -29,6 +31,8 @@ from mmrs_core.languages.importers import Imported, Importer, Recognition
 from mmrs_core.languages.reading import read_text
 from mmrs_core.languages.registry import MetamodelSource
 from mmrs_core.plugins import language, load_plugins
+from mmrs_core.scene.timing import AutopilotTiming, LegTiming
+from mmrs_core.testing.scenes import FLYER, sample_type
 from mmrs_runtime.records.steps import StepRecord
 
 KITE = ("urn:test:kite:1.0", "Kite")
@@ -46,6 +50,11 @@ class Leg(bl.GoTo):
 def plugin_with(hook, function):
     """Return a plug-in object that implements one hook by that function."""
     return type("Plugin", (), {hook: staticmethod(hookimpl(function))})()
+
+
+def type_of_plugin(**hooks):
+    """Return a plug-in object that implements hooks by these functions."""
+    return type("Plugin", (), {name: staticmethod(hookimpl(each)) for name, each in hooks.items()})()
 
 
 def contributions_with(hook, *declared):
@@ -138,6 +147,19 @@ def test_hook_mmrs_rules():
 def test_hook_mmrs_robot_kinds():
     kind = RobotKind("kite", KITE, unused, unused, unused, unused)
     assert contributions_with("mmrs_robot_kinds", kind).robot_kinds[KITE] == kind
+
+
+def test_hook_mmrs_vehicle_timings():
+    slow = AutopilotTiming(LegTiming(acceleration=0.5, speed=3.0, settling=2.0), launch=7.0)
+    kite_type = sample_type(speed=(0.0, 8.0), acceleration=2.0)
+    kind = RobotKind("kite", KITE, lambda robot, scene: FLYER, unused, unused, unused, vehicle="kite")
+    timing = VehicleTiming("kite", lambda robot_type: slow)
+    plugin = type_of_plugin(mmrs_robot_kinds=lambda: (kind,), mmrs_vehicle_timings=lambda: (timing,))
+    known = load_plugins(only_core=True, extra={"kites": plugin}).contributions
+    found = known.robot_kinds[KITE].kinematics(SimpleNamespace(type=kite_type, payload=0.0), None)
+    assert (found.timing.acceleration, found.timing.settling, found.launch) == (0.5, 2.0, 7.0)
+    assert (found.cruise, found.fastest) == (3.0, 3.0)
+    assert known.vehicle_timings == {"kite": timing}
 
 
 def test_hook_mmrs_move_kinds():

@@ -7,6 +7,7 @@ from live_runs import Flight
 
 from mmrs_core.behaviour.replay import replay
 from mmrs_core.contributions.rules import MoveKind, MoveSpec, RobotKind
+from mmrs_core.scene.timing import MoveSeconds
 from mmrs_core.simulation.run import simulate
 from mmrs_core.simulation.simulation import SIMULATION
 from mmrs_core.testing.small_programs import ROBOT_TYPE, robot_type
@@ -14,7 +15,6 @@ from mmrs_core.transformation.kinds import (
     MOVE_KINDS,
     PLAIN_ROBOT,
     kinematics_for,
-    leg_seconds,
     straight_travel,
 )
 
@@ -28,8 +28,7 @@ def _nothing(*_: object) -> tuple[MoveSpec, ...]:
 
 
 def _seconds(move, path, kinematics, mode):
-    whole = leg_seconds(path[0], path[-1], kinematics.cruise, kinematics)
-    return whole, whole
+    return MoveSeconds.exactly(kinematics.rates().even(path[0], path[-1]))
 
 
 FLYER_KIND = RobotKind(

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from math import inf
+from itertools import pairwise
 
 import pytest
 
 from mmrs_core.scene import Kinematics
+from mmrs_core.scene.timing import LegTiming
 from mmrs_core.simulation.legs import (
     CLIMBING,
     TimedLeg,
@@ -21,12 +22,17 @@ from mmrs_core.simulation.legs import (
 )
 
 FLYER = Kinematics(cruise=5.0, slowest=0.0, fastest=10.0, climb=2.0, descent=1.0)
-ANY = (0.0, inf)
 HERE, EAST, UP = (0.0, 0.0, 0.0), (100.0, 0.0, 0.0), (0.0, 0.0, 10.0)
 
 
-def seconds(*path, bounds=ANY, kinematics=FLYER, **more):
-    return sum(each.seconds for each in stretches(path, 5.0, kinematics, bounds, **more))
+def legs(*path, whole=None, kinematics=FLYER, **more):
+    rates = kinematics.rates(5.0)
+    whole = sum(rates.from_stop_to_stop(*leg) for leg in pairwise(path)) if whole is None else whole
+    return stretches(path, rates, whole, kinematics, **more)
+
+
+def seconds(*path, **more):
+    return sum(each.seconds for each in legs(*path, **more))
 
 
 def test_level_ways_take_their_length_over_the_speed():
@@ -40,22 +46,9 @@ def test_the_slower_of_level_and_vertical_counts():
     assert seconds(HERE, (10.0, 0.0, 10.0)) == pytest.approx(5.0)
 
 
-def test_the_declared_duration_bounds_the_time_and_each_leg_gets_its_share():
-    legs = stretches((HERE, EAST, (100.0, 50.0, 0.0)), 5.0, FLYER, (60.0, inf))
-    assert [leg.seconds for leg in legs] == pytest.approx([40.0, 20.0])
-    assert seconds(HERE, EAST, bounds=(0.0, 18.0)) == pytest.approx(18.0)
-
-
-def test_standing_still_at_both_ends_costs_the_time_to_get_going_and_to_brake():
-    slow = Kinematics(cruise=5.0, slowest=0.0, fastest=10.0, climb=2.0, descent=1.0, acceleration=1.0)
-    assert seconds(HERE, EAST, kinematics=slow, stops=2) == pytest.approx(25.0)
-    assert seconds(HERE, EAST, kinematics=slow, stops=1) == pytest.approx(22.5)
-    assert seconds(HERE, EAST, kinematics=slow, stops=0) == pytest.approx(20.0)
-
-
-def test_a_way_too_short_to_reach_the_speed_takes_a_triangle_of_it():
-    slow = Kinematics(cruise=5.0, slowest=0.0, fastest=10.0, climb=2.0, descent=1.0, acceleration=1.0)
-    assert seconds(HERE, (4.0, 0.0, 0.0), kinematics=slow, stops=2) == pytest.approx(4.0)
+def test_each_leg_gets_its_share_of_the_whole():
+    found = legs(HERE, EAST, (100.0, 50.0, 0.0), whole=60.0)
+    assert [leg.seconds for leg in found] == pytest.approx([40.0, 20.0])
 
 
 def test_wind_slows_down_only_where_the_robot_would_have_to_be_too_fast():
@@ -69,8 +62,8 @@ def test_wind_from_the_side_takes_part_of_the_speed():
 
 
 def test_there_is_no_headway_against_more_wind_than_the_largest_speed():
-    assert stretches((HERE, EAST), 5.0, FLYER, ANY, flow=(-10.0, 0.0)) == ()
-    assert stretches((HERE, EAST), 5.0, FLYER, ANY, flow=(0.0, 11.0)) == ()
+    assert legs(HERE, EAST, flow=(-10.0, 0.0)) == ()
+    assert legs(HERE, EAST, flow=(0.0, 11.0)) == ()
 
 
 def test_power_grows_with_the_climb_and_with_the_square_of_the_headwind():
@@ -84,7 +77,7 @@ def test_power_grows_with_the_climb_and_with_the_square_of_the_headwind():
 @pytest.mark.parametrize("descent", [0.5, 1.0, 2.0, 4.0, 6.0])
 def test_up_and_down_again_takes_what_the_time_takes_however_fast_the_descent(descent):
     flyer = replace(FLYER, descent=descent)
-    way = (*stretches((HERE, UP), 5.0, flyer, ANY), *stretches((UP, HERE), 5.0, flyer, ANY))
+    way = (*legs(HERE, UP, kinematics=flyer), *legs(UP, HERE, kinematics=flyer))
     assert sum(each.rate * each.seconds for each in way) == pytest.approx(sum(each.seconds for each in way))
 
 
@@ -92,7 +85,7 @@ def test_no_descent_gives_energy_back_beyond_what_flying_takes():
     assert cost(UP, HERE, 1.0, replace(FLYER, descent=10.0), (0.0, 0.0)) == 0.0
 
 
-SLOW = replace(FLYER, acceleration=1.0)
+SLOW = replace(FLYER, timing=LegTiming(1.0))
 
 
 def response(*path, moving):

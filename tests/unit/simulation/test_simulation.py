@@ -228,24 +228,14 @@ def test_current_does_not_trouble_a_robot_on_land(fly):
     assert times(fly(behaviour, environment=against), "g") == (0.0, 10.0)
 
 
-def test_passing_a_waypoint_saves_the_time_to_brake_and_to_get_going_again(kinds, fly):
-    # A kind that leaves the duration open up to the stop at each end.
+def test_passing_a_waypoint_saves_the_time_to_brake_and_to_get_going_again(fly):
     moves = [go("g", (30, 0, 0)), go("h", (60, 0, 0))]
-    type = robot_type(acceleration=1.0)
-    name = (BEHAVIOUR, "GoTo")
-    open_ended = replace(
-        kinds["move_kinds"][name],
-        seconds=lambda move, path, kinematics, mode: (0.0, 1e9),
+    sluggish = robot_type(acceleration=1.0)
+    stopping, passing = (
+        fly(program(robot("r", moves, fluid=fluid)), sluggish).ending.time for fluid in ([], ["g"])
     )
-    from mmrs_core.simulation.run import simulate
-
-    def last_time(fluid):
-        given = {**kinds, "move_kinds": {**kinds["move_kinds"], name: open_ended}}
-        behaviour = program(robot("r", moves, fluid=fluid))
-        return simulate(behaviour, backend=SIMULATION, types={"plain": type}, **given).ending.time
-
-    assert last_time([]) == pytest.approx(26.0)
-    assert last_time(["g"]) == pytest.approx(23.0)
+    assert stopping == pytest.approx(26.0)
+    assert passing == pytest.approx(23.0)
 
 
 @pytest.mark.parametrize(

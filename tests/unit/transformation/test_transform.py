@@ -37,6 +37,7 @@ from mmrs_core.scene import (
     Task,
     Transit,
 )
+from mmrs_core.scene.timing import LegTiming
 from mmrs_core.transformation.engine import transform
 from mmrs_core.transformation.kinds import PLAIN_ROBOT, ROBOT
 
@@ -51,7 +52,7 @@ HOPPER = replace(
 
 def robot(name="one", home=HOME, **features):
     kind = RobotType("walker", (ROBOT,), (), 0.5, None, (Capability(0, None, (0, 2)),), (), {}, Part((), {}))
-    kinematics = Kinematics(cruise=1.5, slowest=0, fastest=2, climb=1, descent=1, acceleration=1.0)
+    kinematics = Kinematics(cruise=1.5, slowest=0, fastest=2, climb=1, descent=1, timing=LegTiming(1.0))
     made = Robot(
         name,
         replace(kind, devices={"camera": CAMERA}),

@@ -120,7 +120,7 @@ class BehaviourOrders:
             return Finish(floats=self._sheet.weight_in_water < 0.0)
         kind = self._kinds[move.id]
         path = self.path(move, here)
-        shortest, _ = kind.seconds(move, path, self._kinematics, self._given.robot.travel_mode)
+        shortest = kind.seconds(move, path, self._kinematics, self._given.robot.travel_mode).shortest
         if move.is_a(RECHARGE):
             return Charge(shortest, self.charged)
         if len(path) > 1 and move.is_a(GO_TO) and self._is_sought(move):

@@ -12,6 +12,7 @@ from mmrs_core.hookspecs import hookimpl
 if TYPE_CHECKING:
     from mmrs_core.contributions.constraints import Constraint
     from mmrs_core.contributions.targets import Target
+    from mmrs_core.contributions.timing import VehicleTiming
     from mmrs_core.contributions.vehicles import VehicleFactory
     from mmrs_mavlink.profiles import VehicleProfile
     from mmrs_mavlink.wiring import DeviceWiring
@@ -81,6 +82,14 @@ def mmrs_device_actions() -> Iterable[DeviceWiring]:
     from mmrs_mavlink.plugin.devices import WIRINGS
 
     return tuple(WIRINGS.values())
+
+
+@hookimpl
+def mmrs_vehicle_timings() -> Iterable[VehicleTiming]:
+    """Contribute how long copters, rovers and underwater vehicles take with ArduPilot and PX4."""
+    from mmrs_mavlink.plugin.timings import timings
+
+    return timings()
 
 
 @hookimpl

@@ -16,9 +16,9 @@ from mmrs_core.contributions.targets import TargetInput
 from mmrs_core.errors import UnreachableError
 from mmrs_core.generation.planned_moves import kinematics_of
 from mmrs_core.generation.safety import areas_of, clearance_of
-from mmrs_core.planning.layers import Rates
 from mmrs_core.planning.paths import Space
 from mmrs_core.scene import AreaUse, Point, Position
+from mmrs_core.scene.timing import LegTiming, Rates
 from mmrs_mavlink.plugin.context import VehicleContext, context_of
 
 AT_HOME = ((BEHAVIOUR, "Start"), (BEHAVIOUR, "Recharge"))
@@ -33,7 +33,7 @@ SLACK = 0.1
 USUAL_UPRIGHT = 1.0
 """Metres per second at which robots climb and descend whose type says nothing of that."""
 
-ACCELERATION = 2.0
+STEADY = LegTiming(acceleration=2.0)
 """Metres per second squared; ways with fewer stops are quicker."""
 
 EITHER = 4.0
@@ -109,7 +109,7 @@ def _rates(context: VehicleContext) -> Rates:
         return Rates(1.0, 1.0, 1.0)
     cruise = capability.speed[1] or 1.0
     upright = min(cruise, USUAL_UPRIGHT)
-    return Rates(cruise, capability.climb_rate or upright, capability.descent_rate or upright, ACCELERATION)
+    return Rates(cruise, capability.climb_rate or upright, capability.descent_rate or upright, STEADY)
 
 
 def _end_of(index: int, move: Move, context: VehicleContext) -> Position | None:

@@ -41,6 +41,7 @@ from .autopilot import (
 )
 from .modes import Mode
 from .needs import ON_ARDUPILOT
+from .pacing import COPTER, ROVER, SUB
 from .profile import Delay, Exemption, LostLinkFailsafe, Safeguard, Timing, VehicleProfile
 
 ARDUPILOT = Autopilot(
@@ -263,6 +264,7 @@ ARDUCOPTER = VehicleProfile(
     rests={"LAND": modes.LAND, "SURFACE": modes.HOLD},
     without_position="LAND",
     starts_in=STARTS_IN,
+    pacing=COPTER,
 )
 """It retraces its path, or flies to the nearest rally point, and lands where it may not hold without limit;
 it cannot surface. The exemption is ``GCS_CONTINUE_IF_AUTO``: missions continue, whatever FS_GCS_ENABLE is.
@@ -309,6 +311,7 @@ ARDUSUB = VehicleProfile(
     rests={"LAND": modes.SURFACE, "SURFACE": modes.SURFACE},
     usual_responses={OBJECT_NOT_FOUND: "SURFACE"},
     starts_in=STARTS_IN,
+    pacing=SUB,
 )
 """It surfaces instead of returning. It ignores the heading of a SET_POSITION_TARGET_GLOBAL_INT, and turns by
 CONDITION_YAW (``GCS_MAVLink_Sub.cpp``). With each target that it receives it plans its path from rest: it is
@@ -362,6 +365,7 @@ ARDUROVER = VehicleProfile(
     carries=("ground",),
     rehearsed_as="rover",
     turns=False,
+    pacing=ROVER,
     in_plane=True,
     stops_early=True,
     radii={"WP_RADIUS": 1.0},

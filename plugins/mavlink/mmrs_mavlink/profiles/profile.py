@@ -8,6 +8,7 @@ from typing import TypeAlias
 
 from .autopilot import Autopilot
 from .modes import HOLD, Mode
+from .pacing import UNKNOWN, Pacing
 
 Answers: TypeAlias = Mapping[str, Mapping[str, int]]
 """Parameters and their values, by response of a policy."""
@@ -145,6 +146,7 @@ class VehicleProfile:
         in_plane: whether it is at a place whatever its height: it is as high as the ground takes it.
         still: metres per second up to which it stands still.
         timing: how long it may take.
+        pacing: how long it takes.
         speed_repeats: number of targets in a row with which a new speed is sent: any may be lost.
         stops_early: whether it stops as soon as it is within the radius of its target.
         radii: parameters for the radius of waypoints, with their units in a metre.
@@ -183,6 +185,7 @@ class VehicleProfile:
     in_plane: bool = False
     still: float = 0.3
     timing: Timing = Timing()
+    pacing: Pacing = UNKNOWN
     speed_repeats: int = 3
     stops_early: bool = False
     radii: Mapping[str, float] = field(default_factory=dict)

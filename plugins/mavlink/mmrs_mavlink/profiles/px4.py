@@ -24,6 +24,7 @@ from .autopilot import (
 )
 from .modes import Mode
 from .needs import ON_PX4
+from .pacing import PX4_COPTER
 from .profile import Answers, Delay, Exemption, LostLinkFailsafe, Safeguard, VehicleProfile
 
 
@@ -252,6 +253,6 @@ def _on_px4(name: str, profile: VehicleProfile) -> VehicleProfile:
     )
 
 
-PX4_MULTICOPTER = replace(_on_px4("px4-multicopter", ARDUCOPTER), rehearsed_with=PX4.name)
+PX4_MULTICOPTER = replace(_on_px4("px4-multicopter", ARDUCOPTER), rehearsed_with=PX4.name, pacing=PX4_COPTER)
 PX4_ROVER = _on_px4("px4-rover", ARDUROVER)
 PX4_SUB = _on_px4("px4-sub", ARDUSUB)

@@ -20,6 +20,7 @@ from mmrs_core.generation.render import render
 from mmrs_core.generation.writing import write
 from mmrs_core.hookspecs import hookimpl
 from mmrs_core.plugins import load_plugins
+from mmrs_core.scene.timing import MoveSeconds
 from mmrs_core.testing.programs import program
 from mmrs_core.transformation.kinds import PLAIN_ROBOT
 from mmrs_mavlink.plugin.context import context_of
@@ -104,7 +105,7 @@ class Airships:
             return here, (here[0], here[1], 0.0)
 
         def seconds(move, path, kinematics, mode):
-            return 1.0, 9.0
+            return MoveSeconds(1.0, 5.0, 9.0)
 
         return (
             MoveKind(CAST_OFF, up, seconds, frozenset({"grounded"}), "airborne", "take_off"),

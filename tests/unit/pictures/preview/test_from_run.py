@@ -11,6 +11,7 @@ from mmrs_core.contributions.symbols import MapSymbol
 from mmrs_core.pictures.preview.from_run import picture_of_run
 from mmrs_core.pipeline import BehaviourContext
 from mmrs_core.scene import Area, AreaUse, Frame, Part, RobotType
+from mmrs_core.scene.timing import MoveSeconds
 from mmrs_runtime.records.steps import StepRecord
 
 GO, HOLD, START, STOP = ((BEHAVIOUR, name) for name in ("GoTo", "HoldPosition", "Start", "Stop"))
@@ -20,7 +21,7 @@ QUAD = RobotType("quad", (), (), 0.5, None, (), (), {}, Part((), {}))
 TELL = Action(UNICAST, sets=(("b", "go"),))
 SNAP = Action(((BEHAVIOUR, "DeviceAction"),), "Snap", "camera")
 KINDS = {
-    name: MoveKind(name, lambda *a: None, lambda *a: (0.0, 0.0), frozenset(), leaves)
+    name: MoveKind(name, lambda *a: None, lambda *a: MoveSeconds.exactly(0.0), frozenset(), leaves)
     for name, leaves in ((UP, "airborne"), (GO, None), (HOLD, None))
 }
 

@@ -1,0 +1,80 @@
+"""How a robot's moves are flown: which as a mission, and which ends it passes without a stop."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, NamedTuple
+
+from mmrs_core.contributions.rules import MoveKind, most_specific
+from mmrs_core.contributions.runs import STRAIGHT_DEGREES, runs_of, turn_degrees
+
+if TYPE_CHECKING:
+    from mmrs_core.behaviour.program import Move, RobotProgram
+    from mmrs_core.scene import Kinematics, Name, Position
+
+
+class Passage(NamedTuple):
+    """The end of a move that is passed.
+
+    Attributes:
+        settling: seconds that the robot does not settle there.
+        overlap: seconds for which it is on this move and the next one at once.
+    """
+
+    settling: float
+    overlap: float
+
+
+class Passages:
+    """The moves of a robot that its autopilot takes as a mission, and the ends that it passes.
+
+    An autopilot that takes missions in a way of its own is given the robot's runs as missions; it stops at
+    the end of a run's first move, and where the path turns. One that needs room to turn passes every end of
+    a run but the last, and an autopilot of which nothing is known every end that it may.
+    """
+
+    def __init__(
+        self,
+        robot: RobotProgram,
+        move_kinds: Mapping[Name, MoveKind],
+        kinematics: Kinematics,
+        *,
+        local: bool,
+    ) -> None:
+        """Find the runs of a robot.
+
+        Args:
+            robot: of a behaviour.
+            move_kinds: by metaclass.
+            kinematics: of the robot.
+            local: whether the behaviour has no place on the Earth, so that no mission can be uploaded.
+        """
+        self._robot, self._move_kinds, self._kinematics = robot, move_kinds, kinematics
+        self._mission, self._careful = kinematics.in_mission(), kinematics.mission is not None
+        self._index = {move.id: index for index, move in enumerate(robot.moves)}
+        runs = runs_of(robot, move_kinds) if self._careful and not local else ()
+        self._uploaded = frozenset(index for run in runs for index in run)
+        self._stops = kinematics.turning_radius <= 0.0
+        self._held = frozenset(run[0] for run in runs if self._stops)
+
+    def kinematics(self, move: Move) -> Kinematics:
+        """Return what the robot can do in a move."""
+        return self._mission if self._index[move.id] in self._uploaded else self._kinematics
+
+    def ahead(self, move: Move, path: tuple[Position, ...]) -> Passage | None:
+        """Return what a robot saves that need not stop at the end of a move; None: it stops there."""
+        index = self._index[move.id]
+        transition = self._robot.transitions.get(index)
+        if transition is None or not transition.fluid or len(path) < 2 or index in self._held:
+            return None
+        following = self._robot.moves[transition.to]
+        name = most_specific(following.metaclasses, self._move_kinds)
+        beyond = self._move_kinds[name].path(following, path[-1], self._robot.home) if name else None
+        if beyond is None or len(beyond) < 2:
+            return None
+        flowing = not self._careful or (index in self._uploaded and not self._stops)
+        if not flowing and turn_degrees(path[-2], path[-1], beyond[1]) > STRAIGHT_DEGREES:
+            return None
+        rates = self.kinematics(move).rates(move.speed)
+        arriving = (path[-2], path[-1])
+        return Passage(rates.settling(*arriving), rates.overlap(arriving, (beyond[0], beyond[1])))

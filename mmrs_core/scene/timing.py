@@ -1,0 +1,338 @@
+"""How long legs take: the one model that planning, checks, simulation, reports and targets share.
+
+Autopilots take a straight leg from a stop to a stop: they speed up, keep their speed, and slow down, with a
+limited acceleration that itself changes no faster than the jerk: an S-curve, the double-S profile of
+Biagiotti and Melchiorri (2008, section 3.4), with a deceleration of its own. What is left until they report
+it as done is settling. Where they pass a corner, they begin the next leg while they still brake on the last
+one, as far as the corner's radius allows.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from math import dist, hypot, inf, sqrt
+from typing import NamedTuple, TypeAlias
+
+from mmrs_core.scene.primitives import Position
+
+LEVEL = 1e-6
+"""Metres up to which a leg counts as level."""
+
+STRAIGHT = 0.005
+"""Half the sine of turns, about half a degree, up to which a corner is none."""
+
+SETTLED = 0.5
+"""Metres beyond a target from which a robot need not come back to be there."""
+
+RETURNING = 0.63
+"""Metres per second at which a robot comes back that has gone beyond its target."""
+
+
+Leg: TypeAlias = tuple[Position, Position]
+"""Where a straight leg begins and ends."""
+
+
+class MoveSeconds(NamedTuple):
+    """How long a move takes, seconds: at least, as it is planned, and at most."""
+
+    shortest: float
+    expected: float
+    longest: float
+
+    @staticmethod
+    def exactly(seconds: float) -> MoveSeconds:
+        """Return what is known to the second."""
+        return MoveSeconds(seconds, seconds, seconds)
+
+
+@dataclass(frozen=True, slots=True)
+class LegTiming:
+    """How an autopilot takes legs in one way of being commanded; the defaults are those of an ideal one.
+
+    Attributes:
+        acceleration: level, speeding up, metres per second squared.
+        deceleration: level, slowing down; None: as speeding up.
+        vertical_acceleration: up and down, both ways; None: as the level one.
+        jerk: change of acceleration, metres per second cubed.
+        speed: largest that it makes, metres per second.
+        climb, descent: largest that it makes, metres per second.
+        corner_radius: metres from a corner within which it passes; 0: it comes to a stop at each.
+        acceptance: metres from a target at which it may count as reached: so short a leg may take no time.
+        settling: seconds from the end of a leg until it is reported as done.
+        overshoot: how far it goes beyond a target, metres for each metre per second of the leg's largest
+            speed, that is, seconds.
+        spread: by which share legs take longer or shorter than expected.
+    """
+
+    acceleration: float = inf
+    deceleration: float | None = None
+    vertical_acceleration: float | None = None
+    jerk: float = inf
+    speed: float = inf
+    climb: float = inf
+    descent: float = inf
+    corner_radius: float = inf
+    acceptance: float = 0.0
+    settling: float = 0.0
+    overshoot: float = 0.0
+    spread: float = 0.0
+
+    def bounded(self, expected: float) -> MoveSeconds:
+        """Return what a leg takes that is expected to take so long."""
+        return MoveSeconds(expected * (1.0 - self.spread), expected, expected * (1.0 + self.spread))
+
+    @property
+    def braking(self) -> float:
+        """Return the level deceleration, metres per second squared."""
+        return self.acceleration if self.deceleration is None else self.deceleration
+
+    def cut(self, speed: float) -> float:
+        """Return by how many metres a corner is cut at most that is passed at a speed.
+
+        At a steady acceleration that is v² / 2a, and never more than the radius.
+        """
+        return min(self.corner_radius, speed * speed / (2.0 * min(self.acceleration, self.braking)))
+
+
+IDEAL = LegTiming()
+"""At once at any speed, and at a standstill."""
+
+
+@dataclass(frozen=True, slots=True)
+class AutopilotTiming:
+    """How long the autopilots of a class of vehicles take, where the robot type does not state it.
+
+    Attributes:
+        step: legs that are commanded one by one.
+        mission: legs of a mission that was uploaded; None: none is, or these are taken as steps are.
+        launch: seconds from the command to launch until the robot climbs; None: as its kind says.
+        recovery: seconds from touching the ground until it stands still; None: as its kind says.
+        landing_rate: metres per second at which it comes down below `landing_height`, metres above ground.
+        rounds: whether a vehicle that cannot turn on the spot drives round instead of shunting.
+    """
+
+    step: LegTiming = IDEAL
+    mission: LegTiming | None = None
+    launch: float | None = None
+    recovery: float | None = None
+    landing_rate: float = inf
+    landing_height: float = 0.0
+    rounds: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Rates:
+    """How fast a robot goes along straight legs.
+
+    Paths are chosen by even speed; times count a stop at both ends of every leg.
+
+    Attributes:
+        cruise: metres per second, level.
+        climb, descent: metres per second; one that is not positive rules that direction out.
+        timing: of its autopilot.
+        shunting: seconds that turning takes before a level leg, at most.
+        rounds: whether it is expected to drive round rather than to turn before it goes.
+        share: of the expected seconds that legs from a stop to a stop take.
+    """
+
+    cruise: float
+    climb: float
+    descent: float
+    timing: LegTiming = IDEAL
+    shunting: float = 0.0
+    rounds: bool = False
+    share: float = 1.0
+    _both_ends: float = field(init=False, repr=False, compare=False)
+    """Seconds by which a level leg takes longer that reaches its cruise, settling included."""
+    _reaching: float = field(init=False, repr=False, compare=False)
+    """Metres from which a level leg reaches its cruise."""
+    _slowness: float = field(init=False, repr=False, compare=False)
+    """Seconds per metre per second that both phases of a level leg take, where they reach their limits."""
+    _bending: float = field(init=False, repr=False, compare=False)
+    """Seconds that they take longer by the jerk."""
+    _bent: float = field(init=False, repr=False, compare=False)
+    """Metres per second from which they reach their limits."""
+
+    def __post_init__(self) -> None:
+        """Keep what all level legs share: planning asks for the seconds of very many."""
+        up, down, jerk = self.timing.acceleration, self.timing.braking, self.timing.jerk
+        phases = _speeding(self.cruise, up, jerk) + _speeding(self.cruise, down, jerk)
+        object.__setattr__(self, "_both_ends", phases / 2.0 + self._settling(self.cruise))
+        object.__setattr__(self, "_reaching", self.cruise * phases / 2.0)
+        limited = max(up, down) < inf
+        object.__setattr__(self, "_slowness", 1.0 / up + 1.0 / down if limited or jerk == inf else 1.0)
+        object.__setattr__(self, "_bending", (up + down) / jerk if limited and jerk < inf else 0.0)
+        object.__setattr__(self, "_bent", max(up, down) ** 2 / jerk if jerk < inf else 0.0)
+
+    def soonest(self) -> Rates:
+        """Return the rates of a robot that need not turn before it goes, and is as quick as it may be."""
+        return replace(self, shunting=0.0, share=1.0 - self.timing.spread)
+
+    def latest(self) -> Rates:
+        """Return the rates of a robot that is as slow as it may be."""
+        return replace(self, rounds=False, share=1.0 + self.timing.spread)
+
+    def even(self, start: Position, end: Position) -> float:
+        """Return the seconds of a straight leg at even speed: the slower of its level and upright parts."""
+        level = hypot(end[0] - start[0], end[1] - start[1]) / self.cruise
+        return max(level, self.upright(end[2] - start[2]))
+
+    def upright(self, rise: float) -> float:
+        """Return the seconds of a vertical leg at even speed; inf where it is ruled out."""
+        if abs(rise) <= LEVEL:
+            return 0.0
+        rate = self.climb if rise > 0 else self.descent
+        return abs(rise) / rate if rate > 0 else inf
+
+    def from_stop_to_stop(self, start: Position, end: Position) -> float:
+        """Return the seconds of a straight leg from a stop to a stop, turning and settling included."""
+        if self.share < 1.0 and dist(start, end) <= self.timing.acceptance:
+            return 0.0
+        return self.share * self._straight(start, end) + self.turning(start, end)
+
+    def turning(self, start: Position, end: Position) -> float:
+        """Return the seconds that turning is expected to take before a leg."""
+        if self.shunting <= 0.0 or self.rounds or start[:2] == end[:2]:
+            return 0.0
+        return self.shunting
+
+    def rise(self, metres: float) -> float:
+        """Return the seconds of a vertical leg from a stop to a stop, settling included."""
+        return self.share * self._straight((0.0, 0.0, 0.0), (0.0, 0.0, metres))
+
+    def overlap(self, before: Leg, after: Leg) -> float:
+        """Return for how many seconds a robot that passes the corner between two legs is on both at once.
+
+        That is for as long as it brakes on the first and speeds up on the second, but it comes no further
+        from the corner than its radius: half of the turn is over when it is as far before as behind it.
+        """
+        both = min(self._phases(*before)[1], self._phases(*after)[0])
+        return self.share * min(both, self._turning(before, after))
+
+    def settling(self, start: Position, end: Position) -> float:
+        """Return the seconds from the end of a leg until it is reported as done; none where it is passed."""
+        return self.share * self._settling(self._stopping(start, end)[1])
+
+    def eased(self, start: Position, end: Position) -> float:
+        """Return the fewest seconds of a leg whose ends are passed.
+
+        An autopilot that passes within a radius is on the neighbouring legs at the same time, for as long
+        as it speeds up and slows down; of another nothing is known but its speed.
+        """
+        even = self.even(start, end)
+        if self.timing.corner_radius == inf:
+            return even
+        seconds, _ = self._stopping(start, end)
+        return max(even, self.share * (seconds - sum(self._phases(start, end)) / 2.0))
+
+    def _straight(self, start: Position, end: Position) -> float:
+        if -LEVEL <= end[2] - start[2] <= LEVEL:
+            length = hypot(end[0] - start[0], end[1] - start[1])
+            if length <= 0.0:
+                return 0.0
+            if length >= self._reaching:
+                return length / self.cruise + self._both_ends
+            slowness, bending = self._slowness, self._bending
+            fastest = (sqrt(bending * bending + 8.0 * slowness * length) - bending) / (2.0 * slowness)
+            if fastest >= self._bent:
+                return slowness * fastest + bending + self._settling(fastest)
+        seconds, fastest = self._stopping(start, end)
+        return seconds + self._settling(fastest) if seconds > 0.0 else seconds
+
+    def _stopping(self, start: Position, end: Position) -> tuple[float, float]:
+        """Return the seconds of a leg from a stop to a stop, and its largest speed."""
+        length, speed, up, down = self._limits(start, end)
+        if length <= 0.0:
+            return (0.0, 0.0)
+        if speed <= 0.0:
+            return (inf, 0.0)
+        return _stop_to_stop(length, speed, up, down, self.timing.jerk)
+
+    def _phases(self, start: Position, end: Position) -> tuple[float, float]:
+        """Return for how many seconds a leg from a stop to a stop speeds up, and slows down."""
+        length, speed, up, down = self._limits(start, end)
+        if length <= 0.0 or speed <= 0.0:
+            return (0.0, 0.0)
+        jerk = self.timing.jerk
+        fastest = min(speed, _largest_speed(length, up, down, jerk))
+        return (_speeding(fastest, up, jerk), _speeding(fastest, down, jerk))
+
+    def _turning(self, before: Leg, after: Leg) -> float:
+        """Return the seconds of a turn that comes as far from its corner as the radius at most."""
+        one, two = (tuple(q - p for p, q in zip(*leg, strict=True)) for leg in (before, after))
+        lengths = hypot(*one) * hypot(*two)
+        if lengths <= 0.0:
+            return 0.0
+        cosine = sum(p * q for p, q in zip(one, two, strict=True)) / lengths
+        half = sqrt(max(0.0, 1.0 - cosine) / 2.0)
+        if half <= STRAIGHT or self.timing.corner_radius == inf:
+            return inf
+        apart = self.timing.corner_radius / (2.0 * half)
+        up, jerk = self.timing.acceleration, self.timing.jerk
+        return _stop_to_stop(2.0 * apart, inf, up, up, jerk)[0]
+
+    def _limits(self, start: Position, end: Position) -> tuple[float, float, float, float]:
+        """Return the length of a leg, and its largest speed, acceleration and deceleration along it."""
+        up, down, upright = self.timing.acceleration, self.timing.braking, self.timing.vertical_acceleration
+        rise, level = end[2] - start[2], hypot(end[0] - start[0], end[1] - start[1])
+        if abs(rise) <= LEVEL:
+            return level, self.cruise, up, down
+        length, even = hypot(level, rise), self.even(start, end)
+        if upright is not None:
+            steep = length / abs(rise) * upright
+            up, down = (min(each * length / level, steep) if level > 0.0 else steep for each in (up, down))
+        return length, length / even if even > 0.0 else inf, up, down
+
+    def _settling(self, fastest: float) -> float:
+        beyond = self.timing.overshoot * fastest if self.timing.overshoot > 0.0 else 0.0
+        return self.timing.settling + ((beyond - SETTLED) / RETURNING if beyond > SETTLED else 0.0)
+
+
+def _speeding(speed: float, acceleration: float, jerk: float) -> float:
+    """Return the seconds from a stop to a speed, which takes half that speed times them, in metres."""
+    if jerk == inf:
+        return speed / acceleration
+    if speed * jerk >= acceleration * acceleration:
+        return speed / acceleration + acceleration / jerk
+    return 2.0 * sqrt(speed / jerk)
+
+
+def _stop_to_stop(
+    length: float, speed: float, acceleration: float, deceleration: float, jerk: float
+) -> tuple[float, float]:
+    """Return the seconds of a leg from a stop to a stop, and its largest speed."""
+    if speed < inf:
+        phases = _speeding(speed, acceleration, jerk) + _speeding(speed, deceleration, jerk)
+        if 2.0 * length >= speed * phases:
+            return length / speed + phases / 2.0, speed
+    fastest = _largest_speed(length, acceleration, deceleration, jerk)
+    if fastest == inf:
+        return 0.0, inf
+    return _speeding(fastest, acceleration, jerk) + _speeding(fastest, deceleration, jerk), fastest
+
+
+def _largest_speed(length: float, acceleration: float, deceleration: float, jerk: float) -> float:
+    """Return the speed that a leg reaches where nothing limits it but acceleration and jerk.
+
+    Its phases take as many seconds as twice the length by that speed. A phase that does not reach its
+    acceleration takes 2 √(v / jerk), another v / a + a / jerk: of the four cases the sum of these leads to
+    a power or to a quadratic equation, of v or of √v.
+    """
+    more, less = (
+        (acceleration, deceleration) if acceleration >= deceleration else (deceleration, acceleration)
+    )
+    if jerk == inf:
+        return sqrt(2.0 * length / (1.0 / more + 1.0 / less)) if less < inf else inf
+    if more < inf:
+        both, linear = 1.0 / more + 1.0 / less, (more + less) / jerk
+        speed = (sqrt(linear * linear + 8.0 * both * length) - linear) / (2.0 * both)
+        if speed * jerk >= more * more:
+            return speed
+    if less < inf:
+        scale, root = sqrt(less), sqrt(2.0 * length)
+        # (v / a + a / j) + 2 √(v / j) = (√(v / a) + √(a / j))², so that √v (√(v / a) + √(a / j)) = √(2 l)
+        linear = sqrt(less / jerk)
+        root_of_speed = (sqrt(linear * linear + 4.0 * root / scale) - linear) * scale / 2.0
+        if root_of_speed * root_of_speed * jerk >= less * less:
+            return root_of_speed * root_of_speed
+    return float((length * sqrt(jerk) / 2.0) ** (2.0 / 3.0))

@@ -1,0 +1,145 @@
+"""How long vehicles take for what they do: by their firmware's parameters and source, and as measured.
+
+Measured were ArduCopter, ArduSub and Rover 4.7-dev and PX4 1.15 in their own simulations, with the default
+parameters of their classes; half of those flights calibrated what no source states. Other parameters,
+such as WPNAV_ACCEL, make other figures: robot types state theirs.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import inf
+
+
+@dataclass(frozen=True, slots=True)
+class LegFigures:
+    """How a vehicle takes straight legs in one way of being commanded (``docs/concepts/timing.md``).
+
+    Attributes:
+        acceleration, deceleration: level, metres per second squared.
+        vertical_acceleration: up and down, metres per second squared.
+        jerk: change of acceleration, metres per second cubed.
+        speed: largest that it makes, metres per second.
+        climb, descent: metres per second.
+        corner_radius: metres from a corner within which it passes; 0: it comes to a stop at each.
+        acceptance: metres from a target at which it may count as reached.
+        settling: seconds from the end of a leg until it is reported as done.
+        overshoot: metres that it goes beyond a target for each metre per second of the leg's largest speed.
+        spread: by which share legs take longer or shorter than expected.
+    """
+
+    acceleration: float = inf
+    deceleration: float | None = None
+    vertical_acceleration: float | None = None
+    jerk: float = inf
+    speed: float = inf
+    climb: float = inf
+    descent: float = inf
+    corner_radius: float = inf
+    acceptance: float = 0.0
+    settling: float = 0.0
+    overshoot: float = 0.0
+    spread: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class Pacing:
+    """How long a vehicle takes for what it does, in its own seconds.
+
+    Attributes:
+        step: for legs that it is commanded one by one: GUIDED, OFFBOARD.
+        mission: for legs of a mission that it is given; None: as for single ones.
+        launch: from the command to take off until it climbs; None: as its robot kind does.
+        recovery: from touching the ground until it is disarmed; None: as its robot kind does.
+        landing_rate: metres per second at which it comes down below `landing_height`, metres above ground.
+        rounds: whether it drives round where it cannot turn on the spot.
+    """
+
+    step: LegFigures = LegFigures()
+    mission: LegFigures | None = None
+    launch: float | None = None
+    recovery: float | None = None
+    landing_rate: float = inf
+    landing_height: float = 0.0
+    rounds: bool = False
+
+
+UNKNOWN = Pacing()
+"""The limits of the robot type demand what is missing."""
+
+COPTER = Pacing(
+    step=LegFigures(
+        acceleration=2.5,
+        deceleration=1.5,
+        vertical_acceleration=1.0,
+        jerk=5.0,
+        climb=2.5,
+        descent=1.5,
+        corner_radius=0.0,
+        acceptance=1.0,
+        settling=0.15,
+        overshoot=0.145,
+        spread=0.18,
+    ),
+    mission=LegFigures(
+        acceleration=2.5,
+        vertical_acceleration=1.0,
+        jerk=1.0,
+        climb=2.5,
+        descent=1.5,
+        corner_radius=2.0,
+        settling=1.6,
+        spread=0.18,
+    ),
+    launch=3.0,
+    recovery=3.0,
+    landing_rate=0.5,
+    landing_height=10.0,
+)
+"""WPNAV_ACCEL, WPNAV_ACCEL_Z, WPNAV_SPEED_UP and WPNAV_SPEED_DN, LAND_SPEED and LAND_ALT_LOW; PSC_JERK_NE
+where it is commanded leg by leg, WPNAV_JERK and WPNAV_RADIUS on missions, whose legs hold for a second.
+
+Leg by leg it slows down by half of its acceleration, which its square-root controller corrects
+(``shape_pos_vel_accel_xy``, ``control.cpp``); it goes beyond places by what its velocity controller lags.
+"""
+
+ROVER = Pacing(
+    step=LegFigures(acceleration=1.0, corner_radius=0.0, acceptance=1.0, settling=0.6, spread=0.15),
+    mission=LegFigures(acceleration=1.0, jerk=1.0, corner_radius=2.0, settling=2.3, spread=0.2),
+    rounds=True,
+)
+"""ATC_ACCEL_MAX, and WP_JERK, which is the acceleration by default. It never reverses to turn."""
+
+SUB = Pacing(
+    mission=LegFigures(acceleration=1.0, jerk=1.0, speed=1.05, corner_radius=2.0, settling=1.0, spread=0.2)
+)
+"""Its simulated hull makes one metre per second on missions, whatever it is commanded."""
+
+PX4_COPTER = Pacing(
+    step=LegFigures(
+        acceleration=3.0,
+        deceleration=1.5,
+        jerk=4.0,
+        climb=3.0,
+        descent=1.5,
+        corner_radius=0.0,
+        acceptance=1.0,
+        settling=6.5,
+        spread=0.3,
+    ),
+    mission=LegFigures(
+        acceleration=3.0,
+        deceleration=1.5,
+        jerk=4.0,
+        climb=3.0,
+        descent=1.5,
+        corner_radius=2.0,
+        settling=1.6,
+        spread=0.2,
+    ),
+    launch=6.0,
+    recovery=3.0,
+    landing_rate=0.7,
+    landing_height=10.0,
+)
+"""MPC_ACC_HOR, MPC_JERK_AUTO, MPC_Z_V_AUTO_UP, MPC_Z_V_AUTO_DN, MPC_LAND_SPEED and MPC_LAND_ALT1."""
