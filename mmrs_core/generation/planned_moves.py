@@ -91,7 +91,7 @@ def _order(robot: RobotProgram) -> Iterator[int]:
 
 
 def _seconds(move: Move, duration: MoveSeconds, saved: float, type: RobotType | None) -> MoveSeconds | None:
-    """Return the duration of a move with its actions, where passing its ends saves so many seconds."""
+    """Return the duration of a move with its actions, less the seconds that passing its ends saves."""
     acting = sum(_acting(action, type) for action in (*move.before, *move.after))
     if duration.longest + acting == inf:
         return None

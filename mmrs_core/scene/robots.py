@@ -233,7 +233,7 @@ class Kinematics:
 
     def landing(self, height: float) -> float:
         """Return the seconds of coming down to the ground from a height, metres, until it stands still."""
-        slow = min(height, self.landing_height)
+        slow = min(max(0.0, height), self.landing_height)
         later = slow / self.landing_rate if self.landing_rate < inf else 0.0
         rates = self.rates()
         return rates.rise(slow - height) + later + self.recovery

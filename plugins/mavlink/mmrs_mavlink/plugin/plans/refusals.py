@@ -17,6 +17,7 @@ from mmrs_mavlink.plugin.controllers import DRIVER
 from mmrs_mavlink.plugin.headings import on_gimbal
 from mmrs_mavlink.plugin.plans.flight import flown
 from mmrs_mavlink.plugin.plans.items import unknown_in
+from mmrs_mavlink.plugin.plans.times import too_long
 from mmrs_mavlink.plugin.vehicles import autopilot_fault
 from mmrs_mavlink.wiring import Sampled, Unwired
 
@@ -31,6 +32,7 @@ def refusals(input: TargetInput) -> Iterator[str]:
             yield unknown
             continue
         yield from _of_robot(robot, input)
+        yield from too_long(robot, input)
         yield from _above_water(robot, input)
 
 

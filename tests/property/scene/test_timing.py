@@ -1,0 +1,179 @@
+"""Laws of the model of legs, for all lengths, speeds, accelerations and jerks."""
+
+from dataclasses import replace
+from math import inf, radians, sin, tan
+
+import numpy as np
+import pytest
+from hypothesis import assume, given
+from hypothesis import strategies as st
+
+from mmrs_core.scene.timing import IDEAL, LegTiming, Rates
+
+HERE = (0.0, 0.0, 10.0)
+NONE = (0.0, 0.0, 0.0)
+LENGTHS = st.floats(0.01, 2000.0)
+SPEEDS = st.floats(0.1, 30.0)
+LIMITS = st.floats(0.1, 20.0)
+
+
+@st.composite
+def timings(draw):
+    return LegTiming(
+        acceleration=draw(LIMITS),
+        deceleration=draw(st.none() | LIMITS),
+        jerk=draw(st.just(inf) | LIMITS),
+        corner_radius=draw(st.floats(0.0, 20.0)),
+        settling=draw(st.floats(0.0, 5.0)),
+        overshoot=draw(st.floats(0.0, 0.3)),
+        spread=draw(st.floats(0.0, 0.5)),
+    )
+
+
+def rates(timing, speed=5.0):
+    return Rates(speed, speed, speed, timing)
+
+
+def east(length, begin=HERE):
+    return (begin[0] + length, begin[1], begin[2])
+
+
+def seconds(timing, length, speed=5.0):
+    return rates(timing, speed).from_stop_to_stop(HERE, east(length))
+
+
+def integrated(timing, length, speed):
+    """Return how far a leg leads and how fast it ends, by integrating its acceleration."""
+    whole = seconds(replace(timing, settling=0.0, overshoot=0.0), length, speed)
+    fastest = _largest(timing, length, speed)
+    times = np.linspace(0.0, whole, 200_001)
+    change = _acceleration(times, fastest, timing.acceleration, timing.jerk)
+    change -= _acceleration(whole - times, fastest, timing.braking, timing.jerk)
+    paces = np.concatenate([[0.0], np.cumsum((change[1:] + change[:-1]) / 2.0) * (times[1] - times[0])])
+    return float(np.trapezoid(paces, times)), float(paces[-1])
+
+
+def _phase(speed, acceleration, jerk):
+    """Return the seconds from a stop to a speed: those of the jerk, and those at the acceleration."""
+    rise = min(acceleration, (speed * jerk) ** 0.5) / jerk
+    return rise, speed / (rise * jerk) - rise
+
+
+def _acceleration(times, speed, acceleration, jerk):
+    rise, steady = _phase(speed, acceleration, jerk)
+    return jerk * np.clip(np.minimum(times, 2.0 * rise + steady - times), 0.0, rise)
+
+
+def _largest(timing, length, speed):
+    """Return the largest speed of a leg by bisection."""
+    low, high = 0.0, speed
+    for _ in range(100):
+        middle = (low + high) / 2.0
+        phases = (
+            _phase(middle, limit, timing.jerk) if middle else (0.0, 0.0)
+            for limit in (timing.acceleration, timing.braking)
+        )
+        needed = sum(middle * (2.0 * rise + steady) / 2.0 for rise, steady in phases)
+        low, high = (middle, high) if needed <= length else (low, middle)
+    return low
+
+
+@given(timings(), st.floats(0.5, 500.0), st.floats(0.5, 20.0))
+def test_a_leg_takes_as_long_as_its_jerk_integrated(timing, length, speed):
+    assume(timing.jerk < inf)
+    place, pace = integrated(timing, length, speed)
+    assert place == pytest.approx(length, rel=1e-3)
+    assert pace == pytest.approx(0.0, abs=1e-3 * speed)
+
+
+@given(timings(), LENGTHS, st.floats(0.0, 100.0), SPEEDS)
+def test_a_longer_leg_takes_no_less_time(timing, length, more, speed):
+    assert seconds(timing, length, speed) <= seconds(timing, length + more, speed) + 1e-9
+
+
+@given(timings(), LENGTHS, SPEEDS)
+def test_a_hair_of_length_takes_a_hair_of_time(timing, length, speed):
+    shorter, longer = seconds(timing, length, speed), seconds(timing, length * (1.0 + 1e-9), speed)
+    assert longer - shorter < 1e-5 * (1.0 + shorter)
+
+
+@given(timings(), LENGTHS, SPEEDS, st.floats(1.0, 3.0))
+def test_a_higher_speed_takes_no_more_time_but_for_settling(timing, length, speed, faster):
+    settled = replace(timing, overshoot=0.0)
+    assert seconds(settled, length, speed * faster) <= seconds(settled, length, speed) + 1e-9
+
+
+@given(timings(), LENGTHS, SPEEDS)
+def test_no_leg_is_quicker_than_at_even_speed(timing, length, speed):
+    assert seconds(timing, length, speed) >= length / speed - 1e-9
+
+
+@given(timings(), LENGTHS, SPEEDS)
+def test_less_jerk_takes_no_less_time(timing, length, speed):
+    assert seconds(replace(timing, jerk=inf), length, speed) <= seconds(timing, length, speed) + 1e-9
+
+
+@given(timings(), LENGTHS, LENGTHS, st.floats(0.0, 179.0), SPEEDS)
+def test_passing_a_corner_takes_no_more_time_than_stopping_there(timing, first, second, turn, speed):
+    corner = east(first)
+    end = (corner[0] + second * sin(radians(90.0 - turn)), corner[1] + second * sin(radians(turn)), corner[2])
+    found = rates(timing, speed)
+    stopping = found.from_stop_to_stop(HERE, corner) + found.from_stop_to_stop(corner, end)
+    saved = found.settling(HERE, corner) + found.overlap((HERE, corner), (corner, end))
+    assert 0.0 <= saved <= stopping + 1e-9
+    assert stopping - saved >= found.eased(HERE, corner) / 2.0 - 1e-6
+
+
+@given(timings(), st.floats(5.0, 500.0), SPEEDS)
+def test_a_turn_keeps_within_the_corner_radius(timing, length, speed):
+    """In half of the overlap the robot speeds up from the corner on; half of the turn is at right angles."""
+    assume(timing.jerk == inf and timing.corner_radius > 0.0)
+    corner = east(length)
+    overlap = rates(timing, speed).overlap((HERE, corner), (corner, (corner[0], length, corner[2])))
+    travelled = timing.acceleration * (overlap / 2.0) ** 2 / 2.0
+    assert travelled * tan(radians(45.0)) * 2.0**0.5 <= timing.corner_radius + 1e-6
+
+
+@given(timings(), LENGTHS)
+def test_bounds_are_around_what_is_expected(timing, length):
+    found = rates(timing)
+    soonest, latest = found.soonest(), found.latest()
+    expected = found.from_stop_to_stop(HERE, east(length))
+    assert soonest.from_stop_to_stop(HERE, east(length)) == pytest.approx(expected * (1.0 - timing.spread))
+    assert latest.from_stop_to_stop(HERE, east(length)) == pytest.approx(expected * (1.0 + timing.spread))
+
+
+@given(LENGTHS, SPEEDS)
+def test_an_ideal_robot_takes_its_length_over_its_speed(length, speed):
+    assert seconds(IDEAL, length, speed) == pytest.approx(length / speed)
+
+
+def test_a_place_takes_no_time():
+    assert rates(LegTiming(2.0, settling=3.0)).from_stop_to_stop(HERE, HERE) == 0.0
+
+
+def test_a_climb_is_limited_by_its_own_rate_and_acceleration():
+    climbing = Rates(10.0, 2.5, 1.5, LegTiming(5.0, vertical_acceleration=1.0))
+    assert climbing.rise(25.0) == pytest.approx(10.0 + 2.5)
+    assert climbing.rise(-15.0) == pytest.approx(10.0 + 1.5)
+    assert climbing.from_stop_to_stop(NONE, (100.0, 0.0, 0.0)) == pytest.approx(10.0 + 2.0)
+
+
+def test_a_sloping_leg_is_as_slow_as_its_slower_part():
+    sloping = Rates(10.0, 1.0, 1.0, LegTiming(5.0, vertical_acceleration=1.0))
+    assert sloping.from_stop_to_stop(NONE, (10.0, 0.0, 50.0)) > 50.0
+
+
+def test_a_robot_that_overshoots_comes_back():
+    quick, slow = LegTiming(5.0), LegTiming(5.0, overshoot=0.2)
+    assert seconds(slow, 500.0, 2.0) == seconds(quick, 500.0, 2.0)
+    assert seconds(slow, 500.0, 10.0) > seconds(quick, 500.0, 10.0) + 1.0
+
+
+def test_a_robot_that_turns_first_is_soonest_where_it_need_not():
+    rover = Rates(1.0, 1.0, 1.0, LegTiming(1.0), shunting=9.0)
+    assert rover.from_stop_to_stop(NONE, (10.0, 0.0, 0.0)) == pytest.approx(20.0)
+    assert rover.soonest().from_stop_to_stop(NONE, (10.0, 0.0, 0.0)) == pytest.approx(11.0)
+    rounds = replace(rover, rounds=True)
+    assert rounds.from_stop_to_stop(NONE, (10.0, 0.0, 0.0)) == pytest.approx(11.0)
+    assert rounds.latest().from_stop_to_stop(NONE, (10.0, 0.0, 0.0)) == pytest.approx(20.0)
