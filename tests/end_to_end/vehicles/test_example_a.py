@@ -19,7 +19,8 @@ def _needs(fleet: str) -> list[pytest.MarkDecorator]:
     if firmware is None:
         return []
     reason = f"{firmware.variable} names no binary: the example was not flown on {fleet}"
-    return [pytest.mark.peer, pytest.mark.skipif(not firmware.binary, reason=reason)]
+    missing = pytest.mark.skipif(not firmware.binary, reason=reason)
+    return [pytest.mark.peer, pytest.mark.timeout(3600), missing]
 
 
 VEHICLES = [pytest.param(fleet, marks=_needs(fleet)) for fleet in FLEETS]
@@ -30,7 +31,7 @@ VEHICLES = [pytest.param(fleet, marks=_needs(fleet)) for fleet in FLEETS]
 @pytest.mark.parametrize("way", WAYS)
 @pytest.mark.parametrize("fleet", VEHICLES)
 def test_three_vehicles_fly_it_and_stay_clear_of_every_area(tmp_path, fleet, way):
-    mission = Mission(tmp_path / "mission")
+    mission = Mission(tmp_path / "mission", getattr(FLEETS[fleet], "properties", None))
     with FLEETS[fleet](mission.homes, tmp_path) as vehicles:
         codes, said = WAYS[way](mission, vehicles.links, vehicles.speedup)
     assert set(codes.values()) == {0}, said

@@ -13,6 +13,7 @@ import threading
 from collections.abc import Callable, Mapping, Sequence
 from math import cos, radians, sin
 from pathlib import Path
+from typing import ClassVar
 
 from firmware import ARDUCOPTER, PX4, Fix, InstalledVehicle, Stand
 from peer_lines import said_in
@@ -136,6 +137,8 @@ class Installed:
 
     firmware = ARDUCOPTER
     speedup = 1.0
+    parameters: ClassVar[Mapping[str, float]] = {}
+    properties: ClassVar[Mapping[str, str] | None] = None
 
     def __init__(self, homes: Sequence[Home], folder: Path) -> None:
         self._vehicles = {
@@ -145,6 +148,7 @@ class Installed:
                 folder,
                 number=number,
                 speedup=self.speedup,
+                parameters=self.parameters,
             )
             for number, home in enumerate(homes)
         }
@@ -181,9 +185,17 @@ class ArduCopter(Installed):
 
 
 class Px4(Installed):
-    """PX4's simulation, with its own simulator in it; the binary stands in its build folder's ``bin``."""
+    """PX4's simulation, with its own simulator in it; the binary stands in its build folder's ``bin``.
+
+    A PX4 switches no relays: its gas sensor is where a gripper would be.
+    """
 
     firmware = PX4
+    parameters: ClassVar[Mapping[str, float]] = {"PD_GRIPPER_EN": 1}
+    properties: ClassVar[Mapping[str, str] | None] = {
+        "mavlink.gripper": "1",
+        "mavlink.gripper.SampleGas": "grab",
+    }
 
 
 FLEETS: Mapping[str, Callable] = {"ours": Ours, "mavsdk": OfMavsdk, "arducopter": ArduCopter, "px4": Px4}

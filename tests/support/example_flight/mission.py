@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from math import hypot, inf
@@ -22,6 +22,9 @@ from mmrs_core.scene import Area, AreaUse, Position
 from mmrs_core.testing.programs import installed
 
 EXAMPLE = "carbon-dioxide"
+START_SECONDS = 150.0
+"""Real seconds until vehicles are ready that were just started, and machines are busy."""
+
 SLACK = 0.05
 """Metres by which a measured track may be off: the record is in millimetres and tenths of a second."""
 
@@ -42,16 +45,21 @@ class Mission:
     """The planned mission, in a folder with its behaviour and its generated controllers.
 
     Attributes:
-        program: what robots do. place: where. homes: in its order.
+        program: what robots do. place: where. homes: in its order. seconds: that it is planned to take.
     """
 
-    def __init__(self, folder: Path) -> None:
+    def __init__(self, folder: Path, properties: Mapping[str, str] | None = None) -> None:
+        """Plan it; `properties` are values of device properties that replace the example's relay."""
         self.folder = folder
         contributions = load_plugins().contributions
         copytree(shipped("examples") / EXAMPLE, folder, dirs_exist_ok=True)
+        if properties is not None:
+            _rewire(folder / "robots" / "quad-650.xmi", properties)
         models, _ = pipeline.valid_models(folder, contributions)
         scene = pipeline.expand(pipeline.ground(models), contributions)
-        behaviour, _ = pipeline.transform(scene, pipeline.plan(scene), contributions)
+        plan = pipeline.plan(scene)
+        self.seconds = plan.makespan
+        behaviour, _ = pipeline.transform(scene, plan, contributions)
         write_model([behaviour], folder / "behaviour.xmi", contributions.languages)
         self.program = pipeline.program_of(behaviour, contributions)
         self.place = pipeline.place_of_scene(scene)
@@ -63,9 +71,22 @@ class Mission:
             for robot, place in zip(self.program.robots, degrees, strict=True)
         ]
 
+    def patience(self, speedup: float) -> float:
+        """Return the real seconds after which it counts as stuck: twice as planned, and a start."""
+        return START_SECONDS + 2.0 * self.seconds / speedup
+
     def margins(self, home: Home, track: Track) -> dict[str, float]:
         """Return how much farther from each area as drawn than it must be a robot's track stays, metres."""
         return margins(self.program, self.place, home.robot, track)
+
+
+def _rewire(type: Path, properties: Mapping[str, str]) -> None:
+    """Give a type's device on a relay other properties."""
+    relay = '<properties name="mavlink.relay" value="0"/>'
+    text = type.read_text("utf-8")
+    assert relay in text
+    others = (f'<properties name="{name}" value="{value}"/>' for name, value in properties.items())
+    type.write_text(text.replace(relay, "".join(others)), "utf-8")
 
 
 def margins(

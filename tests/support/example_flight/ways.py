@@ -11,7 +11,6 @@ from warm_python import python
 
 from example_flight.mission import Mission
 
-PATIENCE = 280.0
 RUN = ("-W", "error", "-m", "mmrs_core", "run")
 
 
@@ -25,7 +24,7 @@ def by_controllers(mission: Mission, links: Mapping[str, str], speedup: float) -
         )
         for robot, command in commands.items()
     }
-    return _ends(processes)
+    return _ends(processes, mission.patience(speedup))
 
 
 def controller_commands(
@@ -63,14 +62,14 @@ def _run(
 ) -> tuple[dict[str, int], str]:
     command = [python(), *run_command(models, links, speedup, mission.folder / "logs")]
     run = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
-    return _ends({"all": run})
+    return _ends({"all": run}, mission.patience(speedup))
 
 
-def _ends(processes: Mapping[str, subprocess.Popen[str]]) -> tuple[dict[str, int], str]:
+def _ends(processes: Mapping[str, subprocess.Popen[str]], seconds: float) -> tuple[dict[str, int], str]:
     said = []
     try:
         for process in processes.values():
-            said.append(process.communicate(timeout=PATIENCE)[1])
+            said.append(process.communicate(timeout=seconds)[1])
     finally:
         for process in processes.values():
             process.kill()
