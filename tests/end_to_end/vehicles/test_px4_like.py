@@ -5,7 +5,7 @@ from __future__ import annotations
 import subprocess
 
 import pytest
-from mmrs_multicopter.testing import target_input, two_drones
+from mmrs_multicopter.testing import quad, target_input, two_drones
 from ports import free_port
 from warm_python import python
 
@@ -28,7 +28,8 @@ OFFBOARD, MISSION = "guided", "auto"
 def flown(tmp_path_factory):
     """Return two drones that have flown: program, folder, vehicles by robot, and the ended process."""
     folder, program, vehicles, links = tmp_path_factory.mktemp("flown"), two_drones(), {}, []
-    write(render(MAVLINK_PYTHON, target_input(program)), folder)
+    types = [quad(**{"mavlink.camera.command": "digicam"})]
+    write(render(MAVLINK_PYTHON, target_input(program, types)), folder)
     degrees = degrees_of([robot.home[:2] for robot in program.robots], program.frame)
     for number, (robot, place) in enumerate(zip(program.robots, degrees, strict=True), start=1):
         port = free_port()

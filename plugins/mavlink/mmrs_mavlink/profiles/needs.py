@@ -189,8 +189,11 @@ ON_PX4: Needs = {
     REPEAT_RELAY: _refused_by_px4("DO_REPEAT_RELAY"),
     SET_SERVO: _refused_by_px4("DO_SET_SERVO"),
     REPEAT_SERVO: _refused_by_px4("DO_REPEAT_SERVO"),
+    IMAGE_START_CAPTURE: _refused_by_px4("IMAGE_START_CAPTURE; mavlink.camera.command = digicam triggers it"),
     GRIPPER: lambda params: Need(("PD_GRIPPER_EN",), "the vehicle has no gripper", (1,)),
     DIGICAM_CONTROL: _px4_trigger,
     TRIGGER_DISTANCE: _px4_trigger,
 }
-"""Read in PX4 1.16 (``Commander.cpp``, ``camera_trigger.cpp``, ``payload_deliverer.cpp``)."""
+"""Read in PX4 1.16 (``Commander.cpp``, ``camera_trigger.cpp``, ``payload_deliverer.cpp``), and tried on its
+simulation: it answers UNSUPPORTED to what it does not carry out, and nothing without a trigger or gripper.
+"""

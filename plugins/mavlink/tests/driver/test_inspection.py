@@ -127,6 +127,14 @@ def test_a_px4_switches_no_relays():
     assert found.defects == ["device 'co2' (SampleGas): PX4 carries out no DO_REPEAT_RELAY"]
 
 
+def test_a_px4_takes_images_only_where_it_triggers_the_camera():
+    (defect,) = inspected(using(PHOTO), Equipped(), autopilot=PX4).defects
+    assert defect.startswith("device 'camera' (TakePicture): PX4 carries out no IMAGE_START_CAPTURE")
+    digicam = replace(PHOTO, command=203, params=(0.0, 0.0, 0.0, 0.0, 1.0))
+    found = inspected(using(digicam), Equipped(TRIG_MODE=0.0), autopilot=PX4)
+    assert "TRIG_MODE is 0" in found.defects[0]
+
+
 def test_nothing_is_tried_unless_that_is_allowed():
     vehicle = Equipped(RELAY1_FUNCTION=1.0, RELAY1_PIN=13.0)
     inspected(using(SAMPLE), vehicle)
