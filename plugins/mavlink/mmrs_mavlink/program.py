@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import TypeAlias
 
@@ -163,3 +163,21 @@ class Robot(words.Robot):
             ValueError: there is none, as where its plug-in is not installed.
         """
         return profile_for(self.vehicle, self.driven_by)
+
+    @property
+    def judged(self) -> Robot:
+        """Return its program with the places that its vehicle is judged by; devices look at the true ones."""
+        if not self.profile.in_plane:
+            return self
+        return replace(
+            self,
+            home=self.profile.level(self.home),
+            steps=tuple(replace(step, movement=self._judged(step.movement)) for step in self.steps),
+            escapes=tuple((move, tuple(map(self.profile.level, places))) for move, places in self.escapes),
+        )
+
+    def _judged(self, movement: object) -> object:
+        if not isinstance(movement, GoTo):
+            return movement
+        at = movement.at if isinstance(movement.at, Object) else self.profile.level(movement.at)
+        return replace(movement, at=at, legs="direct")

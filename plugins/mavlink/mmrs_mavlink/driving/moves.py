@@ -78,7 +78,7 @@ class Moves:
         self.charging: Charging | None = None
         self._found: dict[GoTo, Place] = {}
         self._steps = {step.move: step for step in robot.steps}
-        self._robot, self._home = robot.id, robot.home
+        self._robot, self._home, self._level = robot.id, robot.home, robot.profile.level
         policy = policy_for(DEVICE_SILENT, robot)
         self._silence = seconds_of(policy)
         self._silence_of_values = seconds_of(policy, {DEVICE_SILENT: VALUE_SECONDS})
@@ -145,7 +145,7 @@ class Moves:
         return not is_sought or movement in self._found
 
     def _find(self, movement: GoTo) -> Place:
-        found = place_of(movement.at, self._locators, self._vehicle.state(), self._guard)
+        found = self._level(place_of(movement.at, self._locators, self._vehicle.state(), self._guard))
         self._found[movement] = found
         return found
 

@@ -46,6 +46,7 @@ class ThreadedVehicle(Vehicle):
 
     def __init__(self, robot: Robot, equipment: Equipment) -> None:
         """Receive from the vehicle; no command is sent before it is to get ready."""
+        robot = robot if equipment.dry else robot.judged
         self._robot, self._with = robot, equipment
         self._lost_link = LostLink(robot, equipment.vehicle, equipment.say)
         self._watch = self._new_watch()

@@ -6,6 +6,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import TypeAlias
 
+from mmrs_runtime.controllers.geodesy import at_height
+from mmrs_runtime.controllers.vocabulary import Place
+
 from .autopilot import Autopilot
 from .modes import HOLD, Mode
 from .pacing import UNKNOWN, Pacing
@@ -143,7 +146,8 @@ class VehicleProfile:
         dives: whether its heights count from the water surface.
         turns: whether it turns to a heading on command.
         heads_apart: whether it ignores the heading of a target, so that it is commanded separately.
-        in_plane: whether it is at a place whatever its height: it is as high as the ground takes it.
+        in_plane: whether it is judged in the plane: it is as high as the ground takes it, and its reported
+            height is wrong where it has set its home before it knew its own.
         still: metres per second up to which it stands still.
         timing: how long it may take.
         pacing: how long it takes.
@@ -212,6 +216,10 @@ class VehicleProfile:
     def drives(self) -> bool:
         """Return whether it moves on the ground: it neither flies nor dives."""
         return not (self.flies or self.dives)
+
+    def level(self, place: Place) -> Place:
+        """Return a place as the vehicle is judged by it: at the height of home where heights do not count."""
+        return at_height(place, 0.0) if self.in_plane else place
 
     def item_height(self, height: float) -> float:
         """Return the height of an item of a mission, metres above home, that leads to a height."""

@@ -219,7 +219,9 @@ class SimulatedAutopilot:
         return (north, remainder(longitude - self.settings.longitude, 360.0) * of_longitude, up)
 
     def above_ground(self, height: float, *, above_sea: bool) -> float:
-        """Return an altitude above mean sea level, or else above home, in metres above the ground."""
+        """Return an altitude above sea level, or else above home, in metres above the ground; of rovers 0."""
+        if self.settings.kind == "rover":
+            return 0.0
         return height + (0.0 if above_sea else self.home[2]) - self.settings.altitude
 
     def place_of(self, item: StoredItem) -> Vector:

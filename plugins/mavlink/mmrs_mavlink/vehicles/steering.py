@@ -12,7 +12,6 @@ from mmrs_runtime.faults import NO_PROGRESS, FaultError
 from ..links.link import Link
 from ..program import Geographic, Local, Look, Object, Place
 from ..services.commands import command, command_at
-from .footing import aside
 from .mode_control import ModeControl
 from .shunting import Shunting
 from .telemetry import Telemetry
@@ -73,7 +72,7 @@ class Steering:
         acceptance: float,
         turning_radius: float = 0.0,
     ) -> None:
-        """Steer a vehicle by its profile; some are at a place whatever their height.
+        """Steer a vehicle by its profile.
 
         Args:
             link: to the vehicle.
@@ -87,7 +86,6 @@ class Steering:
         self._mode_control = mode_control
         self._acceptance = acceptance
         self._shunting = Shunting(link, telemetry, mode_control, turning_radius)
-        self._away = aside if link.profile.in_plane else distance
         self._yaw: float | None = None
         self._speed: float | None = None
 
@@ -117,7 +115,7 @@ class Steering:
             limit += resend if self._link.unheard() else 0.0
             if self._link.clock.now() > limit:
                 raise FaultError(
-                    NO_PROGRESS, f"still {self._away(self._telemetry.here(), place):.1f} m from {place}"
+                    NO_PROGRESS, f"still {distance(self._telemetry.here(), place):.1f} m from {place}"
                 )
             lost = advance.ceased(resend)
             if lost or self._must_turn(look):
@@ -202,7 +200,7 @@ class Steering:
     def _arrived(self, place: Place, begun: Place | None) -> bool:
         """Return whether the vehicle is there, and still; or, on a leg to be gone through, abreast of it."""
         here = self._telemetry.here()
-        away = self._away(here, place)
+        away = distance(here, place)
         if away > self._acceptance:
             return False
         if self._telemetry.speed() <= self._link.profile.still:

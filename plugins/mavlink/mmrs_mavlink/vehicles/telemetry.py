@@ -185,10 +185,10 @@ class Telemetry:
         return next((event for event in self._link.profile.autopilot.announcements if event in said), None)
 
     def here(self) -> Place:
-        """Return the last reported position; home before there is one."""
+        """Return the last reported position, as the vehicle is judged by it; home before there is one."""
         found = self._link.latest(self._position)
         if found is not None and tells_place(found):
-            self._place = place_in(found)
+            self._place = self._link.profile.level(place_in(found))
         return self._place
 
     @contextmanager

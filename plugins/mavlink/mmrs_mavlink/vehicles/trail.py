@@ -36,7 +36,7 @@ class Trail:
         while self._reports:
             message = self._reports.popleft()
             if tells_place(message):
-                places.append(place_in(message))
+                places.append(self._link.profile.level(place_in(message)))
         return places
 
     def place_order(self) -> int:

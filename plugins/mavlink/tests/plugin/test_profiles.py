@@ -231,13 +231,22 @@ def test_its_failsafe_for_a_lost_link_is_set_by_its_own_parameter():
 
 def test_a_target_is_sent_again_after_the_seconds_of_its_profile():
     with aloft() as (vehicle, link, wire):
-        wire.say(mavlink.MAVLink_global_position_int_message(1, 423_700_000, 133_500_000, 0, 0, 0, 0, 0, 0))
+
+        def stand(milliseconds):
+            place = (423_700_000, 133_500_000, 0, 0)
+            wire.say(mavlink.MAVLink_global_position_int_message(milliseconds, *place, 0, 0, 0, 0))
+
+        stand(1)
         eventually(lambda: link.latest("GLOBAL_POSITION_INT"))
-        begun, ended = link.clock.now(), RefusedError("enough")
+        begun, ended, told = link.clock.now(), RefusedError("enough"), [0]
 
         def guard():
-            if link.clock.now() - begun > 0.5:
+            passed = link.clock.now() - begun
+            if passed > 0.5:
                 raise ended
+            if passed > told[-1] + 0.02:
+                told.append(passed)
+                stand(round(1000.0 * passed))
 
         link.guard = guard
         with pytest.raises(RefusedError, match="enough"):
