@@ -100,7 +100,7 @@ entered.
 """
 
 STARTS_IN = 0
-"""The mode that ArduPilot starts in by default."""
+"""The mode that Copter and Rover start in by default."""
 
 ON_LOST_LINK, ON_ANY_LOSS = "FS_GCS_ENABLE", "FS_ACTION"
 NEAREST = "RALLY_INCL_HOME"
@@ -283,7 +283,6 @@ ARDUSUB = VehicleProfile(
     _modes({modes.GUIDED: 4, modes.AUTO: 3, modes.HOLD: 16, modes.SURFACE: 9}),
     {0: "stabilize", 1: "acro", 2: "depth hold", 19: "manual"},
     failsafe_modes=frozenset({9, 16, 19}),
-    own_modes=frozenset({STARTS_IN}),
     lost_link=LostLinkFailsafe(
         {
             "CONTINUE": {ON_LOST_LINK: 1},
@@ -310,14 +309,15 @@ ARDUSUB = VehicleProfile(
     down="SURFACE",
     rests={"LAND": modes.SURFACE, "SURFACE": modes.SURFACE},
     usual_responses={OBJECT_NOT_FOUND: "SURFACE"},
-    starts_in=STARTS_IN,
+    starts_in=19,
     pacing=SUB,
 )
-"""It surfaces instead of returning. It ignores the heading of a SET_POSITION_TARGET_GLOBAL_INT, and turns by
-CONDITION_YAW (``GCS_MAVLink_Sub.cpp``). With each target that it receives it plans its path from rest: it is
-judged less often than others whether it has received one. It takes its home to be at the surface, wherever
-it is armed, and skips what is above that. A height of exactly 0 is to it the one that it is at: so an item at
-the surface is a bit below it, by the least that ArduSub distinguishes, as it counts in centimetres.
+"""It starts in MANUAL, and surfaces instead of returning. It ignores the heading of a
+SET_POSITION_TARGET_GLOBAL_INT, and turns by CONDITION_YAW (``GCS_MAVLink_Sub.cpp``). With each target that
+it receives it plans its path from rest: it is judged less often than others whether it has received one. It
+takes its home to be at the surface, wherever it is armed, and skips what is above that. A height of exactly
+0 is to it the one that it is at: so an item at the surface is a bit below it, by the least that ArduSub
+distinguishes, as it counts in centimetres.
 """
 
 _STOPS = frozenset({4, 11, 12})
@@ -327,9 +327,17 @@ ARDUROVER = VehicleProfile(
     ARDUPILOT,
     (10, 11),
     _modes({modes.GUIDED: 15, modes.AUTO: 10, modes.HOLD: 4}),
-    {0: "manual", 1: "acro", 3: "steering", 5: "loiter", 11: "return", 12: "smart return"},
+    {
+        0: "manual",
+        1: "acro",
+        3: "steering",
+        5: "loiter",
+        11: "return",
+        12: "smart return",
+        16: "initialising",
+    },
     failsafe_modes=_STOPS,
-    own_modes=frozenset({STARTS_IN}),
+    own_modes=frozenset({STARTS_IN, 16}),
     lost_link=LostLinkFailsafe(
         {
             "CONTINUE": {ON_LOST_LINK: 0},
