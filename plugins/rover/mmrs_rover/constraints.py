@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from functools import partial
+from math import atan2, degrees, dist, pi, tan
 
 from shapely import Point
 
@@ -148,6 +149,48 @@ def _no_such_ground(terrain: Element, models: ModelSet) -> Iterator[Finding]:
         )
 
 
+BEHAVIOUR = "urn:mmrs:behaviour:1.0"
+
+
+def _overruns_corners(robot: Element, models: ModelSet) -> Iterator[Finding]:
+    rover = models.robots.get(text(robot, "typeName"))
+    radius = number(rover, "turningRadius") if rover is not None and is_kind(rover, *ROVER) else None
+    places = {move: _place_after(move, models) for move in children(robot, "moves")}
+    into = [(child(each, "from"), child(each, "to"), each) for each in children(robot, "moveTransitions")]
+    before = {to: origin for origin, to, _ in into if origin is not None and to is not None}
+    for origin, to, transition in into:
+        if not radius or origin is None or to is None or transition.eGet("fluid") is not True:
+            continue
+        first = before.get(origin)
+        start = places.get(first) if first is not None else None
+        corner, end = places.get(origin), places.get(to)
+        if start and corner and end and (why := _narrow(start, corner, end, radius)):
+            yield Finding(origin, f"end of '{label_of(origin)}' is passed without a stop, and {why}")
+
+
+def _place_after(move: Element, models: ModelSet) -> tuple[float, float] | None:
+    """Return where a GoTo leads, and a Start leaves a robot, east and north; None for any other move."""
+    at = child(move, "target")
+    if is_kind(move, BEHAVIOUR, "Start"):
+        robot = move.eContainer()
+        at = child(robot, "home") if robot is not None else None
+    found = sketch_of(models).program_ground.positions.get(at) if at is not None else None
+    return found[:2] if found is not None else None
+
+
+def _narrow(
+    start: tuple[float, float], corner: tuple[float, float], end: tuple[float, float], radius: float
+) -> str:
+    """Return why a curve of a radius does not fit into a corner, in words; empty where it does."""
+    one, two = (corner[0] - start[0], corner[1] - start[1]), (end[0] - corner[0], end[1] - corner[1])
+    shorter = min(dist(start, corner), dist(corner, end))
+    across, along = one[0] * two[1] - one[1] * two[0], one[0] * two[0] + one[1] * two[1]
+    turn = abs(atan2(across, along))
+    if shorter <= EXACT or (turn < pi - EXACT and 2.0 * radius * tan(turn / 2.0) <= shorter + EXACT):
+        return ""
+    return f"a turn of {degrees(turn):.0f}° is too narrow between legs of {shorter:.2f} m"
+
+
 CONSTRAINTS = (
     Constraint(
         "ROV001",
@@ -220,5 +263,13 @@ CONSTRAINTS = (
         MISSION,
         off_level,
         "leave the task's altitude out, which puts it on the ground, or add a robot that flies or dives",
+    ),
+    Constraint(
+        "ROV011",
+        "A rover passes only corners without a stop that its narrowest curve fits into",
+        (BEHAVIOUR, "Robot"),
+        _overruns_corners,
+        'leave fluid="true" out, or make both legs at least 2 · turningRadius · tan(turn / 2) long',
+        Severity.WARNING,
     ),
 )

@@ -1,10 +1,13 @@
 from __future__ import annotations
 
+from itertools import pairwise
+
 import pytest
 from mmrs_rover import plugin
 from mmrs_rover.constraints import CONSTRAINTS
 from mmrs_rover.names import ROVER, TERRAIN
 
+from mmrs_core.languages import behaviour as bl
 from mmrs_core.languages import context as ctx
 from mmrs_core.languages import mission as mml
 from mmrs_core.testing.conformance import Case, ConstraintConformance
@@ -38,6 +41,20 @@ def mission(registry, home=(20.0, 0.0), up=0.0, kind="Rover"):
     return sample_mission(sample_visit(registry, 30.0, 0.0, up), robot_type=kind, home=(*home, 0.0))
 
 
+def driving(*places, fluid=True):
+    """Return a behaviour of a rover that goes from (0, 0) through places, each passed without a stop."""
+    home, *targets = [
+        bl.RelativeCoordinate(x=float(east), y=float(north)) for east, north in ((0, 0), *places)
+    ]
+    goes = [bl.GoTo(name=f"p{index}", target=target) for index, target in enumerate(targets)]
+    moves = [bl.Start(name="start"), *goes, bl.Stop(name="stop")]
+    flows = [
+        bl.MoveTransition(from_=one, to=two, fluid=fluid and one in goes[:-1]) for one, two in pairwise(moves)
+    ]
+    robot = bl.Robot(id="Badger", typeName="Rover", home=home, moves=moves, moveTransitions=flows)
+    return bl.Behaviour(name="drive", robots=[robot], targets=[home, *targets])
+
+
 CASES = {
     "ROV001": Case(lambda r: [rover(r, turningRadius=None)], lambda r: [rover(r, turningRadius=0.0)]),
     "ROV002": Case(
@@ -59,6 +76,9 @@ CASES = {
     "ROV009": Case(
         lambda r: [rover(r), mission(r, home=(11.5, 5.0)), place_with(terrain(r))],
         lambda r: [rover(r), mission(r, home=(11.6, 5.0)), place_with(terrain(r))],
+    ),
+    "ROV011": Case(
+        lambda r: [rover(r), driving((10, 0), (10, 1.5))], lambda r: [rover(r), driving((10, 0), (10, 2))]
     ),
     "ROV010": Case(lambda r: [rover(r), mission(r, up=0.5)], lambda r: [rover(r), mission(r, up=0.0)]),
 }
@@ -126,3 +146,17 @@ def test_a_robot_that_is_no_rover_may_begin_in_water(registry):
     plain = registry.create(ROBOT_LANGUAGE, "Robot", name="Otter")
     models = [plain, mission(registry, home=(5.0, 5.0), kind="Otter"), place_with(terrain(registry))]
     assert breaches(BY_CODE["ROV009"], models) == []
+
+
+def test_a_corner_that_is_too_narrow_to_pass_is_named_with_its_turn_and_its_shorter_leg(registry):
+    found = breaches(BY_CODE["ROV011"], [rover(registry), driving((10, 0), (10, 1.5), (0, 1.5))])
+    assert found == [
+        f"end of '{move}' is passed without a stop, and a turn of 90° is too narrow between legs of 1.50 m"
+        for move in ("p0", "p1")
+    ]
+
+
+def test_a_rover_stops_at_any_corner_and_passes_any_where_it_turns_on_the_spot(registry):
+    assert breaches(BY_CODE["ROV011"], [rover(registry), driving((10, 0), (10, 1), fluid=False)]) == []
+    turns = rover(registry, turningRadius=0.0)
+    assert breaches(BY_CODE["ROV011"], [turns, driving((10, 0), (10, 1))]) == []
