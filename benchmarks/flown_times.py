@@ -63,6 +63,12 @@ RECORDED = 0.1
 STALL = 1.0
 """Seconds from which the log's clock has run ahead."""
 
+ARMED = 5.0
+"""Seconds before its mission from which a vehicle is armed for it."""
+
+ITEM = 0.9
+"""Seconds that an item of a mission is shown at least which is a leg."""
+
 AUTO = {3, 10}
 """Modes of ArduPilot's copters and subs, and of its rovers, in which missions are flown."""
 
@@ -216,10 +222,11 @@ def _mission(
         extensions=contributions.extensions,
     )
     (items, *_) = sorties_of(context_of(robot, input))
-    flying = [each for each in track if each.armed and each.mode in AUTO]
+    begun = next((each.time for each in track if each.armed and each.mode in AUTO), 0.0)
+    flying = [each for each in track if each.armed and (each.mode in AUTO or 0.0 < begun - each.time < ARMED)]
     moves: dict[str, float] = {}
     for one, two in pairwise(flying):
-        item = items[one.item - 1] if 0 < one.item <= len(items) else None
+        item = items[max(one.item, 1) - 1] if one.item <= len(items) else None
         if item is not None and item.command in (WAYPOINT, TAKE_OFF):
             moves[item.move.id] = moves.get(item.move.id, 0.0) + two.time - one.time
     last = items[flying[-1].item - 1].move.id if 0 < flying[-1].item <= len(items) else ""
@@ -363,15 +370,19 @@ class Clock:
     ) -> None:
         legs, stepped, runs = legs_of(robot, session, loaded), _stepped(robot, session), _runs(robot, session)
         known: list[tuple[float, float]] = []
+        periods = iter(_missions(track))
+        passed: dict[str, float] = {}
         for label, move, time in times if track else ():
             about = time - (known[-1][1] if known else 0.0)
+            run = next((each for each in runs if each[0] == move), None)
             seen = None
-            if label == "end" and move in stepped and move in legs:
+            if label == "begin" and run is not None and (period := next(periods, None)) is not None:
+                seen, *ends = period
+                passed |= dict(zip(run, ends, strict=False))
+            elif label == "end" and move in passed:
+                seen = passed[move]
+            elif label == "end" and move in stepped and move in legs:
                 seen = _stop_at(legs[move][-1], track, about, 15.0 if known else 60.0)
-            elif label == "begin" and move in {run[0] for run in runs}:
-                seen = _mode_changed(track, about, auto=True)
-            elif label == "end" and move in {run[-1] for run in runs}:
-                seen = _mode_changed(track, about, auto=False)
             if seen is not None:
                 known.append((time, time - seen))
         landed = [(time, move) for label, move, time in times if label == "end" and move in legs]
@@ -417,12 +428,19 @@ def _stepped(robot: RobotProgram, session: Session) -> set[str]:
     }
 
 
-def _mode_changed(track: Sequence[Sample], about: float, *, auto: bool) -> float | None:
-    """Return when the vehicle began or ended to fly a mission, nearest to a time."""
-    changes = [
-        two.time for one, two in pairwise(track) if (one.mode in AUTO, two.mode in AUTO) == (not auto, auto)
-    ]
-    return min(changes, key=lambda time: abs(time - about)) if changes else None
+def _missions(track: Sequence[Sample]) -> list[list[float]]:
+    """Return for each mission that was flown when it began, and when each leg of it ended."""
+    found: list[list[float]] = []
+    item, since = 0, 0.0
+    for one, two in pairwise(track):
+        if two.mode in AUTO and one.mode not in AUTO:
+            found.append([two.time])
+            item, since = two.item, two.time
+        elif one.mode in AUTO and (two.mode not in AUTO or two.item != item):
+            if two.time - since > ITEM or two.mode not in AUTO:
+                found[-1].append(two.time)
+            item, since = two.item, two.time
+    return found
 
 
 def _stop_at(place: Position, track: Sequence[Sample], about: float, within: float) -> float | None:

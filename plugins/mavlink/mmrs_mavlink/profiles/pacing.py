@@ -1,8 +1,9 @@
 """How long vehicles take for what they do: by their firmware's parameters and source, and as measured.
 
 Measured were ArduCopter, ArduSub and Rover 4.7-dev and PX4 1.15 in their own simulations, with the default
-parameters of their classes; half of those flights calibrated what no source states. Other parameters,
-such as WPNAV_ACCEL, make other figures: robot types state theirs.
+parameters of their classes. Half of the flights calibrated what no source states: settling, overshoot, the
+deceleration of single legs, the speed of subs; the others agree (``benchmarks/results/flown_times.txt``).
+Other parameters, such as WPNAV_ACCEL, make other figures: robot types state theirs.
 """
 
 from __future__ import annotations
@@ -88,7 +89,7 @@ COPTER = Pacing(
         climb=2.5,
         descent=1.5,
         corner_radius=2.0,
-        settling=1.6,
+        settling=1.75,
         spread=0.18,
     ),
     launch=3.0,
@@ -137,7 +138,7 @@ PX4_COPTER = Pacing(
         settling=1.6,
         spread=0.2,
     ),
-    launch=6.0,
+    launch=3.2,
     recovery=3.0,
     landing_rate=0.7,
     landing_height=10.0,

@@ -1,0 +1,44 @@
+"""Flights on real firmware took as long as the same models are planned, and checked, to take.
+
+MMRS_FLIGHTS is a folder of recorded flights, each as `benchmarks/flown_times.py` describes; the folders of
+flights with a PX4 have names that begin with ``px4``.
+"""
+
+import os
+import sys
+from pathlib import Path
+
+import pytest
+
+sys.path.insert(0, str(Path(__file__).parents[3] / "benchmarks"))
+
+from flown_times import LEGS_WITHIN, MOST_LEGS, WITHIN, compared
+
+FOLDER = os.environ.get("MMRS_FLIGHTS", "")
+FLIGHTS = sorted(each.parent for each in Path(FOLDER).glob("*/behaviour.xmi")) if FOLDER else []
+STUCK = ("rover-arcs-stuck", "sub-guided", "sub-guided-resend-120")
+"""Flights that show what an earlier driver did wrong."""
+
+pytestmark = pytest.mark.skipif(not FLIGHTS, reason="MMRS_FLIGHTS is no folder of recorded flights")
+
+
+@pytest.fixture(scope="module")
+def found():
+    flights = [each for each in FLIGHTS if each.name not in STUCK]
+    return [each for flight in flights for each in compared(flight, px4=flight.name.startswith("px4"))]
+
+
+def test_flights_take_what_is_planned(found):
+    whole = [each for each in found if each.whole]
+    assert whole
+    assert [each.line() for each in whole if abs(each.ratio - 1.0) > WITHIN] == []
+
+
+def test_flights_keep_to_the_bounds_of_the_check(found):
+    assert [each.line() for each in found if not each.low <= each.flown <= each.high] == []
+
+
+def test_nearly_all_legs_take_what_is_planned(found):
+    legs, good = sum(len(each.legs) for each in found), sum(each.good_legs for each in found)
+    assert legs
+    assert good >= MOST_LEGS * legs, f"{good} of {legs} within {LEGS_WITHIN:.0%}"
