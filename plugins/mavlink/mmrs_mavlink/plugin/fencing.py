@@ -6,7 +6,8 @@ stays away from every leg by that error, and is as large as that allows: at most
 clearance from the area, at least the area as drawn.
 
 Only being inside breaks a fence. ArduPilot's FENCE_MARGIN moves no fence: nearer than that, it only
-warns, and halts pilots who fly manually (``AC_Fence.cpp``, ``check_fence_polygon``).
+warns, and halts pilots who fly manually (``AC_Fence.cpp``, ``check_fence_polygon``). A Rover halts in any
+mode, so that it is set to a tenth of a metre there (`vehicles.owner_settings`).
 """
 
 from __future__ import annotations

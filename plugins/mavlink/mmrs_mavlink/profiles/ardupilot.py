@@ -73,6 +73,7 @@ ARDUPILOT = Autopilot(
         types="FENCE_TYPE",
         polygons=4,
         rally_limit="RALLY_LIMIT_KM",
+        margin="FENCE_MARGIN",
     ),
     avoids="OA_TYPE",
     margins=("AVOID_MARGIN", "OA_MARGIN_MAX"),

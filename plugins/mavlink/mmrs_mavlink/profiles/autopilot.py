@@ -77,6 +77,7 @@ class OwnFence:
         types: parameter with the bits of the limits that count; empty: all do.
         polygons: bit of areas that are uploaded.
         rally_limit: parameter for the kilometres beyond which no rally point is returned to; empty: none.
+        margin: parameter for the metres from it at which a vehicle that drives halts; empty: none.
     """
 
     limits: tuple[FenceLimit, ...]
@@ -84,6 +85,7 @@ class OwnFence:
     types: str = ""
     polygons: int = 0
     rally_limit: str = ""
+    margin: str = ""
 
 
 def always(armed: bool, mode: int) -> bool:

@@ -34,6 +34,10 @@ MARGIN = 2.0
 """Metres that a program must stay inside a fence of the vehicle's own (FENCE_MARGIN)."""
 
 
+NEAR_FENCE = 0.1
+"""Metres from the areas of its program at which a vehicle that drives halts; its legs keep 0.5 m or more."""
+
+
 def enclose(
     link: Link, home: Place, places: Sequence[Place], rally: Sequence[Item], *, polygons: bool
 ) -> Iterator[str]:
@@ -60,6 +64,8 @@ def enclose(
             check(home, places, values.get(limit.parameter, 0.0), limit.parameter)
     if polygons and fence.types in values:
         yield from _enable_polygons(link, fence, obeyed, enabled=enabled)
+    if polygons and link.profile.drives:
+        yield from _approach(link, fence.margin)
     yield from _far_from_rally(places, rally, values.get(fence.rally_limit, 0.0), fence.rally_limit)
 
 
@@ -72,6 +78,19 @@ def _enable_polygons(link: Link, fence: OwnFence, obeyed: int, *, enabled: bool)
     alone = wanted == fence.polygons
     what = "is the areas of the program alone" if alone else "obeys the areas of the program, too"
     yield f"{fence.types} = {wanted}, which was {obeyed}: its fence {what}"
+
+
+def _approach(link: Link, name: str) -> Iterator[str]:
+    """Let a vehicle that drives come as near to the areas of its program as its path leads.
+
+    An ArduPilot Rover halts in any mode where it would come nearer than the margin (``calc_throttle``), other
+    vehicles only where a pilot flies them.
+    """
+    value = parameters.read(link, [name]).get(name, 0.0) if name else 0.0
+    if value > NEAR_FENCE:
+        if not parameters.write(link, name, NEAR_FENCE):
+            raise RefusedError(f"the fence: the vehicle does not confirm {name} = {NEAR_FENCE:g}")
+        yield f"{name} = {NEAR_FENCE:g}, which was {value:g}: its path leads nearer to its fence"
 
 
 def _check_radius(home: Place, places: Sequence[Place], radius: float, name: str) -> None:

@@ -8,7 +8,7 @@ from mavlink_peer import ARDUPILOT, PX4, linked, value
 
 from mmrs_mavlink import Geographic
 from mmrs_mavlink.driving.lost_link import LostLink
-from mmrs_mavlink.profiles import profile_for
+from mmrs_mavlink.profiles import ARDUCOPTER, ARDUROVER, profile_for
 from mmrs_mavlink.program import Policy
 from mmrs_mavlink.services.items import Item
 from mmrs_mavlink.vehicles.owner_settings import check_listening, enclose, end_exemption
@@ -22,7 +22,7 @@ def place(north: float = 0.0, height: float = 20.0) -> Geographic:
     return Geographic(42.37 + north / 111_073.0, 13.35, height)
 
 
-def told(*places, polygons: bool = True, rally=(), autopilot: int = ARDUPILOT, **values: float):
+def told(*places, polygons: bool = True, rally=(), autopilot: int = ARDUPILOT, profile=None, **values: float):
     """Return what people are told, and the vehicle's parameters afterwards."""
     kept = dict(values)
 
@@ -34,6 +34,8 @@ def told(*places, polygons: bool = True, rally=(), autopilot: int = ARDUPILOT, *
             yield value(message.param_id, kept[message.param_id])
 
     with linked(answer, autopilot=autopilot) as (link, _):
+        if profile is not None:
+            link.expect(profile)
         return list(enclose(link, HOME, places, rally, polygons=polygons)), kept
 
 
@@ -46,6 +48,22 @@ def test_a_fence_that_was_off_heeds_nothing_but_the_areas_of_the_program():
 def test_a_fence_that_was_off_stays_as_it_is_where_there_are_no_areas():
     lines, kept = told(place(1000.0), polygons=False, **USUAL)
     assert (lines, kept) == ([], USUAL)
+
+
+def test_a_rover_halts_no_farther_from_its_fence_than_its_path_leads():
+    here = USUAL | {"FENCE_TYPE": 4.0, "FENCE_MARGIN": 2.0}
+    lines, kept = told(place(10.0, 0.0), profile=ARDUROVER, **here)
+    assert kept["FENCE_MARGIN"] == pytest.approx(0.1)
+    assert lines == ["FENCE_MARGIN = 0.1, which was 2: its path leads nearer to its fence"]
+
+
+@pytest.mark.parametrize(
+    "more", [{"profile": ARDUCOPTER}, {"profile": ARDUROVER, "polygons": False}], ids=["copter", "no areas"]
+)
+def test_the_margin_of_a_fence_that_halts_no_program_stays(more):
+    here = USUAL | {"FENCE_TYPE": 4.0, "FENCE_MARGIN": 2.0}
+    lines, kept = told(place(10.0, 0.0), **more, **here)
+    assert (lines, kept) == ([], here)
 
 
 @pytest.mark.parametrize(
