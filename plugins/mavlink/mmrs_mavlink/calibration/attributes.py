@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator
 
 from .figures import MISSION, STEP, Figure
 
-CAPABILITY = ("lifetime", "maxTurnRate")
+CAPABILITY = ("lifetime", "maxTurnRate", "launchTime", "recoveryTime", "landingRate", "landingHeight")
 """Attributes of a movement capability that a flight tells."""
 
 TIMING = (
@@ -18,11 +18,9 @@ TIMING = (
     "maxVerticalAcceleration",
     "cornerRadius",
     "settlingTime",
+    "overshoot",
 )
 """Attributes of its timing of legs, for each way of flying them."""
-
-VEHICLE = ("spinUpTime", "landingRate", "landingHeight", "touchDownTime")
-"""Attributes of a type of vehicle that takes off and lands."""
 
 
 def shown(value: float) -> str:
@@ -36,21 +34,18 @@ def shown(value: float) -> str:
 
 
 def written(figures: Iterable[Figure], names: Iterable[str], flown_as: str = "") -> dict[str, str]:
-    """Return attributes that have a value, by name.
+    """Return attributes that have a value, by name; one that is estimated as less than 0 is 0.
 
     Args:
         names: that are asked for, in the order in which they are written.
         flown_as: how the legs were flown.
     """
     found = {each.name: each for each in figures if each.values and each.flown_as == flown_as}
-    return {name: shown(found[name].median) for name in names if name in found}
+    return {name: shown(max(0.0, found[name].median)) for name in names if name in found}
 
 
 def element_lines(figures: tuple[Figure, ...]) -> Iterator[str]:
     """Yield the lines of a robot type that hold the figures."""
-    vehicle = written(figures, VEHICLE)
-    if vehicle:
-        yield f"of the robot type:{_attributes(vehicle)}"
     yield f"<movementCapabilities{_attributes(written(figures, CAPABILITY))}>"
     for flown_as in (STEP, MISSION):
         if timing := written(figures, TIMING, flown_as):

@@ -3,16 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import degrees, inf, isfinite
 
 import numpy as np
 
+from mmrs_core.scene.timing import LegTiming, Rates
+
 from ..profiles import VehicleProfile
 from ..profiles.modes import AUTO, GUIDED
-from .curves import FEWEST, LARGEST_JERK, Ramp, plateaus_in, ramp_seconds, ramps_in, with_jerk
+from .curves import FEWEST, LARGEST_JERK, Ramp, plateaus_in, ramps_in, with_jerk
 from .flight import Flags, Flight, Floats
 from .motion import (
+    EVEN_SECONDS,
     Leg,
     climbs_of,
     corners_passed,
@@ -32,6 +35,9 @@ SLOWEST_RATE = 3.0
 """Positions per second below which changes of speed cannot be judged."""
 
 _USUAL_STILL = 0.3
+
+COULOMBS = 3.6
+"""In a milliampere-hour."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,14 +79,18 @@ def fastest(values: Sequence[float], part: float = 0.9) -> list[float]:
     return [each for each in values if each >= part * max(values)]
 
 
-def figures_of(flight: Flight) -> tuple[Figure, ...]:
-    """Return the figures of a flight: those of each way of flying legs, then those of all."""
+def figures_of(flight: Flight, capacity: float | None = None) -> tuple[Figure, ...]:
+    """Return the figures of a flight: those of each way of flying legs, then those of all.
+
+    Args:
+        capacity: of the vehicle's batteries, in coulombs; None: as the log tells.
+    """
     return (
         *_leg_figures(flight, STEP),
         *_leg_figures(flight, MISSION),
         _turn_rate(flight),
         *_end_figures(flight),
-        *_energy_figures(flight),
+        *_energy_figures(flight, capacity),
     )
 
 
@@ -127,11 +137,11 @@ def _leg_figures(flight: Flight, flown_as: str) -> Iterator[Figure]:
     rising = [each for each in fitting if each.rising]
     jerks = [each.jerk for each in rising]
     speeding = [each.acceleration for each in rising if each.keeps]
-    kept = plateaus_in(flight.times, np.where(level.chosen, level.speeds, 0.0), 2.0 * still, 2.0)
+    kept = plateaus_in(flight.times, np.where(level.chosen, level.speeds, 0.0), 2.0 * still, EVEN_SECONDS)
     tops = [each.value for each in kept]
     slowing = _decelerations(flight, level, fitting, float(np.median(jerks)) if jerks else 0.0)
     short = "no leg was long enough for it"
-    yield figure("speed.max", "m/s", fastest(tops) if tops else (), "no speed was kept for 2 s")
+    yield figure("maxSpeed", "m/s", fastest(tops) if tops else (), "no speed was kept for 2 s")
     yield figure("maxAcceleration", "m/s²", fastest(speeding, 0.8) if speeding else (), short)
     yield figure(
         "maxDeceleration",
@@ -144,16 +154,15 @@ def _leg_figures(flight: Flight, flown_as: str) -> Iterator[Figure]:
     if flown_as == MISSION:
         passed = corners_passed(flight, level.chosen, max(2.0 * still, level.least))
         yield figure("cornerRadius", "m", passed, "no corner was passed without a stop")
-    settled: list[float] = []
-    if speeding and jerks:
-        curve = tuple(float(np.median(each)) for each in (speeding, slowing or speeding, jerks))
-        settled = [_settling(each, curve) for each in legs_of(flight, level.ramps, still)]
-    yield figure(
-        "settlingTime",
-        "s",
-        settled,
-        "no straight leg between two stops, or the log does not hold when targets were given",
-    )
+    overshoot, settled = 0.0, list[float]()
+    if speeding and jerks and tops:
+        a, d, j = (float(np.median(each)) for each in (speeding, slowing or speeding, jerks))
+        timing = LegTiming(acceleration=a, deceleration=d, jerk=j)
+        legs = [each for each in legs_of(flight, level.ramps, still) if isfinite(each.done - each.begun)]
+        overshoot, settled = _beside(legs, timing, max(tops))
+    missing = "no straight leg between two stops, or the log does not hold when targets were given"
+    yield figure("overshoot", "s", (overshoot,) if settled else (), missing)
+    yield figure("settlingTime", "s", settled, missing)
 
 
 def _still(profile: VehicleProfile | None) -> float:
@@ -169,17 +178,39 @@ def _decelerations(flight: Flight, level: _Levels, fitting: Iterable[Ramp], jerk
     return [value for each, value in found if each.change * jerk >= 1.5 * value**2]
 
 
-def _settling(leg: Leg, curve: tuple[float, ...]) -> float:
-    """Return what a leg takes beside its S-curves, before the first and after the last of them.
+def _beside(legs: Sequence[Leg], timing: LegTiming, fastest: float) -> tuple[float, list[float]]:
+    """Return how far a vehicle goes beyond its targets, and what legs take beside their S-curves and that.
+
+    A vehicle that goes beyond its target by a share of its speed takes the longer, the faster the leg was.
+    Where the legs do not show that clearly, it does not.
 
     Args:
-        curve: acceleration, deceleration and jerk.
+        timing: acceleration, deceleration and jerk.
+        fastest: speed that was kept.
     """
-    acceleration, deceleration, jerk = curve
-    up, down = leg.speeding_up, leg.slowing_down
-    begins = up.middle - ramp_seconds(up.high, acceleration, jerk) / 2.0
-    ends = down.middle + ramp_seconds(down.high, deceleration, jerk) / 2.0
-    return (begins - leg.begun) + (leg.done - ends)
+    tops = [each.speeding_up.high for each in legs]
+    plain = [_left(each, timing, fastest) for each in legs]
+    if len(legs) < FEWEST or max(tops) < 1.5 * min(tops):
+        return 0.0, plain
+    best = min(range(1, 31), key=lambda number: _width(_lefts(legs, timing, fastest, number / 100.0)))
+    left = _lefts(legs, timing, fastest, best / 100.0)
+    return (best / 100.0, left) if _width(left) < 0.7 * _width(plain) else (0.0, plain)
+
+
+def _lefts(legs: Sequence[Leg], timing: LegTiming, fastest: float, overshoot: float) -> list[float]:
+    return [_left(each, replace(timing, overshoot=overshoot), fastest) for each in legs]
+
+
+def _left(leg: Leg, timing: LegTiming, fastest: float) -> float:
+    """Return by how much a leg took longer than it is planned to."""
+    cruise = leg.speeding_up.high if leg.even else fastest
+    rates = Rates(cruise, climb=cruise, descent=cruise, timing=timing)
+    return leg.done - leg.begun - rates.from_stop_to_stop((0.0, 0.0, 0.0), (leg.length, 0.0, 0.0))
+
+
+def _width(values: Sequence[float]) -> float:
+    low, high = np.percentile(values, (10.0, 90.0))
+    return float(high - low)
 
 
 _MakesFigure = Callable[[str, str, Iterable[float], str], Figure]
@@ -209,15 +240,15 @@ def _end_figures(flight: Flight) -> Iterator[Figure]:
         return
     landings = list(landings_of(flight))
     none = "no landing until the motors stopped"
-    yield _figure("spinUpTime", "s", spin_ups_of(flight), "no command to take off")
+    yield _figure("launchTime", "s", spin_ups_of(flight), "no command to take off")
     yield _figure("landingRate", "m/s", (each.rate for each in landings), none)
     yield _figure("landingHeight", "m", (each.height for each in landings), none)
-    yield _figure("touchDownTime", "s", (each.stopping for each in landings), none)
+    yield _figure("recoveryTime", "s", (each.stopping for each in landings), none)
 
 
-def _energy_figures(flight: Flight) -> Iterator[Figure]:
+def _energy_figures(flight: Flight, capacity: float | None) -> Iterator[Figure]:
     yield _figure("meanPower", "W", _powers(flight), "no voltage and current while it moved")
-    lifetime, missing = _lifetime(flight)
+    lifetime, missing = _lifetime(flight, capacity)
     yield _figure("lifetime", "s", lifetime, missing)
 
 
@@ -244,10 +275,11 @@ def _powers(flight: Flight) -> Iterator[float]:
             yield float(part.mean())
 
 
-def _lifetime(flight: Flight) -> tuple[tuple[float, ...], str]:
+def _lifetime(flight: Flight, capacity: float | None) -> tuple[tuple[float, ...], str]:
     """Return how long a full battery lasts, by its capacity and the current, or else by its charge."""
     taken = flight.power[in_flight(flight, flight.power[:, 0])]
-    capacity = flight.parameters.get("BATT_CAPACITY", 0.0) * 3.6
+    if capacity is None:
+        capacity = flight.parameters.get("BATT_CAPACITY", 0.0) * COULOMBS
     if len(taken) >= FEWEST and capacity > 0.0 and (current := float(taken[:, 2].mean())) > 0.0:
         return (capacity / current,), ""
     charges = flight.charges[in_flight(flight, flight.charges[:, 0])]

@@ -18,6 +18,9 @@ STRAIGHT = 0.98
 LEAST_CORNER = radians(20.0)
 LEAST_TURN = radians(45.0)
 
+EVEN_SECONDS = 2.0
+"""Seconds for which a speed is kept at least that counts as even."""
+
 _UPRIGHT = 0.5
 """Metres per second level, below which a climb or a descent is upright."""
 
@@ -35,6 +38,7 @@ class Leg:
     Attributes:
         speeding_up, slowing_down: how it begins and ends.
         length: metres.
+        even: whether a speed was kept between.
         begun: when the vehicle was given its target; NaN where the log does not tell.
         done: when it was given the next one, or its next mode; NaN likewise.
     """
@@ -42,6 +46,7 @@ class Leg:
     speeding_up: Ramp
     slowing_down: Ramp
     length: float
+    even: bool
     begun: float
     done: float
 
@@ -69,9 +74,9 @@ def legs_of(flight: Flight, ramps: Sequence[Ramp], still: float) -> Iterator[Leg
             continue
         stands = np.flatnonzero(speeds[after.first :] <= still)
         stood = float(flight.times[after.first + stands[0]]) if len(stands) else float(flight.times[-1])
-        yield Leg(
-            before, after, length, *_bounds(flight, before.middle, float(flight.times[before.first]), stood)
-        )
+        even = float(flight.times[after.first] - flight.times[before.last]) >= EVEN_SECONDS
+        began = float(flight.times[before.first])
+        yield Leg(before, after, length, even, *_bounds(flight, before.middle, began, stood))
 
 
 def _bounds(flight: Flight, moving: float, began: float, stood: float) -> tuple[float, float]:

@@ -8,19 +8,21 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from mmrs_core.cli.output import say, say_json, table, tell
-from mmrs_core.cli.settings import Json
+from mmrs_core.cli.settings import Json, settings_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
     from mmrs_mavlink.calibration.figures import Figure
     from mmrs_mavlink.calibration.flight import Flight
+    from mmrs_mavlink.calibration.type_file import TypeFile
 
 app = typer.Typer(rich_markup_mode=None, add_completion=False)
 
 
 @app.command()
 def calibrate(
+    call: typer.Context,
     log: Annotated[
         Path,
         typer.Argument(
@@ -38,6 +40,21 @@ def calibrate(
             help="MAVLink system id, if a .tlog holds several vehicles.",
         ),
     ] = None,
+    robot_type: Annotated[
+        Path | None,
+        typer.Option(
+            "--robot-type",
+            metavar="FILE.xmi",
+            help="Robot type to compare with. The lifetime is then that of its batteries.",
+        ),
+    ] = None,
+    payload: Annotated[
+        float,
+        typer.Option(
+            "--payload", metavar="KG", min=0.0, help="Payload in the flight: selects the movement capability."
+        ),
+    ] = 0.0,
+    write: Annotated[bool, typer.Option("--write", help="Write the medians into the robot type.")] = False,
     json: Json = False,
 ) -> int:
     """Calculate the figures of a robot type from a flight log.
@@ -45,57 +62,75 @@ def calibrate(
     Prints acceleration, jerk, speeds, turn rate, settling time and power as the vehicle really flew them, for
     single targets (STEP) and missions (MISSION), each with its number of values, median and spread.
 
-    Example: mmrs calibrate 00000042.BIN
+    Example: mmrs calibrate 00000042.BIN --robot-type field/robots/quad-650.xmi --write
     """
+    if write and robot_type is None:
+        raise typer.BadParameter("--write needs --robot-type, the file to write into")
     from mmrs_mavlink.calibration.figures import figures_of
     from mmrs_mavlink.calibration.reading import flight_in
 
     flight = flight_in(log, system)
     for damage in flight.damages:
         tell(damage)
-    figures = figures_of(flight)
+    given = _type_in(call, robot_type, payload) if robot_type is not None else None
+    figures = figures_of(flight, given.capacity if given is not None else None)
+    if given is not None and write:
+        given.write(figures)
     if json:
-        say_json(_plain(log, flight, figures))
+        say_json(_plain(log, flight, figures, given) | {"written": [robot_type] if write else []})
         return 0
-    for line in _lines(flight, figures):
+    for line in _lines(flight, figures, given):
         say(line)
+    if write:
+        say(f"written: {robot_type}")
     return 0
 
 
-def _plain(log: Path, flight: Flight, figures: Iterable[Figure]) -> dict[str, object]:
+def _type_in(call: typer.Context, file: Path, payload: float) -> TypeFile:
+    from mmrs_mavlink.calibration.type_file import type_in
+
+    return type_in(file, settings_of(call).plugins().contributions.languages, payload)
+
+
+def _plain(log: Path, flight: Flight, figures: Iterable[Figure], given: TypeFile | None) -> dict[str, object]:
     """Return the result as plain values."""
     return {
         "log": log,
         "vehicle": flight.vehicle,
         "seconds": round(flight.seconds, 3),
         "rate": round(flight.rate, 3),
-        "figures": [_plain_figure(each) for each in figures],
+        "figures": [_plain_figure(each, given) for each in figures],
         "damages": flight.damages,
     }
 
 
-def _plain_figure(figure: Figure) -> dict[str, object]:
+def _plain_figure(figure: Figure, given: TypeFile | None) -> dict[str, object]:
     found: dict[str, object] = {
         "name": figure.name,
         "unit": figure.unit,
         "flown_as": figure.flown_as or None,
         "n": len(figure.values),
     }
+    if given is not None:
+        found["type"] = given.current(figure.name, figure.flown_as)
     if figure.missing:
         return found | {"missing": figure.missing}
     low, high = figure.spread
     return found | {"median": round(figure.median, 4), "low": round(low, 4), "high": round(high, 4)}
 
 
-def _lines(flight: Flight, figures: tuple[Figure, ...]) -> Iterator[str]:
+def _lines(flight: Flight, figures: tuple[Figure, ...], given: TypeFile | None) -> Iterator[str]:
     """Yield what is printed: the flight, the figures, those that are missing, and the attributes to copy."""
     from mmrs_mavlink.calibration.attributes import element_lines
 
     yield f"{flight.vehicle}: {flight.seconds:.0f} s, {flight.rate:.1f} positions a second"
     yield ""
     known = [each for each in figures if not each.missing]
-    rows = [(each.flown_as, each.name, each.unit, str(len(each.values)), *_numbers(each)) for each in known]
-    yield from table(("flown as", "figure", "unit", "n", "median", "10 % … 90 %"), rows)
+    head = ("flown as", "figure", "unit", "n", "median", "10 % … 90 %", *(() if given is None else ("type",)))
+    rows = [
+        (each.flown_as, each.name, each.unit, str(len(each.values)), *_numbers(each, given)) for each in known
+    ]
+    yield from table(head, rows)
     yield ""
     for why, names in _missing(figures).items():
         yield f"not in this log: {', '.join(names)}: {why}"
@@ -103,12 +138,16 @@ def _lines(flight: Flight, figures: tuple[Figure, ...]) -> Iterator[str]:
     yield from element_lines(figures)
 
 
-def _numbers(figure: Figure) -> tuple[str, str]:
-    """Return the median and the spread, which one value has not."""
+def _numbers(figure: Figure, given: TypeFile | None) -> tuple[str, ...]:
+    """Return the median, the spread, which one value has not, and what the type has."""
     from mmrs_mavlink.calibration.attributes import shown
 
     low, high = figure.spread
-    return shown(figure.median), f"{shown(low)} … {shown(high)}" if len(figure.values) > 1 else ""
+    found = shown(figure.median), f"{shown(low)} … {shown(high)}" if len(figure.values) > 1 else ""
+    if given is None:
+        return found
+    value = given.current(figure.name, figure.flown_as)
+    return *found, "" if value is None else f"{value:g}"
 
 
 def _missing(figures: Iterable[Figure]) -> dict[str, list[str]]:

@@ -9,6 +9,7 @@ from flight_logs import dataflash
 from flown_curves import Curve, flown
 
 from mmrs_core.cli import run
+from mmrs_core.resources import shipped
 
 PLACES = [(0.0, 0.0, 20.0), (80.0, 0.0, 20.0), (0.0, 0.0, 20.0), (0.0, 60.0, 20.0)]
 
@@ -59,3 +60,24 @@ def test_what_is_no_log_ends_with_code_3_and_its_name(data, log, capsys):
     told = capsys.readouterr()
     assert told.out == ""
     assert str(log) in told.err
+
+
+def test_figures_are_compared_with_a_type_and_written_into_it(log, tmp_path, capsys):
+    file = tmp_path / "quad.xmi"
+    file.write_bytes((shipped("examples") / "carbon-dioxide" / "robots" / "quad-650.xmi").read_bytes())
+    before = file.read_bytes()
+    assert run(["calibrate", str(log), "--robot-type", str(file)]) == 0
+    head = next(line for line in capsys.readouterr().out.splitlines() if "flown as" in line)
+    assert head.endswith(" type")
+    assert file.read_bytes() == before
+    assert run(["calibrate", str(log), "--robot-type", str(file), "--write", "--json"]) == 0
+    printed = json.loads(capsys.readouterr().out)
+    assert printed["written"] == [str(file)]
+    assert b'<legTimings flownAs="STEP"' in file.read_bytes()
+    (lifetime,) = (each for each in printed["figures"] if each["name"] == "lifetime")
+    assert lifetime["type"] != pytest.approx(lifetime["median"], rel=0.01)
+
+
+def test_writing_needs_a_type(log, capsys):
+    assert run(["calibrate", str(log), "--write"]) == 2
+    assert "--write needs --robot-type" in capsys.readouterr().err

@@ -27,7 +27,7 @@ def figures(tmp_path, data):
 @pytest.mark.parametrize(("rate", "noise"), [(4.0, 0.02), (10.0, 0.0), (10.0, 0.05)])
 def test_the_figures_of_level_legs_are_found_again(made, rate, noise, tmp_path):
     found = figures(tmp_path, made(flown(OUT_AND_BACK, COPTER, rate=rate, noise=noise)))
-    assert found["STEP", "speed.max"].median == pytest.approx(8.0, rel=0.02)
+    assert found["STEP", "maxSpeed"].median == pytest.approx(8.0, rel=0.02)
     assert found["STEP", "maxAcceleration"].median == pytest.approx(2.5, rel=0.1)
     assert found["STEP", "maxDeceleration"].median == pytest.approx(1.5, rel=0.1)
     assert found["STEP", "maxJerk"].median == pytest.approx(5.0, rel=0.5)
@@ -62,7 +62,7 @@ def test_a_slow_leg_does_not_lower_the_largest_speed(tmp_path):
     quick = list(flown(OUT_AND_BACK, COPTER))
     slow = flown(OUT_AND_BACK, replace(COPTER, speed=3.0), begin=quick[-1].time + 0.1)
     found = figures(tmp_path, dataflash([*quick, *slow]))
-    assert found["STEP", "speed.max"].median == pytest.approx(8.0, rel=0.02)
+    assert found["STEP", "maxSpeed"].median == pytest.approx(8.0, rel=0.02)
 
 
 def test_a_corner_that_is_passed_tells_its_radius(tmp_path):
@@ -102,7 +102,7 @@ def test_a_landing_tells_its_end(tmp_path):
     found = figures(tmp_path, dataflash(samples))
     assert found["", "landingRate"].median == pytest.approx(0.5, rel=0.05)
     assert found["", "landingHeight"].median == pytest.approx(10.0, rel=0.1)
-    assert found["", "touchDownTime"].median == pytest.approx(3.0, abs=0.4)
+    assert found["", "recoveryTime"].median == pytest.approx(3.0, abs=0.4)
 
 
 def test_power_tells_how_long_the_battery_lasts(tmp_path):
