@@ -20,8 +20,8 @@ from mmrs_runtime import faults
 DEPTH_HOLD, SURFACE = 2, 9
 
 TOLD = (mavlink.MAVLINK_MSG_ID_ATTITUDE, mavlink.MAVLINK_MSG_ID_GLOBAL_POSITION_INT)
-TOLD_EVERY = 100_000
-"""Microseconds."""
+INTERVALS = tuple((float(number), 1e5) for number in TOLD)
+"""Messages that are requested, and their intervals in microseconds; whoever restarts has forgotten them."""
 
 NEEDED, STALE = ("ATTITUDE", "GLOBAL_POSITION_INT"), 2.0
 """Messages with heading and depth, and the seconds without them after which these are unknown."""
@@ -31,9 +31,9 @@ INSISTING, PATIENCE = 12, 3.0
 """Times that something is asked for until it is done, and seconds between them."""
 
 ASKED_EVERY = 1.0
-"""Seconds after which a vehicle that does not surface is commanded once more."""
+"""Seconds after which a vehicle that does not surface, or is off, is commanded once more."""
 
-OFF_FOR = 2.0
+OFF_FOR = 3.0
 """Seconds without motors after which no news of a new start is waited for."""
 
 STALL = 1.0
@@ -96,8 +96,8 @@ class StickAutopilot:
             raise faults.StrangeAnswerError(why)
         for line in self.safeguards():
             say(line)
-        for number in TOLD:
-            command(self._link, mavlink.MAV_CMD_SET_MESSAGE_INTERVAL, float(number), float(TOLD_EVERY))
+        for interval in INTERVALS:
+            command(self._link, mavlink.MAV_CMD_SET_MESSAGE_INTERVAL, *interval)
         if not self._wait(lambda: None not in (self.heading(), self.depth()), FIRST_SIGN):
             raise faults.FaultError("SENSORS_SILENT", "the vehicle tells no heading and no depth")
         self._insist(lambda: self.mode == DEPTH_HOLD, mavlink.MAV_CMD_DO_SET_MODE, 1.0, float(DEPTH_HOLD))
@@ -228,11 +228,16 @@ class StickAutopilot:
         return self._link.doubt()
 
     def _disarmed(self) -> faults.FaultError | None:
-        """Return that it is disarmed, unless it may be about to report a restart."""
-        self._off_since = min(self._off_since, self._link.clock.now())
-        if self._link.clock.now() - self._off_since < self._link.clock.patience(OFF_FOR):
-            return None
-        return faults.FaultError(faults.MOTORS_OFF, "it was disarmed externally, or by a failsafe")
+        """Return that it is disarmed, unless it may have restarted and is about to report it on request."""
+        now = self._link.clock.now()
+        self._off_since = min(self._off_since, now)
+        if now - self._off_since >= self._link.clock.patience(OFF_FOR):
+            return faults.FaultError(faults.MOTORS_OFF, "it was disarmed externally, or by a failsafe")
+        if now - self._asked >= ASKED_EVERY:
+            self._asked = now
+            for interval in INTERVALS:
+                ask(self._link, mavlink.MAV_CMD_SET_MESSAGE_INTERVAL, *interval)
+        return None
 
     def _risen(self) -> faults.FaultError | None:
         """Return why the vehicle surfaces on its own, or should."""
