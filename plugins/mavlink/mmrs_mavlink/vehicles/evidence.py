@@ -28,7 +28,7 @@ ADVANCE = 0.3
 """Metres by which set-points must have come nearer to a place, where they are streamed."""
 
 BRISK, SLOWEST = 1.0, 0.3
-"""Metres a second from which on a vehicle does not drift; and for those that are slow anyway."""
+"""Metres a second from which on what flies does not drift; and for what is slow, or not in the air."""
 
 STRAIGHT = cos(radians(15.0))
 ASK_SECONDS = 0.2
@@ -91,7 +91,8 @@ class LinkEvidence:
     def _hurries_to(self, place: Place, speed: float | None) -> bool:
         way, velocity = offset(self._telemetry.here(), place), self._telemetry.velocity()
         pace = hypot(*velocity)
-        needed = BRISK if speed is None else max(SLOWEST, min(BRISK, speed / 2.0))
+        usual = BRISK if self._link.profile.flies else SLOWEST
+        needed = usual if speed is None else max(SLOWEST, min(usual, speed / 2.0))
         along = sum(p * q for p, q in zip(way, velocity, strict=True))
         return pace >= needed and along >= STRAIGHT * pace * hypot(*way)
 

@@ -8,7 +8,7 @@ import pytest
 from mavlink_peer import ARDUPILOT, PX4, eventually, linked
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from mmrs_mavlink.profiles import PX4_MULTICOPTER
+from mmrs_mavlink.profiles import ARDUCOPTER, ARDUSUB, PX4_MULTICOPTER
 from mmrs_mavlink.profiles.modes import GUIDED, HOLD
 from mmrs_mavlink.program import Geographic
 from mmrs_mavlink.vehicles.evidence import LinkEvidence
@@ -35,9 +35,10 @@ def target(latitude: float):
 
 
 @contextmanager
-def watched(*, mode: int = COPTER_GUIDED, autopilot: int = ARDUPILOT):
+def watched(*, mode: int = COPTER_GUIDED, autopilot: int = ARDUPILOT, profile=ARDUCOPTER):
     """Give evidence that begins now, of a vehicle that stands at home, and what it says afterwards."""
     with linked(autopilot=autopilot) as (link, wire):
+        link.expect(profile)
         telemetry = Telemetry(link, HOME)
         wire.beat(autopilot=autopilot, mode=mode, armed=True)
         wire.say(position(HOME.latitude))
@@ -114,6 +115,14 @@ def test_a_vehicle_that_never_tells_its_target_must_hurry_straight_there():
         assert not evidence.bound_for(FAR, 5.0)
         say(position(HOME.latitude, north=2.0, east=0.2))
         assert evidence.bound_for(FAR, 5.0)
+
+
+def test_a_submarine_never_tells_its_target_and_is_slow():
+    with watched(profile=ARDUSUB) as (evidence, say, _):
+        say(position(HOME.latitude, north=0.1))
+        assert not evidence.bound_for(FAR, None)
+        say(position(HOME.latitude, north=0.5))
+        assert evidence.bound_for(FAR, None)
 
 
 def test_a_vehicle_that_is_there_obeys_as_soon_as_it_is_heard():
