@@ -19,6 +19,9 @@ from .requests import Requests
 from .telemetry import Telemetry
 
 MODE_TRIES = 3
+REFUSED_SECONDS = 1.0
+"""Between two requests for a mode where the first is refused."""
+
 TAKE_OFF_TRIES = 3
 ARM_TRIES = 3
 WORDS_SECONDS = 0.5
@@ -85,10 +88,11 @@ class ModeControl:
         self._obey_late(left)
         known = self._accepted or frozenset({self._telemetry.mode()})
         self._mode, self._accepted = None, known | {wanted.number}
-        for _ in range(MODE_TRIES):
+        for left_over in reversed(range(MODE_TRIES)):
             self._begin(mode)
             before = self._telemetry.mode()
-            command(self._link, mavlink.MAV_CMD_DO_SET_MODE, *wanted.params)
+            if not self._takes(wanted, last=not left_over):
+                continue
             self._link.wait(
                 lambda: self._telemetry.mode() == wanted.number or self._strays(),
                 self._link.clock.patience(self._link.profile.timing.mode),
@@ -104,6 +108,23 @@ class ModeControl:
                     self.guidance.end_guiding()
                 return
         raise RefusedError(f"the vehicle does not go into mode {mode}")
+
+    def _takes(self, wanted: modes.Mode, *, last: bool) -> bool:
+        """Request a mode; return whether the vehicle accepts it, after a pause where it does not.
+
+        An ArduSub refuses GUIDED for a moment after it has become ready.
+
+        Raises:
+            RefusedError: it does not accept it the last time, or does not answer.
+        """
+        try:
+            command(self._link, mavlink.MAV_CMD_DO_SET_MODE, *wanted.params)
+        except RefusedError as error:
+            if last or isinstance(error, UnansweredError):
+                raise
+            self._link.wait(lambda: None, REFUSED_SECONDS)
+            return False
+        return True
 
     def regain(self) -> None:
         """Enter the mode again that the vehicle has left without a command.

@@ -83,6 +83,26 @@ def test_a_mode_that_was_acknowledged_and_never_shown_is_refused(steered):
         mode_control.enter(modes.LAND)
 
 
+@pytest.mark.parametrize("refusals", [2, 3])
+def test_a_mode_that_is_refused_for_a_moment_is_requested_again(steered, refusals):
+    mode_control, telemetry, _, wire = steered()
+    answer, refused = wire.answer, []
+
+    def refuse(message):
+        if getattr(message, "command", 0) == mavlink.MAV_CMD_DO_SET_MODE and len(refused) < refusals:
+            refused.append(message)
+            return [acknowledged(message.command, mavlink.MAV_RESULT_FAILED)]
+        return answer(message)
+
+    wire.answer = refuse
+    if refusals < 3:
+        mode_control.enter(modes.GUIDED)
+        assert telemetry.mode() == 4
+        return
+    with pytest.raises(RefusedError, match="DO_SET_MODE: the vehicle answers 'failed'"):
+        mode_control.enter(modes.GUIDED)
+
+
 @pytest.mark.parametrize("mode", [LOITER, RTL, LAND, 0])
 def test_a_mode_that_nobody_asked_for_is_a_pilot(steered, mode):
     mode_control, telemetry, _, wire = steered()
