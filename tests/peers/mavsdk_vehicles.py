@@ -231,7 +231,7 @@ def main(vehicles: str, speedup: str) -> None:
             number,
             recharge=60.0,
             energy=20_000.0,
-            capacity=16_000.0,
+            capacity=22_000.0,
             cells=6,
         )
         made[given["robot"]] = MavsdkVehicle(given["port"], settings, float(speedup))

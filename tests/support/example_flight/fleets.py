@@ -25,7 +25,7 @@ from mmrs_mavlink.sitl import Host, Settings, SimulatedVehicle
 
 PEERS = Path(__file__).parents[2] / "peers"
 ENERGY = 20_000.0
-CAPACITY, CELLS = 16_000.0, 6
+CAPACITY, CELLS = 22_000.0, 6
 """Of the batteries of the example's drones, milliampere-hours and in series."""
 
 ALTITUDE = 720.0
