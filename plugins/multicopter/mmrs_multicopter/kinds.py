@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from mmrs_core.contributions.rules import MoveKind, MoveSpec, RobotKind
@@ -24,14 +23,6 @@ LOWEST_FLIGHT = 1.0
 SPIN_UP = 5.0
 """Seconds from the command to take off until the drone climbs."""
 
-OVERSHOOT = 0.145
-"""Seconds; times its speed on a leg, the metres by which a drone overshoots the end where it stops.
-
-Targets were commanded to ArduCopter 4.7-dev in its own simulation, one at a time (GUIDED), calm air: 0.29 m
-at 2 m/s, 0.41 m at 3 m/s, 0.63 m at 5 m/s, 0.77 m at 8 m/s, 0.83 m at 10 m/s; 1.29 m at 10 m/s where the leg
-began 0.66 m beyond its own start, from a leg of 100 m in the same direction.
-"""
-
 TOUCH_DOWN = 5.0
 """Seconds from touching the ground until the motors stand still."""
 
@@ -45,7 +36,7 @@ def kinematics(robot: Robot, scene: Scene) -> Kinematics:
     highest = robot.type.part.attributes.get("maxAltitude")
     if not isinstance(highest, (int, float)):
         raise InfeasibleError(f"robot type '{robot.type.name}' does not say its maxAltitude")
-    known = kinematics_for(
+    return kinematics_for(
         robot,
         scene,
         floor=robot.home[2] + LOWEST_FLIGHT,
@@ -55,7 +46,6 @@ def kinematics(robot: Robot, scene: Scene) -> Kinematics:
         launches=True,
         flow="windSpeed",
     )
-    return replace(known, timing=replace(known.timing, overshoot=OVERSHOOT))
 
 
 def launch(height: float) -> tuple[MoveSpec, ...]:

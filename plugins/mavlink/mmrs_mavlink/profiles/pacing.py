@@ -102,6 +102,10 @@ where it is commanded leg by leg, WPNAV_JERK and WPNAV_RADIUS on missions, whose
 
 Leg by leg it slows down by half of its acceleration, which its square-root controller corrects
 (``shape_pos_vel_accel_xy``, ``control.cpp``); it goes beyond places by what its velocity controller lags.
+
+The overshoot covers what was measured with ArduCopter 4.7-dev in its own simulation, targets commanded one at
+a time in calm air: 0.29 m at 2 m/s, 0.41 m at 3 m/s, 0.63 m at 5 m/s, 0.77 m at 8 m/s and 0.83 m at 10 m/s,
+and 1.29 m at 10 m/s on a leg that continued one of 100 m, from 0.66 m beyond its start.
 """
 
 ROVER = Pacing(
@@ -109,7 +113,8 @@ ROVER = Pacing(
     mission=LegFigures(acceleration=1.0, jerk=1.0, corner_radius=2.0, settling=2.3, spread=0.2),
     rounds=True,
 )
-"""ATC_ACCEL_MAX, and WP_JERK, which is the acceleration by default. It never reverses to turn."""
+"""ATC_ACCEL_MAX, and WP_JERK, which is the acceleration by default. On missions it never
+reverses to turn."""
 
 SUB = Pacing(
     mission=LegFigures(acceleration=1.0, jerk=1.0, speed=1.05, corner_radius=2.0, settling=1.0, spread=0.2)
