@@ -161,6 +161,8 @@ def _leg_figures(flight: Flight, flown_as: str) -> Iterator[Figure]:
         legs = [each for each in legs_of(flight, level.ramps, still) if isfinite(each.done - each.begun)]
         overshoot, settled = _beside(legs, timing, max(tops))
     missing = "no straight leg between two stops, or the log does not hold when targets were given"
+    if not (speeding and jerks and tops):
+        missing = "no acceleration and speed to judge legs by"
     yield figure("overshoot", "s", (overshoot,) if settled else (), missing)
     yield figure("settlingTime", "s", settled, missing)
 
@@ -203,7 +205,7 @@ def _lefts(legs: Sequence[Leg], timing: LegTiming, fastest: float, overshoot: fl
 
 def _left(leg: Leg, timing: LegTiming, fastest: float) -> float:
     """Return by how much a leg took longer than it is planned to."""
-    cruise = leg.speeding_up.high if leg.even else fastest
+    cruise = leg.cruise if isfinite(leg.cruise) else fastest
     rates = Rates(cruise, climb=cruise, descent=cruise, timing=timing)
     return leg.done - leg.begun - rates.from_stop_to_stop((0.0, 0.0, 0.0), (leg.length, 0.0, 0.0))
 

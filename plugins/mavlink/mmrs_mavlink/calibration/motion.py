@@ -38,7 +38,7 @@ class Leg:
     Attributes:
         speeding_up, slowing_down: how it begins and ends.
         length: metres.
-        even: whether a speed was kept between.
+        cruise: mean speed between, where one was kept; NaN: none was.
         begun: when the vehicle was given its target; NaN where the log does not tell.
         done: when it was given the next one, or its next mode; NaN likewise.
     """
@@ -46,7 +46,7 @@ class Leg:
     speeding_up: Ramp
     slowing_down: Ramp
     length: float
-    even: bool
+    cruise: float
     begun: float
     done: float
 
@@ -75,8 +75,9 @@ def legs_of(flight: Flight, ramps: Sequence[Ramp], still: float) -> Iterator[Leg
         stands = np.flatnonzero(speeds[after.first :] <= still)
         stood = float(flight.times[after.first + stands[0]]) if len(stands) else float(flight.times[-1])
         even = float(flight.times[after.first] - flight.times[before.last]) >= EVEN_SECONDS
+        cruise = float(speeds[before.last : after.first + 1].mean()) if even else nan
         began = float(flight.times[before.first])
-        yield Leg(before, after, length, even, *_bounds(flight, before.middle, began, stood))
+        yield Leg(before, after, length, cruise, *_bounds(flight, before.middle, began, stood))
 
 
 def _bounds(flight: Flight, moving: float, began: float, stood: float) -> tuple[float, float]:
