@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from shutil import copy, copytree
@@ -85,9 +85,18 @@ def routes(*given: Route, forbidden: Sequence[Place] = ()) -> Callable[[Path], N
     return write
 
 
-def example(name: str) -> Callable[[Path], None]:
-    """Return what copies a shipped example."""
-    return lambda folder: Path(copytree(shipped("examples") / name, folder)) and None
+def example(name: str, changes: Mapping[str, str] | None = None) -> Callable[[Path], None]:
+    """Return what copies a shipped example; `changes` are texts of its robot types that are replaced."""
+
+    def write(folder: Path) -> None:
+        copytree(shipped("examples") / name, folder)
+        for file in (folder / "robots").iterdir():
+            text = file.read_text("utf-8")
+            for old, new in (changes or {}).items():
+                text = text.replace(old, new)
+            file.write_text(text, "utf-8")
+
+    return write
 
 
 HEAD = (

@@ -204,8 +204,11 @@ def _ways(craft: Craft) -> tuple[Flight, ...]:
 EXPECTED = ("--backend-option", "objects=expected")
 """Fly to where objects are expected: no simulation of an autopilot finds any."""
 
-UNCHECKED = ("--backend-option", "device-check=no")
-"""Set out although a device cannot work: ArduSub's simulation has no camera that records video."""
+VIDEO = {
+    '"mavlink.command.StartVideo" value="2500 0 0"': '"mavlink.command.StartVideo" value="181 1 1"',
+    '"mavlink.command.StopVideo" value="2501 0"': '"mavlink.command.StopVideo" value="181 1 0"',
+}
+"""A relay instead of a recording: no camera of ArduPilot's simulations records video."""
 
 EXAMPLES = (
     Flight("carbon-dioxide", example("carbon-dioxide"), speedup=3.0),
@@ -221,7 +224,7 @@ EXAMPLES = (
         landing=4.0,
     ),
     Flight("mixed-team", example("mixed-team"), speedup=2.0, deviation=3.0, landing=4.0),
-    Flight("outfall", example("outfall"), arguments=(*EXPECTED, *UNCHECKED), deviation=3.0, landing=4.0),
+    Flight("outfall", example("outfall", VIDEO), arguments=EXPECTED, deviation=3.0, landing=4.0),
     Flight("outfall, plan in AUTO", example("outfall"), way=PLAN, deviation=3.0, landing=4.0),
 )
 LAWNS = (
