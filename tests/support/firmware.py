@@ -66,6 +66,7 @@ POLYGONS_ONLY = {"FENCE_TYPE": 4}
 CAMERA = {"CAM1_TYPE": 1, "SERVO9_FUNCTION": 10}
 """Without them, the vehicle has no camera."""
 
+GIMBAL = {"MNT1_TYPE": 1, "SERVO10_FUNCTION": 7, "SERVO11_FUNCTION": 6}
 RELAYS = {"RELAY1_FUNCTION": 1, "RELAY1_PIN": 13, "RELAY2_FUNCTION": 1, "RELAY2_PIN": 14}
 
 ARDUCOPTER = Firmware(
@@ -73,7 +74,7 @@ ARDUCOPTER = Firmware(
     "MMRS_ARDUCOPTER",
     "copter",
     "quad",
-    {**LARGE_BATTERY, **POLYGONS_ONLY, **CAMERA, **RELAYS, "FRAME_CLASS": 1, "FS_THR_ENABLE": 0}
+    {**LARGE_BATTERY, **POLYGONS_ONLY, **CAMERA, **GIMBAL, **RELAYS, "FRAME_CLASS": 1, "FS_THR_ENABLE": 0}
     | {f"INS_ACCOFFS_{axis}": 0.001 for axis in "XYZ"}
     | {f"INS_ACCSCAL_{axis}": 1.001 for axis in "XYZ"},
 )

@@ -116,7 +116,7 @@ def prepare(flight: Flight, folder: Path) -> Planned:
         subprocess.run(
             [sys.executable, "-m", "mmrs_core", "plan", str(folder)], check=True, capture_output=True
         )
-    return planned(folder, {})
+    return planned(folder, uploaded=flight.way == PLAN)
 
 
 def robots_of(flight: Flight, plan: Planned) -> tuple[str, ...]:

@@ -21,6 +21,8 @@ from mmrs_core.cli.behaviours import load_behaviour
 from mmrs_core.cli.session import Session
 from mmrs_core.cli.settings import Settings
 from mmrs_core.contributions.rules import robot_kind_of
+from mmrs_core.contributions.timing import as_uploaded
+from mmrs_core.simulation.run import simulate
 from mmrs_core.testing.programs import installed
 
 WGS84 = Geod(ellps="WGS84")
@@ -91,11 +93,28 @@ class Planned:
         return next(each for each in self.program.robots if each.id == robot)
 
 
-def planned(folder: Path, answers: Mapping[str, bool] | None = None) -> Planned:
-    """Return what is to be flown: a behaviour in a folder, simulated in the core's simulation."""
+def planned(folder: Path, *, uploaded: bool = False) -> Planned:
+    """Return what is to be flown: a behaviour in a folder, simulated by the core.
+
+    Args:
+        folder: of the behaviour.
+        uploaded: whether vehicles fly it as missions of their own, which take longer than steps.
+    """
+    contributions = installed()
+    kinds = contributions.robot_kinds
     loaded = load_behaviour(Session(Settings()), folder / "behaviour.xmi")
     program, place = loaded.program, loaded.place
-    run = pipeline.simulate(program, place, installed(), assume=answers)
+    run = simulate(
+        program,
+        backend=pipeline.backend_for(program, contributions, "simulation", {}),
+        types=place.types,
+        robot_kinds=as_uploaded(kinds) if uploaded else kinds,
+        move_kinds=contributions.move_kinds,
+        conditions=pipeline.conditions_for(program, contributions, {}, asks=False),
+        environment=place.environment,
+        areas=place.areas or (),
+        elements=place.elements,
+    )
     lines = {
         robot: [(sample.east, sample.north, sample.up) for sample in track]
         for robot, track in run.tracks.items()
