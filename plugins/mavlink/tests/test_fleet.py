@@ -7,7 +7,7 @@ import typer
 
 from mmrs_core.cli.settings import Settings
 from mmrs_core.resources import shipped
-from mmrs_mavlink.commands.fleet import SimulatedFleet, members_of, plain_members
+from mmrs_mavlink.commands.fleet import SimulatedFleet, members_of, pair, parameter, plain_members
 
 TWO = plain_members(2, "42.37,13.35", "copter")
 
@@ -15,13 +15,11 @@ TWO = plain_members(2, "42.37,13.35", "copter")
 @pytest.fixture(scope="module")
 def members():
     """Return the robots of an example, by name."""
-    return lambda example: {
-        each.robot: each for each in members_of(Settings(), shipped("examples") / example)
-    }
+    return lambda example: members_of(Settings(), shipped("examples") / example)
 
 
-def settings_of(member, **options):
-    ((_, vehicle),) = SimulatedFleet(**options).vehicles([member])
+def settings_of(member, **settings):
+    ((_, vehicle),) = SimulatedFleet(settings=settings).vehicles({"a": member})
     vehicle.close()
     return vehicle.autopilot.settings
 
@@ -39,10 +37,11 @@ def test_batteries_are_those_of_the_robot_type_unless_options_replace_them(membe
 
 
 def test_vehicles_without_a_model_stand_side_by_side():
-    first, second = plain_members(2, "42.37,13.35", "rover")
-    assert first.home == (42.37, 13.35)
-    assert second.home[1] > first.home[1]
-    assert (second.robot, second.kind) == ("Vehicle2", "rover")
+    members = plain_members(2, "42.37,13.35", "rover")
+    first, second = members.values()
+    assert (first.latitude, first.longitude) == (42.37, 13.35)
+    assert second.longitude > first.longitude
+    assert (list(members)[1], second.kind) == ("Vehicle2", "rover")
 
 
 @pytest.mark.parametrize(("speedup", "end"), [(1.0, "=udpin:127.0.0.1:14560@2"), (5.0, "--speedup 5")])
@@ -53,9 +52,7 @@ def test_the_arguments_are_those_of_controllers_and_of_mmrs_run(speedup, end):
 @pytest.mark.parametrize(
     ("options", "complaint"),
     [
-        ({"wind": "nan,0"}, "two numbers"),
-        ({"parameters": ("WPNAV_SPEED=nan",)}, "NAME=NUMBER"),
-        ({"parameters": ("NOSUCH=1",)}, "NOSUCH"),
+        ({"settings": {"parameters": {"NOSUCH": 1.0}}}, "NOSUCH"),
         ({"port": 65_535}, "65545"),
         *(({"ground": text}, r"not \[HOST:\]PORT") for text in ("station", "127.0.0.1:", "0", "h:70000")),
     ],
@@ -65,7 +62,13 @@ def test_invalid_options_are_refused(options, complaint):
         SimulatedFleet(**options).vehicles(TWO)
 
 
+@pytest.mark.parametrize("read", [lambda: pair("nan,0", "--wind"), lambda: parameter("WPNAV_SPEED=nan")])
+def test_values_that_are_no_numbers_are_refused(read):
+    with pytest.raises(typer.BadParameter, match=r"two numbers|NAME=NUMBER"):
+        read()
+
+
 def test_a_ground_station_has_a_radio_of_its_own():
-    ((_, vehicle),) = SimulatedFleet(ground="14650").vehicles(TWO[:1])
+    ((_, vehicle),) = SimulatedFleet(ground="14650").vehicles({"a": TWO["Vehicle1"]})
     assert len(vehicle.radios) == 2
     vehicle.close()

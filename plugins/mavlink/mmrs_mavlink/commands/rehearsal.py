@@ -6,7 +6,7 @@ import queue
 import signal
 import sys
 import time
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from itertools import pairwise
 from math import dist, hypot
 from types import FrameType
@@ -23,7 +23,6 @@ from mmrs_mavlink.sitl.faults import FAULTS
 from mmrs_mavlink.sitl.vehicle import Host, SimulatedVehicle
 
 POLL_SECONDS = 0.1
-STATUS_SECONDS = 10.0
 QUIT = frozenset({"quit", "exit"})
 
 
@@ -92,21 +91,16 @@ class Rehearsal:
 
     def _watch(self, host: Host, until: float, lines: queue.SimpleQueue[str]) -> bool:
         """Return whether it ended on time or by a line; False: it was interrupted."""
-        due = time.monotonic() + STATUS_SECONDS
         while not self._stopped:
-            now = time.monotonic()
             if host.failure is not None:
                 raise InternalError("the simulated vehicles fail") from host.failure
-            if now >= until or self._execute(lines):
+            if time.monotonic() >= until or self._execute(lines):
                 return True
             for name, schedule in self._schedules.items():
                 for event in schedule.advance():
                     tell(f"'{name}': {event}")
             if sys.stderr.isatty():
-                self._print_modes()
-                if now >= due:
-                    due = now + STATUS_SECONDS
-                    self._print_status()
+                self._print_status(changed=True)
             time.sleep(POLL_SECONDS)
         return False
 
@@ -125,17 +119,13 @@ class Rehearsal:
                 tell(str(error))
         return False
 
-    def _print_modes(self) -> None:
+    def _print_status(self, *, changed: bool = False) -> None:
+        """Print the status of all vehicles, or of those whose modes have changed."""
         for name, vehicle in self._vehicles:
-            pilot = vehicle.autopilot
-            now = f"{pilot.mode_name.upper()} {'armed' if pilot.armed else 'disarmed'}"
-            if now != self._modes[name]:
-                self._modes[name] = now
-                tell(f"{pilot.time:7.1f} s '{name}': {now}")
-
-    def _print_status(self) -> None:
-        for name, vehicle in self._vehicles:
-            tell(f"{vehicle.autopilot.time:7.1f} s '{name}': {status_line(vehicle.autopilot)}")
+            pilot, before = vehicle.autopilot, self._modes[name]
+            self._modes[name] = f"{pilot.mode_name} {pilot.armed}"
+            if not changed or self._modes[name] != before:
+                tell(f"{pilot.time:7.1f} s '{name}': {status_line(pilot)}")
 
 
 def status_line(pilot: SimulatedAutopilot) -> str:
@@ -143,26 +133,19 @@ def status_line(pilot: SimulatedAutopilot) -> str:
     north, east, up = pilot.body.position
     armed = "armed" if pilot.armed else "disarmed"
     item = f", item {pilot.item}" if pilot.mode_name == "auto" else ""
-    faults = "".join(f", {word}" for word in _faults_of(pilot))
+    faults = {
+        "no position": not pilot.located,
+        "position error": any(pilot.body.error),
+        "obstacle": pilot.obstacle is not None,
+        "outside its fence": pilot.breached,
+        "camera dead": not pilot.camera.works,
+        "refuses to arm": bool(pilot.arming_fault),
+    }
     return (
         f"{pilot.mode_name.upper()} {armed}, altitude {up:.1f} m, {hypot(north, east):.1f} m from home,"
-        f" {pilot.body.pace:.1f} m/s, battery {pilot.energy:.0%}{item}{faults}"
+        f" {pilot.body.pace:.1f} m/s, battery {pilot.battery.level:.0%}{item}"
+        + "".join(f", {word}" for word, holds in faults.items() if holds)
     )
-
-
-def _faults_of(pilot: SimulatedAutopilot) -> Iterator[str]:
-    if not pilot.located:
-        yield "no position"
-    if any(pilot.body.error):
-        yield f"position error {hypot(*pilot.body.error):.0f} m"
-    if pilot.obstacle is not None:
-        yield "obstacle"
-    if pilot.breached:
-        yield "outside its fence"
-    if not pilot.camera.works:
-        yield "camera dead"
-    if pilot.arming_fault:
-        yield f"refuses to arm: {pilot.arming_fault}"
 
 
 def summary_of(vehicle: SimulatedVehicle) -> Mapping[str, object]:
@@ -176,7 +159,7 @@ def summary_of(vehicle: SimulatedVehicle) -> Mapping[str, object]:
         "highest": round(max((place[3] for place in pilot.track), default=0.0), 1),
         "items": len(pilot.visited),
         "photos": len(pilot.camera.photos),
-        "battery": round(pilot.energy, 3),
+        "battery": round(pilot.battery.level, 3),
         "armed": pilot.armed,
         "from_home": round(hypot(*pilot.body.place[:2]), 1),
         "sent": vehicle.radio.sent,
@@ -189,9 +172,8 @@ def summary_of(vehicle: SimulatedVehicle) -> Mapping[str, object]:
 def summary_line(vehicle: SimulatedVehicle) -> str:
     """Return what a vehicle has done as a line of text."""
     done = summary_of(vehicle)
-    armed = "still armed" if done["armed"] else "disarmed"
     return (
         f"{done['flown']:.1f} s in motion, {done['metres']:.1f} m, max altitude {done['highest']:.1f} m,"
-        f" {done['items']} mission items, {done['photos']} photos,"
-        f" {done['battery']:.0%} battery remaining, {armed} {done['from_home']:.1f} m from home"
+        f" {done['items']} mission items, {done['photos']} photos, {done['battery']:.0%} battery remaining,"
+        f" {'still armed' if done['armed'] else 'disarmed'} {done['from_home']:.1f} m from home"
     )

@@ -49,11 +49,9 @@ def scheduled(text: str) -> ScheduledFault:
     Raises:
         ValueError: the text is malformed, or there is no such fault.
     """
-    if len(text) > _LONGEST:
-        raise ValueError(f"{text[:40]}…: longer than {_LONGEST} characters")
-    found = _PATTERN.fullmatch(text.strip())
+    found = _PATTERN.fullmatch(text.strip()) if len(text) <= _LONGEST else None
     if found is None:
-        raise ValueError(f"{text}: not [ROBOT:]FAULT[=VALUE,…][@SECONDS[+SECONDS]]")
+        raise ValueError(f"{text[:40]}: not [ROBOT:]FAULT[=VALUE,…][@SECONDS[+SECONDS]]")
     if found["name"] not in FAULTS:
         raise ValueError(f"{text}: unknown fault; known are {', '.join(FAULTS)}")
     if found["lasts"] and FAULTS[found["name"]].clear is None:
@@ -76,8 +74,7 @@ def checked(text: str, vehicles: Vehicles) -> ScheduledFault:
     for name, vehicle in vehicles:
         if fault.robot in ("", name):
             pilot = SimulatedAutopilot(vehicle.autopilot.settings)
-            trial = Faults(pilot, nullcontext(), watched=vehicle.faults.watched)
-            trial.begin(fault.name, *fault.values)
+            Faults(pilot, nullcontext(), watched=vehicle.faults.watched).begin(fault.name, *fault.values)
     return fault
 
 
@@ -110,13 +107,11 @@ class Schedule:
 
     def advance(self) -> tuple[str, ...]:
         """Inject and clear what is due; return what has happened, in words."""
-        pilot = self._vehicle.autopilot
-        if self._zero is None and pilot.armed:
-            self._zero = pilot.time
+        pilot, happened = self._vehicle.autopilot, list[str]()
         if self._zero is None:
+            self._zero = pilot.time if pilot.armed else None
             return ()
         elapsed = pilot.time - self._zero
-        happened: list[str] = []
         for fault in [each for each in self._waiting if elapsed >= each.begin]:
             self._waiting.remove(fault)
             self._vehicle.faults.begin(fault.name, *fault.values)

@@ -103,7 +103,7 @@ def sitl(
             help="Recharge time on the ground, in seconds; 0 disables recharging. Default: by robot type.",
         ),
     ] = None,
-    parameter: Annotated[
+    parameters: Annotated[
         _Texts,
         typer.Option(
             "--parameter", metavar="NAME=VALUE", help="Autopilot parameter set on all vehicles. Repeatable."
@@ -149,12 +149,13 @@ def sitl(
     Example: mmrs sitl examples/carbon-dioxide --speedup 5 --fault 'Alba:gps-lost@60+20'
     """
     from mmrs_core.simulation.surroundings import sights_in
-    from mmrs_mavlink.commands.fleet import SimulatedFleet, members_of, plain_members
+    from mmrs_mavlink.commands.fleet import SimulatedFleet, members_of, pair, parameter, plain_members
     from mmrs_mavlink.commands.rehearsal import Rehearsal, fault_list
 
     if fault == ["list"]:
         fault_list()
         return 0
+    batteries = {"energy": energy, "recharge": recharge}
     fleet = SimulatedFleet(
         port=port,
         step=step,
@@ -164,18 +165,16 @@ def sitl(
         loss=loss,
         delay=delay,
         seed=seed,
-        firmware=firmware,
-        wind=wind,
-        energy=energy,
-        recharge=recharge,
-        parameters=tuple(parameter or ()),
-        sights=sights_in(surroundings) if surroundings is not None else (),
+        settings={name: value for name, value in batteries.items() if value is not None}
+        | {"firmware": firmware, "wind": pair(wind, "--wind")}
+        | {"parameters": dict(map(parameter, parameters or ()))},
     )
     if behaviour is None:
         members = plain_members(count, home, kind)
     else:
         _refuse_beside(call, behaviour, ("count", "home", "kind"))
-        members = members_of(settings_of(call), behaviour)
+        sights = sights_in(surroundings) if surroundings is not None else ()
+        members = members_of(settings_of(call), behaviour, sights)
     rehearsal = Rehearsal(fleet.vehicles(members), fault or [])
     arguments = fleet.arguments(members)
     code = rehearsal.run(seconds, started=lambda: None if json else say(shlex.join(arguments)), quiet=json)
