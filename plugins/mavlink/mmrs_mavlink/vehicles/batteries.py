@@ -129,12 +129,12 @@ def _compare(
 
 def _held(link: Link, telemetry: Telemetry, charge: Charge | None) -> _Held | None:
     """Return what the batteries of a vehicle hold; None where it does not report them."""
-    known = link.profile.autopilot.capacities
+    known = link.profile.autopilot.capacities  # a monitor that is not reported may be there
     values = parameters.read(link, [name for capacity, monitor, _ in known for name in (capacity, monitor)])
     found = {
         capacity: values[capacity]
         for capacity, monitor, off in known
-        if values.get(capacity, 0.0) > LEAST_CAPACITY and round(values.get(monitor, off)) != off
+        if values.get(capacity, 0.0) > LEAST_CAPACITY and values.get(monitor) != off
     }
     nominal, measured = None if charge is None else charge.voltage, telemetry.voltage()
     voltage = min((each for each in (nominal, measured) if each is not None), default=None)

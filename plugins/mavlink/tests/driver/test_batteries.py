@@ -16,18 +16,24 @@ TYPE = Charge(360_000.0, 20.0, least=300.0, most=400.0, longest=400.0)
 
 
 def inspected(
-    *, capacity: float = 5000.0, volts: float = 21.0, left: int = 100, at_start: bool = True, charge=TYPE
+    *,
+    capacity: float = 5000.0,
+    volts: float = 21.0,
+    left: int = 100,
+    at_start: bool = True,
+    charge=TYPE,
+    monitor: float | None = 4.0,
 ):
     """Return what is found of a battery, by default one of 5 Ah at 20 V, as that of the type."""
     parameters = {
         "BATT_CAPACITY": capacity,
-        "BATT_MONITOR": 4.0,
+        "BATT_MONITOR": monitor,
         "BATT2_CAPACITY": 3300.0,
         "BATT2_MONITOR": 0.0,
     }
 
     def answer(message):
-        if message.get_type() == "PARAM_REQUEST_READ" and parameters.get(message.param_id):
+        if message.get_type() == "PARAM_REQUEST_READ" and parameters.get(message.param_id) is not None:
             yield value(message.param_id, parameters[message.param_id])
         elif message.get_type() == "PARAM_REQUEST_READ" and not message.param_id:
             yield value("ANOTHER", 0.0, index=message.param_index)
@@ -49,6 +55,10 @@ def test_the_battery_of_the_type_suffices():
         "battery: 100 Wh are left (100% of 5000 mAh at 20.0 V, BATT_CAPACITY);"
         " the first sortie takes up to 40 Wh"
     ]
+
+
+def test_a_battery_whose_monitor_is_not_reported_counts():
+    assert inspected(monitor=None).lines == inspected().lines
 
 
 def test_a_battery_that_is_too_small_is_a_defect_that_names_its_parameter():
