@@ -2,17 +2,17 @@
 
 An ArduPilot Rover neither turns on the spot nor reverses on its own. Where its target is within its turning
 circle, or abreast of it, it creeps around that for minutes, or stands beside it (measured with ArduRover
-4.7-dev: 0.7 to 2.8 m beside, and up to 4.7 m off the leg). So it is turned to its target first, by arcs
-forwards and backwards, each as narrow as it can, within its turning radius (Reeds and Shepp, "Optimal paths
-for a car that goes both forwards and backwards", 1990: curves of the sort C|C|C). The leg is straight then,
-and was measured to end within 0.2 m of its target.
+4.7-dev: 0.7 to 2.8 m beside, and up to 4.7 m off the leg). So where its target is near, it is turned to that
+first, by arcs forwards and backwards, each as narrow as it can, within its turning radius (Reeds and Shepp,
+"Optimal paths for a car that goes both forwards and backwards", 1990: curves of the sort C|C|C). The leg is
+straight then, and was measured to end within 0.2 m of its target.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from math import hypot
+from math import hypot, radians, sin
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
@@ -26,6 +26,13 @@ from .telemetry import Telemetry
 
 ASIDE_DEGREES = 15.0
 """Up to here a vehicle sets out at once: it is on its leg again within a fifth of its turning radius."""
+
+NEAR_RADII = 12.0
+"""Turning radii from where it stands within which a target abreast of it is near.
+
+Measured with ArduRover 4.7-dev and a radius of 1.2 m: legs of 20 to 25 m after corners up to 90 degrees took
+two thirds of the time that they take with shunting; legs of 7 and 13 m three times as long as they should.
+"""
 
 FACING_DEGREES = 5.0
 """How exactly it is turned."""
@@ -77,7 +84,7 @@ class Shunting:
     radius: float
 
     def face(self, place: Place, near: float) -> None:
-        """Turn a vehicle that stands to a place, unless it looks there already, or turns on its own.
+        """Turn a vehicle that stands to a place, unless it gets there without: by one curve, or on its own.
 
         Args:
             place: that it is to drive to.
@@ -88,7 +95,7 @@ class Shunting:
         """
         if not self.radius or self.telemetry.speed() > self.link.profile.still:
             return
-        if abs(self._aside(place)) <= ASIDE_DEGREES:
+        if abs(self._aside(place)) <= ASIDE_DEGREES or self._from(place) > self._near(place):
             return
         begun, forwards = self.telemetry.here(), 1.0
         for _ in range(MOST_ARCS):
@@ -121,6 +128,10 @@ class Shunting:
             if self.link.wait(ends, RESEND_SECONDS):
                 return
             self.mode_control.check()
+
+    def _near(self, place: Place) -> float:
+        """Return how far away, in metres, the vehicle gets to such a place by one curve and straight on."""
+        return NEAR_RADII * self.radius * sin(radians(min(90.0, abs(self._aside(place)))))
 
     def _from(self, place: Place) -> float:
         return hypot(*offset(place, self.telemetry.here())[:2])
