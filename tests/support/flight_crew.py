@@ -178,18 +178,18 @@ class Manned:
 
 
 @contextmanager
-def manned(robot: Robot | None = None, **settings: object) -> Iterator[Manned]:
+def manned(robot: Robot | None = None, *, speedup: float = SPEEDUP, **settings: object) -> Iterator[Manned]:
     """Give a robot whose vehicle stands at home, ready, and whose program has not begun."""
     robot = robot or robot_of()
-    clock = NearClock(SPEEDUP)
+    clock = NearClock(speedup)
     with ExitStack() as stack:
         port = free_port()
-        simulated = stack.enter_context(SimulatedVehicle(port, Settings(**settings), speedup=SPEEDUP))
+        simulated = stack.enter_context(SimulatedVehicle(port, Settings(**settings), speedup=speedup))
         simulated.autopilot.link_timeout /= 2.0
         ears = Ears(open_port(f"udpin:127.0.0.1:{port}"))
         link = Link(Radio(ears, clock), clock, simulated.autopilot.settings.system)
         stack.callback(link.close)
-        assert link.wait(lambda: link.component, 10.0 * SPEEDUP)
+        assert link.wait(lambda: link.component, 10.0 * speedup)
         vehicle = MavlinkVehicle(link, robot.profile, robot.home, travel=robot.travel)
         watch = Watch(robot, clock)
         watch.begin(link, vehicle)

@@ -86,6 +86,17 @@ def event_rows() -> list[Row]:
             [(AT, "HOLD", "here"), (AUTO, "RETURN", "here")],
             "",
         ),
+        *(
+            # One that falls out of its mission leaves its path, which may be noticed first.
+            replace(row, event="MOTOR_FAILED|NO_PROGRESS" if row.during == AUTO else row.event, stays=5.0)
+            for row in _event_rows(
+                "a motor fails",
+                "MOTOR_FAILED",
+                strikes.motor,
+                [(AT, "LAND", "here"), (AUTO, "RETURN", "here"), (LEG, "CONTINUE", "here")],
+                "LAND",
+            )
+        ),
         *_event_rows(
             "battery low",
             "",

@@ -86,5 +86,9 @@ def reboot(vehicle: SimulatedVehicle) -> None:
     vehicle.faults.begin("restart")
 
 
+def motor(vehicle: SimulatedVehicle) -> None:
+    vehicle.faults.begin("motor-failed")
+
+
 def vehicle_clock(vehicle: SimulatedVehicle) -> None:
     vehicle.faults.begin("clock-jump", 3600.0)

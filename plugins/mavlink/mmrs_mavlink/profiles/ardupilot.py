@@ -80,6 +80,7 @@ ARDUPILOT = Autopilot(
     stations=("SYSID_MYGCS", "MAV_GCS_SYSID", "MAV_GCS_SYSID_HI"),
     must_report_checks=always,
     refusals=("prearm:", "arm:"),
+    crashed=("crash: disarming",),
     announcements={
         POSITION_LOST: ("ekf failsafe", "gps failsafe"),
         FENCE_BREACHED: ("fence breach",),

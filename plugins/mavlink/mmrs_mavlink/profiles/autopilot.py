@@ -123,6 +123,7 @@ class Autopilot:
             versions; the first, and the last, which is 0 where the first is the only one; empty: any counts.
         must_report_checks: whether a vehicle that may be armed, in a mode, must report that its checks pass.
         refusals: beginnings of texts about why it does not arm, in lower case.
+        crashed: beginnings of its texts when it disarms because it has crashed, in lower case.
         announcements: parts of its texts when a failsafe acts, in lower case, by event of policies.
         needs: what commands to devices need of its parameters; what is not here is unknown.
         capacities: for each battery, the parameter for its milliampere-hours, the one for its monitor, and
@@ -147,6 +148,7 @@ class Autopilot:
     stations: tuple[str, str, str] = ("", "", "")
     must_report_checks: Callable[[bool, int], bool] = never
     refusals: tuple[str, ...] = ()
+    crashed: tuple[str, ...] = ()
     announcements: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     needs: Needs = field(default_factory=dict)
     capacities: tuple[tuple[str, str, int], ...] = ()

@@ -15,7 +15,7 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from mmrs_runtime.controllers.geodesy import at_height
 from mmrs_runtime.controllers.state import State
-from mmrs_runtime.faults import LINK_LOST, FaultError, RefusedError, UnansweredError
+from mmrs_runtime.faults import LINK_LOST, MOTORS_OFF, FaultError, RefusedError, UnansweredError
 
 from ..links.link import Link, Message
 from ..links.messages import ANYBODY
@@ -193,12 +193,14 @@ class MavlinkVehicle(Vehicle):
         """Descend and stop the motors.
 
         Raises:
-            FaultError: it does not come to the ground.
+            FaultError: it does not come to the ground, or crashes.
         """
         self._mode_control.enter(modes.LAND)
         limit = PATIENCE_SECONDS + PATIENCE_FACTOR * 2.0 * max(0.0, self._telemetry.here().height)
         self._mode_control.until(lambda: not self._telemetry.armed(), limit, "to land")
         self._mode_control.let_go()
+        if crash := self._telemetry.crash():
+            raise FaultError(MOTORS_OFF, crash)
 
     def go_to(self, place: Place, speed: float | None, look: Look | None, through: bool) -> None:
         """Go straight to a place.

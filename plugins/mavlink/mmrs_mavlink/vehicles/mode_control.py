@@ -293,7 +293,7 @@ class ModeControl:
             self._arming = isinstance(error, UnansweredError)
             self._link.wait(lambda: None, WORDS_SECONDS)
             beginnings = self._link.profile.autopilot.refusals
-            said = self._telemetry.texts.refusals(beginnings, REPEATED_SECONDS)
+            said = self._telemetry.texts.starting_with(beginnings, REPEATED_SECONDS)
             why = "; ".join(said or self._telemetry.lacks())
             raise RefusedError(f"{error}{': ' if why else ''}{why}") from error
 

@@ -134,7 +134,7 @@ def _checks_fail(link: Link, status: object) -> bool:
 
 
 def _why(link: Link, status: object, texts: Texts) -> str:
-    said = texts.refusals(link.profile.autopilot.refusals, REPEATED_SECONDS)
+    said = texts.starting_with(link.profile.autopilot.refusals, REPEATED_SECONDS)
     if said:
         return f"its own checks fail: {'; '.join(said)}"
     enabled, health = (

@@ -184,6 +184,13 @@ class Telemetry:
         said = {event for event, _ in self.announcements.recent()}
         return next((event for event in self._link.profile.autopilot.announcements if event in said), None)
 
+    def crash(self) -> str:
+        """Return how the vehicle says that it has just crashed, and disarmed; empty if it does not."""
+        beginnings = self._link.profile.autopilot.crashed
+        seconds = self._link.clock.patience(RECENT_SECONDS)
+        said = self.texts.starting_with(beginnings, seconds) if beginnings else ()
+        return said[-1] if said else ""
+
     def here(self) -> Place:
         """Return the last reported position, as the vehicle is judged by it; home before there is one."""
         found = self._link.latest(self._position)

@@ -55,11 +55,11 @@ class Texts:
         """Return the texts since a second of the run, oldest first."""
         return tuple(text for text in tuple(self._texts) if text.time >= time)
 
-    def refusals(self, beginnings: tuple[str, ...], seconds: float) -> tuple[str, ...]:
-        """Return the texts of the last seconds about why the vehicle does not arm, each once.
+    def starting_with(self, beginnings: tuple[str, ...], seconds: float) -> tuple[str, ...]:
+        """Return the texts of the last seconds that start with one of these, each once.
 
         Args:
-            beginnings: of such texts, in lower case.
+            beginnings: in lower case.
             seconds: of the run.
         """
         found = self.since(self._clock.now() - seconds)

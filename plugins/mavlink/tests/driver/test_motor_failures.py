@@ -5,7 +5,7 @@ from __future__ import annotations
 from math import radians
 
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
@@ -101,6 +101,7 @@ def test_one_that_is_disarmed_is_carried_as_people_like():
     assert not found.fallen(in_air=True)
 
 
+@settings(deadline=None)
 @given(
     st.lists(
         st.tuples(st.floats(2.0, 120.0), st.floats(-5.0, 5.0), st.floats(0.0, 45.0)), min_size=1, max_size=60
@@ -112,6 +113,7 @@ def test_nothing_that_is_flown_by_command_is_a_failure(fixes, gap):
 
 
 @pytest.mark.parametrize("lands", [False, True])
+@settings(deadline=None)
 @given(pace=st.floats(0.3, 3.0), lean=st.floats(0.0, 29.0))
 def test_a_copter_that_lands_with_a_motor_less_is_never_taken_for_a_fallen_one(lands, pace, lean):
     recovers = [(60.0 - n, 4.0, 55) for n in range(6)]

@@ -253,8 +253,12 @@ def test_a_vehicle_that_is_heard_again_in_another_mode_is_a_pilots(back):
         made.watch.check_hands("LINK_LOST")
 
 
+FALLING = 4.0
+"""Speed-up at which telemetry shows a fall of 1.4 s, also on a busy machine."""
+
+
 def test_a_failed_motor_is_answered_and_what_lies_on_the_ground_is_disarmed(in_the_air):
-    made = in_the_air(Policy("MOTOR_FAILED", "LAND"))
+    made = in_the_air(Policy("MOTOR_FAILED", "LAND"), speedup=FALLING)
     made.simulated.faults.begin("motor-failed")
     fault = made.caught()
     assert (fault.event, fault.instead) == ("MOTOR_FAILED", "")
@@ -267,8 +271,16 @@ def test_a_failed_motor_is_answered_and_what_lies_on_the_ground_is_disarmed(in_t
     made.quiet(2.0)
 
 
-def test_a_failed_motor_that_is_borne_only_stops_the_motors_on_the_ground(in_the_air):
-    made = in_the_air(Policy("MOTOR_FAILED", "CONTINUE"))
-    made.simulated.faults.begin("motor-failed")
-    assert made.caught().instead == "STOP_THRUST"
-    assert made.simulated.autopilot.body.position[2] == 0.0
+def test_a_crash_that_the_vehicle_reports_while_it_lands_is_no_landing(in_the_air):
+    made = in_the_air()
+    made.watch.relax({"MOTOR_FAILED"}, "LAND")
+    landing = in_background(made.vehicle.land)
+    until(lambda: made.mode == "land")
+    with made.simulated.lock:
+        made.simulated.autopilot.say(0, "Crash: Disarming: AngErr=37>30, Accel=1.3<3.0")
+    until(made.vehicle.telemetry.crash)
+    with made.simulated.lock:
+        made.simulated.autopilot.disarm()
+    with pytest.raises(FaultError, match="Crash: Disarming: AngErr=37>30") as crash:
+        landing.result(20.0)
+    assert crash.value.event == "MOTORS_OFF"
