@@ -97,6 +97,7 @@ def watch(pilot: SimulatedAutopilot) -> None:
 
 
 def _answer(pilot: SimulatedAutopilot, failure: Failure) -> None:
+    """Enter the mode of a failsafe, and announce it; an ArduRover announces no broken fence."""
     names = _modes(pilot, failure.parameter)
     if names == [DISARM] or (names and pilot.flies and not pilot.airborne):
         pilot.disarm()
@@ -105,6 +106,8 @@ def _answer(pilot: SimulatedAutopilot, failure: Failure) -> None:
         pilot.after_hold = (pilot.time + pilot.parameters["COM_FAIL_ACT_T"], names)
     else:
         pilot.enter(*names)
+    if failure.parameter == "FENCE_ACTION" and pilot.settings.kind == "rover":
+        return
     pilot.say(mavlink.MAV_SEVERITY_CRITICAL, failure.text.format(mode=pilot.mode_name.upper()))
 
 

@@ -240,7 +240,8 @@ def _fence(pilot: SimulatedAutopilot) -> Message | None:
     if not pilot.breached and not pilot.parameters.get("FENCE_ENABLE"):
         return None
     kind = mavlink.FENCE_BREACH_BOUNDARY if pilot.breached else mavlink.FENCE_BREACH_NONE
-    return mavlink.MAVLink_fence_status_message(pilot.breached, pilot.breached, kind, 0)
+    broken = max(0, round(1000.0 * (pilot.failing.get("fence", pilot.time) - pilot.booted)))
+    return mavlink.MAVLink_fence_status_message(pilot.breached, pilot.breached, kind, broken)
 
 
 def _wind(pilot: SimulatedAutopilot) -> Message:

@@ -7,7 +7,7 @@ from math import inf
 from typing import TYPE_CHECKING
 
 from mmrs_runtime.clock import Clock
-from mmrs_runtime.faults import TAKEN_OVER, VEHICLE_RESTARTED, FaultError
+from mmrs_runtime.faults import FENCE_BREACHED, TAKEN_OVER, VEHICLE_RESTARTED, FaultError
 
 from ..vehicles.failsafe_events import STARTED_ANEW, Signs
 
@@ -126,13 +126,19 @@ class Departures:
         tells = self._vehicle.telemetry.announcements
         told = [(event, text.text) for event, text in tells.recent()]
         for event, why in (*self._signs.seen(moving=self._moving), *told):
-            said = tells.of_this_mode(event, self.taken_back)
+            said = tells.of_this_mode(event, self.taken_back) or self._breach(event, why)
             if why and mode in self._vehicle.answers_to(event, (said,)):
                 if self._answers(event):
                     return event, why
                 if said:
                     return event, said
         return None
+
+    def _breach(self, event: str, why: str) -> str:
+        """Return that a fence was broken as the vehicle left its mode: an ArduRover says nothing about it."""
+        tells = self._vehicle.telemetry
+        since = tells.announcements.since_mode(self.taken_back)
+        return why if event == FENCE_BREACHED and tells.breached_at() > since else ""
 
 
 def switched(event: str, why: str, mode: str) -> str:

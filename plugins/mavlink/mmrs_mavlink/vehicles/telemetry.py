@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from math import atan2, degrees, hypot
+from math import atan2, degrees, hypot, inf
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
@@ -164,6 +164,13 @@ class Telemetry:
         if fence is None or not fence.breach_status:
             return ""
         return f"it is outside its fence: {BREACHES.get(fence.breach_type, 'somehow')}"
+
+    def breached_at(self) -> float:
+        """Return the second of the run at which its present breach began, as it reports; -inf without one."""
+        fence = self._recent("FENCE_STATUS")
+        if fence is None or not fence.breach_status:
+            return -inf
+        return self._link.clock.now() - max(0.0, self.time() - float(fence.breach_time) * 1e-3)
 
     def wind(self) -> tuple[float, float] | None:
         """Return metres per second, and from where, degrees; None where the vehicle does not say."""

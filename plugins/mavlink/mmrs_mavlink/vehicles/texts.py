@@ -105,8 +105,12 @@ class Announcements:
             event: of policies.
             after: second of the run; what was said until then does not count.
         """
-        since = max(after, self._changed - self._link.clock.patience(TOGETHER_SECONDS, 1.0))
+        since = self.since_mode(after)
         return next((t.text for found, t in self.recent() if found == event and t.time > since), "")
+
+    def since_mode(self, after: float) -> float:
+        """Return the second of the run from which on, and after which, events may explain its mode."""
+        return max(after, self._changed - self._link.clock.patience(TOGETHER_SECONDS, 1.0))
 
     def _events(self, text: Text) -> Iterable[str]:
         words, known = text.text.lower(), self._link.profile.autopilot.announcements

@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
+from flight_crew import HOME, manned, robot_of
 
 from mmrs_mavlink.profiles import profile_for
 from mmrs_mavlink.program import Policy
+from mmrs_mavlink.services.uploads import Uploads
 
 ON = "BATT_FS_LOW_ACT"
 
@@ -42,6 +46,20 @@ def test_a_robot_that_is_to_go_on_without_a_position_is_landed_where_the_vehicle
     fault = made.caught()
     assert (fault.event, fault.instead) == ("POSITION_LOST", "LAND")
     assert "without a position it cannot be taken back" in str(fault)
+
+
+@pytest.mark.parametrize(("answered", "event"), [(1.0, "FENCE_BREACHED"), (0.0, "TAKEN_OVER")])
+def test_a_rover_that_returns_from_its_fence_is_no_pilots_although_it_says_nothing(answered, event):
+    with manned(robot_of(Policy("FENCE_BREACHED", "RETURN"), vehicle="rover"), kind="rover") as made:
+        made.vehicle.prepare(Uploads())
+        made.watch.renew()
+        made.vehicle.go_to(replace(HOME, latitude=42.3701), 2.0, None, False)
+        for name, value in {"FENCE_ENABLE": 1.0, "FENCE_ACTION": answered}.items():
+            set_parameter(made, name, value)
+        made.watch.relax({"FENCE_BREACHED"}, "RETURN")
+        made.simulated.faults.begin(*(("breach",) if answered else ("stick", "return")))
+        fault = made.caught()
+        assert (fault.event, made.mode) == (event, "return")
 
 
 @pytest.mark.parametrize("kind", ["copter", "sub", "rover"])
