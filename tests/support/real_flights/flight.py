@@ -41,14 +41,6 @@ class Order:
 
 
 @dataclass(frozen=True, slots=True)
-class Answer:
-    """An operator's answer to a question of a choice."""
-
-    question: str
-    answer: bool
-
-
-@dataclass(frozen=True, slots=True)
 class Change:
     """Parameters of the vehicle or its simulation that change."""
 
@@ -95,7 +87,7 @@ MEND = Cut(inwards=False, outwards=False)
 """The link is whole again."""
 
 When: TypeAlias = Begun | Later
-Happening: TypeAlias = Order | Answer | Change | Cut | Pilot | Disarm | Kill | Resume | Reboot
+Happening: TypeAlias = Order | Change | Cut | Pilot | Disarm | Kill | Resume | Reboot
 
 
 @dataclass(frozen=True, slots=True)
@@ -114,7 +106,6 @@ class Flight:
         landing: metres from the planned end, at most.
         parameters: of the vehicles, beyond those of their firmware.
         arguments: of `mmrs run` or the controllers.
-        answers: assumed outcomes of choices.
         signed: whether the link is signed.
         speedup: seconds of the vehicles in a second; less where several fly.
         px4: whether copters have a PX4.

@@ -35,7 +35,6 @@ from real_flights.flight import (
     HOME,
     PLAN,
     SURFACE,
-    Answer,
     Begun,
     Change,
     Cut,
@@ -93,7 +92,6 @@ class Result:
     deviates: list[str] = field(default_factory=list)
     versions: set[str] = field(default_factory=set)
     confirmed: dict[str, float] = field(default_factory=dict)
-    legs: dict[str, float] = field(default_factory=dict)
 
 
 def firmware_of(vehicle: str, *, px4: bool) -> Firmware:
@@ -142,7 +140,6 @@ class Flying:
         self.straits: dict[str, Strait] = {}
         self.links: dict[str, str] = {}
         self.processes: dict[str, subprocess.Popen[bytes]] = {}
-        self.killed = False
         self.interrupts = 0.0
         self._key = token_bytes(32) if flight.signed else b""
 
@@ -280,8 +277,6 @@ class Flying:
         match what:
             case Order(order):
                 self._order(order, robot)
-            case Answer(question, answer):
-                self._order("answer", robot, question=question, answer=answer)
             case Change(parameters):
                 observer.change(parameters)
             case Cut(inwards, outwards):
@@ -291,22 +286,18 @@ class Flying:
             case Disarm():
                 observer.command(mavlink.MAV_CMD_COMPONENT_ARM_DISARM, 0)
             case Kill():
-                self.killed = True
                 for process in self.processes.values():
                     process.kill()
                     process.wait(30.0)
             case Resume():
-                self.killed = False
                 self._begin(said, "--resume")
             case Reboot():
                 self.result.kept = self._kept()
                 observer.command(mavlink.MAV_CMD_PREFLIGHT_REBOOT_SHUTDOWN, 1, 0, 0, 0, 0, 20190226)
 
-    def _order(self, order: str, robot: str, *, question: str = "", answer: bool = False) -> None:
+    def _order(self, order: str, robot: str) -> None:
         try:
-            for reply in give(
-                self.logs, order, [robot], question=question, answer=answer, seconds=ORDER_SECONDS
-            ):
+            for reply in give(self.logs, order, [robot], seconds=ORDER_SECONDS):
                 self.result.confirmed[order] = reply["seconds"]
                 if not reply["confirmed"]:
                     self.result.deviates.append(f"{order} not confirmed: {reply['why']}")
