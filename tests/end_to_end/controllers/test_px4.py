@@ -1,4 +1,4 @@
-"""Generated controllers with a simulated vehicle that behaves as PX4's documents say: no PX4 has flown."""
+"""Generated controllers with a simulated vehicle that behaves as PX4's documents say."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Generated controllers on our vehicles that behave as PX4's documentation says. No PX4 has flown by them."""
+"""Generated controllers on our vehicles that behave as PX4's documentation says."""
 
 from __future__ import annotations
 

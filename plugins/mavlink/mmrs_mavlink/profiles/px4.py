@@ -1,6 +1,7 @@
 """PX4: its dialect, and its multicopter, rover and underwater vehicle.
 
-Written from its documents and source, 1.14 and later; no PX4 has flown by it yet.
+Written from its documents and source, 1.14 and later. The multicopter has flown 1.16.0-beta1 in its own
+simulation (SIH): single legs, missions, two sorties, lost thrust.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Steering a PX4. Written from its documents and source; no PX4 has flown by it yet.
+"""Steering a PX4. Written from its documents and source, and flown on 1.16.0-beta1 in its own simulation.
 
 OFFBOARD takes only a stream of set-points, which must have begun a second before the mode is
 requested, and ends the mode when it stops (https://docs.px4.io, "Offboard Mode"). So a thread of its
