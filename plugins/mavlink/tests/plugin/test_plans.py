@@ -8,11 +8,13 @@ from mmrs_multicopter.testing import LAND, go_to, quad, robot_program, take_off,
 
 from mmrs_core.behaviour.program import Heading, MoveTarget, Transition
 from mmrs_core.errors import UnsupportedError
+from mmrs_core.generation.planned_moves import planned_moves
 from mmrs_core.generation.render import render
 from mmrs_core.geometry.frames import LocalFrame
 from mmrs_core.scene import Device, Frame, Policy
 from mmrs_core.testing.programs import L_AQUILA, move, photo, program
 from mmrs_mavlink.plugin.plans.qgc import QGC_PLAN
+from mmrs_mavlink.plugin.plans.times import sortie_seconds, too_long
 
 
 def plans(*moves, allow_lossy=False, transitions=None, frame=L_AQUILA, home=(0.0, 0.0, 0.0)):
@@ -336,3 +338,26 @@ def test_moves_that_come_round_again_are_refused():
     fault, *beyond = refused(*moves, transitions={2: Transition(2, 2)})
     assert len(beyond) == 1
     assert fault == "robot 'alpha', move 'a': 'a' comes round again, so the plan ends here"
+
+
+def flight(*moves):
+    """Return a robot of a type that states how high it flies, and what a target gets of it."""
+    robot = robot_program("alpha", [take_off("up", 20.0), *moves, LAND])
+    kind = quad()
+    known = replace(kind, part=replace(kind.part, attributes={"maxAltitude": 120.0}))
+    return robot, target_input(program(robot, frame=L_AQUILA), (known,))
+
+
+def test_a_mission_that_takes_longer_than_the_batteries_last_is_refused():
+    far = [go_to(f"far{index}", (0.0, 4_000.0 * (index % 2), 25.0)) for index in range(1, 8)]
+    (refusal,) = too_long(*flight(*far))
+    assert refusal.startswith("robot 'alpha': takes ")
+    assert "for sortie 1 as a mission; its batteries last" in refusal
+    assert list(too_long(*flight(*far[:1]))) == []
+
+
+def test_a_mission_takes_longer_than_its_moves_one_by_one():
+    robot, given = flight(*(go_to(f"g{index}", (0.0, 10.0 * (index % 2), 20.0)) for index in range(1, 8)))
+    stepped = [each.seconds for each in planned_moves(robot, given)]
+    assert None not in stepped
+    assert sortie_seconds(robot, given) >= (sum(each.expected for each in stepped),)
