@@ -4,6 +4,7 @@ import numpy as np
 from plain_scenes import box, control, field_work, photo, road, robot, scene, task, visit, with_kinematics
 
 from mmrs_core.errors import InfeasibleError
+from mmrs_core.scene.timing import LegTiming
 
 
 def areas(rng):
@@ -51,7 +52,7 @@ def random_scene(seed):
         figures = {
             "endurance": endurance,
             "recharge": [60.0, None][int(rng.random() < 0.15)],
-            "acceleration": float(rng.choice([0.5, 3.0, np.inf])),
+            "timing": LegTiming(float(rng.choice([0.5, 3.0, np.inf]))),
         }
         team.append(with_kinematics(each, **figures))
     empty = scene(team, {}, areas=tuple(areas(rng)))
