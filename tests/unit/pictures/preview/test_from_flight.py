@@ -83,7 +83,7 @@ def test_time_at_home_for_a_battery_is_not_work(shown, run):
         alpha={"records": later, "track": track_of([*before, *home, *after]), "entries": (low,)}
     ).robots[0]
     away = next(bar for bar in alpha.bars if bar.kind == "response")
-    assert (away.begin, away.end) == (begun + 0.5, begun + pause)
+    assert (away.begin, away.end) == pytest.approx((begun + 0.5, begun + pause))
     assert not any(bar.kind == "work" and bar.begin < away.end and bar.end > away.begin for bar in alpha.bars)
     assert [leg.kind for leg in alpha.legs if leg.begin < away.end and leg.end > away.begin] == ["response"]
 
