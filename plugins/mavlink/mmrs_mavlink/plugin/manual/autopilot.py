@@ -21,7 +21,7 @@ DEPTH_HOLD, SURFACE = 2, 9
 
 TOLD = (mavlink.MAVLINK_MSG_ID_ATTITUDE, mavlink.MAVLINK_MSG_ID_GLOBAL_POSITION_INT)
 INTERVALS = tuple((float(number), 1e5) for number in TOLD)
-"""Messages that are requested, and their intervals in microseconds; whoever restarts has forgotten them."""
+"""Messages that are requested, and their intervals in microseconds; a restart makes it forget them."""
 
 NEEDED, STALE = ("ATTITUDE", "GLOBAL_POSITION_INT"), 2.0
 """Messages with heading and depth, and the seconds without them after which these are unknown."""
