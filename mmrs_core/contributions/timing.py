@@ -60,7 +60,6 @@ def _kinematics(
     landing_height = (
         autopilot.landing_height if capability.landing_height is None else capability.landing_height
     )
-    usable = 1.0 / (1.0 + step.spread)
     driven = replace(
         plain,
         climb=step.climb,
@@ -69,8 +68,6 @@ def _kinematics(
         recovery=_first(capability.recovery, autopilot.recovery, plain.recovery),
         landing_rate=landing_rate,
         landing_height=landing_height if landing_rate < inf else 0.0,
-        endurance=plain.endurance * usable,
-        energy=plain.energy * usable,
         rounds=autopilot.rounds,
         mission=mission,
     )

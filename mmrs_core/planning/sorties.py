@@ -35,7 +35,8 @@ class Pilot:
         self.homebound = homebound or self.robot.return_home
         power = self.kinematics.power * self.kinematics.draw
         by_energy = self.kinematics.energy / power if power > 0 else inf
-        self.limit = min(self.kinematics.endurance, by_energy)
+        # The check counts with moves that take longer than expected.
+        self.limit = min(self.kinematics.endurance, by_energy) / (1.0 + self.kinematics.timing.spread)
         self._exits: dict[Position, float] = {}
         self._homes: dict[Position, float] = {}
 

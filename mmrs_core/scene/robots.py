@@ -134,8 +134,7 @@ class Kinematics:
         floor, ceiling: heights above the origin between which the robot may move, metres.
         launch: seconds that launching takes beside the climb; recovery: likewise for landing.
         landing_rate: metres per second of the descent below `landing_height`, metres above the ground.
-        endurance: usable seconds of one sortie, reserve and the spread of flown times taken off; inf for
-            wired robots.
+        endurance: usable seconds of one sortie, reserve taken off; inf for wired robots.
         energy: usable joules of one sortie, reserve taken off; inf for wired robots.
         power: mean power in watts; 0 where nothing is known of energy.
         draw: by how much the power may exceed the mean for long, as a factor of one or more: what it

@@ -88,7 +88,7 @@ def test_a_wait_tells_for_whom(behaviour, as_run, run):
     (wait,) = wait_reports(behaviour, as_run(), run)
     assert (wait.robot, wait.move, wait.slots, wait.setters) == ("beta", "b1", ("go",), ("alpha",))
     assert wait.seconds == pytest.approx(wait.planned)
-    assert wait.until == wait.since + wait.seconds
+    assert wait.until == pytest.approx(wait.since + wait.seconds)
 
 
 def test_a_wait_that_nobody_ended_lasts_as_long_as_anything_is_known(behaviour, as_run, run):
