@@ -42,6 +42,7 @@ from mmrs_core.contributions.checks import CheckInput
 from mmrs_core.contributions.runs import runs_of
 from mmrs_core.contributions.targets import TargetInput
 from mmrs_core.contributions.timing import as_uploaded
+from mmrs_core.errors import MmrsError
 from mmrs_core.generation.planned_moves import planned_moves
 from mmrs_core.scene import Device, Position
 from mmrs_mavlink.plugin.context import context_of
@@ -71,6 +72,10 @@ ITEM = 0.9
 
 AUTO = {3, 10}
 """Modes of ArduPilot's copters and subs, and of its rovers, in which missions are flown."""
+
+
+class NotComparableError(Exception):
+    """What was recorded shows no flight of the models."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -142,14 +147,25 @@ def main() -> int:
         return 2
     print(f"flown times, {date.today()}: seconds of all moves that were completed, waits left out\n")
     print(f"{'flight':26} {'robot':8} {'way':8}  planned      low     high    flown  ratio  legs within 15 %")
-    found = [each for folder in folders for each in compared(folder, px4=folder in given.px4)]
-    for each in found:
-        print(each.line())
-        if given.legs:
-            print(*details(each), sep="\n")
+    found: list[Comparison] = []
+    missing = False
+    for folder in folders:
+        try:
+            robots = compared(folder, px4=folder in given.px4)
+        except (MmrsError, NotComparableError, OSError) as error:
+            robots = []
+            print(f"{folder.name:26} not compared: {error}")
+        missing = missing or not robots
+        found += robots
+        for each in robots:
+            print(each.line())
+            if given.legs:
+                print(*details(each), sep="\n")
     legs, good = sum(len(each.legs) for each in found), sum(each.good_legs for each in found)
     print(f"\nlegs within 15 %: {good} of {legs}, {good / legs:.1%}" if legs else "\nno legs")
-    return 0 if legs and good >= MOST_LEGS * legs and all(each.is_true for each in found) else 1
+    return (
+        0 if not missing and legs and good >= MOST_LEGS * legs and all(each.is_true for each in found) else 1
+    )
 
 
 def details(each: Comparison) -> list[str]:
@@ -162,7 +178,11 @@ def details(each: Comparison) -> list[str]:
 
 
 def compared(folder: Path, *, px4: bool = False) -> list[Comparison]:
-    """Return the comparisons of the robots that were recorded in a folder."""
+    """Return the comparisons of the robots that were recorded in a folder.
+
+    Raises:
+        NotComparableError: nothing that was flown is there.
+    """
     session, loaded = opened(folder, px4=px4)
     found = []
     for robot in loaded.program.robots:
@@ -171,6 +191,8 @@ def compared(folder: Path, *, px4: bool = False) -> list[Comparison]:
             found.append(_steps(folder.name, session, loaded, robot, log, track))
         elif track:
             found.append(_mission(folder.name, session, loaded, robot, track))
+    if not found:
+        raise NotComparableError("there is neither a log nor a track of any robot")
     return found
 
 
@@ -224,6 +246,8 @@ def _mission(
     (items, *_) = sorties_of(context_of(robot, input))
     begun = next((each.time for each in track if each.armed and each.mode in AUTO), 0.0)
     flying = [each for each in track if each.armed and (each.mode in AUTO or 0.0 < begun - each.time < ARMED)]
+    if not flying:
+        raise NotComparableError(f"{robot.id} has no log, and its track shows no mission")
     moves: dict[str, float] = {}
     for one, two in pairwise(flying):
         item = items[max(one.item, 1) - 1] if one.item <= len(items) else None
@@ -463,6 +487,8 @@ def track_of(folder: Path, robot: RobotProgram) -> list[Sample]:
         return []
     with gzip.open(file, "rt") as rows:
         found = [{name: float(value) for name, value in row.items()} for row in csv.DictReader(rows)]
+    if not found:
+        return []
     home = next((each for each in found if each["armed"]), found[0])
     east = DEGREE * cos(radians(home["lat"]))
     return [

@@ -117,7 +117,8 @@ ROVER = Pacing(
 reverses to turn."""
 
 SUB = Pacing(
-    mission=LegFigures(acceleration=1.0, jerk=1.0, speed=1.05, corner_radius=2.0, settling=1.0, spread=0.2)
+    step=LegFigures(acceleration=1.0, jerk=1.0, speed=1.05, corner_radius=0.0, settling=1.0, spread=0.2),
+    mission=LegFigures(acceleration=1.0, jerk=1.0, speed=1.05, corner_radius=2.0, settling=1.0, spread=0.2),
 )
 """Its simulated hull makes one metre per second on missions, whatever it is commanded."""
 
