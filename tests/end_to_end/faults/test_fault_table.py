@@ -25,7 +25,7 @@ ALL = (*ROWS, *ORDERS)
 FAST = tuple(row for row in ALL if row.fast)
 REST = tuple(row for row in ROWS if not row.fast)
 OTHER_ORDERS = tuple(row for row in ORDERS if not row.fast)
-MOST_ROWS = 80
+MOST_ROWS = 82
 CLASSES = {"RETURN": "goes", "EMERGENCY_AREA": "goes", "LAND": "comes down", "SURFACE": "comes down"}
 
 USUAL_SPEED = 2.5

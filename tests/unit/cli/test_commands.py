@@ -167,7 +167,7 @@ def test_no_arguments_show_the_help(line, capsys):
         (["plan", "a", "b"], "unexpected extra argument"),
         (["plan", "a", "--sed", "3"], "no such option"),
         (["fly"], "no such command 'fly'"),
-        (["valdate"], "no such command 'valdate'. Did you mean 'validate'? try 'mmrs --help'"),
+        (["valdate"], "no such command 'valdate'. Did you mean 'validate', 'calibrate'? try 'mmrs --help'"),
         (["plan", "a", "--stop-after", "lunch"], "lunch"),
         (["plan", "a", "--seed", "x"], "--seed"),
         (["generate", "a"], "mmrs: missing: --target, --output; try 'mmrs generate --help'"),
