@@ -213,7 +213,8 @@ class Kinematics:
     def rates(self, speed: float | None = None) -> Rates:
         """Return how fast it goes along legs at a commanded speed, metres per second; None: at its cruise."""
         wanted = self.cruise if speed is None else min(max(speed, self.slowest), self.fastest)
-        return Rates(wanted, self.climb, self.descent, self.timing, self.shunting, self.rounds)
+        within = self.timing.shunts_within * self.turning_radius if self.turning_radius > 0.0 else 0.0
+        return Rates(wanted, self.climb, self.descent, self.timing, self.shunting, self.rounds, within)
 
     def flown_by(self, timing: LegTiming) -> Kinematics:
         """Return what it can do where its autopilot takes legs in this way."""

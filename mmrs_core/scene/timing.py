@@ -62,6 +62,8 @@ class LegTiming:
         overshoot: how far it goes beyond a target, metres for each metre per second of the leg's largest
             speed, that is, seconds.
         spread: by which share legs take longer or shorter than expected.
+        shunts_within: turning radii up to which a leg may be shunted for, where the robot cannot turn on the
+            spot; it gets onto longer ones by one curve.
     """
 
     acceleration: float = inf
@@ -76,6 +78,7 @@ class LegTiming:
     settling: float = 0.0
     overshoot: float = 0.0
     spread: float = 0.0
+    shunts_within: float = inf
 
     def bounded(self, expected: float) -> MoveSeconds:
         """Return what a leg takes that is expected to take so long."""
@@ -132,6 +135,7 @@ class Rates:
         timing: of its autopilot.
         shunting: seconds that turning takes before a level leg, at most.
         rounds: whether it is expected to drive round rather than to turn before it goes.
+        shunts_within: metres up to which a leg may be shunted for.
         share: of the expected seconds that legs from a stop to a stop take.
     """
 
@@ -141,6 +145,7 @@ class Rates:
     timing: LegTiming = IDEAL
     shunting: float = 0.0
     rounds: bool = False
+    shunts_within: float = inf
     share: float = 1.0
     _both_ends: float = field(init=False, repr=False, compare=False)
     """Seconds by which a level leg takes longer that reaches its cruise, settling included."""
@@ -194,7 +199,7 @@ class Rates:
         """Return the seconds that turning is expected to take before a leg."""
         if self.shunting <= 0.0 or self.rounds or start[:2] == end[:2]:
             return 0.0
-        return self.shunting
+        return self.shunting if dist(start[:2], end[:2]) <= self.shunts_within else 0.0
 
     def rise(self, metres: float) -> float:
         """Return the seconds of a vertical leg from a stop to a stop, settling included."""

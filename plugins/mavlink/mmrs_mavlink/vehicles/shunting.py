@@ -20,19 +20,13 @@ from mmrs_runtime.controllers.geodesy import bearing, offset
 from mmrs_runtime.faults import NO_PROGRESS, FaultError
 
 from ..links.link import Link, Message
+from ..profiles.pacing import SHUNTS_WITHIN
 from ..program import Place
 from .mode_control import ModeControl
 from .telemetry import Telemetry
 
 ASIDE_DEGREES = 15.0
 """Up to here a vehicle sets out at once: it is on its leg again within a fifth of its turning radius."""
-
-NEAR_RADII = 12.0
-"""Turning radii from where it stands within which a target abreast of it is near.
-
-Measured with ArduRover 4.7-dev and a radius of 1.2 m: legs of 20 to 25 m after corners up to 90 degrees took
-two thirds of the time that they take with shunting; legs of 7 and 13 m three times as long as they should.
-"""
 
 FACING_DEGREES = 5.0
 """How exactly it is turned."""
@@ -131,7 +125,7 @@ class Shunting:
 
     def _near(self, place: Place) -> float:
         """Return how far away, in metres, the vehicle gets to such a place by one curve and straight on."""
-        return NEAR_RADII * self.radius * sin(radians(min(90.0, abs(self._aside(place)))))
+        return SHUNTS_WITHIN * self.radius * sin(radians(min(90.0, abs(self._aside(place)))))
 
     def _from(self, place: Place) -> float:
         return hypot(*offset(place, self.telemetry.here())[:2])

@@ -11,9 +11,10 @@ from flight_crew import manned, robot_of
 from hypothesis import given
 from hypothesis import strategies as st
 
+from mmrs_mavlink.profiles.pacing import SHUNTS_WITHIN
 from mmrs_mavlink.program import Geographic, Local, Travel
 from mmrs_mavlink.services.uploads import Uploads
-from mmrs_mavlink.vehicles.shunting import ASIDE_DEGREES, NEAR_RADII, Shunting
+from mmrs_mavlink.vehicles.shunting import ASIDE_DEGREES, Shunting
 from mmrs_runtime.controllers.geodesy import bearing, distance, metres_per_degree
 
 HOME = Geographic(42.37, 13.35, 0.0)
@@ -102,7 +103,7 @@ def test_a_car_looks_at_its_target_or_is_there_and_has_kept_within_its_turning_r
     Shunting(car, car, car, radius).face(place, 0.5)
     aside = abs((bearing(car.here(), place) - car.heading() + 180.0) % 360.0 - 180.0)
     there = distance(car.here(), place)
-    drives_there = there > NEAR_RADII * radius * sin(radians(min(90.0, aside)))
+    drives_there = there > SHUNTS_WITHIN * radius * sin(radians(min(90.0, aside)))
     assert aside <= ASIDE_DEGREES or there <= 0.5 or drives_there
     assert car.farthest <= radius
     assert car.speed() <= 0.1
@@ -116,7 +117,7 @@ def test_a_rover_turns_to_its_target_first(angle, metres):
 
 
 def test_a_rover_is_sent_straight_to_a_target_that_one_curve_leads_to():
-    away, kinds = sent_to(90.0, NEAR_RADII * 1.5 + 1.0, 1.5)
+    away, kinds = sent_to(90.0, SHUNTS_WITHIN * 1.5 + 1.0, 1.5)
     assert away <= 0.5
     assert DRIVES not in kinds
 
