@@ -34,6 +34,7 @@ def perched():
         if restarted:
             simulated.faults.begin("restart")
             until(lambda: simulated.autopilot.ready)
+            vehicle.reports.request()
         until(lambda: aside(vehicle.state().place, PERCH) < 1.0)
         vehicle.start = footing(HOME, PERCH)
         vehicle.prepare(Uploads())
