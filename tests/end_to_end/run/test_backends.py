@@ -143,8 +143,12 @@ PATIENT = Policy("LINK_LOST", "RETURN", 60.0)
 
 
 def start_anew(driven):
-    """Have its autopilot start anew once it is old enough for that to be seen."""
-    until(lambda: driven.vehicle.autopilot.uptime > 1.5 * SPEEDUP)
+    """Have its autopilot start anew once it is old enough for that to be seen.
+
+    It reports its time again half a real second later at the earliest, when its messages are requested again;
+    and a time that is less than a real second behind may be late on its way.
+    """
+    until(lambda: driven.vehicle.autopilot.uptime > 3.0 * SPEEDUP)
     driven.vehicle.faults.begin("restart")
 
 
