@@ -20,7 +20,7 @@ MADE = program(robot_program("alpha", [take_off("up", 5.0), ACTS, LAND]))
 REEL = DeviceWiring(
     "kites.reel",
     "reels in, and brakes",
-    lambda action, device: Wired(183, (9.0, 1900.0), more=((183, (10.0, 1500.0)),)),
+    lambda action, device: Wired(183, (9.0, 1900.0), more=((183, (8.0, 1500.0)),)),
 )
 
 
@@ -37,7 +37,7 @@ WIRED = {
     ),
     "camera": ({"mavlink.camera": "0", "mavlink.camera.confirms": "yes"}, (2000, (0.0, 0.0, 1.0))),
     "reel": ({"kites.reel": "9"}, (183, (9.0, 1900.0))),
-    "brake": ({"kites.reel": "9"}, (183, (10.0, 1500.0))),
+    "brake": ({"kites.reel": "9"}, (183, (8.0, 1500.0))),
 }
 """Properties of a device, and a command that the vehicle gets for its action."""
 
@@ -69,7 +69,7 @@ def test_a_device_is_driven_by_its_command(heard, name):
 
 def test_a_wiring_of_a_plugin_sends_its_commands_one_after_the_other(heard):
     commands = [params[:2] for number, params in heard if number == 183]
-    assert commands[:2] == [(9.0, 1900.0), (10.0, 1500.0)]
+    assert commands[:2] == [(9.0, 1900.0), (8.0, 1500.0)]
 
 
 def test_a_camera_that_promises_to_tell_each_image_and_does_not_is_silent(new_controllers, hangar, tmp_path):
