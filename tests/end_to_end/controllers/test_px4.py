@@ -38,10 +38,11 @@ def flown(new_controllers, new_hangar, tmp_path_factory):
 
 
 def test_a_controller_steps_in_offboard_and_flies_runs_as_missions(flown):
+    """A PX4 that has landed returns to the last mode that it may be armed in."""
     made, _, autopilot = flown
     assert made.replayed().complaints == ()
     modes = [mode for _, mode in autopilot.modes if mode in (OFFBOARD, MISSION, TAKE_OFF, LANDING)]
-    assert modes == [TAKE_OFF, OFFBOARD, MISSION, OFFBOARD, LANDING]
+    assert modes == [TAKE_OFF, OFFBOARD, MISSION, OFFBOARD, LANDING, OFFBOARD]
 
 
 def test_every_place_is_passed(flown):
