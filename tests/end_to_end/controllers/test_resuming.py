@@ -135,7 +135,7 @@ def test_a_restarted_vehicle_with_a_new_battery_is_set_up_again(controllers, han
 def test_the_point_of_no_return_is_noticed_before_the_reserve_is_touched(controllers, hangar):
     far = [take_off("up", 10.0), go_to("far", (0.0, 400.0, 10.0)), go_to("home", (0.0, 0.0, 10.0)), LAND]
     made = controllers(replace(program(robot_program("alpha", far)), reserve=0.1))
-    vehicles, links = hangar(made.program, speedup=10.0, energy=180.0)
+    vehicles, links = hangar(made.program, speedup=5.0, energy=180.0)
     code, said = made.run("fleet.py", *links)
     assert code == 1, said
     assert "BATTERY_LOW: point of no return" in said
