@@ -11,8 +11,6 @@ from pathlib import Path
 import pytest
 
 BENCHMARK = Path(__file__).parents[3] / "benchmarks" / "flown_times.py"
-WITHIN, LEGS_WITHIN, MOST_LEGS = 0.05, 0.15, 0.95
-"""Share of the planned time within which a flight and a leg count, and share of the legs that must."""
 
 FOLDER = os.environ.get("MMRS_FLIGHTS", "")
 FLIGHTS = sorted(each.parent for each in Path(FOLDER).glob("*/behaviour.xmi")) if FOLDER else []
@@ -23,23 +21,29 @@ pytestmark = pytest.mark.skipif(not FLIGHTS, reason="MMRS_FLIGHTS is no folder o
 
 
 @pytest.fixture(scope="module")
-def found():
-    compared = runpy.run_path(str(BENCHMARK))["compared"]
+def benchmark():
+    """Return the names of the benchmark."""
+    return runpy.run_path(str(BENCHMARK))
+
+
+@pytest.fixture(scope="module")
+def found(benchmark):
+    compared = benchmark["compared"]
     flights = [each for each in FLIGHTS if each.name not in STUCK]
     return [each for flight in flights for each in compared(flight, px4=flight.name.startswith("px4"))]
 
 
-def test_flights_take_what_is_planned(found):
+def test_flights_take_what_is_planned(found, benchmark):
     whole = [each for each in found if each.whole]
     assert whole
-    assert [each.line() for each in whole if abs(each.ratio - 1.0) > WITHIN] == []
+    assert [each.line() for each in whole if abs(each.ratio - 1.0) > benchmark["WITHIN"]] == []
 
 
 def test_flights_keep_to_the_bounds_of_the_check(found):
     assert [each.line() for each in found if not each.low <= each.flown <= each.high] == []
 
 
-def test_nearly_all_legs_take_what_is_planned(found):
+def test_nearly_all_legs_take_what_is_planned(found, benchmark):
     legs, good = sum(len(each.legs) for each in found), sum(each.good_legs for each in found)
     assert legs
-    assert good >= MOST_LEGS * legs, f"{good} of {legs} within {LEGS_WITHIN:.0%}"
+    assert good >= benchmark["MOST_LEGS"] * legs, f"{good} of {legs} within {benchmark['LEGS_WITHIN']:.0%}"
