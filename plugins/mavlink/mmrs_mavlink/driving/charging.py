@@ -30,6 +30,7 @@ class Charging:
         self._begun = clock.now()
         self._said = -inf
         self._answer: Callable[[str], None] | None = None
+        self._why = ""
 
     def begin(self) -> None:
         """Count the time from now on."""
@@ -38,6 +39,8 @@ class Charging:
     def confirm(self, answer: Callable[[str], None]) -> None:
         """Count the batteries as changed, from any thread; `answer` is called with why they do not count."""
         self._answer = answer
+        if self.is_over:
+            self._answer_late()
 
     def stay(self) -> None:
         """Return once the batteries are full, or an operator has confirmed a change that counts.
@@ -45,9 +48,20 @@ class Charging:
         Raises:
             FaultError: they do not get full in time.
         """
-        while not (self._is_changed() or self._is_charged()):
-            self._vehicle.rest(PAUSE_SECONDS)
-        self.is_over = True
+        why = "it has stopped charging"
+        try:
+            while not (self._is_changed() or self._is_charged()):
+                self._vehicle.rest(PAUSE_SECONDS)
+            why = ""
+        finally:
+            self._why, self.is_over = why, True
+            self._answer_late()
+
+    def _answer_late(self) -> None:
+        """Answer an operator who confirms a change as the stay ends, full or not."""
+        answer, self._answer = self._answer, None
+        if answer is not None:
+            answer(self._why)
 
     def _is_changed(self) -> bool:
         answer, self._answer = self._answer, None

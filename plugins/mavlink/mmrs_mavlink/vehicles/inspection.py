@@ -82,12 +82,13 @@ def inspect_devices(link: Link, vehicle: Vehicle, robot: Robot, tried: Collectio
     values = parameters.read(link, names) if names else {}
     described = _described(link) if any(use.command in OF_CAMERAS for use in uses) else ()
     seen: set[tuple[str, Judgement]] = set()
+    trials: dict[Operate, str] = {}
     for use in uses:
         judgement = needs[use].judge(values) if use in needs else Judgement()
         if (use.shown, judgement) in seen:
             continue
         seen.add((use.shown, judgement))
-        why = "" if judgement.defect else _trial(vehicle, use, tried)
+        why = "" if judgement.defect else _trial(vehicle, use, tried, trials)
         if judgement.defect or why:
             found.defects.append(f"{use.shown}: {judgement.defect or why}")
         else:
@@ -114,11 +115,13 @@ def _line(use: _Use, judgement: Judgement, described: tuple[str, ...], *, works:
     return f"{use.shown}: {'; '.join(filter(None, parts))}"
 
 
-def _trial(vehicle: Vehicle, use: _Use, tried: Collection[str]) -> str:
-    """Carry an action out if it is to be tried; return why it has failed; empty: it has not."""
+def _trial(vehicle: Vehicle, use: _Use, tried: Collection[str], trials: dict[Operate, str]) -> str:
+    """Carry an action out, once for all of its commands, if it is to be tried; return why it has failed."""
     if use.operate is None or not use.is_tried(tried):
         return ""
-    why = _tried(vehicle, use.operate)
+    if use.operate not in trials:
+        trials[use.operate] = _tried(vehicle, use.operate)
+    why = trials[use.operate]
     return f"tried on the ground: {why}" if why else ""
 
 

@@ -75,6 +75,23 @@ def test_what_it_waits_for_is_said_and_again_every_minute():
     assert len(said) == 4
 
 
+def test_a_change_that_is_confirmed_as_the_battery_gets_full_is_answered():
+    stay, _, _ = charging(1.0)
+    stay.stay()
+    answers = []
+    stay.confirm(answers.append)
+    assert answers == [""]
+
+
+def test_a_change_that_is_confirmed_when_charging_has_failed_is_answered_with_that():
+    stay, _, _ = charging(0.27, seconds=10.0, refusal="its vehicle still reports 27%")
+    answers = []
+    with pytest.raises(FaultError, match="after 30 s"):
+        stay.stay()
+    stay.confirm(answers.append)
+    assert answers == ["it has stopped charging"]
+
+
 @pytest.mark.parametrize("when", [10.0, 150.0])
 def test_a_change_that_an_operator_confirms_ends_it(when):
     stay, vehicle, _ = charging(0.27)

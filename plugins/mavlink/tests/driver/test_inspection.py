@@ -151,6 +151,13 @@ def test_a_device_that_may_be_tried_is_and_counts_as_working_then(by_type):
     ]
 
 
+def test_an_action_of_several_commands_is_tried_once():
+    vehicle = Equipped(RELAY1_FUNCTION=1.0, RELAY1_PIN=13.0, CAM1_TYPE=5.0, SERVO9_FUNCTION=10.0)
+    found = inspected(using(replace(SAMPLE, more=((2000, (1.0, 0.0, 1.0)),))), vehicle, ("co2",))
+    assert found.defects == []
+    assert (vehicle.commands.count(182), vehicle.commands.count(2000)) == (1, 1)
+
+
 def test_a_device_that_fails_its_trial_is_a_defect():
     vehicle = Equipped(refuses=182, RELAY1_FUNCTION=1.0, RELAY1_PIN=13.0)
     (defect,) = inspected(using(SAMPLE), vehicle, ("co2",)).defects
