@@ -1,7 +1,7 @@
 """Flights on real firmware took as long as the same models are planned, and checked, to take.
 
-MMRS_FLIGHTS is a folder of recorded flights, each as `benchmarks/flown_times.py` describes; the folders of
-flights with a PX4 have names that begin with ``px4``.
+MMRS_RECORDED_FLIGHTS is a folder of recorded flights, each as `benchmarks/flown_times.py` describes; the
+folders of flights with a PX4 have names that begin with ``px4``.
 """
 
 import os
@@ -12,12 +12,12 @@ import pytest
 
 BENCHMARK = Path(__file__).parents[3] / "benchmarks" / "flown_times.py"
 
-FOLDER = os.environ.get("MMRS_FLIGHTS", "")
+FOLDER = os.environ.get("MMRS_RECORDED_FLIGHTS", "")
 FLIGHTS = sorted(each.parent for each in Path(FOLDER).glob("*/behaviour.xmi")) if FOLDER else []
 STUCK = ("rover-arcs-stuck", "sub-guided", "sub-guided-resend-120")
 """Flights that show what an earlier driver did wrong."""
 
-pytestmark = pytest.mark.skipif(not FLIGHTS, reason="MMRS_FLIGHTS is no folder of recorded flights")
+pytestmark = pytest.mark.skipif(not FLIGHTS, reason="MMRS_RECORDED_FLIGHTS is no folder of recorded flights")
 
 
 @pytest.fixture(scope="module")
