@@ -18,7 +18,13 @@ TILT = radians(50.0)
 """Lean that no flight needs: autopilots lean by 30 to 45 degrees at most (ATC_ANGLE_MAX, MPC_TILTMAX_AIR)."""
 
 TIPPED = radians(30.0)
-"""Lean at which nothing that flies stays where it is."""
+"""Lean at which, near the ground, nothing that flies stays where it is unless the wind is strong."""
+
+LOW = 3.0
+"""Metres above home up to which a vehicle may be down: higher up, being still or level is hovering."""
+
+STALE_SECONDS = 1.0
+"""After which a lean that is not reported again counts as unknown."""
 
 FALL = 6.0
 """Metres per second at which no command makes a vehicle descend: WPNAV_SPEED_DN takes 5 at most."""
@@ -77,7 +83,7 @@ class MotorFailures:
         """Forget what was."""
         self.failure = self._suspected = ""
         self._before: _Fix | None = None
-        self._now = 0.0
+        self._now = self._leant_at = 0.0
         self._tilted = self._tipped = self._falling = self._still = self._level = inf
         self._rest = self._landing_height = 0.0
         self._struck: float | None = None
@@ -108,9 +114,12 @@ class MotorFailures:
         Args:
             in_air: whether a fall counts that nothing stops, and not only its end.
         """
-        if in_air and self._lasts(max(self._tilted, self._falling), UNSTOPPED_SECONDS):
+        known = self._now - self._leant_at <= STALE_SECONDS * 1000.0
+        if in_air and known and self._lasts(max(self._tilted, self._falling), UNSTOPPED_SECONDS):
             return f"it has been falling, tilted, for {UNSTOPPED_SECONDS:.0f} s"
-        lies = self._struck is not None or self._tipped <= self._still
+        if self._before is None or self._before.height > LOW:
+            return ""
+        lies = self._struck is not None or (known and self._tipped <= self._still)
         if lies and self._lasts(self._still, LYING_SECONDS):
             return "it lies where it has fallen, with its motors running"
         if self._lasts(self._level, LEVEL_SECONDS):
@@ -121,6 +130,9 @@ class MotorFailures:
         return self._now - since >= seconds * 1000.0
 
     def _lean(self, at: float, tilt: float) -> None:
+        if at - self._leant_at > STALE_SECONDS * 1000.0:
+            self._tilted = self._tipped = inf
+        self._leant_at = at
         if tilt > TILT and self._tilted < at:
             self._suspected = self._suspected or f"it tilts by {degrees(tilt):.0f} degrees"
         self._tilted = min(self._tilted, at) if tilt > TILT else inf

@@ -95,6 +95,22 @@ def test_one_that_is_to_land_and_does_not_descend_is_down():
     assert not seen(*waits).fallen(in_air=True)
 
 
+@pytest.mark.parametrize("lands", [False, True])
+@pytest.mark.parametrize("lean", [2, 31])
+def test_one_that_has_caught_itself_and_hovers_keeps_its_motors(lands, lean):
+    falls = [(34.0 - 1.8 * n, 7.0, 5) for n in range(3)]
+    assert seen(*falls).failure
+    assert not seen(*falls, *[(30.0, 0.0, lean)] * 60, lands=lands).fallen(in_air=True)
+
+
+def test_a_lean_that_is_not_reported_again_counts_for_nothing():
+    found = seen((0.3, 0.0, 55))
+    for now in range(10_250, 16_000, 250):
+        place = (now, 423_700_000, 133_500_000, 0, 300, 0, 0, 0, 0)
+        found(sent(mavlink.MAVLink_global_position_int_message(*place)), False)
+    assert not found.fallen(in_air=True)
+
+
 def test_one_that_is_disarmed_is_carried_as_people_like():
     found = seen(*FALL, *LIES, armed=False)
     assert not found.failure
