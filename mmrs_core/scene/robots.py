@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from math import dist, inf, sqrt, tan
+from math import dist, inf, pi, sqrt, tan
 
 from mmrs_core.diagnostics import Place
 from mmrs_core.scene.primitives import Metaclasses, Part, Position, TravelMode
@@ -214,7 +214,10 @@ class Kinematics:
         """Return how fast it goes along legs at a commanded speed, metres per second; None: at its cruise."""
         wanted = self.cruise if speed is None else min(max(speed, self.slowest), self.fastest)
         within = self.timing.shunts_within * self.turning_radius if self.turning_radius > 0.0 else 0.0
-        return Rates(wanted, self.climb, self.descent, self.timing, self.shunting, self.rounds, within)
+        circling = 2.0 * pi * self.turning_radius / wanted if wanted > 0.0 else inf
+        return Rates(
+            wanted, self.climb, self.descent, self.timing, self.shunting, self.rounds, within, circling
+        )
 
     def flown_by(self, timing: LegTiming) -> Kinematics:
         """Return what it can do where its autopilot takes legs in this way."""

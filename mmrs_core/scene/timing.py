@@ -136,6 +136,7 @@ class Rates:
         shunting: seconds that turning takes before a level leg, at most.
         rounds: whether it is expected to drive round rather than to turn before it goes.
         shunts_within: metres up to which a leg may be shunted for.
+        circling: seconds in which it drives a full circle, which getting onto a longer leg takes at most.
         share: of the expected seconds that legs from a stop to a stop take.
     """
 
@@ -146,6 +147,7 @@ class Rates:
     shunting: float = 0.0
     rounds: bool = False
     shunts_within: float = inf
+    circling: float = 0.0
     share: float = 1.0
     _both_ends: float = field(init=False, repr=False, compare=False)
     """Seconds by which a level leg takes longer that reaches its cruise, settling included."""
@@ -199,7 +201,7 @@ class Rates:
         """Return the seconds that turning is expected to take before a leg."""
         if self.shunting <= 0.0 or self.rounds or start[:2] == end[:2]:
             return 0.0
-        return self.shunting if dist(start[:2], end[:2]) <= self.shunts_within else 0.0
+        return self.shunting if dist(start[:2], end[:2]) <= self.shunts_within else self.circling
 
     def rise(self, metres: float) -> float:
         """Return the seconds of a vertical leg from a stop to a stop, settling included."""

@@ -1,13 +1,14 @@
 """Laws of the model of legs, for all lengths, speeds, accelerations and jerks."""
 
 from dataclasses import replace
-from math import inf, radians, sin, tan
+from math import hypot, inf, pi, radians, sin, tan
 
 import numpy as np
 import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
+from mmrs_core.scene import Kinematics
 from mmrs_core.scene.timing import IDEAL, LegTiming, Rates
 
 HERE = (0.0, 0.0, 10.0)
@@ -177,3 +178,22 @@ def test_a_robot_that_turns_first_is_soonest_where_it_need_not():
     rounds = replace(rover, rounds=True)
     assert rounds.from_stop_to_stop(NONE, (10.0, 0.0, 0.0)) == pytest.approx(11.0)
     assert rounds.latest().from_stop_to_stop(NONE, (10.0, 0.0, 0.0)) == pytest.approx(20.0)
+
+
+@given(metres=st.floats(9.7, 60.0), radius=st.floats(0.5, 3.0), speed=st.floats(0.5, 3.0))
+def test_the_latest_seconds_of_a_car_cover_a_target_behind_it(metres, radius, speed):
+    rover = Kinematics(
+        cruise=speed,
+        slowest=0.0,
+        fastest=speed,
+        climb=1.0,
+        descent=1.0,
+        timing=LegTiming(acceleration=1.0, shunts_within=0.0),
+        turning_radius=radius,
+        rounds=True,
+    )
+    rates = rover.rates()
+    straight = rates.from_stop_to_stop(NONE, (metres, 0.0, 0.0))
+    # half of the circle leads abreast of where it stood; from there it drives straight on
+    detour = pi * radius + hypot(metres, 2.0 * radius) - metres
+    assert rates.latest().from_stop_to_stop(NONE, (metres, 0.0, 0.0)) >= straight + detour / speed - 1e-9
