@@ -52,7 +52,7 @@ def inspect_batteries(link: Link, telemetry: Telemetry, robot: Robot, *, at_star
     """Return whether what is left suffices for the first sortie of a program, and what is unknown of that.
 
     The energy is that of the capacity that the vehicle is set up with, at the nominal voltage of the robot's
-    type, or at its own where that is lower.
+    type, or at its own where that is lower. Of several batteries none counts as fuller than the emptiest.
 
     Args:
         link: to the vehicle, which stands on the ground.
@@ -60,7 +60,7 @@ def inspect_batteries(link: Link, telemetry: Telemetry, robot: Robot, *, at_star
         robot: its program.
         at_start: whether the first sortie is about to begin.
     """
-    left, held = telemetry.energy(), _held(link, telemetry, robot.charge)
+    left, held = telemetry.least_energy(), _held(link, telemetry, robot.charge)
     if left is None:
         return Findings(lines=["unknown: battery: the vehicle does not report how much of it is left"])
     if held is None:

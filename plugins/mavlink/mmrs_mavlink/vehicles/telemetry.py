@@ -264,6 +264,11 @@ class Telemetry:
             return float(told.battery_remaining) / 100.0
         return self._batteries.left
 
+    def least_energy(self) -> float | None:
+        """Return the part that is left in the battery that has least; None where the vehicle does not say."""
+        told = (self.energy(), self._batteries.left)
+        return min((each for each in told if each is not None), default=None)
+
     def voltage(self) -> float | None:
         """Return the volts of the battery; None where the vehicle does not say."""
         told = self._link.latest("SYS_STATUS")

@@ -23,13 +23,14 @@ def inspected(
     at_start: bool = True,
     charge=TYPE,
     monitor: float | None = 4.0,
+    second: int | None = None,
 ):
     """Return what is found of a battery, by default one of 5 Ah at 20 V, as that of the type."""
     parameters = {
         "BATT_CAPACITY": capacity,
         "BATT_MONITOR": monitor,
         "BATT2_CAPACITY": 3300.0,
-        "BATT2_MONITOR": 0.0,
+        "BATT2_MONITOR": 0.0 if second is None else 4.0,
     }
 
     def answer(message):
@@ -45,6 +46,12 @@ def inspected(
             mavlink.MAVLink_sys_status_message(0, 0, 0, 0, round(volts * 1e3), 0, left, 0, 0, 0, 0, 0, 0)
         )
         eventually(lambda: link.latest("SYS_STATUS"))
+        if second is not None:
+            volts_of_cells = [65_535] * 10
+            wire.say(
+                mavlink.MAVLink_battery_status_message(1, 0, 0, 0, volts_of_cells, -1, -1, -1, second, 0, 0)
+            )
+            eventually(lambda: link.latest("BATTERY_STATUS"))
         return inspect_batteries(link, vehicle.telemetry, robot, at_start=at_start)
 
 
@@ -59,6 +66,12 @@ def test_the_battery_of_the_type_suffices():
 
 def test_a_battery_whose_monitor_is_not_reported_counts():
     assert inspected(monitor=None).lines == inspected().lines
+
+
+def test_of_two_batteries_neither_counts_as_fuller_than_the_emptier():
+    (defect,) = inspected(second=10).defects
+    assert "17 Wh are left (10% of 8300 mAh at 20.0 V, BATT_CAPACITY + BATT2_CAPACITY)" in defect
+    assert not inspected(second=100).defects
 
 
 def test_a_battery_that_is_too_small_is_a_defect_that_names_its_parameter():
