@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TypeAlias
 
@@ -43,8 +43,10 @@ class Need:
         """Return whether the values of parameters suit; those that are missing are unknown."""
         reported = {name: round(values[name]) for name in self.names if name in values}
         met = {name: value for name, value in reported.items() if self._suits(value)}
-        if self.names and not reported:
-            return Judgement(unknown=f"the vehicle does not report {self._shown()}")
+        unreported = [name for name in self.names if name not in reported]
+        if unreported and not met:
+            names = ", ".join(unreported) if reported else _shown(self.names)
+            return Judgement(unknown=f"the vehicle does not report {names}")
         if not met:
             return Judgement(defect=self._defect(reported))
         name, value = next(iter(met.items()))
@@ -61,11 +63,13 @@ class Need:
         if len(self.names) == 1:
             (value,) = reported.values()
             must = f", and must be {wanted}" if wanted else ""
-            return f"{self._shown()} is {value}{must}: {self.lacking}"
-        return f"none of {self._shown()} is {wanted or 'set'}: {self.lacking}"
+            return f"{self.names[0]} is {value}{must}: {self.lacking}"
+        return f"none of {_shown(self.names)} is {wanted or 'set'}: {self.lacking}"
 
-    def _shown(self) -> str:
-        return self.names[0] if len(self.names) == 1 else f"{self.names[0]} to {self.names[-1]}"
+
+def _shown(names: Sequence[str]) -> str:
+    """Return the names of parameters in their order, in short."""
+    return names[0] if len(names) == 1 else f"{names[0]} to {names[-1]}"
 
 
 @dataclass(frozen=True, slots=True)

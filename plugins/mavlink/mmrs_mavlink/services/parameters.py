@@ -10,7 +10,7 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from ..links.link import Link, Message
 
-ROUNDS = 2
+ROUNDS = 3
 """How often parameters are asked for that a vehicle may not have."""
 
 MARKS = 16

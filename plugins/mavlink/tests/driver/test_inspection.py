@@ -117,6 +117,14 @@ def test_a_parameter_that_is_not_told_is_unknown_and_no_defect():
     ]
 
 
+def test_an_output_that_is_not_reported_may_be_the_one_that_suits():
+    outputs = {f"SERVO{number}_FUNCTION": 0.0 for number in range(1, 17) if number not in (9, 11)}
+    found = inspected(using(PHOTO), Equipped(describes=True, CAM1_TYPE=1.0, **outputs))
+    assert not found.defects
+    (line,) = found.lines
+    assert "unknown: the vehicle does not report SERVO9_FUNCTION, SERVO11_FUNCTION," in line
+
+
 def test_a_command_of_ones_own_is_unknown():
     (line,) = inspected(using(Operate("lamp", "Flash", 31_010, ())), Equipped()).lines
     assert line.startswith("device 'lamp' (Flash): unknown: no parameter shows whether USER_1 has an effect")
