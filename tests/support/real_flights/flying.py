@@ -24,6 +24,7 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 from mmrs_core.behaviour.log import read_logs
 from mmrs_core.behaviour.replay import replay
 from mmrs_core.errors import MmrsError
+from mmrs_core.languages import behaviour
 from mmrs_runtime.orders.channels import Unreachable
 from mmrs_runtime.orders.ordering import give
 from real_flights import plans
@@ -66,6 +67,9 @@ ORDER_SECONDS = 30.0
 
 WATCHED = ("interrupt to end", "is left alone")
 """What a program says that has nothing left to do but to watch its vehicle."""
+
+CHANGE_SECONDS = 20.0
+"""Seconds of the vehicle after which operators have changed a battery; no simulated one recharges."""
 
 ENDS = "log ends although"
 """What the replay says of the log of a program that was killed, or waits for a new battery."""
@@ -134,6 +138,8 @@ class Flying:
         self.flight, self.folder, self.speedup = flight, folder, speedup
         self.plan = prepare(flight, folder)
         self.robots = robots_of(flight, self.plan)
+        moves = [move for robot in self.plan.program.robots for move in robot.moves]
+        self.recharges = {move.id for move in moves if (behaviour.NS_URI, "Recharge") in move.metaclasses}
         self.logs = folder / "logs"
         self.result = Result()
         self.vehicles: dict[str, InstalledVehicle] = {}
@@ -141,6 +147,7 @@ class Flying:
         self.links: dict[str, str] = {}
         self.processes: dict[str, subprocess.Popen[bytes]] = {}
         self.interrupts = 0.0
+        self._changed: dict[tuple[str, str], float | None] = {}
         self._key = token_bytes(32) if flight.signed else b""
 
     def fly(self) -> Result:
@@ -156,6 +163,7 @@ class Flying:
                 while (more := next(happens, False)) or self._working():
                     if not more:
                         self._leave_the_watched(said)
+                    self._change_batteries(said)
                     if time.monotonic() > until:
                         self.result.deviates.append("did not come to its end in time")
                         break
@@ -180,6 +188,18 @@ class Flying:
         if any(each in words for each in WATCHED) and all(map(self._still, self.robots)):
             for process in running:
                 process.send_signal(signal.SIGINT)
+
+    def _change_batteries(self, said: IO[bytes]) -> None:
+        """Confirm that batteries were changed, as operators do, where robots have waited long enough."""
+        for robot in self.robots if self.recharges else ():
+            steps, now = self._steps(robot), self.vehicles[robot].observer.now
+            latest = steps[-1] if steps else None
+            if latest is None or latest.label != "begin" or latest.move not in self.recharges:
+                continue
+            begun = self._changed.setdefault((robot, latest.move), now)
+            if begun is not None and now > begun + CHANGE_SECONDS:
+                self._changed[robot, latest.move] = None
+                self._let_happen(Order("battery-changed"), robot, said)
 
     def _patience(self) -> float:
         longest = max(self.plan.seconds.values(), default=0.0)

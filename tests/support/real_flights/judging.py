@@ -44,10 +44,11 @@ class Planned:
     seconds: Mapping[str, float]
 
     def vehicle(self, robot: str) -> str:
-        """Return the class of vehicle of a robot."""
+        """Return the class of vehicle of a robot; what only drives is a rover."""
         type = self.place.types[self._robot(robot).type_name]
         kind = robot_kind_of(type, installed().robot_kinds)
-        return kind.vehicle if kind is not None else ""
+        vehicle = kind.vehicle if kind is not None else ""
+        return "rover" if vehicle == "ground" else vehicle
 
     def dives(self, robot: str) -> bool:
         """Return whether a robot is under water, so that heights count from the surface."""
