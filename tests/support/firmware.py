@@ -330,7 +330,11 @@ class InstalledVehicle:
     @property
     def link(self) -> str:
         """Return how a program reaches it."""
-        return f"udpin:127.0.0.1:{self.port}@{self.number + 1}"
+        return self.link_at(self.port)
+
+    def link_at(self, port: int) -> str:
+        """Return how a program reaches it that listens at another port."""
+        return f"udpin:127.0.0.1:{port}@{self.number + 1}"
 
     def __enter__(self) -> InstalledVehicle:
         self.start()

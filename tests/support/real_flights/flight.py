@@ -57,9 +57,10 @@ class Cut:
 
 @dataclass(frozen=True, slots=True)
 class Pilot:
-    """A pilot changes the mode, to this number."""
+    """A pilot changes the mode, to this number; of PX4, to its main mode and the mode within it."""
 
     mode: int
+    submode: int = 0
 
 
 @dataclass(frozen=True, slots=True)

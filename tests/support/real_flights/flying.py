@@ -19,6 +19,7 @@ from typing import IO
 import numpy as np
 from example_flight.ways import controller_commands, run_command
 from firmware import ARDUCOPTER, ARDUROVER, ARDUSUB, PX4, Firmware, Fix, InstalledVehicle
+from ports import free_port
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from mmrs_core.behaviour.log import read_logs
@@ -220,8 +221,13 @@ class Flying:
         self.links[robot] = vehicle.link
         # As behind a radio: a simulation that restarts sends from another port.
         if any(isinstance(what, Cut | Reboot) for _, what in self.flight.happens) and number == 0:
-            self.straits[robot] = stack.enter_context(Strait(vehicle.port))
-            vehicle.port = self.straits[robot].port
+            if firmware is PX4:  # it sends to a port of its own choice
+                program = free_port()
+                self.links[robot] = vehicle.link_at(program)
+                self.straits[robot] = stack.enter_context(Strait(program, vehicle.port))
+            else:
+                self.straits[robot] = stack.enter_context(Strait(vehicle.port))
+                vehicle.port = self.straits[robot].port
         self.vehicles[robot] = stack.enter_context(vehicle)
 
     def _begin(self, said: IO[bytes], *more: str) -> None:
@@ -301,8 +307,8 @@ class Flying:
                 observer.change(parameters)
             case Cut(inwards, outwards):
                 self.straits[robot].inwards, self.straits[robot].outwards = inwards, outwards
-            case Pilot(mode):
-                observer.command(176, 1, mode)
+            case Pilot(mode, submode):
+                observer.command(mavlink.MAV_CMD_DO_SET_MODE, 1, mode, submode)
             case Disarm():
                 observer.command(mavlink.MAV_CMD_COMPONENT_ARM_DISARM, 0)
             case Kill():

@@ -17,11 +17,11 @@ class Strait:
             sent, is lost.
     """
 
-    def __init__(self, program: int) -> None:
-        """Prepare it for a program that listens at a port of this machine."""
+    def __init__(self, program: int, port: int = 0) -> None:
+        """Prepare it for a program that listens at a port of this machine; `port` 0 is any that is free."""
         self.inwards = self.outwards = False
         self._program = ("127.0.0.1", program)
-        self._near, self._far = _socket(), _socket()
+        self._near, self._far = _socket(port), _socket(0)
         self.port: int = self._near.getsockname()[1]
         self._ending = threading.Event()
         self._thread = threading.Thread(target=self._run, name="strait", daemon=True)
@@ -53,7 +53,7 @@ class Strait:
                     self._near.sendto(data, vehicle)
 
 
-def _socket() -> socket.socket:
+def _socket(port: int) -> socket.socket:
     made = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
-    made.bind(("127.0.0.1", 0))
+    made.bind(("127.0.0.1", port))
     return made

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
+from typing import Any
 
 from real_flights.flight import (
     AWAY,
@@ -168,17 +170,33 @@ def _resumes(craft: Craft) -> tuple[Flight, ...]:
     }
     if craft is COPTER:
         moments |= {"climbing": Begun("up", 3.0), "landing": Begun("down", 3.0)}
-    return tuple(
-        _upset(
-            craft,
-            f"killed and resumed, {moment}",
-            (when, Kill()),
-            (Later(1.0), Resume()),
-            ends=DONE,
-            resumed=True,
-            stays=10.0 if when.move == "stay" else 0.0,
-        )
-        for moment, when in moments.items()
+    ordered = {"held": ("hold", DONE, ""), "returning": ("return", HOME, "ORDERED")}
+    return (
+        *(
+            _upset(
+                craft,
+                f"killed and resumed, {moment}",
+                (when, Kill()),
+                (Later(1.0), Resume()),
+                ends=DONE,
+                resumed=True,
+                stays=10.0 if when.move == "stay" else 0.0,
+            )
+            for moment, when in moments.items()
+        ),
+        *(
+            _upset(
+                craft,
+                f"killed and resumed, {state}",
+                (AT_LEG, Order(order)),
+                (Later(3.0), Kill()),
+                (Later(1.0), Resume()),
+                ends=ends,
+                fault=fault,
+                resumed=ends == DONE,
+            )
+            for state, (order, ends, fault) in ordered.items()
+        ),
     )
 
 
@@ -250,12 +268,48 @@ FENCES = tuple(
     )
     for craft in (COPTER, ROVER)
 )
-PX4S = (
-    Flight("PX4: legs", routes(_short(COPTER)), px4=True, deviation=3.0, landing=2.0, speedup=1.0),
-    Flight(
-        "PX4: fluid", routes(_short(COPTER, fluid=True)), px4=True, deviation=3.0, landing=2.0, speedup=1.0
+BUOY = (
+    _upset(
+        SUB,
+        "fence broken",
+        (Begun("p1", 0.5), Change({"FENCE_TYPE": 2.0, "FENCE_RADIUS": 22.0, "FENCE_ENABLE": 1.0})),
+        ends=SURFACE,
+        fault="FENCE_BREACHED",
+        policy=("FENCE_BREACHED", "SURFACE", 0.0),
     ),
 )
+
+
+def _as_px4(flight: Flight, **changes: Any) -> Flight:
+    """Return a copter's flight as that of a PX4."""
+    name = flight.name.replace("copter:", "PX4:")
+    deviation = None if flight.deviation is None else 3.0
+    return replace(flight, name=name, px4=True, deviation=deviation, landing=2.0, speedup=1.0, **changes)
+
+
+_COPTERS = {
+    flight.name.removeprefix("copter: "): flight
+    for flight in (*_ways(COPTER), *_orders(COPTER), *_faults(COPTER))
+}
+PX4S = (
+    *(
+        _as_px4(_COPTERS[name])
+        for name in (
+            *("legs", "fluid", "plan in AUTO"),
+            *("hold, then resume", "order return", "order stop", "order land"),
+            *("link cut for 40 s", "process killed"),
+        )
+    ),
+    _as_px4(_COPTERS["pilot takes over"], happens=((AT_LEG, Pilot(4, 6)),)),
+    _as_px4(_COPTERS["satellites lost"], happens=((AT_LEG, Change({"SIM_GPS_USED": 0.0})),)),
+    _as_px4(_COPTERS["battery low"], happens=(), parameters={"SIM_BAT_DRAIN": 40.0, "SIM_BAT_MIN_PCT": 5.0}),
+    *(
+        _as_px4(flight)
+        for flight in _resumes(COPTER)
+        if flight.name.endswith((", on a leg", ", while it stays"))
+    ),
+)
+"""A PX4 that flies does not restart by an order, and its simulation has no motor to fail."""
 
 FLIGHTS = (
     *(flight for craft in (COPTER, ROVER, SUB) for flight in _ways(craft)),
@@ -265,6 +319,7 @@ FLIGHTS = (
     *(flight for craft in (COPTER, ROVER, SUB) for flight in _faults(craft)),
     *MOTORS,
     *FENCES,
+    *BUOY,
     *(flight for craft in (COPTER, ROVER, SUB) for flight in _resumes(craft)),
     *EXAMPLES,
     *PX4S,
