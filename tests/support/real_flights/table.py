@@ -87,7 +87,7 @@ def _upset(
         happens=happens,
         ends=ends,
         fault=fault,
-        deviation=None if not resumed else 3.0,
+        deviation=None if not resumed else 5.0 if craft is ROVER else 3.0,  # it turns round beside its line
         landing=4.0 if craft is not COPTER else 1.0,
         parameters=parameters or {},
         speedup=speedup,
@@ -170,7 +170,8 @@ def _resumes(craft: Craft) -> tuple[Flight, ...]:
     }
     if craft is COPTER:
         moments |= {"climbing": Begun("up", 3.0), "landing": Begun("down", 3.0)}
-    ordered = {"held": ("hold", DONE, ""), "returning": ("return", HOME, "ORDERED")}
+    left = HOME if craft is COPTER else HOLDS  # by its failsafe for a lost link: the program has ended
+    ordered = {"held": ("hold", DONE, ""), "returning": ("return", left, "ORDERED")}
     return (
         *(
             _upset(
