@@ -104,7 +104,7 @@ class Flight:
         ends: how each robot ends; its own where `ends_of` names it.
         fault: that the log must hold; empty: none may.
         deviation: metres from the planned line, at most; None: what happens leads away from it.
-        landing: metres from the planned end, at most.
+        landing: metres in the plane from the planned end, or from home, at most.
         parameters: of the vehicles, beyond those of their firmware.
         arguments: of `mmrs run` or the controllers.
         signed: whether the link is signed.

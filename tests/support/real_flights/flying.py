@@ -59,9 +59,6 @@ STILL, STILL_SECONDS = 0.3, 8.0
 REST_SECONDS = 400.0
 """Seconds of the vehicle in which it must come to rest once its program has ended."""
 
-AT_HOME = {"copter": 1.0, "rover": 4.0, "sub": 4.0}
-"""Metres from home, in the plane, at which a vehicle counts as being there."""
-
 SURFACE_METRES = 1.0
 ORDER_SECONDS = 30.0
 """Real seconds in which an order must be confirmed."""
@@ -273,8 +270,9 @@ class Flying:
         for robot, vehicle in self.vehicles.items():
             (file,) = [p for p in (self.folder / "plans").glob("*.plan") if robot.lower() in p.stem.lower()]
             self._wait(lambda v=vehicle: v.observer.now > 40.0, 120.0)
-            self.items = plans.upload(vehicle.observer, file)
-            plans.start(vehicle.observer, rover=self.plan.vehicle(robot) == "rover")
+            px4 = vehicle.firmware is PX4
+            self.items = plans.upload(vehicle.observer, file, px4=px4)
+            plans.start(vehicle.observer, rover=self.plan.vehicle(robot) == "rover", px4=px4)
 
     def _working(self) -> bool:
         if self.flight.way == PLAN:
@@ -408,7 +406,7 @@ class Flying:
             return DONE if self.flight.way == PLAN or not any(codes) else f"exit code {max(codes)}"
         if kind == "sub" and last.rel > -SURFACE_METRES and self.flight.ends == SURFACE:
             return SURFACE
-        if away < AT_HOME[kind]:
+        if away < self.flight.landing:
             return HOME
         return HOLDS if last.armed or kind == "rover" else AWAY
 

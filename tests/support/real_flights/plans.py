@@ -17,6 +17,9 @@ AUTO, GUIDED = 3, 4
 """ArduPilot's numbers of copters and subs; those of rovers are `ROVER_AUTO`, `ROVER_GUIDED`."""
 
 ROVER_AUTO, ROVER_GUIDED = 10, 15
+PX4_AUTO, PX4_MISSION = 4, 4
+"""PX4's main mode, and the mode within it."""
+
 START_SECONDS = 90.0
 Item = tuple[int, int, tuple[float, ...]]
 """Frame, command, seven parameters: the fifth and sixth are degrees where the item has a place."""
@@ -26,21 +29,24 @@ class PlanError(Exception):
     """The vehicle refuses a plan, or what starts it."""
 
 
-def upload(observer: Observer, plan: Path) -> int:
+def upload(observer: Observer, plan: Path, *, px4: bool = False) -> int:
     """Upload mission, fence and rally points of a plan; return the number of the mission's items.
+
+    ArduPilot's first item is its home; PX4 knows no such item.
 
     Raises:
         PlanError: the vehicle does not take them.
     """
     said = json.loads(plan.read_text("utf-8"))
-    mission = [_home(said["mission"]), *map(_item, said["mission"]["items"])]
+    home = [] if px4 else [_home(said["mission"])]
+    mission = [*home, *map(_item, said["mission"]["items"])]
     for sort, items in ((MISSION, mission), (FENCE, list(_fence(said))), (RALLY, list(_rally(said)))):
         if items:
             _send(observer, sort, items)
     return len(mission)
 
 
-def start(observer: Observer, *, rover: bool) -> None:
+def start(observer: Observer, *, rover: bool = False, px4: bool = False) -> None:
     """Arm a vehicle and start its mission.
 
     Raises:
@@ -52,6 +58,12 @@ def start(observer: Observer, *, rover: bool) -> None:
         ("arming", lambda: observer.armed, ((400, 1),)),
         ("AUTO", lambda: observer.mode == auto, ((mavlink.MAV_CMD_MISSION_START,), (176, 1, auto))),
     )
+    if px4:
+        mission = PX4_AUTO << 16 | PX4_MISSION << 24
+        steps = (
+            ("mission", lambda: observer.mode == mission, ((176, 1, PX4_AUTO, PX4_MISSION),)),
+            ("arming", lambda: observer.armed, ((400, 1),)),
+        )
     for what, holds, commands in steps:
         until = time.monotonic() + START_SECONDS
         while not holds():

@@ -281,11 +281,17 @@ BUOY = (
 )
 
 
+PX4_LANDING = 4.0
+"""Metres; the satellites that its simulation imitates wander by two to three."""
+
+
 def _as_px4(flight: Flight, **changes: Any) -> Flight:
     """Return a copter's flight as that of a PX4."""
     name = flight.name.replace("copter:", "PX4:")
     deviation = None if flight.deviation is None else 3.0
-    return replace(flight, name=name, px4=True, deviation=deviation, landing=2.0, speedup=1.0, **changes)
+    return replace(
+        flight, name=name, px4=True, deviation=deviation, landing=PX4_LANDING, speedup=1.0, **changes
+    )
 
 
 _COPTERS = {
