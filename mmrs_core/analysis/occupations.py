@@ -14,6 +14,7 @@ from dataclasses import dataclass
 from itertools import pairwise
 from math import dist, hypot, inf
 
+from mmrs_core.analysis.clearance import Piece, stops
 from mmrs_core.analysis.durations import Span
 from mmrs_core.analysis.figures import kinematics_of
 from mmrs_core.analysis.motion import MovePath, motions
@@ -26,6 +27,11 @@ from mmrs_core.scene import Kinematics, Position
 HOME_SPOT = 0.1
 """Metres from its home within which a robot stands there, from the axis of its column within which it is
 in it, and from each other within which two homes are one place."""
+
+
+BACK_SECONDS = 3.5
+"""In which a robot that has overshot is back, before or after its movement counts as over: ArduCopter 4.7
+came to rest 3.3 s after it had turned back."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -111,6 +117,7 @@ class Occupation:
             radius of a place that is known; the first exceeds the second if never.
         column: the one over its home, where its home is known.
         leaves_by: the moves with whose begin a stand ends; none if it has no end, or is not a wait.
+        overshot: whether it is the stretch beyond the movement's end, on which the robot turns back.
     """
 
     robot: str
@@ -124,6 +131,7 @@ class Occupation:
     certain: tuple[float, float]
     column: Column | None
     leaves_by: tuple[int, ...] = ()
+    overshot: bool = False
 
     @property
     def stands(self) -> bool:
@@ -170,14 +178,20 @@ def occupations_of(input: CheckInput, robot: RobotProgram) -> Iterator[Occupatio
     kinematics = kinematics_of(input, robot)
     states, times = states_of(input, robot), times_of(input)
     legs: dict[int, list[MovePath]] = defaultdict(list)
-    for leg in motions(input)[robot.id].paths:
+    motion = motions(input)[robot.id]
+    for leg in motion.paths:
         legs[leg.move].append(leg)
+    beyond: dict[int, list[Piece]] = defaultdict(list)
+    for piece in stops(input, robot, motion):
+        beyond[piece[2]].append(piece)
     paths = (leg.points for of_move in legs.values() for leg in of_move)
     column = column_over(robot.home, paths) if robot.home is not None else None
     for index in sorted(states.before):
         if (robot.id, index) in times.earliest:
             for leg in legs[index]:
                 yield from _occupations(robot, leg, times, states, kinematics, column)
+            for piece in beyond[index]:
+                yield _overshot(robot, piece, times, column)
 
 
 def _occupations(
@@ -272,6 +286,25 @@ def _movement(
         least=least,
         certain=(leave.low, arrive.high) if pinned else (inf, -inf),
         column=column,
+    )
+
+
+def _overshot(robot: RobotProgram, piece: Piece, times: Times, column: Column | None) -> Occupation:
+    """Return where a robot goes beyond the end of a leg, before or just after its movement counts as over."""
+    target, turns_back, move, radius = piece
+    moved = times.durations[robot.id].of[move].moved
+    return Occupation(
+        robot=robot.id,
+        move=move,
+        waiting=False,
+        points=(target, turns_back),
+        radius=radius,
+        begin=times.earliest[robot.id, move] + max(0.0, moved.low - BACK_SECONDS),
+        end=times.latest.get((robot.id, move), inf) + moved.high + BACK_SECONDS,
+        least=(0.0,),
+        certain=(inf, -inf),
+        column=column,
+        overshot=True,
     )
 
 

@@ -185,8 +185,13 @@ def _judged(
     if worst.decided:
         return worst
     names = worst.one.robot, worst.other.robot
-    one, other = (in_sequence(input.program.robot(name), motions(input)[name], occupations) for name in names)
-    near = [(each.one, each.other) for each in found if (each.one.robot, each.other.robot) == names]
+    proper = [each for each in occupations if not each.overshot]
+    one, other = (in_sequence(input.program.robot(name), motions(input)[name], proper) for name in names)
+    near = [
+        (each.one, each.other)
+        for each in found
+        if (each.one.robot, each.other.robot) == names and not (each.one.overshot or each.other.overshot)
+    ]
     if one is None or other is None or not must_meet(one, other, near, worst.needed):
         return worst
     return replace(worst, decided=True, anyhow=True)
@@ -214,7 +219,7 @@ def _verdict(input: CheckInput, encounter: Encounter) -> Verdict:
 
 
 def _words(occupation: Occupation) -> str:
-    return "after" if occupation.waiting else "on"
+    return "after" if occupation.waiting else "beyond the end of" if occupation.overshot else "on"
 
 
 SEPARATION = Check(

@@ -83,6 +83,22 @@ def test_stopping_in_the_way_is_violated():
     assert (verdict.status, verdict.robot) == (Status.VIOLATED, "a")
 
 
+@pytest.mark.parametrize(("overshoot", "status"), [(0.1, Status.SAFE), (0.2, Status.VIOLATED)])
+def test_a_robot_that_stops_late_may_come_too_near_to_what_is_ahead(overshoot, status):
+    a = robot("a", [go("east", (20.0, 0.0, 0.0))])
+    b = robot("b", [hold("look", 60.0)], home=(23.3, 0.0, 0.0))
+    (verdict,) = separation(a, b, robot_kind=kind(overshoot=overshoot))
+    assert verdict.status is status
+    assert ("a: beyond the end of 'east' is 2.90 m from b" in verdict.message) == (status is Status.VIOLATED)
+
+
+def test_a_robot_that_stops_late_is_there_only_as_it_comes():
+    a = robot("a", [hold("late", 20.0), go("east", (20.0, 0.0, 0.0))])
+    b = robot("b", [hold("look", 20.0), go("away", (23.3, 60.0, 0.0))], home=(23.3, 0.0, 0.0))
+    (verdict,) = separation(a, b, robot_kind=kind(overshoot=0.2))
+    assert verdict.status is Status.SAFE
+
+
 def test_holding_in_the_way_is_violated():
     moves = [go("east", (20.0, 0.0, 0.0)), hold("look", 60.0), go("off", (20.0, 90.0, 0.0))]
     a = robot("a", moves, home=(10.0, 0.0, 0.0))
