@@ -263,7 +263,8 @@ def resumed_steps(program: Program, wanted: RunOptions, here: tuple[str, ...]) -
     except ValueError as error:
         raise InvalidModelError(f"{wanted.folder}: {error}") from error
     for robot, why in over.items():
-        tell(f"'{robot}': {f'its program has ended by {why}; nothing steers it now' if why else 'has come to its end'}")
+        ended = f"its program has ended by {why}; nothing steers it now" if why else "has come to its end"
+        tell(f"'{robot}': {ended}")
     if all(record.label == "fault" and record.seq == 0 for record in records):
         raise typer.BadParameter("--resume: nothing had begun; begin again, with another --log")
     if set(over) >= set(here):

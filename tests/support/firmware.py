@@ -28,6 +28,7 @@ FIRST_INSTANCE, INSTANCES, VEHICLES = 80, 160, 8
 RATE = 10.0
 ASK_SECONDS = 2.0
 LARGEST = 65_535
+FLOAT, WHOLE = struct.Struct("<f"), struct.Struct("<i")
 SIGNED_SINCE = 1
 """Time stamp with which a key is given: any later frame is accepted."""
 
@@ -127,6 +128,8 @@ class Observer:
         self.has_been_armed = False
         self.parameters: dict[str, float] = {}
         self.requests: list[tuple[int, int]] = []
+        self._sorts: dict[str, struct.Struct] = {}
+        self._is_px4 = False
         self.acks: list[tuple[int, int]] = []
         self.mission_acks: list[tuple[int, int]] = []
         self.system, self._peer = system, peer
@@ -193,11 +196,13 @@ class Observer:
             while abs(self.parameters.get(name, value + 1.0) - value) > 1e-4 * max(1.0, abs(value)):
                 if time.monotonic() > until:
                     raise TimeoutError(f"parameter {name}: the vehicle does not take {value:g}")
-                self.send(
-                    mavlink.MAVLink_param_set_message(
-                        self.system, 1, name.encode("ascii"), value, mavlink.MAV_PARAM_TYPE_REAL32
-                    )
-                )
+                code, sort = name.encode("ascii"), self._sorts.get(name)
+                if sort is None:
+                    self.send(mavlink.MAVLink_param_request_read_message(self.system, 1, code, -1))
+                else:
+                    written = value if sort is FLOAT else FLOAT.unpack(sort.pack(round(value)))[0]
+                    number = mavlink.MAV_PARAM_TYPE_REAL32 if sort is FLOAT else mavlink.MAV_PARAM_TYPE_INT32
+                    self.send(mavlink.MAVLink_param_set_message(self.system, 1, code, written, number))
                 time.sleep(0.2)
 
     def stop(self) -> None:
@@ -235,6 +240,7 @@ class Observer:
         kind = message.get_type()
         if kind == "HEARTBEAT" and message.autopilot != mavlink.MAV_AUTOPILOT_INVALID:
             self.system = message.get_srcSystem()
+            self._is_px4 = message.autopilot == mavlink.MAV_AUTOPILOT_PX4
             self._armed = bool(message.base_mode & mavlink.MAV_MODE_FLAG_SAFETY_ARMED)
             self.has_been_armed |= self._armed
             self._mode = message.custom_mode
@@ -245,7 +251,10 @@ class Observer:
         elif kind == "STATUSTEXT":
             self.texts.append((self._now, message.text))
         elif kind == "PARAM_VALUE":
-            self.parameters[message.param_id] = message.param_value
+            # PX4 copies the bytes of a whole number
+            whole = self._is_px4 and message.param_type == mavlink.MAV_PARAM_TYPE_INT32
+            sort = self._sorts[message.param_id] = WHOLE if whole else FLOAT
+            self.parameters[message.param_id] = sort.unpack(FLOAT.pack(message.param_value))[0]
         elif kind == "AUTOPILOT_VERSION":
             self.version = _version(message.flight_sw_version)
         elif kind in ("MISSION_REQUEST", "MISSION_REQUEST_INT"):

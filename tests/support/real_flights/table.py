@@ -235,8 +235,8 @@ EXAMPLES = (
     Flight("carbon-dioxide, plan in AUTO", example("carbon-dioxide"), robots=("Alba",), way=PLAN),
     Flight("handwritten", example("handwritten"), arguments=EXPECTED),
     Flight("solar-park", example("solar-park"), speedup=4.0),
-    Flight("drone-and-rover", example("drone-and-rover"), deviation=3.0, landing=4.0),
-    Flight("mixed-team", example("mixed-team"), speedup=3.0, deviation=3.0, landing=4.0),
+    Flight("drone-and-rover", example("drone-and-rover"), deviation=4.0, landing=4.0),
+    Flight("mixed-team", example("mixed-team", VIDEO), speedup=3.0, deviation=4.0, landing=4.0),
     Flight("outfall", example("outfall", VIDEO), arguments=EXPECTED, deviation=3.0, landing=4.0),
     Flight("outfall, plan in AUTO", example("outfall"), way=PLAN, deviation=3.0, landing=4.0),
 )
