@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 
-from mmrs_core.behaviour.replay import replay
+from mmrs_core.behaviour.replay import RECHARGE, replay
 from mmrs_core.testing.small_programs import go, hold, notify, program, robot, use
 from mmrs_runtime.records.steps import StepRecord
 from mmrs_runtime.semantics import Outcome, apply, enabled, initial
@@ -131,6 +133,13 @@ def test_time_that_goes_back_is_noticed():
 def test_a_hold_lasts_at_least_its_duration(seconds, accepted):
     behaviour = program(robot("r", [hold("h", 5.0)]))
     assert replay(behaviour, log_of(behaviour, seconds)).accepted is accepted
+
+
+def test_a_recharge_is_over_earlier_where_an_operator_changes_the_battery():
+    stay = hold("h", 120.0)
+    charge = replace(stay, metaclasses=(RECHARGE, *stay.metaclasses))
+    behaviour = program(robot("r", [charge]))
+    assert replay(behaviour, log_of(behaviour, 20.0)).accepted
 
 
 def test_a_complaint_names_robot_step_move_and_what_was_expected():
