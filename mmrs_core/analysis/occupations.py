@@ -23,15 +23,11 @@ from mmrs_core.analysis.times import Times, times_of
 from mmrs_core.behaviour.program import Move, RobotProgram
 from mmrs_core.contributions.checks import CheckInput
 from mmrs_core.scene import Kinematics, Position
+from mmrs_core.scene.robots import BACK_SECONDS
 
 HOME_SPOT = 0.1
 """Metres from its home within which a robot stands there, from the axis of its column within which it is
 in it, and from each other within which two homes are one place."""
-
-
-BACK_SECONDS = 3.5
-"""In which a robot that has overshot is back, before or after its movement counts as over: ArduCopter 4.7
-came to rest 3.3 s after it had turned back."""
 
 
 @dataclass(frozen=True, slots=True)

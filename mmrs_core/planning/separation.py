@@ -55,12 +55,12 @@ class Conflict:
 def distance_to_keep(scene: Scene) -> float | None:
     """Return the metres that planned robots keep apart; None where none are asked for.
 
-    Each of two robots may be off by the position error, and by the room that it needs to turn and to stop.
+    Each of two robots may be off by the position error, and by the radius that it turns in.
     """
     if scene.minimum_separation is None or scene.minimum_separation <= 0:
         return None
-    rooms = sorted(robot.kinematics.room for robot in scene.robots if robot.kinematics is not None)
-    return scene.minimum_separation + 2.0 * scene.position_error + sum(rooms[-2:]) + _ROUNDING
+    radii = sorted(robot.kinematics.turning_radius for robot in scene.robots if robot.kinematics is not None)
+    return scene.minimum_separation + 2.0 * scene.position_error + sum(radii[-2:]) + _ROUNDING
 
 
 def separated(scene: Scene, decisions: Decisions, planned: Callable[[Decisions], Plan | None]) -> Plan:

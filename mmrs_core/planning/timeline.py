@@ -33,6 +33,7 @@ from mmrs_core.scene import (
     Step,
     Transit,
 )
+from mmrs_core.scene.robots import BACK_SECONDS
 from mmrs_core.scene.timing import Rates
 
 _Given: TypeAlias = tuple[float, float]
@@ -165,7 +166,7 @@ class _Walk:
     def _transit(self, step: Transit) -> None:
         rates = self.kinematics.rates(step.speed)
         for points in _moves_along(list(pairwise(step.route))):
-            self._go(points, rates)
+            self._go(points, rates, step.speed)
         self.radius = 0.0
 
     def _serve(self, step: Serve) -> None:
@@ -175,7 +176,7 @@ class _Walk:
             done += dist(self.here, place)
             planned += rates.from_stop_to_stop(self.here, place)
             if place != self.here:
-                self._go((self.here, place), rates)
+                self._go((self.here, place), rates, step.speed)
             while todo and todo[0].at <= done + NEAR:
                 acting = action_seconds(self.robot.type, todo.pop(0))
                 planned += acting
@@ -186,11 +187,25 @@ class _Walk:
         certain = left - uncertain_seconds(step.stroke, self.kinematics)
         self._stay(max(0.0, certain), max(0.0, left))
 
-    def _go(self, points: tuple[Position, ...], rates: Rates) -> None:
+    def _go(self, points: tuple[Position, ...], rates: Rates, speed: float | None) -> None:
         soonest, latest = rates.soonest(), rates.latest()
         legs = list(pairwise(points))
         least = sum(soonest.from_stop_to_stop(*leg) for leg in legs)
+        early = self.now
         self._ride(points, least, sum(latest.from_stop_to_stop(*leg) for leg in legs), rates)
+        if self.kinematics.timing.overshoot > 0.0:
+            self._overshoot(legs, early, speed or self.kinematics.cruise)
+
+    def _overshoot(self, legs: Sequence[tuple[Position, Position]], early: float, speed: float) -> None:
+        """Be beyond the ends of legs for as long as it may take to turn back."""
+        soonest = self.kinematics.rates(speed).soonest()
+        begin = early
+        for one, two in legs:
+            early += soonest.from_stop_to_stop(one, two)
+            if not _upright(one, two):
+                beyond = (two, self.kinematics.beyond(one, two, speed))
+                since, until = max(begin, early - BACK_SECONDS), self.by + BACK_SECONDS
+                self.rides.append(Ride(beyond, since, until, (0.0,), self.radius))
 
     def _ride(
         self,

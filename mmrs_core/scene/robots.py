@@ -11,6 +11,10 @@ from mmrs_core.scene.primitives import Metaclasses, Part, Position, TravelMode
 from mmrs_core.scene.timing import IDEAL, LegTiming, Rates
 from mmrs_runtime.policies import Policy
 
+BACK_SECONDS = 3.5
+"""In which a robot that has overshot is back, before or after its movement counts as over: in an autopilot's
+own simulation one came to rest 3.3 s after it had turned back."""
+
 
 @dataclass(frozen=True, slots=True)
 class Capability:
