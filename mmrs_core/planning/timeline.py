@@ -197,7 +197,7 @@ class _Walk:
             self._overshoot(legs, early, speed or self.kinematics.cruise)
 
     def _overshoot(self, legs: Sequence[tuple[Position, Position]], early: float, speed: float) -> None:
-        """Be beyond the ends of legs for as long as it may take to turn back."""
+        """Add where the robot turns back beyond the ends of legs, for as long as that may take."""
         soonest = self.kinematics.rates(speed).soonest()
         begin = early
         for one, two in legs:
