@@ -7,7 +7,7 @@ from itertools import pairwise
 
 from mmrs_runtime.controllers.geodesy import at_height, distance_to_leg, ends_of
 from mmrs_runtime.faults import BATTERY_LOW, FaultError, RefusedError
-from mmrs_runtime.policies import CONTINUE, still_low
+from mmrs_runtime.policies import CONTINUE, NOTHING, still_low
 
 from ..program import GoTo, Land, Place, Recharge, Robot, Start, TakeOff
 from ..steps.responses import policy_for
@@ -33,7 +33,8 @@ class WayBack:
 
         A vehicle on the ground where its sortie began takes off and retraces its path. One that is
         in the air, on its path or ahead on the leg or run that it had begun, continues along that path. One
-        that is anywhere else is refused, since no path from there is verified.
+        that is anywhere else is refused, since no path from there is verified; if its autopilot has begun to
+        bring it home or down, it is left to that.
 
         If it is disarmed, the battery must not be low, unless a policy tolerates that.
 
@@ -44,7 +45,12 @@ class WayBack:
         job = Job()
 
         def set_out() -> None:
-            parts = self._parts(passed, begun)
+            try:
+                parts = self._parts(passed, begun)
+            except RefusedError as why:
+                if self._vehicle.state().armed and self._vehicle.in_failsafe:
+                    raise FaultError(why.event, f"{why}; its failsafe goes on", NOTHING) from None
+                raise
             if parts:
                 self._refuse_low()
             job.then(*parts)

@@ -305,6 +305,11 @@ class MavlinkVehicle(Vehicle):
             self._mode_control.arm()
             self._steering.stay()
 
+    @property
+    def in_failsafe(self) -> bool:
+        """Return whether it is in a mode that its autopilot may choose by itself."""
+        return self.telemetry.mode() in self._link.profile.failsafe_modes | self._alone
+
     def take_back(self) -> None:
         """Prepare to command the vehicle out of a failsafe's mode."""
         try:

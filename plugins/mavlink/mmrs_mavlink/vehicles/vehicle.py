@@ -101,6 +101,11 @@ class Vehicle:
             FaultError: it is.
         """
 
+    @property
+    def in_failsafe(self) -> bool:
+        """Return whether it is in a mode that its autopilot may choose by itself."""
+        return False
+
     def take_back(self) -> None:
         """Prepare to command the vehicle out of a failsafe's mode."""
 

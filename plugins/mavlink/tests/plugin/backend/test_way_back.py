@@ -16,7 +16,8 @@ from mmrs_mavlink.program import Object, Policy
 from mmrs_mavlink.vehicles.dry import DryVehicle
 from mmrs_runtime.clock import Clock
 from mmrs_runtime.controllers.geodesy import distance, offset
-from mmrs_runtime.faults import BATTERY_LOW, FaultError, RefusedError
+from mmrs_runtime.faults import BATTERY_LOW, REFUSED, FaultError, RefusedError
+from mmrs_runtime.policies import NOTHING
 
 FLUID = {index: Transition(index, index + 1, fluid=True) for index in (3, 4, 5)}
 BEHAVIOUR = program(
@@ -139,6 +140,20 @@ def test_on_the_leg_that_was_interrupted_it_goes_back_to_its_beginning():
 def test_ahead_on_a_run_that_it_flew_by_itself_it_goes_back_along_it():
     went, _ = recovered("out", "s1", Vehicle(25.0, 60.0, 20.0))
     assert went == [(50, 60, 20), (50, 50, 20), (0, 50, 20)]
+
+
+class Returning(Vehicle):
+    """Its autopilot has begun to bring it home."""
+
+    in_failsafe = True
+
+
+@pytest.mark.parametrize(("vehicle", "instead"), [(Vehicle, ""), (Returning, NOTHING)])
+def test_what_its_autopilot_brings_home_is_left_to_that(vehicle, instead):
+    flown = vehicle(east=0.0, north=50.0, up=30.0)
+    with pytest.raises(FaultError, match="10 m off its path") as refused:
+        recovered("out", "s1", flown)
+    assert (refused.value.event, refused.value.instead, flown.went) == (REFUSED, instead, [])
 
 
 def test_in_the_air_elsewhere_it_is_refused():
