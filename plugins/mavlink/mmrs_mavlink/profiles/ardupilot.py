@@ -44,6 +44,9 @@ from .needs import ON_ARDUPILOT
 from .pacing import COPTER, ROVER, SUB
 from .profile import Delay, Exemption, LostLinkFailsafe, Safeguard, Timing, VehicleProfile
 
+NO_BATTERY = (0, 10, 11, 12, 24, 27)
+"""Monitors of nothing, of the sum of others, and of fuel (``AP_BattMonitor_Params.cpp``)."""
+
 ARDUPILOT = Autopilot(
     "ardupilot",
     "ArduPilot",
@@ -89,7 +92,10 @@ ARDUPILOT = Autopilot(
         MOTOR_FAILED: ("potential thrust loss",),
     },
     needs=ON_ARDUPILOT,
-    capacities=(("BATT_CAPACITY", "BATT_MONITOR", 0), ("BATT2_CAPACITY", "BATT2_MONITOR", 0)),
+    capacities=(
+        ("BATT_CAPACITY", "BATT_MONITOR", NO_BATTERY),
+        ("BATT2_CAPACITY", "BATT2_MONITOR", NO_BATTERY),
+    ),
 )
 """What it keeps of items was read in ``AP_Mission.cpp`` (``mavlink_int_to_mission_cmd``,
 ``mission_cmd_to_mavlink_int``), ``AC_PolyFence_loader.cpp`` and ``AP_Rally.h``: centimetres; of rally

@@ -127,7 +127,7 @@ class Autopilot:
         announcements: parts of its texts when a failsafe acts, in lower case, by event of policies.
         needs: what commands to devices need of its parameters; what is not here is unknown.
         capacities: for each battery, the parameter for its milliampere-hours, the one for its monitor, and
-            the value of that without a battery.
+            the values of that which are no battery of its own.
     """
 
     name: str
@@ -151,4 +151,4 @@ class Autopilot:
     crashed: tuple[str, ...] = ()
     announcements: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     needs: Needs = field(default_factory=dict)
-    capacities: tuple[tuple[str, str, int], ...] = ()
+    capacities: tuple[tuple[str, str, tuple[int, ...]], ...] = ()

@@ -128,7 +128,7 @@ PX4 = Autopilot(
         MOTOR_FAILED: ("attitude failure", "motor failure"),
     },
     needs=ON_PX4,
-    capacities=(("BAT1_CAPACITY", "BAT1_SOURCE", -1), ("BAT2_CAPACITY", "BAT2_SOURCE", -1)),
+    capacities=(("BAT1_CAPACITY", "BAT1_SOURCE", (-1,)), ("BAT2_CAPACITY", "BAT2_SOURCE", (-1,))),
 )
 """It takes the commands of ``mavlink_mission.cpp`` (``parse_mavlink_mission_item``), and refuses a mission
 with any other; what it keeps of them was read there too: numbers of single precision, headings between -180

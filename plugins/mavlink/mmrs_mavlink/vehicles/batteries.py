@@ -134,7 +134,7 @@ def _held(link: Link, telemetry: Telemetry, charge: Charge | None) -> _Held | No
     found = {
         capacity: values[capacity]
         for capacity, monitor, off in known
-        if values.get(capacity, 0.0) > LEAST_CAPACITY and values.get(monitor) != off
+        if values.get(capacity, 0.0) > LEAST_CAPACITY and values.get(monitor) not in off
     }
     nominal, measured = None if charge is None else charge.voltage, telemetry.voltage()
     voltage = min((each for each in (nominal, measured) if each is not None), default=None)

@@ -24,13 +24,14 @@ def inspected(
     charge=TYPE,
     monitor: float | None = 4.0,
     second: int | None = None,
+    sums: bool = False,
 ):
     """Return what is found of a battery, by default one of 5 Ah at 20 V, as that of the type."""
     parameters = {
         "BATT_CAPACITY": capacity,
         "BATT_MONITOR": monitor,
         "BATT2_CAPACITY": 3300.0,
-        "BATT2_MONITOR": 0.0 if second is None else 4.0,
+        "BATT2_MONITOR": 10.0 if sums else 0.0 if second is None else 4.0,
     }
 
     def answer(message):
@@ -72,6 +73,10 @@ def test_of_two_batteries_neither_counts_as_fuller_than_the_emptier():
     (defect,) = inspected(second=10).defects
     assert "17 Wh are left (10% of 8300 mAh at 20.0 V, BATT_CAPACITY + BATT2_CAPACITY)" in defect
     assert not inspected(second=100).defects
+
+
+def test_a_monitor_that_sums_others_is_no_second_battery():
+    assert inspected(second=100, sums=True).lines == inspected().lines
 
 
 def test_a_battery_that_is_too_small_is_a_defect_that_names_its_parameter():
