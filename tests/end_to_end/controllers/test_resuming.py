@@ -141,7 +141,7 @@ def test_the_point_of_no_return_is_noticed_before_the_reserve_is_touched(control
     assert "BATTERY_LOW: point of no return" in said
     assert not vehicles["alpha"].autopilot.armed
     assert max(map(abs, vehicles["alpha"].autopilot.body.position)) < AT_HOME
-    assert vehicles["alpha"].autopilot.energy > 0.02
+    assert vehicles["alpha"].autopilot.battery.level > 0.02
 
 
 def test_a_killed_process_goes_on_in_the_air_where_its_robot_waits(controllers, hangar):

@@ -1,14 +1,10 @@
-"""State of a simulated autopilot, its modes and its home; it has no link and no clock of its own.
-
-It behaves as ArduPilot was measured to: it is not ready at first, refuses uploads in the first second after
-boot, accepts a mission without a take-off and then never leaves the ground, and disarms when it idles there.
-"""
+"""State of a simulated autopilot, its modes and its home; it has no link and no clock of its own."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable
 from functools import lru_cache
-from math import atan2, cos, degrees, hypot, radians, remainder, sin, sqrt
+from math import atan2, cos, degrees, hypot, inf, radians, remainder, sin, sqrt
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
@@ -19,26 +15,27 @@ from mmrs_mavlink.sitl.body import Body, Vector, wind_of
 from mmrs_mavlink.sitl.camera import Camera
 from mmrs_mavlink.sitl.items import FENCE, MISSION, MOVING, RALLY, StoredItem
 from mmrs_mavlink.sitl.settings import PX4, Settings
-from mmrs_mavlink.sitl.sticks import ManualControl
 
 EQUATOR, SQUARED_ECCENTRICITY = 6_378_137.0, 6.694_379_990_14e-3
 """The WGS 84 ellipsoid; its equatorial radius in metres."""
 
 NEAR_GROUND = 0.05
-
 NOT_TO_BE_ARMED_IN = frozenset({"land", "return"})
 """Modes that a PX4 refuses to be armed in (``mode_requirements.cpp``)."""
 
 SPEEDS = (("WP_SPD", 1.0), ("WPNAV_SPEED", 0.01), ("WP_SPEED", 1.0), ("MPC_XY_CRUISE", 1.0))
-"""Parameters of the default speed, with their units in m/s; the first is that of copters from 4.7 on."""
+RADII = (("WP_RADIUS_M", 1.0), ("WPNAV_RADIUS", 0.01), ("WP_RADIUS", 1.0), ("NAV_ACC_RAD", 1.0))
+"""Parameters of the default speed and of the waypoint radius, with their units in m/s and metres."""
 
 CHANGE_SPEED = int(mavlink.MAV_CMD_DO_CHANGE_SPEED)
-
-STREAM_SECONDS, STREAM_GAP, STREAM_LEAST = 1.0, 0.5, 2
+STREAM_SECONDS, STREAM_GAP = 1.0, 0.5
 """PX4 accepts set-points that have come for a second, with gaps of at most half a second."""
 
 MANUAL = frozenset({"stabilize", "acro", "altitude_hold", "depth_hold", "altitude", "manual", "steering"})
 """Modes in which a pilot steers, and a copter drifts with the wind."""
+
+CURVED = frozenset({"auto", "return", "smart_return"})
+"""Modes in which a copter takes legs as S-curves; other vehicles always do."""
 
 BLIND = MANUAL | {"land", "surface"}
 """Modes that need no position."""
@@ -58,18 +55,15 @@ class SimulatedAutopilot:
         stores: items by mission type.
         item: current mission item. held: seconds at its position. finished: whether the mission is over.
         pending: mission item whose completion is not yet reported; None: none.
+        climbs_at: time at which its motors have spun up for a take-off. driven_at: time of the last sticks.
         return_path: positions to pass on a return. breadcrumbs: positions for SmartRTL.
         located: whether it has a position. arming_fault: failed pre-arm check; empty: none.
         motor_failed: whether a motor has failed, with which it cannot fly.
         obstacle: metres, and degrees clockwise from its nose.
         breached: whether it is outside its fence. forced_breach: whether an injected fault says so.
-        fence_due: time of the next fence check.
         silent: commands that it does not answer.
-        clock_error: error of its time of day, seconds.
         link_timeout: shortest timeout of its link, seconds, whatever its parameters say.
-        heartbeat_due: whether a mode change is to be reported at once.
         failing: time since which each failure is present. answered: failures that it has answered.
-        after_hold: end of a PX4's hold before its failsafe, and modes of which it then enters one.
         home: latitude, longitude, metres above mean sea level. home_set: whether a command has set it.
         last_heartbeat: time of the last heartbeat of its ground station; None: none received.
         setpoints: times of the last set-points, oldest first. aimed: whether it has followed one in its mode.
@@ -78,12 +72,12 @@ class SimulatedAutopilot:
     def __init__(self, settings: Settings) -> None:
         """Stand at home after boot."""
         self.settings = settings
-        self.body = Body(wind=wind_of(*settings.wind))
+        self.body = Body(settings.profile.pacing.step, wind=wind_of(*settings.wind))
         self.battery = Battery(settings.energy, settings.capacity, settings.cells)
         self.camera = Camera()
         self.parameters = parameters.defaults(settings)
         self.stores: dict[int, list[StoredItem]] = {MISSION: [], FENCE: [], RALLY: []}
-        self.time = self.booted = 0.0
+        self.time = self.booted = self.fence_due = self.clock_error = self.link_timeout = 0.0
         self.numbers = _numbers(settings.profile)
         self.mode, self.mode_name = 0, ""
         self.history: list[tuple[float, int, tuple[float, ...]]] = []
@@ -94,10 +88,7 @@ class SimulatedAutopilot:
         self.located, self.arming_fault = True, ""
         self.motor_failed = False
         self.obstacle: tuple[float, float] | None = None
-        self.fence_due = 0.0
         self.silent = settings.silent
-        self.clock_error = 0.0
-        self.link_timeout = 0.0
         self._clear_memory()
 
     def _clear_memory(self) -> None:
@@ -107,30 +98,23 @@ class SimulatedAutopilot:
         self.item, self.held, self.finished = 0, 0.0, False
         self.pending: int | None = None
         self.roi: Vector | None = None
+        self.climbs_at = self.driven_at = 0.0
         self.return_path: list[Vector] = []
         self.breadcrumbs: list[Vector] = [(0.0, 0.0, 0.0)]
         self.last_heartbeat: float | None = None
         self.setpoints: list[float] = []
-        self.aimed = False
-        self.sticks: ManualControl | None = None
         self.grounded_since = self.time
         self.home = self._here()
-        self.home_set = False
-        self.heartbeat_due = False
+        self.home_set = self.heartbeat_due = self.aimed = False
         self.failing: dict[str, float] = {}
         self.answered: set[str] = set()
-        self.after_hold: tuple[float, list[str]] | None = None
-        self.body.target = self.body.onward = self.body.origin = self.body.wanted_heading = None
+        self.body.target = self.body.onward = self.body.wanted_heading = self.body.driven = None
+        self._set_up_body(self.mode_name)
 
     @property
     def px4(self) -> bool:
         """Return whether its firmware is PX4."""
         return self.settings.firmware == PX4
-
-    @property
-    def energy(self) -> float:
-        """Return the remaining fraction of the battery, 0 to 1."""
-        return self.battery.level
 
     @property
     def uptime(self) -> float:
@@ -143,14 +127,9 @@ class SimulatedAutopilot:
         return self.booted > 0.0 and self.uptime < self.settings.boot
 
     @property
-    def initialised(self) -> bool:
+    def ready(self) -> bool:
         """Return whether it has had the time since boot that its position estimate needs."""
         return self.uptime >= self.settings.ready
-
-    @property
-    def ready(self) -> bool:
-        """Return whether it has a position and can be armed."""
-        return self.initialised and self.located and not self.arming_fault
 
     @property
     def first_item(self) -> int:
@@ -179,27 +158,20 @@ class SimulatedAutopilot:
 
     @property
     def has_mission(self) -> bool:
-        """Return whether it has a mission; a PX4's first item must be within MIS_DIST_1WP of home.
-
-        As PX4's ``FeasibilityChecker.cpp`` has it.
-        """
-        items = self.stores[MISSION]
-        if not self.px4 or self.parameters["MIS_DIST_1WP"] <= 0.0:
-            return len(items) > self.first_item
+        """Return whether it has a mission; a PX4's must begin within MIS_DIST_1WP."""
+        items, limit = self.stores[MISSION], self.parameters.get("MIS_DIST_1WP", 0.0)
         first = next((item for item in items if item.command in MOVING and (item.x or item.y)), None)
-        if first is None:
-            return bool(items)
-        home, place = self.local(*self.home[:2], 0.0), self.place_of(first)
-        return hypot(place[0] - home[0], place[1] - home[1]) < self.parameters["MIS_DIST_1WP"]
+        if first is not None and limit > 0.0:
+            home, place = self.local(*self.home[:2], 0.0), self.place_of(first)
+            return hypot(place[0] - home[0], place[1] - home[1]) < limit
+        return len(items) > self.first_item
 
     @property
     def is_steered(self) -> bool:
         """Return whether set-points come as often and as long as a PX4 requires."""
-        return (
-            len(self.setpoints) > STREAM_LEAST
-            and self.time - self.setpoints[0] >= STREAM_SECONDS
-            and self.time - self.setpoints[-1] <= max(STREAM_GAP, self.link_timeout)
-        )
+        first, last = self.setpoints[:1], self.setpoints[-1:]
+        lasting = bool(first) and self.time - first[0] >= STREAM_SECONDS and len(self.setpoints) > 2
+        return lasting and self.time - last[0] <= max(STREAM_GAP, self.link_timeout)
 
     def degrees(self) -> tuple[float, float]:
         """Return its latitude and longitude."""
@@ -207,10 +179,9 @@ class SimulatedAutopilot:
 
     def degrees_at(self, place: Vector) -> tuple[float, float]:
         """Return the latitude and longitude of a position."""
-        north, east, _ = place
         of_latitude, of_longitude = metres_per_degree(self.settings.latitude)
-        longitude = remainder(self.settings.longitude + east / of_longitude, 360.0)
-        return self.settings.latitude + north / of_latitude, longitude
+        longitude = remainder(self.settings.longitude + place[1] / of_longitude, 360.0)
+        return self.settings.latitude + place[0] / of_latitude, longitude
 
     def local(self, latitude: float, longitude: float, up: float) -> Vector:
         """Return metres north, east and up of home."""
@@ -239,15 +210,41 @@ class SimulatedAutopilot:
         if number != self.mode:
             self.modes.append((self.time, number))
             self.heartbeat_due = True
-            self._resume_mission(name)
+            if name == "auto" and (self.finished or self.parameters.get("MIS_RESTART") == 1):
+                self.item, self.finished = self.first_item, False
         self.mode, self.mode_name = number, name
         if name not in NOT_TO_BE_ARMED_IN:
             self.armable_mode = name
-        self.body.target = self.body.onward = self.body.origin = None
-        self.body.speed = self._entry_speed(name)
-        self.body.adrift = self.aimed = False
-        self.held, self.return_path = 0.0, []
+        self.body.target = self.body.onward = None
+        self._set_up_body(name)
+        self.aimed, self.held, self.return_path = False, 0.0, []
         return int(mavlink.MAV_RESULT_ACCEPTED)
+
+    def _set_up_body(self, mode: str) -> None:
+        """Set the vehicle up to move as in a mode; a PX4 keeps the speed that its mission has set."""
+        body, pacing = self.body, self.settings.profile.pacing
+        body.curved = mode in CURVED or not (self.flies or mode in MANUAL)
+        legs = pacing.step if self.flies and not body.curved else pacing.mission
+        body.figures = legs or pacing.step
+        body.radius = self._value(RADII)
+        keeps = mode == "auto" and self.settings.profile.autopilot.missions.keeps_speed
+        passed = self.stores[MISSION][: self.item] if keeps else []
+        speeds = [item.params[1] for item in passed if item.command == CHANGE_SPEED]
+        body.speed, body.climb, body.descent = (speeds or [self.usual_speed()])[-1], inf, inf
+
+    def usual_speed(self) -> float:
+        """Return the default speed, metres per second."""
+        return self._value(SPEEDS)
+
+    def _value(self, names: Iterable[tuple[str, float]]) -> float:
+        return next(self.parameters[name] * unit for name, unit in names if name in self.parameters)
+
+    def face(self, place: Vector) -> None:
+        """Turn to the region of interest, or else to a place that is not right here."""
+        there = self.roi or place
+        north, east = there[0] - self.body.position[0], there[1] - self.body.position[1]
+        if abs(north) + abs(east) > 1.0:
+            self.body.wanted_heading = degrees(atan2(east, north)) % 360.0
 
     def enter(self, *names: str) -> None:
         """Enter the first of these modes that it has and may enter."""
@@ -275,19 +272,20 @@ class SimulatedAutopilot:
             self.home = self._here()
         self.say(mavlink.MAV_SEVERITY_INFO, "Arming motors")
 
+    def spin_up(self) -> None:
+        """Begin a take-off: it climbs once its motors have spun up."""
+        self.climbs_at = self.time + (self.settings.profile.pacing.launch or 0.0)
+
     def _here(self) -> tuple[float, float, float]:
         """Return the present position as a home; that of a submarine is at the surface above it."""
-        height = 0.0 if self.settings.kind == "sub" else self.body.position[2]
+        height = 0.0 if self.settings.profile.dives else self.body.position[2]
         return (*self.degrees(), self.settings.altitude + height)
 
     def disarm(self) -> None:
-        """Disarm; the mission restarts at its first item.
-
-        A PX4 returns to the last mode that it may be armed in (``UserModeIntention::onDisarm``).
-        """
+        """Disarm; the mission restarts at its first item, and a PX4 leaves modes that it is not armed in."""
         if self.armed:
             self.say(mavlink.MAV_SEVERITY_INFO, "Disarming motors")
-            if self.px4 and self.mode_name != self.armable_mode:
+            if self.settings.profile.autopilot.restores_mode and self.mode_name != self.armable_mode:
                 self.mode_name, self.mode = self.armable_mode, self.numbers[self.armable_mode]
                 self.modes.append((self.time, self.mode))
                 self.heartbeat_due = True
@@ -309,42 +307,14 @@ class SimulatedAutopilot:
         self.mode_name = next(name for name, its in self.numbers.items() if its == self.mode)
         self.armable_mode = self.mode_name
 
-    def usual_speed(self) -> float:
-        """Return the default speed, metres per second."""
-        for name, unit in SPEEDS:
-            if name in self.parameters:
-                return self.parameters[name] * unit
-        return self.body.speed
-
-    def _resume_mission(self, mode: str) -> None:
-        """Restart the mission if it is over, or if MIS_RESTART says so."""
-        if mode == "auto" and (self.finished or self.parameters.get("MIS_RESTART") == 1):
-            self.item, self.finished = self.first_item, False
-
-    def _entry_speed(self, mode: str) -> float:
-        """Return the speed on entry into a mode: a PX4 keeps that set by completed mission items."""
-        passed = self.stores[MISSION][: self.item] if mode == "auto" and self.px4 else []
-        speeds = [item.params[1] for item in passed if item.command == CHANGE_SPEED]
-        return speeds[-1] if speeds else self.usual_speed()
-
     def _may_enter(self, name: str) -> bool:
         blind = name in BLIND or (self.settings.profile.drives and name == "hold")
         if not blind and self.armed and not self.located:
             self.say(mavlink.MAV_SEVERITY_WARNING, f"Mode change to {name.upper()} failed: requires position")
             return False
         if name == "auto":
-            return self.has_mission and not self._misses_takeoff()
+            return self.has_mission
         return self.is_steered if self.px4 and name == "guided" else True
-
-    def _misses_takeoff(self) -> bool:
-        """Return whether an ArduCopter on the ground has a mission that does not begin with a take-off."""
-        if self.px4 or not self.armed or not self.flies or self.airborne:
-            return False
-        moves = [item.command for item in self.stores[MISSION][1:] if item.command in MOVING]
-        if moves[:1] == [mavlink.MAV_CMD_NAV_TAKEOFF]:
-            return False
-        self.say(mavlink.MAV_SEVERITY_CRITICAL, "Auto: Missing Takeoff Cmd")
-        return True
 
 
 def _numbers(profile: VehicleProfile) -> dict[str, int]:
@@ -360,11 +330,4 @@ def metres_per_degree(latitude: float) -> tuple[float, float]:
     """Return the length of a degree of latitude and of longitude on the WGS 84 ellipsoid."""
     flat = 1.0 - SQUARED_ECCENTRICITY * sin(radians(latitude)) ** 2
     meridian = EQUATOR * (1.0 - SQUARED_ECCENTRICITY) / flat**1.5
-    parallel = EQUATOR / sqrt(flat) * cos(radians(latitude))
-    return radians(meridian), radians(parallel)
-
-
-def bearing(here: Vector, there: Vector) -> float | None:
-    """Return degrees clockwise from north; None within a metre."""
-    north, east = there[0] - here[0], there[1] - here[1]
-    return degrees(atan2(east, north)) % 360.0 if abs(north) + abs(east) > 1.0 else None
+    return radians(meridian), radians(EQUATOR / sqrt(flat) * cos(radians(latitude)))

@@ -1,37 +1,98 @@
-"""Motion of a simulated vehicle: a point with limited speed, acceleration and turn rate, in the wind."""
+"""Motion of a simulated vehicle: a point that takes legs as autopilots do.
+
+On missions and returns a leg is an S-curve of limited jerk (``SCurve.cpp``), and a corner that is passed is
+the sum of two. A target outside a mission is approached as ``shape_pos_vel_accel`` does (``control.cpp``).
+"""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from math import cos, hypot, radians, sin, sqrt
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from math import cos, hypot, inf, radians, sin, sqrt
+
+from mmrs_mavlink.profiles.pacing import LegFigures
 
 Vector = tuple[float, float, float]
 
 STEP = 0.05
 """Longest step of integration, seconds."""
 
-CUT = 1.73
-"""Metres from a corner to the apex of the turning parabola; 1.67 in finite steps.
+STANDING = 0.5
+"""Speed, metres per second, below which a leg begins; a faster vehicle brakes before."""
 
-ArduCopter 4.7-dev in simulation was measured to pass at 1.65 to 1.69 m.
-"""
+SLOW, BEYOND = 0.3, 0.06
+"""Speed below which it no longer aims beyond a target, and seconds at its largest speed by which it does."""
 
-STRAIGHT = 0.05
-"""Sine of half a turn below which two legs count as straight."""
+DRIVING = 2.5
+"""Acceleration, metres per second squared, with which it approaches commanded speeds."""
 
-PASSING = 0.3
-"""Metres from a target at which the turn to the next leg begins at the latest."""
-
-TURNING = 0.7
-"""Lateral speed, metres per second, above which the vehicle is still turning."""
-
-BACK_RATE, BACK_PACE = 0.4, 0.6
-"""Correction of the cross-track error: fraction of it per second, and metres per second at most."""
-
+CLOSE = 1e-3
 STILL: Vector = (0.0, 0.0, 0.0)
 
 
 @dataclass(slots=True)
+class Leg:
+    """A straight leg from a stop to a stop.
+
+    Attributes:
+        path: from its start to its end, metres. length: of it.
+        elapsed: seconds since its start. duration: seconds until its end. ramp: seconds to its full speed.
+    """
+
+    path: Vector
+    length: float
+    speed: float
+    acceleration: float
+    jerk: float
+    elapsed: float = 0.0
+    duration: float = 0.0
+    ramp: float = 0.0
+
+    def __post_init__(self) -> None:
+        if self.length < self.speed * self._ramp_to(self.speed):
+            self.speed = _bisected(0.0, self.speed, lambda speed: speed * self._ramp_to(speed) < self.length)
+        self.ramp = self._ramp_to(self.speed)
+        self.duration = self.length / self.speed + self.ramp
+
+    def _ramp_to(self, speed: float) -> float:
+        """Return the seconds from a stop to a speed."""
+        steady, bent = speed / self.acceleration, self.acceleration / self.jerk
+        return steady + bent if steady >= bent else 2.0 * sqrt(speed / self.jerk)
+
+    @property
+    def left(self) -> float:
+        """Return the seconds that are left."""
+        return max(0.0, self.duration - self.elapsed)
+
+    @property
+    def slows(self) -> bool:
+        """Return whether it has begun to slow down."""
+        return self.left <= self.ramp
+
+    def at(self, seconds: float) -> tuple[float, float]:
+        """Return the distance and the speed after that time."""
+        ramp, left = self.ramp, self.duration - seconds
+        if left <= 0.0:
+            return self.length, 0.0
+        if left < ramp:
+            distance, speed = self._ramped(left)
+            return self.length - distance, speed
+        distance, speed = self._ramped(min(seconds, ramp))
+        return distance + self.speed * max(0.0, seconds - ramp), speed
+
+    def _ramped(self, seconds: float) -> tuple[float, float]:
+        """Return the distance and the speed after that time of speeding up."""
+        ramp = self.ramp
+        bend = min(self.acceleration / self.jerk, ramp / 2.0)
+        first, last = min(seconds, bend), max(0.0, seconds - (ramp - bend))
+        even, most = max(0.0, min(seconds, ramp - bend) - bend), self.jerk * bend
+        speed = self.jerk * first**2 / 2.0 + most * even + most * last - self.jerk * last**2 / 2.0
+        distance = self.jerk * first**3 / 6.0 + self.jerk * bend**2 / 2.0 * (seconds - first)
+        distance += most * even**2 / 2.0 + most * even * last
+        return distance + most * last**2 / 2.0 - self.jerk * last**3 / 6.0, speed
+
+
+@dataclass
 class Body:
     """A point in metres north, east and up of home, with a heading in degrees.
 
@@ -39,44 +100,53 @@ class Body:
         position: estimated position. error: metres north and east by which the estimate is wrong.
         target: destination; None: it brakes.
         onward: destination after the target, which it passes without a stop; None: it stops at the target.
-        origin: start of the leg that it tracks; None: it heads straight for its target.
-        corner_pace: metres per second in the turn from the previous leg.
-        cut: metres from a corner at which it passes.
-        driven: speed ahead, metres per second, and turn rate, degrees per second, commanded instead.
+        driven: commanded speeds ahead, aside and up, and turn rate, degrees per second; None: none.
+        curved: whether it takes legs as S-curves. figures: how it takes them, or else approaches its target.
+        radius: metres from a corner within which it passes.
         speed: commanded ground speed, metres per second; climb, descent: limits of the vertical speed.
         wind: mean velocity of the air, metres per second north, east and up.
-        airspeed: greatest air speed.
         adrift: whether it drifts with the wind.
     """
 
+    figures: LegFigures
     position: Vector = STILL
     velocity: Vector = STILL
     heading: float = 0.0
     target: Vector | None = None
     onward: Vector | None = None
-    origin: Vector | None = None
-    corner_pace: float = 0.0
-    driven: tuple[float, float] | None = None
-    cut: float = CUT
+    driven: tuple[float, float, float, float] | None = None
+    curved: bool = False
+    radius: float = 2.0
     wanted_heading: float | None = None
     speed: float = 5.0
-    climb: float = 2.5
-    descent: float = 1.5
-    acceleration: float = 2.5
+    climb: float = inf
+    descent: float = inf
     turn_rate: float = 90.0
     wind: Vector = STILL
-    airspeed: float = 18.0
     adrift: bool = False
     error: tuple[float, float] = (0.0, 0.0)
+    _acceleration: Vector = STILL
+    _legs: list[Leg] = field(default_factory=list)
+    _fastest: float = 0.0
+    """Largest speed since it last stood still."""
+    _start: Vector = STILL
+    """Where the first of its legs begins."""
+    _goal: Vector | None = None
+    """Where the last of its legs ends."""
 
     def advance(self, seconds: float) -> None:
         """Move for that long."""
-        while seconds > 0.0:
+        while seconds > 1e-9:
             step = min(seconds, STEP)
             seconds -= step
-            self._accelerate(self._in_the_wind(self._wanted_velocity()), step)
-            self.position = plus(self.position, self.velocity, step)
-            self._turn(step)
+            if self.driven is not None:
+                self._drive(*self.driven, step)
+            elif self.target is None or self.adrift or not self.curved:
+                self._approach(self.target, step)
+            elif not self._follow_legs(self.target, step):
+                self._approach(None, step)
+            if self.driven is None:
+                self._turn(step)
 
     @property
     def place(self) -> Vector:
@@ -88,6 +158,7 @@ class Body:
         """Set the error of the position estimate, in metres."""
         (true_north, true_east, up), self.error = self.place, (north, east)
         self.position = (true_north + north, true_east + east, up)
+        self._legs.clear()
 
     def distance_to(self, place: Vector) -> float:
         """Return the distance to a place."""
@@ -106,121 +177,150 @@ class Body:
     def rest_at(self, up: float) -> None:
         """Stop at a height."""
         self.position = (self.position[0], self.position[1], up)
-        self.velocity = STILL
-        self.target = self.onward = self.origin = None
-
-    def start_next_leg(self) -> None:
-        """Track the leg from the present target to the next."""
-        self.origin, self.corner_pace = self.target, self._corner()[0]
+        self.velocity = self._acceleration = STILL
+        self.target = self.onward = self.driven = None
+        self._legs.clear()
 
     def passes_target(self) -> bool:
-        """Return whether it is near enough to its target to turn to the next."""
-        if self.target is None:
-            return False
-        _, before = self._corner()
-        return self.distance_to(self.target) <= max(before, PASSING)
+        """Return whether it has passed half of the turn to the next leg."""
+        return (
+            len(self._legs) > 1
+            and self._goal == self.onward
+            and self._legs[-1].elapsed >= self._legs[-2].left
+        )
 
-    def _wanted_velocity(self) -> Vector:
-        if self.driven is not None:
-            ahead = radians(self.heading)
-            return (self.driven[0] * cos(ahead), self.driven[0] * sin(ahead), 0.0)
-        if self.target is None:
-            return STILL
-        path = plus(self.target, self.position, -1.0)
-        left = hypot(*path)
-        if left < 1e-3:
-            return STILL
-        corner, before = self._corner()
-        pace = sqrt(corner * corner + 2.0 * 0.8 * self.acceleration * max(0.0, left - before))
-        pace = min(self._fastest(path), pace if corner else min(pace, left / STEP))
-        if self.origin is not None and left > before:
-            return self._along_the_leg(self.origin, self.target, pace)
-        return plus(STILL, path, pace / left)
+    def change_speed(self, speed: float) -> None:
+        """Move at another speed, on a leg that it has begun, too, unless it slows down."""
+        self.speed = speed
+        if len(self._legs) == 1 and self._goal is not None and not self._legs[0].slows:
+            distance, _ = self._legs[0].at(self._legs[0].elapsed)
+            leg = self._leg(self._start, self._goal)
+            leg.elapsed = _bisected(0.0, leg.duration, lambda seconds: leg.at(seconds)[0] < distance)
+            self._legs = [leg]
 
-    def _fastest(self, path: Vector) -> float:
-        """Return the greatest speed along a path within the limits of the vertical speed."""
-        limit = self.climb if path[2] > 0 else self.descent
-        return min(self.speed, limit * hypot(*path) / abs(path[2])) if path[2] else self.speed
+    def plan_anew(self) -> None:
+        """Begin the leg to its target once more, from a stop."""
+        self._legs.clear()
 
-    def _along_the_leg(self, origin: Vector, target: Vector, pace: float) -> Vector:
-        """Return a velocity along the leg that also corrects the cross-track error."""
-        leg, done = plus(target, origin, -1.0), plus(self.position, origin, -1.0)
-        square = sum(part * part for part in leg)
-        if square < 1e-6:
-            return STILL
-        along = sum(a * b for a, b in zip(leg, done, strict=True)) / square
-        aside = plus(plus(origin, leg, along), self.position, -1.0)
-        back = min(BACK_RATE, BACK_PACE / max(hypot(*aside), 1e-6))
-        if self._turns(leg, square):
-            pace = min(pace, self.corner_pace)
-        if along > 1.0:
-            pace = -pace  # it has overshot
-        return plus(plus(STILL, leg, pace / sqrt(square)), aside, back)
+    def _follow_legs(self, target: Vector, step: float) -> bool:
+        """Move along S-curves to a target; return whether it does."""
+        if not self._legs or self._goal not in (target, self.onward):
+            if self.distance_to(target) < CLOSE:
+                self.velocity = self._acceleration = STILL
+                return True
+            if self.pace > STANDING:
+                return False
+            self._legs, self._start, self._goal = [self._leg(self.position, target)], self.position, target
+        self._begin_turn(target)
+        for leg in self._legs:
+            leg.elapsed += step
+        while self._legs and self._legs[0].left <= 0.0:
+            self._start = plus(self._start, self._legs.pop(0).path, 1.0)
+        position, self.velocity, self._acceleration = self._start, STILL, STILL
+        for leg in self._legs:
+            distance, speed = leg.at(leg.elapsed)
+            position = plus(position, leg.path, distance / leg.length)
+            self.velocity = plus(self.velocity, leg.path, speed / leg.length)
+        self.position = position
+        return True
 
-    def _turns(self, leg: Vector, square: float) -> bool:
-        """Return whether it still moves laterally from the previous leg."""
-        part = sum(a * b for a, b in zip(leg, self.velocity, strict=True)) / square
-        return hypot(*plus(self.velocity, leg, -part)) > TURNING
+    def _leg(self, start: Vector, end: Vector) -> Leg:
+        path = plus(end, start, -1.0)
+        length = max(hypot(*path), CLOSE)
+        figures, speed, acceleration = (
+            self.figures,
+            min(self.speed, self.figures.speed),
+            self.figures.acceleration,
+        )
+        if path[2]:
+            steep = length / abs(path[2])
+            speed = min(speed, steep * self._rate(path[2]))
+            acceleration = min(acceleration, steep * (figures.vertical_acceleration or inf))
+        return Leg(path, length, speed, acceleration, figures.jerk)
 
-    def _corner(self) -> tuple[float, float]:
-        """Return the speed in the corner at the target, and the distance before it at which the turn begins.
+    def _rate(self, rise: float) -> float:
+        """Return the largest vertical speed."""
+        return min(self.climb, self.figures.climb) if rise > 0.0 else min(self.descent, self.figures.descent)
 
-        A constant acceleration from one leg to the next makes a parabola: it begins v² s / a before
-        the corner and passes it at v² s² / 2a, with s the sine of half the turn.
-        """
-        if self.onward is None or self.target is None:
-            return 0.0, 0.0
-        path, leg = plus(self.target, self.position, -1.0), plus(self.onward, self.target, -1.0)
-        left, length = hypot(*path), hypot(*leg)
-        if left < 1e-6 or length < 1e-6:
-            return 0.0, 0.0
-        cosine = sum(a * b for a, b in zip(path, leg, strict=True)) / (left * length)
-        half = sqrt(max(0.0, (1.0 - cosine) / 2.0))
-        fastest = min(self._fastest(path), self._fastest(leg))
-        if half < STRAIGHT:
-            return fastest, 0.0
-        pace = min(fastest, sqrt(2.0 * self.acceleration * self.cut) / half)
-        pace = min(pace, sqrt(0.45 * length * self.acceleration / half))
-        return pace, pace * pace * half / self.acceleration
+    def _begin_turn(self, target: Vector) -> None:
+        """Begin the next leg where the middle of the turn is within the radius of the corner."""
+        leg = self._legs[-1]
+        if self.onward is None or self._goal != target or not leg.slows:
+            return
+        following, half = self._leg(target, self.onward), leg.left / 2.0
+        before, after = leg.length - leg.at(leg.elapsed + half)[0], following.at(half)[0]
+        middle = plus(plus(STILL, leg.path, -before / leg.length), following.path, after / following.length)
+        if leg.left <= following.duration / 2.0 and hypot(*middle) < self.radius:
+            self._legs.append(following)
+            self._goal = self.onward
 
-    def _in_the_wind(self, wanted: Vector) -> Vector:
-        """Return the ground velocity that the air speed allows in this wind."""
-        air = self.wind
+    def _approach(self, target: Vector | None, step: float) -> None:
+        """Approach a target, or brake, with limited acceleration and jerk."""
+        self._legs.clear()
+        figures, path = self.figures, plus(self._aim(target), self.position, -1.0)
+        level, upwards = figures.acceleration, figures.vertical_acceleration or figures.acceleration
+        pace = min(_root(hypot(*path[:2]), level, figures.jerk), self.speed)
+        rate = min(_root(abs(path[2]), upwards, figures.jerk), self._rate(path[2]))
+        part = pace / max(hypot(*path[:2]), CLOSE)
+        wanted = (path[0] * part, path[1] * part, rate if path[2] > 0.0 else -rate)
         if self.adrift:
-            return (air[0], air[1], wanted[2])
-        if air == STILL:
-            return wanted
-        north, east = wanted[0] - air[0], wanted[1] - air[1]
-        needed = hypot(north, east)
-        if needed <= self.airspeed:
-            return wanted
-        pace = hypot(wanted[0], wanted[1])
-        ahead = (air[0] * wanted[0] + air[1] * wanted[1]) / pace if pace else 0.0
-        across = hypot(*air[:2]) ** 2 - ahead * ahead
-        if pace and across <= self.airspeed**2:
-            part = (ahead + sqrt(self.airspeed**2 - max(0.0, across))) / pace
-            return (wanted[0] * part, wanted[1] * part, wanted[2])
-        part = self.airspeed / needed
-        return (air[0] + north * part, air[1] + east * part, wanted[2])
+            wanted = (self.wind[0], self.wind[1], wanted[2])
+        error = plus(wanted, self.velocity, -1.0)
+        size, jerk = max(hypot(*error[:2]), CLOSE), figures.jerk
+        part = min(_rooted(size, jerk / level, jerk), level, size / step) / size
+        up = min(_rooted(abs(error[2]), jerk / upwards, jerk), upwards, abs(error[2]) / step)
+        asked = (error[0] * part, error[1] * part, up if error[2] > 0.0 else -up)
+        change = plus(asked, self._acceleration, -1.0)
+        bent = min(1.0, jerk * step / max(hypot(*change), CLOSE))
+        self._acceleration = plus(self._acceleration, change, bent)
+        self.velocity = plus(self.velocity, self._acceleration, step)
+        self.position = plus(self.position, self.velocity, step)
 
-    def _accelerate(self, wanted: Vector, step: float) -> None:
-        """Approach a velocity; on a leg in all directions alike, so that a climb stays on the leg."""
-        north, east, up = plus(wanted, self.velocity, -1.0)
-        limit = self.acceleration * step
-        level, upwards = (min(1.0, limit / size) if size else 1.0 for size in (hypot(north, east), abs(up)))
-        if self.origin is not None:
-            level = upwards = min(level, upwards)
-        self.velocity = plus(self.velocity, (north * level, east * level, up * upwards), 1.0)
+    def _aim(self, target: Vector | None) -> Vector:
+        """Return what it heads for: a place beyond a target, by its overshoot, until it has slowed down."""
+        if target is None:
+            return self.position
+        (north, east, _), pace = self.velocity, hypot(*self.velocity[:2])
+        self._fastest = max(self._fastest, pace) if pace > SLOW else 0.0
+        beyond = BEYOND * self._fastest if self.figures.overshoot else 0.0
+        return plus(target, (north, east, 0.0), beyond / pace) if beyond > 0.0 else target
+
+    def _drive(self, ahead: float, aside: float, up: float, turn: float, step: float) -> None:
+        """Approach commanded speeds."""
+        self._legs.clear()
+        self.heading = (self.heading + turn * step) % 360.0
+        north, east = cos(radians(self.heading)), sin(radians(self.heading))
+        wanted = (ahead * north - aside * east, ahead * east + aside * north, up)
+        error = plus(wanted, self.velocity, -1.0)
+        part = min(1.0, DRIVING * step / max(hypot(*error), CLOSE))
+        self.velocity, self._acceleration = plus(self.velocity, error, part), STILL
+        self.position = plus(self.position, self.velocity, step)
 
     def _turn(self, step: float) -> None:
-        if self.driven is not None:
-            self.heading = (self.heading + self.driven[1] * step) % 360.0
-            return
         if self.wanted_heading is None:
             return
         left = (self.wanted_heading - self.heading + 180.0) % 360.0 - 180.0
         limit = self.turn_rate * step
         self.heading = (self.heading + max(-limit, min(limit, left))) % 360.0
+
+
+def _bisected(low: float, high: float, below: Callable[[float], bool]) -> float:
+    """Return the number up to which a test holds."""
+    for _ in range(40):
+        middle = (low + high) / 2.0
+        low, high = (middle, high) if below(middle) else (low, middle)
+    return high
+
+
+def _root(distance: float, acceleration: float, jerk: float) -> float:
+    """Return the speed at a distance from a target: ArduPilot brakes at half of its acceleration."""
+    return _rooted(distance, 0.5 * jerk / acceleration, 0.5 * acceleration)
+
+
+def _rooted(error: float, gain: float, limit: float) -> float:
+    """Return the correction of an error, as ``sqrt_controller`` does (``control.cpp``)."""
+    linear = limit / gain**2
+    return sqrt(2.0 * limit * (error - linear / 2.0)) if error > linear else error * gain
 
 
 def wind_of(speed: float, comes_from: float) -> Vector:

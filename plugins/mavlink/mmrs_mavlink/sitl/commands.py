@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from typing import Any
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
@@ -26,13 +27,19 @@ DEVICES = frozenset(
 )
 """Commands for devices, which are only recorded."""
 
+FULL_STICK = (1.0, 1.0, 0.5, 45.0)
+"""Speeds of a submarine ahead, aside and up, metres per second, and turn rate, degrees per second."""
+
+DEAD = 0.05
+"""Dead zone of a stick, as a fraction of full stick."""
+
 Params = tuple[float, ...]
 
 
 def execute(pilot: SimulatedAutopilot, number: int, params: Params) -> int:
     """Execute a command with its seven parameters; return its MAV_RESULT."""
     handler = _HANDLERS.get(number)
-    if number in pilot.settings.refuse or (handler is None and number not in DEVICES):
+    if handler is None and number not in DEVICES:
         return UNSUPPORTED
     result = ACCEPTED if handler is None else handler(pilot, params)
     if result == ACCEPTED:
@@ -43,15 +50,18 @@ def execute(pilot: SimulatedAutopilot, number: int, params: Params) -> int:
 def steer(pilot: SimulatedAutopilot, target: Vector, heading: float | None) -> None:
     """Follow a set-point, if the mode is GUIDED (OFFBOARD) and a flying vehicle is in the air.
 
-    The first set-point in ArduCopter's GUIDED resets the speed to its default.
+    The first set-point in ArduCopter's GUIDED resets the speed to its default. ArduSub plans its leg from a
+    stop at each.
     """
     pilot.setpoints = [*pilot.setpoints[-20:], pilot.time]
     if pilot.mode_name == "guided" and pilot.armed and (pilot.airborne or not pilot.flies):
         if not pilot.aimed and not pilot.px4 and pilot.flies:
             pilot.body.speed = pilot.usual_speed()
         pilot.aimed = True
-        pilot.body.target, pilot.body.onward, pilot.body.origin = target, None, None
+        pilot.body.target, pilot.body.onward = target, None
         pilot.body.driven = None
+        if pilot.settings.profile.dives:
+            pilot.body.plan_anew()
         if heading is not None:
             pilot.body.wanted_heading = heading
 
@@ -59,16 +69,25 @@ def steer(pilot: SimulatedAutopilot, target: Vector, heading: float | None) -> N
 def drive(pilot: SimulatedAutopilot, speed: float, rate: float) -> None:
     """Drive at a speed and a turn rate, degrees per second, if a rover is in GUIDED, and armed."""
     if pilot.mode_name == "guided" and pilot.armed and pilot.settings.kind == "rover":
-        pilot.body.target = pilot.body.onward = pilot.body.origin = None
-        pilot.body.driven = (speed, rate)
+        pilot.body.target = pilot.body.onward = None
+        pilot.body.driven = (speed, 0.0, 0.0, rate)
+
+
+def take_sticks(pilot: SimulatedAutopilot, message: Any) -> None:
+    """Move as the sticks of a MANUAL_CONTROL command; ArduSub's z ranges from 0 to 1000, neutral at 500."""
+    if pilot.settings.kind == "sub" and pilot.mode_name in MANUAL:
+        sticks = (message.x / 1000.0, message.y / 1000.0, (message.z - 500) / 500.0, message.r / 1000.0)
+        parts = (0.0 if abs(each) < DEAD else max(-1.0, min(1.0, each)) for each in sticks)
+        ahead, aside, up, turn = (part * full for part, full in zip(parts, FULL_STICK, strict=True))
+        pilot.body.driven, pilot.driven_at = (ahead, aside, up, turn), pilot.time
 
 
 def arming_refusal(pilot: SimulatedAutopilot) -> str:
     """Return why a vehicle refuses to arm; empty if it does not."""
     if pilot.arming_fault:
         return pilot.arming_fault
-    manual = pilot.settings.kind == "sub" and pilot.mode_name in MANUAL
-    if not (pilot.located or manual) or not pilot.initialised:
+    manual = pilot.settings.profile.dives and pilot.mode_name in MANUAL
+    if not (pilot.located or manual) or not pilot.ready:
         return "Need Position Estimate"
     return "vehicle outside Polygon fence" if not pilot.px4 and outside_fence(pilot) else ""
 
@@ -91,14 +110,18 @@ def _arm(pilot: SimulatedAutopilot, params: Params) -> int:
 
 
 def _take_off(pilot: SimulatedAutopilot, params: Params) -> int:
-    if not pilot.armed or not pilot.flies or pilot.airborne:
+    if (
+        not pilot.armed
+        or not pilot.flies
+        or pilot.airborne
+        or (not pilot.px4 and pilot.mode_name != "guided")
+    ):
         return FAILED
     height = pilot.above_ground(params[6], above_sea=pilot.px4)
     if pilot.px4:
         pilot.enter("take_off")
-    elif pilot.mode_name != "guided":
-        return FAILED
     pilot.aimed = False
+    pilot.spin_up()
     pilot.body.target = (*pilot.body.position[:2], height)
     return ACCEPTED
 
@@ -112,20 +135,12 @@ def _enter(name: str) -> Callable[[SimulatedAutopilot, Params], int]:
 
 
 def _speed(pilot: SimulatedAutopilot, params: Params) -> int:
-    if params[1] <= 0.0:
-        if not pilot.px4:
-            return DENIED
-        pilot.body.speed = pilot.usual_speed()
-        return ACCEPTED
     moves = pilot.aimed if pilot.mode_name == "guided" else pilot.mode_name in AUTONOMOUS
-    if pilot.settings.kind == "rover" and not moves:
+    if params[1] <= 0.0 and not pilot.px4:
+        return DENIED
+    if pilot.settings.profile.drives and not moves:
         return FAILED
-    if params[0] == 2.0:
-        pilot.body.climb = params[1]
-    elif params[0] == 3.0:
-        pilot.body.descent = params[1]
-    else:
-        pilot.body.speed = params[1]
+    pilot.body.change_speed(params[1] if params[1] > 0.0 else pilot.usual_speed())
     return ACCEPTED
 
 
@@ -168,11 +183,6 @@ def _set_roi(pilot: SimulatedAutopilot, params: Params) -> int:
     return ACCEPTED
 
 
-def _clear_roi(pilot: SimulatedAutopilot, params: Params) -> int:
-    pilot.roi = None
-    return ACCEPTED
-
-
 def _set_home(pilot: SimulatedAutopilot, params: Params) -> int:
     here = (*pilot.degrees(), pilot.settings.altitude + pilot.body.position[2])
     pilot.home = here if params[0] == 1.0 else (params[4], params[5], params[6])
@@ -181,8 +191,7 @@ def _set_home(pilot: SimulatedAutopilot, params: Params) -> int:
 
 
 def _run_checks(pilot: SimulatedAutopilot, params: Params) -> int:
-    why = arming_refusal(pilot)
-    if why:
+    if why := arming_refusal(pilot):
         pilot.say(mavlink.MAV_SEVERITY_CRITICAL, f"PreArm: {why}")
     return FAILED if pilot.armed else ACCEPTED
 
@@ -199,7 +208,7 @@ _HANDLERS: Mapping[int, Callable[[SimulatedAutopilot, Params], int]] = {
     int(mavlink.MAV_CMD_DO_SET_MODE): _set_mode,
     int(mavlink.MAV_CMD_DO_FENCE_ENABLE): _enable_fence,
     int(mavlink.MAV_CMD_DO_SET_ROI_LOCATION): _set_roi,
-    int(mavlink.MAV_CMD_DO_SET_ROI_NONE): _clear_roi,
+    int(mavlink.MAV_CMD_DO_SET_ROI_NONE): _set_roi,
     int(mavlink.MAV_CMD_DO_SET_HOME): _set_home,
     int(mavlink.MAV_CMD_RUN_PREARM_CHECKS): _run_checks,
 }

@@ -1,7 +1,6 @@
 """Failsafes of a simulated vehicle, as its parameters configure them.
 
-Its answers to a lost link are those of its profile. A PX4 holds for COM_FAIL_ACT_T before it returns or
-lands, unless its mode cannot continue without set-points or a position.
+Its answers to a lost link are those of its profile.
 """
 
 from __future__ import annotations
@@ -21,6 +20,9 @@ EXEMPT = {"auto": 1, "hold": 2, "take_off": 2, "return": 2, "guided": 4}
 
 PREFERRED = ("smart_return", "return", "loiter", "depth_hold", "surface", "hold", "land")
 """Order in which the modes of a profile's failsafe are tried."""
+
+EKF_SECONDS = 3.3
+"""Time from the loss of its satellites to the failsafe, as measured on ArduCopter 4.7-dev."""
 
 FENCE_SECONDS = 1.0
 """Time between two checks of the fence."""
@@ -45,12 +47,7 @@ ANSWERS: Mapping[str, Mapping[str, Answers]] = {
         "FS_EKF_ACTION": {1: "hold"},
     },
     "ardusub": {"BATT_FS_LOW_ACT": _SUB, "BATT_FS_CRT_ACT": _SUB, "FS_EKF_ACTION": {2: DISARM}},
-    "px4-multicopter": {
-        "COM_LOW_BAT_ACT": {2: "land", 3: "return land"},
-        "COM_OBL_RC_ACT": {0: "position", 1: "altitude", 2: "stabilize"},
-        "COM_POS_FS_DELAY": {1: "land"},
-        "GF_ACTION": {2: "hold", 3: "return land", 4: DISARM, 5: "land"},
-    },
+    "px4-multicopter": {"COM_OBL_RC_ACT": {0: "position", 1: "altitude", 2: "stabilize"}},
 }
 """Answers by profile and parameter, where the profile's failsafe for a lost link does not know it."""
 
@@ -64,7 +61,6 @@ class Failure:
         text: reported when it is answered. cleared: reported when it is over; empty: nothing.
         parameter: its value chooses the answer; empty: that of the failsafe for a lost link.
         lasting: seconds, or the parameter for them, until it is answered.
-        at_once: whether a PX4 answers without a hold.
     """
 
     present: Callable[[SimulatedAutopilot], bool]
@@ -72,7 +68,6 @@ class Failure:
     parameter: str = ""
     cleared: str = ""
     lasting: str | float = 0.0
-    at_once: bool = False
 
 
 def watch(pilot: SimulatedAutopilot) -> None:
@@ -93,7 +88,6 @@ def watch(pilot: SimulatedAutopilot) -> None:
         if name not in pilot.answered and pilot.time - since >= lasting:
             pilot.answered.add(name)
             _answer(pilot, failure)
-    _end_hold(pilot)
 
 
 def _answer(pilot: SimulatedAutopilot, failure: Failure) -> None:
@@ -101,9 +95,6 @@ def _answer(pilot: SimulatedAutopilot, failure: Failure) -> None:
     names = _modes(pilot, failure.parameter)
     if names == [DISARM] or (names and pilot.flies and not pilot.airborne):
         pilot.disarm()
-    elif pilot.px4 and not failure.at_once and names and names[0] != "hold" and pilot.mode_name not in names:
-        pilot.enter("hold")
-        pilot.after_hold = (pilot.time + pilot.parameters["COM_FAIL_ACT_T"], names)
     else:
         pilot.enter(*names)
     if failure.parameter == "FENCE_ACTION" and pilot.settings.kind == "rover":
@@ -126,18 +117,6 @@ def _modes(pilot: SimulatedAutopilot, parameter: str) -> list[str]:
     numbers = failsafe.modes.get(parameter, {}).get(value, frozenset())
     found = [name for name in PREFERRED if pilot.numbers.get(name) in numbers]
     return [name for name in found if name != "hold"] or found if pilot.px4 else found
-
-
-def _end_hold(pilot: SimulatedAutopilot) -> None:
-    """Enter the chosen mode of a PX4 after its hold, unless another mode was set meanwhile."""
-    if pilot.after_hold is None:
-        return
-    until, names = pilot.after_hold
-    over = pilot.time >= until
-    if over or pilot.mode_name != "hold" or not pilot.armed:
-        pilot.after_hold = None
-    if over and pilot.armed and pilot.mode_name == "hold":
-        pilot.enter(*names)
 
 
 def _has_no_position(pilot: SimulatedAutopilot) -> bool:
@@ -180,7 +159,7 @@ def _is_low(level: str) -> Callable[[SimulatedAutopilot], bool]:
 FAILURES: Mapping[str, Mapping[str, Failure]] = {
     ARDUPILOT: {
         "position": Failure(
-            _has_no_position, "EKF Failsafe: changed to {mode} Mode", "FS_EKF_ACTION", lasting=1.0
+            _has_no_position, "EKF Failsafe: changed to {mode} Mode", "FS_EKF_ACTION", lasting=EKF_SECONDS
         ),
         "fence": Failure(lambda pilot: pilot.breached, "Polygon fence breached", "FENCE_ACTION"),
         "link": Failure(_has_no_link, "GCS Failsafe", cleared="GCS Failsafe Cleared"),
@@ -190,22 +169,7 @@ FAILURES: Mapping[str, Mapping[str, Failure]] = {
         "low": Failure(_is_low("LOW"), "Battery 1 is low", "BATT_FS_LOW_ACT", lasting="BATT_LOW_TIMER"),
     },
     PX4: {
-        "position": Failure(
-            _has_no_position,
-            "Position lost",
-            "COM_POS_FS_DELAY",
-            lasting="COM_POS_FS_DELAY",
-            at_once=True,
-        ),
-        "fence": Failure(
-            lambda pilot: pilot.breached, "Geofence: approaching or outside geofence", "GF_ACTION"
-        ),
         "link": Failure(_has_no_link, "Connection to ground station lost", cleared="GCS connection regained"),
-        "critical": Failure(
-            lambda pilot: pilot.battery.level < pilot.parameters["BAT_CRIT_THR"],
-            "Critical battery",
-            "COM_LOW_BAT_ACT",
-        ),
-        "setpoints": Failure(_has_no_setpoints, "Failsafe activated", "COM_OBL_RC_ACT", at_once=True),
+        "setpoints": Failure(_has_no_setpoints, "Failsafe activated", "COM_OBL_RC_ACT"),
     },
 }

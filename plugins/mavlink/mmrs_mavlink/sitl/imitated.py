@@ -2,14 +2,19 @@
 
 from __future__ import annotations
 
-COPTER, PX4 = "ArduCopter", "PX4"
+COPTER, ROVER, SUB, PX4 = "ArduCopter", "ArduRover", "ArduSub", "PX4"
 UNCONFIRMED = "no"
 
 IMITATED: tuple[tuple[str, str, str], ...] = (
-    ("legs", "straight, limited acceleration, no jerk: shorter than real ones, no overshoot", UNCONFIRMED),
-    ("corners of missions", "passed at 1.67 m where the waypoint radius is 2 m", COPTER),
-    ("set-points of PX4", "at 2 Hz at least", PX4),
-    ("take-off and landing", "at once, and down at 1 m/s at least", UNCONFIRMED),
+    ("single legs (GUIDED)", "half of the acceleration to brake, overshoot by speed", COPTER),
+    ("legs of missions (AUTO)", "S-curves by the profile's jerk, corners within the waypoint radius", COPTER),
+    (
+        "legs of rovers and submarines",
+        "S-curves in all modes; a submarine begins its leg again at each target",
+        f"{ROVER}, {SUB}",
+    ),
+    ("legs of PX4", "figures of the profile, set-points at 2 Hz at least", PX4),
+    ("take-off and landing", "spin-up, slow descent below 10 m, disarming after touchdown", COPTER),
     (
         "uploads",
         "no space just after boot; what the profile keeps of items; fences replaced as a whole",
@@ -22,12 +27,8 @@ IMITATED: tuple[tuple[str, str, str], ...] = (
     ("reset of a watchdog in flight", "stays armed, and in the air", UNCONFIRMED),
     ("link lost", "the profile's failsafe after FS_GCS_TIMEOUT; SmartRTL, RTL, LAND, BRAKE", COPTER),
     ("link lost by a rover or a submarine", "the profile's failsafe", UNCONFIRMED),
-    (
-        "failsafes of PX4",
-        "for a lost link by its profile; battery, fence, position; a hold before",
-        UNCONFIRMED,
-    ),
-    ("position lost", "LAND after 1 s (ArduCopter: 3.3 s), or as FS_EKF_ACTION says", UNCONFIRMED),
+    ("link or set-points lost by PX4", "the profile's failsafe, without the hold before it", UNCONFIRMED),
+    ("position lost", "LAND after 3.3 s, or as FS_EKF_ACTION says", COPTER),
     ("low battery", "BATT_FS_LOW_ACT and BATT_FS_CRT_ACT, by voltage or charge", COPTER),
     ("fence broken", "polygons, circles, radius and height, once a second; FENCE_ACTION", UNCONFIRMED),
     ("return", "to the nearest of home and rally points, or back along its path", COPTER),

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from mmrs_mavlink.sitl.autopilot import CHANGE_SPEED, SimulatedAutopilot, bearing
+from mmrs_mavlink.sitl.autopilot import CHANGE_SPEED, SimulatedAutopilot
 from mmrs_mavlink.sitl.body import Vector
 from mmrs_mavlink.sitl.items import MISSION, MOVING, StoredItem
 
@@ -43,13 +43,10 @@ def _complete(pilot: SimulatedAutopilot, item: StoredItem) -> None:
     pilot.visited.append((pilot.time, pilot.item))
     if item.command not in UNREPORTED:
         pilot.pending = pilot.item
-    if item.command in MOVING:
-        pilot.body.start_next_leg()
     if pilot.item + 1 < len(pilot.stores[MISSION]):
         jump(pilot, pilot.item + 1)
     else:
-        pilot.finished = True
-        pilot.body.target = pilot.body.onward = pilot.body.origin = None
+        pilot.finished, pilot.body.onward = True, None
 
 
 def _execute(pilot: SimulatedAutopilot, item: StoredItem, seconds: float) -> bool:
@@ -57,7 +54,7 @@ def _execute(pilot: SimulatedAutopilot, item: StoredItem, seconds: float) -> boo
     if item.command in MOVING:
         return _go(pilot, item, seconds)
     if item.command == CHANGE_SPEED:
-        pilot.body.speed = item.params[1]
+        pilot.body.change_speed(item.params[1])
     elif item.command == mavlink.MAV_CMD_CONDITION_YAW:
         pilot.body.wanted_heading = item.params[0]
     elif item.command == mavlink.MAV_CMD_DO_SET_ROI_LOCATION:
@@ -75,10 +72,10 @@ def _go(pilot: SimulatedAutopilot, item: StoredItem, seconds: float) -> bool:
     place = pilot.place_of(item)
     if takes_off:
         place = (*body.position[:2], place[2])
+        if not pilot.airborne and body.target is None:
+            pilot.spin_up()
     body.target, body.onward = place, _onward(pilot, item)
-    wanted = bearing(body.position, pilot.roi or place)
-    if wanted is not None:
-        body.wanted_heading = wanted
+    pilot.face(place)
     if body.onward is not None:
         return body.passes_target()
     if body.distance_to(place) > CLOSE and not pilot.held:
@@ -88,14 +85,15 @@ def _go(pilot: SimulatedAutopilot, item: StoredItem, seconds: float) -> bool:
 
 
 def _onward(pilot: SimulatedAutopilot, item: StoredItem) -> Vector | None:
-    """Return the position after an item at which it does not stop; None if it stops."""
+    """Return the position after an item at which it does not stop; None if it stops, or stays there."""
     if item.command != mavlink.MAV_CMD_NAV_WAYPOINT or item.params[0] >= 1.0:
         return None
     for following in pilot.stores[MISSION][pilot.item + 1 :]:
         if following.command in STOPPING:
             return None
         if following.command in MOVING and (following.x or following.y):
-            return pilot.place_of(following)
+            place = pilot.place_of(following)
+            return place if place != pilot.place_of(item) else None
     return None
 
 

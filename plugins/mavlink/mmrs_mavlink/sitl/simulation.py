@@ -43,7 +43,8 @@ def _move(pilot: SimulatedAutopilot, seconds: float) -> None:
         return
     body = pilot.body
     body.adrift = pilot.airborne and (not pilot.located or pilot.mode_name in MANUAL)
-    body.advance(seconds)
+    if pilot.time >= pilot.climbs_at:
+        body.advance(seconds)
     pilot.battery.drain(seconds, load_of(body) if pilot.flies else 0.3 + 0.7 * min(1.0, body.pace))
     pilot.camera.move(body)
     if pilot.airborne and pilot.battery.level <= 0.0 and pilot.settings.falls:
@@ -51,6 +52,8 @@ def _move(pilot: SimulatedAutopilot, seconds: float) -> None:
         pilot.armed = False
     if pilot.flies:
         _touch_ground(pilot)
+    elif body.position[2] > 0.0:
+        body.position = (*body.position[:2], 0.0)
     _record_track(pilot)
 
 
@@ -67,13 +70,13 @@ def _fall(pilot: SimulatedAutopilot, seconds: float) -> None:
 
 def _idle(pilot: SimulatedAutopilot, seconds: float) -> None:
     pilot.battery.charge(seconds, pilot.settings.recharge)
+    north, east, up = pilot.body.position
     if pilot.airborne:
-        north, east, up = pilot.body.position
         pilot.body.position = (north, east, max(0.0, up - FALL_SPEED * seconds))
         pilot.body.velocity = (0.0, 0.0, -FALL_SPEED)
         _record_track(pilot)
     else:
-        pilot.body.rest_at(0.0 if pilot.flies else pilot.body.position[2])
+        pilot.body.rest_at(0.0 if pilot.flies else up)
     if pilot.uptime < pilot.settings.boot:
         pilot.start_mode()
 

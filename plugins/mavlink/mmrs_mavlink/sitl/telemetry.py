@@ -26,10 +26,7 @@ LOCATED, LOST = 0x33F, 0xA7
 """Flags of the position estimate."""
 
 STEERED = frozenset({"guided", "auto", "return", "smart_return"})
-"""Modes in which the target position is reported."""
-
-TARGET_MASK = 0xDF8
-"""Only the position is valid."""
+"""Modes in which an ArduPilot reports its target."""
 
 TUMBLING = radians(60.0)
 """Lean of an ArduCopter 4.7-dev in simulation that falls with one of its four motors off."""
@@ -41,15 +38,8 @@ SENSORS = 0x0200_002F
 """Gyroscope, accelerometer, compass, pressure, satellites and battery."""
 
 NO_ROTATION = (1.0, 0.0, 0.0, 0.0)
-CAPABILITIES = (
-    mavlink.MAV_PROTOCOL_CAPABILITY_MISSION_INT
-    | mavlink.MAV_PROTOCOL_CAPABILITY_COMMAND_INT
-    | mavlink.MAV_PROTOCOL_CAPABILITY_SET_POSITION_TARGET_GLOBAL_INT
-    | mavlink.MAV_PROTOCOL_CAPABILITY_SET_POSITION_TARGET_LOCAL_NED
-    | mavlink.MAV_PROTOCOL_CAPABILITY_MISSION_FENCE
-    | mavlink.MAV_PROTOCOL_CAPABILITY_MISSION_RALLY
-    | mavlink.MAV_PROTOCOL_CAPABILITY_MAVLINK2
-)
+CAPABILITIES = 0xE18C
+"""Missions, fences and rally points of integers, commands and targets of integers, MAVLink 2."""
 
 
 def message(name: str, **fields: object) -> Message:
@@ -68,8 +58,8 @@ def milliseconds(pilot: SimulatedAutopilot) -> int:
     return int(round(pilot.uptime * 1000) % 2**32)
 
 
-def _scaled(latitude: float, longitude: float) -> dict[str, int]:
-    return {"lat": round(latitude * 1e7), "lon": round(longitude * 1e7)}
+def _scaled(latitude: float, longitude: float, north: str = "lat", east: str = "lon") -> dict[str, int]:
+    return {north: round(latitude * 1e7), east: round(longitude * 1e7)}
 
 
 def _heartbeat(pilot: SimulatedAutopilot) -> Message:
@@ -87,14 +77,14 @@ def _heartbeat(pilot: SimulatedAutopilot) -> Message:
 
 def _global_position(pilot: SimulatedAutopilot) -> Message | None:
     """Return its position; without one, ArduPilot reports 0 degrees of both, and PX4 nothing."""
-    if not pilot.initialised and pilot.px4:
+    if not pilot.ready and pilot.px4:
         return None
     up = pilot.settings.altitude + pilot.body.position[2]
     north, east, climb = pilot.body.velocity
     return message(
         "global_position_int",
         time_boot_ms=milliseconds(pilot),
-        **_scaled(*(pilot.degrees() if pilot.initialised else (0.0, 0.0))),
+        **_scaled(*(pilot.degrees() if pilot.ready else (0.0, 0.0))),
         alt=round(up * 1000),
         relative_alt=round((up - pilot.home[2]) * 1000),
         vx=round(north * 100),
@@ -105,44 +95,23 @@ def _global_position(pilot: SimulatedAutopilot) -> Message | None:
 
 
 def _local_position(pilot: SimulatedAutopilot) -> Message | None:
-    if not pilot.initialised:
+    if not pilot.ready:
         return None
-    north, east, up = pilot.body.position
-    v_north, v_east, v_up = pilot.body.velocity
+    (north, east, up), (v_north, v_east, v_up) = pilot.body.position, pilot.body.velocity
     now = milliseconds(pilot)
     return mavlink.MAVLink_local_position_ned_message(now, north, east, -up, v_north, v_east, -v_up)
 
 
-def _global_target(pilot: SimulatedAutopilot) -> Message | None:
-    """Return the target position; a PX4 reports none in OFFBOARD (``POSITION_TARGET_GLOBAL_INT.hpp``)."""
+def _target(pilot: SimulatedAutopilot) -> Message | None:
     target = pilot.body.target
-    offboard = pilot.px4 and pilot.mode_name == "guided"
-    if target is None or offboard or pilot.mode_name not in STEERED:
+    if target is None or pilot.px4 or pilot.mode_name not in STEERED:
         return None
-    latitude, longitude = pilot.degrees_at(target)
     return message(
         "position_target_global_int",
         time_boot_ms=milliseconds(pilot),
-        coordinate_frame=mavlink.MAV_FRAME_GLOBAL,
-        type_mask=TARGET_MASK,
-        lat_int=round(latitude * 1e7),
-        lon_int=round(longitude * 1e7),
+        type_mask=0xDF8,
+        **_scaled(*pilot.degrees_at(target), "lat_int", "lon_int"),
         alt=pilot.settings.altitude + target[2],
-    )
-
-
-def _local_target(pilot: SimulatedAutopilot) -> Message | None:
-    target = pilot.body.target
-    if target is None or pilot.mode_name not in STEERED:
-        return None
-    return message(
-        "position_target_local_ned",
-        time_boot_ms=milliseconds(pilot),
-        coordinate_frame=mavlink.MAV_FRAME_LOCAL_NED,
-        type_mask=TARGET_MASK,
-        x=target[0],
-        y=target[1],
-        z=-target[2],
     )
 
 
@@ -174,7 +143,7 @@ def _status(pilot: SimulatedAutopilot) -> Message:
         onboard_control_sensors_health=health,
         voltage_battery=round(pilot.battery.voltage * 1000) if measures else UNKNOWN,
         current_battery=round(pilot.battery.current * 100) if measures else -1,
-        battery_remaining=round(pilot.energy * 100) if measures else -1,
+        battery_remaining=round(pilot.battery.level * 100) if measures else -1,
     )
 
 
@@ -183,22 +152,19 @@ def _battery_status(pilot: SimulatedAutopilot) -> Message | None:
         return None
     return message(
         "battery_status",
-        type=mavlink.MAV_BATTERY_TYPE_LIPO,
         temperature=32_767,
         voltages=[round(pilot.battery.voltage * 1000), *[UNKNOWN] * 9],
         current_battery=round(pilot.battery.current * 100),
         current_consumed=round(pilot.battery.used),
         energy_consumed=-1,
-        battery_remaining=round(pilot.energy * 100),
+        battery_remaining=round(pilot.battery.level * 100),
     )
 
 
 def _landed(pilot: SimulatedAutopilot) -> Message:
     """Return whether it stands on the ground, which ArduSub and Rover do not report."""
     state = mavlink.MAV_LANDED_STATE_IN_AIR if pilot.airborne else mavlink.MAV_LANDED_STATE_ON_GROUND
-    return message(
-        "extended_sys_state", landed_state=state if pilot.flies else mavlink.MAV_LANDED_STATE_UNDEFINED
-    )
+    return message("extended_sys_state", landed_state=state if pilot.flies else 0)
 
 
 def _ekf(pilot: SimulatedAutopilot) -> Message:
@@ -211,7 +177,7 @@ def _estimator(pilot: SimulatedAutopilot) -> Message:
 
 
 def _has_position(pilot: SimulatedAutopilot) -> bool:
-    return pilot.located and pilot.initialised
+    return pilot.located and pilot.ready
 
 
 def _satellites(pilot: SimulatedAutopilot) -> Message:
@@ -246,8 +212,7 @@ def _fence(pilot: SimulatedAutopilot) -> Message | None:
 
 def _wind(pilot: SimulatedAutopilot) -> Message:
     north, east, _ = pilot.body.wind
-    comes_from = degrees(atan2(-east, -north)) % 360.0
-    return mavlink.MAVLink_wind_message(comes_from, hypot(north, east), 0.0)
+    return mavlink.MAVLink_wind_message(degrees(atan2(-east, -north)) % 360.0, hypot(north, east), 0.0)
 
 
 def _wind_estimate(pilot: SimulatedAutopilot) -> Message:
@@ -264,9 +229,7 @@ def _obstacle(pilot: SimulatedAutopilot) -> Message | None:
     return message(
         "obstacle_distance",
         time_usec=milliseconds(pilot) * 1000,
-        sensor_type=mavlink.MAV_DISTANCE_SENSOR_LASER,
         distances=sectors,
-        increment=5,
         min_distance=20,
         max_distance=SECTOR_FREE - 1,
         increment_f=5.0,
@@ -276,14 +239,13 @@ def _obstacle(pilot: SimulatedAutopilot) -> Message | None:
 
 def photo(pilot: SimulatedAutopilot, taken: Photo) -> Message:
     """Return the report of a photo: ArduPilot's message, or that of a camera for PX4."""
-    latitude, longitude = (round(value * 1e7) for value in pilot.degrees_at(taken.place))
-    above, up = pilot.settings.altitude + taken.place[2], taken.place[2]
+    place, up, now = pilot.degrees_at(taken.place), taken.place[2], milliseconds(pilot)
+    above = pilot.settings.altitude + up
     if pilot.px4:
         return message(
             "camera_image_captured",
-            time_boot_ms=milliseconds(pilot),
-            lat=latitude,
-            lon=longitude,
+            time_boot_ms=now,
+            **_scaled(*place),
             alt=round(above * 1000),
             relative_alt=round(up * 1000),
             q=NO_ROTATION,
@@ -293,40 +255,27 @@ def photo(pilot: SimulatedAutopilot, taken: Photo) -> Message:
         )
     return message(
         "camera_feedback",
-        time_usec=milliseconds(pilot) * 1000,
+        time_usec=now * 1000,
         target_system=pilot.settings.system,
         img_idx=taken.number,
-        lat=latitude,
-        lng=longitude,
+        **_scaled(*place, "lat", "lng"),
         alt_msl=above,
         alt_rel=up,
         yaw=taken.heading,
-        flags=mavlink.CAMERA_FEEDBACK_PHOTO,
     )
 
 
 def _version(pilot: SimulatedAutopilot) -> Message:
     """Return its capabilities; its version is 0, which no real autopilot has."""
-    none = bytes(8)
-    return message(
-        "autopilot_version",
-        capabilities=CAPABILITIES,
-        flight_custom_version=none,
-        middleware_custom_version=none,
-        os_custom_version=none,
-        uid=pilot.settings.system,
+    none = dict.fromkeys(
+        ("flight_custom_version", "middleware_custom_version", "os_custom_version"), bytes(8)
     )
+    return message("autopilot_version", capabilities=CAPABILITIES, uid=pilot.settings.system, **none)
 
 
 def _home(pilot: SimulatedAutopilot) -> Message:
-    latitude, longitude, above = pilot.home
-    return message(
-        "home_position",
-        latitude=round(latitude * 1e7),
-        longitude=round(longitude * 1e7),
-        altitude=round(above * 1000),
-        q=NO_ROTATION,
-    )
+    place = _scaled(*pilot.home[:2], "latitude", "longitude")
+    return message("home_position", **place, altitude=round(pilot.home[2] * 1000), q=NO_ROTATION)
 
 
 MAKERS: Mapping[str, Maker] = {
@@ -348,14 +297,11 @@ MAKERS: Mapping[str, Maker] = {
     "OBSTACLE_DISTANCE": _obstacle,
     "AUTOPILOT_VERSION": _version,
     "HOME_POSITION": _home,
-    "POSITION_TARGET_GLOBAL_INT": _global_target,
-    "POSITION_TARGET_LOCAL_NED": _local_target,
+    "POSITION_TARGET_GLOBAL_INT": _target,
 }
 NUMBERS: Mapping[int, str] = {getattr(mavlink, f"MAVLINK_MSG_ID_{name}"): name for name in MAKERS}
-ON_REQUEST = frozenset({"AUTOPILOT_VERSION", "POSITION_TARGET_GLOBAL_INT", "POSITION_TARGET_LOCAL_NED"})
-RATE, USUAL_RATE = 4.0, 2.0
-"""Hertz, of `FAST` messages and of others, until another rate is requested."""
-
+ON_REQUEST = frozenset({"AUTOPILOT_VERSION", "POSITION_TARGET_GLOBAL_INT"})
+USUAL_RATE, FAST_RATE = 2.0, 4.0
 SLOW = {"HEARTBEAT": 1.0, "SYSTEM_TIME": 1.0, "BATTERY_STATUS": 1.0, "HOME_POSITION": 0.5}
 FAST = frozenset({"GLOBAL_POSITION_INT", "LOCAL_POSITION_NED", "ATTITUDE", "MISSION_CURRENT"})
 
@@ -369,4 +315,4 @@ def missing(settings: Settings) -> frozenset[str]:
 def usual_rates(settings: Settings) -> dict[str, float]:
     """Return the rates of messages that no one has requested, hertz."""
     names = [name for name in MAKERS if name not in ON_REQUEST | missing(settings)]
-    return {name: RATE if name in FAST else SLOW.get(name, USUAL_RATE) for name in names}
+    return {name: FAST_RATE if name in FAST else SLOW.get(name, USUAL_RATE) for name in names}

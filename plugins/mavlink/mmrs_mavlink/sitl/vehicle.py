@@ -14,14 +14,13 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from mmrs_mavlink.sitl import telemetry
 from mmrs_mavlink.sitl.autopilot import SimulatedAutopilot
-from mmrs_mavlink.sitl.commands import drive, execute, steer
+from mmrs_mavlink.sitl.commands import drive, execute, steer, take_sticks
 from mmrs_mavlink.sitl.faults import Faults
 from mmrs_mavlink.sitl.items import ABOVE_SEA, StoredItem
 from mmrs_mavlink.sitl.parameters import ParameterService
 from mmrs_mavlink.sitl.radio import COMPONENT, SimulatedRadio, receive
 from mmrs_mavlink.sitl.settings import Settings
 from mmrs_mavlink.sitl.simulation import advance
-from mmrs_mavlink.sitl.sticks import sticks_of
 from mmrs_mavlink.sitl.streams import Streams
 from mmrs_mavlink.sitl.transfers import Transfers
 
@@ -191,7 +190,7 @@ class SimulatedVehicle:
                     steer(pilot, (message.x, message.y, -message.z), _heading(message))
             case "MANUAL_CONTROL":
                 if message.target in (0, pilot.settings.system):
-                    pilot.sticks = sticks_of(message, pilot.time)
+                    take_sticks(pilot, message)
             case "TIMESYNC":
                 if message.tc1 == 0:
                     now = telemetry.milliseconds(pilot) * 1_000_000

@@ -6,6 +6,7 @@ import pytest
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from mmrs_mavlink.sitl import FAULTS
+from mmrs_mavlink.sitl.items import StoredItem
 
 METRES_PER_DEGREE = 111_412.0
 """Of longitude, at the equator: no degree is longer."""
@@ -56,13 +57,13 @@ def test_a_wrong_position_estimate_moves_the_vehicle_and_ends(airborne, ground):
 
 def test_a_restart_resets_the_time_since_boot_and_drops_the_vehicle_but_keeps_uploads(airborne, ground):
     pilot = airborne.autopilot
-    pilot.stores[0] = ["kept"]
+    kept = pilot.stores[0] = [StoredItem(0, 16, (0.0, 0.0, 0.0, 0.0), 0, 0, 0.0)]
     assert ground.receive("SYSTEM_TIME", lambda m: m.time_boot_ms > 5_000)
     airborne.faults.begin("restart")
     assert ground.receive("HEARTBEAT", lambda m: m.custom_mode == 0)
     ground.command(mavlink.MAV_CMD_SET_MESSAGE_INTERVAL, mavlink.MAVLINK_MSG_ID_SYSTEM_TIME, 1e5)
     assert ground.receive("SYSTEM_TIME", lambda m: m.time_boot_ms < 5_000)
-    assert (pilot.armed, pilot.body.position[2], pilot.stores[0]) == (False, 0.0, ["kept"])
+    assert (pilot.armed, pilot.body.position[2], pilot.stores[0]) == (False, 0.0, kept)
 
 
 def test_a_watchdog_restart_keeps_the_vehicle_armed(airborne, ground):
@@ -156,4 +157,4 @@ def test_every_fault_can_be_injected_and_cleared_by_its_name(vehicle):
     for name in FAULTS:
         vehicle.faults.begin(name, *values.get(name, ()))
         vehicle.faults.end(name)
-    assert vehicle.autopilot.energy == pytest.approx(0.5, abs=0.05)
+    assert vehicle.autopilot.battery.level == pytest.approx(0.5, abs=0.05)
