@@ -178,7 +178,15 @@ def seconds_back(robot: Robot, state: State, response: str, track: Track) -> flo
         seconds += TURNING_SECONDS
     if not robot.profile.flies:
         return seconds
-    return seconds + max(0.0, here.height) / (robot.descent or USUAL_DESCENT)
+    return seconds + _landing_seconds(robot, max(0.0, here.height))
+
+
+def _landing_seconds(robot: Robot, height: float) -> float:
+    """Return how long a robot takes to land from a height: vehicles come down slowly near the ground."""
+    pacing, descent = robot.profile.pacing, robot.descent or USUAL_DESCENT
+    low = min(height, pacing.landing_height)
+    slowly = low / min(descent, pacing.landing_rate) if low else 0.0
+    return (height - low) / descent + slowly + (pacing.recovery or 0.0)
 
 
 def _seconds(robot: Robot, state: State, a: Place, b: Place) -> float:

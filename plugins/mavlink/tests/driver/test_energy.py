@@ -27,26 +27,29 @@ def state(energy, *, time=100.0, place=TRACK[-1][1], armed=True, **wind):
 STOP = 5.0 / ACCELERATION
 """Seconds that speeding up to five metres a second, and stopping, take more than going on."""
 
+LANDING = 10.0 / 0.5 + 3.0
+"""Seconds that an ArduCopter takes from ten metres until it is disarmed."""
+
 
 def test_the_way_back_is_the_way_that_the_robot_came_with_its_corners_and_the_descent():
     assert seconds_back(robot(), state(0.5), "RETURN", TRACK) == pytest.approx(
-        400.0 / 5.0 + 2 * STOP + TURNING_SECONDS + 10.0
+        400.0 / 5.0 + 2 * STOP + TURNING_SECONDS + LANDING
     )
-    assert seconds_back(robot(), state(0.5), "LAND", TRACK) == pytest.approx(10.0)
+    assert seconds_back(robot(), state(0.5), "LAND", TRACK) == pytest.approx(LANDING)
 
 
 def test_an_emergency_area_ends_the_way_back_where_it_is_left_for():
     given = robot(escapes=(("a", (Local(300.0, -50.0, 10.0),)),))
     assert list(way_back(given, "EMERGENCY_AREA", TRACK, TRACK[-1][1]))[-1] == Local(300.0, -50.0, 10.0)
-    seconds = (100 + 50) / 5.0 + STOP + TURNING_SECONDS + 10.0
+    seconds = (100 + 50) / 5.0 + STOP + TURNING_SECONDS + LANDING
     assert seconds_back(given, state(0.5), "EMERGENCY_AREA", TRACK) == pytest.approx(seconds)
 
 
 def test_head_wind_makes_the_way_longer_and_tail_wind_no_shorter():
     against = seconds_back(robot(), state(0.5, wind=2.5, wind_from=180.0), "RETURN", TRACK)
     behind = seconds_back(robot(), state(0.5, wind=2.5, wind_from=0.0), "RETURN", TRACK)
-    assert against == pytest.approx(120.0 + 20.0 + 1.5 * STOP + TURNING_SECONDS + 10.0)
-    assert behind == pytest.approx(90.0 + 2 * STOP + TURNING_SECONDS)
+    assert against == pytest.approx(120.0 + 20.0 + 1.5 * STOP + TURNING_SECONDS + LANDING)
+    assert behind == pytest.approx(80.0 + 2 * STOP + TURNING_SECONDS + LANDING)
 
 
 def test_short_legs_around_corners_are_slow():
@@ -55,13 +58,13 @@ def test_short_legs_around_corners_are_slow():
     legs = [dist((8.0 * n, 8.0 * (n % 2)), (8.0 * n + 8.0, 8.0 * ((n + 1) % 2))) for n in range(25)]
     flown = sum(2.0 * sqrt(leg / ACCELERATION) for leg in legs)
     found = seconds_back(robot(cruise=15.0), state(0.5, place=bends[-1][1]), "RETURN", bends)
-    assert found == pytest.approx(flown + TURNING_SECONDS + 10.0)
+    assert found == pytest.approx(flown + TURNING_SECONDS + LANDING)
 
 
 def test_a_leg_that_comes_down_takes_as_long_as_that():
     steep = [("up", Local(0.0, 0.0, 10.0)), ("a", Local(30.0, 0.0, 50.0))]
     found = seconds_back(robot(), state(0.5, place=steep[-1][1]), "RETURN", steep)
-    assert found > 40.0 + TURNING_SECONDS + 10.0
+    assert found > 40.0 + TURNING_SECONDS + LANDING
 
 
 def test_the_reserve_counts_wherever_the_robot_is():
@@ -70,7 +73,7 @@ def test_the_reserve_counts_wherever_the_robot_is():
 
 
 def test_the_point_of_no_return_comes_before_the_reserve_far_from_home():
-    assert Reserve(robot()).low(state(0.16), "RETURN", TRACK) == ""
+    assert Reserve(robot()).low(state(0.18), "RETURN", TRACK) == ""
     assert "point of no return: 13%" in Reserve(robot()).low(state(0.13), "RETURN", TRACK)
 
 
@@ -89,7 +92,7 @@ def test_a_robot_that_can_do_more_keeps_its_pace_against_the_wind_as_long_as_tha
         known = state(0.5, wind=wind, wind_from=180.0)
         return seconds_back(robot(fastest=10.0), known, "RETURN", TRACK)
 
-    calm = 400.0 / 5.0 + 2 * STOP + TURNING_SECONDS + 10.0
+    calm = 400.0 / 5.0 + 2 * STOP + TURNING_SECONDS + LANDING
     assert against(4.0) == pytest.approx(calm)
     assert against(8.0) == pytest.approx(calm - 300.0 / 5.0 - STOP + 300.0 / 2.0 + 2.0 / ACCELERATION)
     assert against(9.8) == inf
