@@ -1,4 +1,4 @@
-"""Measures what fifty simulated vehicles with telemetry at 4 Hz cost, and to hear them, and bare pymavlink.
+"""Measures what fifty simulated vehicles cost, and to hear them, by our links and by bare pymavlink.
 
 The vehicles are one process and one thread; all are in the air and fly missions. Beside them, one after the
 other, three processes hear the same traffic: the links of our flight runtime with a port each, the same with
@@ -27,12 +27,14 @@ from pathlib import Path
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 STEP = 8.23
-"""Metres between the homes of `mmrs sitl --count`, on this latitude."""
+"""Metres between homes that are APART degrees apart, on this latitude."""
+
+APART = 1e-4
 
 NORTH = -300.0
 """Metres north of the origin, where the areas of the behaviours for tests are."""
 
-SIDES = ("vehicles", "links", "shared", "bare")
+SIDES = ("vehicles", "standing", "links", "shared", "bare")
 
 
 def main() -> None:
@@ -41,7 +43,6 @@ def main() -> None:
     )
     add = parser.add_argument
     add("--count", type=int, default=50)
-    add("--rate", type=float, default=4.0, help="of telemetry, hertz")
     add("--seconds", type=float, default=20.0, help="of each measurement")
     add("--port", type=int, default=31_000)
     add("--side", choices=SIDES, help=argparse.SUPPRESS)
@@ -49,6 +50,8 @@ def main() -> None:
     given = parser.parse_args()
     if given.side == "vehicles":
         be_vehicles(given)
+    elif given.side == "standing":
+        stand(given)
     elif given.side is not None:
         {"links": hear_by_links, "shared": hear_by_links, "bare": hear_bare}[given.side](given)
     else:
@@ -56,9 +59,7 @@ def main() -> None:
 
 
 def compare(given: argparse.Namespace) -> None:
-    print(
-        f"{given.count} simulated vehicles, telemetry at {given.rate:g} Hz, {given.seconds:g} s a measurement"
-    )
+    print(f"{given.count} simulated vehicles, {given.seconds:g} s a measurement")
     print(f"{date.today()}, Python {platform.python_version()}, {os.cpu_count()} cores, {platform.machine()}")
     print()
     vehicles, heard = [], {}
@@ -88,9 +89,14 @@ def row(name: str, cpu: float, count: int, rate: float) -> None:
 
 def start(side: str, given: argparse.Namespace, *, shared: bool = False, seconds: float = 0.0):
     command = [sys.executable, __file__, "--side", side, "--count", str(given.count)]
-    command += ["--rate", str(given.rate), "--seconds", str(seconds or given.seconds)]
-    command += ["--port", str(given.port), *(["--shared"] if shared else [])]
-    return subprocess.Popen(command, stdout=subprocess.PIPE, text=True)
+    command += [
+        "--seconds",
+        str(seconds or given.seconds),
+        "--port",
+        str(given.port),
+        *(["--shared"] if shared else []),
+    ]
+    return subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
 
 
 def said_by(process) -> dict[str, float]:
@@ -110,7 +116,7 @@ def be_vehicles(given: argparse.Namespace) -> None:
 
     vehicles = []
     for number, port in enumerate(ports(given), start=1):
-        settings = Settings(system=number, longitude=13.35 + number * 1e-3, rate=given.rate, energy=1e6)
+        settings = Settings(system=number, longitude=13.35 + number * 1e-3, energy=1e6)
         vehicle = SimulatedVehicle(port, settings)
         pilot = vehicle.autopilot
         places = [pilot.degrees_at(place) for place in ((0, 0, 0), (80, 0, 0), (80, 80, 0), (0, 80, 0))]
@@ -132,6 +138,22 @@ def be_vehicles(given: argparse.Namespace) -> None:
     assert all(vehicle.autopilot.armed and vehicle.autopilot.body.pace > 0.0 for vehicle in vehicles)
     host.stop()
     print(json.dumps({"cpu": cpu, "messages": messages}))
+
+
+def stand(given: argparse.Namespace) -> None:
+    """Be vehicles that stand at their homes, until standard input ends; print what each has done."""
+    from mmrs_mavlink.commands.rehearsal import summary_of
+    from mmrs_mavlink.sitl import Host, Settings, SimulatedVehicle
+
+    vehicles = [
+        SimulatedVehicle(port, Settings(system=number + 1, longitude=13.35 + number * APART))
+        for number, port in enumerate(ports(given))
+    ]
+    host = Host(vehicles)
+    host.start()
+    sys.stdin.read()
+    host.stop()
+    print(json.dumps([summary_of(vehicle) for vehicle in vehicles]))
 
 
 def total(vehicles) -> int:
@@ -183,9 +205,7 @@ def fly(given: argparse.Namespace) -> None:
     """Fly generated controllers, all in one process, on vehicles in another."""
     with tempfile.TemporaryDirectory() as folder:
         generate(Path(folder), given.count)
-        command = [sys.executable, "-m", "mmrs_core", "sitl", "--count", str(given.count), "--json"]
-        command += ["--home", "42.37,13.35", "--port", str(given.port), "--port-step", "1"]
-        sitl = subprocess.Popen(command, stdout=subprocess.PIPE, stdin=subprocess.PIPE, text=True)
+        standing = start("standing", given)
         time.sleep(8.0)
         links = [
             part
@@ -201,11 +221,10 @@ def fly(given: argparse.Namespace) -> None:
         )
         seconds = time.monotonic() - began
         ours = (children() - before) / seconds
-        said = sitl.communicate("quit\n")[0]
+        flown = said_by(standing)
     if done.returncode:
         print(done.stderr[-2000:])
         raise SystemExit("the controllers did not come to their end")
-    flown = json.loads(said)["vehicles"].values()
     metres = sum(each["metres"] for each in flown)
     assert not any(each["armed"] for each in flown)
     print(f"{given.count} controllers in one process, their own message rates, {seconds:.0f} s in all:")

@@ -19,7 +19,6 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 from mmrs_mavlink.links.retries import Retries
 from mmrs_mavlink.profiles import ARDUCOPTER, VehicleProfile, on_autopilot
 from mmrs_mavlink.sitl.items import StoredItem
-from mmrs_mavlink.sitl.radio import packed
 from mmrs_mavlink.sitl.transfers import Transfers
 
 TICK = 0.05
@@ -61,17 +60,17 @@ class VirtualLink:
     system = component = 1
     tries = 5
 
-    def __init__(self, firmware: str, air: Air, seed: int, *, old: bool = False) -> None:
+    def __init__(self, firmware: str, air: Air, seed: int) -> None:
         self.clock, self.retries = VirtualClock(), Retries()
         self.stores: dict[int, list[StoredItem]] = {kind: [] for kind in (0, 1, 2)}
         self.said: list[str] = []
         self.sent = 0
-        self._air, self._old, self._random = air, old, random.Random(seed)
+        self._air, self._random = air, random.Random(seed)
         self._ours = mavlink.MAVLink(None, srcSystem=255, srcComponent=191)
         self._its = mavlink.MAVLink(None, srcSystem=1, srcComponent=1)
         self._beat = heartbeat(autopilot=PX4 if firmware == "px4" else ARDUPILOT)
         say = lambda severity, text: self.said.append(text)  # noqa: E731
-        self.vehicle = Transfers(self.stores, self._answer, say, self.profile.autopilot, old=old)
+        self.vehicle = Transfers(self.stores, self._answer, say, self.profile.autopilot)
         self._flying: list[tuple[float, int, bytes, bool]] = []
         self._order = 0
         self._look = 0.0
@@ -115,9 +114,7 @@ class VirtualLink:
         self.wait(lambda: None, seconds)
 
     def _answer(self, message) -> None:
-        data = packed(message, self._its) if self._old else bytes(message.pack(self._its))
-        if data is not None:
-            self._fly(data, outwards=False)
+        self._fly(bytes(message.pack(self._its)), outwards=False)
 
     def _fly(self, data: bytes, *, outwards: bool) -> None:
         chance = self._random.random

@@ -91,7 +91,3 @@ class PythonDriver(ABC, Generic[C]):
     def files(self, module: str, context: C, input: TargetInput) -> Iterable[FileSpec]:
         """Return files that lie beside the module of a robot."""
         return ()
-
-    def readme(self, input: TargetInput) -> Mapping[str, object]:
-        """Return what else the template of its README sees."""
-        return {}

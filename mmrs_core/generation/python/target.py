@@ -125,7 +125,7 @@ def _shared(
         "bus": "eclipse-zenoh" in needs.libraries,
     }
     yield FileSpec("fleet.py", "fleet.py.jinja", common)
-    yield FileSpec("README.md", "README.md.jinja", {**common, **driver.readme(input)})
+    yield FileSpec("README.md", "README.md.jinja", common)
     if conditions:
         asks = tuple(f"when '{name}' holds" for name in conditions if not is_standard(name))
         yield FileSpec("conditions.py", "conditions.py.jinja", common, once=True, asks=asks)

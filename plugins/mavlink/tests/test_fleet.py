@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+import re
+from shutil import copytree
+
 import pytest
 import typer
 
 from mmrs_core.cli.settings import Settings
 from mmrs_core.resources import shipped
-from mmrs_mavlink.commands.fleet import SimulatedFleet, members_of, pair, parameter, plain_members
+from mmrs_mavlink.commands.fleet import PLACE, SimulatedFleet, members_of, pair, parameter
+from mmrs_mavlink.sitl import Settings as SimulatedSettings
 
-TWO = plain_members(2, "42.37,13.35", "copter")
+TWO = {name: SimulatedSettings() for name in ("first", "second")}
 
 
 @pytest.fixture(scope="module")
@@ -36,12 +40,15 @@ def test_batteries_are_those_of_the_robot_type_unless_options_replace_them(membe
     assert (given.energy, given.recharge) == (600.0, 0.0)
 
 
-def test_vehicles_without_a_model_stand_side_by_side():
-    members = plain_members(2, "42.37,13.35", "rover")
-    first, second = members.values()
-    assert (first.latitude, first.longitude) == (42.37, 13.35)
-    assert second.longitude > first.longitude
-    assert (list(members)[1], second.kind) == ("Vehicle2", "rover")
+def test_vehicles_of_a_mission_without_a_place_on_the_earth_stand_anywhere(tmp_path):
+    project = tmp_path / "local"
+    copytree(shipped("examples") / "handwritten", project)
+    (project / "context.xmi").unlink()
+    model = project / "behaviour.xmi"
+    local = 'xsi:type="behaviour:RelativeCoordinate" name="middle of the square" x="0.0" y="0.0"/>'
+    model.write_text(re.sub(r'xsi:type="behaviour:Geo[^>]*/>', local, model.read_text("utf-8")), "utf-8")
+    left, right = members_of(Settings(), project).values()
+    assert (left.latitude, left.longitude) == (right.latitude, right.longitude) == PLACE
 
 
 @pytest.mark.parametrize(("speedup", "end"), [(1.0, "=udpin:127.0.0.1:14560@2"), (5.0, "--speedup 5")])
@@ -69,6 +76,6 @@ def test_values_that_are_no_numbers_are_refused(read):
 
 
 def test_a_ground_station_has_a_radio_of_its_own():
-    ((_, vehicle),) = SimulatedFleet(ground="14650").vehicles({"a": TWO["Vehicle1"]})
+    ((_, vehicle),) = SimulatedFleet(ground="14650").vehicles({"a": TWO["first"]})
     assert len(vehicle.radios) == 2
     vehicle.close()

@@ -88,7 +88,7 @@ def _open_hangar():
     """Give a function that switches on a vehicle at each robot's home, and returns the links to them."""
     vehicles: list[SimulatedVehicle] = []
 
-    def switch_on(program, speedup: float = 30.0, loss: float = 0.0, types=MappingProxyType({}), **settings):
+    def switch_on(program, speedup: float = 30.0, types=MappingProxyType({}), **settings):
         links, found = ["--speedup", str(speedup)], {}
         settings.setdefault("recharge", 60.0)
         for robot in program.robots:
@@ -98,7 +98,7 @@ def _open_hangar():
             port = free_port()
             kind = context_of(robot, target_input(program, types.values())).profile.rehearsed_as
             given = Settings(kind, latitude, longitude, **settings)
-            vehicle = SimulatedVehicle(port, given, speedup=speedup, loss=loss)
+            vehicle = SimulatedVehicle(port, given, speedup=speedup)
             vehicle.start()
             vehicles.append(vehicle)
             found[robot.id] = vehicle

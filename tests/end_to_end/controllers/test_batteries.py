@@ -46,7 +46,7 @@ def take_offs(vehicle) -> int:
 
 def test_a_battery_that_stays_empty_is_not_taken_for_a_full_one(controllers, hangar):
     made = controllers(two_sorties(charge=20.0))
-    vehicles, links = hangar(made.program, recharge=1e9, falls=False)
+    vehicles, links = hangar(made.program, recharge=1e9)
     code, said = run_and_empty(made, vehicles["alpha"], links)
     assert code == 1, said
     assert "BATTERY_LOW: after" in said
@@ -66,7 +66,7 @@ def test_a_policy_may_carry_on_with_what_was_charged(controllers, hangar):
 
 def test_charging_goes_on_until_the_battery_is_full(controllers, hangar):
     made = controllers(two_sorties(charge=30.0))
-    vehicles, links = hangar(made.program, speedup=15.0, recharge=50.0, falls=False)
+    vehicles, links = hangar(made.program, speedup=15.0, recharge=50.0)
     code, said = run_and_empty(made, vehicles["alpha"], links)
     assert code == 0, said
     begun, ended, *_ = (step["time"] for step in made.steps("alpha") if step["move"] == "charge")

@@ -68,8 +68,9 @@ def test_fence_and_rally_points_are_uploaded(flown):
 
 def test_a_lossy_link_changes_nothing(controllers, hangar):
     made = controllers(two_drones())
-    _, links = hangar(made.program, speedup=20.0, loss=0.15)
-    code, said = made.run("fleet.py", "--tries", "20", "--answer-seconds", "0.2", *links)
+    _, links = hangar(made.program, speedup=20.0)
+    patience = ("--tries", "20", "--answer-seconds", "0.2")
+    code, said = made.run("fleet.py", *patience, "--inject", "loss=0.15,seed=7", *links)
     assert code == 0, said
     assert made.replayed().complaints == ()
 

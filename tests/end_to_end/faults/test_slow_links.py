@@ -11,8 +11,9 @@ from patience import wait_for
 
 from mmrs_runtime.orders.ordering import give
 
-DELAY = 0.15
-"""Real seconds, either way."""
+SPEEDUP = 5.0
+DELAY = 0.15 * SPEEDUP
+"""Seconds of the run, either way."""
 
 PATIENCE = 60.0
 
@@ -23,8 +24,8 @@ pytestmark = [pytest.mark.real_time("faults"), pytest.mark.thorough]
 @pytest.fixture
 def flown(tmp_path):
     """Return a robot whose vehicle hears, and is heard, late; its program has begun."""
-    with Fleet(tmp_path, [Pad("a", stay=30.0)], GENERATED, speedup=5.0, delay=DELAY) as fleet:
-        fleet.start()
+    with Fleet(tmp_path, [Pad("a", stay=30.0)], GENERATED, speedup=SPEEDUP) as fleet:
+        fleet.start("--inject", f"delay={DELAY}")
         yield fleet
 
 

@@ -6,16 +6,19 @@ import pytest
 from fault_table.fleet import GENERATED, Fleet
 from fault_table.project import Pad
 from patience import wait_for
+from pymavlink.dialects.v10 import ardupilotmega as old
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from mmrs_mavlink.sitl.items import MISSION, RALLY
+from mmrs_mavlink.sitl.radio import SimulatedRadio
 from mmrs_mavlink.sitl.transfers import Transfers
 
 pytestmark = pytest.mark.real_time("faults")
 
 PATIENCE = 60.0
-SLOW = 0.15
-"""Real seconds, either way: there and back it takes longer than the vehicles wait before they ask again."""
+SPEEDUP = 10.0
+SLOW = 0.15 * SPEEDUP
+"""Seconds of the run, either way: more, there and back, than the vehicles wait before they ask again."""
 
 
 @pytest.fixture
@@ -34,8 +37,8 @@ def refusals(monkeypatch):
 
 @pytest.mark.thorough
 def test_items_that_come_twice_since_the_way_is_long_end_no_upload(tmp_path, refusals):
-    with Fleet(tmp_path, [Pad("a")], GENERATED, speedup=10.0, delay=SLOW) as fleet:
-        fleet.start()
+    with Fleet(tmp_path, [Pad("a")], GENERATED, speedup=SPEEDUP) as fleet:
+        fleet.start("--inject", f"delay={SLOW}")
         plans = fleet.vehicles["a"].autopilot.stores
         # Rally points come last, after the mission was read back.
         assert wait_for(lambda: plans[RALLY], PATIENCE), fleet.process.said
@@ -43,9 +46,33 @@ def test_items_that_come_twice_since_the_way_is_long_end_no_upload(tmp_path, ref
         assert mavlink.MAV_MISSION_INVALID_SEQUENCE in refusals
 
 
-def test_a_port_that_stays_at_mavlink_1_is_named_at_once(tmp_path):
-    settings = {"a": {"mavlink": 1}}
-    with Fleet(tmp_path, [Pad("a")], GENERATED, speedup=10.0, settings=settings) as fleet:
+@pytest.fixture
+def old_ports(monkeypatch):
+    """Make vehicles send MAVLink 1 only, and take no other plans than missions (``GCS_Common.cpp``)."""
+    sender = old.MAVLink(None, srcSystem=1, srcComponent=1)
+    take = Transfers.take
+
+    def send(radio, message):
+        kind = getattr(old, type(message).__name__, None)
+        if kind is not None:
+            values = [getattr(message, name) for name in kind.fieldnames]
+            sent = kind(*(each.encode() if isinstance(each, str) else each for each in values))
+            radio.relay(bytes(sent.pack(sender)))
+            sender.seq = (sender.seq + 1) % 256
+
+    def take_missions(transfers, message):
+        if getattr(message, "mission_type", MISSION) == MISSION:
+            take(transfers, message)
+        elif message.get_type() != "MISSION_ACK":
+            peer = message.get_srcSystem(), message.get_srcComponent()
+            transfers._acknowledge(peer, mavlink.MAV_MISSION_UNSUPPORTED, message.mission_type)
+
+    monkeypatch.setattr(SimulatedRadio, "send", send)
+    monkeypatch.setattr(Transfers, "take", take_missions)
+
+
+def test_a_port_that_stays_at_mavlink_1_is_named_at_once(tmp_path, old_ports):
+    with Fleet(tmp_path, [Pad("a")], GENERATED, speedup=SPEEDUP) as fleet:
         process = fleet.start()
         process.end(PATIENCE)
         said = "\n".join(process.said)

@@ -62,7 +62,7 @@ class Driven:
 
 
 @contextmanager
-def rover(*policies, folder=None, **settings):
+def rover(*policies, folder=None, recharge=60.0, **settings):
     """Give a rover that is ready."""
     port = free_port()
     clock, links = RealClock(SPEEDUP), {"r": f"udpin:127.0.0.1:{port}"}
@@ -76,7 +76,9 @@ def rover(*policies, folder=None, **settings):
         {},
         live=Live(clock, lambda: None, lambda line: None, "run-0", folder, links=links),
     )
-    with SimulatedVehicle(port, Settings(kind="rover", **settings), speedup=SPEEDUP) as vehicle:
+    with SimulatedVehicle(
+        port, Settings(kind="rover", recharge=recharge, **settings), speedup=SPEEDUP
+    ) as vehicle:
         driven = Driven(MAVLINK.connect(given), clock, vehicle)
         try:
             driven.backend.prepare(clock.now())
@@ -107,7 +109,7 @@ def test_a_robot_without_a_take_off_is_watched_after_it_was_charged():
 
 
 def test_a_battery_that_does_not_get_full_is_borne_and_the_robot_watched_on():
-    with rover(Policy("BATTERY_LOW", "CONTINUE"), Policy("OBSTACLE", "HOLD")) as driven:
+    with rover(Policy("BATTERY_LOW", "CONTINUE"), Policy("OBSTACLE", "HOLD"), recharge=0.0) as driven:
         driven.do("out", "back")
         driven.vehicle.faults.begin("battery", 0.5)
         driven.begin("charge")

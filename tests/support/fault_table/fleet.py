@@ -46,7 +46,6 @@ class Fleet:
         speedup: float = 10.0,
         settings: Mapping[str, Mapping[str, object]] | None = None,
         watched: bool = False,
-        delay: float = 0.0,
     ) -> None:
         """Write a project, and make what flies it.
 
@@ -57,7 +56,6 @@ class Fleet:
             speedup: seconds of the run in a second.
             settings: of the vehicles, by robot.
             watched: whether somebody looks on, by a ground station of pymavlink's.
-            delay: real seconds that everything takes between vehicles and processes, either way.
         """
         self.folder, self.execution, self.speedup = folder, execution, speedup
         self.logs = folder / "logs"
@@ -71,9 +69,7 @@ class Fleet:
         for index, pad in enumerate(pads):
             port = free_port()
             given = Settings("copter", *home_of(index), **(settings or {}).get(pad.robot, {}))
-            self.vehicles[pad.robot] = SimulatedVehicle(
-                port, given, speedup=speedup, delay=delay, ground=self._ground
-            )
+            self.vehicles[pad.robot] = SimulatedVehicle(port, given, speedup=speedup, ground=self._ground)
             self._links[pad.robot] = f"{pad.robot}=udpin:127.0.0.1:{port}"
         if execution == "generated":
             mmrs("generate", str(self.behaviour), "--target", "mavlink-python", "-o", str(folder / "made"))

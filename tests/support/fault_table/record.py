@@ -156,7 +156,7 @@ def stops_short(vehicle: SimulatedVehicle, since: Struck) -> bool:
     """
     pilot = vehicle.autopilot
     (north, east, up), pace = _then(vehicle, since)
-    room = pace * pace / (2.0 * pilot.body.acceleration)
+    room = pace * pace / (2.0 * pilot.body.figures.acceleration)
     if since.falls:
         room = pace * sqrt(2.0 * up / GRAVITY)
     return hypot(pilot.body.place[0] - north, pilot.body.place[1] - east) <= room + MARGIN

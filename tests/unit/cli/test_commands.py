@@ -90,7 +90,7 @@ def completions(words, capfd, monkeypatch):
         ("mmrs plugin new roof --task p", ["polygon", "point"]),
         ("mmrs si", ["simulate", "sitl"]),
         ("mmrs sitl --f", ["--firmware", "--fault", "--for"]),
-        ("mmrs sitl --kind ", ["copter", "sub", "rover"]),
+        ("mmrs sitl --firmware ", ["ardupilot", "px4"]),
         ("mmrs migrate --m", ["--mapping", "--metamodels"]),
         ("mmrs can ", ["dbc", "hub", "monitor", "load"]),
         ("mmrs auv sitl --sp", ["--speedup"]),

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from math import isfinite, remainder
+from math import isfinite
 from pathlib import Path
 from typing import Any
 
@@ -19,14 +19,13 @@ from mmrs_core.errors import UnsupportedError
 from mmrs_core.languages.modelset import model_in
 from mmrs_core.scene import RobotType
 from mmrs_mavlink.plugin.vehicles import profile_of, profile_of_type, uncarried
-from mmrs_mavlink.sitl.battery import load_at
 from mmrs_mavlink.sitl.parameters import defaults
 from mmrs_mavlink.sitl.settings import Settings
 from mmrs_mavlink.sitl.vehicle import SimulatedVehicle
 from mmrs_runtime.sights import Sight
 
-SPACING = 0.0001
-"""Degrees of longitude between vehicles without a model."""
+PLACE = (42.37, 13.35)
+"""Degrees of the home of each robot of a local mission, which has no place on the Earth."""
 
 LAST_PORT = 65_535
 MILLIAMPERE_HOUR = 3.6
@@ -50,9 +49,6 @@ class SimulatedFleet:
     host: str = "127.0.0.1"
     ground: str = ""
     speedup: float = 1.0
-    loss: float = 0.0
-    delay: float = 0.0
-    seed: int = 0
     settings: Mapping[str, Any] = field(default_factory=dict)
 
     def vehicles(self, members: Members) -> tuple[tuple[str, SimulatedVehicle], ...]:
@@ -92,36 +88,15 @@ class SimulatedFleet:
             settings,
             host=self.host,
             speedup=self.speedup,
-            loss=self.loss,
-            delay=self.delay,
-            seed=self.seed,
             ground=_address(self.ground) if self.ground else None,
         )
-
-
-def plain_members(count: int, home: str, kind: str) -> Members:
-    """Return vehicles without a model, side by side from west to east.
-
-    Raises:
-        typer.BadParameter: the home is not a position, or there is no such kind.
-    """
-    latitude, longitude = pair(home, "--home")
-    if not (-90.0 <= latitude <= 90.0 and -180.0 <= longitude <= 180.0):
-        raise typer.BadParameter(
-            f"--home {home}: not a position: LATITUDE is from -90 to 90, LONGITUDE from -180 to 180"
-        )
-    easts = [remainder(longitude + SPACING * n, 360.0) for n in range(count)]
-    try:
-        return {f"Vehicle{n}": Settings(kind, latitude, east) for n, east in enumerate(easts, start=1)}
-    except ValueError as error:
-        raise typer.BadParameter(f"--kind {error}") from error
 
 
 def members_of(settings: CliSettings, path: Path, sights: Sequence[Sight] = ()) -> Members:
     """Return the robots of a behaviour or of a mission, with objects at metres from its origin.
 
     Raises:
-        UnsupportedError: a robot has no home, or no simulated vehicle carries it; the mission is local.
+        UnsupportedError: a robot has no home, or no simulated vehicle carries it.
         InvalidModelError: the models are invalid.
     """
     session = Session(settings)
@@ -151,9 +126,10 @@ def members_of(settings: CliSettings, path: Path, sights: Sequence[Sight] = ()) 
     if homeless := [name for name, _, home, _ in crew if home is None]:
         raise UnsupportedError(f"{path}: no home for {', '.join(homeless)}")
     homes = [home[:2] for _, _, home, _ in crew if home is not None]
+    places = [PLACE] * len(homes) if frame.is_local else degrees_of(homes, frame)
     made = {}
     for (name, type, _, payload), profile, place, (east, north) in zip(
-        crew, profiles, degrees_of(homes, frame), homes, strict=True
+        crew, profiles, places, homes, strict=True
     ):
         seen = tuple(replace(each, north=each.north - north, east=each.east - east) for each in sights)
         if profile is not None:
@@ -163,10 +139,10 @@ def members_of(settings: CliSettings, path: Path, sights: Sequence[Sight] = ()) 
 
 
 def _with_battery(settings: Settings, payload: float, type: RobotType) -> Settings:
-    """Return settings with the battery of a type, which lasts its lifetime at full speed."""
+    """Return settings with the battery of a type, which lasts its lifetime."""
     able = [each for each in type.capabilities if each.payload >= payload]
     if able and able[0].lifetime is not None:
-        settings = replace(settings, energy=able[0].lifetime * load_at(able[0].speed[1]))
+        settings = replace(settings, energy=able[0].lifetime)
     recharge = max((each.recharge_time or 0.0 for each in type.batteries), default=0.0)
     voltage = type.batteries[0].voltage if type.batteries else None
     if voltage is None:

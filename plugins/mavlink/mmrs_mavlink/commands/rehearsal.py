@@ -19,17 +19,10 @@ from mmrs_core.cli.typed import typed_lines
 from mmrs_core.errors import InternalError
 from mmrs_mavlink.commands.schedule import Schedule, Vehicles, checked, inject
 from mmrs_mavlink.sitl.autopilot import SimulatedAutopilot
-from mmrs_mavlink.sitl.faults import FAULTS
 from mmrs_mavlink.sitl.vehicle import Host, SimulatedVehicle
 
 POLL_SECONDS = 0.1
 QUIT = frozenset({"quit", "exit"})
-
-
-def fault_list() -> None:
-    """Print the names of all faults."""
-    for name, fault in FAULTS.items():
-        say(f"{name}{'  (one-shot)' if fault.clear is None else ''}")
 
 
 class Rehearsal:

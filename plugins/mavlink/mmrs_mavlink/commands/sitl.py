@@ -22,31 +22,12 @@ app = typer.Typer(rich_markup_mode=None, add_completion=False)
 def sitl(
     call: typer.Context,
     behaviour: Annotated[
-        Path | None,
+        Path,
         typer.Argument(
             metavar="BEHAVIOUR|PROJECT",
-            help="Mission or behaviour; one vehicle starts at the home of each robot. Default: --count "
-            "vehicles at --home.",
+            help="Mission or behaviour; one vehicle starts at the home of each robot.",
         ),
-    ] = None,
-    count: Annotated[
-        int,
-        typer.Option(
-            "--count", metavar="N", min=1, max=250, help="Number of vehicles when no model is given."
-        ),
-    ] = 1,
-    home: Annotated[
-        str, typer.Option("--home", metavar="LATITUDE,LONGITUDE", help="Home of the first such vehicle.")
-    ] = "42.37,13.35",
-    kind: Annotated[
-        str,
-        typer.Option(
-            "--kind",
-            metavar="copter|sub|rover",
-            help="Vehicle type.",
-            autocompletion=one_of("copter", "sub", "rover"),
-        ),
-    ] = "copter",
+    ],
     firmware: Annotated[
         str,
         typer.Option(
@@ -91,7 +72,7 @@ def sitl(
             "--energy",
             metavar="SECONDS",
             min=1.0,
-            help="Hover time of a full battery, in seconds. Default: by robot type.",
+            help="Endurance of a full battery, in seconds. Default: by robot type.",
         ),
     ] = None,
     recharge: Annotated[
@@ -109,22 +90,13 @@ def sitl(
             "--parameter", metavar="NAME=VALUE", help="Autopilot parameter set on all vehicles. Repeatable."
         ),
     ] = None,
-    loss: Annotated[
-        float,
-        typer.Option("--loss", metavar="FRACTION", min=0.0, max=0.9, help="Packet loss, as a fraction."),
-    ] = 0.0,
-    delay: Annotated[
-        float,
-        typer.Option("--delay", metavar="SECONDS", min=0.0, max=10.0, help="Packet latency in real seconds."),
-    ] = 0.0,
-    seed: Annotated[int, typer.Option("--seed", metavar="N", min=0, help="Random seed for packet loss.")] = 0,
     fault: Annotated[
         _Texts,
         typer.Option(
             "--fault",
             metavar="[ROBOT:]FAULT[=VALUE,…][@SECONDS[+SECONDS]]",
             help="Fault to inject: into ROBOT (default: all robots), @SECONDS after arming (default: 0), for "
-            "+SECONDS (default: until cleared). '--fault list' lists the faults. Repeatable.",
+            "+SECONDS (default: until cleared). Repeatable.",
         ),
     ] = None,
     surroundings: Annotated[
@@ -149,12 +121,9 @@ def sitl(
     Example: mmrs sitl examples/carbon-dioxide --speedup 5 --fault 'Alba:gps-lost@60+20'
     """
     from mmrs_core.simulation.surroundings import sights_in
-    from mmrs_mavlink.commands.fleet import SimulatedFleet, members_of, pair, parameter, plain_members
-    from mmrs_mavlink.commands.rehearsal import Rehearsal, fault_list
+    from mmrs_mavlink.commands.fleet import SimulatedFleet, members_of, pair, parameter
+    from mmrs_mavlink.commands.rehearsal import Rehearsal
 
-    if fault == ["list"]:
-        fault_list()
-        return 0
     batteries = {"energy": energy, "recharge": recharge}
     fleet = SimulatedFleet(
         port=port,
@@ -162,34 +131,15 @@ def sitl(
         host=host,
         ground=ground,
         speedup=speedup,
-        loss=loss,
-        delay=delay,
-        seed=seed,
         settings={name: value for name, value in batteries.items() if value is not None}
         | {"firmware": firmware, "wind": pair(wind, "--wind")}
         | {"parameters": dict(map(parameter, parameters or ()))},
     )
-    if behaviour is None:
-        members = plain_members(count, home, kind)
-    else:
-        _refuse_beside(call, behaviour, ("count", "home", "kind"))
-        sights = sights_in(surroundings) if surroundings is not None else ()
-        members = members_of(settings_of(call), behaviour, sights)
+    sights = sights_in(surroundings) if surroundings is not None else ()
+    members = members_of(settings_of(call), behaviour, sights)
     rehearsal = Rehearsal(fleet.vehicles(members), fault or [])
     arguments = fleet.arguments(members)
     code = rehearsal.run(seconds, started=lambda: None if json else say(shlex.join(arguments)), quiet=json)
     if json:
         say_json({"vehicles": rehearsal.summaries(), "connect": arguments})
     return code
-
-
-def _refuse_beside(call: typer.Context, behaviour: Path, names: tuple[str, ...]) -> None:
-    """Refuse the options of vehicles without a model.
-
-    Raises:
-        typer.BadParameter: one was given.
-    """
-    for name in names:
-        source = call.get_parameter_source(name)
-        if source is not None and source.name != "DEFAULT":
-            raise typer.BadParameter(f"--{name}: not allowed with '{behaviour}', whose robots define it")

@@ -7,12 +7,11 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, fields
 from typing import Any
 
-from mmrs_core.behaviour.earth import degrees_of, metres
+from mmrs_core.behaviour.earth import metres
 from mmrs_core.behaviour.program import Action, Heading, Move, RobotProgram
 from mmrs_core.behaviour.rally_points import RallyPoints, rally_points_of
 from mmrs_core.behaviour.travel import capability_of, travel_margins_of
 from mmrs_core.contributions.targets import TargetInput
-from mmrs_core.generation.context import require_home
 from mmrs_core.generation.escaping import Call, Constant
 from mmrs_core.generation.planned_moves import kinematics_of
 from mmrs_core.generation.python import MOVEMENTS, PythonDriver, go_to, place_of, python_target
@@ -21,7 +20,6 @@ from mmrs_core.generation.python.program import program_of
 from mmrs_core.generation.safety import areas_of, policies_of
 from mmrs_core.scene import Name, Point, Policy
 from mmrs_mavlink import program as words
-from mmrs_mavlink.options import FIRST_PORT, PORT_STEP
 from mmrs_mavlink.plugin.capabilities import OF_CONTROLLERS, WIRINGS
 from mmrs_mavlink.plugin.charges import charge_of
 from mmrs_mavlink.plugin.context import VehicleContext, context_of, neighbours_of, templates_of, vehicleless
@@ -29,7 +27,7 @@ from mmrs_mavlink.plugin.escapes import Escape, escapes_of, straight_lines_are_c
 from mmrs_mavlink.plugin.fencing import Fence, fence_faults, fences_of
 from mmrs_mavlink.plugin.headings import NO_TURNING, gimbal_of, on_gimbal, turns_to
 from mmrs_mavlink.plugin.runs import MoveRun, runs_of
-from mmrs_mavlink.profiles import ARDUPILOT, PROFILES
+from mmrs_mavlink.profiles import PROFILES
 from mmrs_mavlink.wiring import Sampled, Wired
 
 
@@ -187,10 +185,6 @@ class MavlinkPython(PythonDriver[VehicleContext]):
         if _escapes_alone(robot, input) and not straight_lines_are_clear(context, input, points):
             yield "straight", False
 
-    def readme(self, input: TargetInput) -> Mapping[str, object]:
-        """Return how its controllers are tried with simulated vehicles."""
-        return {"local": input.program.frame.is_local, "rehearsal": tuple(_rehearsal(self, input))}
-
 
 DRIVER = MavlinkPython()
 MAVLINK_PYTHON = python_target(DRIVER)
@@ -230,27 +224,6 @@ def _operate(action: Action, wiring: Wired) -> Call:
         named.append(("trial", True))
     given = (_named(wiring.command), tuple(map(float, wiring.params)), wiring.seconds)
     return Call("Operate", (action.device, action.name, *given), tuple(named))
-
-
-def _rehearsal(driver: MavlinkPython, input: TargetInput) -> Iterator[str]:
-    """Yield the arguments of a simulated vehicle for each robot: where its controller expects one.
-
-    A local behaviour has no place on the Earth, and its robots count from wherever their vehicles are.
-    """
-    frame = input.program.frame
-    driven = [robot for robot in input.program.robots if not driver.undriven(robot, input)]
-    for number, robot in enumerate(driven):
-        profile = context_of(robot, input).profile
-        if not profile.rehearsed_as:
-            continue
-        port = FIRST_PORT + PORT_STEP * number
-        given = f"--port {port} --system {number + 1} --kind {profile.rehearsed_as}"
-        if profile.rehearsed_with != ARDUPILOT.name:
-            given += f" --firmware {profile.rehearsed_with}"
-        if not frame.is_local:
-            ((latitude, longitude),) = degrees_of([require_home(robot)[:2]], frame)
-            given += f" --home={latitude:.7f},{longitude:.7f}"
-        yield given
 
 
 def _protection(robot: RobotProgram, input: TargetInput) -> _Protection:

@@ -11,7 +11,7 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 from mmrs_mavlink.profiles import VehicleProfile
 from mmrs_mavlink.sitl import parameters
 from mmrs_mavlink.sitl.battery import Battery
-from mmrs_mavlink.sitl.body import Body, Vector, wind_of
+from mmrs_mavlink.sitl.body import Body, Vector
 from mmrs_mavlink.sitl.camera import Camera
 from mmrs_mavlink.sitl.items import FENCE, MISSION, MOVING, RALLY, StoredItem
 from mmrs_mavlink.sitl.settings import PX4, Settings
@@ -59,6 +59,7 @@ class SimulatedAutopilot:
         return_path: positions to pass on a return. breadcrumbs: positions for SmartRTL.
         located: whether it has a position. arming_fault: failed pre-arm check; empty: none.
         motor_failed: whether a motor has failed, with which it cannot fly.
+        wind: metres per second, and degrees that it comes from.
         obstacle: metres, and degrees clockwise from its nose.
         breached: whether it is outside its fence. forced_breach: whether an injected fault says so.
         silent: commands that it does not answer.
@@ -72,7 +73,7 @@ class SimulatedAutopilot:
     def __init__(self, settings: Settings) -> None:
         """Stand at home after boot."""
         self.settings = settings
-        self.body = Body(settings.profile.pacing.step, wind=wind_of(*settings.wind))
+        self.body = Body(settings.profile.pacing.step)
         self.battery = Battery(settings.energy, settings.capacity, settings.cells)
         self.camera = Camera()
         self.parameters = parameters.defaults(settings)
@@ -86,6 +87,7 @@ class SimulatedAutopilot:
         self.modes: list[tuple[float, int]] = []
         self.said: list[tuple[float, int, str]] = []
         self.located, self.arming_fault = True, ""
+        self.wind = settings.wind
         self.motor_failed = False
         self.obstacle: tuple[float, float] | None = None
         self.silent = settings.silent

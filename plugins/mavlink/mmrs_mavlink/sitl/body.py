@@ -31,7 +31,7 @@ STILL: Vector = (0.0, 0.0, 0.0)
 
 
 @dataclass(slots=True)
-class Leg:
+class CurvedLeg:
     """A straight leg from a stop to a stop.
 
     Attributes:
@@ -104,8 +104,6 @@ class Body:
         curved: whether it takes legs as S-curves. figures: how it takes them, or else approaches its target.
         radius: metres from a corner within which it passes.
         speed: commanded ground speed, metres per second; climb, descent: limits of the vertical speed.
-        wind: mean velocity of the air, metres per second north, east and up.
-        adrift: whether it drifts with the wind.
     """
 
     figures: LegFigures
@@ -122,11 +120,9 @@ class Body:
     climb: float = inf
     descent: float = inf
     turn_rate: float = 90.0
-    wind: Vector = STILL
-    adrift: bool = False
     error: tuple[float, float] = (0.0, 0.0)
     _acceleration: Vector = STILL
-    _legs: list[Leg] = field(default_factory=list)
+    _legs: list[CurvedLeg] = field(default_factory=list)
     _fastest: float = 0.0
     """Largest speed since it last stood still."""
     _start: Vector = STILL
@@ -141,7 +137,7 @@ class Body:
             seconds -= step
             if self.driven is not None:
                 self._drive(*self.driven, step)
-            elif self.target is None or self.adrift or not self.curved:
+            elif self.target is None or not self.curved:
                 self._approach(self.target, step)
             elif not self._follow_legs(self.target, step):
                 self._approach(None, step)
@@ -168,11 +164,6 @@ class Body:
     def pace(self) -> float:
         """Return the ground speed."""
         return hypot(*self.velocity)
-
-    @property
-    def air_pace(self) -> float:
-        """Return the horizontal air speed."""
-        return hypot(self.velocity[0] - self.wind[0], self.velocity[1] - self.wind[1])
 
     def rest_at(self, up: float) -> None:
         """Stop at a height."""
@@ -224,7 +215,7 @@ class Body:
         self.position = position
         return True
 
-    def _leg(self, start: Vector, end: Vector) -> Leg:
+    def _leg(self, start: Vector, end: Vector) -> CurvedLeg:
         path = plus(end, start, -1.0)
         length = max(hypot(*path), CLOSE)
         figures, speed, acceleration = (
@@ -236,7 +227,7 @@ class Body:
             steep = length / abs(path[2])
             speed = min(speed, steep * self._rate(path[2]))
             acceleration = min(acceleration, steep * (figures.vertical_acceleration or inf))
-        return Leg(path, length, speed, acceleration, figures.jerk)
+        return CurvedLeg(path, length, speed, acceleration, figures.jerk)
 
     def _rate(self, rise: float) -> float:
         """Return the largest vertical speed."""
@@ -263,8 +254,6 @@ class Body:
         rate = min(_root(abs(path[2]), upwards, figures.jerk), self._rate(path[2]))
         part = pace / max(hypot(*path[:2]), CLOSE)
         wanted = (path[0] * part, path[1] * part, rate if path[2] > 0.0 else -rate)
-        if self.adrift:
-            wanted = (self.wind[0], self.wind[1], wanted[2])
         error = plus(wanted, self.velocity, -1.0)
         size, jerk = max(hypot(*error[:2]), CLOSE), figures.jerk
         part = min(_rooted(size, jerk / level, jerk), level, size / step) / size
@@ -278,8 +267,8 @@ class Body:
 
     def _aim(self, target: Vector | None) -> Vector:
         """Return what it heads for: a place beyond a target, by its overshoot, until it has slowed down."""
-        if target is None:
-            return self.position
+        if target is None or target[:2] == self.position[:2]:
+            return target or self.position
         (north, east, _), pace = self.velocity, hypot(*self.velocity[:2])
         self._fastest = max(self._fastest, pace) if pace > SLOW else 0.0
         beyond = BEYOND * self._fastest if self.figures.overshoot else 0.0
@@ -321,11 +310,6 @@ def _rooted(error: float, gain: float, limit: float) -> float:
     """Return the correction of an error, as ``sqrt_controller`` does (``control.cpp``)."""
     linear = limit / gain**2
     return sqrt(2.0 * limit * (error - linear / 2.0)) if error > linear else error * gain
-
-
-def wind_of(speed: float, comes_from: float) -> Vector:
-    """Return the velocity of the air from a wind speed and the direction it comes from, in degrees."""
-    return (-speed * cos(radians(comes_from)), -speed * sin(radians(comes_from)), 0.0)
 
 
 def plus(a: Vector, b: Vector, factor: float) -> Vector:

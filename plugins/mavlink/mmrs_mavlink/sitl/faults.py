@@ -8,7 +8,6 @@ from dataclasses import dataclass
 from math import cos, isfinite, radians, sin
 
 from mmrs_mavlink.sitl.autopilot import SimulatedAutopilot
-from mmrs_mavlink.sitl.body import wind_of
 
 
 class Faults:
@@ -93,7 +92,7 @@ def _change_mode(faults: Faults, mode: str) -> None:
 def _change_battery(faults: Faults, level: float) -> None:
     if not 0.0 <= level <= 1.0:
         raise ValueError(f"{level:g} is not from 0 to 1")
-    faults.pilot.battery.change(level)
+    faults.pilot.battery.level = level
 
 
 def _jump_clock(faults: Faults, seconds: float) -> None:
@@ -155,8 +154,8 @@ FAULTS: Mapping[str, Fault] = {
     ),
     "motor-failed": Fault(_fail_motor, _setter("motor_failed", False, pilots=True)),
     "wind": Fault(
-        lambda faults, *wind: setattr(faults.pilot.body, "wind", wind_of(*wind)),
-        lambda faults: setattr(faults.pilot.body, "wind", wind_of(0.0, 0.0)),
+        lambda faults, *wind: setattr(faults.pilot, "wind", wind),
+        _setter("wind", (0.0, 0.0), pilots=True),
         (REQUIRED, 0.0),
     ),
 }

@@ -33,8 +33,12 @@ IMITATED: tuple[tuple[str, str, str], ...] = (
     ("fence broken", "polygons, circles, radius and height, once a second; FENCE_ACTION", UNCONFIRMED),
     ("return", "to the nearest of home and rally points, or back along its path", COPTER),
     ("manual control of a submarine", "sticks as speeds; disarms without them", UNCONFIRMED),
-    ("wind", "reported, costs energy, carries off a copter without a position", UNCONFIRMED),
-    ("battery", "endurance of the robot type; more power at speed; recharges while disarmed", UNCONFIRMED),
+    ("wind", "reported; moves and costs nothing", UNCONFIRMED),
+    (
+        "battery",
+        "lasts as long as the robot type says, whatever it does; recharges while disarmed",
+        UNCONFIRMED,
+    ),
     ("signed links, MAVLink 1 ports", "all that is sent", UNCONFIRMED),
 )
 """(what, how, on which firmware a real flight has confirmed it)."""

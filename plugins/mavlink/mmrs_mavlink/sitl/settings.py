@@ -23,15 +23,13 @@ class Settings:
         firmware: ``ardupilot``, or ``px4`` for copters.
         boot: seconds after boot in which uploads are refused and mode changes are lost.
         ready: seconds after boot until it has a position and can be armed.
-        energy: seconds of hovering until the battery is empty. capacity: of the battery, mAh; cells: of it.
+        energy: seconds armed until the battery is empty. capacity: of the battery, mAh; cells: of it.
         recharge: seconds disarmed until the battery is full; 0: never.
         tells_battery: whether it measures its battery.
-        falls: whether its motors stop in the air when the battery is empty.
         wind: metres per second, and degrees that it comes from.
         values: sensors by name, published as NAMED_VALUE_FLOAT: functions of the time in seconds.
         sights: objects that its photos can show, in metres from its home.
         refuse: commands answered with UNSUPPORTED. silent: commands that are never answered.
-        mavlink: the only MAVLink version that its port speaks, 1 or 2.
         key: signing key, 32 bytes; empty: unsigned.
         parameters: those that differ from the defaults.
     """
@@ -49,13 +47,11 @@ class Settings:
     cells: int = USUAL_CELLS
     recharge: float = 0.0
     tells_battery: bool = True
-    falls: bool = True
     wind: tuple[float, float] = (0.0, 0.0)
     values: Mapping[str, Callable[[float], float]] = field(default_factory=dict)
     sights: tuple[Sight, ...] = ()
     refuse: frozenset[int] = frozenset()
     silent: frozenset[int] = frozenset()
-    mavlink: int = 2
     key: bytes = b""
     parameters: Mapping[str, float] = field(default_factory=dict)
 

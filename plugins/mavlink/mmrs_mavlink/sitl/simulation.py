@@ -4,10 +4,7 @@ from __future__ import annotations
 
 from math import dist
 
-from pymavlink.dialects.v20 import ardupilotmega as mavlink
-
-from mmrs_mavlink.sitl.autopilot import MANUAL, SimulatedAutopilot
-from mmrs_mavlink.sitl.battery import load_of
+from mmrs_mavlink.sitl.autopilot import SimulatedAutopilot
 from mmrs_mavlink.sitl.control import decide
 from mmrs_mavlink.sitl.failsafes import watch
 
@@ -42,14 +39,10 @@ def _move(pilot: SimulatedAutopilot, seconds: float) -> None:
         _fall(pilot, seconds)
         return
     body = pilot.body
-    body.adrift = pilot.airborne and (not pilot.located or pilot.mode_name in MANUAL)
     if pilot.time >= pilot.climbs_at:
         body.advance(seconds)
-    pilot.battery.drain(seconds, load_of(body) if pilot.flies else 0.3 + 0.7 * min(1.0, body.pace))
+    pilot.battery.drain(seconds)
     pilot.camera.move(body)
-    if pilot.airborne and pilot.battery.level <= 0.0 and pilot.settings.falls:
-        pilot.say(mavlink.MAV_SEVERITY_CRITICAL, "Battery 1 is empty, motors stop")
-        pilot.armed = False
     if pilot.flies:
         _touch_ground(pilot)
     elif body.position[2] > 0.0:

@@ -6,7 +6,7 @@ import time
 from collections.abc import Callable, Mapping
 from functools import cache
 from inspect import signature
-from math import atan2, degrees, hypot, radians
+from math import cos, hypot, radians, sin
 from typing import Any
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
@@ -211,13 +211,13 @@ def _fence(pilot: SimulatedAutopilot) -> Message | None:
 
 
 def _wind(pilot: SimulatedAutopilot) -> Message:
-    north, east, _ = pilot.body.wind
-    return mavlink.MAVLink_wind_message(degrees(atan2(-east, -north)) % 360.0, hypot(north, east), 0.0)
+    speed, comes_from = pilot.wind
+    return mavlink.MAVLink_wind_message(comes_from, speed, 0.0)
 
 
 def _wind_estimate(pilot: SimulatedAutopilot) -> Message:
-    north, east, _ = pilot.body.wind
-    return message("wind_cov", time_usec=milliseconds(pilot) * 1000, wind_x=north, wind_y=east)
+    speed, towards = pilot.wind[0], radians(pilot.wind[1] + 180.0)
+    return message("wind_cov", wind_x=speed * cos(towards), wind_y=speed * sin(towards))
 
 
 def _obstacle(pilot: SimulatedAutopilot) -> Message | None:

@@ -52,14 +52,11 @@ class Transfers:
         send: Callable[[Message], None],
         say: Callable[[int, str], None],
         autopilot: Autopilot,
-        *,
-        old: bool = False,
     ) -> None:
-        """Create without a transfer; `old`: on a MAVLink 1 port, which accepts missions only."""
         self.stores = stores
         self.busy = False
         self.home: Callable[[], StoredItem] | None = None
-        self._send, self._say, self._autopilot, self._old = send, say, autopilot, old
+        self._send, self._say, self._autopilot = send, say, autopilot
         self._px4 = autopilot.copies_bytes
         self._retry, self._timeout = (0.25, 5.0) if self._px4 else (1.0, 8.0)
         self._uploads: dict[int, _Upload] = {}
@@ -81,11 +78,7 @@ class Transfers:
         if handler is None:
             return
         peer, kind = (message.get_srcSystem(), message.get_srcComponent()), message.mission_type
-        if self._old and kind != MISSION and handler != self._end:
-            self._say(mavlink.MAV_SEVERITY_WARNING, "Need mavlink2 for item transfer")
-            self._acknowledge(peer, mavlink.MAV_MISSION_UNSUPPORTED, kind)
-        else:
-            handler(message, peer, kind)
+        handler(message, peer, kind)
 
     def advance(self, now: float, timeout: float) -> None:
         """Repeat unanswered requests, and abort a transfer that times out, after `timeout` s at least."""

@@ -57,9 +57,6 @@ class SimulatedVehicle:
         *,
         host: str = "127.0.0.1",
         speedup: float = 1.0,
-        loss: float = 0.0,
-        delay: float = 0.0,
-        seed: int = 0,
         ground: tuple[str, int] | None = None,
     ) -> None:
         """Create a vehicle, which sends nothing before `start`.
@@ -69,9 +66,6 @@ class SimulatedVehicle:
             settings: of the vehicle.
             host: of the controller.
             speedup: simulated seconds per real second.
-            loss: fraction of packets lost, in each direction.
-            delay: packet latency in real seconds.
-            seed: of the losses.
             ground: host and UDP port of a ground station with a radio of its own.
 
         Raises:
@@ -85,18 +79,15 @@ class SimulatedVehicle:
         self.on_tick: Callable[[], None] = lambda: None
         self.lock = threading.RLock()
         self.faults = Faults(pilot, self.lock, watched=ground is not None)
-        old, key = given.mavlink == 1, given.key
-        self.radio = SimulatedRadio(
-            (host, port), given.system, key=key, loss=loss, delay=delay, seed=seed, old=old
-        )
+        self.radio = SimulatedRadio((host, port), given.system, given.key)
         self.radio.silent = lambda: self.faults.send_down
         self.radio.down = lambda: self.faults.link_down or pilot.booting
         self.radios = [self.radio]
         if ground is not None:
-            self.radios.append(SimulatedRadio(ground, given.system, key=key))
+            self.radios.append(SimulatedRadio(ground, given.system, given.key))
             self.radios[1].down = lambda: self.faults.ground_down or pilot.booting
         like = given.profile.autopilot
-        self._transfers = Transfers(pilot.stores, self._send, pilot.say, like, old=old)
+        self._transfers = Transfers(pilot.stores, self._send, pilot.say, like)
         self._transfers.home = self._home if like.missions.begins_with_home else None
         self._parameters = ParameterService(pilot.parameters, like, self._send)
         self.streams = Streams(pilot, self._send)
@@ -151,10 +142,6 @@ class SimulatedVehicle:
             self._transfers.advance(pilot.time, pilot.link_timeout / 4.0)
             self.streams.advance()
             self._parameters.advance()
-            for radio in self.radios:
-                radio.flush()
-            if any(radio.pending for radio in self.radios):
-                self.receive()
 
     def _send(self, message: Message) -> None:
         for radio in self.radios:

@@ -202,7 +202,7 @@ def grow_old(made):
 
 
 def test_a_restart_in_the_air_is_a_fault(in_the_air):
-    made = in_the_air(falls=False)
+    made = in_the_air()
     grow_old(made)
     made.simulated.faults.begin("restart", "armed")
     assert made.caught().event == "VEHICLE_RESTARTED"

@@ -2,16 +2,13 @@
 
 from __future__ import annotations
 
-import shlex
 from dataclasses import replace
 
 import pytest
-from mmrs_multicopter.testing import LAND, go_to, quad, robot_program, take_off, target_input, two_drones
+from mmrs_multicopter.testing import LAND, go_to, quad, robot_program, take_off, target_input
 
-from mmrs_core.behaviour.earth import degrees_of
 from mmrs_core.errors import UnsupportedError
 from mmrs_core.generation.render import render
-from mmrs_core.scene import Frame
 from mmrs_core.testing.programs import program
 from mmrs_core.transformation.kinds import PLAIN_ROBOT
 from mmrs_mavlink.plugin.controllers import MAVLINK_PYTHON
@@ -19,7 +16,6 @@ from mmrs_mavlink.plugin.plans.qgc import QGC_PLAN
 from mmrs_mavlink.plugin.plans.wpl import WPL
 from mmrs_mavlink.plugin.vehicles import profile_of_type
 from mmrs_mavlink.profiles import ARDUPILOT, PROFILES
-from mmrs_mavlink.sitl.__main__ import parser_of_arguments
 
 WORDS = {word for profile in PROFILES.values() for word in profile.words}
 KITE = ("urn:kites:1.0", "Kite")
@@ -66,33 +62,3 @@ def test_every_kind_that_is_installed_names_its_vehicle(contributions):
     assert {each.name: each.vehicle in WORDS for each in installed.values()} == dict.fromkeys(
         (each.name for each in installed.values()), True
     )
-
-
-def rehearsal(behaviour, *types):
-    files = {each.path: each.content for each in render(MAVLINK_PYTHON, target_input(behaviour, types))}
-    start = "    python -m mmrs_mavlink.sitl "
-    lines = files["README.md"].decode().splitlines()
-    return [
-        parser_of_arguments().parse_args(shlex.split(line.removeprefix(start)))
-        for line in lines
-        if line.startswith(start)
-    ]
-
-
-def test_the_rehearsal_that_the_readme_prints_begins_at_the_homes_of_that_mission():
-    far = replace(two_drones(), frame=Frame("EPSG:4326", -33.9, -70.4, 500.0, "MSL"))
-    crawler = replace(quad(), name="Crawler", metaclasses=(("urn:mmrs:robot:1.0", "Robot"),))
-    last = robot_program("crawls", [], home=(5.0, -7.0, 0.0), type_name="Crawler")
-    far = replace(far, robots=(*far.robots, last))
-    started = rehearsal(far, quad(), crawler)
-    homes = degrees_of([robot.home[:2] for robot in far.robots], far.frame)
-    assert [tuple(map(float, each.home.split(","))) for each in started] == list(homes)
-    assert [each.port for each in started] == [14_550, 14_560, 14_570]
-    assert [each.kind for each in started] == ["copter", "copter", "rover"]
-
-
-def test_the_readme_gives_a_local_mission_no_place_on_the_earth():
-    local = replace(two_drones(), frame=replace(two_drones().frame, latitude=None, longitude=None))
-    files = {each.path: each.content for each in render(MAVLINK_PYTHON, target_input(local))}
-    assert b"--home" not in files["README.md"]
-    assert b"the vehicles may stand anywhere" in files["README.md"]

@@ -96,7 +96,7 @@ def test_a_ground_station_that_was_never_connected_is_not_missed():
 )
 def test_a_low_battery_is_answered_after_its_timer(kind, action, mode):
     bench = out(kind, BATT_FS_LOW_ACT=action, BATT_LOW_MAH=1500.0, BATT_LOW_VOLT=0.0)
-    bench.pilot.battery.change(0.29)
+    bench.pilot.battery.level = 0.29
     bench.wait(9.0)
     assert bench.pilot.mode_name == "guided"
     bench.wait(2.0)
@@ -107,7 +107,7 @@ def test_a_low_battery_is_answered_after_its_timer(kind, action, mode):
 def test_a_critical_battery_takes_precedence_over_a_low_one():
     bench = out(BATT_FS_LOW_ACT=2, BATT_LOW_MAH=1500.0, BATT_FS_CRT_ACT=1, BATT_CRT_MAH=1000.0)
     for level, mode in ((0.28, "return"), (0.15, "land")):
-        bench.pilot.battery.change(level)
+        bench.pilot.battery.level = level
         bench.wait(12.0)
         assert bench.pilot.mode_name == mode
 

@@ -1,15 +1,12 @@
-"""The link of a vehicle: parameters, requests, rates, detections, packet loss and latency."""
+"""The link of a vehicle: parameters, requests, rates and detections."""
 
 from __future__ import annotations
 
-import socket
-import time
 from collections import Counter
 
 import pytest
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from mmrs_mavlink.sitl.radio import SimulatedRadio
 from mmrs_runtime.sights import Sight
 
 LONG = "a float with a very long name"
@@ -154,29 +151,3 @@ def test_detected_objects_are_reported_with_their_position_if_that_fits(ground):
         f"detected {LONG}",
         None,
     ]
-
-
-def test_a_lossy_link_loses_its_fraction_of_packets():
-    sent = []
-    for loss in (0.0, 0.5):
-        radio = SimulatedRadio(("127.0.0.1", 9), 1, loss=loss, seed=3)
-        for _ in range(200):
-            radio.send(mavlink.MAVLink_statustext_message(6, b"lost?"))
-        sent.append(radio.sent)
-        radio.close()
-    assert sent[0] == 200
-    assert sent[1] == pytest.approx(100, abs=20)
-
-
-def test_a_slow_link_delays_packets():
-    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as receiver:
-        receiver.bind(("127.0.0.1", 0))
-        receiver.settimeout(1.0)
-        radio = SimulatedRadio(receiver.getsockname(), 1, delay=0.2)
-        began = time.monotonic()
-        radio.send(mavlink.MAVLink_statustext_message(6, b"late"))
-        while radio.sent == 0:
-            radio.flush()
-        assert receiver.recv(100)
-        assert time.monotonic() - began >= 0.2
-        radio.close()

@@ -16,13 +16,13 @@ CANCELLED = mavlink.MAV_MISSION_OPERATION_CANCELLED
 class Exchange:
     """A vehicle's side of the protocol, and all its answers."""
 
-    def __init__(self, firmware: str = "ardupilot", **port: bool) -> None:
+    def __init__(self, firmware: str = "ardupilot") -> None:
         self.answers = []
         self.stores = {0: list(OLD), 1: list(OLD), 2: []}
         self.said = []
         say = lambda severity, text: self.said.append(text)  # noqa: E731
         autopilot = {"ardupilot": ARDUPILOT, "px4": PX4}[firmware]
-        self.transfers = Transfers(self.stores, self.answers.append, say, autopilot, **port)
+        self.transfers = Transfers(self.stores, self.answers.append, say, autopilot)
 
     def take(self, message, component: int = 190):
         """Return the answer to a message; None if there is none."""
@@ -95,13 +95,6 @@ def test_ardupilot_restarts_an_upload_for_its_sender_only(exchange):
     exchange.item(0)
     assert exchange.count(2, component=1).type == mavlink.MAV_MISSION_DENIED
     assert exchange.count(2).seq == 0
-
-
-def test_ardupilot_accepts_only_missions_on_a_mavlink_1_port():
-    exchange = Exchange(old=True)
-    assert exchange.count(2, kind=1).type == mavlink.MAV_MISSION_UNSUPPORTED
-    assert exchange.said == ["Need mavlink2 for item transfer"]
-    assert exchange.count(2, kind=0).seq == 0
 
 
 def test_px4_ignores_a_repeated_item_and_accepts_the_last_again(px4):
