@@ -5,12 +5,10 @@ folders of flights with a PX4 have names that begin with ``px4``.
 """
 
 import os
-import runpy
 from pathlib import Path
 
 import pytest
-
-BENCHMARK = Path(__file__).parents[3] / "benchmarks" / "flown_times.py"
+from flown_times.comparison import LEGS_WITHIN, MOST_LEGS, WITHIN, compared
 
 FOLDER = os.environ.get("MMRS_RECORDED_FLIGHTS", "")
 FLIGHTS = sorted(each.parent for each in Path(FOLDER).glob("*/behaviour.xmi")) if FOLDER else []
@@ -21,29 +19,26 @@ pytestmark = pytest.mark.skipif(not FLIGHTS, reason="MMRS_RECORDED_FLIGHTS is no
 
 
 @pytest.fixture(scope="module")
-def benchmark():
-    """Return the names of the benchmark."""
-    return runpy.run_path(str(BENCHMARK))
-
-
-@pytest.fixture(scope="module")
-def found(benchmark):
-    compared = benchmark["compared"]
+def found():
     flights = [each for each in FLIGHTS if each.name not in STUCK]
     return [each for flight in flights for each in compared(flight, px4=flight.name.startswith("px4"))]
 
 
-def test_flights_take_what_is_planned(found, benchmark):
+def test_flights_take_what_is_planned(found):
     whole = [each for each in found if each.whole]
     assert whole
-    assert [each.line() for each in whole if abs(each.ratio - 1.0) > benchmark["WITHIN"]] == []
+    assert [each.line() for each in whole if abs(each.ratio - 1.0) > WITHIN] == []
 
 
 def test_flights_keep_to_the_bounds_of_the_check(found):
     assert [each.line() for each in found if not each.low <= each.flown <= each.high] == []
 
 
-def test_nearly_all_legs_take_what_is_planned(found, benchmark):
+def test_steps_keep_to_the_bounds_of_the_check(found):
+    assert [f"{each.flight} {each.robot} {words}" for each in found for words in each.outside] == []
+
+
+def test_nearly_all_legs_take_what_is_planned(found):
     legs, good = sum(len(each.legs) for each in found), sum(each.good_legs for each in found)
     assert legs
-    assert good >= benchmark["MOST_LEGS"] * legs, f"{good} of {legs} within {benchmark['LEGS_WITHIN']:.0%}"
+    assert good >= MOST_LEGS * legs, f"{good} of {legs} within {LEGS_WITHIN:.0%}"

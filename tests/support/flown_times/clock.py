@@ -1,0 +1,81 @@
+"""The vehicle's clock by that of the log, which runs ahead where a simulation falls behind."""
+
+from __future__ import annotations
+
+from bisect import bisect_right
+from collections.abc import Iterator, Sequence
+from statistics import median
+
+from flown_times.models import Modelled
+from flown_times.tracks import NEAR, Sample, left_at, missions_in, stop_at
+
+STALL = 1.0
+"""Seconds from which the log's clock has run ahead."""
+
+SETTING_OUT = 0.4
+"""Seconds from a command until the track shows that the vehicle moves."""
+
+FIRST, LATER = 60.0, 15.0
+"""Seconds within which a stop is sought: the first one, and others."""
+
+Step = tuple[str, str, float]
+"""What was logged: label, move, time."""
+
+
+class Clock:
+    """Knows the vehicle's time where its track shows a stop: as it comes to one, and sets out again."""
+
+    def __init__(self, steps: Sequence[Step], track: Sequence[Sample], modelled: Modelled) -> None:
+        """Fit the log of a robot to its track; without one, the log counts."""
+        known = list(_known(steps, track, modelled)) if track else []
+        ahead = [time - seen for time, seen in known]
+        self._at = [time for time, _ in known]
+        self._ahead = [median(ahead[max(0, i - 1) : i + 2]) for i in range(len(ahead))]
+
+    def passed(self, begin: float, end: float) -> float:
+        """Return the vehicle's seconds between two times of the log.
+
+        Where a stop shows on a track to a few tenths of a second only, the log counts, but for stalls.
+        """
+        seconds = self.at(end) - self.at(begin)
+        return seconds if end - begin - seconds > STALL else end - begin
+
+    def at(self, time: float) -> float:
+        """Return the vehicle's time at a time of the log."""
+        if not self._at:
+            return time
+        after = bisect_right(self._at, time)
+        if after == 0 or after == len(self._at):
+            return time - self._ahead[0 if after == 0 else -1]
+        one, two = self._at[after - 1], self._at[after]
+        part = (time - one) / (two - one) if two > one else 0.0
+        return time - (self._ahead[after - 1] + part * (self._ahead[after] - self._ahead[after - 1]))
+
+
+def _known(
+    steps: Sequence[Step], track: Sequence[Sample], modelled: Modelled
+) -> Iterator[tuple[float, float]]:
+    """Yield times of the log, and those of the vehicle."""
+    legs, runs = modelled.legs, modelled.runs
+    missions = iter(missions_in(track))
+    passed: dict[str, float] = {}
+    ahead, within = 0.0, FIRST
+    for label, move, time in steps:
+        run = next((each for each in runs if each[0] == move), None)
+        seen = None
+        if label == "begin" and run is not None and (mission := next(missions, None)) is not None:
+            seen, *ends = mission
+            passed |= dict(zip(run, ends, strict=False))
+        elif label == "end" and move in passed:
+            seen = passed[move]
+        elif label == "end" and move in modelled.stepped and move in legs:
+            seen = stop_at(legs[move][-1], track, time - ahead, within)
+        elif label == "begin" and move in modelled.stepped and move in legs and within == LATER:
+            left = left_at(legs[move][0], track, time + SETTING_OUT - ahead, within)
+            seen = None if left is None else left - SETTING_OUT
+        if seen is not None:
+            ahead, within = time - seen, LATER
+            yield time, seen
+    landed = [(time, move) for label, move, time in steps if label == "end" and move in legs]
+    if landed and within == LATER and legs[landed[-1][1]][-1][2] < NEAR < legs[landed[-1][1]][0][2]:
+        yield landed[-1][0], max(each.time for each in track if each.armed)

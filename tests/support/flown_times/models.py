@@ -1,0 +1,144 @@
+"""Models of a recorded flight, and how long a robot of it is planned to take."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from functools import cache, cached_property
+from math import dist
+from pathlib import Path
+
+from mmrs_core.analysis.durations import Duration, durations_of
+from mmrs_core.analysis.figures import seconds_of
+from mmrs_core.analysis.motion import motions
+from mmrs_core.behaviour.program import RobotProgram
+from mmrs_core.cli.behaviours import Loaded, load_behaviour
+from mmrs_core.cli.session import Session
+from mmrs_core.cli.settings import Settings
+from mmrs_core.contributions.checks import CheckInput
+from mmrs_core.contributions.runs import runs_of
+from mmrs_core.contributions.targets import TargetInput
+from mmrs_core.contributions.timing import as_uploaded
+from mmrs_core.generation.planned_moves import planned_moves
+from mmrs_core.scene import Device, Position
+from mmrs_mavlink.plugin.context import context_of
+from mmrs_mavlink.plugin.plans.flight import sorties_of
+from mmrs_mavlink.plugin.plans.items import PlanItem
+
+
+@dataclass(frozen=True, slots=True)
+class Estimate:
+    """How long a move is planned, and checked, to take, seconds.
+
+    Attributes:
+        moving: expected of its movement.
+        whole: expected with its actions.
+        bounds: of the check.
+    """
+
+    moving: float
+    whole: float
+    bounds: Duration
+
+    @property
+    def least(self) -> float:
+        return self.bounds.moved.low - self.bounds.before.low
+
+    @property
+    def most(self) -> float:
+        return self.bounds.moved.high - self.bounds.before.high
+
+
+@cache
+def opened(folder: Path, *, px4: bool = False) -> tuple[Session, Loaded]:
+    """Return the models of a flight; `px4`: its types state that autopilot."""
+    session = Session(Settings())
+    loaded = load_behaviour(session, folder / "behaviour.xmi")
+    if px4:
+        pilot = Device("autopilot", {}, {"mavlink.autopilot": "px4"})
+        types = {
+            name: replace(each, devices={**each.devices, "autopilot": pilot})
+            for name, each in loaded.place.types.items()
+        }
+        loaded = replace(loaded, place=replace(loaded.place, types=types))
+    return session, loaded
+
+
+class Modelled:
+    """One robot of a flight as it is modelled."""
+
+    def __init__(self, session: Session, loaded: Loaded, robot: RobotProgram) -> None:
+        self.robot = robot
+        self._contributions, self._program, self._place = session.contributions, loaded.program, loaded.place
+
+    @cached_property
+    def legs(self) -> Mapping[str, tuple[Position, ...]]:
+        """The paths of the moves that lead somewhere, from the robot's home, by move."""
+        home = self.robot.home or (0.0, 0.0, 0.0)
+        return {
+            self.robot.moves[path.move].id: tuple(
+                (p[0] - home[0], p[1] - home[1], p[2] - home[2]) for p in path.points
+            )
+            for path in motions(self._check(uploaded=False))[self.robot.id].paths
+            if dist(path.points[0], path.points[-1]) > 0.0
+        }
+
+    @cached_property
+    def runs(self) -> list[list[str]]:
+        """The runs of the robot, as moves."""
+        found = runs_of(self.robot, self._contributions.move_kinds)
+        return [[self.robot.moves[index].id for index in run] for run in found]
+
+    @cached_property
+    def stepped(self) -> set[str]:
+        """The moves whose ends show on a track: those that lead to places and are no part of a run."""
+        flown = {move for run in self.runs for move in run}
+        return {
+            move.id
+            for move in self.robot.moves
+            if move.id not in flown and move.target is not None and move.target.position is not None
+        }
+
+    def items(self) -> tuple[PlanItem, ...]:
+        """Return the items of the robot's mission."""
+        (items, *_) = sorties_of(context_of(self.robot, self._target(uploaded=False)))
+        return items
+
+    def estimates(self, *, uploaded: bool) -> dict[str, Estimate]:
+        """Return how long each move takes; `uploaded`: as a mission, all of it."""
+        check = self._check(uploaded=uploaded)
+        durations = durations_of(check, self.robot, motions(check)[self.robot.id]).of
+        type = self._place.types[self.robot.type_name]
+        found: dict[str, Estimate] = {}
+        for each in planned_moves(self.robot, self._target(uploaded=uploaded)):
+            move = self.robot.moves[each.index]
+            if each.seconds is not None:
+                acting = sum(seconds_of(action, type) or 0.0 for action in (*move.before, *move.after))
+                whole = each.seconds.expected
+                found[move.id] = Estimate(whole - acting, whole, durations[each.index])
+        return found
+
+    def _target(self, *, uploaded: bool) -> TargetInput:
+        kinds = self._contributions.robot_kinds
+        return TargetInput(
+            self._program,
+            self._place.types,
+            as_uploaded(kinds) if uploaded else kinds,
+            self._contributions.move_kinds,
+            extensions=self._contributions.extensions,
+            environment=self._place.environment or {},
+            areas=self._place.areas or (),
+            elements=self._place.elements,
+        )
+
+    def _check(self, *, uploaded: bool) -> CheckInput:
+        kinds = self._contributions.robot_kinds
+        return CheckInput(
+            self._program,
+            self._place.types,
+            as_uploaded(kinds) if uploaded else kinds,
+            self._contributions.move_kinds,
+            self._place.areas,
+            self._place.environment or {},
+            self._place.elements,
+        )
