@@ -21,7 +21,8 @@ from mmrs_core.behaviour.walk import reachable_moves
 from mmrs_core.contributions.checks import CheckInput
 from mmrs_core.contributions.passages import Passages
 from mmrs_core.scene import Kinematics, Name, RobotType
-from mmrs_core.scene.timing import MoveSeconds
+from mmrs_core.scene.timing import MoveSeconds, acting
+from mmrs_runtime.timing import IDEAL, LegTiming
 
 HOLD: Name = (BEHAVIOUR, "HoldPosition")
 
@@ -98,7 +99,7 @@ def durations_of(input: CheckInput, robot: RobotProgram, motion: Motion) -> Dura
         flows = replace(move, flows=index in passed)
         known = passages.kinematics(move)
         moving = _least(move) if index in gaps else _moving(input, robot, flows, legs[index], known)
-        found[index] = _with_actions(move, moving, robot_type, kinematics.timing.spread)
+        found[index] = _with_actions(move, moving, robot_type, kinematics.timing)
         if index not in gaps and found[index].whole.high == inf:
             gaps[index] = UnknownMove(index, _why_unbounded(move, robot_type))
     return Durations(found, tuple(gaps[index] for index in sorted(gaps)))
@@ -151,21 +152,32 @@ def _spread(leg: MovePath, seconds: MoveSeconds, move: Move, kinematics: Kinemat
     return Span(max(0.0, seconds.shortest - more), seconds.longest + more)
 
 
-def _with_actions(move: Move, moving: Span, robot_type: RobotType | None, spread: float = 0.0) -> Duration:
-    before, first = _actions(move.before, Span(), robot_type, spread)
-    after, second = _actions(move.after, before + moving, robot_type, spread)
+def _with_actions(
+    move: Move, moving: Span, robot_type: RobotType | None, timing: LegTiming = IDEAL
+) -> Duration:
+    before, first = _actions(move.before, Span(), robot_type, timing)
+    after, second = _actions(move.after, before + moving, robot_type, timing)
     return Duration(before, before + moving, after, (*first, *second))
 
 
 def _actions(
-    actions: Iterable[Action], begin: Span, robot_type: RobotType | None, spread: float
+    actions: Iterable[Action], begin: Span, robot_type: RobotType | None, timing: LegTiming
 ) -> tuple[Span, list[Setting]]:
     settings: list[Setting] = []
     now = begin
     for action in actions:
-        seconds = seconds_of(action, robot_type) if robot_type else (None if action.device else 0.0)
-        known = None if seconds is None else Span(seconds * (1.0 - spread), seconds * (1.0 + spread))
-        now = now + (known or UNKNOWN)
+        now = now + _acting(action, robot_type, timing)
         if action.sets:
             settings.append(Setting(action.sets, action.active, now))
     return now, settings
+
+
+def _acting(action: Action, robot_type: RobotType | None, timing: LegTiming) -> Span:
+    """Return how long an action takes: none unless it is a device's."""
+    if not action.device:
+        return Span()
+    seconds = seconds_of(action, robot_type) if robot_type else None
+    if seconds is None:
+        return UNKNOWN
+    found = acting(seconds, timing)
+    return Span(found.shortest, found.longest)

@@ -12,7 +12,7 @@ from mmrs_core.contributions.rules import RobotKind
 
 if TYPE_CHECKING:
     from mmrs_core.scene import Capability, Kinematics, Name, Robot, RobotType, Scene
-    from mmrs_core.scene.timing import AutopilotTiming
+    from mmrs_runtime.timing import AutopilotTiming
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,6 +69,8 @@ def _kinematics(
         landing_rate=landing_rate,
         landing_height=landing_height if landing_rate < inf else 0.0,
         rounds=autopilot.rounds,
+        turn_rate=min(plain.turn_rate, autopilot.turn_rate),
+        charging=autopilot.charging,
         mission=mission,
     )
     return driven.flown_by(step)

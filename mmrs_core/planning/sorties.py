@@ -170,7 +170,7 @@ class Pilot:
         trail, time = state.trail, state.time
         if route.height is not None:
             climb = route.height - self.robot.home[2]
-            up = time + self.kinematics.launch + self.travel.space.rates.rise(climb)
+            up = time + self.kinematics.launching(climb)
             trail = (trail, Launch(time, up, task, self.robot.home, route.height))
             time = up
         end = state.time + route.seconds

@@ -81,11 +81,17 @@ def stops_of(stroke: Stroke) -> list[Position]:
 def uncertain_seconds(stroke: Stroke, kinematics: Kinematics) -> float:
     """Return how much quicker than estimated a stroke may be done: turns and searches take up to that."""
     stays = stroke.hold > 0 or len(stroke.points) == 1 or stroke.object is not None
-    half_turn = 180.0 / kinematics.turn_rate if kinematics.turn_rate > 0 else inf
-    turning = half_turn if stroke.look is not None and stays else 0.0
+    turning = _longest_turn(kinematics) if stroke.look is not None and stays else 0.0
     if stroke.object is None:
         return turning
     return turning + 2.0 * (stroke.object_tolerance or 0.0) / commanded_speed(stroke, kinematics)
+
+
+def _longest_turn(kinematics: Kinematics) -> float:
+    """Return how long a turn takes at most, less what the planner adds to everything."""
+    return (
+        kinematics.turning().longest / (1.0 + kinematics.timing.spread) if kinematics.turn_rate > 0 else inf
+    )
 
 
 def action_seconds(robot_type: RobotType, action: ActionAt) -> float:

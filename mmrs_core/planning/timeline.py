@@ -34,7 +34,7 @@ from mmrs_core.scene import (
     Transit,
 )
 from mmrs_core.scene.robots import BACK_SECONDS
-from mmrs_core.scene.timing import Rates
+from mmrs_core.scene.timing import Rates, acting, bounded, noticing
 
 _Given: TypeAlias = tuple[float, float]
 """Seconds at which a signal is given at the earliest, and at the latest."""
@@ -111,7 +111,7 @@ class _Walk:
     gone: bool = False
 
     def __post_init__(self) -> None:
-        self.here = self.robot.home
+        self.here, self.by = self.robot.home, noticing(self.kinematics.timing)
 
     def may_begin(self, step: Step, given: Mapping[str, _Given]) -> bool:
         return not isinstance(step, Await) or all(signal in given for signal in step.signals)
@@ -130,7 +130,8 @@ class _Walk:
         elif isinstance(step, Launch | Recover):
             self._upright(step)
         else:
-            self._stay(step.end - step.begin)
+            charging = self.kinematics.charging_time(step.end - step.begin)
+            self._stay(charging.shortest, charging.longest)
 
     def stay_to_the_end(self) -> None:
         self.by = inf
@@ -140,7 +141,7 @@ class _Walk:
         column = self.here, (step.at[0], step.at[1], step.up)
         over_home = all(dist(point[:2], self.robot.home[:2]) <= NEAR for point in column)
         relation = HomeRelation.COLUMN if over_home else HomeRelation.ELSEWHERE
-        seconds = self.kinematics.timing.bounded(step.end - step.begin)
+        seconds = bounded(step.end - step.begin, self.kinematics.timing)
         self._ride(column, seconds.shortest, seconds.longest, self.kinematics.rates(), relation=relation)
 
     def _await(self, step: Await, given: Mapping[str, _Given]) -> None:
@@ -170,7 +171,7 @@ class _Walk:
         self.radius = 0.0
 
     def _serve(self, step: Serve) -> None:
-        rates = self.kinematics.rates(step.speed)
+        rates, timing = self.kinematics.rates(step.speed), self.kinematics.timing
         todo, done, planned = list(step.stroke.actions), 0.0, 0.0
         for place in stops_of(step.stroke):
             done += dist(self.here, place)
@@ -178,14 +179,15 @@ class _Walk:
             if place != self.here:
                 self._go((self.here, place), rates, step.speed)
             while todo and todo[0].at <= done + NEAR:
-                acting = action_seconds(self.robot.type, todo.pop(0))
-                planned += acting
-                self._stay(acting)
+                found = acting(action_seconds(self.robot.type, todo.pop(0)), timing)
+                planned += found.expected
+                self._stay(found.shortest, found.longest)
         if step.stroke.object is not None:
             self.radius = step.stroke.object_tolerance or 0.0
         left = step.end - step.begin - planned
-        certain = left - uncertain_seconds(step.stroke, self.kinematics)
-        self._stay(max(0.0, certain), max(0.0, left))
+        uncertain = uncertain_seconds(step.stroke, self.kinematics)
+        late = timing.spread * uncertain + (noticing(timing) if step.stroke.hold > 0.0 else 0.0)
+        self._stay(max(0.0, left - uncertain), max(0.0, left) + late)
 
     def _go(self, points: tuple[Position, ...], rates: Rates, speed: float | None) -> None:
         soonest, latest = rates.soonest(), rates.latest()

@@ -12,7 +12,7 @@ from mmrs_core.geometry.ground import ground_height
 from mmrs_core.planning.paths import Space
 from mmrs_core.planning.strokes import length_of
 from mmrs_core.scene import Area, AreaUse, Kinematics, Position, Robot, Scene
-from mmrs_core.scene.timing import Rates
+from mmrs_core.scene.timing import Rates, bounded
 
 _SPECK = 0.01
 """Metres: half the side of the square that stands for a home."""
@@ -183,7 +183,7 @@ class Travel:
 
     def _spread(self, seconds: float) -> float:
         """Return by how much quicker than expected what takes so long may be."""
-        return seconds - self.kinematics.timing.bounded(seconds).shortest
+        return seconds - bounded(seconds, self.kinematics.timing).shortest
 
     def _outward(self, goal: Position) -> Route | str:
         if not self.kinematics.launches:
@@ -196,7 +196,7 @@ class Travel:
                 best = best or route
                 continue
             climb = height - self.robot.home[2]
-            up = self.kinematics.launch + self.space.rates.rise(climb)
+            up = self.kinematics.launching(climb)
             lead = route.lead + self._spread(up)
             return Route(route.points, up + route.seconds, route.length + climb, height, lead)
         return best

@@ -5,11 +5,13 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from math import dist, inf, pi, sqrt, tan
+from typing import Any
 
 from mmrs_core.diagnostics import Place
 from mmrs_core.scene.primitives import Metaclasses, Part, Position, TravelMode
-from mmrs_core.scene.timing import IDEAL, LegTiming, Rates
+from mmrs_core.scene.timing import MoveSeconds, Rates, bounded, noticing
 from mmrs_runtime.policies import Policy
+from mmrs_runtime.timing import IDEAL, LegTiming
 
 BACK_SECONDS = 3.5
 """In which a robot that has overshot is back, before or after its movement counts as over: in an autopilot's
@@ -63,7 +65,9 @@ class Capability:
             climb=min(autopilot.climb, self.climb_rate or self.speed[1]),
             descent=min(autopilot.descent, self.descent_rate or self.speed[1]),
         )
-        return replace(limited, **self.leg_timings.get(mode, {}))
+        stated: dict[str, Any] = dict(self.leg_timings.get(mode, {}))
+        unlimited = None if autopilot == IDEAL else replace(autopilot, **stated)
+        return replace(limited, **stated, unlimited=unlimited)
 
 
 @dataclass(frozen=True, slots=True)
@@ -144,6 +148,7 @@ class Kinematics:
         draw: by how much the power may exceed the mean for long, as a factor of one or more: what it
             takes to travel against the wind or current all the time.
         recharge: seconds from empty to full at home; None where impossible.
+        charging: how many times as long as declared charging may take.
         launches: whether the robot climbs from its home before it travels and descends onto it
             at the end.
         own_speed: largest speed through the air or the water that it moves in, metres per second;
@@ -152,6 +157,7 @@ class Kinematics:
             stops: it keeps within so far of that place, and takes up to 180° / `turn_rate`.
         rounds: whether it drives round instead of shunting, if there is room.
         mission: timing of the legs of a mission that is uploaded; None: as that of single ones.
+        upright: timing of launch and landing; None: as that of legs.
     """
 
     cruise: float
@@ -172,11 +178,13 @@ class Kinematics:
     power: float = 0.0
     draw: float = 1.0
     recharge: float | None = None
+    charging: float = 1.0
     launches: bool = False
     own_speed: float | None = None
     turning_radius: float = 0.0
     rounds: bool = False
     mission: LegTiming | None = None
+    upright: LegTiming | None = None
 
     def fits_curve(self, turn: float, leg: float) -> bool:
         """Return whether the robot can pass a corner in its narrowest curve without leaving the legs before.
@@ -214,6 +222,15 @@ class Kinematics:
         """
         return 180.0 / self.turn_rate if self.turning_radius > 0.0 else 0.0
 
+    def turning(self) -> MoveSeconds:
+        """Return how long a turn on the spot takes: half a circle at most, of which half is expected."""
+        half = bounded(180.0 / self.turn_rate, self.timing)
+        return MoveSeconds(0.0, half.expected / 2.0, half.longest + noticing(self.timing))
+
+    def charging_time(self, seconds: float) -> MoveSeconds:
+        """Return how long charging takes that is to take so long: until the batteries are full."""
+        return MoveSeconds(seconds, seconds, self.charging * seconds + self.timing.reporting)
+
     def rates(self, speed: float | None = None) -> Rates:
         """Return how fast it goes along legs at a commanded speed, metres per second; None: at its cruise."""
         wanted = self.cruise if speed is None else min(max(speed, self.slowest), self.fastest)
@@ -235,15 +252,24 @@ class Kinematics:
         )
 
     def in_mission(self) -> Kinematics:
-        """Return what it can do on a mission that is uploaded."""
-        return self if self.mission is None else self.flown_by(self.mission)
+        """Return what it can do on a mission that is uploaded: it launches and lands as without one."""
+        if self.mission is None:
+            return self
+        return replace(self.flown_by(self.mission), upright=self.upright or self.timing)
+
+    def launching(self, height: float) -> float:
+        """Return the seconds of launching to a height, metres above the ground."""
+        return self.launch + self._upright().rise(height)
 
     def landing(self, height: float) -> float:
         """Return the seconds of coming down to the ground from a height, metres, until it stands still."""
         slow = min(max(0.0, height), self.landing_height)
         later = slow / self.landing_rate if self.landing_rate < inf else 0.0
-        rates = self.rates()
-        return rates.rise(slow - height) + later + self.recovery
+        return self._upright().rise(slow - height) + later + self.recovery
+
+    def _upright(self) -> Rates:
+        """Return how fast it launches and lands."""
+        return (self if self.upright is None else self.flown_by(self.upright)).rates()
 
 
 @dataclass(frozen=True, slots=True)

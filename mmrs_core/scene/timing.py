@@ -14,6 +14,7 @@ from math import dist, hypot, inf, sqrt
 from typing import NamedTuple, TypeAlias
 
 from mmrs_core.scene.primitives import Position
+from mmrs_runtime.timing import IDEAL, LegTiming
 
 LEVEL = 1e-6
 """Metres up to which a leg counts as level."""
@@ -23,6 +24,15 @@ STRAIGHT = 0.005
 
 SETTLED = 0.5
 """Metres beyond a target from which a robot need not come back to be there."""
+
+SPEEDING = 0.97
+"""Share of the seconds at even speed that a leg takes at least whose ends are passed."""
+
+NOTICING = 0.5
+"""Seconds after which a beginning, the end of a stay or that of a turn is noticed, at most."""
+
+ANSWERING = 0.2
+"""Seconds after which a device has answered, at most."""
 
 RETURNING = 0.63
 """Metres per second at which a robot comes back that has gone beyond its target."""
@@ -45,82 +55,20 @@ class MoveSeconds(NamedTuple):
         return MoveSeconds(seconds, seconds, seconds)
 
 
-@dataclass(frozen=True, slots=True)
-class LegTiming:
-    """How an autopilot takes legs in one way of being commanded; the defaults are those of an ideal one.
-
-    Attributes:
-        acceleration: level, speeding up, metres per second squared.
-        deceleration: level, slowing down; None: as speeding up.
-        vertical_acceleration: up and down, both ways; None: as the level one.
-        jerk: change of acceleration, metres per second cubed.
-        speed: largest that it makes, metres per second.
-        climb, descent: largest that it makes, metres per second.
-        corner_radius: metres from a corner within which it passes; 0: it comes to a stop at each.
-        acceptance: metres from a target at which it may count as reached: so short a leg may take no time.
-        settling: seconds from the end of a leg until it is reported as done.
-        overshoot: how far it goes beyond a target, metres for each metre per second of the leg's largest
-            speed, that is, seconds.
-        spread: by which share legs take longer or shorter than expected.
-        shunts_within: turning radii up to which a leg may be shunted for, where the robot cannot turn on the
-            spot; it gets onto longer ones by one curve.
-    """
-
-    acceleration: float = inf
-    deceleration: float | None = None
-    vertical_acceleration: float | None = None
-    jerk: float = inf
-    speed: float = inf
-    climb: float = inf
-    descent: float = inf
-    corner_radius: float = inf
-    acceptance: float = 0.0
-    settling: float = 0.0
-    overshoot: float = 0.0
-    spread: float = 0.0
-    shunts_within: float = inf
-
-    def bounded(self, expected: float) -> MoveSeconds:
-        """Return what a leg takes that is expected to take so long."""
-        return MoveSeconds(expected * (1.0 - self.spread), expected, expected * (1.0 + self.spread))
-
-    @property
-    def braking(self) -> float:
-        """Return the level deceleration, metres per second squared."""
-        return self.acceleration if self.deceleration is None else self.deceleration
-
-    def cut(self, speed: float) -> float:
-        """Return by how many metres a corner is cut at most that is passed at a speed.
-
-        At a steady acceleration that is v² / 2a, and never more than the radius.
-        """
-        return min(self.corner_radius, speed * speed / (2.0 * min(self.acceleration, self.braking)))
+def bounded(expected: float, timing: LegTiming) -> MoveSeconds:
+    """Return what takes as long as expected, or by its spread longer or shorter."""
+    return MoveSeconds(expected * (1.0 - timing.spread), expected, expected * (1.0 + timing.spread))
 
 
-IDEAL = LegTiming()
-"""At once at any speed, and at a standstill."""
+def acting(seconds: float, timing: LegTiming) -> MoveSeconds:
+    """Return how long an action of a device takes that is to take so long."""
+    shortest, expected, longest = bounded(seconds, timing)
+    return MoveSeconds(shortest, expected, max(longest, expected + min(ANSWERING, timing.reporting)))
 
 
-@dataclass(frozen=True, slots=True)
-class AutopilotTiming:
-    """How long the autopilots of a class of vehicles take, where the robot type does not state it.
-
-    Attributes:
-        step: legs that are commanded one by one.
-        mission: legs of a mission that was uploaded; None: none is, or these are taken as steps are.
-        launch: seconds from the command to launch until the robot climbs; None: as its kind says.
-        recovery: seconds from touching the ground until it stands still; None: as its kind says.
-        landing_rate: metres per second at which it comes down below `landing_height`, metres above ground.
-        rounds: whether a vehicle that cannot turn on the spot drives round instead of shunting.
-    """
-
-    step: LegTiming = IDEAL
-    mission: LegTiming | None = None
-    launch: float | None = None
-    recovery: float | None = None
-    landing_rate: float = inf
-    landing_height: float = 0.0
-    rounds: bool = False
+def noticing(timing: LegTiming) -> float:
+    """Return the seconds after which a beginning, or the end of a stay or of a turn, is noticed, at most."""
+    return min(NOTICING, timing.reporting)
 
 
 @dataclass(frozen=True, slots=True)
@@ -138,6 +86,7 @@ class Rates:
         shunts_within: metres up to which a leg may be shunted for.
         circling: seconds in which it drives a full circle, which getting onto a longer leg takes at most.
         share: of the expected seconds that legs from a stop to a stop take.
+        least: seconds that each takes, one of no length as well.
     """
 
     cruise: float
@@ -149,6 +98,7 @@ class Rates:
     shunts_within: float = inf
     circling: float = 0.0
     share: float = 1.0
+    least: float = 0.0
     _both_ends: float = field(init=False, repr=False, compare=False)
     """Seconds by which a level leg takes longer that reaches its cruise, settling included."""
     _reaching: float = field(init=False, repr=False, compare=False)
@@ -172,12 +122,26 @@ class Rates:
         object.__setattr__(self, "_bent", max(up, down) ** 2 / jerk if jerk < inf else 0.0)
 
     def soonest(self) -> Rates:
-        """Return the rates of a robot that need not turn before it goes, and is as quick as it may be."""
-        return replace(self, shunting=0.0, share=1.0 - self.timing.spread)
+        """Return the rates of a robot that is as quick as it may be.
+
+        It need not turn before it goes, and its autopilot may not keep its type's limits.
+        """
+        free = self.timing.unlimited or self.timing
+        return replace(
+            self,
+            timing=free,
+            climb=max(self.climb, free.climb) if self.climb > 0.0 and self.timing.unlimited else self.climb,
+            descent=max(self.descent, free.descent)
+            if self.descent > 0.0 and self.timing.unlimited
+            else self.descent,
+            shunting=0.0,
+            share=1.0 - self.timing.spread,
+        )
 
     def latest(self) -> Rates:
         """Return the rates of a robot that is as slow as it may be."""
-        return replace(self, rounds=False, share=1.0 + self.timing.spread)
+        timing = self.timing
+        return replace(self, rounds=False, share=1.0 + timing.spread, least=timing.reporting)
 
     def even(self, start: Position, end: Position) -> float:
         """Return the seconds of a straight leg at even speed: the slower of its level and upright parts."""
@@ -195,7 +159,7 @@ class Rates:
         """Return the seconds of a straight leg from a stop to a stop, turning and settling included."""
         if self.share < 1.0 and dist(start, end) <= self.timing.acceptance:
             return 0.0
-        return self.share * self._straight(start, end) + self.turning(start, end)
+        return max(self.least, self.share * self._straight(start, end) + self.turning(start, end))
 
     def turning(self, start: Position, end: Position) -> float:
         """Return the seconds that turning is expected to take before a leg."""
@@ -230,7 +194,7 @@ class Rates:
         if self.timing.corner_radius == inf:
             return even
         seconds, _ = self._stopping(start, end)
-        return max(even, self.share * (seconds - sum(self._phases(start, end)) / 2.0))
+        return max(SPEEDING * even, self.share * (seconds - sum(self._phases(start, end)) / 2.0))
 
     def _straight(self, start: Position, end: Position) -> float:
         if -LEVEL <= end[2] - start[2] <= LEVEL:

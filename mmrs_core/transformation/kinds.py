@@ -12,7 +12,7 @@ from mmrs_core.contributions.rules import MoveKind, MoveSpec, RobotKind
 from mmrs_core.contributions.samples import sample_type
 from mmrs_core.errors import InfeasibleError
 from mmrs_core.scene import Capability, Kinematics, Position, Robot, RobotType, Scene
-from mmrs_core.scene.timing import MoveSeconds
+from mmrs_core.scene.timing import MoveSeconds, noticing
 
 if TYPE_CHECKING:
     from mmrs_core.behaviour.program import Move
@@ -21,9 +21,6 @@ ROBOT = ("urn:mmrs:robot:1.0", "Robot")
 BEHAVIOUR = "urn:mmrs:behaviour:1.0"
 ANYWHERE = frozenset({"grounded", "airborne", "moving"})
 AFLOAT = frozenset({"airborne", "moving"})
-
-_NOTICING = 0.5
-"""Seconds after which the end of a hold is noticed, at most."""
 
 _HEADWAY = 0.1
 """Metres per second that a robot must make against wind or current to go anywhere."""
@@ -187,22 +184,35 @@ def stays(move: Move, here: Position, home: Position | None) -> tuple[Position, 
     return (here,)
 
 
-def no_time(move: Move, path: tuple[Position, ...], kinematics: Kinematics, mode: str) -> MoveSeconds:
-    """Return the duration of a move that takes none."""
-    return MoveSeconds.exactly(0.0)
+def starting_time(move: Move, path: tuple[Position, ...], kinematics: Kinematics, mode: str) -> MoveSeconds:
+    """Return the duration of a start, which takes none."""
+    return MoveSeconds(0.0, 0.0, noticing(kinematics.timing))
+
+
+def stopping_time(move: Move, path: tuple[Position, ...], kinematics: Kinematics, mode: str) -> MoveSeconds:
+    """Return the duration of a stop, which takes none, but must be confirmed."""
+    return MoveSeconds(0.0, 0.0, kinematics.timing.reporting)
 
 
 def declared_time(move: Move, path: tuple[Position, ...], kinematics: Kinematics, mode: str) -> MoveSeconds:
     """Return the duration that the move itself declares; that it has passed may be noticed later."""
-    duration = move.attributes.get("duration")
-    seconds = float(duration) if isinstance(duration, (int, float)) else 0.0
-    return MoveSeconds(seconds, seconds, seconds + min(_NOTICING, kinematics.timing.spread * seconds))
+    seconds = _declared(move)
+    return MoveSeconds(seconds, seconds, seconds + noticing(kinematics.timing))
+
+
+def charging_time(move: Move, path: tuple[Position, ...], kinematics: Kinematics, mode: str) -> MoveSeconds:
+    """Return the duration of charging, which may take longer than declared until the batteries are full."""
+    return kinematics.charging_time(_declared(move))
 
 
 def turning_time(move: Move, path: tuple[Position, ...], kinematics: Kinematics, mode: str) -> MoveSeconds:
-    """Return the bounds of a turn on the spot: none to half a circle, which is expected."""
-    half_turn = 180.0 / kinematics.turn_rate
-    return MoveSeconds(0.0, half_turn, half_turn)
+    """Return the duration of a turn on the spot, from and to any heading."""
+    return kinematics.turning()
+
+
+def _declared(move: Move) -> float:
+    duration = move.attributes.get("duration")
+    return float(duration) if isinstance(duration, (int, float)) else 0.0
 
 
 def _level_kinematics(robot: Robot, scene: Scene) -> Kinematics:
@@ -250,10 +260,10 @@ def _on_the_spot(name: str, seconds: _Seconds, needs: frozenset[str] = ANYWHERE)
 
 
 MOVE_KINDS = (
-    _on_the_spot("Start", no_time, frozenset({"grounded", "moving"})),
-    _on_the_spot("Stop", no_time, frozenset({"grounded", "moving"})),
+    _on_the_spot("Start", starting_time, frozenset({"grounded", "moving"})),
+    _on_the_spot("Stop", stopping_time, frozenset({"grounded", "moving"})),
     _on_the_spot("HoldPosition", declared_time),
-    _on_the_spot("Recharge", declared_time, frozenset({"grounded", "moving"})),
+    _on_the_spot("Recharge", charging_time, frozenset({"grounded", "moving"})),
     _on_the_spot("HeadTo", turning_time, AFLOAT),
     MoveKind((BEHAVIOUR, "GoTo"), straight_path, path_seconds, AFLOAT, manoeuvre="go_to"),
 )

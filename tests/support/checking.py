@@ -9,8 +9,9 @@ from mmrs_core.behaviour.program import BEHAVIOUR, Move
 from mmrs_core.contributions.checks import CheckInput
 from mmrs_core.contributions.rules import MoveKind, RobotKind
 from mmrs_core.scene import Area, AreaUse, Kinematics
-from mmrs_core.scene.timing import LegTiming, MoveSeconds
+from mmrs_core.scene.timing import MoveSeconds
 from mmrs_core.testing.small_programs import MOVE, ROBOT_TYPE, program, robot_type
+from mmrs_runtime.timing import LegTiming
 
 ROBOT = ("urn:mmrs:robot:1.0", "Robot")
 FLYER = ("urn:mmrs:test:1.0", "Flyer")

@@ -4,7 +4,7 @@ import numpy as np
 from plain_scenes import box, control, field_work, photo, road, robot, scene, task, visit, with_kinematics
 
 from mmrs_core.errors import InfeasibleError
-from mmrs_core.scene.timing import LegTiming
+from mmrs_runtime.timing import LegTiming
 
 
 def areas(rng):

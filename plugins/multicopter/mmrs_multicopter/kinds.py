@@ -8,6 +8,7 @@ from mmrs_core.contributions.rules import MoveKind, MoveSpec, RobotKind
 from mmrs_core.contributions.samples import sample_type
 from mmrs_core.errors import InfeasibleError
 from mmrs_core.geometry.ground import ground_height
+from mmrs_core.scene.timing import bounded
 from mmrs_core.transformation.kinds import ROBOT, kinematics_for, path_seconds
 from mmrs_multicopter import trajectories
 from mmrs_multicopter.names import DRONE, GO_TO, LAND, TAKE_OFF
@@ -74,13 +75,12 @@ def take_off_seconds(
     move: Move, path: tuple[Position, ...], kinematics: Kinematics, mode: str
 ) -> MoveSeconds:
     """Return the duration of spinning up and climbing."""
-    climbing = kinematics.rates().from_stop_to_stop(path[0], path[-1])
-    return kinematics.timing.bounded(kinematics.launch + climbing)
+    return bounded(kinematics.launching(path[-1][2] - path[0][2]), kinematics.timing)
 
 
 def land_seconds(move: Move, path: tuple[Position, ...], kinematics: Kinematics, mode: str) -> MoveSeconds:
     """Return the duration of descending, slowly near the ground, and stopping the motors."""
-    return kinematics.timing.bounded(kinematics.landing(path[0][2] - path[-1][2]))
+    return bounded(kinematics.landing(path[0][2] - path[-1][2]), kinematics.timing)
 
 
 MULTICOPTER_KIND = RobotKind(

@@ -7,7 +7,6 @@ from mmrs_multicopter.names import DRONE, GO_TO, LAND, TAKE_OFF
 
 from mmrs_core.behaviour.program import Move, MoveTarget
 from mmrs_core.scene import Battery
-from mmrs_core.scene.timing import LegTiming
 from mmrs_core.testing.conformance import (
     MetamodelConformance,
     MoveKindConformance,
@@ -15,6 +14,7 @@ from mmrs_core.testing.conformance import (
     RobotKindConformance,
 )
 from mmrs_core.testing.scenes import FLYER, ROBOT, sample_robot, sample_type
+from mmrs_runtime.timing import LegTiming
 
 QUAD = sample_type(
     name="Quad",

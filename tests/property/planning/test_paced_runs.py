@@ -10,7 +10,7 @@ from plain_scenes import photo, road, robot, scene, visit, with_kinematics
 from mmrs_core.planning.pacing import paced
 from mmrs_core.planning.strokes import joined, parts_of, serve_seconds, turned
 from mmrs_core.planning.team import Team
-from mmrs_core.scene.timing import LegTiming
+from mmrs_runtime.timing import LegTiming
 
 places = st.tuples(st.integers(0, 400), st.integers(0, 400), st.sampled_from([20, 30]))
 

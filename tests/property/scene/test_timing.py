@@ -9,7 +9,8 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from mmrs_core.scene import Kinematics
-from mmrs_core.scene.timing import IDEAL, LegTiming, Rates
+from mmrs_core.scene.timing import Rates
+from mmrs_runtime.timing import IDEAL, LegTiming
 
 HERE = (0.0, 0.0, 10.0)
 NONE = (0.0, 0.0, 0.0)

@@ -17,7 +17,7 @@ from sound_plans import sound, steps_of
 from mmrs_core.errors import InfeasibleError
 from mmrs_core.planning.planner import plan
 from mmrs_core.scene import Policy, Recharge
-from mmrs_core.scene.timing import LegTiming
+from mmrs_runtime.timing import LegTiming
 
 CUTS = tuple(range(50, 1000, 50))
 

@@ -6,7 +6,7 @@ from plain_scenes import box, photo, road, robot, scene, visit, with_kinematics
 from mmrs_core.planning.pacing import paced
 from mmrs_core.planning.strokes import parts_of, serve_seconds, turned
 from mmrs_core.planning.team import Team
-from mmrs_core.scene.timing import LegTiming
+from mmrs_runtime.timing import LegTiming
 
 SLUGGISH = with_kinematics(robot(), timing=LegTiming(0.5))
 CUTS = (25.0, 50.0, 75.0)

@@ -20,7 +20,7 @@ from mmrs_core.errors import InfeasibleError
 from mmrs_core.planning.planner import plan
 from mmrs_core.planning.separation import first_conflict
 from mmrs_core.scene import Await, Branch, Launch, Recover, Serve, Signal, Transit
-from mmrs_core.scene.timing import LegTiming
+from mmrs_runtime.timing import LegTiming
 
 TWO = (robot("r1"), robot("r2", (20.0, 0.0, 0.0)))
 FIELD = ((100.0, 100.0), (300.0, 100.0), (300.0, 300.0), (100.0, 300.0))

@@ -9,7 +9,7 @@ from mmrs_core.errors import InternalError
 from mmrs_core.planning.planner import plan
 from mmrs_core.planning.timeline import HomeRelation, rides_of
 from mmrs_core.scene import Await, Look, Policy
-from mmrs_core.scene.timing import LegTiming
+from mmrs_runtime.timing import LegTiming
 
 SWIFT = with_kinematics(robot(), timing=LegTiming(2.0))
 

@@ -31,9 +31,9 @@ from mmrs_core.languages.importers import Imported, Importer, Recognition
 from mmrs_core.languages.reading import read_text
 from mmrs_core.languages.registry import MetamodelSource
 from mmrs_core.plugins import language, load_plugins
-from mmrs_core.scene.timing import AutopilotTiming, LegTiming
 from mmrs_core.testing.scenes import FLYER, sample_type
 from mmrs_runtime.records.steps import StepRecord
+from mmrs_runtime.timing import AutopilotTiming, LegTiming
 
 KITE = ("urn:test:kite:1.0", "Kite")
 ZOO = Path(__file__).parents[2] / "fixtures" / "models" / "zoo.ecore"

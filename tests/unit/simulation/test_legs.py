@@ -8,7 +8,6 @@ from itertools import pairwise
 import pytest
 
 from mmrs_core.scene import Kinematics
-from mmrs_core.scene.timing import LegTiming
 from mmrs_core.simulation.legs import (
     CLIMBING,
     TimedLeg,
@@ -20,6 +19,7 @@ from mmrs_core.simulation.legs import (
     turn,
     wind,
 )
+from mmrs_runtime.timing import LegTiming
 
 FLYER = Kinematics(cruise=5.0, slowest=0.0, fastest=10.0, climb=2.0, descent=1.0)
 HERE, EAST, UP = (0.0, 0.0, 0.0), (100.0, 0.0, 0.0), (0.0, 0.0, 10.0)

@@ -29,7 +29,7 @@ from mmrs_core.testing.conformance import (
 from mmrs_core.testing.programs import sample_of
 from mmrs_core.testing.scenes import square
 from mmrs_core.testing.small_programs import go, program, robot
-from mmrs_core.transformation.kinds import no_time, stays
+from mmrs_core.transformation.kinds import starting_time, stays
 
 BALLOON = "urn:mmrs:testing:balloon:1.0"
 ECORE = f"""<?xml version="1.0" encoding="UTF-8"?>
@@ -50,7 +50,7 @@ def balloons(tmp_path):
     """Return a plug-in whose move extends a move of another plug-in."""
     file = tmp_path / "balloon.ecore"
     file.write_text(ECORE)
-    kind = MoveKind((BALLOON, "Release"), stays, no_time, frozenset({"grounded"}))
+    kind = MoveKind((BALLOON, "Release"), stays, starting_time, frozenset({"grounded"}))
     return SimpleNamespace(
         mmrs_metamodels=hookimpl(lambda: (MetamodelSource(BALLOON, file, "balloons"),)),
         mmrs_move_kinds=hookimpl(lambda: (kind,)),
@@ -134,7 +134,7 @@ def rises_by(up):
     ids=["above home", "above the origin", "nowhere"],
 )
 def test_a_take_off_that_targets_cannot_express_is_found(up, fault):
-    kind = MoveKind((BALLOON, "Release"), rises_by(up), no_time, frozenset(), manoeuvre="take_off")
+    kind = MoveKind((BALLOON, "Release"), rises_by(up), starting_time, frozenset(), manoeuvre="take_off")
     kit = kit_for(None, MoveKindConformance, moves={"Release": Move("up", (kind.metaclass,), {})})()
     with pytest.raises(AssertionError, match=fault):
         kit.test_what_vehicles_make_of_it_is_known_without_a_home(kind)

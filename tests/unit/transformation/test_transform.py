@@ -37,9 +37,9 @@ from mmrs_core.scene import (
     Task,
     Transit,
 )
-from mmrs_core.scene.timing import LegTiming
 from mmrs_core.transformation.engine import transform
 from mmrs_core.transformation.kinds import PLAIN_ROBOT, ROBOT
+from mmrs_runtime.timing import LegTiming
 
 HOME = (0.0, 0.0, 0.0)
 CAMERA = Device("camera", {"Photo": DeviceAction("Photo", 1.0)}, {})

@@ -8,7 +8,8 @@ from math import degrees, inf, isfinite
 
 import numpy as np
 
-from mmrs_core.scene.timing import LegTiming, Rates
+from mmrs_core.scene.timing import Rates
+from mmrs_runtime.timing import LegTiming
 
 from ..profiles import VehicleProfile
 from ..profiles.modes import AUTO, GUIDED

@@ -8,7 +8,7 @@ from math import inf
 from mmrs_runtime.clock import Clock
 from mmrs_runtime.faults import BATTERY_LOW, FaultError
 
-from ..steps.energy import RECHARGE_FACTOR
+from ..steps.energy import CHARGING_FACTOR, RECHARGE_FACTOR
 from ..vehicles.vehicle import FULL, Vehicle
 
 PAUSE_SECONDS = 1.0
@@ -29,6 +29,7 @@ class Charging:
         self._vehicle, self._clock, self._seconds, self._say = vehicle, clock, seconds, say
         self._begun = clock.now()
         self._said = -inf
+        self._overdue = False
         self._answer: Callable[[str], None] | None = None
         self._why = ""
 
@@ -86,4 +87,10 @@ class Charging:
             self._said = self._clock.now()
             wanted = f"waits for the battery: {left:.0%} of at least {FULL:.0%}"
             self._say(f"{wanted}, for {longer:.0f} s at most; if it was changed, order battery-changed")
+        if taken > CHARGING_FACTOR * self._seconds and not self._overdue:
+            self._overdue = True
+            self._say(
+                f"charges for longer than checks count, {CHARGING_FACTOR * self._seconds:.0f} s: "
+                "robots that keep apart by time alone may meet"
+            )
         return False

@@ -18,8 +18,9 @@ from mmrs_core.generation.planned_moves import kinematics_of
 from mmrs_core.generation.safety import areas_of, clearance_of
 from mmrs_core.planning.paths import Space
 from mmrs_core.scene import AreaUse, Point, Position
-from mmrs_core.scene.timing import LegTiming, Rates
+from mmrs_core.scene.timing import Rates
 from mmrs_mavlink.plugin.context import VehicleContext, context_of
+from mmrs_runtime.timing import LegTiming
 
 AT_HOME = ((BEHAVIOUR, "Start"), (BEHAVIOUR, "Recharge"))
 """Moves after which a robot is at home."""

@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import asdict
+from dataclasses import replace
 from functools import partial
 
 from mmrs_core.contributions.timing import VehicleTiming
 from mmrs_core.scene import RobotType
-from mmrs_core.scene.timing import AutopilotTiming, LegTiming
 from mmrs_mavlink.plugin.vehicles import autopilot_of
 from mmrs_mavlink.profiles import PROFILES
-from mmrs_mavlink.profiles.pacing import LegFigures, Pacing
+from mmrs_mavlink.steps.energy import CHARGING_FACTOR
+from mmrs_runtime.timing import AutopilotTiming
 
 
 def timings() -> Iterator[VehicleTiming]:
@@ -25,16 +25,4 @@ def _timing_of(vehicle: str, type: RobotType) -> AutopilotTiming:
     named = autopilot_of(type, {})
     fitting = [each for each in PROFILES.values() if each.vehicle == vehicle]
     profile = next((each for each in fitting if each.autopilot.name == named), fitting[0])
-    return _as_timing(profile.pacing)
-
-
-def _as_timing(pacing: Pacing) -> AutopilotTiming:
-    mission = None if pacing.mission is None else _legs(pacing.mission)
-    figures = ("launch", "recovery", "landing_rate", "landing_height", "rounds")
-    return AutopilotTiming(
-        step=_legs(pacing.step), mission=mission, **{name: getattr(pacing, name) for name in figures}
-    )
-
-
-def _legs(figures: LegFigures) -> LegTiming:
-    return LegTiming(**asdict(figures))
+    return replace(profile.pacing, charging=CHARGING_FACTOR)

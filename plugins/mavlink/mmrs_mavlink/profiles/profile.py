@@ -8,10 +8,11 @@ from typing import TypeAlias
 
 from mmrs_runtime.controllers.geodesy import at_height
 from mmrs_runtime.controllers.vocabulary import Place
+from mmrs_runtime.timing import AutopilotTiming
 
 from .autopilot import Autopilot
 from .modes import HOLD, Mode
-from .pacing import UNKNOWN, Pacing
+from .pacing import UNKNOWN
 
 Answers: TypeAlias = Mapping[str, Mapping[str, int]]
 """Parameters and their values, by response of a policy."""
@@ -189,7 +190,7 @@ class VehicleProfile:
     in_plane: bool = False
     still: float = 0.3
     timing: Timing = Timing()
-    pacing: Pacing = UNKNOWN
+    pacing: AutopilotTiming = UNKNOWN
     speed_repeats: int = 3
     stops_early: bool = False
     radii: Mapping[str, float] = field(default_factory=dict)

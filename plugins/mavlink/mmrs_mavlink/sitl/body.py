@@ -10,7 +10,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from math import cos, hypot, inf, radians, sin, sqrt
 
-from mmrs_mavlink.profiles.pacing import LegFigures
+from mmrs_runtime.timing import LegTiming
 
 Vector = tuple[float, float, float]
 
@@ -106,7 +106,7 @@ class Body:
         speed: commanded ground speed, metres per second; climb, descent: limits of the vertical speed.
     """
 
-    figures: LegFigures
+    figures: LegTiming
     position: Vector = STILL
     velocity: Vector = STILL
     heading: float = 0.0

@@ -72,8 +72,11 @@ LEAST_USED = 0.05
 
 RECOUNT_SECONDS = 1.0
 
+CHARGING_FACTOR = 1.2
+"""How many times as long as declared charging may take, as checks count it."""
+
 RECHARGE_FACTOR = 3.0
-"""How many times as long as expected charging may take."""
+"""How many times as long as declared a robot waits for its batteries at most."""
 
 
 class Reserve:

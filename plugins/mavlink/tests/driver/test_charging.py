@@ -72,7 +72,15 @@ def test_what_it_waits_for_is_said_and_again_every_minute():
         "waits for the battery: 37% of at least 99%, for 200 s at most;"
         " if it was changed, order battery-changed"
     )
-    assert len(said) == 4
+    assert len([each for each in said if each.startswith("waits for")]) == 4
+
+
+def test_a_charge_that_lasts_longer_than_checks_count_is_said_once():
+    stay, _, said = charging(0.27, 0.005)
+    stay.stay()
+    assert [each for each in said if "than checks count" in each] == [
+        "charges for longer than checks count, 120 s: robots that keep apart by time alone may meet"
+    ]
 
 
 def test_a_change_that_is_confirmed_as_the_battery_gets_full_is_answered():

@@ -1,0 +1,91 @@
+"""How autopilots take legs: figures that planning and the profiles of vehicles share.
+
+``docs/concepts/timing.md`` explains them.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import inf
+
+
+@dataclass(frozen=True, slots=True)
+class LegTiming:
+    """How an autopilot takes legs in one way of being commanded; the defaults are those of an ideal one.
+
+    Attributes:
+        acceleration: level, speeding up, metres per second squared.
+        deceleration: level, slowing down; None: as speeding up.
+        vertical_acceleration: up and down, both ways; None: as the level one.
+        jerk: change of acceleration, metres per second cubed.
+        speed: largest that it makes, metres per second.
+        climb, descent: largest that it makes, metres per second.
+        corner_radius: metres from a corner within which it passes; 0: it comes to a stop at each.
+        acceptance: metres from a target at which it may count as reached: so short a leg may take no time.
+        settling: seconds from the end of a leg until it is reported as done.
+        overshoot: how far it goes beyond a target, metres for each metre per second of the leg's largest
+            speed, that is, seconds.
+        spread: by which share legs take longer or shorter than expected.
+        reporting: seconds within which what takes no time, such as a leg of no length, is reported as done.
+        shunts_within: turning radii up to which a leg may be shunted for, where the robot cannot turn on the
+            spot; it gets onto longer ones by one curve.
+        unlimited: how it takes legs where it does not keep the limits of the robot's type; None: as here.
+    """
+
+    acceleration: float = inf
+    deceleration: float | None = None
+    vertical_acceleration: float | None = None
+    jerk: float = inf
+    speed: float = inf
+    climb: float = inf
+    descent: float = inf
+    corner_radius: float = inf
+    acceptance: float = 0.0
+    settling: float = 0.0
+    overshoot: float = 0.0
+    spread: float = 0.0
+    reporting: float = 0.0
+    shunts_within: float = inf
+    unlimited: LegTiming | None = None
+
+    @property
+    def braking(self) -> float:
+        """Return the level deceleration, metres per second squared."""
+        return self.acceleration if self.deceleration is None else self.deceleration
+
+    def cut(self, speed: float) -> float:
+        """Return by how many metres a corner is cut at most that is passed at a speed.
+
+        At a steady acceleration that is v² / 2a, and never more than the radius.
+        """
+        return min(self.corner_radius, speed * speed / (2.0 * min(self.acceleration, self.braking)))
+
+
+IDEAL = LegTiming()
+"""At once at any speed, and at a standstill."""
+
+
+@dataclass(frozen=True, slots=True)
+class AutopilotTiming:
+    """How long the autopilots of a class of vehicles take, where the robot type does not state it.
+
+    Attributes:
+        step: legs that are commanded one by one.
+        mission: legs of a mission that was uploaded; None: none is, or these are taken as steps are.
+        launch: seconds from the command to launch until the robot climbs; None: as its kind says.
+        recovery: seconds from touching the ground until it stands still; None: as its kind says.
+        landing_rate: metres per second at which it comes down below `landing_height`, metres above ground.
+        rounds: whether a vehicle that cannot turn on the spot drives round instead of shunting.
+        turn_rate: largest, degrees per second.
+        charging: how many times as long as declared charging may take.
+    """
+
+    step: LegTiming = IDEAL
+    mission: LegTiming | None = None
+    launch: float | None = None
+    recovery: float | None = None
+    landing_rate: float = inf
+    landing_height: float = 0.0
+    rounds: bool = False
+    turn_rate: float = inf
+    charging: float = 1.0
