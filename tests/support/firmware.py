@@ -15,7 +15,7 @@ import subprocess
 import threading
 import time
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import NamedTuple
 
@@ -86,6 +86,17 @@ ARDUROVER = Firmware(
     "rover",
     {**LARGE_BATTERY, **POLYGONS_ONLY, **RELAYS},
 )
+ARDUROVER_SKID = replace(
+    ARDUROVER,
+    model="rover-skid",
+    parameters={
+        **ARDUROVER.parameters,
+        **{"SERVO1_FUNCTION": 73, "SERVO3_FUNCTION": 74, "ATC_STR_RAT_FF": 0.2},
+        **{"CRUISE_SPEED": 3, "CRUISE_THROTTLE": 75, "WP_SPEED": 3},
+    },
+)
+"""Steers by the difference of its tracks, so that it turns on the spot."""
+
 ARDUSUB = Firmware("ArduSub", "MMRS_ARDUSUB", "sub", "vectored", {**LARGE_BATTERY, **CAMERA, **RELAYS})
 PX4 = Firmware("PX4", "MMRS_PX4", "copter", "sihsim_quadx")
 FIRMWARES = (ARDUCOPTER, ARDUROVER, ARDUSUB, PX4)

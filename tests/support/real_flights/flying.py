@@ -18,7 +18,7 @@ from typing import IO
 
 import numpy as np
 from example_flight.ways import controller_commands, run_command
-from firmware import ARDUCOPTER, ARDUROVER, ARDUSUB, PX4, Firmware, Fix, InstalledVehicle
+from firmware import ARDUCOPTER, ARDUROVER, ARDUROVER_SKID, ARDUSUB, PX4, Firmware, Fix, InstalledVehicle
 from ports import free_port
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
@@ -96,15 +96,16 @@ class Result:
     confirmed: dict[str, float] = field(default_factory=dict)
 
 
-def firmware_of(vehicle: str, *, px4: bool) -> Firmware:
-    """Return what flies a class of vehicle."""
-    return {"copter": PX4 if px4 else ARDUCOPTER, "rover": ARDUROVER, "sub": ARDUSUB}[vehicle]
+def firmware_of(plan: Planned, robot: str, *, px4: bool) -> Firmware:
+    """Return what flies a robot."""
+    rover = ARDUROVER_SKID if plan.turns_on_the_spot(robot) else ARDUROVER
+    return {"copter": PX4 if px4 else ARDUCOPTER, "rover": rover, "sub": ARDUSUB}[plan.vehicle(robot)]
 
 
 def missing(flight: Flight, folder: Path) -> list[str]:
     """Return the variables of the binaries that a flight needs and that are not given; write its models."""
     plan = prepare(flight, folder)
-    needed = [firmware_of(plan.vehicle(robot), px4=flight.px4) for robot in robots_of(flight, plan)]
+    needed = [firmware_of(plan, robot, px4=flight.px4) for robot in robots_of(flight, plan)]
     return sorted({each.variable for each in needed if not each.binary})
 
 
@@ -205,7 +206,7 @@ class Flying:
         return 90.0 + (180.0 + 2.0 * longest + happenings) / self.speedup
 
     def _man(self, robot: str, number: int, stack: ExitStack) -> None:
-        firmware = firmware_of(self.plan.vehicle(robot), px4=self.flight.px4)
+        firmware = firmware_of(self.plan, robot, px4=self.flight.px4)
         vehicle = InstalledVehicle(
             firmware,
             self.plan.stand(robot),

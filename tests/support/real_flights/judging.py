@@ -50,6 +50,11 @@ class Planned:
         vehicle = kind.vehicle if kind is not None else ""
         return "rover" if vehicle == "ground" else vehicle
 
+    def turns_on_the_spot(self, robot: str) -> bool:
+        """Return whether a robot drives, and has no turning circle."""
+        kind = robot_kind_of(self.place.types[self._robot(robot).type_name], installed().robot_kinds)
+        return kind is not None and kind.vehicle == "ground"
+
     def dives(self, robot: str) -> bool:
         """Return whether a robot is under water, so that heights count from the surface."""
         kind = robot_kind_of(self.place.types[self._robot(robot).type_name], installed().robot_kinds)
