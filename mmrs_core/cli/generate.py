@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -89,12 +89,13 @@ def generate(
         ]
         raise typer.BadParameter(f"missing: {', '.join(missing)}")
     order = _Order(target, output, context, robot_files(robots), templates, allow_lossy, force, wheels or [])
-    written, manifest, asks = _generate(session, behaviour_file(behaviour), order)
+    made = _generate(session, behaviour_file(behaviour), order)
     if json:
-        left_out = {"losses": manifest.losses, "overrides": sorted(manifest.overrides), "asks": asks}
-        say_json({"target": target, "files": written, **left_out})
+        left_out = {"losses": made.manifest.losses, "overrides": sorted(made.manifest.overrides)}
+        said = {"asks": made.asks, "notes": {str(path): note for path, note in made.notes.items()}}
+        say_json({"target": target, "files": made.written, **left_out, **said})
     else:
-        _tell_written(written, output, manifest, asks)
+        _tell_written(made, output)
     return 0
 
 
@@ -112,18 +113,30 @@ class _Order:
     platforms: Sequence[str]
 
 
+@dataclass(frozen=True, slots=True)
+class _Made:
+    """What was generated: files that were written, what is left to write, and notes on files."""
+
+    written: tuple[Path, ...]
+    manifest: Manifest
+    asks: tuple[str, ...]
+    notes: Mapping[Path, str]
+
+
 _MANY = 20
 """Files of a folder that are listed one by one; of a larger folder, only their number."""
 
 
-def _tell_written(written: tuple[Path, ...], folder: Path, manifest: Manifest, asks: tuple[str, ...]) -> None:
-    say(f"{manifest.target}: {counted(len(written), 'file')} written")
-    for line in _listed(written, folder):
-        say(f"  {line}")
+def _tell_written(made: _Made, folder: Path) -> None:
+    manifest = made.manifest
+    say(f"{manifest.target}: {counted(len(made.written), 'file')} written")
+    for line in _listed(made.written, folder):
+        note = made.notes.get(Path(line), "")
+        say(f"  {line} ({note})" if note else f"  {line}")
     for sort, names in (
         ("with a file of yours in place of the target's own", sorted(manifest.overrides)),
         ("left out, since the target cannot express it", manifest.losses),
-        ("left for you to write before it works", asks),
+        ("left for you to write before it works", made.asks),
     ):
         if names:
             say(f"{sort}:")
@@ -146,9 +159,7 @@ def _listed(written: tuple[Path, ...], folder: Path) -> list[str]:
     return list(dict.fromkeys(lines))
 
 
-def _generate(
-    session: Session, file: Path, order: _Order
-) -> tuple[tuple[Path, ...], Manifest, tuple[str, ...]]:
+def _generate(session: Session, file: Path, order: _Order) -> _Made:
     loaded = load_behaviour(session, file, context=order.context, robots=order.robots)
     program, place = loaded.program, loaded.place
     require_safe(program, verdicts_of(session, program, place), str(file))
@@ -168,9 +179,10 @@ def _generate(
     written = write(files, order.output, force=order.force)
     if order.platforms:
         fetch(order.output, order.platforms)
-    new = (file for file in files if order.output / file.path in written)
+    new = [file for file in files if order.output / file.path in written]
     asks = tuple(f"{file.path}: {each}" for file in new for each in file.asks)
-    return written, manifest_in(files[-1].content), asks
+    notes = {order.output / file.path: file.note for file in new if file.note}
+    return _Made(written, manifest_in(files[-1].content), asks, notes)
 
 
 def _list_targets(session: Session, json: bool) -> int:

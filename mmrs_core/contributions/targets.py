@@ -24,12 +24,14 @@ class GeneratedFile:
         content: its bytes.
         once: whether the file is the user's after it was first written: it is never overwritten.
         asks: what it leaves to the user, one message each.
+        note: on what it holds, in a few words; may be empty.
     """
 
     path: str
     content: bytes
     once: bool = False
     asks: tuple[str, ...] = ()
+    note: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -86,7 +88,7 @@ class FileSpec:
         view: what the template sees.
         trace: which step serves which move and task, for the manifest.
         data: content of a binary file; None: what the template makes.
-        once, asks: as in `GeneratedFile`.
+        once, asks, note: as in `GeneratedFile`.
     """
 
     path: str
@@ -97,6 +99,7 @@ class FileSpec:
     source: Path | None = None
     data: bytes | None = None
     asks: tuple[str, ...] = ()
+    note: str = ""
 
 
 @dataclass(frozen=True, slots=True)

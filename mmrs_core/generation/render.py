@@ -66,7 +66,7 @@ def render(
     entries: list[Entry] = []
     for spec in specs:
         content, served = press.content(spec)
-        files.append(GeneratedFile(spec.path, content, spec.once, spec.asks))
+        files.append(GeneratedFile(spec.path, content, spec.once, spec.asks, spec.note))
         entries += entries_of(spec.path, with_lines(spec.trace, served), facts)
     replaced = overrides.hashes if overrides is not None else {}
     records = tuple(recorded(file, spec.template) for file, spec in zip(files, specs, strict=True))

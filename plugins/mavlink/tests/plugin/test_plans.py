@@ -361,3 +361,9 @@ def test_a_mission_takes_longer_than_its_moves_one_by_one():
     stepped = [each.seconds for each in planned_moves(robot, given)]
     assert None not in stepped
     assert sortie_seconds(robot, given) >= (sum(each.expected for each in stepped),)
+
+
+def test_a_file_is_noted_with_the_seconds_of_its_mission():
+    robot, given = flight(go_to("far", (0.0, 400.0, 25.0)))
+    (seconds,) = sortie_seconds(robot, given)
+    assert [each.note for each in QGC_PLAN.files(given)] == [f"{seconds:.0f} s as a mission, waits aside"]

@@ -18,6 +18,7 @@ from mmrs_mavlink.plugin.escapes import escapes_of
 from mmrs_mavlink.plugin.fencing import fences_of
 from mmrs_mavlink.plugin.plans.flight import sorties_of
 from mmrs_mavlink.plugin.plans.items import PlanItem, Row, rows_of
+from mmrs_mavlink.plugin.plans.times import sortie_seconds
 
 Vertex: TypeAlias = tuple[float, float]
 """Latitude and longitude in degrees."""
@@ -37,6 +38,7 @@ class PlannedMission:
         fence: polygons to stay out of.
         rally: heights are above home: the greatest of the sortie, which is above the obstacles along its
             path.
+        seconds: expected, waits aside; None where that is unknown.
     """
 
     context: VehicleContext
@@ -45,6 +47,12 @@ class PlannedMission:
     rows: tuple[Row, ...]
     fence: tuple[tuple[Vertex, ...], ...]
     rally: tuple[Spot, ...]
+    seconds: float | None
+
+    @property
+    def note(self) -> str:
+        """Return how long it takes, in words; empty where that is unknown."""
+        return "" if self.seconds is None else f"{self.seconds:.0f} s as a mission, waits aside"
 
 
 def missions_of(input: TargetInput) -> Iterator[PlannedMission]:
@@ -56,13 +64,19 @@ def missions_of(input: TargetInput) -> Iterator[PlannedMission]:
     stems = file_stems([robot.id for robot in input.program.robots])
     for robot in input.program.robots:
         context = context_of(robot, input)
-        for number, sortie in enumerate(sorties_of(context), start=1):
+        sorties, seconds = sorties_of(context), sortie_seconds(robot, input)
+        for number, sortie in enumerate(sorties, start=1):
             suffix = f".sortie-{number}" if number > 1 else ""
-            yield _mission(context, input, stems[robot.id] + suffix, sortie)
+            lasts = seconds[number - 1] if len(seconds) == len(sorties) else None
+            yield _mission(context, input, stems[robot.id] + suffix, sortie, lasts)
 
 
 def _mission(
-    context: VehicleContext, input: TargetInput, stem: str, sortie: Sequence[PlanItem]
+    context: VehicleContext,
+    input: TargetInput,
+    stem: str,
+    sortie: Sequence[PlanItem],
+    seconds: float | None,
 ) -> PlannedMission:
     robot = context.robot
     points = rally_points_of(robot, input.program, input.types, input.areas).points
@@ -76,6 +90,7 @@ def _mission(
             for fence in fences_of(robot, input, escapes_of(robot, input, points))
         ),
         _rally(context, points, sortie),
+        seconds,
     )
 
 

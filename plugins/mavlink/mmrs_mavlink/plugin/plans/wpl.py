@@ -9,6 +9,7 @@ beside the mission. Whether other ground stations read those two is not known.
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from math import isinf
 
 from mmrs_core.contributions.targets import FileSpec, Target, TargetInput, TracedStep
@@ -40,7 +41,7 @@ def files(input: TargetInput) -> Iterator[FileSpec]:
         UnsupportedError: the behaviour is local, or a robot has no home.
     """
     for mission in missions_of(input):
-        yield _list(mission, "", (_home(mission), *mission.rows))
+        yield replace(_list(mission, "", (_home(mission), *mission.rows)), note=mission.note)
         for name, rows in (("fence", _fence(mission)), ("rally", _rally(mission))):
             if rows:
                 yield _list(mission, f".{name}", rows)
