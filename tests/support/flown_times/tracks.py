@@ -48,7 +48,11 @@ def track_in(file: Path) -> list[Sample]:
     return [
         Sample(
             each["t"],
-            ((each["lon"] - home["lon"]) * east, (each["lat"] - home["lat"]) * north, each["rel"]),
+            (
+                (each["lon"] - home["lon"]) * east,
+                (each["lat"] - home["lat"]) * north,
+                each["rel"] - home["rel"],
+            ),
             hypot(each["vx"], each["vy"], each["vz"]),
             bool(each["armed"]),
             int(each["mode"]),
