@@ -12,7 +12,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from math import hypot, radians, sin
+from math import hypot, inf, radians, sin
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
@@ -115,10 +115,15 @@ class Shunting:
         self._command(0.0, 0.0, lambda: self.telemetry.speed() <= HALTED, HALT_SECONDS)
 
     def _command(self, speed: float, rate: float, ends: Callable[[], bool], seconds: float) -> None:
-        """Command a speed and a turn rate, metres and radians per second, until something is so."""
-        until = self.link.clock.now() + seconds
+        """Command a speed and a turn rate, metres and radians per second, until something is so.
+
+        A vehicle whose positions do not arrive is not commanded again, so that it stops.
+        """
+        until, seen = self.link.clock.now() + seconds, -inf
         while self.link.clock.now() < until:
-            self.link.send(_speed_and_turn_rate(self.link, speed, rate))
+            if self.telemetry.time() > seen:
+                seen = self.telemetry.time()
+                self.link.send(_speed_and_turn_rate(self.link, speed, rate))
             if self.link.wait(ends, RESEND_SECONDS):
                 return
             self.mode_control.check()

@@ -45,36 +45,39 @@ def sent_to(angle: float, metres: float, radius: float):
 class Car:
     """A car on a plane by the bicycle model, in place of a link, its telemetry and the control of its mode.
 
-    It speeds up and slows down at 0.6 m/s², steers no narrower curve than its own, and is asked five
-    times a second, as positions are reported.
+    It speeds up and slows down at 0.6 m/s², steers no narrower curve than its own, stops where it is not
+    commanded for three seconds, and is asked five times a second, as positions are reported.
     """
 
     def __init__(self, radius: float, heading: float) -> None:
         self.radius, self.yaw, self.pace = radius, radians(heading), 0.0
-        self.north = self.east = self.time = self.farthest = 0.0
+        self.north = self.east = self.seconds = self.sent = self.farthest = 0.0
         self.wanted = (0.0, 0.0)
-        self.clock = SimpleNamespace(now=lambda: self.time)
+        self.clock = SimpleNamespace(now=lambda: self.seconds)
         self.profile, self.system, self.component = SimpleNamespace(still=0.3), 1, 1
 
     def send(self, message) -> None:
-        self.wanted = (message.vx, message.yaw_rate)
+        self.wanted, self.sent = (message.vx, message.yaw_rate), self.seconds
 
     def wait(self, test, seconds: float):
-        until = self.time + seconds
-        while not (found := test()) and self.time < until:
+        until = self.seconds + seconds
+        while not (found := test()) and self.seconds < until:
             for _ in range(10):
                 self._roll(0.02)
         return found
 
     def _roll(self, step: float) -> None:
-        speed, rate = self.wanted
+        speed, rate = self.wanted if self.seconds < self.sent + 3.0 else (0.0, 0.0)
         self.pace += max(-0.6 * step, min(0.6 * step, speed - self.pace))
         narrowest = abs(self.pace) / self.radius
         self.yaw += max(-narrowest, min(narrowest, rate)) * step
         self.north += self.pace * cos(self.yaw) * step
         self.east += self.pace * sin(self.yaw) * step
-        self.time += step
+        self.seconds += step
         self.farthest = max(self.farthest, hypot(self.north, self.east))
+
+    def time(self) -> float:
+        return self.seconds
 
     def here(self) -> Local:
         return Local(self.north, self.east, 0.0)
@@ -87,6 +90,27 @@ class Car:
 
     def check(self) -> None:
         """Nothing else has a say in where it goes."""
+
+
+class Silent(Car):
+    """One whose positions arrive no more once it has begun to move."""
+
+    def time(self) -> float:
+        return min(self.seconds, 1.0)
+
+    def here(self) -> Local:
+        return Local(0.0, 0.0, 0.0)
+
+    def heading(self) -> float:
+        return 0.0
+
+
+def test_a_car_whose_positions_do_not_arrive_stops():
+    car = Silent(radius=4.0, heading=0.0)
+    shunting = Shunting(car, car, car, car.radius)
+    shunting._drive_arc(Local(0.0, 6.0, 0.0), car.here(), 1.0)
+    assert car.pace == 0.0
+    assert 1.0 < car.farthest < 2.5
 
 
 @given(
