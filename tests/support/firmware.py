@@ -98,7 +98,9 @@ ARDUROVER_SKID = replace(
 """Steers by the difference of its tracks, so that it turns on the spot."""
 
 ARDUSUB = Firmware("ArduSub", "MMRS_ARDUSUB", "sub", "vectored", {**LARGE_BATTERY, **CAMERA, **RELAYS})
-PX4 = Firmware("PX4", "MMRS_PX4", "copter", "sihsim_quadx")
+PX4 = Firmware("PX4", "MMRS_PX4", "copter", "sihsim_quadx", {"SIM_BAT_DRAIN": 3600})
+"""Its simulated battery is otherwise at half of its charge after a minute."""
+
 FIRMWARES = (ARDUCOPTER, ARDUROVER, ARDUSUB, PX4)
 
 
