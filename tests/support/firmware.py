@@ -378,6 +378,8 @@ class InstalledVehicle:
                 stdout=output,
                 stderr=subprocess.STDOUT,
             )
+        if self.firmware is PX4:
+            self.observer.change(self._parameters)
 
     def sign(self) -> None:
         """Give it its key, once it runs: from then on, it signs and accepts only what is signed."""
@@ -415,7 +417,6 @@ class InstalledVehicle:
             "PX4_HOME_LON": longitude,
             "PX4_HOME_ALT": f"{self._stand.altitude:g}",
             "PX4_SIM_SPEED_FACTOR": f"{self.speedup:g}",
-            **{f"PX4_PARAM_{name}": f"{value:g}" for name, value in self._parameters.items()},
         }
         return [self.firmware.binary, "-i", str(self.number), "-d", str(build / "etc")], environment
 
