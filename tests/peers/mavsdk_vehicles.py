@@ -27,7 +27,7 @@ from mmrs_mavlink.commands.rehearsal import summary_of
 from mmrs_mavlink.sitl.commands import arming_refusal, execute
 from mmrs_mavlink.sitl.items import StoredItem
 from mmrs_mavlink.sitl.settings import Settings
-from mmrs_mavlink.sitl.streams import Streams
+from mmrs_mavlink.sitl.telemetry import Streams
 from mmrs_mavlink.sitl.vehicle import Host, SimulatedVehicle
 
 ARM, TAKE_OFF, JUMP, INTERVAL, REQUEST = 400, 22, 224, 511, 512

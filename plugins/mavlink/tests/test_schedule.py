@@ -24,7 +24,6 @@ def vehicle():
         ("battery=0.2@7.5", ScheduledFault("", "battery", ("0.2",), 7.5)),
         ("A:obstacle=3,90@1+2", ScheduledFault("A", "obstacle", ("3", "90"), 1.0, 2.0)),
         ("west: A@1:gps-lost@5", ScheduledFault("west: A@1", "gps-lost", (), 5.0)),
-        ("A:refuse-arming=PreArm: x", ScheduledFault("A", "refuse-arming", ("PreArm: x",))),
     ],
 )
 def test_a_fault_names_robot_values_begin_and_duration(text, fault):

@@ -18,11 +18,11 @@ def mend_link(vehicle: SimulatedVehicle) -> None:
 
 
 def fall_dumb(vehicle: SimulatedVehicle) -> None:
-    vehicle.faults.begin("dumb")
+    vehicle.faults.send_down = True
 
 
 def speak(vehicle: SimulatedVehicle) -> None:
-    vehicle.faults.end("dumb")
+    vehicle.faults.send_down = False
 
 
 def stick(vehicle: SimulatedVehicle) -> None:
@@ -91,4 +91,4 @@ def motor(vehicle: SimulatedVehicle) -> None:
 
 
 def vehicle_clock(vehicle: SimulatedVehicle) -> None:
-    vehicle.faults.begin("clock-jump", 3600.0)
+    vehicle.autopilot.clock_error += 3600.0

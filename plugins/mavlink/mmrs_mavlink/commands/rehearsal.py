@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import queue
 import signal
-import sys
 import time
 from collections.abc import Callable, Mapping, Sequence
 from itertools import pairwise
@@ -18,11 +17,10 @@ from mmrs_core.cli.output import say, tell
 from mmrs_core.cli.typed import typed_lines
 from mmrs_core.errors import InternalError
 from mmrs_mavlink.commands.schedule import Schedule, Vehicles, checked, inject
-from mmrs_mavlink.sitl.autopilot import SimulatedAutopilot
 from mmrs_mavlink.sitl.vehicle import Host, SimulatedVehicle
 
 POLL_SECONDS = 0.1
-QUIT = frozenset({"quit", "exit"})
+QUIT = "quit"
 
 
 class Rehearsal:
@@ -44,16 +42,14 @@ class Rehearsal:
             name: Schedule(vehicle, [fault for fault in plan if fault.robot in ("", name)])
             for name, vehicle in vehicles
         }
-        self._modes = dict.fromkeys((name for name, _ in vehicles), "")
         self._stopped = False
 
-    def run(self, seconds: float, started: Callable[[], None], *, quiet: bool = False) -> int:
+    def run(self, seconds: float, started: Callable[[], None]) -> int:
         """Run the vehicles; return the exit code.
 
         Args:
             seconds: real seconds to run; 0: until interrupted.
             started: called once the vehicles run.
-            quiet: whether to omit the summary.
         """
         host = Host([vehicle for _, vehicle in self._vehicles])
         lines = typed_lines()
@@ -61,19 +57,25 @@ class Rehearsal:
         host.start()
         try:
             started()
-            ended = self._watch(host, time.monotonic() + seconds if seconds else float("inf"), lines)
+            return self._watch(host, time.monotonic() + seconds if seconds else float("inf"), lines)
         finally:
             host.stop()
             for number, handler in before.items():
                 signal.signal(number, handler)
             self._close()
-        for name, vehicle in self._vehicles if not quiet else ():
-            say(f"'{name}': {summary_line(vehicle)}")
-        return 0 if ended else INTERRUPTED
 
     def summaries(self) -> dict[str, Mapping[str, object]]:
         """Return what each vehicle has done."""
         return {name: summary_of(vehicle) for name, vehicle in self._vehicles}
+
+    def print_summaries(self) -> None:
+        """Print what each vehicle has done."""
+        for name, done in self.summaries().items():
+            say(
+                f"'{name}': {done['flown']:.1f} s in motion, {done['metres']:.1f} m,"
+                f" {done['photos']} photos, {done['battery']:.0%} battery remaining,"
+                f" {'still armed' if done['armed'] else 'disarmed'} {done['from_home']:.1f} m from home"
+            )
 
     def _close(self) -> None:
         for _, vehicle in self._vehicles:
@@ -82,63 +84,30 @@ class Rehearsal:
     def _stop(self, number: int, frame: FrameType | None) -> None:
         self._stopped = True
 
-    def _watch(self, host: Host, until: float, lines: queue.SimpleQueue[str]) -> bool:
-        """Return whether it ended on time or by a line; False: it was interrupted."""
+    def _watch(self, host: Host, until: float, lines: queue.SimpleQueue[str]) -> int:
+        """Inject faults until the end; return the exit code."""
         while not self._stopped:
             if host.failure is not None:
                 raise InternalError("the simulated vehicles fail") from host.failure
             if time.monotonic() >= until or self._execute(lines):
-                return True
+                return 0
             for name, schedule in self._schedules.items():
                 for event in schedule.advance():
                     tell(f"'{name}': {event}")
-            if sys.stderr.isatty():
-                self._print_status(changed=True)
             time.sleep(POLL_SECONDS)
-        return False
+        return INTERRUPTED
 
     def _execute(self, lines: queue.SimpleQueue[str]) -> bool:
         """Execute the lines that were typed; return whether one ends the rehearsal."""
         while not lines.empty():
             line = lines.get().strip()
-            if line in QUIT:
+            if line == QUIT:
                 return True
-            if line in ("", "status"):
-                self._print_status()
-                continue
             try:
                 tell(f"{', '.join(inject(line, self._vehicles))}: {line.partition(' ')[2]}")
             except ValueError as error:
                 tell(str(error))
         return False
-
-    def _print_status(self, *, changed: bool = False) -> None:
-        """Print the status of all vehicles, or of those whose modes have changed."""
-        for name, vehicle in self._vehicles:
-            pilot, before = vehicle.autopilot, self._modes[name]
-            self._modes[name] = f"{pilot.mode_name} {pilot.armed}"
-            if not changed or self._modes[name] != before:
-                tell(f"{pilot.time:7.1f} s '{name}': {status_line(pilot)}")
-
-
-def status_line(pilot: SimulatedAutopilot) -> str:
-    """Return the present status of a vehicle."""
-    north, east, up = pilot.body.position
-    armed = "armed" if pilot.armed else "disarmed"
-    item = f", item {pilot.item}" if pilot.mode_name == "auto" else ""
-    faults = {
-        "no position": not pilot.located,
-        "position error": any(pilot.body.error),
-        "obstacle": pilot.obstacle is not None,
-        "outside its fence": pilot.breached,
-        "camera dead": not pilot.camera.works,
-        "refuses to arm": bool(pilot.arming_fault),
-    }
-    return (
-        f"{pilot.mode_name.upper()} {armed}, altitude {up:.1f} m, {hypot(north, east):.1f} m from home,"
-        f" {pilot.body.pace:.1f} m/s, battery {pilot.battery.level:.0%}{item}"
-        + "".join(f", {word}" for word, holds in faults.items() if holds)
-    )
 
 
 def summary_of(vehicle: SimulatedVehicle) -> Mapping[str, object]:
@@ -149,24 +118,11 @@ def summary_of(vehicle: SimulatedVehicle) -> Mapping[str, object]:
     return {
         "flown": round(sum(b[0] - a[0] for a, b in steps), 1),
         "metres": round(sum(dist(a[1:], b[1:]) for a, b in steps), 1),
-        "highest": round(max((place[3] for place in pilot.track), default=0.0), 1),
-        "items": len(pilot.visited),
         "photos": len(pilot.camera.photos),
         "battery": round(pilot.battery.level, 3),
         "armed": pilot.armed,
         "from_home": round(hypot(*pilot.body.place[:2]), 1),
         "sent": vehicle.radio.sent,
-        "heard": vehicle.radio.received,
         "modes": [names.get(number, str(number)) for _, number in pilot.modes],
         "texts": [text for _, _, text in pilot.said],
     }
-
-
-def summary_line(vehicle: SimulatedVehicle) -> str:
-    """Return what a vehicle has done as a line of text."""
-    done = summary_of(vehicle)
-    return (
-        f"{done['flown']:.1f} s in motion, {done['metres']:.1f} m, max altitude {done['highest']:.1f} m,"
-        f" {done['items']} mission items, {done['photos']} photos, {done['battery']:.0%} battery remaining,"
-        f" {'still armed' if done['armed'] else 'disarmed'} {done['from_home']:.1f} m from home"
-    )

@@ -6,20 +6,19 @@ import re
 from collections.abc import Iterable, Sequence
 from contextlib import nullcontext
 from dataclasses import dataclass
+from math import inf
 
 from mmrs_core.cli.typed import ALL_ROBOTS, addressed
 from mmrs_mavlink.sitl.autopilot import SimulatedAutopilot
-from mmrs_mavlink.sitl.faults import FAULTS, Faults
+from mmrs_mavlink.sitl.faults import Faults, fault_named
 from mmrs_mavlink.sitl.vehicle import SimulatedVehicle
 
 Vehicles = Sequence[tuple[str, SimulatedVehicle]]
 
 _PATTERN = re.compile(
-    r"(?:(?P<robot>.+?):)?(?P<name>[a-z-]+)(?:=(?P<values>[^@]+))?"
+    r"(?:(?P<robot>.{1,100}?):)?(?P<name>[a-z-]+)(?:=(?P<values>[^@]+))?"
     r"(?:@(?P<begin>[0-9.]+)(?:\+(?P<lasts>[0-9.]+))?)?"
 )
-_LONGEST = 1000
-"""Characters of a fault: a robot's name can hold any, so that a longer text would take long to match."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,13 +48,12 @@ def scheduled(text: str) -> ScheduledFault:
     Raises:
         ValueError: the text is malformed, or there is no such fault.
     """
-    found = _PATTERN.fullmatch(text.strip()) if len(text) <= _LONGEST else None
+    found = _PATTERN.fullmatch(text.strip())
     if found is None:
         raise ValueError(f"{text[:40]}: not [ROBOT:]FAULT[=VALUE,…][@SECONDS[+SECONDS]]")
-    if found["name"] not in FAULTS:
-        raise ValueError(f"{text}: unknown fault; known are {', '.join(FAULTS)}")
-    if found["lasts"] and FAULTS[found["name"]].clear is None:
+    if found["lasts"] and fault_named(found["name"]).clear is None:
         raise ValueError(f"{text}: {found['name']} is one-shot and cannot last")
+    fault_named(found["name"])
     values = tuple(found["values"].split(",")) if found["values"] else ()
     robot = "" if found["robot"] in (None, ALL_ROBOTS) else found["robot"]
     lasts = float(found["lasts"]) if found["lasts"] else None
@@ -100,26 +98,24 @@ class Schedule:
     """Injects and clears the faults of one vehicle on time."""
 
     def __init__(self, vehicle: SimulatedVehicle, faults: Iterable[ScheduledFault]) -> None:
-        self._vehicle = vehicle
-        self._waiting = list(faults)
-        self._ending: list[tuple[float, str]] = []
-        self._zero: float | None = None
+        self._vehicle, self._zero = vehicle, inf
+        self._due: list[tuple[float, str, tuple[str, ...] | None]] = []
+        for each in faults:
+            self._due.append((each.begin, each.name, each.values))
+            if each.lasts is not None:
+                self._due.append((each.begin + each.lasts, each.name, None))
 
     def advance(self) -> tuple[str, ...]:
         """Inject and clear what is due; return what has happened, in words."""
         pilot, happened = self._vehicle.autopilot, list[str]()
-        if self._zero is None:
-            self._zero = pilot.time if pilot.armed else None
-            return ()
-        elapsed = pilot.time - self._zero
-        for fault in [each for each in self._waiting if elapsed >= each.begin]:
-            self._waiting.remove(fault)
-            self._vehicle.faults.begin(fault.name, *fault.values)
-            happened.append(f"{' '.join((fault.name, *fault.values))} begins")
-            if fault.lasts is not None:
-                self._ending.append((elapsed + fault.lasts, fault.name))
-        for due, name in [each for each in self._ending if elapsed >= each[0]]:
-            self._ending.remove((due, name))
-            self._vehicle.faults.end(name)
-            happened.append(f"{name} ends")
+        if self._zero == inf and pilot.armed:
+            self._zero = pilot.time
+        for due in [each for each in self._due if pilot.time - self._zero >= each[0]]:
+            self._due.remove(due)
+            _, name, values = due
+            if values is None:
+                self._vehicle.faults.end(name)
+            else:
+                self._vehicle.faults.begin(name, *values)
+            happened.append(f"{' '.join((name, *(values or ())))} {'ends' if values is None else 'begins'}")
         return tuple(happened)

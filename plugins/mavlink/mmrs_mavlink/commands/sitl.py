@@ -113,10 +113,9 @@ def sitl(
 ) -> int:
     """Start simulated MAVLink vehicles.
 
-    Prints the --connect arguments for 'mmrs run' and generated controllers, and reports the vehicles' state
-    on a terminal. Type 'Drone1 gps-lost' or 'all battery 0.2' to inject a fault, 'Drone1 clear gps-lost' to
-    clear it, 'quit' to stop. The autopilots are imitations: a real autopilot may still reject what works
-    here.
+    Prints the --connect arguments for 'mmrs run' and generated controllers. Type 'Drone1 gps-lost' or
+    'all battery 0.2' to inject a fault, 'Drone1 clear gps-lost' to clear it, 'quit' to stop. The autopilots
+    are imitations: a real autopilot may still reject what works here.
 
     Example: mmrs sitl examples/carbon-dioxide --speedup 5 --fault 'Alba:gps-lost@60+20'
     """
@@ -139,7 +138,9 @@ def sitl(
     members = members_of(settings_of(call), behaviour, sights)
     rehearsal = Rehearsal(fleet.vehicles(members), fault or [])
     arguments = fleet.arguments(members)
-    code = rehearsal.run(seconds, started=lambda: None if json else say(shlex.join(arguments)), quiet=json)
+    code = rehearsal.run(seconds, started=lambda: None if json else say(shlex.join(arguments)))
     if json:
         say_json({"vehicles": rehearsal.summaries(), "connect": arguments})
+    else:
+        rehearsal.print_summaries()
     return code

@@ -10,9 +10,8 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from mmrs_mavlink.profiles import VehicleProfile
 from mmrs_mavlink.sitl import parameters
-from mmrs_mavlink.sitl.battery import Battery
 from mmrs_mavlink.sitl.body import Body, Vector
-from mmrs_mavlink.sitl.camera import Camera
+from mmrs_mavlink.sitl.devices import Battery, Camera
 from mmrs_mavlink.sitl.items import FENCE, MISSION, MOVING, RALLY, StoredItem
 from mmrs_mavlink.sitl.settings import PX4, Settings
 
@@ -57,7 +56,7 @@ class SimulatedAutopilot:
         pending: mission item whose completion is not yet reported; None: none.
         climbs_at: time at which its motors have spun up for a take-off. driven_at: time of the last sticks.
         return_path: positions to pass on a return. breadcrumbs: positions for SmartRTL.
-        located: whether it has a position. arming_fault: failed pre-arm check; empty: none.
+        located: whether it has a position.
         motor_failed: whether a motor has failed, with which it cannot fly.
         wind: metres per second, and degrees that it comes from.
         obstacle: metres, and degrees clockwise from its nose.
@@ -86,7 +85,7 @@ class SimulatedAutopilot:
         self.track: list[tuple[float, float, float, float]] = []
         self.modes: list[tuple[float, int]] = []
         self.said: list[tuple[float, int, str]] = []
-        self.located, self.arming_fault = True, ""
+        self.located = True
         self.wind = settings.wind
         self.motor_failed = False
         self.obstacle: tuple[float, float] | None = None
@@ -99,7 +98,6 @@ class SimulatedAutopilot:
         self.texts: list[tuple[int, str]] = []
         self.item, self.held, self.finished = 0, 0.0, False
         self.pending: int | None = None
-        self.roi: Vector | None = None
         self.climbs_at = self.driven_at = 0.0
         self.return_path: list[Vector] = []
         self.breadcrumbs: list[Vector] = [(0.0, 0.0, 0.0)]
@@ -242,9 +240,8 @@ class SimulatedAutopilot:
         return next(self.parameters[name] * unit for name, unit in names if name in self.parameters)
 
     def face(self, place: Vector) -> None:
-        """Turn to the region of interest, or else to a place that is not right here."""
-        there = self.roi or place
-        north, east = there[0] - self.body.position[0], there[1] - self.body.position[1]
+        """Turn to a place that is not right here."""
+        north, east = place[0] - self.body.position[0], place[1] - self.body.position[1]
         if abs(north) + abs(east) > 1.0:
             self.body.wanted_heading = degrees(atan2(east, north)) % 360.0
 

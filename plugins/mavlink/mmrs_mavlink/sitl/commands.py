@@ -9,7 +9,6 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from mmrs_mavlink.sitl.autopilot import MANUAL, SimulatedAutopilot
 from mmrs_mavlink.sitl.body import Vector
-from mmrs_mavlink.sitl.fences import outside_fence
 from mmrs_mavlink.sitl.items import MISSION
 from mmrs_mavlink.sitl.missions import jump
 
@@ -23,7 +22,8 @@ NOT_NOW = int(mavlink.MAV_RESULT_TEMPORARILY_REJECTED)
 FORCE_DISARM = 21_196
 AUTONOMOUS = frozenset({"auto", "return", "smart_return"})
 DEVICES = frozenset(
-    {181, 182, 183, 184, 203, 204, 205, 206, 211, 530, 531, 1000, 1001, 2000, 2001, 2500, 2501, 42600}
+    {181, 182, 183, 184, 195, 197, 203, 204, 205, 206, 211, 530, 531}
+    | {1000, 1001, 2000, 2001, 2500, 2501, 42600}
 )
 """Commands for devices, which are only recorded."""
 
@@ -84,12 +84,8 @@ def take_sticks(pilot: SimulatedAutopilot, message: Any) -> None:
 
 def arming_refusal(pilot: SimulatedAutopilot) -> str:
     """Return why a vehicle refuses to arm; empty if it does not."""
-    if pilot.arming_fault:
-        return pilot.arming_fault
     manual = pilot.settings.profile.dives and pilot.mode_name in MANUAL
-    if not (pilot.located or manual) or not pilot.ready:
-        return "Need Position Estimate"
-    return "vehicle outside Polygon fence" if not pilot.px4 and outside_fence(pilot) else ""
+    return "" if pilot.ready and (pilot.located or manual) else "Need Position Estimate"
 
 
 def _arm(pilot: SimulatedAutopilot, params: Params) -> int:
@@ -110,12 +106,8 @@ def _arm(pilot: SimulatedAutopilot, params: Params) -> int:
 
 
 def _take_off(pilot: SimulatedAutopilot, params: Params) -> int:
-    if (
-        not pilot.armed
-        or not pilot.flies
-        or pilot.airborne
-        or (not pilot.px4 and pilot.mode_name != "guided")
-    ):
+    may = pilot.px4 or pilot.mode_name == "guided"
+    if not (may and pilot.armed and pilot.flies) or pilot.airborne:
         return FAILED
     height = pilot.above_ground(params[6], above_sea=pilot.px4)
     if pilot.px4:
@@ -178,11 +170,6 @@ def _enable_fence(pilot: SimulatedAutopilot, params: Params) -> int:
     return ACCEPTED
 
 
-def _set_roi(pilot: SimulatedAutopilot, params: Params) -> int:
-    pilot.roi = pilot.local(params[4], params[5], params[6]) if params[4] or params[5] else None
-    return ACCEPTED
-
-
 def _set_home(pilot: SimulatedAutopilot, params: Params) -> int:
     here = (*pilot.degrees(), pilot.settings.altitude + pilot.body.position[2])
     pilot.home = here if params[0] == 1.0 else (params[4], params[5], params[6])
@@ -207,8 +194,6 @@ _HANDLERS: Mapping[int, Callable[[SimulatedAutopilot, Params], int]] = {
     int(mavlink.MAV_CMD_MISSION_START): _start_mission,
     int(mavlink.MAV_CMD_DO_SET_MODE): _set_mode,
     int(mavlink.MAV_CMD_DO_FENCE_ENABLE): _enable_fence,
-    int(mavlink.MAV_CMD_DO_SET_ROI_LOCATION): _set_roi,
-    int(mavlink.MAV_CMD_DO_SET_ROI_NONE): _set_roi,
     int(mavlink.MAV_CMD_DO_SET_HOME): _set_home,
     int(mavlink.MAV_CMD_RUN_PREARM_CHECKS): _run_checks,
 }

@@ -1,23 +1,20 @@
 """Failsafes of a simulated vehicle, as its parameters configure them.
 
-Its answers to a lost link are those of its profile.
+Its answers to a lost link are those of its profile. Of its fence it keeps the limits about its home.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from math import hypot
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from mmrs_mavlink.sitl.autopilot import BLIND, SimulatedAutopilot
-from mmrs_mavlink.sitl.fences import outside_fence
 from mmrs_mavlink.sitl.settings import ARDUPILOT, PX4
 
 DISARM = "disarm"
-EXEMPT = {"auto": 1, "hold": 2, "take_off": 2, "return": 2, "guided": 4}
-"""Bits of COM_DLL_EXCEPT that exempt a PX4's mode."""
-
 PREFERRED = ("smart_return", "return", "loiter", "depth_hold", "surface", "hold", "land")
 """Order in which the modes of a profile's failsafe are tried."""
 
@@ -32,21 +29,14 @@ Answers = Mapping[int, str]
 
 _COPTER = {2: "return land", 3: "smart_return return land", 4: "smart_return land"}
 _ROVER = {1: "return hold", 2: "hold", 3: "smart_return return hold", 4: "smart_return hold", 5: DISARM}
-_SUB = {2: DISARM, 3: "surface"}
 ANSWERS: Mapping[str, Mapping[str, Answers]] = {
     "arducopter": {
         "BATT_FS_LOW_ACT": {1: "land", **_COPTER, 5: DISARM},
-        "BATT_FS_CRT_ACT": {1: "land", **_COPTER, 5: DISARM},
         "FENCE_ACTION": {1: "return land", 2: "land", 3: _COPTER[3], 4: "hold land", 5: _COPTER[4]},
         "FS_EKF_ACTION": {1: "land", 2: "altitude_hold", 3: "land"},
     },
-    "ardurover": {
-        "BATT_FS_LOW_ACT": _ROVER,
-        "BATT_FS_CRT_ACT": _ROVER,
-        "FENCE_ACTION": _ROVER,
-        "FS_EKF_ACTION": {1: "hold"},
-    },
-    "ardusub": {"BATT_FS_LOW_ACT": _SUB, "BATT_FS_CRT_ACT": _SUB, "FS_EKF_ACTION": {2: DISARM}},
+    "ardurover": {"BATT_FS_LOW_ACT": _ROVER, "FENCE_ACTION": _ROVER, "FS_EKF_ACTION": {1: "hold"}},
+    "ardusub": {"BATT_FS_LOW_ACT": {2: DISARM, 3: "surface"}, "FS_EKF_ACTION": {2: DISARM}},
     "px4-multicopter": {"COM_OBL_RC_ACT": {0: "position", 1: "altitude", 2: "stabilize"}},
 }
 """Answers by profile and parameter, where the profile's failsafe for a lost link does not know it."""
@@ -74,7 +64,7 @@ def watch(pilot: SimulatedAutopilot) -> None:
     """Detect failures, and answer each once."""
     if pilot.forced_breach or pilot.time >= pilot.fence_due:
         pilot.fence_due = pilot.time + FENCE_SECONDS
-        pilot.breached = pilot.forced_breach or (pilot.located and outside_fence(pilot))
+        pilot.breached = pilot.forced_breach or (pilot.located and _outside_fence(pilot))
     for name, failure in FAILURES[pilot.settings.firmware].items():
         if not (pilot.armed and failure.present(pilot)):
             pilot.failing.pop(name, None)
@@ -97,9 +87,8 @@ def _answer(pilot: SimulatedAutopilot, failure: Failure) -> None:
         pilot.disarm()
     else:
         pilot.enter(*names)
-    if failure.parameter == "FENCE_ACTION" and pilot.settings.kind == "rover":
-        return
-    pilot.say(mavlink.MAV_SEVERITY_CRITICAL, failure.text.format(mode=pilot.mode_name.upper()))
+    if failure.parameter != "FENCE_ACTION" or pilot.settings.kind != "rover":
+        pilot.say(mavlink.MAV_SEVERITY_CRITICAL, failure.text.format(mode=pilot.mode_name.upper()))
 
 
 def _modes(pilot: SimulatedAutopilot, parameter: str) -> list[str]:
@@ -119,25 +108,28 @@ def _modes(pilot: SimulatedAutopilot, parameter: str) -> list[str]:
     return [name for name in found if name != "hold"] or found if pilot.px4 else found
 
 
+def _outside_fence(pilot: SimulatedAutopilot) -> bool:
+    fence, values = pilot.settings.profile.autopilot.fence, pilot.parameters
+    enabled = int(values[fence.types]) if fence.types else -1
+    north, east, up = pilot.body.position
+    extents = {"radius": hypot(north, east), "height": up if pilot.flies else 0.0}
+    limits = [each for each in fence.limits if not fence.types or enabled & each.bit]
+    return bool(values.get(fence.enabled_by, 1)) and any(
+        0.0 < values[each.parameter] < extents[each.of] for each in limits
+    )
+
+
 def _has_no_position(pilot: SimulatedAutopilot) -> bool:
     return not pilot.located and pilot.mode_name not in BLIND
 
 
 def _has_no_link(pilot: SimulatedAutopilot) -> bool:
-    """Return whether heartbeats are missing for long enough, and its failsafe is on and not exempt."""
+    """Return whether heartbeats are missing for long enough, and its failsafe is on."""
     values, failsafe = pilot.parameters, pilot.settings.profile.lost_link
     if pilot.last_heartbeat is None or not values.get(failsafe.enabled_by, 1):
         return False
     limit = sum(values.get(name, 0.0) for name in ("FS_GCS_TIMEOUT", "FS_TIMEOUT", "COM_DL_LOSS_T"))
-    return pilot.time - pilot.last_heartbeat >= max(limit, pilot.link_timeout) and not _is_exempt(pilot)
-
-
-def _is_exempt(pilot: SimulatedAutopilot) -> bool:
-    exemption = pilot.settings.profile.lost_link.exemption
-    if exemption is None:
-        return False
-    bits = EXEMPT.get(pilot.mode_name, 0) if pilot.px4 else exemption.bits * (pilot.mode_name == "auto")
-    return bool(int(pilot.parameters[exemption.parameter]) & bits)
+    return pilot.time - pilot.last_heartbeat >= max(limit, pilot.link_timeout)
 
 
 def _has_no_setpoints(pilot: SimulatedAutopilot) -> bool:
@@ -147,13 +139,11 @@ def _has_no_setpoints(pilot: SimulatedAutopilot) -> bool:
     return pilot.time - pilot.setpoints[-1] > limit
 
 
-def _is_low(level: str) -> Callable[[SimulatedAutopilot], bool]:
-    def is_low(pilot: SimulatedAutopilot) -> bool:
-        volts, reserve = pilot.parameters[f"BATT_{level}_VOLT"], pilot.parameters[f"BATT_{level}_MAH"]
-        left = pilot.parameters["BATT_CAPACITY"] - pilot.battery.used
-        return pilot.settings.tells_battery and (pilot.battery.voltage < volts or left < reserve)
-
-    return is_low
+def _has_low_battery(pilot: SimulatedAutopilot) -> bool:
+    values, battery = pilot.parameters, pilot.battery
+    left = values["BATT_CAPACITY"] - battery.used
+    low = battery.voltage < values["BATT_LOW_VOLT"] or left < values["BATT_LOW_MAH"]
+    return pilot.settings.tells_battery and low
 
 
 FAILURES: Mapping[str, Mapping[str, Failure]] = {
@@ -161,12 +151,9 @@ FAILURES: Mapping[str, Mapping[str, Failure]] = {
         "position": Failure(
             _has_no_position, "EKF Failsafe: changed to {mode} Mode", "FS_EKF_ACTION", lasting=EKF_SECONDS
         ),
-        "fence": Failure(lambda pilot: pilot.breached, "Polygon fence breached", "FENCE_ACTION"),
+        "fence": Failure(lambda pilot: pilot.breached, "Circle fence breached", "FENCE_ACTION"),
         "link": Failure(_has_no_link, "GCS Failsafe", cleared="GCS Failsafe Cleared"),
-        "critical": Failure(
-            _is_low("CRT"), "Battery 1 is critical", "BATT_FS_CRT_ACT", lasting="BATT_LOW_TIMER"
-        ),
-        "low": Failure(_is_low("LOW"), "Battery 1 is low", "BATT_FS_LOW_ACT", lasting="BATT_LOW_TIMER"),
+        "low": Failure(_has_low_battery, "Battery 1 is low", "BATT_FS_LOW_ACT", lasting="BATT_LOW_TIMER"),
     },
     PX4: {
         "link": Failure(_has_no_link, "Connection to ground station lost", cleared="GCS connection regained"),

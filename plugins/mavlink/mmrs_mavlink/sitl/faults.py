@@ -34,11 +34,13 @@ class Faults:
         Raises:
             ValueError: there is no such fault, or it does not take these values.
         """
-        fault = _fault(name)
+        fault = fault_named(name)
+        missing = fault.values[len(values) :]
         try:
-            arguments = _converted(fault.values, [str(value) for value in values])
+            if len(values) > len(fault.values) or None in missing:
+                raise ValueError(f"takes {len(fault.values)} value{'s' * (len(fault.values) != 1)}")
             with self._lock:
-                fault.set(self, *arguments)
+                fault.set(self, *values, *missing)
         except ValueError as error:
             raise ValueError(f"{' '.join((name, *map(str, values)))}: {error}") from error
 
@@ -48,7 +50,7 @@ class Faults:
         Raises:
             ValueError: there is no such fault.
         """
-        fault = _fault(name)
+        fault = fault_named(name)
         if fault.clear is not None:
             with self._lock:
                 fault.clear(self)
@@ -60,7 +62,7 @@ class Fault:
 
     Attributes:
         set: injects it with its values. clear: clears it; None: it is one-shot.
-        values: defaults of its values; `REQUIRED`: there is none; ``...``: any number of texts.
+        values: defaults of its values; None: there is none.
     """
 
     set: Callable[..., None]
@@ -68,12 +70,30 @@ class Fault:
     values: tuple[object, ...] = ()
 
 
-REQUIRED = float("nan")
+def fault_named(name: str) -> Fault:
+    """Return a fault by its name.
+
+    Raises:
+        ValueError: there is no such fault.
+    """
+    if name not in FAULTS:
+        raise ValueError(f"{name}: unknown fault; known are {', '.join(FAULTS)}")
+    return FAULTS[name]
 
 
-def _shift(faults: Faults, metres: float, bearing: float) -> None:
-    angle = radians(bearing)
-    faults.pilot.body.shift_estimate(metres * cos(angle), metres * sin(angle))
+def _number(value: str | float) -> float:
+    try:
+        number = float(value)
+    except ValueError:
+        number = float("nan")
+    if not isfinite(number):
+        raise ValueError(f"'{value}' is not a finite number")
+    return number
+
+
+def _shift(faults: Faults, metres: str | float, bearing: str | float) -> None:
+    angle, error = radians(_number(bearing)), _number(metres)
+    faults.pilot.body.shift_estimate(error * cos(angle), error * sin(angle))
 
 
 def _restart(faults: Faults, armed: str) -> None:
@@ -89,20 +109,15 @@ def _change_mode(faults: Faults, mode: str) -> None:
     faults.pilot.set_mode(numbers[mode])
 
 
-def _change_battery(faults: Faults, level: float) -> None:
+def _change_battery(faults: Faults, value: str | float) -> None:
+    level = _number(value)
     if not 0.0 <= level <= 1.0:
         raise ValueError(f"{level:g} is not from 0 to 1")
     faults.pilot.battery.level = level
 
 
-def _jump_clock(faults: Faults, seconds: float) -> None:
-    faults.pilot.clock_error += seconds
-
-
-def _ignore_commands(faults: Faults, *commands: str) -> None:
-    if wrong := [each for each in commands if not (each.isdecimal() and len(each) < 10)]:
-        raise ValueError(f"'{wrong[0]}' is not the number of a command")
-    faults.pilot.silent = frozenset(map(int, commands))
+def _silence(faults: Faults, command: str | float) -> None:
+    faults.pilot.silent = frozenset({int(_number(command))})
 
 
 def _fail_motor(faults: Faults) -> None:
@@ -117,78 +132,32 @@ def _cut_ground(faults: Faults) -> None:
     faults.ground_down = True
 
 
-def _setter(name: str, value: object, *, pilots: bool = False) -> Callable[[Faults], None]:
-    """Return a function that sets an attribute of the faults, or of the autopilot."""
-    return lambda faults: setattr(faults.pilot if pilots else faults, name, value)
+def _placed(name: str) -> Callable[..., None]:
+    """Return a function that sets an attribute of the autopilot to two numbers."""
+    return lambda faults, *values: setattr(faults.pilot, name, tuple(map(_number, values)))
+
+
+def _setter(name: str, value: object) -> Callable[[Faults], None]:
+    """Return a function that sets an attribute of the autopilot, or else of the faults."""
+    return lambda faults: setattr(faults.pilot if hasattr(faults.pilot, name) else faults, name, value)
+
+
+def _switch(name: str, value: bool = True) -> Fault:
+    return Fault(_setter(name, value), _setter(name, not value))
 
 
 FAULTS: Mapping[str, Fault] = {
-    "gps-lost": Fault(_setter("located", False, pilots=True), _setter("located", True, pilots=True)),
+    "gps-lost": _switch("located", False),
     "position-shift": Fault(_shift, lambda faults: _shift(faults, 0.0, 0.0), (40.0, 0.0)),
     "restart": Fault(_restart, values=("",)),
     "stick": Fault(_change_mode, values=("loiter",)),
-    "obstacle": Fault(
-        lambda faults, *place: setattr(faults.pilot, "obstacle", place),
-        _setter("obstacle", None, pilots=True),
-        (3.0, 0.0),
-    ),
-    "breach": Fault(
-        _setter("forced_breach", True, pilots=True), _setter("forced_breach", False, pilots=True)
-    ),
-    "battery": Fault(_change_battery, values=(REQUIRED,)),
-    "silent": Fault(_ignore_commands, _ignore_commands, (...,)),
-    "link-down": Fault(_setter("link_down", True), _setter("link_down", False)),
-    "dumb": Fault(_setter("send_down", True), _setter("send_down", False)),
+    "obstacle": Fault(_placed("obstacle"), _setter("obstacle", None), (3.0, 0.0)),
+    "breach": _switch("forced_breach"),
+    "battery": Fault(_change_battery, values=(None,)),
+    "silent": Fault(_silence, _setter("silent", frozenset()), (None,)),
+    "link-down": _switch("link_down"),
     "ground-down": Fault(_cut_ground, _setter("ground_down", False)),
-    "clock-jump": Fault(_jump_clock, values=(3600.0,)),
-    "refuse-arming": Fault(
-        lambda faults, *words: setattr(
-            faults.pilot, "arming_fault", " ".join(words) or "Compass not calibrated"
-        ),
-        _setter("arming_fault", "", pilots=True),
-        (...,),
-    ),
-    "camera-dead": Fault(
-        lambda faults: setattr(faults.pilot.camera, "works", False),
-        lambda faults: setattr(faults.pilot.camera, "works", True),
-    ),
-    "motor-failed": Fault(_fail_motor, _setter("motor_failed", False, pilots=True)),
-    "wind": Fault(
-        lambda faults, *wind: setattr(faults.pilot, "wind", wind),
-        _setter("wind", (0.0, 0.0), pilots=True),
-        (REQUIRED, 0.0),
-    ),
+    "motor-failed": Fault(_fail_motor, _setter("motor_failed", False)),
+    "wind": Fault(_placed("wind"), _setter("wind", (0.0, 0.0)), (None, 0.0)),
 }
 """All faults, by name."""
-
-
-def _fault(name: str) -> Fault:
-    if name not in FAULTS:
-        raise ValueError(f"{name}: unknown fault; known are {', '.join(FAULTS)}")
-    return FAULTS[name]
-
-
-def _converted(defaults: tuple[object, ...], values: list[str]) -> list[object]:
-    """Return the values of a fault, in the types of its defaults.
-
-    Raises:
-        ValueError: there are too few or too many, or one is not a number.
-    """
-    if ... in defaults:
-        return list(values)
-    if len(values) > len(defaults) or (REQUIRED in defaults[len(values) :]):
-        raise ValueError(f"takes {len(defaults)} value{'s' if len(defaults) != 1 else ''}")
-    given = [
-        text if isinstance(kind, str) else _number(text) for text, kind in zip(values, defaults, strict=False)
-    ]
-    return [*given, *defaults[len(values) :]]
-
-
-def _number(text: str) -> float:
-    try:
-        number = float(text)
-    except ValueError:
-        number = REQUIRED
-    if not isfinite(number):
-        raise ValueError(f"'{text}' is not a finite number")
-    return number

@@ -57,10 +57,6 @@ def _execute(pilot: SimulatedAutopilot, item: StoredItem, seconds: float) -> boo
         pilot.body.change_speed(item.params[1])
     elif item.command == mavlink.MAV_CMD_CONDITION_YAW:
         pilot.body.wanted_heading = item.params[0]
-    elif item.command == mavlink.MAV_CMD_DO_SET_ROI_LOCATION:
-        pilot.roi = pilot.place_of(item)
-    elif item.command == mavlink.MAV_CMD_DO_SET_ROI_NONE:
-        pilot.roi = None
     pilot.record(item.command, (*item.params, item.x, item.y, item.z))
     return True
 

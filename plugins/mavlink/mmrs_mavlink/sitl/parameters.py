@@ -24,18 +24,12 @@ LOW_CELL = 3.5
 """Volts of a cell at which a battery is low."""
 
 _COMMON: Mapping[str, float] = {
-    "SYSID_THISMAV": 1,
     "SYSID_MYGCS": 255,
     "FS_GCS_ENABLE": 0,
     "FS_GCS_TIMEOUT": 5.0,
-    "BATT_CAPACITY": 5000,
-    "BATT_LOW_VOLT": 10.5,
     "BATT_LOW_MAH": 0.0,
     "BATT_LOW_TIMER": 10,
-    "BATT_CRT_VOLT": 0.0,
-    "BATT_CRT_MAH": 0.0,
     "BATT_FS_LOW_ACT": 0,
-    "BATT_FS_CRT_ACT": 0,
     "FENCE_ENABLE": 0,
     "FENCE_ACTION": 1,
     "FENCE_TYPE": 7,
@@ -61,7 +55,9 @@ _COMMON: Mapping[str, float] = {
 }
 """Every device that a program may use is set up: two cameras, of which the second records videos."""
 
+_AVOIDING = {"AVOID_MARGIN": 2.0, "OA_TYPE": 0, "OA_MARGIN_MAX": 5.0}
 _COPTER: Mapping[str, float] = {
+    **_AVOIDING,
     "FS_OPTIONS": 16,
     "FS_EKF_ACTION": 1,
     "DISARM_DELAY": 10,
@@ -69,11 +65,9 @@ _COPTER: Mapping[str, float] = {
     "RTL_ALT": 1500,
     "WPNAV_SPEED": 500.0,
     "WPNAV_RADIUS": 200.0,
-    "AVOID_MARGIN": 2.0,
-    "OA_TYPE": 0,
-    "OA_MARGIN_MAX": 5.0,
 }
 _ROVER: Mapping[str, float] = {
+    **_AVOIDING,
     "FS_ACTION": 2,
     "FS_TIMEOUT": 1.5,
     "FS_OPTIONS": 0,
@@ -81,9 +75,6 @@ _ROVER: Mapping[str, float] = {
     "FS_EKF_ACTION": 1,
     "WP_SPEED": 2.0,
     "WP_RADIUS": 2.0,
-    "AVOID_MARGIN": 2.0,
-    "OA_TYPE": 0,
-    "OA_MARGIN_MAX": 5.0,
 }
 _SUB: Mapping[str, float] = {
     "FS_GCS_ENABLE": 1,
@@ -93,12 +84,10 @@ _SUB: Mapping[str, float] = {
     "WPNAV_RADIUS": 200.0,
 }
 _PX4: Mapping[str, float] = {
-    "MAV_SYS_ID": 1,
     "NAV_DLL_ACT": 0,
     "COM_DL_LOSS_T": 10,
     "COM_DLL_EXCEPT": 0,
     "COM_LOW_BAT_ACT": 0,
-    "BAT_CRIT_THR": 0.07,
     "GF_ACTION": 2,
     "GF_MAX_HOR_DIST": 0.0,
     "GF_MAX_VER_DIST": 0.0,
@@ -116,7 +105,6 @@ _PX4: Mapping[str, float] = {
     "MPC_XY_CRUISE": 5.0,
     "TRIG_MODE": 1,
     "PD_GRIPPER_EN": 1,
-    "BAT1_CAPACITY": 5000.0,
     "BAT1_SOURCE": 0,
 }
 _BY_KIND: Mapping[str, Mapping[str, float]] = {"copter": _COPTER, "rover": _ROVER, "sub": _SUB}
@@ -124,16 +112,11 @@ _BY_KIND: Mapping[str, Mapping[str, float]] = {"copter": _COPTER, "rover": _ROVE
 
 def defaults(settings: Settings) -> dict[str, float]:
     """Return the parameters of a vehicle: the defaults, and those of its settings."""
-    found = dict(_PX4) if settings.firmware == PX4 else {**_COMMON, **_BY_KIND[settings.kind]}
-    own = {
-        "SYSID_THISMAV": settings.system,
-        "MAV_SYS_ID": settings.system,
-        "BATT_CAPACITY": settings.capacity,
-        "BAT1_CAPACITY": settings.capacity,
-        "BATT_LOW_VOLT": LOW_CELL * settings.cells,
-    }
-    found.update({name: value for name, value in own.items() if name in found})
-    return {**found, **settings.parameters}
+    if settings.firmware == PX4:
+        return {**_PX4, "BAT1_CAPACITY": settings.capacity, **settings.parameters}
+    low = LOW_CELL * settings.cells
+    own = {"BATT_CAPACITY": settings.capacity, "BATT_LOW_VOLT": low}
+    return {**_COMMON, **_BY_KIND[settings.kind], **own, **settings.parameters}
 
 
 def encoded(name: str, value: float, autopilot: Autopilot) -> tuple[float, int]:

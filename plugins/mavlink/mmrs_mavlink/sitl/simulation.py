@@ -1,12 +1,17 @@
-"""Simulation of a vehicle over time: its failsafes, its control, its motion and its battery."""
+"""Simulation of a vehicle over time: its failsafes, its control in each mode, its motion and its battery."""
 
 from __future__ import annotations
 
-from math import dist
+from collections.abc import Callable, Mapping
+from math import dist, inf
 
-from mmrs_mavlink.sitl.autopilot import SimulatedAutopilot
-from mmrs_mavlink.sitl.control import decide
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
+
+from mmrs_mavlink.sitl.autopilot import MANUAL, SimulatedAutopilot
+from mmrs_mavlink.sitl.body import Vector
 from mmrs_mavlink.sitl.failsafes import watch
+from mmrs_mavlink.sitl.items import RALLY
+from mmrs_mavlink.sitl.missions import fly_mission
 
 CONTROL_SECONDS = 0.05
 """Longest time between two decisions."""
@@ -15,8 +20,16 @@ TRACK_SECONDS = 0.1
 CRUMB_METRES = 3.0
 """Distance between two positions that SmartRTL remembers."""
 
-FALL_SPEED = 10.0
-GRAVITY = 9.81
+FALL_SPEED, GRAVITY = 10.0, 9.81
+NEAR, CLIMBED, GROUND = 1.0, 0.3, 0.05
+PILOT_TIMEOUT = 3.0
+"""Seconds without MANUAL_CONTROL after which ArduSub disarms (FS_PILOT_INPUT)."""
+
+RALLY_POINT = 1
+"""RTL_TYPE of a PX4 that returns to a rally point rather than home."""
+
+RETURN_HEIGHTS = (("RTL_ALT_M", 1.0), ("RTL_ALT", 0.01), ("RTL_RETURN_ALT", 1.0))
+"""Parameters of the height of returns, with their units in metres."""
 
 
 def advance(pilot: SimulatedAutopilot, seconds: float) -> None:
@@ -27,59 +40,27 @@ def advance(pilot: SimulatedAutopilot, seconds: float) -> None:
         pilot.time += step
         watch(pilot)
         if pilot.armed and not pilot.motor_failed:
-            decide(pilot, step)
-        if pilot.armed:
+            _decide(pilot, step)
+        if pilot.armed and not pilot.motor_failed:
             _move(pilot, step)
         else:
-            _idle(pilot, step)
+            _fall_or_stand(pilot, step)
+        _record(pilot)
 
 
 def _move(pilot: SimulatedAutopilot, seconds: float) -> None:
-    if pilot.motor_failed:
-        _fall(pilot, seconds)
-        return
     body = pilot.body
     if pilot.time >= pilot.climbs_at:
         body.advance(seconds)
     pilot.battery.drain(seconds)
-    pilot.camera.move(body)
-    if pilot.flies:
-        _touch_ground(pilot)
-    elif body.position[2] > 0.0:
-        body.position = (*body.position[:2], 0.0)
-    _record_track(pilot)
-
-
-def _fall(pilot: SimulatedAutopilot, seconds: float) -> None:
-    """Fall, and lie on the ground with running motors, as a quadcopter without one of its motors does."""
-    body = pilot.body
-    if pilot.airborne:
-        (north, east, up), speed = body.position, min(FALL_SPEED, GRAVITY * seconds - body.velocity[2])
-        body.position, body.velocity = (north, east, max(0.0, up - speed * seconds)), (0.0, 0.0, -speed)
-    if not pilot.airborne:
-        body.rest_at(0.0)
-    _record_track(pilot)
-
-
-def _idle(pilot: SimulatedAutopilot, seconds: float) -> None:
-    pilot.battery.charge(seconds, pilot.settings.recharge)
-    north, east, up = pilot.body.position
-    if pilot.airborne:
-        pilot.body.position = (north, east, max(0.0, up - FALL_SPEED * seconds))
-        pilot.body.velocity = (0.0, 0.0, -FALL_SPEED)
-        _record_track(pilot)
-    else:
-        pilot.body.rest_at(0.0 if pilot.flies else up)
-    if pilot.uptime < pilot.settings.boot:
-        pilot.start_mode()
-
-
-def _touch_ground(pilot: SimulatedAutopilot) -> None:
-    target = pilot.body.target
+    if not pilot.flies:
+        body.position = (*body.position[:2], min(0.0, body.position[2]))
+        return
+    target = body.target
     climbs = target is not None and target[2] > 0.0
-    if pilot.body.position[2] < 0.0:
-        pilot.body.rest_at(0.0)
-        pilot.body.target = target if climbs else None
+    if body.position[2] < 0.0:
+        body.rest_at(0.0)
+        body.target = target if climbs else None
     delay = pilot.parameters["COM_DISARM_PRFLT" if pilot.px4 else "DISARM_DELAY"]
     if pilot.airborne or climbs:
         pilot.grounded_since = pilot.time
@@ -87,9 +68,130 @@ def _touch_ground(pilot: SimulatedAutopilot) -> None:
         pilot.disarm()
 
 
-def _record_track(pilot: SimulatedAutopilot) -> None:
-    position = pilot.body.position
-    if not pilot.track or pilot.time - pilot.track[-1][0] >= TRACK_SECONDS - 1e-6:
+def _fall_or_stand(pilot: SimulatedAutopilot, seconds: float) -> None:
+    """Move without motors; with one that has failed, a copter lies on the ground and the others run on."""
+    body = pilot.body
+    if not pilot.armed:
+        pilot.battery.charge(seconds, pilot.settings.recharge)
+        if pilot.uptime < pilot.settings.boot:
+            pilot.start_mode()
+    if pilot.airborne:
+        (north, east, up), speed = body.position, min(FALL_SPEED, GRAVITY * seconds - body.velocity[2])
+        body.position, body.velocity = (north, east, max(0.0, up - speed * seconds)), (0.0, 0.0, -speed)
+    if not pilot.airborne:
+        body.rest_at(0.0 if pilot.flies else body.position[2])
+
+
+def _record(pilot: SimulatedAutopilot) -> None:
+    moves = pilot.armed or pilot.airborne
+    if moves and (not pilot.track or pilot.time - pilot.track[-1][0] >= TRACK_SECONDS - 1e-6):
         pilot.track.append((pilot.time, *pilot.body.place))
+    position = pilot.body.position
     if pilot.armed and not pilot.return_path and dist(position, pilot.breadcrumbs[-1]) >= CRUMB_METRES:
         pilot.breadcrumbs.append(position)
+
+
+def _decide(pilot: SimulatedAutopilot, seconds: float) -> None:
+    """Set the next target of an armed vehicle."""
+    piloted = pilot.settings.kind == "sub" and pilot.mode_name in MANUAL
+    if not piloted and pilot.mode_name != "guided":
+        pilot.body.driven = None
+    if piloted:
+        _await_sticks(pilot)
+    elif pilot.mode_name == "auto":
+        required = fly_mission(pilot, seconds)
+        if required:
+            _BY_MODE[required](pilot)
+    else:
+        _BY_MODE.get(pilot.mode_name, _hold)(pilot)
+
+
+def _await_sticks(pilot: SimulatedAutopilot) -> None:
+    """Disarm a submarine whose pilot has let go of the sticks."""
+    _hold(pilot)
+    patience = max(PILOT_TIMEOUT, pilot.link_timeout)
+    if pilot.body.driven is not None and pilot.time - pilot.driven_at > patience:
+        pilot.say(mavlink.MAV_SEVERITY_CRITICAL, "Lost manual control")
+        pilot.disarm()
+
+
+def _hold(pilot: SimulatedAutopilot) -> None:
+    pilot.body.target = pilot.body.onward = None
+
+
+def _guided(pilot: SimulatedAutopilot) -> None:
+    """Follow set-points; a rover stops within WP_RADIUS of one."""
+    target = pilot.body.target
+    early = target is not None and pilot.settings.profile.stops_early
+    if early and target and dist(target[:2], pilot.body.position[:2]) <= pilot.parameters["WP_RADIUS"]:
+        pilot.body.target = None
+
+
+def _take_off(pilot: SimulatedAutopilot) -> None:
+    target = pilot.body.target
+    if target is not None and pilot.body.distance_to(target) < CLIMBED:
+        pilot.enter(*(("auto",) if pilot.parameters["COM_TAKEOFF_ACT"] == 1 else ()), "hold")
+
+
+def _land(pilot: SimulatedAutopilot) -> None:
+    """Come down, slowly near the ground, and disarm when it has stood there."""
+    body, pacing = pilot.body, pilot.settings.profile.pacing
+    if not pilot.flies:
+        _hold(pilot)
+        return
+    north, east, up = body.position
+    body.target, body.onward, body.curved = (north, east, -1.0), None, False
+    body.descent = pacing.landing_rate if up < pacing.landing_height else inf
+    if up > GROUND:
+        pilot.grounded_since = pilot.time
+    else:
+        body.rest_at(0.0)
+        if pilot.time - pilot.grounded_since >= (pacing.recovery or 0.0):
+            pilot.disarm()
+
+
+def _surface(pilot: SimulatedAutopilot) -> None:
+    pilot.body.target = (*pilot.body.position[:2], 0.0)
+
+
+def _return(pilot: SimulatedAutopilot) -> None:
+    body, retraces = pilot.body, pilot.mode_name == "smart_return"
+    if not pilot.return_path:
+        crumbs = pilot.breadcrumbs
+        pilot.return_path = [*reversed(crumbs[1:]), crumbs[0]] if retraces else _path_home(pilot)
+    path = pilot.return_path
+    while len(path) > 1 and (body.distance_to(path[0]) < CLIMBED or (retraces and body.passes_target())):
+        path.pop(0)
+        body.target = path[0]
+    body.onward = path[1] if retraces and len(path) > 1 else None
+    if pilot.flies and len(path) == 1 and dist(path[0][:2], body.position[:2]) < NEAR:
+        _land(pilot)
+        return
+    body.target = path[0]
+    pilot.face(path[0])
+
+
+def _path_home(pilot: SimulatedAutopilot) -> list[Vector]:
+    """Return the way to the nearest of home and the rally points, at the height of returns."""
+    here, values = pilot.body.position, pilot.parameters
+    latitude, longitude, altitude = pilot.home
+    home = pilot.local(latitude, longitude, altitude - pilot.settings.altitude)
+    limit = values.get("RALLY_LIMIT_KM", 0.0) * 1000.0
+    points = [pilot.place_of(item) for item in pilot.stores[RALLY]]
+    points = [point for point in points if not limit or dist(point[:2], here[:2]) <= limit]
+    if not points or values.get("RALLY_INCL_HOME", values.get("RTL_TYPE") != RALLY_POINT):
+        points.append(home)
+    goal = min(points, key=lambda point: dist(point[:2], here[:2]))
+    height = next((values[name] * unit for name, unit in RETURN_HEIGHTS if name in values), 0.0)
+    height = max(here[2], home[2] + height) if pilot.flies else here[2]
+    return [(here[0], here[1], height), (goal[0], goal[1], height)]
+
+
+_BY_MODE: Mapping[str, Callable[[SimulatedAutopilot], None]] = {
+    "guided": _guided,
+    "take_off": _take_off,
+    "land": _land,
+    "return": _return,
+    "smart_return": _return,
+    "surface": _surface,
+}

@@ -1,4 +1,4 @@
-"""Telemetry of a simulated vehicle, as messages."""
+"""Telemetry of a simulated vehicle: its messages, at their rates, and events as they occur."""
 
 from __future__ import annotations
 
@@ -6,17 +6,18 @@ import time
 from collections.abc import Callable, Mapping
 from functools import cache
 from inspect import signature
-from math import cos, hypot, radians, sin
+from math import cos, radians, sin
 from typing import Any
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from mmrs_mavlink.profiles import ARDUPILOT, PX4
 from mmrs_mavlink.sitl.autopilot import SimulatedAutopilot
-from mmrs_mavlink.sitl.camera import Photo
-from mmrs_mavlink.sitl.commands import arming_refusal
+from mmrs_mavlink.sitl.commands import ACCEPTED, FAILED, arming_refusal
+from mmrs_mavlink.sitl.devices import Photo
 from mmrs_mavlink.sitl.items import MISSION
 from mmrs_mavlink.sitl.settings import Settings
+from mmrs_runtime.sights import seen
 
 Message = Any
 Maker = Callable[[SimulatedAutopilot], Message | None]
@@ -31,15 +32,15 @@ STEERED = frozenset({"guided", "auto", "return", "smart_return"})
 TUMBLING = radians(60.0)
 """Lean of an ArduCopter 4.7-dev in simulation that falls with one of its four motors off."""
 
-SECTOR_FREE = 6_001
-UNKNOWN = 65_535
+SECTOR_FREE, UNKNOWN = 6_001, 65_535
 GPS, FENCE_BIT, PREARM = 0x20, 0x0010_0000, 0x1000_0000
 SENSORS = 0x0200_002F
 """Gyroscope, accelerometer, compass, pressure, satellites and battery."""
 
-NO_ROTATION = (1.0, 0.0, 0.0, 0.0)
-CAPABILITIES = 0xE18C
-"""Missions, fences and rally points of integers, commands and targets of integers, MAVLink 2."""
+REFUSAL_SECONDS = 30.0
+"""Time between two reports that a vehicle refuses to arm."""
+
+TEXT_BYTES = 50
 
 
 def message(name: str, **fields: object) -> Message:
@@ -71,7 +72,6 @@ def _heartbeat(pilot: SimulatedAutopilot) -> Message:
         base_mode=mavlink.MAV_MODE_FLAG_CUSTOM_MODE_ENABLED | armed,
         custom_mode=pilot.mode,
         system_status=mavlink.MAV_STATE_ACTIVE if pilot.armed else mavlink.MAV_STATE_STANDBY,
-        mavlink_version=3,
     )
 
 
@@ -108,7 +108,6 @@ def _target(pilot: SimulatedAutopilot) -> Message | None:
         return None
     return message(
         "position_target_global_int",
-        time_boot_ms=milliseconds(pilot),
         type_mask=0xDF8,
         **_scaled(*pilot.degrees_at(target), "lat_int", "lon_int"),
         alt=pilot.settings.altitude + target[2],
@@ -135,29 +134,30 @@ def _status(pilot: SimulatedAutopilot) -> Message:
     health = SENSORS if pilot.located else SENSORS & ~GPS
     health |= (0 if pilot.breached else FENCE_BIT) | (0 if arming_refusal(pilot) else PREARM)
     present = SENSORS | FENCE_BIT | (0 if pilot.px4 else PREARM)
-    measures = pilot.settings.tells_battery
+    measures, battery = pilot.settings.tells_battery, pilot.battery
     return message(
         "sys_status",
         onboard_control_sensors_present=present,
         onboard_control_sensors_enabled=present,
         onboard_control_sensors_health=health,
-        voltage_battery=round(pilot.battery.voltage * 1000) if measures else UNKNOWN,
-        current_battery=round(pilot.battery.current * 100) if measures else -1,
-        battery_remaining=round(pilot.battery.level * 100) if measures else -1,
+        voltage_battery=round(battery.voltage * 1000) if measures else UNKNOWN,
+        current_battery=round(battery.current * 100) if measures else -1,
+        battery_remaining=round(battery.level * 100) if measures else -1,
     )
 
 
 def _battery_status(pilot: SimulatedAutopilot) -> Message | None:
+    battery = pilot.battery
     if not pilot.settings.tells_battery:
         return None
     return message(
         "battery_status",
         temperature=32_767,
-        voltages=[round(pilot.battery.voltage * 1000), *[UNKNOWN] * 9],
-        current_battery=round(pilot.battery.current * 100),
-        current_consumed=round(pilot.battery.used),
+        voltages=[round(battery.voltage * 1000), *[UNKNOWN] * 9],
+        current_battery=round(battery.current * 100),
+        current_consumed=round(battery.used),
         energy_consumed=-1,
-        battery_remaining=round(pilot.battery.level * 100),
+        battery_remaining=round(battery.level * 100),
     )
 
 
@@ -167,33 +167,21 @@ def _landed(pilot: SimulatedAutopilot) -> Message:
     return message("extended_sys_state", landed_state=state if pilot.flies else 0)
 
 
+def _estimate(pilot: SimulatedAutopilot) -> int:
+    return LOCATED if pilot.located and pilot.ready else LOST
+
+
 def _ekf(pilot: SimulatedAutopilot) -> Message:
-    return message("ekf_status_report", flags=LOCATED if _has_position(pilot) else LOST)
+    return message("ekf_status_report", flags=_estimate(pilot))
 
 
 def _estimator(pilot: SimulatedAutopilot) -> Message:
-    flags = LOCATED if _has_position(pilot) else LOST
-    return message("estimator_status", time_usec=milliseconds(pilot) * 1000, flags=flags)
-
-
-def _has_position(pilot: SimulatedAutopilot) -> bool:
-    return pilot.located and pilot.ready
+    return message("estimator_status", flags=_estimate(pilot))
 
 
 def _satellites(pilot: SimulatedAutopilot) -> Message:
-    located = _has_position(pilot)
-    return message(
-        "gps_raw_int",
-        time_usec=milliseconds(pilot) * 1000,
-        fix_type=mavlink.GPS_FIX_TYPE_3D_FIX if located else mavlink.GPS_FIX_TYPE_NO_FIX,
-        **_scaled(*pilot.degrees()),
-        alt=round((pilot.settings.altitude + pilot.body.position[2]) * 1000),
-        eph=80 if located else 9_999,
-        epv=UNKNOWN,
-        vel=round(hypot(*pilot.body.velocity[:2]) * 100),
-        cog=UNKNOWN,
-        satellites_visible=14 if located else 0,
-    )
+    fix, seen = (3, 14) if pilot.located and pilot.ready else (1, 0)
+    return message("gps_raw_int", **_scaled(*pilot.degrees()), fix_type=fix, satellites_visible=seen)
 
 
 def _clocks(pilot: SimulatedAutopilot) -> Message:
@@ -228,7 +216,6 @@ def _obstacle(pilot: SimulatedAutopilot) -> Message | None:
     sectors[round(towards / 5.0) % 72] = round(distance * 100)
     return message(
         "obstacle_distance",
-        time_usec=milliseconds(pilot) * 1000,
         distances=sectors,
         min_distance=20,
         max_distance=SECTOR_FREE - 1,
@@ -239,43 +226,16 @@ def _obstacle(pilot: SimulatedAutopilot) -> Message | None:
 
 def photo(pilot: SimulatedAutopilot, taken: Photo) -> Message:
     """Return the report of a photo: ArduPilot's message, or that of a camera for PX4."""
-    place, up, now = pilot.degrees_at(taken.place), taken.place[2], milliseconds(pilot)
-    above = pilot.settings.altitude + up
+    place, number = pilot.degrees_at(taken.place), taken.number
     if pilot.px4:
-        return message(
-            "camera_image_captured",
-            time_boot_ms=now,
-            **_scaled(*place),
-            alt=round(above * 1000),
-            relative_alt=round(up * 1000),
-            q=NO_ROTATION,
-            image_index=taken.number,
-            capture_result=1,
-            file_url=b"",
-        )
-    return message(
-        "camera_feedback",
-        time_usec=now * 1000,
-        target_system=pilot.settings.system,
-        img_idx=taken.number,
-        **_scaled(*place, "lat", "lng"),
-        alt_msl=above,
-        alt_rel=up,
-        yaw=taken.heading,
-    )
-
-
-def _version(pilot: SimulatedAutopilot) -> Message:
-    """Return its capabilities; its version is 0, which no real autopilot has."""
-    none = dict.fromkeys(
-        ("flight_custom_version", "middleware_custom_version", "os_custom_version"), bytes(8)
-    )
-    return message("autopilot_version", capabilities=CAPABILITIES, uid=pilot.settings.system, **none)
+        captured = {"image_index": number, "capture_result": 1, "q": (1.0, 0.0, 0.0, 0.0), "file_url": b""}
+        return message("camera_image_captured", **_scaled(*place), **captured)
+    return message("camera_feedback", img_idx=number, **_scaled(*place, "lat", "lng"))
 
 
 def _home(pilot: SimulatedAutopilot) -> Message:
     place = _scaled(*pilot.home[:2], "latitude", "longitude")
-    return message("home_position", **place, altitude=round(pilot.home[2] * 1000), q=NO_ROTATION)
+    return message("home_position", **place, altitude=round(pilot.home[2] * 1000), q=(1.0, 0.0, 0.0, 0.0))
 
 
 MAKERS: Mapping[str, Maker] = {
@@ -295,12 +255,11 @@ MAKERS: Mapping[str, Maker] = {
     "WIND": _wind,
     "WIND_COV": _wind_estimate,
     "OBSTACLE_DISTANCE": _obstacle,
-    "AUTOPILOT_VERSION": _version,
     "HOME_POSITION": _home,
     "POSITION_TARGET_GLOBAL_INT": _target,
 }
 NUMBERS: Mapping[int, str] = {getattr(mavlink, f"MAVLINK_MSG_ID_{name}"): name for name in MAKERS}
-ON_REQUEST = frozenset({"AUTOPILOT_VERSION", "POSITION_TARGET_GLOBAL_INT"})
+ON_REQUEST = "POSITION_TARGET_GLOBAL_INT"
 USUAL_RATE, FAST_RATE = 2.0, 4.0
 SLOW = {"HEARTBEAT": 1.0, "SYSTEM_TIME": 1.0, "BATTERY_STATUS": 1.0, "HOME_POSITION": 0.5}
 FAST = frozenset({"GLOBAL_POSITION_INT", "LOCAL_POSITION_NED", "ATTITUDE", "MISSION_CURRENT"})
@@ -314,5 +273,101 @@ def missing(settings: Settings) -> frozenset[str]:
 
 def usual_rates(settings: Settings) -> dict[str, float]:
     """Return the rates of messages that no one has requested, hertz."""
-    names = [name for name in MAKERS if name not in ON_REQUEST | missing(settings)]
+    names = [name for name in MAKERS if name not in {ON_REQUEST} | missing(settings)]
     return {name: FAST_RATE if name in FAST else SLOW.get(name, USUAL_RATE) for name in names}
+
+
+class Streams:
+    """Sends the telemetry of one vehicle."""
+
+    def __init__(self, pilot: SimulatedAutopilot, send: Callable[[Message], None]) -> None:
+        self._pilot = pilot
+        self._send = send
+        self._begin(usual_rates(pilot.settings))
+
+    def reboot(self) -> None:
+        """Forget all requests: an ArduPilot then sends heartbeats only."""
+        usual = usual_rates(self._pilot.settings)
+        self._begin(usual if self._pilot.px4 else {"HEARTBEAT": usual["HEARTBEAT"]})
+
+    def _begin(self, rates: Mapping[str, float]) -> None:
+        self._periods = {name: 1.0 / rate for name, rate in rates.items()}
+        self._due = dict.fromkeys(self._periods, 0.0)
+        self._refusal_due = 0.0
+
+    def set_interval(self, number: float, microseconds: float) -> int:
+        """Send a message at an interval: -1 never, 0 the default; return a MAV_RESULT."""
+        name = self._name(number)
+        if name is None:
+            return FAILED
+        if microseconds < 0.0:
+            self._periods.pop(name, None)
+            return ACCEPTED
+        usual = usual_rates(self._pilot.settings).get(name, 1.0)
+        self._periods[name] = microseconds * 1e-6 or 1.0 / usual
+        self._due[name] = 0.0
+        return ACCEPTED
+
+    def send_once(self, number: float) -> int:
+        """Send a requested message; return a MAV_RESULT."""
+        name = self._name(number)
+        message = MAKERS[name](self._pilot) if name is not None else None
+        if message is None:
+            return FAILED
+        self._send(message)
+        return ACCEPTED
+
+    def advance(self) -> None:
+        """Send what is due."""
+        pilot = self._pilot
+        if pilot.heartbeat_due and not pilot.px4:
+            self._due["HEARTBEAT"] = 0.0
+        pilot.heartbeat_due = False
+        for name, period in self._periods.items():
+            if pilot.time >= self._due[name]:
+                self._due[name] = max(self._due[name] + period, pilot.time - period)
+                self.send(name)
+        self._send_events()
+
+    def send(self, name: str) -> None:
+        """Send a message, and those that accompany it."""
+        pilot = self._pilot
+        message = MAKERS[name](pilot)
+        if message is not None:
+            self._send(message)
+        if name == "MISSION_CURRENT" and pilot.pending is not None:
+            self._send(mavlink.MAVLink_mission_item_reached_message(pilot.pending))
+            pilot.pending = None
+        if name == "SYS_STATUS":
+            now = milliseconds(pilot)
+            for sensor, value in pilot.settings.values.items():
+                measured = value(pilot.time)
+                self._send(mavlink.MAVLink_named_value_float_message(now, sensor.encode(), measured))
+
+    def _name(self, number: float) -> str | None:
+        name = NUMBERS.get(int(number))
+        return None if name in missing(self._pilot.settings) else name
+
+    def _send_events(self) -> None:
+        pilot = self._pilot
+        while pilot.texts:
+            severity, text = pilot.texts.pop(0)
+            self._send(mavlink.MAVLink_statustext_message(severity, text.encode()[:TEXT_BYTES]))
+        while pilot.camera.unsent:
+            taken = pilot.camera.photos[-pilot.camera.unsent]
+            pilot.camera.unsent -= 1
+            self._send(photo(pilot, taken))
+            self._report_detections(taken)
+        if pilot.armed or pilot.uptime < max(self._refusal_due, pilot.settings.ready):
+            return
+        if why := arming_refusal(pilot):
+            self._refusal_due = pilot.uptime + REFUSAL_SECONDS
+            pilot.say(mavlink.MAV_SEVERITY_CRITICAL, f"PreArm: {why}")
+
+    def _report_detections(self, taken: Photo) -> None:
+        """Report the objects in a photo, with their positions if those fit into a text."""
+        for each in seen(self._pilot.settings.sights, *taken.place):
+            latitude, longitude = self._pilot.degrees_at((each.north, each.east, 0.0))
+            text = f"detected {each.name}"
+            placed = f"{text} at {latitude:.6f},{longitude:.6f}"
+            self._pilot.say(mavlink.MAV_SEVERITY_NOTICE, placed if len(placed) <= TEXT_BYTES else text)

@@ -68,12 +68,10 @@ class Transfers:
         handler = {
             "MISSION_COUNT": self._start,
             "MISSION_ITEM_INT": self._receive,
-            "MISSION_ITEM": self._receive,
             "MISSION_CLEAR_ALL": self._clear,
             "MISSION_ACK": self._end,
             "MISSION_REQUEST_LIST": self._list,
             "MISSION_REQUEST_INT": self._give,
-            "MISSION_REQUEST": self._give,
         }.get(message.get_type())
         if handler is None:
             return
@@ -112,7 +110,9 @@ class Transfers:
             self._continue(kind, upload)
 
     def _receive(self, message: Message, peer: Address, kind: int) -> None:
-        item, upload = item_of(message), self._uploads.get(kind)
+        upload = self._uploads.get(kind)
+        params = (message.param1, message.param2, message.param3, message.param4)
+        item = StoredItem(message.frame, message.command, params, message.x, message.y, message.z)
         if upload is None:
             again = self._px4 and self._last == (kind, message.seq)
             self._acknowledge(
@@ -171,7 +171,7 @@ class Transfers:
             self._send(mavlink.MAVLink_mission_count_message(*peer, number, kind))
 
     def _give(self, message: Message, peer: Address, kind: int) -> None:
-        """Send a requested item, as MISSION_ITEM if it was requested so."""
+        """Send a requested item."""
         seq, items = int(message.seq), self.stores.get(kind, [])
         if kind in self._uploads or not 0 <= seq < len(items):
             refused = (
@@ -181,22 +181,10 @@ class Transfers:
             return
         item = self.home() if seq == 0 and kind == MISSION and self.home is not None else items[seq]
         head = (*peer, seq, item.frame, item.command, 0, 1, *item.params)
-        if message.get_type() == "MISSION_REQUEST":
-            x, y = item.x * 1e-7, item.y * 1e-7
-            self._send(mavlink.MAVLink_mission_item_message(*head, x, y, item.z, kind))
-        else:
-            self._send(mavlink.MAVLink_mission_item_int_message(*head, item.x, item.y, item.z, kind))
+        self._send(mavlink.MAVLink_mission_item_int_message(*head, item.x, item.y, item.z, kind))
 
     def _ask(self, upload: _Upload, kind: int) -> None:
         self._send(mavlink.MAVLink_mission_request_int_message(*upload.peer, len(upload.items), kind))
 
     def _acknowledge(self, peer: Address, result: int, kind: int) -> None:
         self._send(mavlink.MAVLink_mission_ack_message(*peer, int(result), kind))
-
-
-def item_of(message: Message) -> StoredItem:
-    """Return the item in a MISSION_ITEM or MISSION_ITEM_INT."""
-    old = message.get_type() == "MISSION_ITEM"
-    x, y = (round(message.x * 1e7), round(message.y * 1e7)) if old else (message.x, message.y)
-    params = (message.param1, message.param2, message.param3, message.param4)
-    return StoredItem(message.frame, message.command, params, x, y, message.z)

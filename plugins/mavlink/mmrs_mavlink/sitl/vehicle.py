@@ -12,7 +12,6 @@ from typing import Any
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from mmrs_mavlink.sitl import telemetry
 from mmrs_mavlink.sitl.autopilot import SimulatedAutopilot
 from mmrs_mavlink.sitl.commands import drive, execute, steer, take_sticks
 from mmrs_mavlink.sitl.faults import Faults
@@ -21,7 +20,7 @@ from mmrs_mavlink.sitl.parameters import ParameterService
 from mmrs_mavlink.sitl.radio import COMPONENT, SimulatedRadio, receive
 from mmrs_mavlink.sitl.settings import Settings
 from mmrs_mavlink.sitl.simulation import advance
-from mmrs_mavlink.sitl.streams import Streams
+from mmrs_mavlink.sitl.telemetry import Streams
 from mmrs_mavlink.sitl.transfers import Transfers
 
 Message = Any
@@ -162,8 +161,6 @@ class SimulatedVehicle:
             case "COMMAND_INT":
                 params = tuple(getattr(message, f"param{n}") for n in range(1, 5))
                 self._command(message, (*params, message.x * 1e-7, message.y * 1e-7, message.z))
-            case "SET_MODE":
-                pilot.set_mode(message.custom_mode)
             case "MISSION_SET_CURRENT":
                 execute(pilot, int(mavlink.MAV_CMD_DO_SET_MISSION_CURRENT), (message.seq, *[0.0] * 6))
             case "SET_POSITION_TARGET_GLOBAL_INT":
@@ -178,10 +175,6 @@ class SimulatedVehicle:
             case "MANUAL_CONTROL":
                 if message.target in (0, pilot.settings.system):
                     take_sticks(pilot, message)
-            case "TIMESYNC":
-                if message.tc1 == 0:
-                    now = telemetry.milliseconds(pilot) * 1_000_000
-                    self._send(mavlink.MAVLink_timesync_message(now, message.ts1))
             case _:
                 self._parameters.take(message)
                 self._transfers.take(message)

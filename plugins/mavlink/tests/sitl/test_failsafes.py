@@ -7,7 +7,6 @@ from simulated import Bench
 
 from mmrs_mavlink.sitl.commands import steer
 
-BOX = ((40.0, -10.0), (40.0, 10.0), (60.0, 10.0), (60.0, -10.0))
 PLACES = {"copter": (30.0, 0.0, 12.0), "rover": (5.0, 0.0, 0.0), "sub": (5.0, 0.0, -5.0)}
 
 
@@ -104,14 +103,6 @@ def test_a_low_battery_is_answered_after_its_timer(kind, action, mode):
     assert any(text.startswith("Battery 1 is low") for _, _, text in bench.pilot.said)
 
 
-def test_a_critical_battery_takes_precedence_over_a_low_one():
-    bench = out(BATT_FS_LOW_ACT=2, BATT_LOW_MAH=1500.0, BATT_FS_CRT_ACT=1, BATT_CRT_MAH=1000.0)
-    for level, mode in ((0.28, "return"), (0.15, "land")):
-        bench.pilot.battery.level = level
-        bench.wait(12.0)
-        assert bench.pilot.mode_name == mode
-
-
 @pytest.mark.parametrize(("action", "mode"), [(0, "guided"), (1, "return"), (2, "land"), (4, "hold")])
 def test_a_breached_fence_is_answered_as_configured(action, mode):
     bench = out(FENCE_ENABLE=1, FENCE_ACTION=action, FENCE_RADIUS=50.0)
@@ -120,38 +111,11 @@ def test_a_breached_fence_is_answered_as_configured(action, mode):
     assert bench.pilot.mode_name == mode
 
 
-def polygon(bench: Bench, command: int, *corners: tuple[float, float]) -> None:
-    count = float(len(corners))
-    bench.pilot.stores[1] = [bench.item(command, (*corner, 0.0), count) for corner in corners]
-
-
-@pytest.mark.parametrize("circle", [False, True])
-def test_an_excluded_area_is_detected_on_entry(circle):
-    bench = out(FENCE_ENABLE=1, FENCE_ACTION=4)
-    if circle:
-        bench.pilot.stores[1] = [bench.item(5004, (50.0, 0.0, 0.0), 10.0)]
-    else:
-        polygon(bench, 5002, *BOX)
-    steer(bench.pilot, (80.0, 0.0, 12.0), None)
-    assert bench.wait_for(lambda: bench.pilot.breached, 30.0)
-    assert 40.0 <= bench.pilot.body.position[0] <= 47.0
-    assert bench.pilot.mode_name == "hold"
-
-
 def test_a_disabled_fence_is_ignored():
-    bench = out()
-    polygon(bench, 5002, *BOX)
+    bench = out(FENCE_RADIUS=40.0)
     steer(bench.pilot, (50.0, 0.0, 12.0), None)
     bench.wait(15.0)
     assert not bench.pilot.breached
-
-
-def test_a_vehicle_outside_its_fence_refuses_to_arm():
-    bench = Bench(parameters={"FENCE_ENABLE": 1})
-    polygon(bench, 5001, *BOX)
-    bench.mode("guided")
-    assert bench.command(400, 1) != 0
-    assert bench.last_text == "Arm: vehicle outside Polygon fence"
 
 
 @pytest.mark.parametrize(("enabled", "breached"), [(7, True), (4, False)])

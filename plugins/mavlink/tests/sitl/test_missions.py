@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from itertools import pairwise
 from math import hypot
 
 import pytest
@@ -13,7 +12,7 @@ from mmrs_mavlink.sitl.telemetry import mission_current
 
 CORNER = (0.0, 60.0, 20.0)
 LEGS = ((0.0, 10.0, 20.0), CORNER, (60.0, 60.0, 20.0), (60.0, 100.0, 20.0))
-LOITER, LAND, SPEED, PHOTO, TRIGGER = 17, 21, 178, 203, 206
+LOITER, LAND, SPEED, PHOTO = 17, 21, 178, 203
 SET_CURRENT = 224
 
 
@@ -86,15 +85,6 @@ def test_a_photo_is_taken_in_sequence_and_not_reported_as_reached(bench):
     assert bench.pilot.pending == 1
     (photo,) = bench.pilot.camera.photos
     assert hypot(photo.place[0], photo.place[1] - 20.0) < 0.5
-
-
-def test_a_distance_trigger_takes_photos_at_its_interval(bench):
-    items = [plain(TRIGGER, 5.0, 0.0, 1.0), *bench.go_to((0.0, 51.0, 20.0), hold=1.0), plain(TRIGGER, 0.0)]
-    flown(bench, *items, bench.item(LOITER, (0.0, 100.0, 20.0)), until=4)
-    bench.wait(10.0)
-    places = [photo.place[1] for photo in bench.pilot.camera.photos]
-    assert len(places) == 10
-    assert all(4.9 < b - a < 5.6 for a, b in pairwise(places))
 
 
 def test_a_mission_without_a_take_off_is_accepted_and_never_leaves_the_ground(bench):

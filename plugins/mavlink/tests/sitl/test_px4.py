@@ -83,11 +83,6 @@ def test_a_lost_link_is_answered(offboard):
     assert said == ["Connection to ground station lost", "GCS connection regained"]
 
 
-def test_an_exempt_mode_continues_without_a_link(offboard):
-    offboard.pilot.parameters |= {"NAV_DLL_ACT": 2, "COM_OF_LOSS_T": 60.0, "COM_DLL_EXCEPT": 4}
-    assert without_link(offboard, 20.0) == "guided"
-
-
 @pytest.mark.parametrize(("kind", "east"), [(0, 0.0), (1, 30.0)])
 def test_return_goes_home_or_to_a_rally_point_as_configured(bench, kind, east):
     bench.pilot.parameters |= {"RTL_TYPE": kind, "RTL_RETURN_ALT": 10.0}

@@ -83,14 +83,6 @@ def test_an_unknown_message_cannot_be_requested(ground):
     assert ground.command(512, 12_345).result == 4
 
 
-def test_capabilities_are_sent_on_request(ground):
-    ground.switch_on()
-    assert ground.receive("AUTOPILOT_VERSION", seconds=5.0) is None
-    ground.send(mavlink.MAVLink_command_long_message(1, 1, 512, 0, 148, 0, 0, 0, 0, 0, 0))
-    capabilities = ground.receive("AUTOPILOT_VERSION").capabilities
-    assert capabilities & mavlink.MAV_PROTOCOL_CAPABILITY_MISSION_FENCE
-
-
 def test_messages_for_another_system_are_ignored(ground):
     vehicle = ground.switch_on(system=7)
     ground.send(mavlink.MAVLink_command_long_message(1, 1, 400, 0, 1, 0, 0, 0, 0, 0, 0))
@@ -117,15 +109,9 @@ def test_a_mode_change_is_reported_at_once(ground):
 def test_a_command_int_carries_coordinates(ground):
     vehicle = ground.switch_on()
     place = (423_750_000, 133_500_000, 20.0)
-    ground.send(mavlink.MAVLink_command_int_message(1, 1, 3, 195, 0, 0, 0, 0, 0, 0, *place))
+    ground.send(mavlink.MAVLink_command_int_message(1, 1, 3, 179, 0, 0, 0, 0, 0, 0, *place))
     assert ground.receive("COMMAND_ACK").result == 0
-    assert vehicle.autopilot.roi[0] == pytest.approx(555.4, abs=0.2)
-
-
-def test_timesync_is_answered(ground):
-    ground.switch_on()
-    ground.send(mavlink.MAVLink_timesync_message(0, 4_711))
-    assert ground.receive("TIMESYNC", lambda m: m.tc1 != 0).ts1 == 4_711
+    assert vehicle.autopilot.home == pytest.approx((42.375, 13.35, 20.0))
 
 
 def test_a_battery_that_is_not_measured_is_unknown(ground):
