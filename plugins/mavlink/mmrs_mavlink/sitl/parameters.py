@@ -17,9 +17,6 @@ from mmrs_mavlink.sitl.settings import PX4, Settings
 
 Message = Any
 
-AT_ONCE = 10
-"""Parameters of a list that are sent in one step."""
-
 LOW_CELL = 3.5
 """Volts of a cell at which a battery is low."""
 
@@ -138,43 +135,26 @@ def decoded(value: float, kind: int, autopilot: Autopilot) -> float:
 
 
 class ParameterService:
-    """Sets and sends parameters; a request for an unknown one is not answered.
-
-    Attributes:
-        changed: called with the name of each parameter that is set, before the answer.
-    """
+    """Sets and sends parameters; a request for an unknown one is not answered."""
 
     def __init__(
         self, values: dict[str, float], autopilot: Autopilot, send: Callable[[Message], None]
     ) -> None:
-        self.changed: Callable[[str], None] = lambda name: None
         self._values, self._autopilot, self._send = values, autopilot, send
-        self._listed: list[str] = []
-
-    def begin(self) -> None:
-        """Forget all requests, as after a boot."""
-        self._listed.clear()
 
     def take(self, message: Message) -> None:
         """Answer a message of the protocol, and ignore others."""
-        kind = message.get_type()
+        kind, names = message.get_type(), list(self._values)
         if kind == "PARAM_REQUEST_LIST":
-            self._listed = list(self._values)
+            for name in names:
+                self._answer(name)
         elif kind == "PARAM_REQUEST_READ":
-            names = list(self._values)
             found = 0 <= message.param_index < len(names)
             self._answer(names[message.param_index] if found else message.param_id)
         elif kind == "PARAM_SET" and message.param_id in self._values:
-            name = str(message.param_id)
-            self._values[name] = decoded(message.param_value, message.param_type, self._autopilot)
-            self.changed(name)
-            self._answer(name)
-
-    def advance(self) -> None:
-        """Send the next parameters of a requested list."""
-        for name in self._listed[:AT_ONCE]:
-            self._answer(name)
-        del self._listed[:AT_ONCE]
+            value = decoded(message.param_value, message.param_type, self._autopilot)
+            self._values[message.param_id] = value
+            self._answer(message.param_id)
 
     def _answer(self, name: str) -> None:
         if name in self._values:

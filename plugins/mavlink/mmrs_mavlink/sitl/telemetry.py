@@ -37,9 +37,6 @@ GPS, FENCE_BIT, PREARM = 0x20, 0x0010_0000, 0x1000_0000
 SENSORS = 0x0200_002F
 """Gyroscope, accelerometer, compass, pressure, satellites and battery."""
 
-REFUSAL_SECONDS = 30.0
-"""Time between two reports that a vehicle refuses to arm."""
-
 TEXT_BYTES = 50
 
 
@@ -293,7 +290,6 @@ class Streams:
     def _begin(self, rates: Mapping[str, float]) -> None:
         self._periods = {name: 1.0 / rate for name, rate in rates.items()}
         self._due = dict.fromkeys(self._periods, 0.0)
-        self._refusal_due = 0.0
 
     def set_interval(self, number: float, microseconds: float) -> int:
         """Send a message at an interval: -1 never, 0 the default; return a MAV_RESULT."""
@@ -358,11 +354,6 @@ class Streams:
             pilot.camera.unsent -= 1
             self._send(photo(pilot, taken))
             self._report_detections(taken)
-        if pilot.armed or pilot.uptime < max(self._refusal_due, pilot.settings.ready):
-            return
-        if why := arming_refusal(pilot):
-            self._refusal_due = pilot.uptime + REFUSAL_SECONDS
-            pilot.say(mavlink.MAV_SEVERITY_CRITICAL, f"PreArm: {why}")
 
     def _report_detections(self, taken: Photo) -> None:
         """Report the objects in a photo, with their positions if those fit into a text."""

@@ -136,11 +136,9 @@ class SimulatedVehicle:
             if pilot.booted != self._booted:
                 self._booted = pilot.booted
                 self.streams.reboot()
-                self._parameters.begin()
             self._transfers.busy = pilot.uptime < pilot.settings.boot
             self._transfers.advance(pilot.time, pilot.link_timeout / 4.0)
             self.streams.advance()
-            self._parameters.advance()
 
     def _send(self, message: Message) -> None:
         for radio in self.radios:

@@ -134,3 +134,18 @@ def test_a_lost_position_is_answered_as_soon_as_by_arducopter(action, mode):
     assert bench.pilot.mode_name == "guided"
     bench.wait(0.3)
     assert bench.pilot.mode_name == mode
+
+
+@pytest.mark.parametrize(
+    ("kind", "parameters", "modes"),
+    [
+        ("copter", {"FS_GCS_ENABLE": 3}, {"smart_return"}),
+        ("rover", {"FS_GCS_ENABLE": 1, "FS_ACTION": 3}, {"smart_return"}),
+        ("sub", {"FS_GCS_ENABLE": 4}, {"surface"}),
+    ],
+)
+def test_a_killed_process_is_noticed_as_soon_as_by_real_vehicles(kind, parameters, modes):
+    """Controllers of ArduCopter, ArduRover and ArduSub 4.7-dev were killed: answered after 9 to 11 s."""
+    bench = out(kind, FS_GCS_TIMEOUT=10.0, **parameters)
+    assert without_link(bench, 9.0) == "guided"
+    assert without_link(bench, 3.0) in modes

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import asdict
 from itertools import pairwise
 from math import dist
 
@@ -9,6 +10,7 @@ import pytest
 from hypothesis import assume, example, given, settings
 from hypothesis import strategies as st
 
+from mmrs_core.scene.timing import LegTiming, Rates
 from mmrs_mavlink.profiles import ARDUCOPTER
 from mmrs_mavlink.sitl.body import STEP, Body, Vector
 
@@ -71,3 +73,19 @@ def test_a_vehicle_overshoots_single_targets_as_arducopter(length, speed, beyond
     """Measured on recorded flights of ArduCopter 4.7-dev in GUIDED, by the peak speed of the leg."""
     track = flown([(0.0, 0.0, 10.0), (0.0, length, 10.0)], speed, curved=False)
     assert max(place[1] for place in track) - length == pytest.approx(beyond, abs=0.12)
+
+
+@given(level, level, height, height, speeds, st.booleans())
+@settings(max_examples=40, deadline=None)
+def test_a_leg_takes_as_long_as_planning_and_checks_believe(north, east, start, end, speed, curved):
+    a, b = (0.0, 0.0, start), (north, east, end)
+    assume(dist(a, b) > 5.0 and abs(end - start) < dist(a, b) / 4.0)
+    figures = PACING.mission if curved else PACING.step
+    rates = Rates(speed, figures.climb, figures.descent, LegTiming(**asdict(figures) | {"settling": 0.0}))
+    planned = rates.from_stop_to_stop(a, b)
+    track = flown([a, b], speed, curved=curved)
+    near = [
+        n for n, place in enumerate(track) if dist(place, b) < 1.0 and dist(place, track[n - 1]) < 0.3 * STEP
+    ]
+    taken = STEP * (len(track) - 1 if curved else near[0])
+    assert taken == pytest.approx(planned, rel=figures.spread, abs=1.0)
