@@ -53,7 +53,6 @@ class SimulatedAutopilot:
         texts: (severity, text) of STATUSTEXTs to be sent. said: (seconds, severity, text) of all of them.
         stores: items by mission type.
         item: current mission item. held: seconds at its position. finished: whether the mission is over.
-        pending: mission item whose completion is not yet reported; None: none.
         climbs_at: time at which its motors have spun up for a take-off. driven_at: time of the last sticks.
         return_path: positions to pass on a return. breadcrumbs: positions for SmartRTL.
         located: whether it has a position.
@@ -97,7 +96,6 @@ class SimulatedAutopilot:
         self.start_mode()
         self.texts: list[tuple[int, str]] = []
         self.item, self.held, self.finished = 0, 0.0, False
-        self.pending: int | None = None
         self.climbs_at = self.driven_at = 0.0
         self.return_path: list[Vector] = []
         self.breadcrumbs: list[Vector] = [(0.0, 0.0, 0.0)]

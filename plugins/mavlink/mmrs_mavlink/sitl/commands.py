@@ -10,7 +10,7 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 from mmrs_mavlink.sitl.autopilot import MANUAL, SimulatedAutopilot
 from mmrs_mavlink.sitl.body import Vector
 from mmrs_mavlink.sitl.items import MISSION
-from mmrs_mavlink.sitl.missions import jump
+from mmrs_mavlink.sitl.simulation import jump
 
 ACCEPTED = int(mavlink.MAV_RESULT_ACCEPTED)
 DENIED = int(mavlink.MAV_RESULT_DENIED)

@@ -21,7 +21,7 @@ class SimulatedRadio:
 
     Attributes:
         down: returns whether the link is cut. silent: returns whether it sends nothing.
-        sent, received: number of messages.
+        sent: number of messages.
     """
 
     def __init__(self, address: tuple[str, int], system: int, key: bytes = b"") -> None:
@@ -37,7 +37,7 @@ class SimulatedRadio:
         """
         self.down: Callable[[], bool] = lambda: False
         self.silent: Callable[[], bool] = lambda: False
-        self.sent = self.received = 0
+        self.sent = 0
         self._address = _resolved(address)
         self._socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
         self._socket.bind(("127.0.0.1" if self._address[0] == "127.0.0.1" else "0.0.0.0", 0))
@@ -83,7 +83,6 @@ class SimulatedRadio:
                 continue
             for message in () if self.down() else self._mav.parse_buffer(data) or ():
                 if message.get_type() != "BAD_DATA":
-                    self.received += 1
                     yield message
 
 

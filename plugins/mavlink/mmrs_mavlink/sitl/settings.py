@@ -60,8 +60,6 @@ class Settings:
             raise ValueError(f"{self.kind}: unknown vehicle type; known are {', '.join(KINDS)}")
         if self.firmware not in (ARDUPILOT, PX4) or (self.firmware == PX4 and self.kind != "copter"):
             raise ValueError(f"{self.firmware}: not a firmware for a {self.kind}")
-        if not 1 <= self.system <= 255:
-            raise ValueError(f"system {self.system}: not a MAVLink system; those are 1 to 255")
 
     @property
     def profile(self) -> VehicleProfile:

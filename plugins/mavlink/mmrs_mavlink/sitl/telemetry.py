@@ -331,9 +331,6 @@ class Streams:
         message = MAKERS[name](pilot)
         if message is not None:
             self._send(message)
-        if name == "MISSION_CURRENT" and pilot.pending is not None:
-            self._send(mavlink.MAVLink_mission_item_reached_message(pilot.pending))
-            pilot.pending = None
         if name == "SYS_STATUS":
             now = milliseconds(pilot)
             for sensor, value in pilot.settings.values.items():

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from mmrs_mavlink.commands.schedule import Schedule, ScheduledFault, inject, scheduled
+from mmrs_mavlink.commands.rehearsal import Schedule, ScheduledFault, inject, scheduled
 from mmrs_mavlink.sitl import Settings, SimulatedVehicle
 
 
