@@ -14,7 +14,7 @@ PATIENCE = 60.0
 UNHURRIED = 15.0
 """Speed-up that leaves real time for orders on the way."""
 
-AT_HOME = 0.6
+AT_HOME = 0.8
 """Metres from home at which a vehicle may land: the radius in which places count as reached, and a little."""
 
 TAKE_OFF = 22

@@ -14,7 +14,7 @@ from mmrs_runtime.semantics import Outcome
 pytestmark = pytest.mark.real_time("controllers")
 
 PHOTO = 2000
-AT_HOME = 0.6
+AT_HOME = 0.8
 """Metres from home at which a vehicle may land: the radius in which places count as reached, and a little."""
 
 

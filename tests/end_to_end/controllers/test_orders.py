@@ -17,7 +17,7 @@ from mmrs_runtime.orders.ordering import give
 pytestmark = pytest.mark.real_time("controllers")
 
 BRAKE, GUIDED = 17, 4
-AT_HOME = 0.6
+AT_HOME = 0.8
 """Metres from home at which a vehicle may land: the radius in which places count as reached, and a little."""
 SPEEDUP = 20.0
 PROMPT = 1.0

@@ -20,7 +20,7 @@ from mmrs_runtime.orders.ordering import give
 pytestmark = pytest.mark.real_time("controllers")
 
 TAKE_OFF = 22
-AT_HOME = 0.6
+AT_HOME = 0.8
 """Metres from home at which a vehicle may land: the radius in which places count as reached, and a little."""
 TRANSECTS = [(x, y, 12.0) for x in (20.0, 30.0, 40.0) for y in ((0.0, 60.0) if x != 30.0 else (60.0, 0.0))]
 """Both ends of three lines of a coverage, flown up and down."""
