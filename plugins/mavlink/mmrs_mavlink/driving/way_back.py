@@ -49,7 +49,7 @@ class WayBack:
                 parts = self._parts(passed, begun)
             except RefusedError as why:
                 if self._vehicle.state().armed and self._vehicle.in_failsafe:
-                    raise FaultError(why.event, f"{why}; its failsafe goes on", NOTHING) from None
+                    raise FaultError(why.event, f"{why}; its failsafe continues", NOTHING) from None
                 raise
             if parts:
                 self._refuse_low()

@@ -127,7 +127,7 @@ class Autopilot:
         announcements: parts of its texts when a failsafe acts, in lower case, by event of policies.
         needs: what commands to devices need of its parameters; what is not here is unknown.
         capacities: for each battery, the parameter for its milliampere-hours, the one for its monitor, and
-            the values of that which are no battery of its own.
+            the values of the monitor without a battery of its own.
     """
 
     name: str

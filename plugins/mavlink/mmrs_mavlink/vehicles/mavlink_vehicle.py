@@ -307,7 +307,7 @@ class MavlinkVehicle(Vehicle):
 
     @property
     def in_failsafe(self) -> bool:
-        """Return whether it is in a mode that its autopilot may choose by itself."""
+        """Return whether it is in a mode that its autopilot may choose without a command."""
         return self.telemetry.mode() in self._link.profile.failsafe_modes | self._alone
 
     def take_back(self) -> None:

@@ -103,7 +103,7 @@ class Vehicle:
 
     @property
     def in_failsafe(self) -> bool:
-        """Return whether it is in a mode that its autopilot may choose by itself."""
+        """Return whether it is in a mode that its autopilot may choose without a command."""
         return False
 
     def take_back(self) -> None:
