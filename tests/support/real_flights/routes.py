@@ -85,6 +85,20 @@ def routes(*given: Route, forbidden: Sequence[Place] = ()) -> Callable[[Path], N
     return write
 
 
+def on_px4(models: Callable[[Path], None]) -> Callable[[Path], None]:
+    """Return what writes the same models, of robots with a PX4, which takes other times than an ArduPilot."""
+
+    def write(folder: Path) -> None:
+        models(folder)
+        for file in (folder / "robots").iterdir():
+            before, device, after = file.read_text("utf-8").partition("<devices ")
+            name, end, after = after.partition(">")
+            of_px4 = '<properties name="mavlink.autopilot" value="px4"/>'
+            file.write_text(before + device + name + end + of_px4 + after, "utf-8")
+
+    return write
+
+
 def example(name: str, changes: Mapping[str, str] | None = None) -> Callable[[Path], None]:
     """Return what copies a shipped example; `changes` are texts of its robot types that are replaced."""
 

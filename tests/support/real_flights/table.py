@@ -29,7 +29,7 @@ from real_flights.flight import (
     Resume,
     When,
 )
-from real_flights.routes import COPTER, ROVER, SUB, Craft, Route, example, routes
+from real_flights.routes import COPTER, ROVER, SUB, Craft, Route, example, on_px4, routes
 
 SQUARE = ((0.0, 30.0, 12.0), (25.0, 30.0, 12.0), (25.0, 0.0, 12.0), (0.0, 0.0, 12.0))
 LAWN = tuple(
@@ -288,7 +288,9 @@ PX4_LANDING = 4.0
 def _as_px4(flight: Flight, **changes: Any) -> Flight:
     """Return a copter's flight as that of a PX4."""
     name = flight.name.replace("copter:", "PX4:")
-    deviation = None if flight.deviation is None else 3.0
+    led_away = flight.deviation is None or changes.get("ends") == HOME
+    deviation = None if led_away else 3.0
+    changes["models"] = on_px4(flight.models)
     return replace(
         flight, name=name, px4=True, deviation=deviation, landing=PX4_LANDING, speedup=1.0, **changes
     )
@@ -311,7 +313,7 @@ PX4S = (
     _as_px4(_COPTERS["satellites lost"], happens=((AT_LEG, Change({"SIM_GPS_USED": 0.0})),)),
     _as_px4(_COPTERS["battery low"], happens=(), parameters={"SIM_BAT_DRAIN": 40.0, "SIM_BAT_MIN_PCT": 5.0}),
     *(
-        _as_px4(flight, ends=HOME)
+        _as_px4(flight, ends=HOME, happens=(*flight.happens[:-1], (Later(12.0), Resume())))
         for flight in _resumes(COPTER)
         if flight.name.endswith((", on a leg", ", while it stays"))
     ),
