@@ -159,8 +159,8 @@ MUTANTS = (
         (
             "two-senders",
             "guard.py",
-            "self._told, self._due = True, now",
-            "self._told, self._due = False, now",
+            "self._reported, self._due = True, now",
+            "self._reported, self._due = False, now",
         ),
     ),
 )

@@ -73,8 +73,8 @@ class Diagnostic:
     def __str__(self) -> str:
         """Return one line in the form compilers use; beneath it where, what was expected, and the hint."""
         where = f"{self.place}: " if str(self.place) else ""
-        told = {"at": self.place.path.strip("/") and self.place.path, "expected": self.expected}
-        lines = [f"\n    {word}: {words}" for word, words in {**told, "hint": self.hint}.items() if words]
+        reported = {"at": self.place.path.strip("/") and self.place.path, "expected": self.expected}
+        lines = [f"\n    {word}: {words}" for word, words in {**reported, "hint": self.hint}.items() if words]
         return f"{where}{self.severity.value}: {self.message} [{self.code}]{''.join(lines)}"
 
 

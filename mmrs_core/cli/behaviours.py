@@ -153,7 +153,7 @@ def faults_of(session: Session, files: BehaviourFiles) -> tuple[Diagnostic, ...]
 
     contributions = session.contributions
     faults: list[Diagnostic] = []
-    told: list[Diagnostic] = []
+    reported: list[Diagnostic] = []
     for model in files.models:
         faults += [*model.diagnostics, *check_conformance(model, contributions.languages)]
     if files.behaviour is None or len(files.models[0].roots) != 1:
@@ -162,8 +162,8 @@ def faults_of(session: Session, files: BehaviourFiles) -> tuple[Diagnostic, ...]
     places = [root for root in roots if isinstance(root, contexts.Context)]
     if files.place is not None and len(places) != 1:
         raise InvalidModelError(f"{files.place}: expected one context in this file", in_order(faults))
-    types_by_name((root for root in roots if isinstance(root, robots_language.Robot)), told)
-    faults += map(explained, told)
+    types_by_name((root for root in roots if isinstance(root, robots_language.Robot)), reported)
+    faults += map(explained, reported)
     faults += check_behaviour(
         files.behaviour,
         contributions.constraints,

@@ -80,8 +80,10 @@ def _in_all(verdicts: Sequence[Verdict], against: Sequence[Verdict]) -> str:
     found: dict[str, set[str]] = {}
     for verdict in verdicts:
         found.setdefault(verdict.property, set()).add(verdict.status.value)
-    told = {
+    reported = {
         "unknown, and accepted": [name for name, statuses in found.items() if "unknown" in statuses],
         "not checked": [name for name, statuses in found.items() if statuses == {"not checked"}],
     }
-    return "; ".join(["safe", *(f"{words}: {', '.join(names)}" for words, names in told.items() if names)])
+    return "; ".join(
+        ["safe", *(f"{words}: {', '.join(names)}" for words, names in reported.items() if names)]
+    )

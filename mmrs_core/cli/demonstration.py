@@ -72,8 +72,8 @@ class Demonstration:
         for what, path, count in self.files:
             more = f" ({counted(count, 'file')})" if count > 1 else ""
             yield f"  {path.relative_to(self.folder).as_posix():<30} {what}{more}"
-        told = shlex.join(["mmrs", "report", str(self.folder), str(self.folder / LOGS)])
-        yield f"Flight report: {told}"
+        reported = shlex.join(["mmrs", "report", str(self.folder), str(self.folder / LOGS)])
+        yield f"Flight report: {reported}"
 
     def summary(self) -> Mapping[str, object]:
         """Return the demonstration as JSON has it."""

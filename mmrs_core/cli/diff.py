@@ -198,8 +198,8 @@ def summary_line(counts: Mapping[str, int]) -> str:
     >>> summary_line({"added": 1, "changed": 2})
     '1 added, 2 changed'
     """
-    told = [f"{counts[sort.value]} {sort.value}" for sort in Sort if counts.get(sort.value)]
-    return ", ".join(told) or "the models say the same"
+    reported = [f"{counts[sort.value]} {sort.value}" for sort in Sort if counts.get(sort.value)]
+    return ", ".join(reported) or "the models say the same"
 
 
 def change_as_json(change: Change) -> Mapping[str, object]:

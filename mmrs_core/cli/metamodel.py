@@ -86,8 +86,8 @@ def diff(
     loads = all(each.verdict is not Effect.INCOMPATIBLE for each in found)
     if json:
         compared = [{"old": before, "new": after} for before, after in files]
-        told = {"old_models_load": loads, "differences": found, "migrations": len(chain)}
-        say_json({**told, "compared": compared})
+        reported = {"old_models_load": loads, "differences": found, "migrations": len(chain)}
+        say_json({**reported, "compared": compared})
     else:
         for line, colour in difference_lines(found):
             say(line, colour)

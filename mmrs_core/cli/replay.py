@@ -90,10 +90,10 @@ def _say_steps(steps: Sequence[PlacedStep]) -> None:
 
 
 def _say_json(result: ReplayResult, flight: Flight | None, steps: Sequence[PlacedStep] | None) -> None:
-    told = plain(result)
-    assert isinstance(told, dict)
+    reported = plain(result)
+    assert isinstance(reported, dict)
     if flight is not None:
-        told |= {"boxes": flight.boxes, "damages": list(flight.damages)}
+        reported |= {"boxes": flight.boxes, "damages": list(flight.damages)}
     if steps is not None:
-        told["where"] = plain(steps)
-    say_json(told)
+        reported["where"] = plain(steps)
+    say_json(reported)

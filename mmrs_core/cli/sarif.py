@@ -71,16 +71,16 @@ def sarif_of(
 def _rule(code: str, entry: CodeEntry | None) -> dict[str, object]:
     if entry is None:
         return {"id": code}
-    told = {"Expected": entry.expected, "Mend": entry.hint}
+    reported = {"Expected": entry.expected, "Mend": entry.hint}
     if entry.fix:
-        told["Quick fix"] = f"mmrs validate --fix: {entry.fix}"
+        reported["Quick fix"] = f"mmrs validate --fix: {entry.fix}"
     return {
         "id": code,
         "shortDescription": {"text": entry.meaning},
         "fullDescription": {"text": f"{entry.meaning}; expected: {entry.expected}"},
         "help": {
-            "text": "\n".join(f"{name}: {words}" for name, words in told.items()),
-            "markdown": "\n".join(f"- **{name}**: {_escaped(words)}" for name, words in told.items()),
+            "text": "\n".join(f"{name}: {words}" for name, words in reported.items()),
+            "markdown": "\n".join(f"- **{name}**: {_escaped(words)}" for name, words in reported.items()),
         },
         "defaultConfiguration": {"level": _LEVELS[entry.severity]},
         "properties": {
@@ -123,7 +123,7 @@ def as_faults(
         checks: with the fix of each.
     """
     known = tuple(checks)
-    told = (each for each in verdicts if each in against or each.status.value == "unknown")
+    reported = (each for each in verdicts if each in against or each.status.value == "unknown")
     return tuple(
         Diagnostic(
             each.property,
@@ -132,7 +132,7 @@ def as_faults(
             each.place,
             hint_of(each, known),
         )
-        for each in told
+        for each in reported
     )
 
 

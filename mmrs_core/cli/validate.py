@@ -117,7 +117,7 @@ def _tell_of(proposals: tuple[Proposal, ...], project: Path, *, asked: bool) -> 
 def _as_json(
     found: Diagnosis, proposals: tuple[Proposal, ...], repair: Repair | None, changed: bool
 ) -> dict[str, object]:
-    told: dict[str, object] = {
+    reported: dict[str, object] = {
         "valid": _is_valid(found),
         "diagnostics": found.faults,
         "fixable": [
@@ -125,10 +125,10 @@ def _as_json(
         ],
     }
     if repair is not None:
-        told["fix"] = {
+        reported["fix"] = {
             "changed": changed,
             "mended": [each.fault for each in repair.applied],
             "refused": [each.fault for each in repair.refused],
             "diff": difference(repair.changes),
         }
-    return told
+    return reported

@@ -26,8 +26,8 @@ def verdict_line(verdict: Verdict) -> str:
     A message names move and area, and the line the robot; without one, the line names them all.
     """
     margin = _margin(verdict, "margin")
-    told = [message_of(verdict)] if verdict.message else [verdict.robot, verdict.move, verdict.area]
-    found = ", ".join(filter(None, (verdict.status.value, *told, margin)))
+    reported = [message_of(verdict)] if verdict.message else [verdict.robot, verdict.move, verdict.area]
+    found = ", ".join(filter(None, (verdict.status.value, *reported, margin)))
     return f"{verdict.property}: {found}{f'; {verdict.caveat}' if verdict.caveat else ''}"
 
 
@@ -85,9 +85,9 @@ def _reasons(found: Sequence[Verdict]) -> str:
 def _summary(found: Sequence[Verdict]) -> str:
     worst = min((each.status for each in found), key=_RANK.__getitem__)
     if worst is Status.NOT_CHECKED:
-        told = f"{worst.value}: {_reasons([each for each in found if each.status is worst])}"
+        reported = f"{worst.value}: {_reasons([each for each in found if each.status is worst])}"
         checked = [each for each in found if each.status is Status.SAFE]
-        return f"{_summary(checked)}; {told}" if checked else told
+        return f"{_summary(checked)}; {reported}" if checked else reported
     margins = [(each.margin, each) for each in found if each.margin is not None and each.status is worst]
     if not margins:
         return str(worst.value)

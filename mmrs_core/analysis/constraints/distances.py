@@ -62,10 +62,10 @@ def _rivalry(rival: Rival) -> Finding:
     hint = "see which of them are right, and correct the others" + (
         "; latitude and longitude may be exchanged in one of the two" if rival.exchanged else ""
     )
-    told = (
+    reported = (
         "its places lie" if rival.whole else f"it{others}"
     ) + f" {_kilometres(rival.apart)} from the others, and nothing tells which are right"
-    return finding(root_of(first) if rival.whole else first, told, f"{hint}; {_MEANT}")
+    return finding(root_of(first) if rival.whole else first, reported, f"{hint}; {_MEANT}")
 
 
 _MEANT = "if this is meant, give the mission a largestGap in metres"

@@ -155,8 +155,8 @@ def _marks(element: Element, traits: Traits) -> list[object]:
             continue
         if value.__class__ in _SINGLE and value != feature.default:
             # the hash of a float does not tell 0.0 from -0.0, nor one NaN from the same
-            told = value if value.__class__ is not float or (value and value == value) else repr(value)
-            marks += (feature.name, told)
+            reported = value if value.__class__ is not float or (value and value == value) else repr(value)
+            marks += (feature.name, reported)
         elif holds(element, feature):
             marks += (feature.name, repr(held(element, feature)))
     return marks

@@ -158,10 +158,10 @@ def _likeness(one: Element, other: Element) -> float:
     """Return the share of attributes and contained elements that two elements of one class have in common."""
     features = [each for each in features_of(one).values() if not each.is_reference and each.stored]
     said = [(said_by(one, feature), said_by(other, feature)) for feature in features]
-    told = [pair for pair in said if pair != (None, None)]
+    reported = [pair for pair in said if pair != (None, None)]
     ours, theirs = set(map(_title, contents(one))), set(map(_title, contents(other)))
-    most = len(told) + len(ours | theirs)
-    return (sum(a == b for a, b in told) + len(ours & theirs)) / most if most else 0.0
+    most = len(reported) + len(ours | theirs)
+    return (sum(a == b for a, b in reported) + len(ours & theirs)) / most if most else 0.0
 
 
 def _title(element: Element) -> Hashable:

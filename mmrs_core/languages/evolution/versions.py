@@ -142,10 +142,10 @@ def pairs_of(old: Version, new: Version) -> Pairs:
         if package.ns_uri not in paired and old.registry.has(package.ns_uri):
             same[package.ns_uri] = package
     by_uri = {package.ns_uri: package for package in (*ours, *old.registry.packages)}
-    told = [(by_uri[ns_uri], package) for ns_uri, package in same.items()]
+    reported = [(by_uri[ns_uri], package) for ns_uri, package in same.items()]
     taken = {package.ns_uri for package in same.values()}
     return Pairs(
-        tuple(told),
+        tuple(reported),
         tuple(package for package in ours if package.ns_uri not in same),
         tuple(package for package in theirs if package.ns_uri not in taken),
     )

@@ -114,11 +114,11 @@ def read_flight(
         raise UnreadableError(f"{', '.join(map(str, paths))}: contains no log and no black box")
     contents = _contents(boxes, damages)
     known = {robot.id for robot in program.robots}
-    told = {*steps, *contents}
-    if told and not told & known:
-        strangers, robots_here = ", ".join(sorted(told)), ", ".join(sorted(known))
+    reported = {*steps, *contents}
+    if reported and not reported & known:
+        strangers, robots_here = ", ".join(sorted(reported)), ", ".join(sorted(known))
         raise InvalidModelError(f"these are of {strangers}: the behaviour has only {robots_here}")
-    for stranger in sorted(told - known):
+    for stranger in sorted(reported - known):
         damages.append(f"{stranger}: no such robot in the behaviour; left out")
     damages += _runs(steps, contents)
     for robot in program.robots:

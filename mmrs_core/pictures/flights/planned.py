@@ -82,10 +82,10 @@ def planned_for(
     Raises:
         UsageError: if no Choice asks for one of the conditions.
     """
-    told = assume or {}
-    refuse_unasked(program, told)
+    reported = assume or {}
+    refuse_unasked(program, reported)
     known = conditions_for(program, contributions, {}, asks=False)
-    choosing = choosing_as(flight, program, told, known)
+    choosing = choosing_as(flight, program, reported, known)
     notes = tuple(choosing.notes)
     try:
         run = simulate(

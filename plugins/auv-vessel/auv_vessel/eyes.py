@@ -62,8 +62,8 @@ class Detection:
 
 def to_datagram(detection: Detection) -> bytes:
     """Return a detection as it goes through UDP."""
-    told = {key: value for key, value in asdict(detection).items() if key != "robot" or value}
-    return json.dumps(told, allow_nan=False).encode() + b"\n"
+    reported = {key: value for key, value in asdict(detection).items() if key != "robot" or value}
+    return json.dumps(reported, allow_nan=False).encode() + b"\n"
 
 
 def from_datagram(data: bytes) -> Detection:

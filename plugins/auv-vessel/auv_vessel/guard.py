@@ -83,7 +83,7 @@ class _Counter:
         self._begin(data, now)
 
     def _begin(self, data: bytes, now: float) -> None:
-        self._newest, self._heard = data[-2], now
+        self._newest, self._received = data[-2], now
         self._recent = deque([data], maxlen=2 * LATE)
         self._stray, self._strayed, self._strays = 0, now, 0
         self._meanwhile = False
@@ -91,10 +91,10 @@ class _Counter:
     def is_anothers(self, data: bytes, now: float) -> bool:
         """Take what the next frame says; return whether there is another sender besides the first."""
         number = data[-2]
-        if now - self._heard > FORGOTTEN:
+        if now - self._received > FORGOTTEN:
             self._begin(data, now)
         elif 1 <= (number - self._newest) % 256 <= AHEAD:
-            self._newest, self._heard, self._meanwhile = number, now, True
+            self._newest, self._received, self._meanwhile = number, now, True
             self._recent.append(data)
         elif data in self._recent:
             return False
@@ -162,7 +162,7 @@ class Guard:
         self.name, self.period = node.name, node.period
         self._node, self._say = node, say
         self._senders = Senders(own_of(node.name, drives=getattr(node, "has_drives", True)))
-        self._told = False
+        self._reported = False
         self._due = 0.0
         self._said = 255
 
@@ -174,8 +174,8 @@ class Guard:
     def notice(self, frame: Frame, now: float) -> None:
         """Inspect a frame that the node itself does not receive."""
         self._senders.hear(frame, now)
-        if self._senders.fault and not self._told:
-            self._told, self._due = True, now
+        if self._senders.fault and not self._reported:
+            self._reported, self._due = True, now
             self._say(f"{self._senders.fault}: the dive is given up")
             self._node.hear(emergency_frame(VEHICLE, REASON, 0), now)
 
@@ -184,7 +184,7 @@ class Guard:
         said, own = self._node.tick(now), EMERGENCIES.get(f"{self.name}Emergency")
         if own is None:
             return said
-        if not self._told:
+        if not self._reported:
             self._said = next((frame.data[-2] for frame in said if frame.id == own), self._said)
             return said
         others = tuple(frame for frame in said if frame.id != own)

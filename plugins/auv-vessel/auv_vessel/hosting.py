@@ -302,8 +302,8 @@ def _serve_by_clock(
         for said in node.tick(now):
             port.send(said)
         ticks += 1
-        while awake.now() < ticks * node.period and (heard := port.receive(0.0)) is not None:
-            node.hear(heard, now)
+        while awake.now() < ticks * node.period and (received := port.receive(0.0)) is not None:
+            node.hear(received, now)
 
 
 def _catch_up(node: Node, port: FramePort, awake: Awake) -> None:
@@ -353,15 +353,15 @@ def _serve_by_bus(node: Guard, port: FramePort, stop: threading.Event) -> None:
     told_at = awake.now()
     while not stop.is_set():
         frame = port.receive(_LISTENING)
-        told = None if frame is None else clock_time(frame)
-        if frame is None or told is None:
+        reported = None if frame is None else clock_time(frame)
+        if frame is None or reported is None:
             if frame is not None:
                 node.hear(frame, now)
             if awake.now() - told_at > CLOCK_SILENT:
                 raise ClockSilentError(f"no time received for {CLOCK_SILENT:g} s")
             continue
         node.notice(frame, now)
-        now, told_at = told, awake.now()
+        now, told_at = reported, awake.now()
         if due is None or due - now > 10.0 * node.period:
             due = now
         if now + 1e-6 >= due:

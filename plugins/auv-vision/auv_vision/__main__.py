@@ -44,14 +44,14 @@ class Whereabouts:
         self._codec = codec
         self._lock = threading.Lock()
         self._values: dict[str, dict[str, float]] = {}
-        self._heard: dict[str, float] = {}
+        self._last: dict[str, float] = {}
         self._clock: float | None = None
 
     def hear(self, frame: Frame) -> None:
         """Take a frame of the bus."""
-        told = clock_time(frame)
-        if told is not None:
-            self._clock = told
+        time_said = clock_time(frame)
+        if time_said is not None:
+            self._clock = time_said
             return
         received = self._codec.decode(frame)
         if received is None or received.name not in ("Position", "Depth", "Pose"):
@@ -59,13 +59,13 @@ class Whereabouts:
         values = {key: float(value) for key, value in received.values.items() if not isinstance(value, str)}
         with self._lock:
             self._values[received.name] = values
-            self._heard[received.name] = time.monotonic()
+            self._last[received.name] = time.monotonic()
 
     def pose(self) -> Pose | None:
         """Return where the vehicle believes to be; None if that is not known, or not to be trusted."""
         with self._lock:
             now = time.monotonic()
-            if len(self._heard) < 3 or now - min(self._heard.values()) > STALE:
+            if len(self._last) < 3 or now - min(self._last.values()) > STALE:
                 return None
             place, depth, turned = (self._values[name] for name in ("Position", "Depth", "Pose"))
         if not depth["Trusted"]:
@@ -225,9 +225,9 @@ def _serve_frames(
     from auv_vision.renderer import Renderer
     from auv_vision.sources import SIMULATED, SourceError, opened
 
-    told = {name: getattr(given, name) for name in CAMERAS}
-    otherwise = SIMULATED if set(told.values()) == {None} else NONE
-    chosen = {name: otherwise if text is None else text for name, text in told.items()}
+    given_by_name = {name: getattr(given, name) for name in CAMERAS}
+    otherwise = SIMULATED if set(given_by_name.values()) == {None} else NONE
+    chosen = {name: otherwise if text is None else text for name, text in given_by_name.items()}
     used = {name: text for name, text in chosen.items() if text != NONE}
     if not used:
         raise ValueError("--front none, --bottom none: no camera is used")
@@ -262,7 +262,7 @@ def _whereabouts(
     from auv_vessel.wire.codec import Codec
     from auv_vessel.wire.ports import open_port
 
-    heard = Whereabouts(Codec(sheet))
+    whereabouts = Whereabouts(Codec(sheet))
 
     def tell(text: str) -> None:
         print(f"{given.part}: {text}", file=sys.stderr, flush=True)
@@ -271,7 +271,7 @@ def _whereabouts(
 
     def listen() -> None:
         try:
-            heard.listen(port, stop)
+            whereabouts.listen(port, stop)
         except OSError as error:
             lost.append(str(error))
             stop.set()
@@ -280,7 +280,7 @@ def _whereabouts(
     listener.start()
     stack.callback(listener.join)
     stack.callback(stop.set)
-    return heard.pose, heard.now, lost
+    return whereabouts.pose, whereabouts.now, lost
 
 
 if __name__ == "__main__":

@@ -301,10 +301,10 @@ class _Seen:
         return found
 
     def _sighting(self, kind: str, pixel: Numbers, point: Vector, size: float, fit: float) -> Sighting | None:
-        told = colour_of(pixel, self.left.veil, dist(point, (0.0, 0.0, 0.0)), self.water)
-        if told is None:
+        reported = colour_of(pixel, self.left.veil, dist(point, (0.0, 0.0, 0.0)), self.water)
+        if reported is None:
             return None
-        colour, margin = told
+        colour, margin = reported
         alike = [each for each in self.sought if (each.kind, each.colour) == (kind, colour)]
         fits = [(exp(-((log(size / each.size) / _TOLERANCE) ** 2)), each) for each in alike]
         fits = [each for each in fits if each[0] > 0.1]

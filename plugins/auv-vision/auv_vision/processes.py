@@ -107,7 +107,7 @@ def watch(
     Only the newest pair counts. Pairs without a pose are left out, since their objects have no positions.
     """
     looked = 0
-    heard = seen = time.monotonic()
+    received = seen = time.monotonic()
     blind = Notice(
         f"{camera.name}: no pictures come: does frames run, for this vehicle, with the same --memory?",
         f"{camera.name}: pictures come",
@@ -117,12 +117,12 @@ def watch(
             pair = reader.newest()
             blind.note(pair is None and time.monotonic() - seen > AGAIN)
             if pair is None:
-                if time.monotonic() - heard > AGAIN:
+                if time.monotonic() - received > AGAIN:
                     reader.look_again()
-                    heard = time.monotonic()
+                    received = time.monotonic()
                 stop.wait(WAIT)
                 continue
-            heard = seen = time.monotonic()
+            received = seen = time.monotonic()
             if pair.pose is None:
                 continue
             looked += 1

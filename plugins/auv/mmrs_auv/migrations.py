@@ -43,8 +43,8 @@ def _held(thruster: Node, held: list[Node]) -> Node:
 
 def _same(one: object, other: object) -> bool:
     if isinstance(one, Node) and isinstance(other, Node):
-        said, told = ({k: v for k, v in each.members.items() if not is_own(k)} for each in (one, other))
-        return said.keys() == told.keys() and all(_same(said[key], told[key]) for key in said)
+        said, reported = ({k: v for k, v in each.members.items() if not is_own(k)} for each in (one, other))
+        return said.keys() == reported.keys() and all(_same(said[key], reported[key]) for key in said)
     if isinstance(one, list) and isinstance(other, list):
         return len(one) == len(other) and all(map(_same, one, other))
     return one == other

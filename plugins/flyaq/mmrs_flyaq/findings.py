@@ -85,8 +85,8 @@ class Record:
     def element(self, category: Category, reason: str, node: SourceNode) -> None:
         """Note what happens to a whole element; a lost one with its values."""
         content = _content(node) if category is Category.LOST else ""
-        told = content and f" ({content})"
-        self._add(category, reason, f"{node.called()}{told}", node.place())
+        reported = content and f" ({content})"
+        self._add(category, reason, f"{node.called()}{reported}", node.place())
 
     def _add(self, category: Category, reason: str, subject: str, place: Place) -> None:
         self.findings.append(Finding(category, reason, subject, place))

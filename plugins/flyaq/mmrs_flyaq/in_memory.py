@@ -48,8 +48,8 @@ def migrated(
         faults = [*_of_file(file, place, name), *(_of_root(each) for each in own if _is_among(each, lost))]
         rest = [each for each in own if not _is_among(each, lost)]
         faults += _of_values(rest) if notes else _counted(rest, place)
-        told = (each for each in faults if notes or each.severity is not Severity.NOTE)
-        found.append(Imported(roots, tuple(told)))
+        reported = (each for each in faults if notes or each.severity is not Severity.NOTE)
+        found.append(Imported(roots, tuple(reported)))
     return tuple(found)
 
 

@@ -23,8 +23,8 @@ def set_by(action: Action, type: RobotType | None) -> Message | str:
         return f"device '{action.device}' has no {ENTITY} and {SETS}{action.name}"
     pairs = [each.partition("=") for each in said.split(";")]
     entity = entity.strip()
-    told = [entity, *(text for name, _, value in pairs for text in (name, value))]
-    if not all(equals and name.strip() for name, equals, _ in pairs) or not all(map(str.isascii, told)):
+    reported = [entity, *(text for name, _, value in pairs for text in (name, value))]
+    if not all(equals and name.strip() for name, equals, _ in pairs) or not all(map(str.isascii, reported)):
         return f"{SETS}{action.name} of device '{action.device}' is '{said}', not Name=value;Name=value"
     params = tuple(
         Message("EntityParameter", {"name": name.strip(), "value": value.strip()}) for name, _, value in pairs

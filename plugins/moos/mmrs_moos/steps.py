@@ -73,12 +73,12 @@ class Variables:
 
     Attributes:
         slots: by slot of the robot; conditions: by condition of its choices.
-        told: what is posted to set a slot, by the slot and its value.
+        posts: what is posted to set a slot, by the slot and its value.
     """
 
     slots: Mapping[str, str]
     conditions: Mapping[str, str]
-    told: Mapping[tuple[SlotId, bool], tuple[str, str]]
+    posts: Mapping[tuple[SlotId, bool], tuple[str, str]]
 
 
 def variables_for(context: RobotContext, input: TargetInput, nodes: Mapping[str, str]) -> Variables:
@@ -86,13 +86,13 @@ def variables_for(context: RobotContext, input: TargetInput, nodes: Mapping[str,
     robot = context.robot
     conditions = {each.condition for each in robot.transitions.values() if each.condition is not None}
     of_all = {each.id: variables_of(each.slots, "MMRS_SLOT_") for each in input.program.robots}
-    told = {
+    posts = {
         ((owner, slot), active): _posted(nodes[robot.id], nodes[owner], variable, active)
         for owner, slots in of_all.items()
         for slot, variable in slots.items()
         for active in (True, False)
     }
-    return Variables(of_all[robot.id], variables_of(sorted(conditions), "MMRS_IF_"), told)
+    return Variables(of_all[robot.id], variables_of(sorted(conditions), "MMRS_IF_"), posts)
 
 
 def _posted(node: str, owner: str, variable: str, active: bool) -> tuple[str, str]:
@@ -217,7 +217,7 @@ class _Walk:
 def posts_of(action: Action, type: RobotType | None, variables: Variables) -> list[tuple[str, str]] | str:
     """Return what an action posts, each a variable and its value; or why it posts nothing."""
     if action.sets:
-        return [variables.told[slot, action.active] for slot in action.sets]
+        return [variables.posts[slot, action.active] for slot in action.sets]
     if action.is_a(FEEDBACK):
         said = ",".join([action.name, *(f"{key}={value}" for key, value in action.parameters)])
         return [(TOLD, said)] if _is_plain(said) else f"feedback '{said}' is not plain text"

@@ -155,7 +155,7 @@ class _Asking:
         self.at = self.offset = 0.0
         self.shortest = float("inf")
         self.trips = 0
-        self._heard = False
+        self._received = False
         self._ready: tuple[str, ...] = ()
         self._robot = robot
         self._robots, self._first = sorted(set(robots)), min(robots)
@@ -184,13 +184,13 @@ class _Asking:
         if answer is None:
             self._ready = ()
             return f"no answer from {self._first!r}"
-        self._heard, self._ready = True, answer.ready
+        self._received, self._ready = True, answer.ready
         missing = ", ".join(map(ascii, self.missing()))
         return f"{answer.why}; not yet: {missing}" if answer.why and missing else answer.why
 
     def may_be_listed(self) -> bool:
         """Return whether the first robot may know that this one is ready; its answers may all be lost."""
-        return self._heard or not self._node.missing([self._first])
+        return self._received or not self._node.missing([self._first])
 
     def abort(self) -> None:
         """Announce that the robot waits no longer; where all begin at this very moment, it does, too."""

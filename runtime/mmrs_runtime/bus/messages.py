@@ -365,8 +365,8 @@ def _ended(id: CommandId, content: Mapping[str, Any]) -> Request:
 
 def _brief(answer: Answer) -> dict[str, object]:
     usual = Answer(answer.what)
-    told = {name: getattr(answer, name) for name in ("lamport", "why", "time", "at", "ready")}
-    return {"is": answer.what, **{k: v for k, v in told.items() if v != getattr(usual, k)}}
+    reported = {name: getattr(answer, name) for name in ("lamport", "why", "time", "at", "ready")}
+    return {"is": answer.what, **{k: v for k, v in reported.items() if v != getattr(usual, k)}}
 
 
 _READERS: Mapping[str, Callable[[CommandId, Mapping[str, Any]], Request]] = {

@@ -120,7 +120,7 @@ class Node:
     def _introduce(self, recorded: Mapping[str, Recorded], settle: float) -> None:
         """Announce the start to all contacts of these robots, and wait for those that are present."""
         with self.lock:
-            told = [
+            reported = [
                 self._outgoing.introduce(robot, recorded.get(robot, Recorded()))
                 for robot in self._members
                 if robot in recorded or not self._alone
@@ -128,9 +128,9 @@ class Node:
         self.pump()
         until = self.now() + settle
         with self.lock:
-            while self.now() < until and any(self._watching.are_here(news.waiting) for news in told):
+            while self.now() < until and any(self._watching.are_here(news.waiting) for news in reported):
                 self.lock.wait(0.05)
-            for news in told:
+            for news in reported:
                 for owner, why in news.refusals.items():
                     raise Unwelcome(f"{owner!r}: {why}")
 

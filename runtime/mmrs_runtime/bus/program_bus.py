@@ -199,12 +199,12 @@ def begin_all(
     def begin(look: Callable[[], None]) -> Mapping[str, str]:
         if patience is None or not here or not isinstance(bus, ProgramBus):
             return {}
-        told: set[str] = set()
+        reported: set[str] = set()
 
         def guard(why: str) -> None:
             look()
-            if why and why not in told:
-                told.add(why)
+            if why and why not in reported:
+                reported.add(why)
                 say(f"waits for the others, {patience:g} s at most: {why}")
 
         everybody = [robot.id for robot in program.robots]

@@ -30,7 +30,7 @@ class Net:
     def __init__(self, tell: Tell = tell_people) -> None:
         """Report with a function, which may be called from any thread."""
         self._tell = tell
-        self._told: set[str] = set()
+        self._reported: set[str] = set()
 
     @contextmanager
     def under(self, what: str) -> Iterator[None]:
@@ -42,13 +42,13 @@ class Net:
 
     def tell(self, line: str) -> None:
         """Report to the operator, unless the same was reported before."""
-        if line not in self._told and len(self._told) < MOST_TOLD:
-            self._told.add(line)
+        if line not in self._reported and len(self._reported) < MOST_TOLD:
+            self._reported.add(line)
             self._tell(line)
 
     def forget(self, line: str) -> None:
         """Allow the same to be reported again."""
-        self._told.discard(line)
+        self._reported.discard(line)
 
 
 class Pacing:

@@ -47,7 +47,7 @@ class Watching:
         self._here: set[str] = set()
         self._lost_at: dict[str, float] = {}
         self._odd: dict[str, float] = {}
-        self._told: set[str] = set()
+        self._reported: set[str] = set()
 
     def odd(self, robot: str, what: str, here: bool, now: float) -> None:
         """Take note that something is the matter with a robot that is there, or no longer.
@@ -63,7 +63,7 @@ class Watching:
             self._odd.setdefault(words, now)
         else:
             self._odd.pop(words, None)
-            self._told.discard(words)
+            self._reported.discard(words)
 
     def oddities(self) -> tuple[str, ...]:
         """Return what is the matter, in words."""
@@ -74,14 +74,14 @@ class Watching:
         found = [
             words
             for words, since in self._odd.items()
-            if words not in self._told and now >= since + DOUBLE_SECONDS
+            if words not in self._reported and now >= since + DOUBLE_SECONDS
         ]
-        self._told.update(found)
+        self._reported.update(found)
         return tuple(found)
 
     def next_oddity(self) -> float:
         """Return when `lasting_oddities` may have one; inf: never."""
-        untold = (since for words, since in self._odd.items() if words not in self._told)
+        untold = (since for words, since in self._odd.items() if words not in self._reported)
         return min((since + DOUBLE_SECONDS for since in untold), default=float("inf"))
 
     def noticed(self, robot: str, here: bool, now: float) -> None:

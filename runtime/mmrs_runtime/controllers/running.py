@@ -248,8 +248,8 @@ def program_of(robots: Sequence[Robot]) -> runtime.Program:
     notifies: dict[str, list[Notify]] = {name: [] for name in names}
     slots: dict[str, list[str]] = {name: [] for name in names}
     for robot in robots:
-        for told, active in ((robot.senders, True), (robot.resets, False)):
-            for sender, slot in _senders(robot.id, told):
+        for reported, active in ((robot.senders, True), (robot.resets, False)):
+            for sender, slot in _senders(robot.id, reported):
                 notifies[sender].append(Notify((slot,), active))
         for owner, name in robot.volatile:
             notifies[owner].append(Notify(((owner, name),), active=False))
@@ -269,8 +269,8 @@ def _strangers(robots: Sequence[Robot]) -> list[str]:
 
 
 def _contacts(robot: Robot) -> set[str]:
-    told = {sender for side in (robot.senders, robot.resets) for sender, _ in _senders(robot.id, side)}
-    return told | {owner for notify in robot.executable.notifies for owner, _ in notify.slots}
+    reported = {sender for side in (robot.senders, robot.resets) for sender, _ in _senders(robot.id, side)}
+    return reported | {owner for notify in robot.executable.notifies for owner, _ in notify.slots}
 
 
 def _senders(owner: str, side: Iterable[tuple[str, tuple[str, ...]]]) -> Iterable[tuple[str, SlotId]]:

@@ -235,8 +235,8 @@ class Life(Situation):
 
     def _known(self, answers: Mapping[str, bool]) -> VehicleState:
         state = self.vehicle.state(self.now())
-        told = frozenset(name for name, _ in self._slots.finds(self.id))
-        return replace(state, answers=answers, found=state.detected | told)
+        reported = frozenset(name for name, _ in self._slots.finds(self.id))
+        return replace(state, answers=answers, found=state.detected | reported)
 
     def _may_pass(self) -> bool:
         """Return whether nothing as yet keeps the robot from going into its next move without a stop."""
@@ -309,8 +309,8 @@ class Life(Situation):
         """Make a step, once it is recorded."""
         lamport = max(self.lamport + 1, least)
         now = self.now()
-        told = (step.label, step.move, step.detail, step.slot)
-        record = StepRecord(self._run.terms.run, self.id, self.number, lamport, round(now, 6), *told)
+        reported = (step.label, step.move, step.detail, step.slot)
+        record = StepRecord(self._run.terms.run, self.id, self.number, lamport, round(now, 6), *reported)
         try:
             self._run.made(record)
         except OSError as error:
@@ -350,12 +350,12 @@ class Life(Situation):
 
     def _finds(self) -> tuple[Find, ...]:
         """Return what it, and those that notified it, have detected; its own only while it is reached."""
-        told = self._slots.finds(self.id)
+        reported = self._slots.finds(self.id)
         try:
             state = self.vehicle.state(self.now())
         except LinkLost:
-            return told
-        return with_own(told, state) if state.detected else told
+            return reported
+        return with_own(reported, state) if state.detected else reported
 
     # Getting ready, and back to work.
 

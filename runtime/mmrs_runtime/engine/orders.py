@@ -68,8 +68,8 @@ class Order:
     def _settle(self, robot: str, why: str | None) -> None:
         if (vehicle := self.vehicles.get(robot)) is not None:
             content = ordered(self.kind, self.question, self.answer)
-            told = {"confirmed": why is None, "seconds": self.confirmed.get(robot), "why": why or ""}
-            vehicle.note("order", content | told)
+            reported = {"confirmed": why is None, "seconds": self.confirmed.get(robot), "why": why or ""}
+            vehicle.note("order", content | reported)
         self.answered(robot, why)
         if not self.open:
             self.settled.set()

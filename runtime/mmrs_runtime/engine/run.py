@@ -106,7 +106,7 @@ class Run:
         self._suspended: set[int] = set()
         self._deadlock: tuple[Waiting, ...] = ()
         self._idle_since: float | None = None
-        self._told = ""
+        self._reported = ""
         terms.status_board.begin(self._lives)
         if terms.attention is not None:
             attention = terms.attention
@@ -275,8 +275,8 @@ class Run:
         if not any(life.may_be_resumed or life.may_move() for life in self._lives):
             return False
         waiting = "; ".join(map(str, self._waiting()))
-        if waiting != self._told:
-            self._told = waiting
+        if waiting != self._reported:
+            self._reported = waiting
             self.terms.say(f"nothing continues without an order: {waiting}")
         return True
 

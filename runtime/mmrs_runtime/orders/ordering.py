@@ -103,19 +103,19 @@ def _replies(
         (channel.port, {"token": channel.token, **content, "robots": list(channel.robots)})
         for channel in asked
     ]
-    heard: set[str] = set()
+    received: set[str] = set()
     failed: dict[int, Exception] = {}
     for number, said in asked_at_once(requests, seconds):
         if isinstance(said, Exception):
             failed[number] = _far(asked[number].elsewhere) if asked[number].elsewhere else said
         else:
-            heard.add(said["robot"])
+            received.add(said["robot"])
             yield said
     lost = [(asked[number], failed[number]) for number in sorted(failed)]
-    if not heard:
+    if not received:
         _raise_for(lost)
     # Who was started again has a process that answers beside the one that does not.
-    silent = {robot: str(why) for channel, why in lost for robot in channel.robots if robot not in heard}
+    silent = {robot: str(why) for channel, why in lost for robot in channel.robots if robot not in received}
     for robot, why in silent.items():
         yield _silent(robot, str(content["order"]), why)
 

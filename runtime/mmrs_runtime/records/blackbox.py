@@ -86,8 +86,8 @@ def plan_of(path: Path) -> str:
     except OSError:
         return ""
     entries = (entry for line in lines if (entry := entry_in(line)[0]) is not None)
-    told = (entry.content.get("plan") for entry in entries if entry.kind == "start")
-    return next((plan for plan in told if isinstance(plan, str)), "")
+    reported = (entry.content.get("plan") for entry in entries if entry.kind == "start")
+    return next((plan for plan in reported if isinstance(plan, str)), "")
 
 
 def _part(path: Path, number: int) -> Path:

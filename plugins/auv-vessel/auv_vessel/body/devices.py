@@ -130,12 +130,12 @@ class Outside:
 
     def __init__(self, sheet: Sheet) -> None:
         """Start without thrust."""
-        self._told = [(-inf, 0.0)] * len(sheet.thrusters)
+        self._reported = [(-inf, 0.0)] * len(sheet.thrusters)
 
     def hear(self, number: int, status: Received, now: float) -> None:
         """Take what a drive says."""
-        self._told[number] = (now, float(status.values["Thrust"]))
+        self._reported[number] = (now, float(status.values["Thrust"]))
 
     def thrusts(self, now: float) -> list[float]:
         """Return newtons of each thruster."""
-        return [thrust if now - at < HELD else 0.0 for at, thrust in self._told]
+        return [thrust if now - at < HELD else 0.0 for at, thrust in self._reported]

@@ -97,7 +97,7 @@ class Drive:
         self._most = thruster.max_thrust
         self._watchdog = watchdog
         self._counter: int | None = None
-        self._heard: float | None = None
+        self._received: float | None = None
         self._wanted: float | None = None
 
     def command(self, thrust: float, enable: bool, counter: int, now: float) -> bool:
@@ -105,11 +105,11 @@ class Drive:
         self.run(now)
         ahead = 0 if self._counter is None else (counter - self._counter) % 256
         valid = 1 <= ahead <= MOST_AHEAD
-        if valid or self._heard is None:
+        if valid or self._received is None:
             self._counter = counter
         if not valid:
             return False
-        self._heard = now
+        self._received = now
         self._wanted = max(-self._most, min(self._most, thrust)) if enable else None
         self.run(now)
         return True
@@ -121,13 +121,13 @@ class Drive:
 
     def run(self, now: float | None) -> None:
         """Do what is due at that time, seconds; None: what does not depend on it."""
-        if now is not None and self._heard is not None and now - self._heard >= self._watchdog - _SOON:
-            self._heard, self._wanted, self._counter, self.state = None, None, None, WATCHDOG
+        if now is not None and self._received is not None and now - self._received >= self._watchdog - _SOON:
+            self._received, self._wanted, self._counter, self.state = None, None, None, WATCHDOG
         if self.dead:
             self.state = FAULT
         elif self.stopped:
             self.state = OFF
-        elif self._heard is not None:
+        elif self._received is not None:
             self.state = OFF if self._wanted is None else RUNS
         elif self.state != WATCHDOG:
             self.state = OFF

@@ -143,14 +143,14 @@ class Vehicle:
     def hear(self, frame: Frame, now: float) -> None:
         """Obey commands to thrusters and devices, and emergencies."""
         number, status = frame.id - COMMAND_BASE, frame.id - STATUS_BASE
-        told = self._outside is not None and 0 <= status < len(self.drives)
-        if not (told or 0 <= number < len(self.drives) or frame.id in HEARD):
+        reported = self._outside is not None and 0 <= status < len(self.drives)
+        if not (reported or 0 <= number < len(self.drives) or frame.id in HEARD):
             return
         received = self._codec.decode(frame)
         if received is None or self.charge <= 0.0:
             return
         self._advance(now)
-        if told and self._outside is not None:
+        if reported and self._outside is not None:
             self._outside.hear(status, received, now)
         elif frame.id in EMERGENCIES.values():
             self._reason = str(received.values["Reason"])
@@ -210,8 +210,8 @@ class Vehicle:
             return [drive.thrust for drive in self.drives]
         if self.charge <= 0.0:
             return [0.0] * len(self.drives)
-        told = enumerate(self._outside.thrusts(self._time))
-        return [0.0 if number in self.faults.dead else thrust for number, thrust in told]
+        reported = enumerate(self._outside.thrusts(self._time))
+        return [0.0 if number in self.faults.dead else thrust for number, thrust in reported]
 
     def _look_after_drives(self, now: float) -> None:
         for number, drive in enumerate(self.drives):

@@ -179,9 +179,9 @@ class Actuators:
 
     def _obeys(self, now: float) -> bool:
         """Return whether there is a valid wrench."""
-        heard = self._wrench_at is not None and now - self._wrench_at <= failsafe.COMMANDS_SILENT
-        self._dived = self._dived or (heard and self._enabled and self._trusted_at is not None)
-        return heard and self._enabled and self._trusted_at is not None and self.emergency is None
+        received = self._wrench_at is not None and now - self._wrench_at <= failsafe.COMMANDS_SILENT
+        self._dived = self._dived or (received and self._enabled and self._trusted_at is not None)
+        return received and self._enabled and self._trusted_at is not None and self.emergency is None
 
     def _shared(self) -> Array:
         working = np.array(self._watch.working, float)

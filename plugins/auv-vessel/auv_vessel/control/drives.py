@@ -97,15 +97,15 @@ class DriveMonitor:
         self._most = [each.max_thrust for each in sheet.thrusters]
         self.working = [True] * count
         self._last: list[Status | None] = [None] * count
-        self._heard: list[float] = []
+        self._received: list[float] = []
         self._gave: list[float | None] = [None] * count
         self._lame = [False] * count
 
     def take(self, status: Status, now: float) -> None:
         """Note what a drive says."""
         self._last[status.number] = status
-        self._heard = self._heard or [now] * len(self._last)
-        self._heard[status.number] = now
+        self._received = self._received or [now] * len(self._last)
+        self._received[status.number] = now
 
     def judge(self, asked: Array, now: float) -> list[bool] | None:
         """Judge which thrusters work, given the newtons asked of each; return that if it changed."""
@@ -117,7 +117,7 @@ class DriveMonitor:
 
     def _works(self, number: int, asked: float, now: float) -> bool:
         status = self._last[number]
-        if self._heard and now - self._heard[number] > SILENT:
+        if self._received and now - self._received[number] > SILENT:
             return False
         if status is None or status.fault:
             return status is None

@@ -84,7 +84,7 @@ class Port:
         self._bus = bus
         self._frames: deque[Frame] = deque(maxlen=most_waiting)
         self._changed = threading.Condition()
-        self._gone, self._told = "", False
+        self._gone, self._reported = "", False
         self._reader = threading.Thread(target=self._read, name="can-reader", daemon=True)
         self._reader.start()
 
@@ -130,8 +130,8 @@ class Port:
         if self._reader is not threading.current_thread():
             self._reader.join()
         counts = ", ".join(f"{count} {sort}" for sort, count in sorted(self.errors.items()))
-        if counts and not self._told:
-            self._told = True
+        if counts and not self._reported:
+            self._reported = True
             self._say(f"errors of the bus: {counts}")
 
     def __enter__(self) -> Port:

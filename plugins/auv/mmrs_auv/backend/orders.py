@@ -62,7 +62,7 @@ class BehaviourOrders:
         self._kinematics = kinematics_of(given)
         self._escapes = Escapes(given, self._kinematics, given.robot.home or (0.0, 0.0, 0.0))
         self.charged: Callable[[], None] = lambda: None
-        self._told: dict[str, Vector] = {}
+        self._reported: dict[str, Vector] = {}
         self._found: dict[str, Vector] = {}
         strange = tuple(self._strange())
         if strange:
@@ -86,7 +86,7 @@ class BehaviourOrders:
 
     def learn(self, name: str, place: Vector) -> None:
         """Take note of where another robot has detected an object."""
-        self._told[name] = place
+        self._reported[name] = place
 
     def escape(self, response: str, here: Vector) -> Duty:
         """Return the path home, or to an emergency area, around what is in the way."""
@@ -177,14 +177,14 @@ class BehaviourOrders:
             return self._travel(aimed, path, through=False)
 
         expected = self.waters.below(target.position)
-        told = self._place(name, expected) if name in self._told else None
-        return Seek(name, expected, target.tolerance, self._sight, way, told)
+        reported = self._place(name, expected) if name in self._reported else None
+        return Seek(name, expected, target.tolerance, self._sight, way, reported)
 
     def _place(self, name: str, expected: Vector) -> Vector:
         """Return where an object was found, or was detected by others: at the depth expected."""
         if name in self._found:
             return self._found[name]
-        north, east, _ = self._told.get(name, expected)
+        north, east, _ = self._reported.get(name, expected)
         return (north, east, expected[2])
 
     def _is_sought(self, move: Move) -> bool:

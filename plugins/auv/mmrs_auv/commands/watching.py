@@ -48,8 +48,8 @@ class Monitor:
         if self.counts["unknown"]:
             yield f"of no message of this vehicle: {self.counts['unknown']}"
         for what, counts in (("not believed", self.faults), ("missed", self.missed)):
-            if told := ", ".join(f"{count} {name}" for name, count in sorted(counts.items()) if count):
-                yield f"{what}: {told}"
+            if reported := ", ".join(f"{count} {name}" for name, count in sorted(counts.items()) if count):
+                yield f"{what}: {reported}"
 
     def name_of(self, frame: Frame) -> str:
         """Return the name of a frame's message; empty: it is none of this vehicle."""

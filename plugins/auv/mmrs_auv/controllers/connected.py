@@ -209,8 +209,8 @@ class ConnectedVehicle(CanVehicle):
     def _unmet(self, now: float) -> Fault | None:
         """Return why the vehicle does not get ready, if it does not."""
         state = self._connection.craft.state()
-        told = state.charge is not None or now - self._begun > BATTERY_SECONDS
-        self._met = self._helm.done(now) and told
+        reported = state.charge is not None or now - self._begun > BATTERY_SECONDS
+        self._met = self._helm.done(now) and reported
         if self._met:
             return self._astray(state.north, state.east)
         if now < self._until:

@@ -181,9 +181,9 @@ class CanDriver(Driver):
         made: list[CanVehicle] = []
 
         def state() -> State:
-            told = made[0].state(options.clock.now()).own
-            assert told is not None
-            return told
+            reported = made[0].state(options.clock.now()).own
+            assert reported is not None
+            return reported
 
         if options.dry:
             locators = {**self._outfit.locators, **dict.fromkeys(self.sees(robot), where_expected)}

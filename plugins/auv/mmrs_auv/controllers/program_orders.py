@@ -84,7 +84,7 @@ class ProgramOrders:
         self._sight = sight
         self._steps = {step.move: step for step in robot.steps}
         self._track: list[tuple[str, Place]] = []
-        self._told: dict[str, Vector] = {}
+        self._reported: dict[str, Vector] = {}
         self._seen: dict[Object, Place] = {}
 
     def duty(self, order: object, here: Vector, *, through: bool) -> Duty | Fault:
@@ -102,7 +102,7 @@ class ProgramOrders:
 
     def learn(self, name: str, place: Vector) -> None:
         """Take note of where another robot has detected an object."""
-        self._told[name] = place
+        self._reported[name] = place
 
     def escape(self, response: str, here: Vector) -> Duty:
         """Return the robot's track, back to where it surfaces; it stays where it knows none."""
@@ -172,14 +172,14 @@ class ProgramOrders:
         if target.expected is None:
             why = f"object {target.description!r}: unknown expected position"
             return _Fails(FaultError(OBJECT_NOT_FOUND, why))
-        expected, told = self._below(target.expected), self._told.get(target.description)
+        expected, reported = self._below(target.expected), self._reported.get(target.description)
         return Seek(
             target.description,
             expected,
             target.tolerance,
             self._sight,
             lambda place, seen: way(self._above(place), on=False),
-            None if told is None else (told[0], told[1], expected[2]),
+            None if reported is None else (reported[0], reported[1], expected[2]),
         )
 
     def _finding(self, target: Object) -> Finding:

@@ -43,7 +43,7 @@ AT_HOME = 5.0
 """Metres from home that count as at home, where the position is not known better than that."""
 
 LATELY = 60.0
-"""Seconds for which what a vehicle has told last counts as where it is."""
+"""Seconds for which what a vehicle has reported last counts as where it is."""
 
 MODES = {"IDLE": "off", "HOLD": "hold", "SURFACE": "surface"}
 """Human-readable names of goals in force; any other leads somewhere."""
@@ -150,7 +150,7 @@ class CanVehicle(Vehicle):
             self._craft.stay()
 
     def state(self, now: float) -> KnownState:
-        """Return what the vehicle has told last."""
+        """Return what the vehicle has reported last."""
         self._look(now)
         return self._state(now, self._craft.state())
 
@@ -255,7 +255,7 @@ class CanVehicle(Vehicle):
         return self.reachable(now) and not self._is_up()
 
     def status(self) -> Mapping[str, object]:
-        """Return what the vehicle has told last."""
+        """Return what the vehicle has reported last."""
         known = self._craft.state()
         return status_of(self._state_of(known)) if known.age < LATELY else {}
 
@@ -294,17 +294,17 @@ class CanVehicle(Vehicle):
     def _state(self, now: float, known: State) -> KnownState:
         above = self._orders.waters.above
         energy = None if known.charge is None else known.charge * self._sheet.battery
-        told = self._state_of(known)
+        state = self._state_of(known)
         return KnownState(
             now,
             above(self._place),
-            told.speed,
+            state.speed,
             known.heading,
             energy,
             known.charge,
-            detected=told.detected,
+            detected=state.detected,
             places={name: above(place) for name, place in self._places.items()},
-            own=told,
+            own=state,
         )
 
     def _state_of(self, known: State) -> Told:

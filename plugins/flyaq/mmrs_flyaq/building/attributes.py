@@ -126,9 +126,9 @@ class Attributes:
             self._record.value(Category.CHANGED, reason, node, feature, value)
         if not use.robot_type:
             return text
-        name, told = self._types.resolved(text, use.otherwise)
-        if told:
-            self._doubt(told, node, feature, value)
+        name, reported = self._types.resolved(text, use.otherwise)
+        if reported:
+            self._doubt(reported, node, feature, value)
         return name
 
     def _unique(self, node: SourceNode, feature: str, text: str, element: Element, use: Use) -> str:

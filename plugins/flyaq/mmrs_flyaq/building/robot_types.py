@@ -63,9 +63,9 @@ class RobotTypes:
         """
         if name in self.named and name != self.named[name]:
             taken = self.named[name]
-            told = f"the robot type {name!r} is taken for {taken!r}"
-            unknown = f"{told}, and no such type is known: {self.how(taken)}"
-            return taken, told if taken in self.known else unknown
+            reported = f"the robot type {name!r} is taken for {taken!r}"
+            unknown = f"{reported}, and no such type is known: {self.how(taken)}"
+            return taken, reported if taken in self.known else unknown
         if name in self.known:
             return name, ""
         unknown, option = f"no robot type {name!r} is known", f"--type {quote(f'{name}=NAME')}"

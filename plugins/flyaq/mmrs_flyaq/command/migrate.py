@@ -80,9 +80,9 @@ def migrate(
         tell(f"mmrs: {fault}")
     report(faults)
     if json:
-        told = {"sources": migration.sources, "findings": migration.findings, "files": written}
+        reported = {"sources": migration.sources, "findings": migration.findings, "files": written}
         judged = [{"path": each.path, "valid": each.valid, "missing": each.missing} for each in verdicts]
-        say_json({"valid": valid, "verdicts": judged, **told, "diagnostics": faults})
+        say_json({"valid": valid, "verdicts": judged, **reported, "diagnostics": faults})
     for line in verdict_lines(verdicts) if not json else ():
         say(line)
     is_read = not any(unreadable) and all(verdict.is_read for verdict in verdicts)

@@ -28,12 +28,12 @@ class LostLink:
         """
         self.policies: Sequence[Policy] = ()
         self._robot, self._vehicle, self._say = robot, vehicle, say
-        self._told: Policy | None = None
+        self._reported: Policy | None = None
 
     @property
     def is_due(self) -> bool:
         """Return whether the vehicle's failsafe must be set differently from before."""
-        return self._told is not None and self._told != self._wanted
+        return self._reported is not None and self._reported != self._wanted
 
     def follow(self, policies: Sequence[Policy]) -> None:
         """Take up the policies of a wait; empty: those of the robot alone."""
@@ -50,7 +50,7 @@ class LostLink:
         if possible != wanted:
             self._say(BLOCKED)
         self._vehicle.answer_lost_link(possible.response, possible.after)
-        self._told = wanted
+        self._reported = wanted
 
     def tell_what_is_due(self) -> None:
         """Set the vehicle's failsafe, unless it was set so last.

@@ -202,8 +202,8 @@ class ThreadedVehicle(Vehicle):
 
     def status(self) -> Mapping[str, object]:
         """Return the last reported state, in the words of controllers; empty before the first message."""
-        heard = self._link is None or self._link.latest("HEARTBEAT") is not None
-        return status_of(self._with.vehicle.state()) if heard else {}
+        received = self._link is None or self._link.latest("HEARTBEAT") is not None
+        return status_of(self._with.vehicle.state()) if received else {}
 
     def respond(self, response: str, now: float) -> None:
         """Carry out a response, from any state, or what comes nearest to it that can be done then."""

@@ -89,7 +89,7 @@ class Link:
         self._messages = Messages(self._changed, clock)
         self._observers: tuple[Observer, ...] = ()
         self._given_up = -inf
-        self._heard: float | None = None
+        self._received: float | None = None
         self._ended = ""
         self._expected: VehicleProfile = ARDUCOPTER
         self._found: tuple[int, VehicleProfile] | None = None
@@ -214,7 +214,7 @@ class Link:
 
     def silent_for(self) -> float:
         """Return the seconds since the vehicle's last message; 0 before the first."""
-        return 0.0 if self._heard is None else self.clock.now() - self._heard
+        return 0.0 if self._received is None else self.clock.now() - self._received
 
     def unheard(self) -> bool:
         """Return whether the vehicle is silent while a guard watches, which says when it is lost."""
@@ -222,7 +222,7 @@ class Link:
 
     def silent_since(self, begun: float) -> bool:
         """Return whether the vehicle has said nothing since then, while a guard watches the link."""
-        return self._watched() and (self._heard is not None and self._heard < begun)
+        return self._watched() and (self._received is not None and self._received < begun)
 
     def attempts(self, most: int | None = None) -> Iterator[int]:
         """Yield the number of attempts, as long as another one may be made.
@@ -345,7 +345,7 @@ class Link:
         if own:
             if self.silent_for() > self.clock.patience(GAP_SECONDS, LEAST_GAP_SECONDS):
                 self.stations.pass_over(self.silent_for())
-            self._heard = self.clock.now()
+            self._received = self.clock.now()
             self._given_up = -inf
             if message.get_type() in TELL_BOOT:
                 self._identity.booted(message.time_boot_ms)

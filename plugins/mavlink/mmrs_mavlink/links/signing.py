@@ -78,7 +78,7 @@ class Signer:
         self._key = key
         self._path = stamps
         self._lock = threading.Lock()
-        self._sent, self._heard = self._read()
+        self._sent, self._received = self._read()
         self._saved = time.monotonic()
         self.refused: dict[str, int] = {}
         self.trouble = ""
@@ -102,10 +102,10 @@ class Signer:
         stream = f"{frame[_LINK][0]}/{system}/{component}"
         stamp = int.from_bytes(frame[_STAMP], "little")
         with self._lock:
-            known = self._heard.get(stream)
+            known = self._received.get(stream)
             if stamp <= known if known is not None else stamp + BEHIND < max(self._sent, _now()):
                 return self._refuse("replayed")
-            self._heard[stream] = stamp
+            self._received[stream] = stamp
             self._sent = max(self._sent, stamp)
         return True
 
@@ -125,25 +125,25 @@ class Signer:
         return False
 
     def _read(self) -> tuple[int, dict[str, int]]:
-        sent, heard = 0, dict[str, int]()
+        sent, received = 0, dict[str, int]()
         if self._path is not None and self._path.exists():
-            sent, heard = _stamps_in(self._path)
+            sent, received = _stamps_in(self._path)
             sent += int(2 * SAVE_SECONDS * TICKS)
-        return max(sent, _now()), heard
+        return max(sent, _now()), received
 
     def _write(self, path: Path) -> None:
         """Write the newest of what is in the file, from another process, and of what is here."""
-        sent, heard = self._sent, dict(self._heard)
+        sent, received = self._sent, dict(self._received)
         # A file that is damaged now was good when this process began: what is here replaces it.
         with suppress(OSError, ValueError):
             others_sent, others_heard = _stamps_in(path)
             sent = max(sent, others_sent)
             for stream, stamp in others_heard.items():
-                heard[stream] = max(stamp, heard.get(stream, 0))
+                received[stream] = max(stamp, received.get(stream, 0))
         draft = path.with_name(f"{path.name}.{os.getpid()}.part")
         try:
             with os.fdopen(os.open(draft, os.O_WRONLY | os.O_CREAT | os.O_TRUNC, 0o600), "w") as file:
-                json.dump({"sent": sent, "heard": heard}, file)
+                json.dump({"sent": sent, "heard": received}, file)
             draft.replace(path)
         except BaseException:
             draft.unlink(missing_ok=True)

@@ -27,30 +27,30 @@ class Stations:
     def __init__(self) -> None:
         """Create without stations."""
         self.deaf = False
-        self._heard: dict[Station, float] = {}
+        self._received: dict[Station, float] = {}
         self._lock = threading.Lock()
 
     def hear(self, heartbeat: Message, now: float) -> None:
         """Take the heartbeat of a station at a second of the run."""
         if not self.deaf:
             with self._lock:
-                self._heard[heartbeat.get_srcSystem(), heartbeat.get_srcComponent()] = now
+                self._received[heartbeat.get_srcSystem(), heartbeat.get_srcComponent()] = now
 
     def pass_over(self, seconds: float) -> None:
         """Leave out seconds in which no station could be received."""
         with self._lock:
-            self._heard = {station: heard + seconds for station, heard in self._heard.items()}
+            self._received = {station: received + seconds for station, received in self._received.items()}
 
     def silent_for(self, now: float) -> float | None:
         """Return the seconds since any of them was received; None before the first."""
         with self._lock:
-            return max(0.0, now - max(self._heard.values())) if self._heard else None
+            return max(0.0, now - max(self._received.values())) if self._received else None
 
     @property
     def systems(self) -> tuple[int, ...]:
         """Return the system ids of all stations received, ascending."""
         with self._lock:
-            return tuple(sorted({system for system, _ in self._heard}))
+            return tuple(sorted({system for system, _ in self._received}))
 
     def __str__(self) -> str:
         """Return their names, as printed; empty before the first message."""

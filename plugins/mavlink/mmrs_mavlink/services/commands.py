@@ -116,13 +116,13 @@ def _answered(
     with link.inbox("COMMAND_ACK", component=component) as inbox:
         for sent in link.attempts(tries):
             link.send(message(min(sent, LAST_CONFIRMATION)))
-            heard = link.wait(lambda: _answer(inbox, number), link.patience)
-            answer = heard or answer
-            if heard is not None and heard.result == _BEGUN:
+            received = link.wait(lambda: _answer(inbox, number), link.patience)
+            answer = received or answer
+            if received is not None and received.result == _BEGUN:
                 return _end(link, inbox, number, component)
-            if heard is not None and heard.result != _AGAIN:
-                return heard
-            link.wait(lambda: None, link.retries.answer if heard is not None else 0.0)
+            if received is not None and received.result != _AGAIN:
+                return received
+            link.wait(lambda: None, link.retries.answer if received is not None else 0.0)
     if answer is None:
         raise UnansweredError(f"{name_of(number)}: no answer to {tries} tries")
     return answer

@@ -99,15 +99,15 @@ def _left(link: Link, kind: int, transfer: Transfer) -> str:
     """Return what a vehicle has that did not take a plan; of a part of one it is made to have none."""
     if transfer.begun:
         return left_of(link, kind)
-    heard = transfer.outcome != Transfer().outcome
-    return "it keeps what it had" if heard else "whether it keeps what it had is not known"
+    received = transfer.outcome != Transfer().outcome
+    return "it keeps what it had" if received else "whether it keeps what it had is not known"
 
 
 def _texts(said: deque[Message]) -> str:
     """Return what the vehicle has said in words in the meantime, as far as it warns of something."""
     warnings = (str(each.text) for each in said if each.severity <= mavlink.MAV_SEVERITY_WARNING)
-    told = dict.fromkeys(text for text in warnings if not text.lower().startswith("prearm"))
-    return "".join(f"; it says '{text}'" for text in told)
+    reported = dict.fromkeys(text for text in warnings if not text.lower().startswith("prearm"))
+    return "".join(f"; it says '{text}'" for text in reported)
 
 
 HEIGHTS_ABOVE = {

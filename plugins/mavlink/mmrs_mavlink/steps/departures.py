@@ -124,8 +124,8 @@ class Departures:
         if self._signs.restarted and self._moving:
             return VEHICLE_RESTARTED, STARTED_ANEW
         tells = self._vehicle.telemetry.announcements
-        told = [(event, text.text) for event, text in tells.recent()]
-        for event, why in (*self._signs.seen(moving=self._moving), *told):
+        reported = [(event, text.text) for event, text in tells.recent()]
+        for event, why in (*self._signs.seen(moving=self._moving), *reported):
             said = tells.of_this_mode(event, self.taken_back) or self._breach(event, why)
             if why and mode in self._vehicle.answers_to(event, (said,)):
                 if self._answers(event):

@@ -96,7 +96,7 @@ class Reserve:
         self.untold = ""
         self._robot = robot
         self._begun: tuple[float, float] | None = None
-        self._told: tuple[float, float] | None = None
+        self._reported: tuple[float, float] | None = None
         self._counted = -inf
         self._seconds = 0.0
         self._wind = MeanWind()
@@ -115,14 +115,14 @@ class Reserve:
         """
         state = self._wind.with_mean(state)
         if not state.armed:
-            self._told = None
+            self._reported = None
         left = self._left(state)
         if left is None or not state.armed:
             return ""
         if self._begun is None:
             self._begun = (state.time, left)
         if state.energy is not None:
-            self._told = (state.time, state.energy)
+            self._reported = (state.time, state.energy)
         if left < self._robot.reserve:
             return f"less than {self._robot.reserve:.0%} of the energy is left"
         endurance = self._endurance(state.time, left)
@@ -148,9 +148,9 @@ class Reserve:
     def _left(self, state: State) -> float | None:
         """Return the energy left as reported, or as extrapolated; None where unknown."""
         self.untold = ""
-        if state.energy is not None or self._told is None:
+        if state.energy is not None or self._reported is None:
             return state.energy
-        time, left = self._told
+        time, left = self._reported
         endurance = self._endurance(time, left)
         known = "a low battery will go unnoticed" if endurance is None else f"reckoned from {left:.0%}"
         self.untold = f"does not tell its battery any more: {known}"

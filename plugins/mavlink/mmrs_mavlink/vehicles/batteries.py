@@ -64,9 +64,9 @@ def inspect_batteries(link: Link, telemetry: Telemetry, robot: Robot, *, at_star
     if left is None:
         return Findings(lines=["unknown: battery: the vehicle does not report how much of it is left"])
     if held is None:
-        told = f"{left:.0%} is left, and the vehicle does not report the capacity"
+        reported = f"{left:.0%} is left, and the vehicle does not report the capacity"
         names = [capacity for capacity, _, _ in link.profile.autopilot.capacities[:1]]
-        return Findings(lines=[f"unknown: battery: {' '.join([told, *(f'({name})' for name in names)])}"])
+        return Findings(lines=[f"unknown: battery: {' '.join([reported, *(f'({name})' for name in names)])}"])
     found = Findings()
     charge, lasts = robot.charge, robot.endurance
     has = f"battery: {_shown(left * held.joules)} are left ({left:.0%} of {held})"

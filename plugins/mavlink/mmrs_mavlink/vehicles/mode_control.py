@@ -49,7 +49,7 @@ class ModeControl:
         self._accepted: frozenset[int] = frozenset()
         self._mode: str | None = None
         self._speed: float | None = None
-        self._told = 0
+        self._reported = 0
         self._guidance: Guidance | None = None
         self._requests = Requests(link)
         self._asked_again = -inf
@@ -366,16 +366,16 @@ class ModeControl:
         if speed is None or self._link.profile.autopilot.streams:
             return
         if again or speed != self._speed:
-            self._speed, self._told = speed, 0
-        if self._told == self._link.profile.speed_repeats:
+            self._speed, self._reported = speed, 0
+        if self._reported == self._link.profile.speed_repeats:
             return
-        self._told += 1
+        self._reported += 1
         try:
             command(self._link, mavlink.MAV_CMD_DO_CHANGE_SPEED, 1, speed, -1)
         except UnansweredError:
             raise
         except RefusedError:
-            if self._told == self._link.profile.speed_repeats:
+            if self._reported == self._link.profile.speed_repeats:
                 raise
 
     def _be_in(self, mode: str) -> None:

@@ -195,8 +195,8 @@ def answer_lost_link(link: Link, response: str, after: float | None = None) -> s
     """
     failsafe = link.profile.lost_link
     _answer(link, "a lost link", failsafe.answers, response)
-    told = (_wait_for(link, delay, after) for delay in (failsafe.set_point_delay, failsafe.delay))
-    return "; ".join(dict.fromkeys(filter(None, told)))
+    reported = (_wait_for(link, delay, after) for delay in (failsafe.set_point_delay, failsafe.delay))
+    return "; ".join(dict.fromkeys(filter(None, reported)))
 
 
 def _wait_for(link: Link, known: Delay | None, wanted: float | None) -> str:

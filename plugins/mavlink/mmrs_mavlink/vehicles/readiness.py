@@ -80,8 +80,8 @@ def unlocated(link: Link, *, geographic: bool) -> str:
 
 
 def _unlocated(link: Link, position: str, *, geographic: bool) -> Iterator[str]:
-    told = link.latest(position)
-    if told is None or not tells_place(told):
+    reported = link.latest(position)
+    if reported is None or not tells_place(reported):
         yield f"it has not reported its position ({position})"
     if ESTIMATE in link.profile.autopilot.streamed and link.latest(ESTIMATE) is None:
         yield f"it has not reported what its estimator knows ({ESTIMATE})"

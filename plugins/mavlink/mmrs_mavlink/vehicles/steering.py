@@ -211,8 +211,8 @@ class Steering:
         return _angle(self._heading(), wanted) < CLOSE_DEGREES
 
     def _heading(self) -> float:
-        told = self._telemetry.heading()
-        return (self._yaw or 0.0) if told is None else told
+        reported = self._telemetry.heading()
+        return (self._yaw or 0.0) if reported is None else reported
 
 
 def _is_past(begun: Place, here: Place, place: Place) -> bool:

@@ -29,7 +29,7 @@ class Batteries:
     def __init__(self, component: Callable[[], int]) -> None:
         """Create without reports; `component` gives that of the autopilot, which reports its batteries."""
         self._component = component
-        self._told: dict[int, tuple[int, int]] = {}
+        self._reported: dict[int, tuple[int, int]] = {}
 
     def __call__(self, message: Message, outgoing: bool) -> None:
         """Keep the report of a battery that propels the vehicle."""
@@ -37,20 +37,20 @@ class Batteries:
             return
         payload = message.battery_function == mavlink.MAV_BATTERY_FUNCTION_PAYLOAD
         if message.get_srcComponent() == self._component() and not payload:
-            told = (int(message.battery_remaining), int(message.charge_state))
-            self._told = {**self._told, int(message.id): told}
+            reported = (int(message.battery_remaining), int(message.charge_state))
+            self._reported = {**self._reported, int(message.id): reported}
 
     @property
     def left(self) -> float | None:
         """Return the part that is left in the battery that has least; None where none tells it."""
-        known = [left for left, _ in self._told.values() if left >= 0]
+        known = [left for left, _ in self._reported.values() if left >= 0]
         return min(known) / 100.0 if known else None
 
     @property
     def state(self) -> int:
         """Return the gravest MAV_BATTERY_CHARGE_STATE of those that do not charge; 0: none tells one."""
         charging = mavlink.MAV_BATTERY_CHARGE_STATE_CHARGING
-        return max((state for _, state in self._told.values() if state < charging), default=0)
+        return max((state for _, state in self._reported.values() if state < charging), default=0)
 
 
 NO_HEADING = 65_535
@@ -174,9 +174,9 @@ class Telemetry:
 
     def wind(self) -> tuple[float, float] | None:
         """Return metres per second, and from where, degrees; None where the vehicle does not say."""
-        told, estimated = self._link.latest("WIND"), self._link.latest("WIND_COV")
-        if told is not None:
-            return float(told.speed), float(told.direction) % 360.0
+        reported, estimated = self._link.latest("WIND"), self._link.latest("WIND_COV")
+        if reported is not None:
+            return float(reported.speed), float(reported.direction) % 360.0
         if estimated is not None:
             speed = hypot(estimated.wind_x, estimated.wind_y)
             return speed, (degrees(atan2(estimated.wind_y, estimated.wind_x)) + 180.0) % 360.0
@@ -208,13 +208,13 @@ class Telemetry:
     @contextmanager
     def trail(self) -> Iterator[Trail]:
         """Collect all positions that are reported from now on, also between two looks."""
-        with self._link.trail(self._position) as told:
-            yield Trail(self._link, self._position, self.here(), told)
+        with self._link.trail(self._position) as reported:
+            yield Trail(self._link, self._position, self.here(), reported)
 
     def still_since(self, begun: float, pace: float) -> bool:
         """Return whether a position that has come since shows no more than a speed, metres per second."""
-        told = self._link.clock.now() - self._link.since(self._position)
-        return told > begun and self.speed() <= pace
+        reported = self._link.clock.now() - self._link.since(self._position)
+        return reported > begun and self.speed() <= pace
 
     def time(self) -> float:
         """Return the second since its start at which the vehicle was at its last reported position."""
@@ -259,21 +259,21 @@ class Telemetry:
 
     def energy(self) -> float | None:
         """Return the part of the battery that is left; None where the vehicle does not say."""
-        told = self._link.latest("SYS_STATUS")
-        if told is not None and told.battery_remaining >= 0:
-            return float(told.battery_remaining) / 100.0
+        reported = self._link.latest("SYS_STATUS")
+        if reported is not None and reported.battery_remaining >= 0:
+            return float(reported.battery_remaining) / 100.0
         return self._batteries.left
 
     def least_energy(self) -> float | None:
         """Return the part that is left in the battery that has least; None where the vehicle does not say."""
-        told = (self.energy(), self._batteries.left)
-        return min((each for each in told if each is not None), default=None)
+        reported = (self.energy(), self._batteries.left)
+        return min((each for each in reported if each is not None), default=None)
 
     def voltage(self) -> float | None:
         """Return the volts of the battery; None where the vehicle does not say."""
-        told = self._link.latest("SYS_STATUS")
-        known = told is not None and 0 < told.voltage_battery < NO_VOLTAGE
-        return told.voltage_battery * 1e-3 if told is not None and known else None
+        reported = self._link.latest("SYS_STATUS")
+        known = reported is not None and 0 < reported.voltage_battery < NO_VOLTAGE
+        return reported.voltage_battery * 1e-3 if reported is not None and known else None
 
     def battery_trouble(self) -> str:
         """Return what the vehicle itself says against its battery; empty if nothing."""

@@ -115,8 +115,8 @@ def _shaken(connection: socket.socket, papers: Papers) -> str:
                 return
             except ssl.SSLWantReadError:
                 connection.sendall(outgoing.read())
-                if heard := connection.recv(_MOST):
-                    incoming.write(heard)
+                if received := connection.recv(_MOST):
+                    incoming.write(received)
                 else:
                     incoming.write_eof()
 

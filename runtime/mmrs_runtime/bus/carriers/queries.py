@@ -48,5 +48,5 @@ def states_of(
 def reasons(endpoints: Endpoints) -> list[str]:
     """Return why peers cannot be reached, each with its endpoint; those that can be are left out."""
     papers = papers_of(endpoints.file)
-    told = ((each, "".join(why_not(each, papers))) for each in endpoints.connect)
-    return [f"{each}: {why}" for each, why in told if why]
+    reported = ((each, "".join(why_not(each, papers))) for each in endpoints.connect)
+    return [f"{each}: {why}" for each, why in reported if why]

@@ -239,6 +239,6 @@ def speaks_for(file: Path | None) -> frozenset[str] | None:
     Raises:
         OSError: the file cannot be read, or is none of Zenoh's configurations.
     """
-    told = json.loads(_from_file(file).get_json("metadata")) if file is not None else None
-    robots = told.get("robots") if isinstance(told, dict) else None
+    reported = json.loads(_from_file(file).get_json("metadata")) if file is not None else None
+    robots = reported.get("robots") if isinstance(reported, dict) else None
     return frozenset(map(str, robots)) if isinstance(robots, list) else None

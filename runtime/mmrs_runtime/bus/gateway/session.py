@@ -77,9 +77,9 @@ class Session:
         self._turn = threading.Lock()
         self._deliveries: dict[int, BusDelivery] = {}
         self._latest = -1
-        self._told: dict[int, str] = {}
+        self._reported: dict[int, str] = {}
         self._told_waiting = 0.0
-        self._alive, self._heard, self._frozen = alive, time.monotonic(), False
+        self._alive, self._received, self._frozen = alive, time.monotonic(), False
         self._look = threading.Event()
         self._changed = False
         self._over = threading.Event()
@@ -114,14 +114,14 @@ class Session:
             self._over.set()
 
     def _hear(self) -> None:
-        self._heard = time.monotonic()
+        self._received = time.monotonic()
         if self._frozen:
             self._frozen = False
             self._node.show(self._robot)
 
     def _watch(self) -> None:
         """Let the robot be out of reach while its program is silent for too long."""
-        if self._alive is not None and time.monotonic() - self._heard > self._alive:
+        if self._alive is not None and time.monotonic() - self._received > self._alive:
             self._frozen = True
             self._node.hide(self._robot)
 
@@ -173,8 +173,8 @@ class Session:
 
     def _state(self, content: Mapping[str, Any]) -> Mapping[str, object]:
         finds = self._node.finds(self._robot)
-        told = {"finds": [list(find) for find in finds]} if finds else {}
-        return {"is": "state", "slots": json.loads(self._node.shown(self._robot)), **told}
+        reported = {"finds": [list(find) for find in finds]} if finds else {}
+        return {"is": "state", "slots": json.loads(self._node.shown(self._robot)), **reported}
 
     def _pass(self, content: Mapping[str, Any]) -> Mapping[str, object]:
         slots = [(self._robot, name) for name in names_in(content, "slots")]
@@ -209,8 +209,8 @@ class Session:
         Raises:
             OSError: it has disconnected.
         """
-        heard, _, _ = select([self._connection], [], [], 0.0)
-        if heard and not self._connection.recv(1, socket.MSG_PEEK):
+        received, _, _ = select([self._connection], [], [], 0.0)
+        if received and not self._connection.recv(1, socket.MSG_PEEK):
             raise ConnectionAbortedError("the program has gone")
 
     def _live(self, content: Mapping[str, Any]) -> Mapping[str, object]:
@@ -241,11 +241,11 @@ class Session:
         what, more = _progress(delivery)
         now = time.monotonic()
         again = what == "waiting" and now - self._told_waiting >= WAITING_SECONDS
-        if self._told.get(number) == what and not again:
+        if self._reported.get(number) == what and not again:
             return
         if what == "waiting":
             self._told_waiting = now
-        self._told[number] = what
+        self._reported[number] = what
         self._say({"is": what, "number": number, **more})
         if what == "acknowledged":
             self._deliveries.pop(number, None)

@@ -195,26 +195,26 @@ class Mission:
         return (float(north), float(east), float(self._program.frame.surface - up))
 
     def _action(self, action: Action, detail: str) -> Mapping[str, object]:
-        told: list[tuple[str, object]] = [("Detail", _json(detail))]
+        reported: list[tuple[str, object]] = [("Detail", _json(detail))]
         if missing := "; ".join(of_action(action, self._context)):
-            return {"kind": "Feedback", "features": [*told, ("Words", f"is left out: {missing}")]}
+            return {"kind": "Feedback", "features": [*reported, ("Words", f"is left out: {missing}")]}
         if action.is_a(NOTIFY):
             own = tuple(self._slots[slot] for robot, slot in action.sets if robot == self._context.robot.id)
-            told += [
+            reported += [
                 ("Slots", _json(slot_text(Notify(action.sets, action.active)))),
                 ("Told", json.dumps(action.sets)),
             ]
-            return {"kind": "Notify", "features": [*told, ("Sets", own), ("Active", action.active)]}
+            return {"kind": "Notify", "features": [*reported, ("Sets", own), ("Active", action.active)]}
         if action.is_a(DEVICE_ACTION) and self._context.type is not None:
             type = self._context.type
             number = action_number(type, action.device, action.name)
-            told += [("Number", list(type.devices).index(action.device)), ("Does", number)]
+            reported += [("Number", list(type.devices).index(action.device)), ("Does", number)]
             answer = patience(DEVICE_SILENT, self._policies)
             waits = seconds_of(action, type) + (AFTER[DEVICE_SILENT] if answer is None else answer)
-            told += [("Parameter", parameter_of(action)), ("Patience", waits)]
-            return {"kind": "Device", "features": told}
+            reported += [("Parameter", parameter_of(action)), ("Patience", waits)]
+            return {"kind": "Device", "features": reported}
         words = " ".join((action.name, *(f"{key}={text}" for key, text in action.parameters)))
-        return {"kind": "Feedback", "features": [*told, ("Words", words)]}
+        return {"kind": "Feedback", "features": [*reported, ("Words", words)]}
 
     def _trace(self, move: Move) -> TracedStep:
         return TracedStep(f"move {move.id}", self._context.robot.id, move.id, move.task, move.rule)

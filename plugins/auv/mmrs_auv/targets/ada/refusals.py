@@ -109,9 +109,9 @@ def of_action(action: Action, context: RobotContext) -> Iterator[str]:
         yield f"device '{action.device}' has no action '{action.name}'"
         return
     device, parameter = list(context.type.devices).index(action.device), parameter_of(action)
-    for field, told in (("Device", float(device)), ("Action", float(number)), ("Parameter", parameter)):
-        if not can_be_said("DeviceCommand", field, told):
-            yield f"{field.lower()} {told:g} of device '{action.device}' is more than its bus can say"
+    for field, reported in (("Device", float(device)), ("Action", float(number)), ("Parameter", parameter)):
+        if not can_be_said("DeviceCommand", field, reported):
+            yield f"{field.lower()} {reported:g} of device '{action.device}' is more than its bus can say"
 
 
 def _of_move(move: Move, context: RobotContext, step: float) -> Iterator[str]:

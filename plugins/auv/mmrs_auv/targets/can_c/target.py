@@ -50,9 +50,9 @@ def codec_of(sheet: Sheet) -> tuple[str, str]:
     """
     found = messages_of(sheet)
     emergency = [replace(each, name="Emergency") for each in found if each.id == EMERGENCY_BASE]
-    heard = [*emergency, *(each for each in found if each.name.startswith(HEARD_OR_SAID))]
+    received = [*emergency, *(each for each in found if each.name.startswith(HEARD_OR_SAID))]
     # A thruster's name, which the comment holds, is no C.
-    return _written(tuple(replace(each, comment="") for each in heard))
+    return _written(tuple(replace(each, comment="") for each in received))
 
 
 @lru_cache(maxsize=16)

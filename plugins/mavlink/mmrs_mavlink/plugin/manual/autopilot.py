@@ -140,18 +140,18 @@ class StickAutopilot:
 
     def heading(self) -> float | None:
         """Return degrees clockwise from north, as told last."""
-        told = self._link.latest("ATTITUDE")
-        return None if told is None else degrees(told.yaw) % 360.0
+        reported = self._link.latest("ATTITUDE")
+        return None if reported is None else degrees(reported.yaw) % 360.0
 
     def depth(self) -> float | None:
         """Return metres below the surface, as told last."""
-        told = self._link.latest("GLOBAL_POSITION_INT")
-        return None if told is None else max(0.0, -told.relative_alt * 1e-3)
+        reported = self._link.latest("GLOBAL_POSITION_INT")
+        return None if reported is None else max(0.0, -reported.relative_alt * 1e-3)
 
     def charge(self) -> float | None:
         """Return which part of the battery is left, as told last."""
-        told = self._link.latest("SYS_STATUS")
-        left = told.battery_remaining if told is not None else -1
+        reported = self._link.latest("SYS_STATUS")
+        left = reported.battery_remaining if reported is not None else -1
         return left / 100.0 if left >= 0 else None
 
     @property
@@ -275,8 +275,8 @@ class StickAutopilot:
         return charge is not None and charge < self._reserve
 
     def _said(self, words: str) -> str:
-        told = (each.text for each in self._texts.since(self._ready_at))
-        return next((text for text in told if words in text.lower()), "")
+        reported = (each.text for each in self._texts.since(self._ready_at))
+        return next((text for text in reported if words in text.lower()), "")
 
     def _insist(self, test: Callable[[], bool], number: int, *params: float) -> None:
         """Command a vehicle that needs some time after its start, and check that it obeys."""
