@@ -310,6 +310,7 @@ ARDUSUB = VehicleProfile(
     rehearsed_as="sub",
     dives=True,
     heads_apart=True,
+    turns_as_places=True,
     timing=Timing(resend=2.0),
     radii=_RADII,
     highest_item=-0.01,
@@ -320,12 +321,14 @@ ARDUSUB = VehicleProfile(
     starts_in=19,
     pacing=SUB,
 )
-"""It starts in MANUAL, and surfaces instead of returning. It ignores the heading of a
-SET_POSITION_TARGET_GLOBAL_INT, and turns by CONDITION_YAW (``GCS_MAVLink_Sub.cpp``). With each target that
-it receives it plans its path from rest: it is judged less often than others whether it has received one. It
-takes its home to be at the surface, wherever it is armed, and skips what is above that. A height of exactly
-0 is to it the one that it is at: so an item at the surface is a bit below it, by the least that ArduSub
-distinguishes, as it counts in centimetres.
+"""It starts in MANUAL, and surfaces instead of returning. In a mission it checks the height of whatever
+item it begins (``Sub::start_command``), be it a place or not: a CONDITION_YAW is skipped with "Bad alt
+frame", or ends its own simulation, unless the flags of a place that its first byte then holds say "above
+home". It ignores the heading of a SET_POSITION_TARGET_GLOBAL_INT, and turns by CONDITION_YAW
+(``GCS_MAVLink_Sub.cpp``). With each target that it receives it plans its path from rest: it is judged less
+often than others whether it has received one. It takes its home to be at the surface, wherever it is
+armed, and skips what is above that. A height of exactly 0 is to it the one that it is at: so an item at
+the surface is a bit below it, by the least that ArduSub distinguishes, as it counts in centimetres.
 """
 
 _STOPS = frozenset({4, 11, 12})

@@ -146,6 +146,8 @@ class VehicleProfile:
         flies: whether the vehicle takes off and lands.
         dives: whether its heights count from the water surface.
         turns: whether it turns to a heading on command.
+        turns_as_places: whether it takes the bytes of a CONDITION_YAW in a mission for a place, and refuses
+            it where these are no height above home.
         heads_apart: whether it ignores the heading of a target, so that it is commanded separately.
         in_plane: whether it is judged in the plane: it is as high as the ground takes it, and its reported
             height is wrong where it has set its home before it knew its own.
@@ -186,6 +188,7 @@ class VehicleProfile:
     flies: bool = False
     dives: bool = False
     turns: bool = True
+    turns_as_places: bool = False
     heads_apart: bool = False
     in_plane: bool = False
     still: float = 0.3

@@ -170,6 +170,7 @@ class FlightWriter:
     def _turn(self, move: Move, angle: float) -> None:
         """Turn on the spot; some autopilots do so only at a place that they go to."""
         if self._dialect.turns:
+            angle = cmd.angle_like_a_place(angle) if self._context.profile.turns_as_places else angle
             self._add(cmd.CONDITION_YAW, move, angle)
         else:
             radius = TRAVEL_MARGINS[self._context.robot.travel_mode].radius

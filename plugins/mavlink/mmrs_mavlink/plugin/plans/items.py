@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from math import nan
+from struct import pack, unpack
 
 from mmrs_core.behaviour.earth import degrees_of
 from mmrs_core.behaviour.program import Move
@@ -64,6 +65,25 @@ class Row:
     def has_place(self) -> bool:
         """Return whether its last three parameters are a place."""
         return self.frame != NO_FRAME
+
+
+LEAST_ANGLE = 0.25
+"""Degrees from which on eight decimals tell two neighbouring numbers of single precision apart."""
+
+FLAGS, ABOVE_HOME = 0b1101, 0b0001
+"""Of ArduPilot's ``Location``: relative to home, to the terrain, to the origin."""
+
+
+def angle_like_a_place(angle: float) -> float:
+    """Return the nearest angle whose first byte says "above home" to whoever takes it for a place.
+
+    >>> angle_like_a_place(40.6)
+    40.5999870300293
+    """
+    (bits,) = unpack("<I", pack("<f", max(angle, LEAST_ANGLE)))
+    near = sorted(range(-FLAGS, FLAGS + 1), key=abs)
+    changed = next(bits + each for each in near if (bits + each) & FLAGS == ABOVE_HOME)
+    return float(unpack("<f", pack("<I", changed))[0])
 
 
 def rows_of(context: VehicleContext, sortie: Sequence[PlanItem]) -> tuple[Row, ...]:
