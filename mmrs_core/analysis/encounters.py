@@ -75,7 +75,9 @@ class ProvenOrder:
         return first, last
 
     def _over(self, earlier: Occupation, robot: str, move: int) -> bool:
-        return self._before.is_over((earlier.robot, earlier.move), earlier.waiting, (robot, move))
+        return self._before.is_over(
+            (earlier.robot, earlier.move), earlier.waiting or earlier.overshot, (robot, move)
+        )
 
     def _sure(self, occupation: Occupation) -> bool:
         return occupation.move in self._certain[occupation.robot]

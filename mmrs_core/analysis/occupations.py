@@ -139,6 +139,8 @@ class Occupation:
 
         It is at most as far as it can have come since the begin, and far enough to come to the end in time.
         """
+        if self.overshot:
+            return self.points
         whole = sum(self.least)
         ahead = min(whole, max(0.0, last - self.begin))
         behind = min(ahead, max(0.0, whole - max(0.0, self.end - first)))

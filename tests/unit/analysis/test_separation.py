@@ -99,6 +99,25 @@ def test_a_robot_that_stops_late_is_there_only_as_it_comes():
     assert verdict.status is Status.SAFE
 
 
+def test_to_wait_until_another_arrives_is_not_to_wait_until_it_is_back():
+    a = robot("a", [go("east", (20.0, 0.0, 0.0), after=(notify("b.go"),))])
+    moves = [hold("before", 0.0), go("north", (23.3, 30.0, 0.0))]
+    b = robot("b", moves, waits={"before": ["go"]}, slots=["go"], home=(23.3, -4.0, 0.0))
+    status = {
+        overshoot: {each.status for each in separation(a, b, robot_kind=kind(overshoot=overshoot))}
+        for overshoot in (0.0, 0.4)
+    }
+    assert status[0.0] == {Status.SAFE}
+    assert Status.SAFE not in status[0.4]
+
+
+def test_all_of_the_stretch_beyond_a_target_counts():
+    a = robot("a", [go("east", (20.0, 0.0, 0.0))])
+    b = robot("b", [hold("look", 60.0)], home=(20.5, 2.98, 0.0))
+    (verdict,) = separation(a, b, robot_kind=kind(overshoot=0.5))
+    assert (verdict.status, verdict.margin) == (Status.UNKNOWN, pytest.approx(-0.02))
+
+
 def test_holding_in_the_way_is_violated():
     moves = [go("east", (20.0, 0.0, 0.0)), hold("look", 60.0), go("off", (20.0, 90.0, 0.0))]
     a = robot("a", moves, home=(10.0, 0.0, 0.0))

@@ -9,6 +9,7 @@ from mmrs_core.errors import InternalError
 from mmrs_core.planning.planner import plan
 from mmrs_core.planning.timeline import HomeRelation, rides_of
 from mmrs_core.scene import Await, Look, Policy
+from mmrs_core.scene.robots import BACK_SECONDS
 from mmrs_runtime.timing import LegTiming
 
 SWIFT = with_kinematics(robot(), timing=LegTiming(2.0))
@@ -48,6 +49,17 @@ def test_a_ride_leaves_open_where_speeding_up_and_slowing_down_is_done():
     way = next(ride for ride in rides_in(whole) if ride.points[-1] == (100.0, 0.0, 20.0))
     assert sum(way.least) == pytest.approx(10.0)
     assert way.late - way.early == pytest.approx(10.0 + 10.0 / 2.0)
+
+
+def test_a_robot_that_stops_late_is_beyond_its_target_from_before_it_comes_until_it_is_back():
+    late = with_kinematics(robot(), timing=LegTiming(2.0, overshoot=0.1))
+    whole = scene([late], {"a": visit((100.0, 0.0, 20.0))})
+    rides = rides_in(whole)
+    way = next(ride for ride in rides if ride.points[-1] == (100.0, 0.0, 20.0))
+    beyond = next(ride for ride in rides if ride.points[0] == (100.0, 0.0, 20.0))
+    assert beyond.points[1] == pytest.approx((101.0, 0.0, 20.0))
+    assert way.early < beyond.early < way.late - BACK_SECONDS + 1e-6
+    assert beyond.late == pytest.approx(way.late + BACK_SECONDS)
 
 
 def test_a_turn_that_may_be_spared_makes_what_follows_early():

@@ -35,6 +35,9 @@ WAYS = {STEP: GUIDED, MISSION: AUTO}
 SLOWEST_RATE = 3.0
 """Positions per second below which changes of speed cannot be judged."""
 
+CHARGED = 0.02
+"""Rise of the charge from which on a battery was charged; less is noise."""
+
 _USUAL_STILL = 0.3
 
 COULOMBS = 3.6
@@ -155,16 +158,18 @@ def _leg_figures(flight: Flight, flown_as: str) -> Iterator[Figure]:
     if flown_as == MISSION:
         passed = corners_passed(flight, level.chosen, max(2.0 * still, level.least))
         yield figure("cornerRadius", "m", passed, "no corner was passed without a stop")
-    overshoot, settled = 0.0, list[float]()
+    overshoot: float | None = None
+    settled = list[float]()
     if speeding and jerks and tops:
         a, d, j = (float(np.median(each)) for each in (speeding, slowing or speeding, jerks))
         timing = LegTiming(acceleration=a, deceleration=d, jerk=j)
         legs = [each for each in legs_of(flight, level.ramps, still) if isfinite(each.done - each.begun)]
         overshoot, settled = _beside(legs, timing, max(tops))
     missing = "no straight leg between two stops, or the log does not hold when targets were given"
+    unclear = "the legs do not show it: fly short and long ones" if settled else missing
     if not (speeding and jerks and tops):
-        missing = "no acceleration and speed to judge legs by"
-    yield figure("overshoot", "s", (overshoot,) if settled else (), missing)
+        missing = unclear = "no acceleration and speed to judge legs by"
+    yield figure("overshoot", "s", () if overshoot is None else (overshoot,), unclear)
     yield figure("settlingTime", "s", settled, missing)
 
 
@@ -181,11 +186,11 @@ def _decelerations(flight: Flight, level: _Levels, fitting: Iterable[Ramp], jerk
     return [value for each, value in found if each.change * jerk >= 1.5 * value**2]
 
 
-def _beside(legs: Sequence[Leg], timing: LegTiming, fastest: float) -> tuple[float, list[float]]:
+def _beside(legs: Sequence[Leg], timing: LegTiming, fastest: float) -> tuple[float | None, list[float]]:
     """Return how far a vehicle goes beyond its targets, and what legs take beside their S-curves and that.
 
     A vehicle that goes beyond its target by a share of its speed takes the longer, the faster the leg was.
-    Where the legs do not show that clearly, it does not.
+    Where the legs do not show that clearly, it is unknown: None.
 
     Args:
         timing: acceleration, deceleration and jerk.
@@ -194,10 +199,10 @@ def _beside(legs: Sequence[Leg], timing: LegTiming, fastest: float) -> tuple[flo
     tops = [each.speeding_up.high for each in legs]
     plain = [_left(each, timing, fastest) for each in legs]
     if len(legs) < FEWEST or max(tops) < 1.5 * min(tops):
-        return 0.0, plain
+        return None, plain
     best = min(range(1, 31), key=lambda number: _width(_lefts(legs, timing, fastest, number / 100.0)))
     left = _lefts(legs, timing, fastest, best / 100.0)
-    return (best / 100.0, left) if _width(left) < 0.7 * _width(plain) else (0.0, plain)
+    return (best / 100.0, left) if _width(left) < 0.7 * _width(plain) else (None, plain)
 
 
 def _lefts(legs: Sequence[Leg], timing: LegTiming, fastest: float, overshoot: float) -> list[float]:
@@ -286,6 +291,8 @@ def _lifetime(flight: Flight, capacity: float | None) -> tuple[tuple[float, ...]
     if len(taken) >= FEWEST and capacity > 0.0 and (current := float(taken[:, 2].mean())) > 0.0:
         return (capacity / current,), ""
     charges = flight.charges[in_flight(flight, flight.charges[:, 0])]
+    if len(charges) and (charges[:, 1] - np.minimum.accumulate(charges[:, 1])).max() > CHARGED:
+        return (), "it was charged, or its battery changed, in between: take the log of one sortie"
     if len(charges) >= 2 and (used := float(charges[0, 1] - charges[-1, 1])) >= 0.1:
         return (float(charges[-1, 0] - charges[0, 0]) / used,), ""
     return (), "no current with the battery's capacity (BATT_CAPACITY), and no tenth of a charge was used"

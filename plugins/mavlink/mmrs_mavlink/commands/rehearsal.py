@@ -30,7 +30,7 @@ Vehicles = Sequence[tuple[str, SimulatedVehicle]]
 
 _PATTERN = re.compile(
     r"(?:(?P<robot>.{1,100}?):)?(?P<name>[a-z-]+)(?:=(?P<values>[^@]+))?"
-    r"(?:@(?P<begin>[0-9.]+)(?:\+(?P<lasts>[0-9.]+))?)?"
+    r"(?:@(?P<begin>[0-9]+(?:\.[0-9]*)?)(?:\+(?P<lasts>[0-9]+(?:\.[0-9]*)?))?)?"
 )
 
 

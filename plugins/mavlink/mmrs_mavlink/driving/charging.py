@@ -12,6 +12,7 @@ from ..steps.energy import CHARGING_FACTOR, RECHARGE_FACTOR
 from ..vehicles.vehicle import FULL, Vehicle
 
 PAUSE_SECONDS = 1.0
+MAY_MEET = "robots that keep apart by time alone may meet"
 REPEATED_SECONDS = 60.0
 """Seconds after which it is said again what the robot waits for."""
 
@@ -70,6 +71,8 @@ class Charging:
             return False
         why = self._vehicle.renew_battery()
         answer(why)
+        if not why and self._clock.now() - self._begun < self._seconds:
+            self._say(f"continues earlier than checks count, {self._seconds:.0f} s: {MAY_MEET}")
         return not why
 
     def _is_charged(self) -> bool:
@@ -90,7 +93,6 @@ class Charging:
         if taken > CHARGING_FACTOR * self._seconds and not self._overdue:
             self._overdue = True
             self._say(
-                f"charges for longer than checks count, {CHARGING_FACTOR * self._seconds:.0f} s: "
-                "robots that keep apart by time alone may meet"
+                f"charges for longer than checks count, {CHARGING_FACTOR * self._seconds:.0f} s: {MAY_MEET}"
             )
         return False

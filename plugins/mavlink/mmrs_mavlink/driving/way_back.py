@@ -48,7 +48,7 @@ class WayBack:
             try:
                 parts = self._parts(passed, begun)
             except RefusedError as why:
-                if self._vehicle.state().armed and self._vehicle.in_failsafe:
+                if self._vehicle.state().armed and self._vehicle.returns_alone:
                     raise FaultError(why.event, f"{why}; its failsafe continues", NOTHING) from None
                 raise
             if parts:

@@ -44,7 +44,7 @@ from .needs import ON_ARDUPILOT
 from .pacing import COPTER, ROVER, SUB
 from .profile import Delay, Exemption, LostLinkFailsafe, Safeguard, Timing, VehicleProfile
 
-NO_BATTERY = (0, 10, 11, 12, 24, 27)
+NO_BATTERY = (0, 10, 11, 12, 18, 24, 27)
 """Monitors of nothing, of the sum of others, and of fuel (``AP_BattMonitor_Params.cpp``)."""
 
 ARDUPILOT = Autopilot(

@@ -1,6 +1,6 @@
 """Simulated MAVLink vehicles, for testing controllers without hardware.
 
-Start one with ``python -m mmrs_mavlink.sitl``, or several in a test with `SimulatedVehicle`. A vehicle is a
+``mmrs sitl`` starts them; a test starts its own with `SimulatedVehicle`. A vehicle is a
 point mass without aerodynamics: it accelerates, flies straight legs, climbs, turns and lands.
 """
 

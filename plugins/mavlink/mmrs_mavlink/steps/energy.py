@@ -186,7 +186,8 @@ def seconds_back(robot: Robot, state: State, response: str, track: Track) -> flo
 
 def _landing_seconds(robot: Robot, height: float) -> float:
     """Return how long a robot takes to land from a height: vehicles come down slowly near the ground."""
-    pacing, descent = robot.profile.pacing, robot.descent or USUAL_DESCENT
+    pacing = robot.profile.pacing
+    descent = min(robot.descent or USUAL_DESCENT, pacing.step.descent)
     low = min(height, pacing.landing_height)
     slowly = low / min(descent, pacing.landing_rate) if low else 0.0
     return (height - low) / descent + slowly + (pacing.recovery or 0.0)

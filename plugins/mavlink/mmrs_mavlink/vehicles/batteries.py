@@ -129,12 +129,14 @@ def _compare(
 
 def _held(link: Link, telemetry: Telemetry, charge: Charge | None) -> _Held | None:
     """Return what the batteries of a vehicle hold; None where it does not report them."""
-    known = link.profile.autopilot.capacities  # a monitor that is not reported may be there
+    known = link.profile.autopilot.capacities
     values = parameters.read(link, [name for capacity, monitor, _ in known for name in (capacity, monitor)])
     found = {
         capacity: values[capacity]
-        for capacity, monitor, off in known
+        for number, (capacity, monitor, off) in enumerate(known)
         if values.get(capacity, 0.0) > LEAST_CAPACITY and values.get(monitor) not in off
+        # the first one is there if anything is reported at all
+        if monitor in values or number == 0
     }
     nominal, measured = None if charge is None else charge.voltage, telemetry.voltage()
     voltage = min((each for each in (nominal, measured) if each is not None), default=None)

@@ -306,9 +306,12 @@ class MavlinkVehicle(Vehicle):
             self._steering.stay()
 
     @property
-    def in_failsafe(self) -> bool:
-        """Return whether it is in a mode that its autopilot may choose without a command."""
-        return self.telemetry.mode() in self._link.profile.failsafe_modes | self._alone
+    def returns_alone(self) -> bool:
+        """Return whether its autopilot brings it home or down, without a command of this program."""
+        mode, profile = self.telemetry.mode(), self._link.profile
+        names = {each.number: name for name, each in profile.modes.items()} | dict(profile.other_modes)
+        back = any(word in names.get(mode, "") for word in ("return", "land", "surface"))
+        return back and mode in profile.failsafe_modes | self._alone
 
     def take_back(self) -> None:
         """Prepare to command the vehicle out of a failsafe's mode."""

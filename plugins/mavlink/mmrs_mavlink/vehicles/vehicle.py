@@ -102,8 +102,8 @@ class Vehicle:
         """
 
     @property
-    def in_failsafe(self) -> bool:
-        """Return whether it is in a mode that its autopilot may choose without a command."""
+    def returns_alone(self) -> bool:
+        """Return whether its autopilot brings it home or down, without a command of this program."""
         return False
 
     def take_back(self) -> None:

@@ -111,6 +111,25 @@ def test_power_tells_how_long_the_battery_lasts(tmp_path):
     assert found["", "lifetime"].median == pytest.approx(16.0 * 3600.0 / (444.0 / 22.2), rel=1e-5)
 
 
+@pytest.mark.parametrize(("charges", "lasts"), [((1.0, 0.7, 0.4), True), ((1.0, 0.5, 1.0, 0.9), False)])
+def test_a_log_of_a_battery_that_was_charged_in_between_does_not_tell_how_long_it_lasts(
+    tmp_path, charges, lasts
+):
+    (tmp_path / "flight").write_bytes(dataflash(flown(OUT_AND_BACK, COPTER)))
+    flight = flight_in(tmp_path / "flight")
+    times = np.linspace(flight.times[0] + 5.0, flight.times[-1] - 5.0, len(charges))
+    charged = replace(flight, charges=np.column_stack([times, charges]))
+    found = next(each for each in figures_of(charged) if each.name == "lifetime")
+    assert bool(found.values) is lasts
+    assert found.missing.startswith("it was charged") is not lasts
+
+
+def test_legs_that_are_all_alike_do_not_show_an_overshoot(tmp_path):
+    found = figures(tmp_path, dataflash(flown(OUT_AND_BACK, COPTER)))
+    assert found["STEP", "overshoot"].values == ()
+    assert found["STEP", "overshoot"].missing == "the legs do not show it: fly short and long ones"
+
+
 def test_what_a_log_does_not_hold_is_named(tmp_path):
     found = figures(tmp_path, dataflash(flown(OUT_AND_BACK, COPTER)))
     assert found["", "meanPower"].missing == "no voltage and current while it moved"

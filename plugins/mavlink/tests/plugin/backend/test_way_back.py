@@ -145,7 +145,7 @@ def test_ahead_on_a_run_that_it_flew_by_itself_it_goes_back_along_it():
 class Returning(Vehicle):
     """Its autopilot has begun to bring it home."""
 
-    in_failsafe = True
+    returns_alone = True
 
 
 @pytest.mark.parametrize(("vehicle", "instead"), [(Vehicle, ""), (Returning, NOTHING)])
