@@ -147,7 +147,7 @@ class VehicleProfile:
         dives: whether its heights count from the water surface.
         turns: whether it turns to a heading on command.
         turns_as_places: whether it takes the bytes of a CONDITION_YAW in a mission for a place, and refuses
-            it where these are no height above home.
+            it unless these say "above home".
         heads_apart: whether it ignores the heading of a target, so that it is commanded separately.
         in_plane: whether it is judged in the plane: it is as high as the ground takes it, and its reported
             height is wrong where it has set its home before it knew its own.

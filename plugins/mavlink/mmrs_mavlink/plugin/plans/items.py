@@ -71,11 +71,11 @@ LEAST_ANGLE = 0.25
 """Degrees from which on eight decimals tell two neighbouring numbers of single precision apart."""
 
 FLAGS, ABOVE_HOME = 0b1101, 0b0001
-"""Of ArduPilot's ``Location``: relative to home, to the terrain, to the origin."""
+"""Flags of ArduPilot's ``Location``: relative to home, to the terrain, to the origin."""
 
 
 def angle_like_a_place(angle: float) -> float:
-    """Return the nearest angle whose first byte says "above home" to whoever takes it for a place.
+    """Return the nearest angle whose first byte says "above home" if it is taken for a place.
 
     >>> angle_like_a_place(40.6)
     40.5999870300293
