@@ -151,7 +151,7 @@ def test_a_position_that_comes_no_more_is_lost(told, monkeypatch):
     monkeypatch.setattr(link.clock, "patience", lambda seconds, least=0.5: seconds)
     eventually(lambda: link.since("GLOBAL_POSITION_INT") > 0.3)
     assert telemetry.position_trouble() == ""
-    link._heard = link.clock.now()
+    link._received = link.clock.now()
     assert "it has not reported its position for" in telemetry.position_trouble()
 
 
