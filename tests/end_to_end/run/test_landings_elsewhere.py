@@ -84,12 +84,13 @@ def test_a_new_battery_where_the_program_landed_is_flown_on_with(flown):
     assert wait_for(lambda: any(came in line for line in process.said), PATIENCE), process.said
     change_battery(vehicle)
     carry(vehicle, 0.0, 0.0)
-    there = r"it stands 30 m from where its program has landed it: carry it to 42\.3702\d\d, 13\.350000"
+    stands = r"it stands (?:29|30|31) m from where its program has landed it"
+    there = rf"{stands}: carry it to 42\.3702\d\d, 13\.3(?:4999\d|5000\d)"
     assert wait_for(lambda: re.fullmatch(there, str(resume(flown)["why"])), PATIENCE), process.said
     carry(vehicle, OUT[0], OUT[1])
     assert wait_for(lambda: resume(flown)["confirmed"], PATIENCE), process.said
     assert process.end(PATIENCE) == 0, process.said
-    assert sorties(vehicle) == [0, 30, 30]
+    assert sorties(vehicle) == pytest.approx([0, 30, 30], abs=1)
     assert vehicle.autopilot.home[:2] == pytest.approx((LATITUDE, LONGITUDE), abs=1e-5)
     assert ended_well(flown)
 
@@ -108,6 +109,6 @@ def test_a_killed_run_goes_on_where_its_program_landed_also_with_a_new_battery(f
     carry(vehicle, OUT[0], OUT[1])
     resumed = flown.start("--resume")
     assert resumed.end(PATIENCE) == 0, resumed.said
-    assert sorties(vehicle) == [0, 30]
+    assert sorties(vehicle) == pytest.approx([0, 30], abs=1)
     assert vehicle.autopilot.home[:2] == pytest.approx((LATITUDE, LONGITUDE), abs=1e-5)
     assert ended_well(flown)
