@@ -189,7 +189,8 @@ def occupations_of(input: CheckInput, robot: RobotProgram) -> Iterator[Occupatio
             for leg in legs[index]:
                 yield from _occupations(robot, leg, times, states, kinematics, column)
             for piece in beyond[index]:
-                yield _overshot(robot, piece, times, column)
+                last = any(piece[0] == leg.points[-1] for leg in legs[index])
+                yield _overshot(robot, piece, times, column, last=last)
 
 
 def _occupations(
@@ -287,17 +288,23 @@ def _movement(
     )
 
 
-def _overshot(robot: RobotProgram, piece: Piece, times: Times, column: Column | None) -> Occupation:
-    """Return where a robot goes beyond the end of a leg, before or just after its movement counts as over."""
+def _overshot(
+    robot: RobotProgram, piece: Piece, times: Times, column: Column | None, *, last: bool
+) -> Occupation:
+    """Return where a robot goes beyond the end of a leg, before or just after its movement counts as over.
+
+    Only the `last` leg of a movement ends when that does; earlier ones may end as soon as it has begun.
+    """
     target, turns_back, move, radius = piece
     moved = times.durations[robot.id].of[move].moved
+    ahead = max(0.0, moved.low - BACK_SECONDS) if last else 0.0
     return Occupation(
         robot=robot.id,
         move=move,
         waiting=False,
         points=(target, turns_back),
         radius=radius,
-        begin=times.earliest[robot.id, move] + max(0.0, moved.low - BACK_SECONDS),
+        begin=times.earliest[robot.id, move] + ahead,
         end=times.latest.get((robot.id, move), inf) + moved.high + BACK_SECONDS,
         least=(0.0,),
         certain=(inf, -inf),

@@ -1,7 +1,9 @@
 """Robots that are under way at once, at 2 m/s."""
 
+from dataclasses import replace
+
 import pytest
-from checking import finding, findings, given, kind, land, strange, take_off, uneven
+from checking import MOVE_KINDS, finding, findings, given, kind, land, strange, take_off, uneven
 
 from mmrs_core.contributions.checks import Status
 from mmrs_core.testing.small_programs import go, hold, notify, robot
@@ -105,6 +107,26 @@ def test_to_wait_until_another_arrives_is_not_to_wait_until_it_is_back():
     b = robot("b", moves, waits={"before": ["go"]}, slots=["go"], home=(23.3, -4.0, 0.0))
     status = {
         overshoot: {each.status for each in separation(a, b, robot_kind=kind(overshoot=overshoot))}
+        for overshoot in (0.0, 0.4)
+    }
+    assert status[0.0] == {Status.SAFE}
+    assert Status.SAFE not in status[0.4]
+
+
+def test_a_robot_is_beyond_the_first_of_two_legs_of_a_movement_before_that_is_over():
+    goes = ("urn:mmrs:behaviour:1.0", "GoTo")
+    around = replace(
+        MOVE_KINDS[goes], path=lambda move, here, home: (here, (20.0, 0.0, 0.0), (20.0, 99.0, 0.0))
+    )
+    detour = ("urn:mmrs:test:1.0", "Around")
+    first = go("around", (20.0, 99.0, 0.0))
+    a = robot("a", [replace(first, metaclasses=(detour, *first.metaclasses))])
+    b = robot("b", [hold("look", 20.0), go("off", (23.3, -90.0, 0.0))], home=(23.3, 0.0, 0.0))
+    moves = {**MOVE_KINDS, detour: replace(around, metaclass=detour)}
+    status = {
+        overshoot: {
+            each.status for each in separation(a, b, robot_kind=kind(overshoot=overshoot), moves=moves)
+        }
         for overshoot in (0.0, 0.4)
     }
     assert status[0.0] == {Status.SAFE}
