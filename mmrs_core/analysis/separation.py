@@ -32,7 +32,7 @@ from mmrs_core.analysis.motion import motions
 from mmrs_core.analysis.occupations import HOME_SPOT, Occupation, occupations_of
 from mmrs_core.analysis.passing import in_sequence, must_meet
 from mmrs_core.analysis.verdicts import TOLERANCE, UnknownMove, unknown, unknown_moves
-from mmrs_core.behaviour.program import RobotProgram
+from mmrs_core.behaviour.program import BEHAVIOUR, Move, Program, RobotProgram
 from mmrs_core.contributions.checks import Check, CheckInput, Status, Verdict
 from mmrs_core.diagnostics import lengths
 
@@ -66,7 +66,8 @@ def _run(input: CheckInput) -> Iterator[Verdict]:
     yield from (_verdict(input, encounter) for encounter in worst)
     if not worst and not undecided:
         words = f"robots keep {needed:.2f} m apart wherever they may be at once"
-        yield Verdict(NAME, Status.SAFE, message=words, caveat=_excuses(excused))
+        caveat = "; ".join(filter(None, (_excuses(excused), _while_charging(input.program))))
+        yield Verdict(NAME, Status.SAFE, message=words, caveat=caveat)
 
 
 def _excuses(excused: Mapping[tuple[str, str], float]) -> str:
@@ -78,6 +79,21 @@ def _excuses(excused: Mapping[tuple[str, str], float]) -> str:
         " while one stands at its home and the other does, too, or is straight above its own,"
         " and their distance is at least that of their homes"
     )
+
+
+def _while_charging(program: Program) -> str:
+    """Return what is taken for granted of robots that charge; empty where none does."""
+    charging = [robot.id for robot in program.robots if any(map(_charges, robot.moves))]
+    if not charging or len(program.robots) < 2:
+        return ""
+    return (
+        f"provided that {', '.join(charging)} charge{'s' * (len(charging) == 1)} for as long as declared:"
+        " a new battery that an operator confirms earlier makes what follows early"
+    )
+
+
+def _charges(move: Move) -> bool:
+    return move.is_a((BEHAVIOUR, "Recharge"))
 
 
 def _gaps(input: CheckInput, robot: RobotProgram) -> Iterator[list[UnknownMove]]:

@@ -3,7 +3,7 @@
 from dataclasses import replace
 
 import pytest
-from checking import MOVE_KINDS, finding, findings, given, kind, land, strange, take_off, uneven
+from checking import MOVE_KINDS, finding, findings, given, kind, land, recharge, strange, take_off, uneven
 
 from mmrs_core.contributions.checks import Status
 from mmrs_core.testing.small_programs import go, hold, notify, robot
@@ -131,6 +131,16 @@ def test_a_robot_is_beyond_the_first_of_two_legs_of_a_movement_before_that_is_ov
     }
     assert status[0.0] == {Status.SAFE}
     assert Status.SAFE not in status[0.4]
+
+
+def test_robots_that_charge_are_safe_only_as_long_as_they_do_so_for_their_time():
+    a = robot("a", [recharge("charge", 30.0)])
+    b = robot("b", [go("east", (40.0, 9.0, 0.0))], home=(0.0, 9.0, 0.0))
+    (verdict,) = separation(a, b)
+    assert verdict.status is Status.SAFE
+    assert verdict.caveat.startswith("provided that a charges for as long as declared")
+    (other,) = separation(b, robot("c", [hold("look", 30.0)]))
+    assert other.caveat == ""
 
 
 def test_all_of_the_stretch_beyond_a_target_counts():
