@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from mmrs_core.contributions.checks import Check
     from mmrs_core.contributions.commands import Command
     from mmrs_core.contributions.constraints import Constraint
+    from mmrs_core.contributions.drawings import DrawingReader, Exporter
     from mmrs_core.contributions.execution import Condition
     from mmrs_core.contributions.fixes import Fix
     from mmrs_core.contributions.hooks import Hook
@@ -116,6 +117,16 @@ def mmrs_conditions() -> Iterable[Condition]:  # type: ignore[empty-body]
 @hookspec
 def mmrs_map_symbols() -> Iterable[MapSymbol]:  # type: ignore[empty-body]
     """Contribute how elements look on maps; one symbol for a metaclass."""
+
+
+@hookspec
+def mmrs_drawing_readers() -> Iterable[DrawingReader]:  # type: ignore[empty-body]
+    """Contribute readers of what map programs draw; names are unique over all plug-ins."""
+
+
+@hookspec
+def mmrs_exporters() -> Iterable[Exporter]:  # type: ignore[empty-body]
+    """Contribute formats that map programs read; names are unique over all plug-ins."""
 
 
 @hookspec

@@ -40,6 +40,8 @@ _KINDS: Mapping[str, str] = {
     "vehicles": "contributions.vehicles.VehicleFactory",
     "conditions": "contributions.execution.Condition",
     "map_symbols": "contributions.symbols.MapSymbol",
+    "drawing_readers": "contributions.drawings.DrawingReader",
+    "exporters": "contributions.drawings.Exporter",
     "hooks": "contributions.hooks.Hook",
     "commands": "contributions.commands.Command",
 }

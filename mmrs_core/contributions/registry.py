@@ -15,6 +15,7 @@ from mmrs_core.errors import PluginError, UnreadableError
 if TYPE_CHECKING:
     from mmrs_core.contributions.checks import Check
     from mmrs_core.contributions.constraints import Constraint
+    from mmrs_core.contributions.drawings import DrawingReader, Exporter
     from mmrs_core.contributions.execution import Condition
     from mmrs_core.contributions.fixes import Fix
     from mmrs_core.contributions.hooks import Extensions, Hook
@@ -54,6 +55,8 @@ _SHOWN: Mapping[str, Callable[[Any], object]] = {
     "vehicles": lambda vehicle: vehicle.name,
     "conditions": lambda condition: condition.identifier,
     "map_symbols": lambda symbol: "#//".join(symbol.metaclass),
+    "drawing_readers": lambda reader: reader.name,
+    "exporters": lambda exporter: exporter.name,
     "hooks": lambda hook: hook.name,
     "commands": lambda command: command.name,
 }
@@ -214,6 +217,16 @@ class Contributions:
     def map_symbols(self) -> Mapping[Name, MapSymbol]:
         """Return how elements look on maps, by metaclass."""
         return self._by_metaclass("map_symbols")
+
+    @cached_property
+    def drawing_readers(self) -> tuple[DrawingReader, ...]:
+        """Return the readers of what map programs draw."""
+        return tuple(self._by("drawing_readers", lambda reader: reader.name).values())
+
+    @cached_property
+    def exporters(self) -> Mapping[str, Exporter]:
+        """Return the formats that map programs read, by name."""
+        return self._by("exporters", lambda exporter: exporter.name)
 
     @cached_property
     def commands(self) -> tuple[Command, ...]:

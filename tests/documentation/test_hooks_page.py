@@ -61,6 +61,7 @@ def test_every_field_of_what_is_declared_is_told():
         checks,
         commands,
         constraints,
+        drawings,
         execution,
         fixes,
         rules,
@@ -92,6 +93,8 @@ def test_every_field_of_what_is_declared_is_told():
         "mmrs_vehicles": vehicles.VehicleFactory,
         "mmrs_conditions": execution.Condition,
         "mmrs_map_symbols": symbols.MapSymbol,
+        "mmrs_drawing_readers": drawings.DrawingReader,
+        "mmrs_exporters": drawings.Exporter,
         "mmrs_commands": commands.Command,
         "mmrs_hooks": Hook,
     }

@@ -14,6 +14,7 @@ from mmrs_core import hookspecs, plugins
 from mmrs_core.contributions.checks import Check
 from mmrs_core.contributions.commands import Command
 from mmrs_core.contributions.constraints import Constraint
+from mmrs_core.contributions.drawings import DrawingReader, Exporter
 from mmrs_core.contributions.execution import Condition
 from mmrs_core.contributions.fixes import Fix
 from mmrs_core.contributions.hooks import Hook
@@ -239,6 +240,16 @@ def test_hook_mmrs_conditions():
 def test_hook_mmrs_map_symbols():
     symbol = MapSymbol(KITE, "kite", "#aa0000", "K")
     assert contributions_with("mmrs_map_symbols", symbol).map_symbols[KITE] == symbol
+
+
+def test_hook_mmrs_drawing_readers():
+    reader = DrawingReader("kite drawing", (".kite",), unused, unused)
+    assert reader in contributions_with("mmrs_drawing_readers", reader).drawing_readers
+
+
+def test_hook_mmrs_exporters():
+    exporter = Exporter("kite", "files of kites", ".kite", unused)
+    assert contributions_with("mmrs_exporters", exporter).exporters["kite"] == exporter
 
 
 def test_hook_mmrs_commands():

@@ -1,0 +1,51 @@
+"""The formats of other map programs: what reads drawings, and what writes them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from mmrs_core.drawings.drawing import Drawing
+
+
+def _nothing_lost(drawing: Drawing) -> tuple[str, ...]:
+    return ()
+
+
+@dataclass(frozen=True, slots=True)
+class DrawingReader:
+    """A reader of one format.
+
+    Attributes:
+        name: of the format in messages, such as ``KML``.
+        suffixes: of files in small letters, with the dot.
+        recognise: (data, file) to whether the file is of this format; looks at its beginning at most. Decides
+            where several formats share a suffix, and for files with other suffixes.
+        read: (data, file) to its drawing; raises UnreadableError with the line of the first fault.
+    """
+
+    name: str
+    suffixes: tuple[str, ...]
+    recognise: Callable[[bytes, str], bool]
+    read: Callable[[bytes, str], Drawing]
+
+
+@dataclass(frozen=True, slots=True)
+class Exporter:
+    """A writer of one format.
+
+    Attributes:
+        name: as typed after ``--format``, such as ``geojson``.
+        description: one line.
+        suffix: of files, with the dot.
+        write: (drawing, title) to a file's content; the same drawing gives the same bytes.
+        losses: what of a drawing the format cannot express, one message each.
+    """
+
+    name: str
+    description: str
+    suffix: str
+    write: Callable[[Drawing, str], bytes]
+    losses: Callable[[Drawing], tuple[str, ...]] = _nothing_lost
