@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from mmrs_core.drawings.drawing import Drawing
+    from mmrs_core.drawings.drawing import Drawing, HeightReference
 
 
 def _nothing_lost(drawing: Drawing) -> tuple[str, ...]:
@@ -42,6 +42,8 @@ class Exporter:
         suffix: of files, with the dot.
         write: (drawing, title) to a file's content; the same drawing gives the same bytes.
         losses: what of a drawing the format cannot express, one message each.
+        heights: what heights in the format are measured from, most usual first; a drawing gets the first of
+            them that is known of its mission. Where none is, its heights are above the home position.
     """
 
     name: str
@@ -49,3 +51,4 @@ class Exporter:
     suffix: str
     write: Callable[[Drawing, str], bytes]
     losses: Callable[[Drawing], tuple[str, ...]] = _nothing_lost
+    heights: tuple[HeightReference, ...] = ()

@@ -51,6 +51,9 @@ class Role(StrEnum):
     PATH = "planned path"
     TRACK = "track"
     PHOTO = "photo"
+    ELEMENT = "context element"
+    ACTION = "action"
+    EVENT = "event"
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -63,10 +66,12 @@ class MapFeature:
             line one with n >= 2, an area its outer ring and then its holes; none repeats its first position.
         heights: arrays (n,) in metres, one for each ring; empty if `reference` is NONE.
         times: array (n,) of seconds since 1970-01-01 UTC, of the first ring; None where not given.
+        since_start: whether `times` count from the start of a mission, whose time of day is unknown.
         radius: metres, of a circle around a point; None for all others.
         name: as in the file; may be empty, and need not be unique.
         folders: names of the folders or layers that it is in, outermost first.
         properties: further values, by key.
+        colour: as ``#rrggbb``; empty: that of the program that shows it.
         place: file and line; the path is the feature's within the file.
     """
 
@@ -75,12 +80,14 @@ class MapFeature:
     heights: tuple[NDArray[np.float64], ...] = ()
     reference: HeightReference = HeightReference.NONE
     times: NDArray[np.float64] | None = None
+    since_start: bool = False
     radius: float | None = None
     name: str = ""
     description: str = ""
     role: Role = Role.UNKNOWN
     folders: tuple[str, ...] = ()
     properties: Mapping[str, Property] = field(default_factory=dict)
+    colour: str = ""
     place: Place = Place()
 
     def __post_init__(self) -> None:
