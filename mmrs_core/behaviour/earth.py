@@ -6,8 +6,11 @@ from collections.abc import Iterator, Sequence
 from functools import lru_cache
 from typing import TYPE_CHECKING
 
+import numpy as np
+from numpy.typing import ArrayLike
+
 from mmrs_core.errors import UnsupportedError
-from mmrs_core.geometry.frames import LocalFrame
+from mmrs_core.geometry.frames import Floats, LocalFrame
 from mmrs_core.scene import Frame, Point, Position
 
 if TYPE_CHECKING:
@@ -30,14 +33,27 @@ def degrees_of(points: Sequence[Point], frame: Frame) -> tuple[tuple[float, floa
     Raises:
         UnsupportedError: the frame has no place on the Earth.
     """
+    pairs = wgs84_of(points, frame).tolist()
+    return tuple((round(latitude, DECIMALS), round(longitude, DECIMALS)) for latitude, longitude in pairs)
+
+
+def wgs84_of(points: ArrayLike, frame: Frame) -> Floats:
+    """Return an (n, 2) array of latitude and longitude in degrees of WGS 84, not rounded.
+
+    Args:
+        points: (n, 2) metres east and north.
+        frame: of the behaviour.
+
+    Raises:
+        UnsupportedError: the frame has no place on the Earth.
+    """
     if frame.latitude is None or frame.longitude is None:
         raise UnsupportedError(LOCAL)
-    if not points:
-        return ()
     own = LocalFrame(frame.crs, frame.latitude, frame.longitude).to_geographic(points)
+    if not len(own):
+        return own
     longitudes, latitudes = _to_wgs84(frame.crs).transform(own[:, 1], own[:, 0])
-    pairs = zip(latitudes.tolist(), longitudes.tolist(), strict=True)
-    return tuple((round(latitude, DECIMALS), round(longitude, DECIMALS)) for latitude, longitude in pairs)
+    return np.column_stack([latitudes, longitudes]).astype(np.float64)
 
 
 def at_a_pole(frame: Frame) -> Iterator[str]:
@@ -53,12 +69,25 @@ def metres(value: float) -> float:
 
 def sea_level_of(position: Position, frame: Frame) -> float | None:
     """Return the height of a position above mean sea level in metres; None where it is not known."""
-    if frame.altitude is None:
-        return None
-    if frame.altitude_reference == "MSL":
-        return metres(frame.altitude + position[2])
+    origin = origin_above_sea(frame)
+    return None if origin is None else metres(origin + position[2])
+
+
+def origin_above_sea(frame: Frame) -> float | None:
+    """Return the height of the origin above mean sea level in metres; None where it is not known."""
+    if frame.altitude is None or frame.altitude_reference == "MSL":
+        return frame.altitude
     if frame.altitude_reference == "ELLIPSOID" and frame.geoid_separation is not None:
-        return metres(frame.altitude + position[2] - frame.geoid_separation)
+        return frame.altitude - frame.geoid_separation
+    return None
+
+
+def origin_above_ellipsoid(frame: Frame) -> float | None:
+    """Return the height of the origin above the ellipsoid in metres; None where it is not known."""
+    if frame.altitude is None or frame.altitude_reference == "ELLIPSOID":
+        return frame.altitude
+    if frame.altitude_reference == "MSL" and frame.geoid_separation is not None:
+        return frame.altitude + frame.geoid_separation
     return None
 
 

@@ -6,7 +6,7 @@ Each process counts the seconds of a run from its own start; a black box has the
 from __future__ import annotations
 
 from array import array
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from datetime import datetime
 
@@ -111,6 +111,13 @@ def shifts_of(clocks: Mapping[str, Readings]) -> tuple[dict[str, Shift], tuple[s
             f" its times are counted as those of {first}"
         )
     return shifts, tuple(notes)
+
+
+def zero_of(clocks: Iterable[Readings]) -> float | None:
+    """Return the earliest time of day at which a robot counted 0, seconds since 1970; None where unknown."""
+    known = [[part for part in each.processes if len(part)] for each in clocks]
+    pace = _pace([part for parts in known for part in parts])
+    return min((_zero(parts[0], pace) for parts in known if parts), default=None)
 
 
 def _pace(parts: Sequence[Floats]) -> float:

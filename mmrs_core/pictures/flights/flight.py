@@ -81,6 +81,7 @@ class Flight:
         boxes: how many black boxes there are.
         whole: whether every robot has a log, and all logs can be read.
         begun: date and time of day, ISO 8601; empty where unknown.
+        zero: time of day at which times are 0, seconds since 1970-01-01 UTC; None where unknown.
     """
 
     run: str
@@ -89,3 +90,4 @@ class Flight:
     boxes: int = 0
     whole: bool = True
     begun: str = ""
+    zero: float | None = None

@@ -13,7 +13,7 @@ from mmrs_core.behaviour.log import logs_in, recover_log
 from mmrs_core.behaviour.program import Program, RobotProgram
 from mmrs_core.contributions.rules import RobotKind
 from mmrs_core.errors import InvalidModelError, UnreadableError
-from mmrs_core.pictures.flights.clocks import Readings, Shift, shifts_of
+from mmrs_core.pictures.flights.clocks import Readings, Shift, shifts_of, zero_of
 from mmrs_core.pictures.flights.fixes import Datum, Fixes, datum_of
 from mmrs_core.pictures.flights.flight import Flight, Flown
 from mmrs_core.scene import Name, RobotType
@@ -152,7 +152,8 @@ def read_flight(
     begun = min((each.wall for each in contents.values() if each.wall), default="")
     run = next((each for each in (*_of_steps(steps), *_of_boxes(contents)) if each), "")
     whole = readable and all(flown.records for flown in robots.values())
-    return Flight(run, robots, tuple(damages), len(boxes), whole, begun)
+    zero = zero_of(contents[id].clock for id in known & contents.keys())
+    return Flight(run, robots, tuple(damages), len(boxes), whole, begun, zero)
 
 
 def _is_of(robot: RobotProgram, record: StepRecord) -> bool:

@@ -30,6 +30,7 @@ class Shot:
         state: ``taken``, ``not confirmed``, or ``simulated``.
         index: the vehicle's own; None where it has none.
         move, task: that it was commanded for; empty for others, such as those triggered by distance.
+        action: that commanded it; None for those others.
     """
 
     time: float
@@ -38,6 +39,7 @@ class Shot:
     index: int | None = None
     move: str = ""
     task: str = ""
+    action: Action | None = None
 
 
 def shots_in(
@@ -70,14 +72,17 @@ def shots_of(
     """Return all photos of a robot by time, each commanded one matched with the nearest confirmation."""
     taken = [*_taken(flown, datum)]
     shots: list[Shot] = []
-    for time, move in _orders(robot, flown, robot_type, tuple(vehicles)):
+    known = tuple(vehicles)
+    for time, move, action in acts_of(robot, flown):
+        if not takes_photo(action, robot_type, known):
+            continue
         near = min(taken, key=lambda shot: abs(shot.time - time), default=None)
         if near is not None and abs(near.time - time) <= _MATCHING:
             taken.remove(near)
-            shots.append(Shot(near.time, near.at, TAKEN, near.index, move.id, move.task))
+            shots.append(Shot(near.time, near.at, TAKEN, near.index, move.id, move.task, action))
         else:
             state = SIMULATED if flown.simulated else TAKEN if _devices_confirm(flown) else UNCONFIRMED
-            shots.append(Shot(time, flown.track.at(time), state, None, move.id, move.task))
+            shots.append(Shot(time, flown.track.at(time), state, None, move.id, move.task, action))
     return tuple(sorted([*shots, *taken], key=lambda shot: shot.time))
 
 
@@ -106,12 +111,10 @@ def _taken(flown: Flown, datum: Datum) -> Iterator[Shot]:
         yield Shot(entry.time, at, TAKEN, None if index is None else int(index))
 
 
-def _orders(
-    robot: RobotProgram, flown: Flown, robot_type: RobotType | None, vehicles: tuple[VehicleFactory, ...]
-) -> Iterator[tuple[float, Move]]:
+def acts_of(robot: RobotProgram, flown: Flown) -> Iterator[tuple[float, Move, Action]]:
+    """Yield the device actions that a robot carried out by its log: when, for which move, and which."""
     moves = {move.id: move for move in robot.moves}
     for record in flown.records:
         if record.label == "act":
             move = moves[record.move]
-            if takes_photo(move.action(record.detail), robot_type, vehicles):
-                yield record.time, move
+            yield record.time, move, move.action(record.detail)

@@ -6,7 +6,7 @@ import pytest
 from mmrs_multicopter.testing import LAND, go_to, quad, robot_program, take_off, target_input
 
 from mmrs_core.analysis.clearance import RADIUS
-from mmrs_core.behaviour.earth import degrees_of, metres, sea_level_of
+from mmrs_core.behaviour.earth import degrees_of, metres, origin_above_ellipsoid, sea_level_of
 from mmrs_core.behaviour.travel import TRAVEL_MARGINS, speed_of, travel_margins_of
 from mmrs_core.errors import UnsupportedError
 from mmrs_core.scene import Capability, Frame
@@ -97,6 +97,20 @@ def test_a_local_frame_has_no_degrees():
 )
 def test_the_height_above_the_sea_is_told_only_where_it_is_known(frame, expected):
     assert sea_level_of((0.0, 0.0, 2.0), frame) == expected
+
+
+@pytest.mark.parametrize(
+    ("frame", "expected"),
+    [
+        (Frame("EPSG:4326", 42.37, 13.35, 770.0, "ELLIPSOID"), 770.0),
+        (Frame("EPSG:4326", 42.37, 13.35, 720.0, "MSL", 47.5), 767.5),
+        (L_AQUILA, None),
+        (Frame("EPSG:4326", 42.37, 13.35, 0.0, "ORIGIN", 47.5), None),
+        (Frame("EPSG:4326", 42.37, 13.35), None),
+    ],
+)
+def test_the_height_above_the_ellipsoid_is_told_only_where_it_is_known(frame, expected):
+    assert origin_above_ellipsoid(frame) == expected
 
 
 def test_a_length_is_never_minus_zero():

@@ -97,3 +97,10 @@ def test_what_is_noted_before_a_vehicle_is_known_is_of_the_same_process(flight, 
     first, second, *rest = box.read_text().splitlines(keepends=True)
     box.write_text("".join([second, first, *rest]))
     assert flight().damages == ()
+
+
+def test_the_time_of_day_at_which_a_flight_began_is_that_of_its_first_process(flight, folder):
+    assert flight().zero is None
+    begin(folder, "alpha", 4.0)
+    begin(folder, "beta", 1.5)
+    assert flight().zero == pytest.approx(NOON.timestamp() + 1.5, abs=0.002)
