@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from mmrs_core.contributions.execution import Condition
     from mmrs_core.contributions.fixes import Fix
     from mmrs_core.contributions.hooks import Hook
+    from mmrs_core.contributions.robot_types import RobotTypeFile
     from mmrs_core.contributions.rules import ElementKind, MoveKind, RobotKind, Rule
     from mmrs_core.contributions.symbols import MapSymbol
     from mmrs_core.contributions.targets import Target
@@ -117,6 +118,11 @@ def mmrs_conditions() -> Iterable[Condition]:  # type: ignore[empty-body]
 @hookspec
 def mmrs_map_symbols() -> Iterable[MapSymbol]:  # type: ignore[empty-body]
     """Contribute how elements look on maps; one symbol for a metaclass."""
+
+
+@hookspec
+def mmrs_robot_types() -> Iterable[RobotTypeFile]:  # type: ignore[empty-body]
+    """Contribute robot types to begin a mission with; names are unique over all plug-ins."""
 
 
 @hookspec

@@ -40,6 +40,7 @@ _KINDS: Mapping[str, str] = {
     "vehicles": "contributions.vehicles.VehicleFactory",
     "conditions": "contributions.execution.Condition",
     "map_symbols": "contributions.symbols.MapSymbol",
+    "robot_types": "contributions.robot_types.RobotTypeFile",
     "drawing_readers": "contributions.drawings.DrawingReader",
     "exporters": "contributions.drawings.Exporter",
     "hooks": "contributions.hooks.Hook",

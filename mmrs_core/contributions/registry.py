@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from mmrs_core.contributions.execution import Condition
     from mmrs_core.contributions.fixes import Fix
     from mmrs_core.contributions.hooks import Extensions, Hook
+    from mmrs_core.contributions.robot_types import RobotTypeFile
     from mmrs_core.contributions.rules import ElementKind, MoveKind, RobotKind, Rule
     from mmrs_core.contributions.symbols import MapSymbol
     from mmrs_core.contributions.targets import Target
@@ -55,6 +56,7 @@ _SHOWN: Mapping[str, Callable[[Any], object]] = {
     "vehicles": lambda vehicle: vehicle.name,
     "conditions": lambda condition: condition.identifier,
     "map_symbols": lambda symbol: "#//".join(symbol.metaclass),
+    "robot_types": lambda given: given.name,
     "drawing_readers": lambda reader: reader.name,
     "exporters": lambda exporter: exporter.name,
     "hooks": lambda hook: hook.name,
@@ -217,6 +219,11 @@ class Contributions:
     def map_symbols(self) -> Mapping[Name, MapSymbol]:
         """Return how elements look on maps, by metaclass."""
         return self._by_metaclass("map_symbols")
+
+    @cached_property
+    def robot_types(self) -> Mapping[str, RobotTypeFile]:
+        """Return the robot types that missions can begin with, by name."""
+        return self._by("robot_types", lambda given: given.name)
 
     @cached_property
     def drawing_readers(self) -> tuple[DrawingReader, ...]:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from mmrs_auv import names
 from mmrs_core.contributions.commands import Command
+from mmrs_core.contributions.robot_types import RobotTypeFile
 from mmrs_core.contributions.symbols import MapSymbol
 from mmrs_core.hookspecs import hookimpl
 from mmrs_core.languages.sources import MetamodelSource
@@ -82,6 +83,17 @@ def mmrs_targets() -> tuple[Target, ...]:
     from mmrs_auv.targets.can_python.target import CAN_PYTHON
 
     return (ADA, CAN_C, CAN_PYTHON)
+
+
+@hookimpl
+def mmrs_robot_types() -> tuple[RobotTypeFile, ...]:
+    """Contribute an inspection vehicle to begin a mission with, with the sources of their figures."""
+    folder = Path(str(files("mmrs_auv"))) / "robot_types"
+    return (
+        RobotTypeFile(
+            "BlueROV2", folder / "bluerov2.xmi", "underwater inspection vehicle with a camera, to 100 m"
+        ),
+    )
 
 
 @hookimpl

@@ -6,6 +6,7 @@ from importlib.resources import files
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from mmrs_core.contributions.robot_types import RobotTypeFile
 from mmrs_core.contributions.symbols import MapSymbol
 from mmrs_core.hookspecs import hookimpl
 from mmrs_core.languages.sources import MetamodelSource
@@ -54,6 +55,25 @@ def mmrs_conditions() -> tuple[Condition, ...]:
     from mmrs_multicopter.conditions import CONDITIONS
 
     return CONDITIONS
+
+
+@hookimpl
+def mmrs_robot_types() -> tuple[RobotTypeFile, ...]:
+    """Contribute drones to begin a mission with, with the sources of their figures."""
+    folder = Path(str(files("mmrs_multicopter"))) / "robot_types"
+    return (
+        RobotTypeFile(
+            "Freefly Astro LR1",
+            folder / "freefly-astro-lr1.xmi",
+            "quadcopter with a full-frame mapping camera",
+        ),
+        RobotTypeFile(
+            "Amovlab P600 camera", folder / "amovlab-p600-camera.xmi", "quadcopter with a zoom camera"
+        ),
+        RobotTypeFile(
+            "Amovlab P600 gas", folder / "amovlab-p600-gas.xmi", "quadcopter with a gas sensor, carries 1 kg"
+        ),
+    )
 
 
 @hookimpl

@@ -6,6 +6,7 @@ from importlib.resources import files
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from mmrs_core.contributions.robot_types import RobotTypeFile
 from mmrs_core.contributions.symbols import MapSymbol
 from mmrs_core.hookspecs import hookimpl
 from mmrs_core.languages.sources import MetamodelSource
@@ -37,6 +38,19 @@ def mmrs_robot_kinds() -> tuple[RobotKind, ...]:
     from mmrs_rover.kinds import ROVER_KIND
 
     return (ROVER_KIND,)
+
+
+@hookimpl
+def mmrs_robot_types() -> tuple[RobotTypeFile, ...]:
+    """Contribute a field rover to begin a mission with, with the sources of their figures."""
+    folder = Path(str(files("mmrs_rover"))) / "robot_types"
+    return (
+        RobotTypeFile(
+            "Clearpath Husky A300",
+            folder / "clearpath-husky-a300.xmi",
+            "field rover with a camera, carries 50 kg",
+        ),
+    )
 
 
 @hookimpl

@@ -18,6 +18,7 @@ from mmrs_core.contributions.drawings import DrawingReader, Exporter
 from mmrs_core.contributions.execution import Condition
 from mmrs_core.contributions.fixes import Fix
 from mmrs_core.contributions.hooks import Hook
+from mmrs_core.contributions.robot_types import RobotTypeFile
 from mmrs_core.contributions.rules import ElementKind, MoveKind, RobotKind, Rule
 from mmrs_core.contributions.symbols import MapSymbol
 from mmrs_core.contributions.targets import Target
@@ -240,6 +241,11 @@ def test_hook_mmrs_conditions():
 def test_hook_mmrs_map_symbols():
     symbol = MapSymbol(KITE, "kite", "#aa0000", "K")
     assert contributions_with("mmrs_map_symbols", symbol).map_symbols[KITE] == symbol
+
+
+def test_hook_mmrs_robot_types(tmp_path):
+    kite = RobotTypeFile("Kite 12", tmp_path / "kite-12.xmi", "kite with a camera")
+    assert contributions_with("mmrs_robot_types", kite).robot_types["Kite 12"] == kite
 
 
 def test_hook_mmrs_drawing_readers():
