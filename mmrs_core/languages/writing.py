@@ -13,6 +13,7 @@ from mmrs_core.languages.json_form import is_json
 from mmrs_core.languages.json_form.writer import JsonWriter
 from mmrs_core.languages.registry import Registry
 from mmrs_core.languages.xmi.quick_writer import writer_for
+from mmrs_core.languages.xmi.writer import XmiWriter
 from mmrs_core.resources import named
 
 
@@ -22,6 +23,7 @@ def to_xmi(
     *,
     schema_location: Mapping[str, str] | None = None,
     file: Path | None = None,
+    comments: Mapping[Element, str] | None = None,
 ) -> bytes:
     """Return the text of a model as EMF writes it, in UTF-8; the same model gives the same bytes.
 
@@ -30,13 +32,18 @@ def to_xmi(
         registry: the metamodels of the elements.
         schema_location: for Eclipse, where the .ecore of each nsURI lies, relative to the file.
         file: where the text will stand; needed when the model refers to other files.
+        comments: what is written before some elements; not before one of several roots.
 
     Raises:
         ValueError: if a value is not of its type, holds a character that XML cannot hold, or a reference
             leads to an element that stands in no file.
     """
     with collector_at_rest():
-        return writer_for(tuple(roots), registry, file).document(schema_location or {}).encode()
+        if comments:
+            writer = XmiWriter(tuple(roots), registry, file, comments)
+        else:
+            writer = writer_for(tuple(roots), registry, file)
+        return writer.document(schema_location or {}).encode()
 
 
 def to_json(

@@ -21,3 +21,14 @@ def in_attribute(value: str) -> str:
 def in_text(value: str) -> str:
     """Return a text as it stands between tags."""
     return _IN_TEXT.sub(lambda match: _TEXT_ESCAPES[match.group()], value)
+
+
+def in_comment(value: str) -> str:
+    """Return a text as it can stand in a comment, whose end it cannot be.
+
+    >>> in_comment("a --> <b>-")
+    'a - -> <b>- '
+    """
+    words = NO_XML.sub("\N{REPLACEMENT CHARACTER}", " ".join(value.split()))
+    apart = re.sub("-(?=-)", "- ", words)
+    return f"{apart} " if apart.endswith("-") else apart

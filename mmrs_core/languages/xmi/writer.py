@@ -12,7 +12,7 @@ from mmrs_core.languages.metaclass import Feature, Metaclass, is_null
 from mmrs_core.languages.references.addresses import Addresses
 from mmrs_core.languages.registry import Registry
 from mmrs_core.languages.values.texts import described
-from mmrs_core.languages.xmi.escapes import NO_XML, in_attribute, in_text
+from mmrs_core.languages.xmi.escapes import NO_XML, in_attribute, in_comment, in_text
 from mmrs_core.languages.xmi.events import XMI, XSI
 from mmrs_core.languages.xmi.unknowns import text_of
 
@@ -38,8 +38,16 @@ Job = str | SiblingRow
 class XmiWriter:
     """Writes one document."""
 
-    def __init__(self, roots: Sequence[Element], registry: Registry, file: Path | None) -> None:
+    def __init__(
+        self,
+        roots: Sequence[Element],
+        registry: Registry,
+        file: Path | None,
+        comments: Mapping[Element, str] | None = None,
+    ) -> None:
+        """Take the document; comments are written before their elements."""
         self._roots = roots
+        self._comments = comments or {}
         self._registry = registry
         self._addresses = Addresses(roots, file)
         self._prefixes: dict[str, str] = {}
@@ -63,7 +71,38 @@ class XmiWriter:
             return f"{_DECLARATION}<xmi:XMI{head}/>\n"
         if wrapped:
             return "".join((_DECLARATION, f"<xmi:XMI{head}>\n", *self._lines, "</xmi:XMI>\n"))
-        return "".join((_DECLARATION, self._lines[0], head, *self._lines[1:]))
+        comment = self._comment(self._roots[0], "")
+        return "".join((_DECLARATION, comment, self._lines[0], head, *self._lines[1:]))
+
+    def parts(
+        self, elements: Iterable[Element], prefixes: Mapping[str, str], depth: int
+    ) -> tuple[str, dict[str, str]]:
+        """Return the text of some elements inside the root, and the namespaces that it needs besides.
+
+        Args:
+            elements: each in its place in what contains it.
+            prefixes: those that the document declares, with their namespaces.
+            depth: of the elements; the root's is 0.
+
+        Raises:
+            ValueError: as in `document`.
+        """
+        self._prefixes = {ns_uri: prefix for prefix, ns_uri in prefixes.items() if prefix}
+        for element in elements:
+            feature = element._mmrs_feature
+            assert feature is not None  # it is inside the root
+            jobs: list[Job] = []
+            self._element(element, feature.name, feature, depth, jobs)
+            self._run(jobs)
+        needed = {prefix: ns_uri for ns_uri, prefix in self._prefixes.items()}
+        needed |= {"xsi": XSI} if self._typed else {}
+        return "".join(self._lines), {
+            prefix: ns_uri for prefix, ns_uri in needed.items() if prefixes.get(prefix) != ns_uri
+        }
+
+    def _comment(self, element: Element, indent: str) -> str:
+        words = self._comments.get(element)
+        return f"{indent}<!-- {in_comment(words)} -->\n" if words else ""
 
     def _head(self, schema_location: Mapping[str, str]) -> _Attributes:
         head = [("xmi:version", "2.0"), ("xmlns:xmi", XMI)]
@@ -125,6 +164,7 @@ class XmiWriter:
         if feature is None:
             self._open_root(f"{indent}<{tag}", text, indent, metaclass, children, jobs)
             return
+        self._lines.append(self._comment(element, indent))
         if children:
             self._lines.append(f"{indent}<{tag}{text}>\n")
             jobs.append(f"{indent}</{feature.name}>\n")
