@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Literal
 
 from mmrs_core.contributions.rules import most_specific
 
 if TYPE_CHECKING:
+    from mmrs_core.drawings.drawing import Property
     from mmrs_core.scene import Metaclasses, Name, Part, Ring
 
 _COLOUR = re.compile("#[0-9a-fA-F]{6}")
@@ -33,6 +34,11 @@ class MapSymbol:
         fields: attributes that an editor offers first and pictures show, by feature name.
         outlines: rings (east, north) in metres that an element's figures make beside its coordinates, such
             as a circle of its radius; none where a figure is missing. None: its coordinates are all.
+        usual_for: the shape of which such a task is made where a drawing does not state its purpose.
+        initial: values of a new element, by feature name.
+        alternatives: sets of features of which one replaces the others; when one is given, the
+            `initial` values of the others are not used.
+        height: feature with the height of a task above the origin, in metres; empty: it has none.
 
     Raises:
         ValueError: if the colour is none, or the icon is too long.
@@ -44,6 +50,10 @@ class MapSymbol:
     icon: str
     fields: tuple[str, ...] = ()
     outlines: Callable[[Part], tuple[Ring, ...]] | None = None
+    usual_for: Literal["", "point", "line", "area"] = ""
+    initial: Mapping[str, Property] = field(default_factory=dict)
+    alternatives: tuple[frozenset[str], ...] = ()
+    height: str = ""
 
     def __post_init__(self) -> None:
         """Refuse what no map can show."""
