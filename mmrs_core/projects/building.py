@@ -1,0 +1,352 @@
+"""Features as elements of a mission and its context."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from mmrs_core.diagnostics import Place
+from mmrs_core.drawings.drawing import Geometry, HeightReference, MapFeature
+from mmrs_core.grounding.features import child, children, number
+from mmrs_core.languages.element import (
+    Element,
+    containing_feature,
+    descendants,
+    is_kind,
+    label_of,
+    metaclass_of,
+)
+from mmrs_core.languages.metaclass import Metaclass
+from mmrs_core.languages.naming import unreadable
+from mmrs_core.projects.attributes import asked_values, drawn_values, missing, set_values
+from mmrs_core.projects.choosing import Decision, shape_of
+from mmrs_core.projects.heights import Levels
+from mmrs_core.projects.kinds import CONTEXT, MISSION, Kind
+from mmrs_core.projects.shapes import DECIMALS, DrawnShape, Floats, UnfitError, around, begin_of, shape
+
+if TYPE_CHECKING:
+    from mmrs_core.languages.registry import Registry
+
+LONGEST_NAME = 80
+_SHUT = ("forbiddenAreas", "obstacles")
+RALLY_RADIUS = 10.0
+"""Metres around a point that is to be an emergency area, of which clearances leave something."""
+
+
+@dataclass(frozen=True, slots=True)
+class Outcome:
+    """What became of one feature, or of something in a file that is none.
+
+    Attributes:
+        name: as drawn.
+        became: such as ``obstacle``; empty: it was left out.
+        called: name of the element.
+        by: what decided.
+        reason: why it was left out.
+        path: of the element in its model.
+    """
+
+    name: str
+    place: Place
+    shape: str
+    became: str = ""
+    called: str = ""
+    by: str = ""
+    reason: str = ""
+    notes: tuple[str, ...] = ()
+    path: str = ""
+
+
+class UniqueNames:
+    """UniqueNames of elements, each used once."""
+
+    def __init__(self, taken: Iterable[str]) -> None:
+        self._taken = {name.casefold() for name in taken}
+
+    def unique(self, name: str, otherwise: str) -> str:
+        """Return a name that people can read, and no element has yet; numbered where it has to be."""
+        clean = " ".join("".join(" " if unreadable(f"x{each}") else each for each in name).split())[
+            :LONGEST_NAME
+        ]
+        wanted = clean if clean and not unreadable(clean) else otherwise
+        found, number = wanted, 1
+        while found.casefold() in self._taken:
+            number += 1
+            found = f"{wanted} {number}"
+        self._taken.add(found.casefold())
+        return found
+
+
+@dataclass(frozen=True, slots=True)
+class Basis:
+    """What all elements of an import share.
+
+    Attributes:
+        levels: what heights count from.
+        altitude: height above the origin of tasks that are drawn without one, metres.
+        flies: whether a robot of the team does; otherwise such tasks are on the ground.
+        tolerance: of simplified borders, metres.
+        home: latitude and longitude of the first robot's home; None without robots.
+        crs: of the coordinates of the mission, and of the context.
+    """
+
+    levels: Levels
+    altitude: float
+    flies: bool
+    tolerance: float | None
+    home: Floats | None
+    crs: Mapping[str, str]
+
+
+class Builder:
+    """Makes elements, and puts them into a mission and its context."""
+
+    def __init__(
+        self, mission: Element, context: Element, registry: Registry, names: UniqueNames, around: Basis
+    ) -> None:
+        self.faults: dict[str, None] = {}
+        self.comments: dict[Element, str] = {}
+        self.added: dict[str, list[Element]] = {}
+        self.tasks: dict[str, Element] = {}
+        self._roots = {"tasks": mission}
+        self._context = context
+        self._registry = registry
+        self._names = names
+        self._around = around
+        shut = [each for name in _SHUT for each in children(context, name)]
+        self._closed = [ring for each in shut if len(ring := np.array([*_positions(each)], float)) > 2]
+        self._known = {
+            _likeness(each): each for root in (mission, context) for each in descendants(root) if _drawn(each)
+        }
+
+    def build(self, feature: MapFeature, decision: Decision) -> Outcome:
+        """Add the element of a feature; return what became of it."""
+        kind = decision.kind
+        told = Outcome(
+            feature.name, feature.place, shape_of(feature).value, by=decision.by, notes=decision.notes
+        )
+        if kind.metaclass is None:
+            return replace(told, reason=decision.reason)
+        attributes = dict(decision.attributes)
+        try:
+            found = self._shape(feature, kind, attributes)
+        except UnfitError as unfit:
+            return replace(told, reason=str(unfit))
+        element = self._registry.create(*kind.metaclass.key)
+        given, doubts = drawn_values(feature, kind, kind.metaclass)
+        asked, faults = asked_values(attributes, kind.metaclass)
+        self.faults.update(dict.fromkeys(f"{decision.by}: {fault}" for fault in faults))
+        given |= asked
+        set_values(element, kind, given)
+        notes = [*decision.notes, *found.notes, *doubts]
+        heights = self._heights(element, kind, found, given, notes)
+        self._place(element, kind, found, heights, notes)
+        alike = self._known.get(_likeness(element))
+        if alike is not None:
+            return replace(
+                told, reason=f"the same is there already: {label_of(alike) or 'an element without a name'}"
+            )
+        self._known[_likeness(element)] = element
+        wanted = given.get("name")
+        label = kind.symbol.label if kind.symbol is not None else kind.name
+        name = self._names.unique(wanted if isinstance(wanted, str) else feature.name, label)
+        element.name = name  # type: ignore[attr-defined]  # tasks and what is in a context have one
+        self.faults.update(dict.fromkeys(f"{decision.by}: {fault}" for fault in missing(element, kind)))
+        self.comments[element] = comment_of(feature)
+        path = self._append(element, kind, found.rings[0])
+        return replace(told, became=kind.name, called=name, notes=tuple(notes), path=path)
+
+    def add_robot(self, robot: Element, position: tuple[float, float], feature: MapFeature | None) -> None:
+        """Add a robot to the team; the home of the first one has the altitude of the origin."""
+        team = child(self._roots["tasks"], "team")
+        assert team is not None  # a mission that can be read, or a new one
+        levels, up = self._around.levels, 0.0
+        if (
+            feature is not None
+            and feature.heights
+            and (base := levels.above_origin(feature.reference)) is not None
+        ):
+            up = float(feature.heights[0][0]) + base
+        home = self.coordinate(*position, up)
+        if not up and levels.reference != "ORIGIN":
+            home.altitude = levels.origin  # type: ignore[attr-defined]  # a coordinate of the Earth
+        robot.home = home  # type: ignore[attr-defined]  # a robot
+        team.robots.append(robot)  # type: ignore[attr-defined]  # a team
+        self.added.setdefault("robots", []).append(robot)
+        if feature is not None:
+            self.comments[robot] = comment_of(feature)
+
+    def add_order(self, before: Element, after: Element) -> None:
+        """Let a task begin after another has ended."""
+        dependency = self._registry.create(MISSION, "TaskDependency", from_=before, to=after)
+        self._roots["tasks"].taskDependencies.append(dependency)  # type: ignore[attr-defined]  # a mission
+        self.added.setdefault("taskDependencies", []).append(dependency)
+
+    def coordinate(self, latitude: float, longitude: float, up: float = 0.0, of: str = "tasks") -> Element:
+        """Return a coordinate in the crs of the mission, or of the context."""
+        latitude, longitude = in_crs(latitude, longitude, self._around.crs[of])
+        altitude = self._around.levels.altitude(up) if up else None
+        return self._registry.create(
+            MISSION,
+            "GeoCoordinate",
+            latitude=round(latitude, DECIMALS),
+            longitude=round(longitude, DECIMALS),
+            altitude=altitude,
+        )
+
+    def _root(self, kind: Kind) -> Element:
+        return self._roots.get(kind.feature, self._context)
+
+    def _append(self, element: Element, kind: Kind, outer: Floats) -> str:
+        """Add an element to its model; return its path there."""
+        siblings = getattr(self._root(kind), kind.feature)
+        siblings.append(element)
+        path = f"/{kind.feature}[{len(siblings) - 1}]"
+        if kind.feature == "tasks":
+            self.tasks[path] = element
+        if kind.feature in _SHUT:
+            self._closed.append(outer)
+        self.added.setdefault(kind.feature, []).append(element)
+        return path
+
+    def _shape(self, feature: MapFeature, kind: Kind, attributes: dict[str, tuple[str, ...]]) -> DrawnShape:
+        """Return the positions of the element; the attributes lose the radius around points and lines."""
+        drawn = shape_of(feature)
+        if not kind.surrounds or feature.geometry is Geometry.AREA:
+            found = shape(
+                feature, drawn if drawn in kind.shapes else feature.geometry, self._around.tolerance
+            )
+            if kind.surrounds and len(found.rings) > 1:
+                if kind.feature == "emergencyAreas":
+                    raise UnfitError("an emergency area cannot have holes: draw it without them")
+                notes = (*found.notes, f"a {kind.name} has no holes: these are closed, too")
+                return DrawnShape(found.geometry, found.rings[:1], found.heights, found.reference, notes)
+            return found
+        shape(feature, feature.geometry, None)  # is it on the Earth?
+        texts = attributes.pop("radius", ()) or (str(feature.radius or feature.properties.get("radius", "")),)
+        emergency = kind.feature == "emergencyAreas"
+        if not texts[-1] and not emergency:
+            word = "obstacle" if kind.name == "obstacle" else "forbidden"
+            advice = f"--as '{feature.name or '*'}={word}:radius=METRES'"
+            raise UnfitError(f"a {feature.geometry.value} has no extent; {advice} gives it one")
+        try:
+            radius = float(texts[-1]) if texts[-1] else RALLY_RADIUS
+        except ValueError:
+            radius = 0.0
+        if not 0.0 < radius < 1e5:
+            raise UnfitError(f"radius {texts[-1]}: not a number of metres above 0")
+        ring = around(feature, radius, covering=not emergency)
+        top = feature.heights[0].max().repeat(len(ring)) if feature.heights else None
+        return DrawnShape(Geometry.AREA, (ring,), top, feature.reference, (f"{radius:g} m around it",))
+
+    def _heights(
+        self, element: Element, kind: Kind, found: DrawnShape, given: Mapping[str, object], notes: list[str]
+    ) -> Floats | None:
+        """Set the height of an element; return the heights of its coordinates, if they have any."""
+        ups = self._settled(found, notes)
+        if kind.feature == "obstacles":
+            if ups is not None and "maxHeight" not in given:
+                element.maxHeight = round(float(ups.max()), 3)  # type: ignore[attr-defined]  # obstacles have one
+            if getattr(element, "maxHeight", None) is None:
+                notes.append("without a height, it is closed at every height")
+            return None
+        if kind.feature != "tasks":
+            if ups is not None and kind.surrounds:
+                notes.append(
+                    "it is closed at every height"
+                    if kind.name == "forbidden area"
+                    else "its height is left out"
+                )
+            return None if kind.surrounds else ups
+        name = kind.symbol.height if kind.symbol is not None else ""
+        usual = self._around.altitude if self._around.flies else 0.0
+        optional = not name or name in given or not metaclass_of(element).feature(name).required
+        if found.geometry is not Geometry.AREA and ups is not None and optional:
+            return ups
+        if name and name not in given and getattr(element, name) is None:
+            setattr(element, name, round(float(ups.max()), 3) if ups is not None else usual)
+        elif not name and ups is None and usual and found.geometry is not Geometry.AREA:
+            return np.full(len(found.rings[0]), usual)
+        return None
+
+    def _settled(self, found: DrawnShape, notes: list[str]) -> Floats | None:
+        """Return heights above the origin; None where there are none, or they are all on the ground."""
+        if found.heights is None:
+            return None
+        base = self._around.levels.above_origin(found.reference)
+        if base is None:
+            if found.heights.any():
+                words = f"heights above {found.reference.value} are left out"
+                notes.append(f"{words}: that of the origin is not known")
+            return None
+        ups = found.heights + base
+        on_ground = found.reference in (HeightReference.GROUND, HeightReference.HOME) and not ups.any()
+        return None if on_ground or not np.isfinite(ups).all() else ups
+
+    def _place(
+        self, element: Element, kind: Kind, found: DrawnShape, ups: Floats | None, notes: list[str]
+    ) -> None:
+        metaclass = metaclass_of(element)
+        at = kind.shapes[found.geometry]
+        of = "tasks" if kind.feature == "tasks" else "context"
+        outer = found.rings[0]
+        made = [
+            self.coordinate(float(latitude), float(longitude), 0.0 if ups is None else float(ups[number]), of)
+            for number, (latitude, longitude) in enumerate(outer)
+        ]
+        if at.many and at.most > 0 and len(made) > at.most:
+            notes.append(f"{kind.name} takes {at.most} positions, so only the first and the last are used")
+            made = [made[0], made[-1]]
+        setattr(element, at.attribute, made if at.many else made[0])
+        if "initialPosition" in metaclass.by_name:
+            first = begin_of(outer, self._around.home, self._closed) if found.geometry is Geometry.AREA else 0
+            up = 0.0 if ups is None else float(ups[first])
+            element.initialPosition = self.coordinate(float(outer[first][0]), float(outer[first][1]), up, of)  # type: ignore[attr-defined]
+        if len(found.rings) > 1 and "holes" in metaclass.by_name:
+            holes = metaclass.by_name["holes"]
+            assert isinstance(holes.type, Metaclass)  # rings
+            for ring in found.rings[1:]:
+                points = [self.coordinate(float(each[0]), float(each[1]), 0.0, of) for each in ring]
+                getattr(element, holes.attribute).append(
+                    self._registry.create(*holes.type.key, points=points)
+                )
+        elif len(found.rings) > 1:
+            notes.append(f"{kind.name} has no holes: these are left out")
+
+
+def comment_of(feature: MapFeature) -> str:
+    """Return where a feature stands, and what it is called there, for a comment."""
+    place = f"{Path(feature.place.file).name}, line {feature.place.line}" if feature.place.line else ""
+    path = " / ".join((*feature.folders, feature.name)).strip(" /")
+    return ": ".join(each for each in (place or Path(feature.place.file).name, path[:200]) if each)
+
+
+def in_crs(latitude: float, longitude: float, crs: str) -> tuple[float, float]:
+    """Return a position of WGS84 in another crs."""
+    if crs.casefold() in ("epsg:4326", "wgs84"):
+        return latitude, longitude
+    from pyproj import Transformer
+
+    east, north = Transformer.from_crs("EPSG:4326", crs, always_xy=True).transform(longitude, latitude)
+    return float(north), float(east)
+
+
+def _drawn(element: Element) -> bool:
+    named = ((MISSION, "Task"), (CONTEXT, "Area"), (CONTEXT, "ContextElement"))
+    return any(is_kind(element, *key) for key in named)
+
+
+def _likeness(element: Element) -> tuple[object, ...]:
+    """Return what elements that were drawn alike have in common: their class and positions."""
+    return (metaclass_of(element).key, *_positions(element))
+
+
+def _positions(element: Element) -> Iterator[tuple[float | None, float | None]]:
+    for each in descendants(element):
+        at = containing_feature(each)
+        if is_kind(each, MISSION, "GeoCoordinate") and at is not None and at.name != "initialPosition":
+            yield number(each, "latitude"), number(each, "longitude")
