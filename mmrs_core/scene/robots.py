@@ -55,19 +55,28 @@ class Capability:
             mode: ``STEP`` or ``MISSION``.
             autopilot: how its autopilot takes them, in that mode.
         """
-        largest, upright = self.acceleration or inf, autopilot.vertical_acceleration
-        limited = replace(
+        stated: dict[str, Any] = dict(self.leg_timings.get(mode, {}))
+        if "acceleration" in stated:
+            stated["lag"] = 0.0
+        paced = replace(
             autopilot,
-            acceleration=min(autopilot.acceleration, largest),
-            deceleration=None if autopilot.deceleration is None else min(autopilot.deceleration, largest),
-            vertical_acceleration=None if upright is None else min(upright, largest),
             speed=min(autopilot.speed, self.speed[1]),
             climb=min(autopilot.climb, self.climb_rate or self.speed[1]),
             descent=min(autopilot.descent, self.descent_rate or self.speed[1]),
         )
-        stated: dict[str, Any] = dict(self.leg_timings.get(mode, {}))
-        unlimited = None if autopilot == IDEAL else replace(autopilot, **stated)
-        return replace(limited, **stated, unlimited=unlimited)
+        largest, upright = self.acceleration or inf, autopilot.vertical_acceleration
+        limited = replace(
+            paced,
+            acceleration=min(autopilot.acceleration, largest),
+            deceleration=None if autopilot.deceleration is None else min(autopilot.deceleration, largest),
+            vertical_acceleration=None if upright is None else min(upright, largest),
+        )
+        limited, unlimited = replace(limited, **stated), replace(autopilot, **stated)
+        if autopilot == IDEAL:
+            return limited
+        if autopilot.keeps_acceleration:
+            return replace(limited, unlimited=unlimited)
+        return replace(paced, **stated, unlimited=unlimited, limited=limited)
 
 
 @dataclass(frozen=True, slots=True)
@@ -198,6 +207,8 @@ class Kinematics:
     def beyond(self, start: Position, end: Position, speed: float) -> Position:
         """Return where a robot turns back that sets out from a standstill, and stops at the end of a leg.
 
+        It may speed up as its autopilot does by its own parameters, whatever its type states.
+
         Args:
             start: of the leg.
             end: of the leg.
@@ -206,7 +217,8 @@ class Kinematics:
         east, north, length = end[0] - start[0], end[1] - start[1], dist(start, end)
         if length <= 0.0 or self.timing.overshoot <= 0.0:
             return end
-        share = self.timing.overshoot * min(speed, sqrt(self.timing.acceleration * length)) / length
+        acceleration = (self.timing.unlimited or self.timing).acceleration
+        share = self.timing.overshoot * min(speed, sqrt(acceleration * length)) / length
         return end[0] + share * east, end[1] + share * north, end[2]
 
     @property

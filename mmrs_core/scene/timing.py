@@ -10,7 +10,7 @@ one, as far as the corner's radius allows.
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
-from math import dist, hypot, inf, sqrt
+from math import dist, exp, hypot, inf, sqrt
 from typing import NamedTuple, TypeAlias
 
 from mmrs_core.scene.primitives import Position
@@ -85,6 +85,7 @@ class Rates:
         rounds: whether it is expected to drive round rather than to turn before it goes.
         shunts_within: metres up to which a leg may be shunted for.
         circling: seconds in which it drives a full circle, which getting onto a longer leg takes at most.
+        bound: -1: these are the fewest seconds; 1: the most; 0: those expected.
         share: of the expected seconds that legs from a stop to a stop take.
         least: seconds that each takes, one of no length as well.
     """
@@ -97,6 +98,7 @@ class Rates:
     rounds: bool = False
     shunts_within: float = inf
     circling: float = 0.0
+    bound: int = 0
     share: float = 1.0
     least: float = 0.0
     _both_ends: float = field(init=False, repr=False, compare=False)
@@ -135,13 +137,14 @@ class Rates:
             if self.descent > 0.0 and self.timing.unlimited
             else self.descent,
             shunting=0.0,
+            bound=-1,
             share=1.0 - self.timing.spread,
         )
 
     def latest(self) -> Rates:
-        """Return the rates of a robot that is as slow as it may be."""
-        timing = self.timing
-        return replace(self, rounds=False, share=1.0 + timing.spread, least=timing.reporting)
+        """Return the rates of a robot that is as slow as it may be: its autopilot keeps its type's limits."""
+        timing, share = self.timing.limited or self.timing, 1.0 + self.timing.spread
+        return replace(self, timing=timing, rounds=False, bound=1, share=share, least=timing.reporting)
 
     def even(self, start: Position, end: Position) -> float:
         """Return the seconds of a straight leg at even speed: the slower of its level and upright parts."""
@@ -157,9 +160,13 @@ class Rates:
 
     def from_stop_to_stop(self, start: Position, end: Position) -> float:
         """Return the seconds of a straight leg from a stop to a stop, turning and settling included."""
-        if self.share < 1.0 and dist(start, end) <= self.timing.acceptance:
+        if self.bound < 0 and dist(start, end) <= self.timing.acceptance:
             return 0.0
-        return max(self.least, self.share * self._straight(start, end) + self.turning(start, end))
+        seconds = self.share * self._straight(start, end)
+        if self.bound and self.timing.still > 0.0:
+            inexact = self._between_inexact_ends(start, end)
+            seconds = min(seconds, inexact) if self.bound < 0 else max(seconds, inexact)
+        return max(self.least, seconds + self.turning(start, end))
 
     def turning(self, start: Position, end: Position) -> float:
         """Return the seconds that turning is expected to take before a leg."""
@@ -181,8 +188,9 @@ class Rates:
         return self.share * min(both, self._turning(before, after))
 
     def settling(self, start: Position, end: Position) -> float:
-        """Return the seconds from the end of a leg until it is reported as done; none where it is passed."""
-        return self.share * self._settling(self._stopping(start, end)[1])
+        """Return the seconds that a leg takes longer as it ends with a stop, which is not passed."""
+        seconds, fastest = self._stopping(start, end)
+        return self.share * max(0.0, self._lag(seconds, start, end) + self._settling(fastest))
 
     def eased(self, start: Position, end: Position) -> float:
         """Return the fewest seconds of a leg whose ends are passed.
@@ -196,8 +204,27 @@ class Rates:
         seconds, _ = self._stopping(start, end)
         return max(SPEEDING * even, self.share * (seconds - sum(self._phases(start, end)) / 2.0))
 
+    def _between_inexact_ends(self, start: Position, end: Position) -> float:
+        """Return the fewest or most seconds of a leg: one counts as over before the robot stands at its end.
+
+        That is where the next one begins, and how fast: so the robot may save the end and the begin of its
+        curve, or make up for what is left of the leg before, and come to a stop.
+        """
+        length, speed, up, down = self._limits(start, end)
+        timing = self.timing
+        if length <= 0.0 or speed <= 0.0:
+            return self._stopping(start, end)[0]
+        if self.bound > 0:
+            seconds, fastest = _stop_to_stop(length + timing.acceptance, speed, up, down, timing.jerk)
+            return seconds + self._lag(seconds, start, end) + max(0.0, self._settling(fastest))
+        still = min(timing.still, speed)
+        ends = [_reaching(still, limit, timing.jerk) for limit in (up, down)]
+        whole = length + sum(metres for _, metres in ends)
+        seconds, _ = _stop_to_stop(whole, speed, up, down, timing.jerk)
+        return max(0.0, seconds - sum(each for each, _ in ends))
+
     def _straight(self, start: Position, end: Position) -> float:
-        if -LEVEL <= end[2] - start[2] <= LEVEL:
+        if -LEVEL <= end[2] - start[2] <= LEVEL and not self.timing.lag:
             length = hypot(end[0] - start[0], end[1] - start[1])
             if length <= 0.0:
                 return 0.0
@@ -208,7 +235,15 @@ class Rates:
             if fastest >= self._bent:
                 return slowness * fastest + bending + self._settling(fastest)
         seconds, fastest = self._stopping(start, end)
-        return seconds + self._settling(fastest) if seconds > 0.0 else seconds
+        if seconds <= 0.0:
+            return seconds
+        return max(0.0, seconds + self._lag(seconds, start, end) + self._settling(fastest))
+
+    def _lag(self, seconds: float, start: Position, end: Position) -> float:
+        """Return how much longer a leg takes that would take so long, seconds."""
+        if not self.timing.lag or start[:2] == end[:2]:
+            return 0.0
+        return self.timing.lag * (1.0 - exp(-seconds / self.timing.lag_within))
 
     def _stopping(self, start: Position, end: Position) -> tuple[float, float]:
         """Return the seconds of a leg from a stop to a stop, and its largest speed."""
@@ -266,6 +301,16 @@ def _speeding(speed: float, acceleration: float, jerk: float) -> float:
     if speed * jerk >= acceleration * acceleration:
         return speed / acceleration + acceleration / jerk
     return 2.0 * sqrt(speed / jerk)
+
+
+def _reaching(speed: float, acceleration: float, jerk: float) -> tuple[float, float]:
+    """Return the seconds and metres in which a robot that speeds up from a stop first is so fast."""
+    bend = acceleration / jerk if jerk < inf else 0.0
+    if bend > 0.0 and 2.0 * speed <= acceleration * bend:
+        seconds = sqrt(2.0 * speed / jerk)
+        return seconds, speed * seconds / 3.0
+    seconds = speed / acceleration + bend / 2.0
+    return seconds, speed * speed / (2.0 * acceleration) + acceleration * bend * bend / 24.0
 
 
 def _stop_to_stop(

@@ -21,8 +21,13 @@ class LegTiming:
         speed: largest that it makes, metres per second.
         climb, descent: largest that it makes, metres per second.
         corner_radius: metres from a corner within which it passes; 0: it comes to a stop at each.
-        acceptance: metres from a target at which it may count as reached: so short a leg may take no time.
-        settling: seconds from the end of a leg until it is reported as done.
+        acceptance: metres from a target at which it may count as reached: so short a leg may take no time,
+            and another one may be so much longer that begins there.
+        still: metres per second up to which it counts as standing still: so fast it may begin and end legs.
+        settling: seconds from the end of a leg until it is reported as done; negative: before its end.
+        lag, lag_within: seconds that a long level leg takes longer, as the robot comes near to its speed only
+            after some time; and the time constant of that, seconds.
+        keeps_acceleration: whether it is expected to keep the acceleration that the robot type states.
         overshoot: how far it goes beyond a target, metres for each metre per second of the leg's largest
             speed, that is, seconds.
         spread: by which share legs take longer or shorter than expected.
@@ -30,6 +35,7 @@ class LegTiming:
         shunts_within: turning radii up to which a leg may be shunted for, where the robot cannot turn on the
             spot; it gets onto longer ones by one curve.
         unlimited: how it takes legs where it does not keep the limits of the robot's type; None: as here.
+        limited: how it takes them where it keeps them all; None: as here.
     """
 
     acceleration: float = inf
@@ -41,12 +47,17 @@ class LegTiming:
     descent: float = inf
     corner_radius: float = inf
     acceptance: float = 0.0
+    still: float = 0.0
     settling: float = 0.0
+    lag: float = 0.0
+    lag_within: float = 1.0
+    keeps_acceleration: bool = True
     overshoot: float = 0.0
     spread: float = 0.0
     reporting: float = 0.0
     shunts_within: float = inf
     unlimited: LegTiming | None = None
+    limited: LegTiming | None = None
 
     @property
     def braking(self) -> float:

@@ -145,6 +145,23 @@ def test_bounds_are_around_what_is_expected(timing, length):
     assert latest.from_stop_to_stop(HERE, east(length)) == pytest.approx(expected * (1.0 + timing.spread))
 
 
+@given(timings(), LENGTHS, SPEEDS, st.floats(0.0, 1.0), st.floats(0.0, 10.0), st.floats(1.0, 30.0))
+def test_bounds_stay_around_what_is_expected_of_a_robot_that_is_inexact(
+    timing, length, speed, still, lag, within
+):
+    found = rates(replace(timing, acceptance=1.0, still=still, lag=lag, lag_within=within), speed)
+    least, most = (level.from_stop_to_stop(HERE, east(length)) for level in (found.soonest(), found.latest()))
+    assert 0.0 <= least <= found.from_stop_to_stop(HERE, east(length)) <= most
+
+
+@given(timings(), LENGTHS, SPEEDS, st.floats(0.0, 10.0), st.floats(1.0, 30.0))
+def test_a_robot_that_lags_takes_so_much_longer_at_most(timing, length, speed, lag, within):
+    late = seconds(replace(timing, lag=lag, lag_within=within), length, speed) - seconds(
+        timing, length, speed
+    )
+    assert -1e-9 <= late <= lag + 1e-9
+
+
 @given(LENGTHS, SPEEDS)
 def test_an_ideal_robot_takes_its_length_over_its_speed(length, speed):
     assert seconds(IDEAL, length, speed) == pytest.approx(length / speed)

@@ -25,4 +25,5 @@ def _timing_of(vehicle: str, type: RobotType) -> AutopilotTiming:
     named = autopilot_of(type, {})
     fitting = [each for each in PROFILES.values() if each.vehicle == vehicle]
     profile = next((each for each in fitting if each.autopilot.name == named), fitting[0])
-    return replace(profile.pacing, charging=CHARGING_FACTOR)
+    step = replace(profile.pacing.step, still=profile.still)
+    return replace(profile.pacing, step=step, charging=CHARGING_FACTOR)

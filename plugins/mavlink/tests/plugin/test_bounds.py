@@ -13,8 +13,10 @@ from mmrs_multicopter.testing import LAND, go_to, quad, robot_program, take_off
 from mmrs_core.analysis.durations import durations_of
 from mmrs_core.analysis.motion import motions
 from mmrs_core.contributions.checks import CheckInput
+from mmrs_core.scene import Capability, Kinematics
 from mmrs_core.scene.timing import Rates
 from mmrs_core.testing.programs import installed, move, program
+from mmrs_mavlink.plugin.timings import timings
 from mmrs_mavlink.profiles import ARDUCOPTER, ARDUSUB, PX4_MULTICOPTER
 from mmrs_mavlink.sitl.body import STEP, Body, Vector
 from mmrs_mavlink.steps.energy import CHARGING_FACTOR
@@ -51,6 +53,69 @@ def test_a_leg_of_a_simulated_vehicle_keeps_to_its_bounds(profile, to, speed):
     rates = Rates(speed, figures.climb, figures.descent, figures)
     least, most = (each.from_stop_to_stop(HERE, to) for each in (rates.soonest(), rates.latest()))
     assert least <= flown(profile, to, speed) <= most
+
+
+def submarine(speed=1.05, **limits):
+    """Return the rates of an ArduSub whose type states some limits."""
+    (autopilot,) = (each.of(quad()) for each in timings() if each.vehicle == "sub")
+    figures = Capability(0.0, None, (0.0, 1.8), **limits).timing("STEP", autopilot.step)
+    return Rates(speed, figures.climb, figures.descent, figures)
+
+
+def level_leg(rates, metres):
+    return rates.from_stop_to_stop((0.0, 0.0, -5.0), (0.0, metres, -5.0))
+
+
+SUBMARINE_LEGS = [
+    (1.05, 14.28, (18.79, 19.26)),
+    (1.05, 30.0, (35.74, 36.39)),
+    (1.0, 90.0, (96.5, 97.4)),
+    (0.8, 20.0, (31.6, 31.9)),
+    (0.6, 80.36, (139.1, 139.7)),
+]
+"""Commanded speed, metres, and the least and most seconds that level legs of an ArduSub took."""
+
+
+@pytest.mark.parametrize(("speed", "metres", "measured"), SUBMARINE_LEGS)
+@pytest.mark.parametrize(
+    "limits", [{}, {"acceleration": 0.2}], ids=["", "a type that states its acceleration"]
+)
+def test_a_leg_of_a_submarine_is_expected_to_take_what_was_measured(speed, metres, measured, limits):
+    """It comes near to its speed at last, and nothing makes it keep the acceleration of its type."""
+    expected = level_leg(submarine(speed, **limits), metres)
+    assert measured[0] * 0.95 <= expected <= measured[1] * 1.05
+
+
+@pytest.mark.parametrize("seconds", [2.79, 3.4, 4.1, 4.75])
+def test_a_short_leg_of_a_submarine_keeps_to_its_bounds(seconds):
+    """Measured: legs of 1.04 m, of which all but the first of each four began at up to 0.3 m/s."""
+    rates = submarine()
+    assert level_leg(rates.soonest(), 1.04) <= seconds <= level_leg(rates.latest(), 1.04)
+
+
+@pytest.mark.parametrize(("metres", "seconds"), [(1.04, 8.09), (2.42, 8.78), (14.28, 22.18), (30.0, 40.36)])
+def test_a_submarine_that_is_set_up_as_its_type_states_is_no_later_than_its_bound(metres, seconds):
+    """Measured with WPNAV_ACCEL = 20."""
+    assert seconds <= level_leg(submarine(acceleration=0.2).latest(), metres)
+
+
+@given(st.floats(1.01, 50.0), st.floats(0.2, 1.05), st.floats(0.0, STILL))
+def test_no_leg_that_is_cut_short_at_both_ends_is_quicker_than_its_bound(metres, speed, still):
+    """One that begins and ends on an S-curve, as fast as the driver takes for standing still."""
+    rates = submarine(speed)
+    jerk = rates.timing.jerk
+    end = (2.0 * min(still, speed / 2.0) / jerk) ** 0.5
+    curve = replace(rates, timing=replace(rates.timing, still=0.0, lag=0.0, settling=0.0, unlimited=None))
+    whole = level_leg(curve, metres + 2.0 * jerk * end**3 / 6.0)
+    assert level_leg(rates.soonest(), metres) <= whole - 2.0 * end + 1e-9
+
+
+def test_a_type_that_states_less_acceleration_goes_no_less_beyond_its_targets():
+    """Nothing makes its autopilot keep that: 0.79 m were measured on legs of 12 m."""
+    (autopilot,) = (each.of(quad()) for each in timings() if each.vehicle == "copter")
+    figures = Capability(0.0, None, (0.0, 12.0), acceleration=1.0).timing("STEP", autopilot.step)
+    slow = Kinematics(5.0, 0.0, 12.0, 2.5, 1.5, figures)
+    assert slow.beyond(HERE, (12.0, 0.0, 20.0), 6.0)[0] >= 12.79
 
 
 def bounds(*moves, **movement):
