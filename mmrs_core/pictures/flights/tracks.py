@@ -175,10 +175,15 @@ class _Cones:
 
 def pieces(track: Track) -> list[Floats]:
     """Return the positions between gaps, each (n, 3)."""
+    return [positions for _, positions in timed_pieces(track)]
+
+
+def timed_pieces(track: Track) -> list[tuple[Floats, Floats]]:
+    """Return the times (n,) and the positions (n, 3) between gaps."""
     if not len(track.times):
         return []
     ends = np.flatnonzero(track.broken) + 1
-    return list(np.split(track.positions, ends))
+    return list(zip(np.split(track.times, ends), np.split(track.positions, ends), strict=True))
 
 
 def nearest(points: Floats, way: Floats) -> tuple[Floats, Floats]:

@@ -140,6 +140,7 @@ def _task_picture(
         end=end,
         details=details_of(task.part, symbol),
         gap=gap,
+        model=task.part,
     )
 
 
@@ -272,7 +273,7 @@ def _elements(
     places = tuple(shapes.outlines), tuple(shapes.lines), tuple(shapes.marks)
     if otherwise or any(places):
         details = details_of(part, symbol)
-        yield ElementPicture(name, symbol, *places, details=details, inner=not otherwise, gap=gap)
+        yield ElementPicture(name, symbol, *places, details, inner=not otherwise, gap=gap, model=part)
     for inner in shapes.parts:
         known = has_symbol(inner.metaclasses, symbols)
         own_symbol = _symbol_of(inner.metaclasses, symbols) if known else symbol

@@ -9,7 +9,7 @@ from typing import TypeAlias
 
 from mmrs_core.contributions.symbols import MapSymbol
 from mmrs_core.pictures.figures import clock, length
-from mmrs_core.scene import AreaUse, Point, Position, Ring
+from mmrs_core.scene import AreaUse, Part, Point, Position, Ring
 
 Details: TypeAlias = tuple[tuple[str, str], ...]
 """Further facts: (name, value)."""
@@ -176,6 +176,7 @@ class TaskPicture:
         begin, end: seconds; None where it is not planned.
         part: how much of it was done, 0 to 1.
         gap: why it is not drawn whole; empty: it is.
+        model: the task itself.
     """
 
     name: str
@@ -188,6 +189,7 @@ class TaskPicture:
     details: Details = ()
     part: float = 1.0
     gap: str = ""
+    model: Part | None = None
 
     @property
     def drawn(self) -> bool:
@@ -212,6 +214,7 @@ class ElementPicture:
         outlines: not closed. lines: polylines. marks: single points. All (east, north), metres.
         inner: whether another element contains it.
         gap: why it is not drawn whole; empty: it is.
+        model: the element itself.
     """
 
     name: str
@@ -222,6 +225,7 @@ class ElementPicture:
     details: Details = ()
     inner: bool = False
     gap: str = ""
+    model: Part | None = None
 
     @property
     def points(self) -> tuple[Point, ...]:

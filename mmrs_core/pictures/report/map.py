@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from pathlib import Path
 
+from mmrs_core.behaviour.as_scene import carries_out
 from mmrs_core.contributions.registry import Contributions
 from mmrs_core.diagnostics import has_errors
 from mmrs_core.errors import MmrsError
@@ -25,7 +26,7 @@ def flight_picture(given: Given, report: Report, contributions: Contributions, f
     adds no tasks, which is one of the picture's gaps.
     """
     picture = picture_of_flight(given.program, given.flight, given.planned, contributions, given.place)
-    scene = _scene_in(folder, contributions, given, report)
+    scene = _scene_in(folder, contributions, given)
     if not isinstance(scene, Scene):
         return replace(picture, gaps=(*picture.gaps, MapGap("tasks", scene))) if scene else picture
     begins = {task.name: task.flown[0] for task in report.tasks if task.flown is not None}
@@ -42,7 +43,7 @@ def _last(picture: Picture, task: str) -> float:
     return max((bar.end for bar in bars), default=picture.makespan)
 
 
-def _scene_in(folder: Path, contributions: Contributions, given: Given, report: Report) -> Scene | str:
+def _scene_in(folder: Path, contributions: Contributions, given: Given) -> Scene | str:
     """Return the mission in a folder, or why its tasks cannot be drawn; empty where there is none."""
     try:
         file = model_in(folder, "mission")
@@ -54,5 +55,4 @@ def _scene_in(folder: Path, contributions: Contributions, given: Given, report: 
         scene = ground(models)
     except MmrsError:  # the report is of the behaviour: it needs no mission
         return "the mission beside the behaviour cannot be read"
-    same = {task.name for task in report.tasks} <= {task.name for task in scene.tasks}
-    return scene if same and scene.frame == given.program.frame else f"{file.name} is of another behaviour"
+    return scene if carries_out(given.program, scene) else f"{file.name} is of another behaviour"
