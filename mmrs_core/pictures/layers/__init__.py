@@ -1,0 +1,1 @@
+"""Missions, behaviours and flights as drawings of map programs, layer by layer."""
