@@ -18,8 +18,9 @@ from mmrs_core.languages import mission as missions
 from mmrs_core.languages import robot as robots_language
 from mmrs_core.languages.codes import explained, refusal
 from mmrs_core.languages.conformance import check_conformance
-from mmrs_core.languages.modelset import context_in, robot_files_in, types_by_name
+from mmrs_core.languages.modelset import context_in, types_by_name
 from mmrs_core.languages.reading import read_model
+from mmrs_core.languages.references.project import robot_files_in
 from mmrs_core.pipeline import BehaviourContext, program_of
 
 if TYPE_CHECKING:

@@ -9,7 +9,8 @@ from typing import Annotated
 import typer
 
 from mmrs_core.errors import UnreadableError
-from mmrs_core.languages.modelset import model_in, robot_files_in
+from mmrs_core.languages.modelset import model_in
+from mmrs_core.languages.references.project import robot_files_in
 
 Project = Annotated[
     Path,

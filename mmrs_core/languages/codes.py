@@ -58,8 +58,8 @@ CODES: Mapping[str, Advice] = MappingProxyType(
         ),
         "XMI006": Advice(
             "Unresolved reference",
-            "a reference to an element, such as //@tasks.0 or #id",
-            "count from 0 in file order, or correct the id",
+            "a reference to an element: its name, //@tasks.0 or #id",
+            "correct the name, or the path, which counts from 0 in file order",
         ),
         "XMI007": Advice(
             "Reference to a file outside the project",
@@ -116,6 +116,11 @@ CODES: Mapping[str, Advice] = MappingProxyType(
             "Element of another file that cannot be contained here",
             "an element that no other element contains",
             "contain it once, and refer to it elsewhere",
+        ),
+        "XMI018": Advice(
+            "Name of several elements",
+            "a name that is unique where the reference stands",
+            "rename one of them, or write the path, such as //@tasks.0",
         ),
         "ECO001": Advice(
             "Missing required value",

@@ -17,6 +17,7 @@ from mmrs_core.languages.element import Element, Unknown, descendants, held, met
 from mmrs_core.languages.model import Model
 from mmrs_core.languages.reading import Reading
 from mmrs_core.languages.references.documents import Draft
+from mmrs_core.languages.references.project import MODEL_ENDINGS, robot_files_in
 from mmrs_core.languages.registry import Registry
 
 if TYPE_CHECKING:
@@ -43,9 +44,6 @@ def crowds(root: Element) -> Iterator[Diagnostic]:
                 )
                 hint = f"divide it, or simplify it until it has at most {MOST_PARTS} {feature.name}"
                 yield Diagnostic("FIL006", Severity.ERROR, message, place_of(element), hint)
-
-
-_ENDINGS = (".xmi", ".json")
 
 
 @dataclass(frozen=True, slots=True)
@@ -96,7 +94,7 @@ def model_in(folder: Path, name: str) -> Path | None:
     Raises:
         UnreadableError: if there are both, of which one would go unnoticed.
     """
-    found = [file for ending in _ENDINGS if os.path.lexists(file := folder / f"{name}{ending}")]
+    found = [file for ending in MODEL_ENDINGS if os.path.lexists(file := folder / f"{name}{ending}")]
     if len(found) > 1:
         both = f"has both {found[0].name} and {found[1].name}; keep one of them"
         raise UnreadableError.of("PRJ003", both, folder)
@@ -120,12 +118,6 @@ def context_in(folder: Path) -> Path | None:
         if wanted in ("context.xmi", "context.json"):
             raise UnreadableError.of("PRJ003", f"is taken for no context unless its name is {wanted}", other)
     return None
-
-
-def robot_files_in(folder: Path) -> tuple[Path, ...]:
-    """Return the files of robot types in a folder, by name; hidden files are none."""
-    files = (file for ending in _ENDINGS for file in folder.glob(f"*{ending}"))
-    return tuple(sorted(file for file in files if not file.name.startswith(".")))
 
 
 def read_project(
@@ -154,7 +146,7 @@ def read_project(
     """
     mission_file, context_file, robot_files = project_files(mission, context, robots)
     files = [mission_file, *([context_file] if context_file else []), *robot_files]
-    reading = Reading(registry, _common_folder(files), unsaved)
+    reading = Reading(registry, _common_folder(files), unsaved, complete=True)
     opened = [_opened(reading, file) for file in files]
     reading.follow()
     drafts = [draft for draft in opened if isinstance(draft, Draft)]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from mmrs_core.errors import UnreadableError
 from mmrs_core.languages.codes import explained
 from mmrs_core.languages.collector import collector_at_rest
-from mmrs_core.languages.element import Element, Unknown
+from mmrs_core.languages.element import Element, Unknown, root_of
 from mmrs_core.languages.evolution.migration import may_be_old
 from mmrs_core.languages.importers import foreign_file
 from mmrs_core.languages.json_form import is_json
@@ -18,7 +18,8 @@ from mmrs_core.languages.metamodels.text import package_text
 from mmrs_core.languages.model import Model
 from mmrs_core.languages.references.documents import Draft
 from mmrs_core.languages.references.hrefs import real_path
-from mmrs_core.languages.references.resolution import resolve, tell_other_ends
+from mmrs_core.languages.references.project import files_beside
+from mmrs_core.languages.references.resolution import resolve, resolve_names, tell_other_ends
 from mmrs_core.languages.registry import Registry
 from mmrs_core.languages.sources import Source
 from mmrs_core.languages.xmi.events import Document, read_bytes
@@ -38,17 +39,22 @@ class Reading:
         root: Path | None,
         unsaved: Mapping[Path, bytes] | None = None,
         known: Sequence[Element] = (),
+        *,
+        complete: bool = False,
     ) -> None:
         """Take the metamodels, and the folder that references must not leave (None: no file at all).
 
         Texts that are not saved yet are read instead of what their files, by real path, hold. What was
-        read before is known to importers, whose files may name robot types.
+        read before is known to importers, whose files may name robot types. Where the files that are opened
+        are not complete, elements are looked for by name in the others of the project, too.
         """
+        self._complete = complete
         self._registry = registry
         self._known = tuple(known)
         self._unsaved = unsaved or {}
         self._root = real_path(root) if root is not None else None
         self._drafts: dict[Path, Draft] = {}
+        self._looked_through: dict[Path, Draft | None] = {}
         self._described: dict[str, Draft] = {}
         self._refused: dict[Path, tuple[str, str, str, int]] = {}
         self._unresolved: list[Draft] = []
@@ -124,14 +130,58 @@ class Reading:
     def follow(self) -> None:
         """Resolve the references of all files read so far, and of those that they lead to."""
         doubled = []
+        waiting: list[Draft] = []
         self._following = True
         self._import()
         with collector_at_rest():
-            while self._unresolved:
-                draft = self._unresolved.pop(0)
-                doubled.append((draft, resolve(draft, self, self._root, self._registry)))
+            while self._unresolved or waiting:
+                if self._unresolved:
+                    draft = self._unresolved.pop(0)
+                    doubled.append((draft, resolve(draft, self, self._root, self._registry)))
+                    waiting += [draft] if draft.late else []
+                else:
+                    draft = waiting.pop(0)
+                    doubled.append((draft, resolve_names(draft, self, self._registry)))
             for draft, references in doubled:
                 tell_other_ends(draft, references)
+
+    def beside(self, draft: Draft) -> Iterator[Draft]:
+        """Yield the files read with one, and those of its project that were only looked through."""
+        yield from (other for other in self._models() if other is not draft)
+        path = draft.source.path
+        if path is None or self._root is None or self._complete:
+            return
+        for file in files_beside(Path(draft.source.file)):
+            real = real_path(file)
+            if real not in self._drafts and real != path and real.is_relative_to(self._root):
+                if real not in self._looked_through:
+                    self._looked_through[real] = self._look_through(file, real)
+                if (found := self._looked_through[real]) is not None:
+                    yield found
+
+    def _look_through(self, file: Path, real: Path) -> Draft | None:
+        """Read a file without following its references; None if it cannot be read."""
+        try:
+            data = self._unsaved[real] if real in self._unsaved else read_bytes(file)
+            draft = self._parsed(data, Source(str(file), real))
+        except UnreadableError:
+            return None
+        draft.number_roots()
+        return draft
+
+    def opened(self, element: Element) -> Element:
+        """Return an element of a file that was looked through as it is once that is read, or any as it is."""
+        source = root_of(element)._mmrs_source
+        if all(draft is None or draft.source is not source for draft in self._looked_through.values()):
+            return element
+        assert source is not None
+        found = self.open(Path(source.file)).find(element.eURIFragment())
+        assert found is not None  # the file was read a moment ago
+        return found
+
+    def _models(self) -> Iterator[Draft]:
+        """Yield the files of models; metamodels that they refer to are read with them, and are none."""
+        return (draft for path, draft in self._drafts.items() if path.suffix != ".ecore")
 
     def _import(self) -> None:
         """Fill the drafts of foreign files, those of one importer together."""
@@ -149,12 +199,7 @@ class Reading:
 
     def model(self, draft: Draft) -> Model:
         """Return what a file holds, with the other files read together with it."""
-        # metamodels that models refer to are read with them, and are no models
-        others = (
-            self._plain(other)
-            for path, other in self._drafts.items()
-            if other is not draft and path.suffix != ".ecore"
-        )
+        others = (self._plain(other) for other in self._models() if other is not draft)
         plain = self._plain(draft)
         return replace(plain, linked=tuple(others))
 

@@ -11,6 +11,7 @@ from mmrs_core.languages.collector import collector_at_rest
 from mmrs_core.languages.element import Element
 from mmrs_core.languages.json_form import is_json
 from mmrs_core.languages.json_form.writer import JsonWriter
+from mmrs_core.languages.references.by_name import ReferenceNames
 from mmrs_core.languages.registry import Registry
 from mmrs_core.languages.xmi.quick_writer import writer_for
 from mmrs_core.languages.xmi.writer import XmiWriter
@@ -24,6 +25,7 @@ def to_xmi(
     schema_location: Mapping[str, str] | None = None,
     file: Path | None = None,
     comments: Mapping[Element, str] | None = None,
+    names: ReferenceNames | None = None,
 ) -> bytes:
     """Return the text of a model as EMF writes it, in UTF-8; the same model gives the same bytes.
 
@@ -33,14 +35,15 @@ def to_xmi(
         schema_location: for Eclipse, where the .ecore of each nsURI lies, relative to the file.
         file: where the text will stand; needed when the model refers to other files.
         comments: what is written before some elements; not before one of several roots.
+        names: what references become where names lead to their elements; Eclipse does not read those.
 
     Raises:
         ValueError: if a value is not of its type, holds a character that XML cannot hold, or a reference
             leads to an element that stands in no file.
     """
     with collector_at_rest():
-        if comments:
-            writer = XmiWriter(tuple(roots), registry, file, comments)
+        if comments or names is not None:
+            writer = XmiWriter(tuple(roots), registry, file, comments, names)
         else:
             writer = writer_for(tuple(roots), registry, file)
         return writer.document(schema_location or {}).encode()
@@ -52,10 +55,11 @@ def to_json(
     *,
     schema_location: Mapping[str, str] | None = None,
     file: Path | None = None,
+    names: ReferenceNames | None = None,
 ) -> bytes:
     """Return the text of a model in our JSON form, in UTF-8; arguments and errors as in `to_xmi`."""
     with collector_at_rest():
-        return JsonWriter(tuple(roots), registry, file).document(schema_location or {}).encode()
+        return JsonWriter(tuple(roots), registry, file, names).document(schema_location or {}).encode()
 
 
 def write_model(

@@ -30,6 +30,7 @@ from mmrs_core.languages.metaclass import Feature, Metaclass
 from mmrs_core.languages.missing import hint_for
 from mmrs_core.languages.naming import nearest
 from mmrs_core.languages.references.documents import Draft, Pending
+from mmrs_core.languages.references.spelling import as_address
 from mmrs_core.languages.registry import Registry
 from mmrs_core.languages.xmi.events import LONGEST_NAMESPACE
 
@@ -292,7 +293,7 @@ class Beginnings:
         """Take note that what stands in another file is contained here."""
         assert start.owner is not None  # there is a feature
         if event[0] == TEXT:
-            self._draft.pending.append(Pending(start.owner, feature, event[2], start.line))
+            self._draft.pending.append(Pending(start.owner, feature, as_address(event[2]), start.line))
         else:
             self._members.no_object(start.owner, feature, start.above)
 

@@ -28,6 +28,7 @@ from mmrs_core.languages.json_form.tree import Words
 from mmrs_core.languages.metaclass import Enumeration, Feature, Metaclass, is_null
 from mmrs_core.languages.naming import nearest
 from mmrs_core.languages.references.documents import Draft, Pending
+from mmrs_core.languages.references.spelling import as_address, is_type, one_of_many
 from mmrs_core.languages.values.texts import words_of
 
 _HELPED_FAULTS = 200
@@ -113,6 +114,7 @@ class Members:
     def link(self, element: Element, feature: Feature, text: str, place: Place) -> None:
         """Take note of a reference that stands alone."""
         line = self._stream.line(place)
+        text = _one_of(text, feature)
         made = Pending(element, feature, text, line) if feature.linked else (element, feature, text, line)
         self._draft.pending.append(made)
 
@@ -217,7 +219,7 @@ class Members:
         if feature.many:
             self._listed(element, feature, event, line)
             return
-        links = self._links(event, line)
+        links = self._links(event, feature, line)
         first = next(links, None)
         count = 1 + sum(1 for _ in links)
         if first is None:
@@ -234,7 +236,7 @@ class Members:
         """Take references of which there may be many: those that follow each other become one, as in XMI."""
         words: list[str] = []
         place, said = line, False
-        for text, at in self._links(event, line):
+        for text, at in self._links(event, feature, line):
             said = True
             if text is None:
                 self._no_link(element, feature, line)
@@ -242,7 +244,7 @@ class Members:
             if at != place or len(words) >= _MOST_WORDS:
                 self._wait(element, feature, words, place)
                 words.clear()
-            if words and _is_type(words[-1], text):
+            if words and is_type(words[-1], text.partition(" ")[0]):
                 words.append(_A_TYPE)
             place = at
             words.append(text)
@@ -255,10 +257,10 @@ class Members:
             self._draft.pending.append(Pending(element, feature, " ".join(words), line))
 
     def _no_link(self, element: Element, feature: Feature, line: int) -> None:
-        message = f"{feature.name}: takes the paths of elements, such as //@tasks.0"
+        message = f"{feature.name}: takes the names or paths of elements, such as //@tasks.0"
         self.fault("XMI010", message, line, element, broken=feature)
 
-    def _links(self, event: Event, line: int) -> Iterator[tuple[str | None, int]]:
+    def _links(self, event: Event, feature: Feature, line: int) -> Iterator[tuple[str | None, int]]:
         """Yield each reference with its line; None where it is none."""
         for each in self._opened(event):
             if each[0] == OBJECT:
@@ -266,7 +268,7 @@ class Members:
                 yield self._stated(), at
             else:
                 skip(each, self._events)
-                yield each[2] if each[0] == TEXT else None, line
+                yield _one_of(each[2], feature) if each[0] == TEXT else None, line
 
     def _stated(self) -> str | None:
         """Return the reference that an object is which has begun; None where it says anything else."""
@@ -274,7 +276,7 @@ class Members:
         for event in self._rest():
             skip(event, self._events)
             said = [*said[:1], event]
-        return said[0][2] if len(said) == 1 and said[0][:2] == (TEXT, REF) else None
+        return as_address(said[0][2]) if len(said) == 1 and said[0][:2] == (TEXT, REF) else None
 
     def _opened(self, event: Event) -> Iterator[Event]:
         """Yield the values of a list, or the one that is there; who takes them goes to the end of each."""
@@ -289,6 +291,6 @@ class Members:
             yield event
 
 
-def _is_type(word: str, following: str) -> bool:
-    """Return whether a reference that ends a text would be taken for the type of the one that follows."""
-    return ":" in word and "#" in following.partition(" ")[0]
+def _one_of(text: str, feature: Feature) -> str:
+    """Return a reference as XMI would have it among those of a feature."""
+    return one_of_many(text) if feature.many and not isinstance(text, Words) else text

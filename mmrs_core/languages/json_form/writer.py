@@ -13,6 +13,7 @@ from mmrs_core.languages.json_form.tree import formatted, laid_out
 from mmrs_core.languages.json_form.unknown import stated
 from mmrs_core.languages.metaclass import Feature, Metaclass, is_null
 from mmrs_core.languages.references.addresses import Addresses, Positions
+from mmrs_core.languages.references.by_name import ReferenceNames
 from mmrs_core.languages.registry import Registry
 from mmrs_core.languages.values.texts import described
 
@@ -28,7 +29,14 @@ class _UnplacedError(Exception):
 class JsonWriter:
     """Writes one document."""
 
-    def __init__(self, roots: Sequence[Element], registry: Registry, file: Path | None) -> None:
+    def __init__(
+        self,
+        roots: Sequence[Element],
+        registry: Registry,
+        file: Path | None,
+        names: ReferenceNames | None = None,
+    ) -> None:
+        self._names = names
         self._roots = roots
         self._registry = registry
         self._addresses = Addresses(roots, file)
@@ -162,8 +170,8 @@ class JsonWriter:
     def _plain(self, element: Element, feature: Feature, values: tuple[object, ...]) -> str:
         kind = feature.type
         if isinstance(kind, Metaclass):
-            texts = [self._address(element, value, feature) for value in values if isinstance(value, Element)]
-            parts = [quoted(text) for text in texts]
+            targets = [value for value in values if isinstance(value, Element)]
+            parts = [quoted(self._reference(element, target, feature)) for target in targets]
         else:
             for value in values:
                 if not kind.accepts(value) and not is_null(feature, value):
@@ -176,6 +184,11 @@ class JsonWriter:
         if feature.many:
             return f"[{', '.join(parts)}]"
         return parts[0] if parts else "null"
+
+    def _reference(self, element: Element, target: Element, feature: Feature) -> str:
+        """Return what refers to an element that is not contained."""
+        name = self._names.text(element, feature, target, False) if self._names is not None else None
+        return self._address(element, target, feature) if name is None else name
 
     def _address(self, element: Element, target: Element, feature: Feature) -> str:
         try:

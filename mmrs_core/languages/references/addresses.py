@@ -164,11 +164,12 @@ def _own_id(element: Element) -> str | None:
 
     A text that readers would not take for one id, such as two words, is none: then the path refers.
     """
-    identifier = _identifier(element)
+    identifier = identifier_of(element)
     return identifier if identifier is not None and _ID.fullmatch(identifier) else None
 
 
-def _identifier(element: Element) -> str | None:
+def identifier_of(element: Element) -> str | None:
+    """Return the value of its id attribute, or the ``xmi:id`` that its file gave to it; None without."""
     if element._mmrs_source is not None and element in element._mmrs_source.ids:
         return element._mmrs_source.ids[element]
     if type(element)._mmrs_metaclass is None:

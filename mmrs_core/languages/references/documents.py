@@ -14,6 +14,7 @@ from mmrs_core.languages.datatypes import ECORE
 from mmrs_core.languages.element import Element, Unknown, contents, descendants, path_of
 from mmrs_core.languages.links import raw
 from mmrs_core.languages.metaclass import Feature, Metaclass
+from mmrs_core.languages.references.named import NamedElements
 from mmrs_core.languages.sources import Source
 
 if TYPE_CHECKING:
@@ -91,6 +92,8 @@ class Draft:
     """A file between its parsing and the resolution of its references.
 
     Attributes:
+        late: references that wait until the names of all files are known: those by name, and what follows
+            them in the same list; each with its target or the name.
         importer: what imports the file; None for a file in our own format.
     """
 
@@ -98,6 +101,7 @@ class Draft:
     roots: list[Element] = field(default_factory=list)
     ids: dict[str, Element] = field(default_factory=dict)
     pending: list[Pending | Quick] = field(default_factory=list)
+    late: list[tuple[Pending, Element | str]] = field(default_factory=list)
     diagnostics: list[Diagnostic] = field(default_factory=list)
     broken: set[tuple[Element, str]] = field(default_factory=set)
     found: dict[str, Element] = field(default_factory=dict)
@@ -106,6 +110,7 @@ class Draft:
     said_within: dict[str, Unknown] | None = None
     importer: Importer | None = None
     _read_below: list[int] = field(default_factory=list)
+    _named: NamedElements | None = None
 
     def fault(
         self,
@@ -153,6 +158,12 @@ class Draft:
             if place.path:
                 path = f"/{number}{place.path.rstrip('/')}"
                 self.diagnostics[index] = replace(self.diagnostics[index], place=replace(place, path=path))
+
+    def named(self) -> NamedElements:
+        """Return the elements by their names, as they are at the first call."""
+        if self._named is None:
+            self._named = NamedElements(self.roots)
+        return self._named
 
     def find(self, fragment: str) -> Element | None:
         """Return the element that a fragment means: a path such as ``//@tasks.2``, or an id."""

@@ -9,6 +9,7 @@ from html import unescape
 from mmrs_core.languages.element import Element, Hidden, Unknown, descendants
 from mmrs_core.languages.json_form.unknown import UnknownObject
 from mmrs_core.languages.references.documents import Draft
+from mmrs_core.languages.references.spelling import Name, spelt
 from mmrs_core.languages.sources import Source
 
 _LEAVE_UNKNOWN = frozenset(("XMI001", "XMI002", "XMI003", "XMI008", "XMI014", "XMI015"))
@@ -24,13 +25,15 @@ def hidden_in(draft: Draft, fragment: str, claimed: str = "") -> Hidden | None:
 
     Args:
         draft: the file that the fragment is about.
-        fragment: a path such as ``//@tasks.0/@point``, or an identifier.
+        fragment: a path such as ``//@tasks.0/@point``, an identifier or a name.
         claimed: the class that the reference says it is of, as ``nsURI#Name``; empty where it says nothing.
 
     Returns:
         None if the path leads past all such elements, or none of them says the identifier.
     """
-    if fragment.startswith("/"):
+    if isinstance(fragment, Name):
+        outer, rest = _said(draft).get(fragment), spelt(fragment, many=True)
+    elif fragment.startswith("/"):
         outer, rest = draft.entered(fragment)
     else:
         outer, rest = _said(draft).get(fragment), fragment

@@ -2,28 +2,29 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable, Iterator
+from itertools import islice
 from pathlib import Path
 from typing import Protocol
 
 from mmrs_core.errors import UnreadableError
 from mmrs_core.languages.datatypes import shown
-from mmrs_core.languages.element import Element, Unknown, descendants, label_of
+from mmrs_core.languages.element import Element, Unknown, descendants, label_of, place_of
 from mmrs_core.languages.links import raw, store
-from mmrs_core.languages.metaclass import Feature
+from mmrs_core.languages.metaclass import Feature, Metaclass
 from mmrs_core.languages.missing import hint_for
-from mmrs_core.languages.references.addresses import Addresses
+from mmrs_core.languages.naming import nearest
 from mmrs_core.languages.references.documents import Draft, Pending, Quick
 from mmrs_core.languages.references.hidden import hidden_in, note_links
 from mmrs_core.languages.references.hrefs import linked_file
+from mmrs_core.languages.references.named import MOST_NAMED
+from mmrs_core.languages.references.spelling import Name, is_address, quoted, references_in, spelt
 from mmrs_core.languages.registry import Registry
-
-_BLANKS = re.compile("[ \t\n\r\f]+")
-"""What stands between references; others may stand in an identifier."""
 
 _HELPED_FAULTS = 20
 """Looking for what was meant goes over the whole model; skipped beyond this many faults."""
+_COMPARED_NAMES = 5_000
+"""Comparing a misspelt name with so many takes a tenth of a second."""
 
 
 class Library(Protocol):
@@ -35,11 +36,19 @@ class Library(Protocol):
     def described(self, ns_uri: str) -> Draft:
         """Return the description of a metamodel that is at hand, as a model of Ecore."""
 
+    def beside(self, draft: Draft) -> Iterable[Draft]:
+        """Return the other files in which elements may be that a file refers to by name."""
+
+    def opened(self, element: Element) -> Element:
+        """Return an element of such a file as it is once the file is read, or of any other as it is."""
+
 
 def resolve(
     draft: Draft, library: Library, root: Path | None, registry: Registry
 ) -> list[tuple[Pending, Element]]:
     """Set every reference of a file; what leads nowhere becomes a fault of that file.
+
+    References by name, and what follows them in the same list, are left for `resolve_names`.
 
     Args:
         draft: the file; its pending references are emptied.
@@ -52,12 +61,33 @@ def resolve(
     """
     pending, draft.pending = draft.pending, []
     doubled = []
+    late: set[tuple[Element, Feature]] = set()
     for reference in _left(pending, draft):
-        for uri in _uris(reference.text):
-            target = _target(uri, reference, draft, library, root, registry)
-            if target is not None and _set(reference, target, draft):
+        many, key = reference.feature.many, (reference.element, reference.feature)
+        for uri in references_in(reference.text, many):
+            if isinstance(uri, Name):
+                target: Element | str | None = draft.ids.get(uri.said, uri)
+            else:
+                target = _target(uri, reference, draft, library, root, registry)
+            if target is None:
+                continue
+            if isinstance(target, str) or (late and key in late):
+                late.add(key)
+                draft.late.append((reference, target))
+            elif _set(reference, target, draft):
                 doubled.append((reference, target))
     note_links(draft)
+    return doubled
+
+
+def resolve_names(draft: Draft, library: Library, registry: Registry) -> list[tuple[Pending, Element]]:
+    """Set the references that `resolve` has left; as that, once it has seen every file."""
+    late, draft.late = draft.late, []
+    doubled = []
+    for reference, said in late:
+        target = _named(said, reference, draft, library, registry) if isinstance(said, str) else said
+        if target is not None and _set(reference, target, draft):
+            doubled.append((reference, target))
     return doubled
 
 
@@ -92,42 +122,88 @@ def _left(pending: Iterable[Pending | Quick], draft: Draft) -> Iterator[Pending]
         yield Pending(*reference)
 
 
-def _uris(text: str) -> Iterator[str]:
-    """Yield the URIs in a text, without the types that may stand before references to other files."""
-    words = [word for word in _BLANKS.split(text) if word]
-    for index, word in enumerate(words):
-        following = words[index + 1] if index + 1 < len(words) else ""
-        if not (":" in word and "#" not in word and not word.startswith("/") and "#" in following):
-            yield word
-
-
 def _target(
     uri: str, reference: Pending, draft: Draft, library: Library, root: Path | None, registry: Registry
-) -> Element | None:
+) -> Element | str | None:
+    """Return what a reference leads to, the text of one that may be a name, or None after a fault."""
     document, _, fragment = uri.rpartition("#") if "#" in uri else ("", "", uri)
     where = draft
     if document:
-        opened = _opened(document, reference, draft, library, root, registry)
+        opened = _opened(uri, reference, draft, library, root, registry)
         if opened is None:
             return None
         where = opened
     target = where.find(fragment or "/")
     if target is None and not reference.feature.containment:
+        if not is_address(uri):
+            return uri
         target = _hidden(uri, reference, draft, where, registry)
     if target is None:
-        _fault(
-            "XMI006",
-            f"{reference.feature.name}: {shown(uri)} leads to no element",
-            reference,
-            draft,
-            _hint(uri, reference.feature, draft),
-        )
+        _nowhere(uri, reference, draft)
     return target
+
+
+def _nowhere(uri: str, reference: Pending, draft: Draft, hint: str = "") -> None:
+    message = f"{reference.feature.name}: {shown(uri)} leads to no element"
+    _fault("XMI006", message, reference, draft, hint or _hint(uri, reference, draft))
+
+
+def _named(
+    name: str, reference: Pending, draft: Draft, library: Library, registry: Registry
+) -> Element | None:
+    """Return the element that a name means, in the file or else in one beside it; None after a fault."""
+    feature = reference.feature
+    kind = feature.type
+    assert isinstance(kind, Metaclass)  # it is a reference
+    found = draft.named().nearest(name, kind, reference.element)
+    if not found:
+        others = (each for other in library.beside(draft) for each in other.named().nearest(name, kind, None))
+        found = list(islice(dict.fromkeys(others), MOST_NAMED + 1))
+    if len(found) == 1:
+        return library.opened(found[0])
+    if found:
+        _ambiguous(name, found, reference, draft)
+        return None
+    # of another class, as is said when it is set; or in what was not read
+    other = draft.named().any(name) or _hidden(name, reference, draft, draft, registry)
+    if other is None:
+        _misspelt(name, reference, draft, library)
+    return other
+
+
+def _ambiguous(name: str, found: list[Element], reference: Pending, draft: Draft) -> None:
+    listed = [f"{type(each).__name__} at {place_of(each)}" for each in found[:MOST_NAMED]]
+    more = " and more" if len(found) > MOST_NAMED else ""
+    message = f"{reference.feature.name}: {shown(name)} is the name of {', '.join(listed)}{more}"
+    is_here = all(each._mmrs_source is draft.source for each in found)
+    paths = " or ".join(each.eURIFragment() for each in found[:MOST_NAMED]) if is_here else ""
+    _fault("XMI018", message, reference, draft, paths and f"rename one of them, or write the path: {paths}")
+
+
+def _misspelt(name: str, reference: Pending, draft: Draft, library: Library) -> None:
+    """Report a name of nothing, and which was probably meant."""
+    kind = reference.feature.type
+    assert isinstance(kind, Metaclass)  # it is a reference
+    hint = ""
+    if len(draft.diagnostics) < _HELPED_FAULTS:
+        names = (each for other in (draft, *library.beside(draft)) for each in other.named().names(kind))
+        known = list(islice(names, _COMPARED_NAMES))
+        divided = [each for each in known if each != name and _is_divided(each, name, reference)]
+        hint = f"in a list, write {quoted(divided[0])}" if divided else nearest(name, known)
+    _nowhere(
+        name, reference, draft, hint or f"write the name of a {kind.name}, or its path, such as //@tasks.0"
+    )
+
+
+def _is_divided(known: str, name: str, reference: Pending) -> bool:
+    """Return whether a name is a part of a known one, which holds blanks and stands in the list."""
+    return reference.feature.many and name in known.split() and known in reference.text
 
 
 def _hidden(uri: str, reference: Pending, draft: Draft, where: Draft, registry: Registry) -> Element | None:
     """Return what stands inside an element that was not read; a fault where its language is not installed."""
-    hidden = hidden_in(where, uri.rpartition("#")[2], reference.claimed)
+    fragment = uri if isinstance(uri, Name) else uri.rpartition("#")[2]
+    hidden = hidden_in(where, fragment, reference.claimed)
     if hidden is None:
         return None
     ns_uri, _, name = hidden._mmrs_outer._mmrs_type.rpartition("#")
@@ -140,40 +216,44 @@ def _hidden(uri: str, reference: Pending, draft: Draft, where: Draft, registry: 
     return hidden
 
 
-def _hint(uri: str, feature: Feature, draft: Draft) -> str:
-    """Return the path of what was probably meant: people write names where XMI wants paths."""
-    if "/" in uri or len(draft.diagnostics) >= _HELPED_FAULTS:
+def _hint(uri: str, reference: Pending, draft: Draft) -> str:
+    """Return how to write what was probably meant by an address that leads nowhere."""
+    return _as_name(uri, reference, draft) or ("" if "/" in uri else "write a path, such as //@tasks.0")
+
+
+def _as_name(uri: str, reference: Pending, draft: Draft) -> str:
+    """Return how to write a name that was taken for an address; empty if nothing has that name."""
+    feature, meant = reference.feature, (uri, uri.removeprefix("#"))
+    if feature.containment or "/@" in uri or len(draft.diagnostics) >= _HELPED_FAULTS:
         return ""
     for root in draft.roots:
         for element in (root, *descendants(root)):
-            if feature.type.accepts(element) and label_of(element) == uri:
-                path = Addresses(draft.roots, None).fragment(element)
-                return f"write {path}, the path of the {type(element).__name__} {uri!r}"
-    return "write the path of an element, such as //@tasks.0"
+            if (name := label_of(element)) in meant and feature.type.accepts(element):
+                return f"write {spelt(name, feature.many)}, the name of the {type(element).__name__}"
+    return ""
 
 
 def _opened(
-    document: str,
+    uri: str,
     reference: Pending,
     draft: Draft,
     library: Library,
     root: Path | None,
     registry: Registry,
 ) -> Draft | None:
+    """Return the file that an address leads to; None after a fault."""
+    document = uri.rpartition("#")[0]
     if registry.has(document):
         return library.described(document)
     path = draft.source.path
-    if path is None or root is None:
-        message = f"{reference.feature.name}: {document}: a text that is not a file cannot refer to files"
-        _fault("XMI007", message, reference, draft)
-        return None
     try:
+        if path is None or root is None:
+            raise ValueError(f"{document}: a text that is not a file cannot refer to files")
         real = linked_file(document, path.parent, root)
         return draft if real == path else library.open(_as_given(document, draft, real))
-    except ValueError as fault:
-        _fault("XMI007", f"{reference.feature.name}: {fault}", reference, draft)
-    except UnreadableError as fault:
-        _fault("XMI016", f"{reference.feature.name}: {fault}", reference, draft)
+    except (ValueError, UnreadableError) as fault:
+        code = "XMI007" if isinstance(fault, ValueError) else "XMI016"
+        _fault(code, f"{reference.feature.name}: {fault}", reference, draft, _as_name(uri, reference, draft))
     return None
 
 

@@ -9,6 +9,7 @@ from mmrs_core.languages.metaclass import Enumeration, Feature, Metaclass
 from mmrs_core.languages.missing import hint_for
 from mmrs_core.languages.naming import nearest
 from mmrs_core.languages.references.documents import Draft, Pending
+from mmrs_core.languages.references.spelling import as_address
 from mmrs_core.languages.registry import Registry
 from mmrs_core.languages.values.texts import words_of
 from mmrs_core.languages.xmi.events import XMI, XSI, Document
@@ -117,7 +118,7 @@ class XmiReader:
         elif (href := _value(attributes, "href")) and (
             "#" in href or not self._owns_href(feature, attributes)
         ):
-            self._refer(element, feature, href, self._claim(attributes))
+            self._refer(element, feature, as_address(href), self._claim(attributes))
             self._open.append((element, metaclass, feature))
         elif _value(attributes, _NIL) in ("true", "1"):
             self._leave_blank(element, feature)
@@ -125,7 +126,7 @@ class XmiReader:
         elif feature.containment:
             self._contained(element, feature, attributes)
         elif identifier := _value(attributes, _IDREF):
-            self._refer(element, feature, identifier)
+            self._refer(element, feature, as_address(identifier))
             self._open.append((element, metaclass, feature))
         else:
             message = f"{feature.name}: a reference as an element needs an href"

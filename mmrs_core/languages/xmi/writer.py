@@ -10,6 +10,7 @@ from typing import NamedTuple
 from mmrs_core.languages.element import Element, Unknown, held, holds, metaclass_of, path_of
 from mmrs_core.languages.metaclass import Feature, Metaclass, is_null
 from mmrs_core.languages.references.addresses import Addresses
+from mmrs_core.languages.references.by_name import ReferenceNames
 from mmrs_core.languages.registry import Registry
 from mmrs_core.languages.values.texts import described
 from mmrs_core.languages.xmi.escapes import NO_XML, in_attribute, in_comment, in_text
@@ -44,8 +45,10 @@ class XmiWriter:
         registry: Registry,
         file: Path | None,
         comments: Mapping[Element, str] | None = None,
+        names: ReferenceNames | None = None,
     ) -> None:
-        """Take the document; comments are written before their elements."""
+        """Take the document; comments are written before their elements, and names instead of paths."""
+        self._names = names
         self._roots = roots
         self._comments = comments or {}
         self._registry = registry
@@ -280,11 +283,27 @@ class XmiWriter:
         if _pairs_with_itself(element, feature, targets):
             children.append(self._href(element, feature, element, depth))
             return
-        fragments = [self._fragment(target) for target in targets]
-        if None not in fragments:
-            attributes.append((feature.name, in_attribute(" ".join(map(str, fragments)))))
+        texts = self._by_name(element, feature, targets)
+        texts = texts or [self._fragment(target) for target in targets]
+        if None not in texts:
+            attributes.append((feature.name, in_attribute(" ".join(map(str, texts)))))
         else:
             children.extend(self._href(element, feature, target, depth) for target in targets)
+
+    def _by_name(
+        self, element: Element, feature: Feature, targets: Sequence[Element]
+    ) -> list[str | None] | None:
+        """Return references of which some are names, or None where none is to be one."""
+        if self._names is None:
+            return None
+        found = [self._names.text(element, feature, target, feature.many) for target in targets]
+        if not any(found):
+            return None
+        # an address of another file stands among names as it is
+        return [
+            text or self._fragment(target) or self._address(element, feature, target)
+            for text, target in zip(found, targets, strict=True)
+        ]
 
     def _fragment(self, target: Element) -> str | None:
         """Return the fragment of an element; None if it is not in the document."""
@@ -292,11 +311,15 @@ class XmiWriter:
 
     def _href(self, element: Element, feature: Feature, target: Element, depth: int) -> str:
         kind = self._claim(target, feature)
+        href = self._address(element, feature, target)
+        return f'{"  " * depth}<{feature.name}{kind} href="{in_attribute(href)}"/>\n'
+
+    def _address(self, element: Element, feature: Feature, target: Element) -> str:
+        """Return the reference to an element, with its file if that is another."""
         try:
-            href = self._addresses.href(target)
+            return self._addresses.href(target)
         except ValueError as fault:
             raise ValueError(f"{_where(element, feature)}: {fault}") from None
-        return f'{"  " * depth}<{feature.name}{kind} href="{in_attribute(href)}"/>\n'
 
     def _claim(self, target: Element, feature: Feature) -> str:
         """Return the class that a link to an element states; empty if it is the expected one."""

@@ -188,7 +188,7 @@ def test_elements_know_file_and_line(read):
         ('"$href": "x"', "XMI004", "$href: no key of this form, and no feature of Zoo"),
         ('"name2": "x"', "XMI004", "name2: no feature of Zoo 'z'"),
         ('"star": "//@animals.7"', "XMI006", "star: '//@animals.7' leads to no element"),
-        ('"star": 3', "XMI010", "star: takes the paths of elements, such as //@tasks.0"),
+        ('"star": 3', "XMI010", "star: takes the names or paths of elements, such as //@tasks.0"),
         ('"star": ["/", "/"]', "XMI009", "star: a list of 2, takes one"),
         ('"animals": "x"', "XMI010", "animals: takes objects"),
         ('"animals": [{"name": "x"}]', "XMI003", "Animal: abstract; state a concrete subclass by $type"),

@@ -87,14 +87,6 @@ def test_a_reference_that_leads_nowhere_is_a_fault_and_stays_unset(read_zoo, tex
     assert model.roots[0].name == "z"
 
 
-def test_a_name_where_a_path_belongs_gets_the_path_as_a_hint(read_zoo):
-    fault = read_zoo(LIONS, 'star="b"').diagnostics[0]
-    assert fault.hint == "write //@animals.1, the path of the Lion 'b'"
-    assert (
-        read_zoo(LIONS, 'star="z"').diagnostics[0].hint == "write the path of an element, such as //@tasks.0"
-    )
-
-
 def test_one_broken_reference_does_not_hide_the_others(read_zoo):
     model = read_zoo(LIONS, 'favourites="//@animals.0 //@animals.7 //@animals.1 //@animals.8"')
     assert codes(model) == ["XMI006", "XMI006"]

@@ -12,6 +12,7 @@ import pytest
 from mmrs_core.errors import UnreadableError
 from mmrs_core.languages.conformance import check_conformance
 from mmrs_core.languages.reading import read_text
+from mmrs_core.languages.references.by_name import ReferenceNames
 from mmrs_core.languages.registry import MetamodelSource, core_registry
 from mmrs_core.languages.writing import to_xmi
 
@@ -145,3 +146,29 @@ def test_long_names_are_not_repeated_in_every_message(graph):
 def test_a_namespace_longer_than_any_is_refused(graph):
     with pytest.raises(UnreadableError, match=r"a\.xmi:1: a namespace of more than 2000 characters"):
         read_text(graph_of('<k xsi:type="q:T"/>', f'xmlns:q="urn:{"a" * 2000}"'), "a.xmi", graph)
+
+
+@pytest.mark.parametrize("name", ["cub", "cub {}"], ids=["of one name", "of many names"])
+def test_references_by_name(zoo, zoo_text, name):
+    cubs = f'<cubs xsi:type="zoo:Lion" name="{name}"/><cubs xsi:type="zoo:Lion" name="o" mate="{name}"/>'
+
+    def read(count):
+        families = (cubs.format(at, at) for at in range(count))
+        herd = "".join(f'<animals xsi:type="zoo:Lion" name="l">{family}</animals>' for family in families)
+        model = read_text(zoo_text(herd), "a.xmi", zoo)
+        assert model.diagnostics == ()
+        names = ReferenceNames(model.roots)
+        to_xmi(model.roots, zoo, names=names)
+        assert names.named == 2 * count  # of both ends
+
+    assert grows_evenly(read)
+
+
+def test_misspelt_names(zoo, zoo_text):
+    def read(count):
+        herd = "".join(
+            f'<animals xsi:type="zoo:Lion" name="l{at}" mate="k{at}"/>' for at in range(count // 4)
+        )
+        assert len(read_text(zoo_text(herd), "a.xmi", zoo).diagnostics) == count // 4
+
+    assert grows_evenly(read)

@@ -13,8 +13,8 @@ from mmrs_core.cli.session import Session
 from mmrs_core.errors import UnreadableError
 from mmrs_core.languages import robot as robots
 from mmrs_core.languages.importers import foreign_file
-from mmrs_core.languages.modelset import robot_files_in
 from mmrs_core.languages.reading import read_model
+from mmrs_core.languages.references.project import robot_files_in
 from mmrs_core.languages.registry import Registry
 from mmrs_core.languages.writing import replace_file, to_xmi
 from mmrs_core.languages.xmi.events import read_bytes

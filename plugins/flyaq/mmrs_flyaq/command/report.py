@@ -16,7 +16,8 @@ from mmrs_core.errors import InvalidModelError, UnreadableError
 from mmrs_core.languages import behaviour, robot
 from mmrs_core.languages.codes import is_refusal
 from mmrs_core.languages.element import Element
-from mmrs_core.languages.modelset import context_in, model_in, robot_files_in
+from mmrs_core.languages.modelset import context_in, model_in
+from mmrs_core.languages.references.project import robot_files_in
 from mmrs_flyaq.findings import Category, Finding, grouped
 from mmrs_flyaq.migrate import Migration
 
