@@ -75,7 +75,7 @@ def test_values_that_are_no_numbers_are_refused(read):
         read()
 
 
-def test_a_ground_station_has_a_radio_of_its_own():
+def test_a_ground_station_has_a_link_of_its_own():
     ((_, vehicle),) = SimulatedFleet(ground="14650").vehicles({"a": TWO["first"]})
-    assert len(vehicle.radios) == 2
+    vehicle.faults.begin("ground-down")
     vehicle.close()

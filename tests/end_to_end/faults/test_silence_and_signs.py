@@ -109,11 +109,11 @@ def test_a_vehicle_that_does_nothing_about_its_link_is_told_the_response_once_it
     assert wait_for(lambda: any(step["move"] == "stay" for step in fleet.steps("a")), PATIENCE)
     with vehicle.lock:
         vehicle.autopilot.parameters["FS_GCS_ENABLE"] = 0.0
-    vehicle.faults.send_down = True
+    vehicle.radio.mute = True
     assert wait_for(lambda: any("LINK_LOST" in line for line in fleet.process.said), PATIENCE)
     time.sleep(10.0 / SPEEDUP)
     assert vehicle.autopilot.mode_name == "guided"
-    vehicle.faults.send_down = False
+    vehicle.radio.mute = False
     assert fleet.process.end(PATIENCE) == 5, fleet.process.said
     assert not vehicle.autopilot.armed, fleet.process.said
     assert vehicle.autopilot.mode_name == "land"

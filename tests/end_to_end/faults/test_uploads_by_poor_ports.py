@@ -57,7 +57,7 @@ def old_ports(monkeypatch):
         if kind is not None:
             values = [getattr(message, name) for name in kind.fieldnames]
             sent = kind(*(each.encode() if isinstance(each, str) else each for each in values))
-            radio.relay(bytes(sent.pack(sender)))
+            radio.write(bytes(sent.pack(sender)))
             sender.seq = (sender.seq + 1) % 256
 
     def take_missions(transfers, message):

@@ -18,11 +18,11 @@ def mend_link(vehicle: SimulatedVehicle) -> None:
 
 
 def fall_dumb(vehicle: SimulatedVehicle) -> None:
-    vehicle.faults.send_down = True
+    vehicle.radio.mute = True
 
 
 def speak(vehicle: SimulatedVehicle) -> None:
-    vehicle.faults.send_down = False
+    vehicle.radio.mute = False
 
 
 def stick(vehicle: SimulatedVehicle) -> None:
@@ -53,8 +53,7 @@ def critical(vehicle: SimulatedVehicle) -> None:
         0, 0, 0, 32_767, [65_535] * 10, -1, -1, -1, -1, 0, mavlink.MAV_BATTERY_CHARGE_STATE_CRITICAL
     )
     with vehicle.lock:
-        for radio in vehicle.radios:
-            radio.send(said)
+        vehicle.radio.send(said)
 
 
 def mute_camera(vehicle: SimulatedVehicle) -> None:

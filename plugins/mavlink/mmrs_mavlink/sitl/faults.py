@@ -9,21 +9,23 @@ from math import cos, isfinite, radians, sin
 
 from mmrs_mavlink.sitl.autopilot import SimulatedAutopilot
 
+CONTROLLER, STATION = 0, 1
+"""Numbers of the links of a vehicle."""
+
 
 class Faults:
     """The faults of one vehicle; methods may be called from any thread, and have taken effect on return.
 
     Attributes:
-        link_down: whether the link to the controller is cut. ground_down: that to the ground station.
-        send_down: whether nothing that it sends arrives.
-        watched: whether it has a radio to a ground station.
+        cut: links that are cut: `CONTROLLER` or `STATION`.
+        watched: whether it has a link to a ground station.
     """
 
     def __init__(
         self, pilot: SimulatedAutopilot, lock: AbstractContextManager[object], *, watched: bool = False
     ) -> None:
         """Create without a fault; `lock` is held while the time of the autopilot advances."""
-        self.link_down = self.ground_down = self.send_down = False
+        self.cut: set[int] = set()
         self.watched = watched
         self.pilot = pilot
         self._lock = lock
@@ -128,8 +130,8 @@ def _fail_motor(faults: Faults) -> None:
 
 def _cut_ground(faults: Faults) -> None:
     if not faults.watched:
-        raise ValueError("the vehicle has no radio to a ground station")
-    faults.ground_down = True
+        raise ValueError("the vehicle has no link to a ground station")
+    faults.cut.add(STATION)
 
 
 def _placed(name: str) -> Callable[..., None]:
@@ -138,8 +140,8 @@ def _placed(name: str) -> Callable[..., None]:
 
 
 def _setter(name: str, value: object) -> Callable[[Faults], None]:
-    """Return a function that sets an attribute of the autopilot, or else of the faults."""
-    return lambda faults: setattr(faults.pilot if hasattr(faults.pilot, name) else faults, name, value)
+    """Return a function that sets an attribute of the autopilot."""
+    return lambda faults: setattr(faults.pilot, name, value)
 
 
 def _switch(name: str, value: bool = True) -> Fault:
@@ -155,8 +157,10 @@ FAULTS: Mapping[str, Fault] = {
     "breach": _switch("forced_breach"),
     "battery": Fault(_change_battery, values=(None,)),
     "silent": Fault(_silence, _setter("silent", frozenset()), (None,)),
-    "link-down": _switch("link_down"),
-    "ground-down": Fault(_cut_ground, _setter("ground_down", False)),
+    "link-down": Fault(
+        lambda faults: faults.cut.add(CONTROLLER), lambda faults: faults.cut.discard(CONTROLLER)
+    ),
+    "ground-down": Fault(_cut_ground, lambda faults: faults.cut.discard(STATION)),
     "motor-failed": Fault(_fail_motor, _setter("motor_failed", False)),
     "wind": Fault(_placed("wind"), _setter("wind", (0.0, 0.0)), (None, 0.0)),
 }

@@ -1,15 +1,17 @@
-"""Radios of a simulated vehicle: MAVLink 2 over UDP, with forwarding."""
+"""The radio of a simulated vehicle: MAVLink 2 over UDP, to its controller and to a ground station."""
 
 from __future__ import annotations
 
 import socket
 import time
 from collections.abc import Callable, Iterator, Sequence
+from contextlib import suppress
 from typing import Any
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 Message = Any
+Address = tuple[str, int]
 
 LARGEST = 65_535
 SIGNATURE_EPOCH = 1_420_070_400
@@ -17,32 +19,34 @@ COMPONENT = 1
 
 
 class SimulatedRadio:
-    """Sends to one address, and receives from it.
+    """Sends to all its addresses, receives from them, and forwards between them.
 
     Attributes:
-        down: returns whether the link is cut. silent: returns whether it sends nothing.
-        sent: number of messages.
+        down: returns whether the link to an address, by its number, is cut.
+        mute: whether nothing that it sends arrives.
+        sent: number of frames.
     """
 
-    def __init__(self, address: tuple[str, int], system: int, key: bytes = b"") -> None:
+    def __init__(self, addresses: Sequence[Address], system: int, key: bytes = b"") -> None:
         """Open a socket.
 
         Args:
-            address: host and UDP port of the ground station; a name is resolved once.
+            addresses: host and UDP port of the controller, and of further ground stations; names are
+                resolved once.
             system: MAVLink system of the vehicle.
             key: signing key; empty: unsigned.
 
         Raises:
-            ValueError: the host cannot be resolved.
+            ValueError: a host cannot be resolved.
         """
-        self.down: Callable[[], bool] = lambda: False
-        self.silent: Callable[[], bool] = lambda: False
-        self.sent = 0
-        self._address = _resolved(address)
+        self.down: Callable[[int], bool] = lambda number: False
+        self.mute, self.sent = False, 0
+        self._addresses = [_resolved(*address) for address in addresses]
+        is_local = all(host == "127.0.0.1" for host, _ in self._addresses)
         self._socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
-        self._socket.bind(("127.0.0.1" if self._address[0] == "127.0.0.1" else "0.0.0.0", 0))
+        self._socket.bind(("127.0.0.1" if is_local else "0.0.0.0", 0))
         self._socket.setblocking(False)
-        self._mav = mavlink.MAVLink(None, srcSystem=system, srcComponent=COMPONENT)
+        self._mav = mavlink.MAVLink(self, srcSystem=system, srcComponent=COMPONENT)
         self._mav.robust_parsing = True
         if key:
             signing = self._mav.signing
@@ -59,48 +63,37 @@ class SimulatedRadio:
 
     def send(self, message: Message) -> None:
         """Send a message, unless the link is cut."""
-        self.relay(bytes(message.pack(self._mav)))
-        self._mav.seq = (self._mav.seq + 1) % 256
+        self._mav.send(message)
 
-    def relay(self, data: bytes) -> None:
-        """Send a frame unchanged, unless the link is cut."""
-        if self.down() or self.silent():
-            return
-        try:
-            self._socket.sendto(data, self._address)
-            self.sent += 1
-        except OSError:
-            return  # no receiver, no route or a full buffer: lost, as on any radio
+    def write(self, frame: bytes, source: int | None = None) -> None:
+        """Send a frame to all addresses but its source, unless their links are cut."""
+        for number, address in enumerate(self._addresses):
+            if number != source and not (self.mute or self.down(number)):
+                with suppress(OSError):  # no receiver, no route or a full buffer: lost, as on any radio
+                    self._socket.sendto(frame, address)
+                    self.sent += 1
 
     def receive(self) -> Iterator[Message]:
-        """Yield the messages that have arrived."""
+        """Yield the messages that have arrived, and forward those that are not for the vehicle alone."""
+        own = self._mav.srcSystem
         while True:
             try:
-                data = self._socket.recv(LARGEST)
+                data, address = self._socket.recvfrom(LARGEST)
             except BlockingIOError:
                 return
             except ConnectionError:
                 continue
-            for message in () if self.down() else self._mav.parse_buffer(data) or ():
-                if message.get_type() != "BAD_DATA":
-                    yield message
+            source = self._addresses.index(address) if address in self._addresses else 0
+            for message in () if self.down(source) else self._mav.parse_buffer(data) or ():
+                kind, sender = message.get_type(), (message.get_srcSystem(), message.get_srcComponent())
+                if kind == "BAD_DATA" or sender == (own, COMPONENT):
+                    continue
+                if getattr(message, "target_system", 0) != own and kind != "RADIO_STATUS":
+                    self.write(bytes(message.get_msgbuf()), source)
+                yield message
 
 
-def receive(radios: Sequence[SimulatedRadio], system: int) -> Iterator[Message]:
-    """Yield the messages that have arrived by a vehicle's radios, and forward those not only for it."""
-    for radio in radios:
-        for message in radio.receive():
-            if (message.get_srcSystem(), message.get_srcComponent()) == (system, COMPONENT):
-                continue
-            if getattr(message, "target_system", 0) != system and message.get_type() != "RADIO_STATUS":
-                for other in radios:
-                    if other is not radio:
-                        other.relay(bytes(message.get_msgbuf()))
-            yield message
-
-
-def _resolved(address: tuple[str, int]) -> tuple[str, int]:
-    host, port = address
+def _resolved(host: str, port: int) -> Address:
     try:
         return socket.gethostbyname(host), port
     except (OSError, UnicodeError) as error:

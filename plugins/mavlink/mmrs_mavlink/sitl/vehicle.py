@@ -17,7 +17,7 @@ from mmrs_mavlink.sitl.commands import drive, execute, steer, take_sticks
 from mmrs_mavlink.sitl.faults import Faults
 from mmrs_mavlink.sitl.items import ABOVE_SEA, StoredItem
 from mmrs_mavlink.sitl.parameters import ParameterService
-from mmrs_mavlink.sitl.radio import COMPONENT, SimulatedRadio, receive
+from mmrs_mavlink.sitl.radio import COMPONENT, Address, SimulatedRadio
 from mmrs_mavlink.sitl.settings import Settings
 from mmrs_mavlink.sitl.simulation import advance
 from mmrs_mavlink.sitl.telemetry import Streams
@@ -42,7 +42,7 @@ class SimulatedVehicle:
     Attributes:
         autopilot: its state, which any thread may read.
         faults: injects faults.
-        radio: the radio to its controller. radios: all.
+        radio: to its controller, and to a ground station.
         streams: its telemetry.
         received: (seconds, name) of every message for it, except heartbeats.
         on_tick: called in its thread after each step of its time.
@@ -56,7 +56,7 @@ class SimulatedVehicle:
         *,
         host: str = "127.0.0.1",
         speedup: float = 1.0,
-        ground: tuple[str, int] | None = None,
+        ground: Address | None = None,
     ) -> None:
         """Create a vehicle, which sends nothing before `start`.
 
@@ -65,7 +65,7 @@ class SimulatedVehicle:
             settings: of the vehicle.
             host: of the controller.
             speedup: simulated seconds per real second.
-            ground: host and UDP port of a ground station with a radio of its own.
+            ground: host and UDP port of a ground station besides.
 
         Raises:
             ValueError: a host cannot be resolved.
@@ -78,18 +78,14 @@ class SimulatedVehicle:
         self.on_tick: Callable[[], None] = lambda: None
         self.lock = threading.RLock()
         self.faults = Faults(pilot, self.lock, watched=ground is not None)
-        self.radio = SimulatedRadio((host, port), given.system, given.key)
-        self.radio.silent = lambda: self.faults.send_down
-        self.radio.down = lambda: self.faults.link_down or pilot.booting
-        self.radios = [self.radio]
-        if ground is not None:
-            self.radios.append(SimulatedRadio(ground, given.system, given.key))
-            self.radios[1].down = lambda: self.faults.ground_down or pilot.booting
+        addresses = [(host, port)] if ground is None else [(host, port), ground]
+        self.radio = SimulatedRadio(addresses, given.system, given.key)
+        self.radio.down = lambda number: number in self.faults.cut or pilot.booting
         like = given.profile.autopilot
-        self._transfers = Transfers(pilot.stores, self._send, pilot.say, like)
+        self._transfers = Transfers(pilot.stores, self.radio.send, pilot.say, like)
         self._transfers.home = self._home if like.missions.begins_with_home else None
-        self._parameters = ParameterService(pilot.parameters, like, self._send)
-        self.streams = Streams(pilot, self._send)
+        self._parameters = ParameterService(pilot.parameters, like, self.radio.send)
+        self.streams = Streams(pilot, self.radio.send)
         self._booted = pilot.booted
         self._host: Host | None = None
 
@@ -105,9 +101,8 @@ class SimulatedVehicle:
         self.close()
 
     def close(self) -> None:
-        """Close its radios."""
-        for radio in self.radios:
-            radio.close()
+        """Close its radio."""
+        self.radio.close()
 
     def __enter__(self) -> SimulatedVehicle:
         self.start()
@@ -122,7 +117,7 @@ class SimulatedVehicle:
         """Process the messages that have arrived."""
         own = self.autopilot.settings.system
         with self.lock:
-            for message in receive(self.radios, own):
+            for message in self.radio.receive():
                 system = getattr(message, "target_system", 0)
                 if system in (0, own) and getattr(message, "target_component", 0) in (0, COMPONENT):
                     self._take(message)
@@ -139,10 +134,6 @@ class SimulatedVehicle:
             self._transfers.busy = pilot.uptime < pilot.settings.boot
             self._transfers.advance(pilot.time, pilot.link_timeout / 4.0)
             self.streams.advance()
-
-    def _send(self, message: Message) -> None:
-        for radio in self.radios:
-            radio.send(message)
 
     def _take(self, message: Message) -> None:
         pilot, kind = self.autopilot, message.get_type()
@@ -192,7 +183,7 @@ class SimulatedVehicle:
         else:
             result = execute(pilot, number, params)
         sender = {"target_system": message.get_srcSystem(), "target_component": message.get_srcComponent()}
-        self._send(mavlink.MAVLink_command_ack_message(number, result, **sender))
+        self.radio.send(mavlink.MAVLink_command_ack_message(number, result, **sender))
 
     def _home(self) -> StoredItem:
         latitude, longitude, above = self.autopilot.home
@@ -228,8 +219,7 @@ class Host:
         try:
             with selectors.DefaultSelector() as selector:
                 for vehicle in self._vehicles:
-                    for radio in vehicle.radios:
-                        selector.register(radio, selectors.EVENT_READ, vehicle)
+                    selector.register(vehicle.radio, selectors.EVENT_READ, vehicle)
                 self._simulate(selector)
         except Exception as error:
             self.failure = error

@@ -78,14 +78,14 @@ def test_a_stall_of_this_program_is_no_silence_of_the_vehicle():
 def test_a_vehicle_that_is_not_heard_stays_and_goes_on_when_it_is_heard_again_if_policies_bear_that():
     with sub() as driven:
         driven.set_out()
-        driven.vehicle.faults.send_down = True
+        driven.vehicle.radio.mute = True
         until(lambda: driven.fault)
         assert driven.backend.bear(driven.clock.now())
         assert driven.fault is None
         east = driven.truth[0]
         driven.pass_by(5.0)
         assert driven.truth[0] == pytest.approx(east, abs=0.2)
-        driven.vehicle.faults.send_down = False
+        driven.vehicle.radio.mute = False
         until(lambda: driven.backend.reachable(driven.clock.now()))
         driven.finish()
         assert driven.truth[0] == pytest.approx(6.0, abs=1.5)

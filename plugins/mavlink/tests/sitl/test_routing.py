@@ -58,6 +58,6 @@ def test_a_ground_station_can_be_cut_off_and_restored(both):
 
 def test_a_vehicle_without_a_ground_station_cannot_lose_it():
     vehicle = SimulatedVehicle(9, Settings())
-    with pytest.raises(ValueError, match="ground-down: the vehicle has no radio to a ground station"):
+    with pytest.raises(ValueError, match="ground-down: the vehicle has no link to a ground station"):
         vehicle.faults.begin("ground-down")
     vehicle.close()
