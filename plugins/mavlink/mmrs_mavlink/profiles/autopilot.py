@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import struct
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Literal
@@ -14,6 +15,10 @@ ROI_LOCATION, CAMERA_TRIGGER_DISTANCE, RALLY_POINT = 195, 206, 5100
 
 MISSION, RALLY = 0, 2
 """Kinds of plans (MAV_MISSION_TYPE)."""
+
+INT32, REAL32 = 6, 9
+WHOLE: Mapping[int, str] = {1: "<Bxxx", 2: "<bxxx", 3: "<Hxx", 4: "<hxx", 5: "<I", INT32: "<i"}
+"""How whole numbers are copied into the four bytes of a number of single precision, by MAV_PARAM_TYPE."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -152,3 +157,20 @@ class Autopilot:
     announcements: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     needs: Needs = field(default_factory=dict)
     capacities: tuple[tuple[str, str, tuple[int, ...]], ...] = ()
+
+    def encoded(self, name: str, value: float) -> tuple[float, int]:
+        """Return the value of a parameter as messages carry it, and its MAV_PARAM_TYPE."""
+        if name not in self.integers:
+            return value, REAL32
+        if not self.copies_bytes:
+            return value, INT32
+        (coded,) = struct.unpack("<f", struct.pack(WHOLE[INT32], round(value)))
+        return float(coded), INT32
+
+    def decoded(self, value: float, kind: int) -> float:
+        """Return the value of a parameter that a message carries as a MAV_PARAM_TYPE."""
+        form = WHOLE.get(kind)
+        if form is None or not self.copies_bytes:
+            return float(value)
+        (whole,) = struct.unpack(form, struct.pack("<f", value))
+        return float(whole)

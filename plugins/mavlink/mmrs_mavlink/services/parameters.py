@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import struct
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from itertools import count
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
@@ -21,16 +20,6 @@ _marks = count()
 
 BY_NAME = -1
 """The number that stands for none, where a parameter is asked for by its name."""
-
-WHOLE: Mapping[int, str] = {
-    mavlink.MAV_PARAM_TYPE_UINT8: "<Bxxx",
-    mavlink.MAV_PARAM_TYPE_INT8: "<bxxx",
-    mavlink.MAV_PARAM_TYPE_UINT16: "<Hxx",
-    mavlink.MAV_PARAM_TYPE_INT16: "<hxx",
-    mavlink.MAV_PARAM_TYPE_UINT32: "<I",
-    mavlink.MAV_PARAM_TYPE_INT32: "<i",
-}
-"""How whole numbers are copied into the four bytes of a number of single precision."""
 
 
 def read(link: Link, names: Iterable[str]) -> dict[str, float]:
@@ -76,15 +65,10 @@ def write(link: Link, name: str, value: float) -> bool:
         name: at most 16 letters.
         value: as people write it.
     """
-    whole = name in link.profile.autopilot.integers
-    kind = mavlink.MAV_PARAM_TYPE_INT32 if whole else mavlink.MAV_PARAM_TYPE_REAL32
+    coded = link.profile.autopilot.encoded(name, value)
     with link.inbox("PARAM_VALUE") as inbox:
         for _ in link.attempts():
-            link.send(
-                mavlink.MAVLink_param_set_message(
-                    link.system, link.component, name.encode(), _coded(link, value, kind), kind
-                )
-            )
+            link.send(mavlink.MAVLink_param_set_message(link.system, link.component, name.encode(), *coded))
             if link.wait(
                 lambda: any(m.param_id == name and same(value_of(link, m), value) for m in tuple(inbox)),
                 link.patience,
@@ -95,21 +79,9 @@ def write(link: Link, name: str, value: float) -> bool:
 
 def value_of(link: Link, message: Message) -> float:
     """Return the value in a PARAM_VALUE, as people write it."""
-    form = WHOLE.get(message.param_type)
-    if form is None or not link.profile.autopilot.copies_bytes:
-        return float(message.param_value)
-    (value,) = struct.unpack(form, struct.pack("<f", message.param_value))
-    return float(value)
+    return link.profile.autopilot.decoded(message.param_value, message.param_type)
 
 
 def same(a: float, b: float) -> bool:
     """Return whether two values are the same in single precision."""
     return abs(a - b) <= 1e-6 * max(1.0, abs(a), abs(b))
-
-
-def _coded(link: Link, value: float, kind: int) -> float:
-    form = WHOLE.get(kind)
-    if form is None or not link.profile.autopilot.copies_bytes:
-        return value
-    (coded,) = struct.unpack("<f", struct.pack(form, round(value)))
-    return float(coded)

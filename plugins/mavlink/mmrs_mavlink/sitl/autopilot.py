@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from functools import lru_cache
-from math import atan2, cos, degrees, hypot, inf, radians, remainder, sin, sqrt
+from math import atan2, degrees, hypot, inf
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
@@ -14,9 +13,7 @@ from mmrs_mavlink.sitl.body import Body, Vector
 from mmrs_mavlink.sitl.devices import Battery, Camera
 from mmrs_mavlink.sitl.items import FENCE, MISSION, MOVING, RALLY, StoredItem
 from mmrs_mavlink.sitl.settings import PX4, Settings
-
-EQUATOR, SQUARED_ECCENTRICITY = 6_378_137.0, 6.694_379_990_14e-3
-"""The WGS 84 ellipsoid; its equatorial radius in metres."""
+from mmrs_runtime.controllers.geodesy import metres_per_degree, wrapped
 
 NEAR_GROUND = 0.05
 NOT_TO_BE_ARMED_IN = frozenset({"land", "return"})
@@ -178,14 +175,14 @@ class SimulatedAutopilot:
     def degrees_at(self, place: Vector) -> tuple[float, float]:
         """Return the latitude and longitude of a position."""
         of_latitude, of_longitude = metres_per_degree(self.settings.latitude)
-        longitude = remainder(self.settings.longitude + place[1] / of_longitude, 360.0)
+        longitude = wrapped(self.settings.longitude + place[1] / of_longitude)
         return self.settings.latitude + place[0] / of_latitude, longitude
 
     def local(self, latitude: float, longitude: float, up: float) -> Vector:
         """Return metres north, east and up of home."""
         of_latitude, of_longitude = metres_per_degree(self.settings.latitude)
         north = (latitude - self.settings.latitude) * of_latitude
-        return (north, remainder(longitude - self.settings.longitude, 360.0) * of_longitude, up)
+        return (north, wrapped(longitude - self.settings.longitude) * of_longitude, up)
 
     def above_ground(self, height: float, *, above_sea: bool) -> float:
         """Return an altitude above sea level, or else above home, in metres above the ground; of rovers 0."""
@@ -320,11 +317,3 @@ def _numbers(profile: VehicleProfile) -> dict[str, int]:
         name.replace(" ", "_").replace("-", "_"): number for number, name in profile.other_modes.items()
     }
     return {name: mode.number for name, mode in profile.modes.items()} | others
-
-
-@lru_cache(maxsize=1024)
-def metres_per_degree(latitude: float) -> tuple[float, float]:
-    """Return the length of a degree of latitude and of longitude on the WGS 84 ellipsoid."""
-    flat = 1.0 - SQUARED_ECCENTRICITY * sin(radians(latitude)) ** 2
-    meridian = EQUATOR * (1.0 - SQUARED_ECCENTRICITY) / flat**1.5
-    return radians(meridian), radians(EQUATOR / sqrt(flat) * cos(radians(latitude)))

@@ -6,7 +6,6 @@ to 4.6, integers where they are integers there, and PX4's from its parameter ref
 
 from __future__ import annotations
 
-import struct
 from collections.abc import Callable, Mapping
 from typing import Any
 
@@ -116,24 +115,6 @@ def defaults(settings: Settings) -> dict[str, float]:
     return {**_COMMON, **_BY_KIND[settings.kind], **own, **settings.parameters}
 
 
-def encoded(name: str, value: float, autopilot: Autopilot) -> tuple[float, int]:
-    """Return a parameter as PARAM_VALUE carries it, and its MAV_PARAM_TYPE.
-
-    PX4 puts the bytes of an integer into the float; ArduPilot sends every number as a float.
-    """
-    if name not in autopilot.integers:
-        return value, int(mavlink.MAV_PARAM_TYPE_REAL32)
-    (packed,) = struct.unpack("<f", struct.pack("<i", round(value)))
-    return packed, int(mavlink.MAV_PARAM_TYPE_INT32)
-
-
-def decoded(value: float, kind: int, autopilot: Autopilot) -> float:
-    """Return the value that a PARAM_SET sets."""
-    if autopilot.copies_bytes and kind == mavlink.MAV_PARAM_TYPE_INT32:
-        return float(struct.unpack("<i", struct.pack("<f", value))[0])
-    return value
-
-
 class ParameterService:
     """Sets and sends parameters; a request for an unknown one is not answered."""
 
@@ -152,13 +133,13 @@ class ParameterService:
             found = 0 <= message.param_index < len(names)
             self._answer(names[message.param_index] if found else message.param_id)
         elif kind == "PARAM_SET" and message.param_id in self._values:
-            value = decoded(message.param_value, message.param_type, self._autopilot)
+            value = self._autopilot.decoded(message.param_value, message.param_type)
             self._values[message.param_id] = value
             self._answer(message.param_id)
 
     def _answer(self, name: str) -> None:
         if name in self._values:
-            value, kind = encoded(name, self._values[name], self._autopilot)
+            value, kind = self._autopilot.encoded(name, self._values[name])
             index = list(self._values).index(name)
             self._send(
                 mavlink.MAVLink_param_value_message(name.encode(), value, kind, len(self._values), index)

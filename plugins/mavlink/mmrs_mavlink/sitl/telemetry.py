@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from functools import cache
 from inspect import signature
 from math import cos, radians, sin
@@ -16,7 +16,6 @@ from mmrs_mavlink.sitl.autopilot import SimulatedAutopilot
 from mmrs_mavlink.sitl.commands import ACCEPTED, FAILED, arming_refusal
 from mmrs_mavlink.sitl.devices import Photo
 from mmrs_mavlink.sitl.items import MISSION
-from mmrs_mavlink.sitl.settings import Settings
 from mmrs_runtime.sights import seen
 
 Message = Any
@@ -164,16 +163,9 @@ def _landed(pilot: SimulatedAutopilot) -> Message:
     return message("extended_sys_state", landed_state=state if pilot.flies else 0)
 
 
-def _estimate(pilot: SimulatedAutopilot) -> int:
-    return LOCATED if pilot.located and pilot.ready else LOST
-
-
-def _ekf(pilot: SimulatedAutopilot) -> Message:
-    return message("ekf_status_report", flags=_estimate(pilot))
-
-
-def _estimator(pilot: SimulatedAutopilot) -> Message:
-    return message("estimator_status", flags=_estimate(pilot))
+def _estimate(name: str) -> Maker:
+    """Return a maker of the flags of its position estimate, as a message."""
+    return lambda pilot: message(name, flags=LOCATED if pilot.located and pilot.ready else LOST)
 
 
 def _satellites(pilot: SimulatedAutopilot) -> Message:
@@ -244,8 +236,8 @@ MAKERS: Mapping[str, Maker] = {
     "SYS_STATUS": _status,
     "BATTERY_STATUS": _battery_status,
     "EXTENDED_SYS_STATE": _landed,
-    "EKF_STATUS_REPORT": _ekf,
-    "ESTIMATOR_STATUS": _estimator,
+    "EKF_STATUS_REPORT": _estimate("ekf_status_report"),
+    "ESTIMATOR_STATUS": _estimate("estimator_status"),
     "GPS_RAW_INT": _satellites,
     "SYSTEM_TIME": _clocks,
     "FENCE_STATUS": _fence,
@@ -255,59 +247,48 @@ MAKERS: Mapping[str, Maker] = {
     "HOME_POSITION": _home,
     "POSITION_TARGET_GLOBAL_INT": _target,
 }
-NUMBERS: Mapping[int, str] = {getattr(mavlink, f"MAVLINK_MSG_ID_{name}"): name for name in MAKERS}
 ON_REQUEST = "POSITION_TARGET_GLOBAL_INT"
-USUAL_RATE, FAST_RATE = 2.0, 4.0
-SLOW = {"HEARTBEAT": 1.0, "SYSTEM_TIME": 1.0, "BATTERY_STATUS": 1.0, "HOME_POSITION": 0.5}
-FAST = frozenset({"GLOBAL_POSITION_INT", "LOCAL_POSITION_NED", "ATTITUDE", "MISSION_CURRENT"})
-
-
-def missing(settings: Settings) -> frozenset[str]:
-    """Return the messages that only another firmware has, by the profiles."""
-    own = settings.profile.autopilot.streamed
-    return frozenset(name for each in (ARDUPILOT, PX4) for name in each.streamed if name not in own)
-
-
-def usual_rates(settings: Settings) -> dict[str, float]:
-    """Return the rates of messages that no one has requested, hertz."""
-    names = [name for name in MAKERS if name not in {ON_REQUEST} | missing(settings)]
-    return {name: FAST_RATE if name in FAST else SLOW.get(name, USUAL_RATE) for name in names}
+USUAL_RATE = 2.0
+RATES = {
+    **dict.fromkeys(("GLOBAL_POSITION_INT", "LOCAL_POSITION_NED", "ATTITUDE", "MISSION_CURRENT"), 4.0),
+    **dict.fromkeys(("HEARTBEAT", "SYSTEM_TIME", "BATTERY_STATUS"), 1.0),
+    "HOME_POSITION": 0.5,
+}
+"""Rates of messages that no one has requested, hertz, where they are not usual."""
 
 
 class Streams:
     """Sends the telemetry of one vehicle."""
 
     def __init__(self, pilot: SimulatedAutopilot, send: Callable[[Message], None]) -> None:
-        self._pilot = pilot
-        self._send = send
-        self._begin(usual_rates(pilot.settings))
+        self._pilot, self._send = pilot, send
+        own, known = pilot.settings.profile.autopilot.streamed, {**ARDUPILOT.streamed, **PX4.streamed}
+        self._names = [name for name in MAKERS if name in own or name not in known]
+        self._begin([name for name in self._names if name != ON_REQUEST])
 
     def reboot(self) -> None:
         """Forget all requests: an ArduPilot then sends heartbeats only."""
-        usual = usual_rates(self._pilot.settings)
-        self._begin(usual if self._pilot.px4 else {"HEARTBEAT": usual["HEARTBEAT"]})
+        self._begin([name for name in self._names if name == "HEARTBEAT" or self._pilot.px4])
 
-    def _begin(self, rates: Mapping[str, float]) -> None:
-        self._periods = {name: 1.0 / rate for name, rate in rates.items()}
-        self._due = dict.fromkeys(self._periods, 0.0)
+    def _begin(self, names: Sequence[str]) -> None:
+        self._periods = {name: 1.0 / RATES.get(name, USUAL_RATE) for name in names}
+        self._due = dict.fromkeys(names, 0.0)
 
     def set_interval(self, number: float, microseconds: float) -> int:
         """Send a message at an interval: -1 never, 0 the default; return a MAV_RESULT."""
         name = self._name(number)
-        if name is None:
+        if not name:
             return FAILED
-        if microseconds < 0.0:
-            self._periods.pop(name, None)
-            return ACCEPTED
-        usual = usual_rates(self._pilot.settings).get(name, 1.0)
-        self._periods[name] = microseconds * 1e-6 or 1.0 / usual
-        self._due[name] = 0.0
+        self._periods.pop(name, None)
+        if microseconds >= 0.0:
+            self._periods[name] = microseconds * 1e-6 or 1.0 / RATES.get(name, USUAL_RATE)
+            self._due[name] = 0.0
         return ACCEPTED
 
     def send_once(self, number: float) -> int:
         """Send a requested message; return a MAV_RESULT."""
         name = self._name(number)
-        message = MAKERS[name](self._pilot) if name is not None else None
+        message = MAKERS[name](self._pilot) if name else None
         if message is None:
             return FAILED
         self._send(message)
@@ -337,9 +318,10 @@ class Streams:
                 measured = value(pilot.time)
                 self._send(mavlink.MAVLink_named_value_float_message(now, sensor.encode(), measured))
 
-    def _name(self, number: float) -> str | None:
-        name = NUMBERS.get(int(number))
-        return None if name in missing(self._pilot.settings) else name
+    def _name(self, number: float) -> str:
+        """Return the name of a message that it sends; empty if it does not."""
+        name = getattr(mavlink.mavlink_map.get(int(number)), "msgname", "")
+        return name if name in self._names else ""
 
     def _send_events(self) -> None:
         pilot = self._pilot

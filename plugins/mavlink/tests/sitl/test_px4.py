@@ -11,7 +11,6 @@ from simulated import Bench
 from mmrs_mavlink.profiles import ARDUPILOT, PX4
 from mmrs_mavlink.sitl.commands import steer
 from mmrs_mavlink.sitl.items import StoredItem, kept
-from mmrs_mavlink.sitl.parameters import decoded, encoded
 from mmrs_mavlink.sitl.settings import Settings
 
 OFFBOARD, MISSION, POSITION, RETURN = (6, 0), (4, 4), (3, 0), (4, 5)
@@ -100,10 +99,10 @@ def test_a_mission_begins_with_item_0(bench):
 
 
 def test_integers_are_sent_as_their_bytes():
-    value, kind = encoded("NAV_DLL_ACT", 2.0, PX4)
+    value, kind = PX4.encoded("NAV_DLL_ACT", 2.0)
     assert (struct.unpack("<i", struct.pack("<f", value))[0], kind) == (2, INT32)
-    assert decoded(value, INT32, PX4) == 2.0
-    assert encoded("BATT_FS_LOW_ACT", 2.0, ARDUPILOT) == (2.0, REAL32)
+    assert PX4.decoded(value, INT32) == 2.0
+    assert ARDUPILOT.encoded("BATT_FS_LOW_ACT", 2.0) == (2.0, REAL32)
 
 
 def test_items_are_stored_as_received():
