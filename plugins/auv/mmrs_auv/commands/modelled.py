@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Annotated
 
@@ -12,24 +11,10 @@ import typer
 from auv_vessel.refusals import SheetError, refuse
 from auv_vessel.sheet import Sheet, from_json
 from mmrs_auv.sheets import is_vehicle, sheet_of
-from mmrs_core.cli.behaviours import is_behaviour, load_behaviour
-from mmrs_core.cli.session import Session, Stages
+from mmrs_core.cli.crews import crew_in
+from mmrs_core.cli.session import Session
 from mmrs_core.cli.settings import Settings
 from mmrs_core.errors import UnreadableError, UnsupportedError
-from mmrs_core.languages.modelset import model_in
-from mmrs_core.scene import Position, RobotType
-
-
-@dataclass(frozen=True, slots=True)
-class _Member:
-    """A robot of a mission or behaviour, and where it is in the water."""
-
-    name: str
-    type: RobotType | None
-    home: Position | None
-    payload: float
-    surface: float
-    density: float | None
 
 
 def sheets_in(path: Path) -> Mapping[str, Sheet]:
@@ -39,37 +24,21 @@ def sheets_in(path: Path) -> Mapping[str, Sheet]:
         UnreadableError, InvalidModelError: the models cannot be read, or are not valid.
         UnsupportedError: there is not an underwater vehicle, or data of one are missing; lists which.
     """
+    crew = crew_in(Session(Settings()), path)
     found = {}
-    for member in _members(path):
-        if member.type is not None and is_vehicle(member.type):
-            found[member.name] = sheet_of(
-                member.type,
-                member.name,
-                home=member.home or (0.0, 0.0, member.surface),
-                surface=member.surface,
-                payload=member.payload,
-                density=member.density,
+    for each in crew.members:
+        if each.type is not None and is_vehicle(each.type):
+            found[each.name] = sheet_of(
+                each.type,
+                each.name,
+                home=each.home or (0.0, 0.0, crew.frame.surface),
+                surface=crew.frame.surface,
+                payload=each.payload,
+                density=crew.environment.get("waterDensity"),
             )
     if not found:
         raise UnsupportedError(f"{path}: no underwater vehicle")
     return found
-
-
-def _members(path: Path) -> Iterator[_Member]:
-    session = Session(Settings())
-    file = model_in(path, "behaviour") if path.is_dir() else path
-    if file is not None and file.is_file() and is_behaviour(session, file):
-        loaded = load_behaviour(session, file)
-        surface = loaded.program.frame.surface
-        density = (loaded.place.environment or {}).get("waterDensity")
-        for robot in loaded.program.robots:
-            kind = loaded.place.types.get(robot.type_name)
-            yield _Member(robot.id, kind, robot.home, robot.payload, surface, density)
-        return
-    scene = Stages(session, path).grounded
-    density = scene.environment.get("waterDensity")
-    for each in scene.robots:
-        yield _Member(each.name, each.type, each.home, each.payload, scene.frame.surface, density)
 
 
 Vehicle = Annotated[

@@ -11,14 +11,13 @@ from typing import Any
 import typer
 
 from mmrs_core.behaviour.earth import degrees_of
-from mmrs_core.cli.behaviours import is_behaviour, load_behaviour
+from mmrs_core.cli.crews import Member, crew_in
 from mmrs_core.cli.output import tell
-from mmrs_core.cli.session import Session, Stages
+from mmrs_core.cli.session import Session
 from mmrs_core.cli.settings import Settings as CliSettings
 from mmrs_core.errors import UnsupportedError
-from mmrs_core.languages.modelset import model_in
-from mmrs_core.scene import RobotType
-from mmrs_mavlink.plugin.vehicles import profile_of, profile_of_type, uncarried
+from mmrs_mavlink.plugin.vehicles import profile_of, uncarried
+from mmrs_mavlink.profiles import VehicleProfile
 from mmrs_mavlink.sitl.parameters import defaults
 from mmrs_mavlink.sitl.settings import Settings
 from mmrs_mavlink.sitl.vehicle import SimulatedVehicle
@@ -100,47 +99,42 @@ def members_of(settings: CliSettings, path: Path, sights: Sequence[Sight] = ()) 
         InvalidModelError: the models are invalid.
     """
     session = Session(settings)
-    found = model_in(path, "behaviour") if path.is_dir() else path
-    contributed = session.contributions
-    kinds, extensions = contributed.robot_kinds, contributed.extensions
-    if found is not None and found.is_file() and is_behaviour(session, found):
-        loaded = load_behaviour(session, found)
-        frame, types = loaded.program.frame, loaded.place.types
-        robots = [(each, each.id, types.get(each.type_name)) for each in loaded.program.robots]
-        moves = contributed.move_kinds
-        profiles = [profile_of(robot, type, kinds, moves, extensions) for robot, _, type in robots]
-        crew = [(name, type, robot.home, robot.payload) for robot, name, type in robots]
-    else:
-        scene = Stages(session, path).grounded
-        frame = scene.frame
-        profiles = [profile_of_type(each.type, kinds, extensions) for each in scene.robots]
-        crew = [(each.name, each.type, each.home, each.payload) for each in scene.robots]
-    if unknown := [why for name, type, *_ in crew if (why := uncarried(name, type, kinds, extensions))]:
-        raise UnsupportedError(f"{path}: no simulated vehicle for all of its robots", unknown)
-    if unsimulated := [
-        f"robot '{each[0]}': no vehicle is simulated for profile '{profile.name}'"
-        for each, profile in zip(crew, profiles, strict=True)
-        if profile is not None and not profile.rehearsed_as
-    ]:
-        raise UnsupportedError(f"{path}: no simulated vehicle for all of its robots", unsimulated)
-    if homeless := [name for name, _, home, _ in crew if home is None]:
+    crew, contributed = crew_in(session, path), session.contributions
+    kinds, moves, extensions = contributed.robot_kinds, contributed.move_kinds, contributed.extensions
+    profiles = [profile_of(each.program, each.type, kinds, moves, extensions) for each in crew.members]
+    unfit = [
+        why
+        for each, profile in zip(crew.members, profiles, strict=True)
+        if (why := uncarried(each.name, each.type, kinds, extensions) or _unsimulated(each.name, profile))
+    ]
+    if unfit:
+        raise UnsupportedError(f"{path}: no simulated vehicle for all of its robots", unfit)
+    if homeless := [each.name for each in crew.members if each.home is None]:
         raise UnsupportedError(f"{path}: no home for {', '.join(homeless)}")
-    homes = [home[:2] for _, _, home, _ in crew if home is not None]
-    places = [PLACE] * len(homes) if frame.is_local else degrees_of(homes, frame)
+    homes = [each.home[:2] for each in crew.members if each.home is not None]
+    places = [PLACE] * len(homes) if crew.frame.is_local else degrees_of(homes, crew.frame)
     made = {}
-    for (name, type, _, payload), profile, place, (east, north) in zip(
-        crew, profiles, places, homes, strict=True
-    ):
-        seen = tuple(replace(each, north=each.north - north, east=each.east - east) for each in sights)
-        if profile is not None:
-            simulated = Settings(profile.rehearsed_as, *place, sights=seen)
-            made[name] = simulated if type is None else _with_battery(simulated, payload, type)
+    for each, profile, place, (east, north) in zip(crew.members, profiles, places, homes, strict=True):
+        near = tuple(replace(sight, north=sight.north - north, east=sight.east - east) for sight in sights)
+        assert profile is not None
+        made[each.name] = _with_battery(Settings(profile.rehearsed_as, *place, sights=near), each)
     return made
 
 
-def _with_battery(settings: Settings, payload: float, type: RobotType) -> Settings:
-    """Return settings with the battery of a type, which lasts its lifetime."""
-    able = [each for each in type.capabilities if each.payload >= payload]
+def _unsimulated(robot: str, profile: VehicleProfile | None) -> str:
+    """Return why no vehicle is simulated for a robot; empty where one is."""
+    if profile is not None and profile.rehearsed_as:
+        return ""
+    name = f" '{profile.name}'" if profile is not None else ""
+    return f"robot '{robot}': no vehicle is simulated for its profile{name}"
+
+
+def _with_battery(settings: Settings, robot: Member) -> Settings:
+    """Return settings with the battery of a robot's type, which lasts its lifetime."""
+    type = robot.type
+    if type is None:
+        return settings
+    able = [each for each in type.capabilities if each.payload >= robot.payload]
     if able and able[0].lifetime is not None:
         settings = replace(settings, energy=able[0].lifetime)
     recharge = max((each.recharge_time or 0.0 for each in type.batteries), default=0.0)

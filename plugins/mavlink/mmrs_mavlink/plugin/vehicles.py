@@ -15,7 +15,7 @@ AUTOPILOT = "mavlink.autopilot"
 
 
 def profile_of(
-    robot: RobotProgram,
+    robot: RobotProgram | None,
     type: RobotType | None,
     kinds: Mapping[Name, RobotKind],
     moves: Mapping[Name, MoveKind],
@@ -24,14 +24,15 @@ def profile_of(
     """Return the profile that carries a robot: by its type, otherwise by its moves; None: no profile does.
 
     Args:
-        robot: of a behaviour.
+        robot: of a behaviour; None: of a mission, where the type is known.
         type: of the robot; None where it is unknown.
         kinds: robot kinds. moves: move kinds.
         extensions: contributions of plug-ins, with their profiles.
     """
     if type is not None:
         return profile_of_type(type, kinds, extensions)
-    takes_off = any(manoeuvre_of(move.metaclasses[0], moves) == "take_off" for move in robot.moves)
+    made = robot.moves if robot is not None else ()
+    takes_off = any(manoeuvre_of(move.metaclasses[0], moves) == "take_off" for move in made)
     return ARDUCOPTER if takes_off else ARDUROVER
 
 
