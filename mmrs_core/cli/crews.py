@@ -14,7 +14,7 @@ from mmrs_core.scene import Frame, Position, RobotType
 
 
 @dataclass(frozen=True, slots=True)
-class Member:
+class CrewMember:
     """A robot.
 
     Attributes:
@@ -34,7 +34,7 @@ class Member:
 class Crew:
     """All robots, in the model's order, and what surrounds them: weather and water, by attribute name."""
 
-    members: tuple[Member, ...]
+    members: tuple[CrewMember, ...]
     frame: Frame
     environment: Mapping[str, float]
 
@@ -50,10 +50,10 @@ def crew_in(session: Session, path: Path) -> Crew:
         loaded = load_behaviour(session, file)
         types = loaded.place.types
         members = [
-            Member(each.id, types.get(each.type_name), each.home, each.payload, each)
+            CrewMember(each.id, types.get(each.type_name), each.home, each.payload, each)
             for each in loaded.program.robots
         ]
         return Crew(tuple(members), loaded.program.frame, loaded.place.environment or {})
     scene = Stages(session, path).grounded
-    members = [Member(each.name, each.type, each.home, each.payload) for each in scene.robots]
+    members = [CrewMember(each.name, each.type, each.home, each.payload) for each in scene.robots]
     return Crew(tuple(members), scene.frame, scene.environment)

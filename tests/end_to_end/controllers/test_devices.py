@@ -80,7 +80,7 @@ def test_a_camera_that_promises_to_tell_each_image_and_does_not_is_silent(new_co
     given = target_input(lands, [replace(quad(), devices={"device": device})])
     made = new_controllers(tmp_path / "code", lands, files=render(MAVLINK_PYTHON, given))
     vehicles, links = hangar(lands)
-    vehicles["alpha"].autopilot.camera.works = False
+    vehicles["alpha"].autopilot.takes_photos = False
     code, said = made.run("fleet.py", *links)
     assert code == 1
     assert "DEVICE_SILENT" in said

@@ -11,7 +11,7 @@ from typing import Any
 import typer
 
 from mmrs_core.behaviour.earth import degrees_of
-from mmrs_core.cli.crews import Member, crew_in
+from mmrs_core.cli.crews import CrewMember, crew_in
 from mmrs_core.cli.output import tell
 from mmrs_core.cli.session import Session
 from mmrs_core.cli.settings import Settings as CliSettings
@@ -129,7 +129,7 @@ def _unsimulated(robot: str, profile: VehicleProfile | None) -> str:
     return f"robot '{robot}': no vehicle is simulated for its profile{name}"
 
 
-def _with_battery(settings: Settings, robot: Member) -> Settings:
+def _with_battery(settings: Settings, robot: CrewMember) -> Settings:
     """Return settings with the battery of a robot's type, which lasts its lifetime."""
     type = robot.type
     if type is None:

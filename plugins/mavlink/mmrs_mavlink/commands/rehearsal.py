@@ -229,7 +229,7 @@ def summary_of(vehicle: SimulatedVehicle) -> Mapping[str, object]:
     return {
         "flown": round(sum(b[0] - a[0] for a, b in steps), 1),
         "metres": round(sum(dist(a[1:], b[1:]) for a, b in steps), 1),
-        "photos": len(pilot.camera.photos),
+        "photos": len(pilot.photos),
         "battery": round(pilot.battery.level, 3),
         "armed": pilot.armed,
         "from_home": round(hypot(*pilot.body.place[:2]), 1),

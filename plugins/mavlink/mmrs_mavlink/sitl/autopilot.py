@@ -9,8 +9,8 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from mmrs_mavlink.profiles import VehicleProfile
 from mmrs_mavlink.sitl import parameters
+from mmrs_mavlink.sitl.battery import Battery
 from mmrs_mavlink.sitl.body import Body, Vector
-from mmrs_mavlink.sitl.devices import Battery, Camera
 from mmrs_mavlink.sitl.items import FENCE, MISSION, MOVING, RALLY, StoredItem
 from mmrs_mavlink.sitl.settings import PX4, Settings
 from mmrs_runtime.controllers.geodesy import metres_per_degree, wrapped
@@ -22,6 +22,9 @@ NOT_TO_BE_ARMED_IN = frozenset({"land", "return"})
 SPEEDS = (("WP_SPD", 1.0), ("WPNAV_SPEED", 0.01), ("WP_SPEED", 1.0), ("MPC_XY_CRUISE", 1.0))
 RADII = (("WP_RADIUS_M", 1.0), ("WPNAV_RADIUS", 0.01), ("WP_RADIUS", 1.0), ("NAV_ACC_RAD", 1.0))
 """Parameters of the default speed and of the waypoint radius, with their units in m/s and metres."""
+
+PHOTOS = frozenset({203, 2000})
+"""Commands that take a photo: DO_DIGICAM_CONTROL and IMAGE_START_CAPTURE."""
 
 CHANGE_SPEED = int(mavlink.MAV_CMD_DO_CHANGE_SPEED)
 STREAM_SECONDS, STREAM_GAP = 1.0, 0.5
@@ -47,7 +50,8 @@ class SimulatedAutopilot:
         track: (seconds, north, east, up) while armed, ten times a second.
         modes: (seconds, number) of every mode change. numbers: of its modes, by name.
         armable_mode: the last mode that a PX4 may be armed in.
-        texts: (severity, text) of STATUSTEXTs to be sent. said: (seconds, severity, text) of all of them.
+        said: (seconds, severity, text) of every STATUSTEXT.
+        photos: position at each photo. takes_photos: whether its camera works.
         stores: items by mission type.
         item: current mission item. held: seconds at its position. finished: whether the mission is over.
         climbs_at: time at which its motors have spun up for a take-off. driven_at: time of the last sticks.
@@ -70,7 +74,8 @@ class SimulatedAutopilot:
         self.settings = settings
         self.body = Body(settings.profile.pacing.step)
         self.battery = Battery(settings.energy, settings.capacity, settings.cells)
-        self.camera = Camera()
+        self.photos: list[Vector] = []
+        self.takes_photos = True
         self.parameters = parameters.defaults(settings)
         self.stores: dict[int, list[StoredItem]] = {MISSION: [], FENCE: [], RALLY: []}
         self.time = self.booted = self.fence_due = self.clock_error = self.link_timeout = 0.0
@@ -91,7 +96,6 @@ class SimulatedAutopilot:
     def _clear_memory(self) -> None:
         self.armed = self.breached = self.forced_breach = False
         self.start_mode()
-        self.texts: list[tuple[int, str]] = []
         self.item, self.held, self.finished = 0, 0.0, False
         self.climbs_at = self.driven_at = 0.0
         self.return_path: list[Vector] = []
@@ -248,14 +252,14 @@ class SimulatedAutopilot:
 
     def say(self, severity: int, text: str) -> None:
         """Send a STATUSTEXT."""
-        self.texts.append((int(severity), text))
         self.said.append((self.time, int(severity), text))
 
     def record(self, number: int, params: Iterable[float]) -> None:
-        """Record an executed command, and pass it to the camera."""
+        """Record an executed command, and take a photo if it says so."""
         values = tuple(params)
         self.history.append((self.time, number, values))
-        self.camera.execute(number, values, self.body)
+        if self.takes_photos and number in PHOTOS and (number != min(PHOTOS) or values[4:5] == (1.0,)):
+            self.photos.append(self.body.position)
 
     def arm(self) -> None:
         """Arm; home becomes the present position unless a command has set it."""

@@ -13,8 +13,8 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from mmrs_mavlink.profiles import ARDUPILOT, PX4
 from mmrs_mavlink.sitl.autopilot import SimulatedAutopilot
+from mmrs_mavlink.sitl.body import Vector
 from mmrs_mavlink.sitl.commands import ACCEPTED, FAILED, arming_refusal
-from mmrs_mavlink.sitl.devices import Photo
 from mmrs_mavlink.sitl.items import MISSION
 from mmrs_runtime.sights import seen
 
@@ -213,9 +213,9 @@ def _obstacle(pilot: SimulatedAutopilot) -> Message | None:
     )
 
 
-def photo(pilot: SimulatedAutopilot, taken: Photo) -> Message:
-    """Return the report of a photo: ArduPilot's message, or that of a camera for PX4."""
-    place, number = pilot.degrees_at(taken.place), taken.number
+def photo(pilot: SimulatedAutopilot, number: int) -> Message:
+    """Return the report of a photo, counted from 1: ArduPilot's message, or that of a camera for PX4."""
+    place = pilot.degrees_at(pilot.photos[number - 1])
     if pilot.px4:
         captured = {"image_index": number, "capture_result": 1, "q": (1.0, 0.0, 0.0, 0.0), "file_url": b""}
         return message("camera_image_captured", **_scaled(*place), **captured)
@@ -264,6 +264,8 @@ class Streams:
         self._pilot, self._send = pilot, send
         own, known = pilot.settings.profile.autopilot.streamed, {**ARDUPILOT.streamed, **PX4.streamed}
         self._names = [name for name in MAKERS if name in own or name not in known]
+        self._texts = self._photos = 0
+        """How many texts and photos it has sent."""
         self._begin([name for name in self._names if name != ON_REQUEST])
 
     def reboot(self) -> None:
@@ -324,19 +326,19 @@ class Streams:
         return name if name in self._names else ""
 
     def _send_events(self) -> None:
+        """Send texts, and photos with the objects in them."""
         pilot = self._pilot
-        while pilot.texts:
-            severity, text = pilot.texts.pop(0)
+        for _, severity, text in pilot.said[self._texts :]:
             self._send(mavlink.MAVLink_statustext_message(severity, text.encode()[:TEXT_BYTES]))
-        while pilot.camera.unsent:
-            taken = pilot.camera.photos[-pilot.camera.unsent]
-            pilot.camera.unsent -= 1
-            self._send(photo(pilot, taken))
-            self._report_detections(taken)
+        self._texts = len(pilot.said)
+        for number in range(self._photos + 1, len(pilot.photos) + 1):
+            self._send(photo(pilot, number))
+            self._report_detections(pilot.photos[number - 1])
+        self._photos = len(pilot.photos)
 
-    def _report_detections(self, taken: Photo) -> None:
+    def _report_detections(self, here: Vector) -> None:
         """Report the objects in a photo, with their positions if those fit into a text."""
-        for each in seen(self._pilot.settings.sights, *taken.place):
+        for each in seen(self._pilot.settings.sights, *here):
             latitude, longitude = self._pilot.degrees_at((each.north, each.east, 0.0))
             text = f"detected {each.name}"
             placed = f"{text} at {latitude:.6f},{longitude:.6f}"

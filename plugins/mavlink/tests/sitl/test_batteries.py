@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 from simulated import Bench
 
-from mmrs_mavlink.sitl.devices import Battery
+from mmrs_mavlink.sitl.battery import Battery
 
 
 def test_a_battery_lasts_for_its_endurance_from_arming_on():

@@ -82,8 +82,8 @@ def test_items_that_end_at_once_are_passed_in_order(bench):
 def test_a_photo_is_taken_in_sequence(bench):
     first = bench.go_to((0.0, 20.0, 20.0), hold=1.0)
     flown(bench, *first, plain(PHOTO, x=1), bench.item(LOITER, (0.0, 40.0, 20.0)), until=3)
-    (photo,) = bench.pilot.camera.photos
-    assert hypot(photo.place[0], photo.place[1] - 20.0) < 0.5
+    (photo,) = bench.pilot.photos
+    assert hypot(photo[0], photo[1] - 20.0) < 0.5
 
 
 def test_a_mission_without_a_take_off_is_accepted_and_never_leaves_the_ground(bench):

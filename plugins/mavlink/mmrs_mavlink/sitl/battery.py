@@ -1,16 +1,9 @@
-"""The battery and the camera of a simulated vehicle."""
+"""The battery of a simulated vehicle."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
-from mmrs_mavlink.sitl.body import Body, Vector
-
 FULL, EMPTY = 4.2, 3.4
 """Volts of a cell; the voltage falls linearly between them."""
-
-PHOTOS = frozenset({203, 2000})
-"""Commands that take a photo: DO_DIGICAM_CONTROL and IMAGE_START_CAPTURE."""
 
 
 class Battery:
@@ -45,31 +38,3 @@ class Battery:
         """Stand idle, at a charger that fills an empty battery in `until_full` seconds; 0: at none."""
         self.level = min(1.0, self.level + seconds / until_full) if until_full else self.level
         self.current = 0.0
-
-
-@dataclass(frozen=True, slots=True)
-class Photo:
-    """A photo: its number from 1 on, and where it was taken, in metres north, east and up of home."""
-
-    number: int
-    place: Vector
-
-
-class Camera:
-    """A camera.
-
-    Attributes:
-        works: whether it takes photos.
-        photos: all photos, oldest first. unsent: how many of them are not yet reported.
-    """
-
-    def __init__(self) -> None:
-        self.works = True
-        self.photos: list[Photo] = []
-        self.unsent = 0
-
-    def execute(self, number: int, params: tuple[float, ...], body: Body) -> None:
-        """Take a photo, if a command says so."""
-        if self.works and number in PHOTOS and (number != min(PHOTOS) or params[4:5] == (1.0,)):
-            self.photos.append(Photo(len(self.photos) + 1, body.position))
-            self.unsent += 1
