@@ -21,10 +21,9 @@ def main() -> None:
     assert given.model == "quad"
     assert all(Path(file).is_file() for file in given.defaults.split(","))
     latitude, longitude, altitude, _ = map(float, given.home.split(","))
-    settings = Settings("copter", latitude, longitude, int(given.sysid), altitude=altitude)
-    host, port = address(given.serial0)
-    speedup, ground = float(given.speedup), address(given.serial1)
-    with SimulatedVehicle(port, settings, host=host, speedup=speedup, ground=ground):
+    ground, (host, port) = address(given.serial1), address(given.serial0)
+    settings = Settings("copter", latitude, longitude, int(given.sysid), altitude=altitude, ground=ground)
+    with SimulatedVehicle(port, settings, host=host, speedup=float(given.speedup)):
         threading.Event().wait()
 
 

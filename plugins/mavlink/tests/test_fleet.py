@@ -10,7 +10,7 @@ import typer
 
 from mmrs_core.cli.settings import Settings
 from mmrs_core.resources import shipped
-from mmrs_mavlink.commands.fleet import PLACE, SimulatedFleet, members_of, pair, parameter
+from mmrs_mavlink.commands.fleet import PLACE, SimulatedFleet, members_of, pair, parameter, station
 from mmrs_mavlink.sitl import Settings as SimulatedSettings
 
 TWO = {name: SimulatedSettings() for name in ("first", "second")}
@@ -61,7 +61,6 @@ def test_the_arguments_are_those_of_controllers_and_of_mmrs_run(speedup, end):
     [
         ({"settings": {"parameters": {"NOSUCH": 1.0}}}, "NOSUCH"),
         ({"port": 65_535}, "65545"),
-        *(({"ground": text}, r"not \[HOST:\]PORT") for text in ("station", "127.0.0.1:", "0", "h:70000")),
     ],
 )
 def test_invalid_options_are_refused(options, complaint):
@@ -75,7 +74,13 @@ def test_values_that_are_no_numbers_are_refused(read):
         read()
 
 
+@pytest.mark.parametrize("text", ["station", "127.0.0.1:", "0", "h:70000"])
+def test_a_ground_station_without_a_port_is_refused(text):
+    with pytest.raises(typer.BadParameter, match=r"not \[HOST:\]PORT"):
+        station(text)
+
+
 def test_a_ground_station_has_a_link_of_its_own():
-    ((_, vehicle),) = SimulatedFleet(ground="14650").vehicles({"a": TWO["first"]})
+    ((_, vehicle),) = SimulatedFleet(settings={"ground": station("14650")}).vehicles({"a": TWO["first"]})
     vehicle.faults.begin("ground-down")
     vehicle.close()

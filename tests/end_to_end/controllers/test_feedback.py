@@ -49,9 +49,7 @@ def read(station, process) -> list:
 
 def test_a_report_is_read_at_a_ground_station(controllers, looking):
     port = free_port()
-    with SimulatedVehicle(
-        port, Settings(system=7), speedup=20.0, ground=("127.0.0.1", looking.getsockname()[1])
-    ):
+    with SimulatedVehicle(port, Settings(system=7, ground=looking.getsockname()), speedup=20.0):
         made = controllers(REPORTS)
         with made.start("fleet.py", "--speedup", "20", "--connect", f"udpin:127.0.0.1:{port}") as process:
             pieces = read(looking, process)

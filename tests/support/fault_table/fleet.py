@@ -68,8 +68,9 @@ class Fleet:
         self._ground = ("127.0.0.1", free_port()) if watched else None
         for index, pad in enumerate(pads):
             port = free_port()
-            given = Settings("copter", *home_of(index), **(settings or {}).get(pad.robot, {}))
-            self.vehicles[pad.robot] = SimulatedVehicle(port, given, speedup=speedup, ground=self._ground)
+            own = (settings or {}).get(pad.robot, {})
+            given = Settings("copter", *home_of(index), ground=self._ground, **own)
+            self.vehicles[pad.robot] = SimulatedVehicle(port, given, speedup=speedup)
             self._links[pad.robot] = f"{pad.robot}=udpin:127.0.0.1:{port}"
         if execution == "generated":
             mmrs("generate", str(self.behaviour), "--target", "mavlink-python", "-o", str(folder / "made"))

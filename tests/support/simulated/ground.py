@@ -33,9 +33,8 @@ class Ground:
 
     def switch_on(self, **given) -> SimulatedVehicle:
         """Create the vehicle, and wait until it has a position."""
-        links = {name: given.pop(name) for name in ("ground",) if name in given}
         settings = Settings(**{"boot": 0.5, "ready": 0.5, **given})
-        self.vehicle = SimulatedVehicle(self.address[1], settings, **links)
+        self.vehicle = SimulatedVehicle(self.address[1], settings)
         self.receive("GLOBAL_POSITION_INT", lambda message: message.lat)
         return self.vehicle
 

@@ -39,14 +39,12 @@ class SimulatedFleet:
     """Options of all vehicles of a fleet, as on the command line.
 
     Attributes:
-        ground: address of a ground station; empty: none.
         settings: those that replace the settings of all robots.
     """
 
     port: int = 14_550
     step: int = 10
     host: str = "127.0.0.1"
-    ground: str = ""
     speedup: float = 1.0
     settings: Mapping[str, Any] = field(default_factory=dict)
 
@@ -83,11 +81,7 @@ class SimulatedFleet:
         if unknown := sorted(settings.parameters.keys() - defaults(replace(settings, parameters={})).keys()):
             raise ValueError(f"parameter {unknown[0]}: unknown to the simulated vehicle")
         return SimulatedVehicle(
-            self.port + self.step * number,
-            settings,
-            host=self.host,
-            speedup=self.speedup,
-            ground=_address(self.ground) if self.ground else None,
+            self.port + self.step * number, settings, host=self.host, speedup=self.speedup
         )
 
 
@@ -177,8 +171,13 @@ def _finite(text: str) -> float:
     return number
 
 
-def _address(text: str) -> tuple[str, int]:
+def station(text: str) -> tuple[str, int]:
+    """Return the host and the port of a ground station.
+
+    Raises:
+        typer.BadParameter: they are not.
+    """
     host, _, port = text.rpartition(":")
     if not port.isdecimal() or len(port) > 9 or not 1 <= int(port) <= LAST_PORT:
-        raise ValueError(f"--ground {text}: not [HOST:]PORT")
+        raise typer.BadParameter(f"--ground {text}: not [HOST:]PORT")
     return host or "127.0.0.1", int(port)

@@ -85,7 +85,7 @@ def checked(text: str, vehicles: Vehicles) -> ScheduledFault:
     for name, vehicle in vehicles:
         if fault.robot in ("", name):
             pilot = SimulatedAutopilot(vehicle.autopilot.settings)
-            Faults(pilot, nullcontext(), watched=vehicle.faults.watched).begin(fault.name, *fault.values)
+            Faults(pilot, nullcontext()).begin(fault.name, *fault.values)
     return fault
 
 

@@ -120,7 +120,7 @@ def sitl(
     Example: mmrs sitl examples/carbon-dioxide --speedup 5 --fault 'Alba:gps-lost@60+20'
     """
     from mmrs_core.simulation.surroundings import sights_in
-    from mmrs_mavlink.commands.fleet import SimulatedFleet, members_of, pair, parameter
+    from mmrs_mavlink.commands.fleet import SimulatedFleet, members_of, pair, parameter, station
     from mmrs_mavlink.commands.rehearsal import Rehearsal
 
     batteries = {"energy": energy, "recharge": recharge}
@@ -128,11 +128,11 @@ def sitl(
         port=port,
         step=step,
         host=host,
-        ground=ground,
         speedup=speedup,
         settings={name: value for name, value in batteries.items() if value is not None}
         | {"firmware": firmware, "wind": pair(wind, "--wind")}
-        | {"parameters": dict(map(parameter, parameters or ()))},
+        | {"parameters": dict(map(parameter, parameters or ()))}
+        | {"ground": station(ground) if ground else None},
     )
     sights = sights_in(surroundings) if surroundings is not None else ()
     members = members_of(settings_of(call), behaviour, sights)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from math import atan2, degrees, hypot, inf
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
@@ -19,9 +19,8 @@ NEAR_GROUND = 0.05
 NOT_TO_BE_ARMED_IN = frozenset({"land", "return"})
 """Modes that a PX4 refuses to be armed in (``mode_requirements.cpp``)."""
 
-SPEEDS = (("WP_SPD", 1.0), ("WPNAV_SPEED", 0.01), ("WP_SPEED", 1.0), ("MPC_XY_CRUISE", 1.0))
-RADII = (("WP_RADIUS_M", 1.0), ("WPNAV_RADIUS", 0.01), ("WP_RADIUS", 1.0), ("NAV_ACC_RAD", 1.0))
-"""Parameters of the default speed and of the waypoint radius, with their units in m/s and metres."""
+SPEEDS: Mapping[str, float] = {"WPNAV_SPEED": 100.0, "WP_SPEED": 1.0, "MPC_XY_CRUISE": 1.0}
+"""Parameters of the default speed, with their units in a metre per second."""
 
 PHOTOS = frozenset({203, 2000})
 """Commands that take a photo: DO_DIGICAM_CONTROL and IMAGE_START_CAPTURE."""
@@ -61,7 +60,7 @@ class SimulatedAutopilot:
         wind: metres per second, and degrees that it comes from.
         obstacle: metres, and degrees clockwise from its nose.
         breached: whether it is outside its fence. forced_breach: whether an injected fault says so.
-        silent: commands that it does not answer.
+        silent: commands that it does not answer. cut: numbers of the links that are cut.
         link_timeout: shortest timeout of its link, seconds, whatever its parameters say.
         failing: time since which each failure is present. answered: failures that it has answered.
         home: latitude, longitude, metres above mean sea level. home_set: whether a command has set it.
@@ -90,7 +89,7 @@ class SimulatedAutopilot:
         self.wind = settings.wind
         self.motor_failed = False
         self.obstacle: tuple[float, float] | None = None
-        self.silent = settings.silent
+        self.silent, self.cut = set(settings.silent), set[int]()
         self._clear_memory()
 
     def _clear_memory(self) -> None:
@@ -225,7 +224,7 @@ class SimulatedAutopilot:
         body.curved = mode in CURVED or not (self.flies or mode in MANUAL)
         legs = pacing.step if self.flies and not body.curved else pacing.mission
         body.figures = legs or pacing.step
-        body.radius = self._value(RADII)
+        body.radius = self._value(self.settings.profile.radii)
         keeps = mode == "auto" and self.settings.profile.autopilot.missions.keeps_speed
         passed = self.stores[MISSION][: self.item] if keeps else []
         speeds = [item.params[1] for item in passed if item.command == CHANGE_SPEED]
@@ -235,8 +234,9 @@ class SimulatedAutopilot:
         """Return the default speed, metres per second."""
         return self._value(SPEEDS)
 
-    def _value(self, names: Iterable[tuple[str, float]]) -> float:
-        return next(self.parameters[name] * unit for name, unit in names if name in self.parameters)
+    def _value(self, units: Mapping[str, float]) -> float:
+        """Return the first parameter that it has of these, in metres."""
+        return next(self.parameters[name] / unit for name, unit in units.items() if name in self.parameters)
 
     def face(self, place: Vector) -> None:
         """Turn to a place that is not right here."""

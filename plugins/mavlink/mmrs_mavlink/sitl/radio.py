@@ -16,6 +16,8 @@ Address = tuple[str, int]
 LARGEST = 65_535
 SIGNATURE_EPOCH = 1_420_070_400
 COMPONENT = 1
+CONTROLLER, STATION = 0, 1
+"""Numbers of the addresses: of the controller, and of a ground station."""
 
 
 class SimulatedRadio:
@@ -31,8 +33,7 @@ class SimulatedRadio:
         """Open a socket.
 
         Args:
-            addresses: host and UDP port of the controller, and of further ground stations; names are
-                resolved once.
+            addresses: hosts and UDP ports; names are resolved once.
             system: MAVLink system of the vehicle.
             key: signing key; empty: unsigned.
 
@@ -83,7 +84,7 @@ class SimulatedRadio:
                 return
             except ConnectionError:
                 continue
-            source = self._addresses.index(address) if address in self._addresses else 0
+            source = self._addresses.index(address) if address in self._addresses else CONTROLLER
             for message in () if self.down(source) else self._mav.parse_buffer(data) or ():
                 kind, sender = message.get_type(), (message.get_srcSystem(), message.get_srcComponent())
                 if kind == "BAD_DATA" or sender == (own, COMPONENT):

@@ -30,6 +30,7 @@ class Settings:
         values: sensors by name, published as NAMED_VALUE_FLOAT: functions of the time in seconds.
         sights: objects that its photos can show, in metres from its home.
         refuse: commands answered with UNSUPPORTED. silent: commands that are never answered.
+        ground: host and UDP port of a ground station; None: there is none.
         key: signing key, 32 bytes; empty: unsigned.
         parameters: those that differ from the defaults.
     """
@@ -52,6 +53,7 @@ class Settings:
     sights: tuple[Sight, ...] = ()
     refuse: frozenset[int] = frozenset()
     silent: frozenset[int] = frozenset()
+    ground: tuple[str, int] | None = None
     key: bytes = b""
     parameters: Mapping[str, float] = field(default_factory=dict)
 

@@ -27,9 +27,6 @@ PILOT_TIMEOUT = 3.0
 RALLY_POINT = 1
 """RTL_TYPE of a PX4 that returns to a rally point rather than home."""
 
-RETURN_HEIGHTS = (("RTL_ALT_M", 1.0), ("RTL_ALT", 0.01), ("RTL_RETURN_ALT", 1.0))
-"""Parameters of the height of returns, with their units in metres."""
-
 CLOSE = 0.2
 STOPPING = frozenset({19, 20, 21, 22})
 """Items before which the vehicle stops."""
@@ -185,8 +182,8 @@ def _path_home(pilot: SimulatedAutopilot) -> list[Vector]:
     if not points or values.get("RALLY_INCL_HOME", values.get("RTL_TYPE") != RALLY_POINT):
         points.append(home)
     goal = min(points, key=lambda point: dist(point[:2], here[:2]))
-    height = next((values[name] * unit for name, unit in RETURN_HEIGHTS if name in values), 0.0)
-    height = max(here[2], home[2] + height) if pilot.flies else here[2]
+    above = values["RTL_RETURN_ALT"] if pilot.px4 else values.get("RTL_ALT", 0.0) / 100.0
+    height = max(here[2], home[2] + above) if pilot.flies else here[2]
     return [(here[0], here[1], height), (goal[0], goal[1], height)]
 
 

@@ -17,7 +17,7 @@ from mmrs_mavlink.sitl.commands import drive, execute, steer, take_sticks
 from mmrs_mavlink.sitl.faults import Faults
 from mmrs_mavlink.sitl.items import ABOVE_SEA, StoredItem
 from mmrs_mavlink.sitl.parameters import ParameterService
-from mmrs_mavlink.sitl.radio import COMPONENT, Address, SimulatedRadio
+from mmrs_mavlink.sitl.radio import COMPONENT, SimulatedRadio
 from mmrs_mavlink.sitl.settings import Settings
 from mmrs_mavlink.sitl.simulation import advance
 from mmrs_mavlink.sitl.telemetry import Streams
@@ -56,7 +56,6 @@ class SimulatedVehicle:
         *,
         host: str = "127.0.0.1",
         speedup: float = 1.0,
-        ground: Address | None = None,
     ) -> None:
         """Create a vehicle, which sends nothing before `start`.
 
@@ -65,7 +64,6 @@ class SimulatedVehicle:
             settings: of the vehicle.
             host: of the controller.
             speedup: simulated seconds per real second.
-            ground: host and UDP port of a ground station besides.
 
         Raises:
             ValueError: a host cannot be resolved.
@@ -77,10 +75,10 @@ class SimulatedVehicle:
         self.received: list[tuple[float, str]] = []
         self.on_tick: Callable[[], None] = lambda: None
         self.lock = threading.RLock()
-        self.faults = Faults(pilot, self.lock, watched=ground is not None)
-        addresses = [(host, port)] if ground is None else [(host, port), ground]
+        self.faults = Faults(pilot, self.lock)
+        addresses = [(host, port)] if given.ground is None else [(host, port), given.ground]
         self.radio = SimulatedRadio(addresses, given.system, given.key)
-        self.radio.down = lambda number: number in self.faults.cut or pilot.booting
+        self.radio.down = lambda number: number in pilot.cut or pilot.booting
         like = given.profile.autopilot
         self._transfers = Transfers(pilot.stores, self.radio.send, pilot.say, like)
         self._transfers.home = self._home if like.missions.begins_with_home else None
