@@ -30,6 +30,10 @@ Robots = Annotated[
 ]
 Seed = Annotated[int, typer.Option("--seed", metavar="N", min=0, help="Planner random seed.")]
 
+Duration = Annotated[
+    float,
+    typer.Option("--for", min=0.0, metavar="SECONDS", help="Stop after SECONDS; 0 runs until interrupted."),
+]
 Assume = Annotated[
     list[str] | None,
     typer.Option("--assume", metavar="CONDITION=yes|no", help="Assumed outcome of a condition. Repeatable."),

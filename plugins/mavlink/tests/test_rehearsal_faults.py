@@ -45,12 +45,13 @@ def test_a_malformed_fault_is_refused(text, complaint):
         scheduled(text)
 
 
-def test_time_counts_from_the_first_arming(vehicle):
+def test_time_counts_from_the_first_arming_with_which_the_track_begins(vehicle):
     schedule = Schedule(vehicle, [scheduled("gps-lost@10+5")])
     happened = []
     for second in range(40):
         vehicle.autopilot.time = float(second)
-        vehicle.autopilot.armed = second >= 12
+        if second == 12:
+            vehicle.autopilot.track.append((12.0, 0.0, 0.0, 0.0))
         happened += [(second, event) for event in schedule.advance()]
     assert happened == [(22, "gps-lost begins"), (27, "gps-lost ends")]
     assert vehicle.autopilot.located

@@ -16,6 +16,7 @@ import typer
 
 from mmrs_core.cli.interruption import INTERRUPTED
 from mmrs_core.cli.output import say, tell
+from mmrs_core.cli.parameters import Duration
 from mmrs_core.cli.replacing import replace_files
 from mmrs_core.cli.typed import typed_lines
 from mmrs_core.errors import UnreadableError
@@ -65,12 +66,7 @@ def sitl(
     seed: Annotated[
         int, typer.Option("--seed", metavar="N", min=0, help="Random seed for instrument noise and bias.")
     ] = 0,
-    seconds: Annotated[
-        float,
-        typer.Option(
-            "--for", min=0.0, metavar="SECONDS", help="Stop after SECONDS; 0 runs until interrupted."
-        ),
-    ] = 0.0,
+    seconds: Duration = 0.0,
 ) -> int:
     """Start each AUV's simulator and control layer.
 

@@ -12,6 +12,7 @@ import typer
 
 from mmrs_auv.commands.modelled import RobotName, Vehicle, sheet_in
 from mmrs_core.cli.output import say, say_file, say_json, tell
+from mmrs_core.cli.parameters import Duration
 from mmrs_core.cli.settings import Json
 from mmrs_core.errors import LinkLostError, UnreadableError
 from mmrs_core.languages.writing import replace_file
@@ -37,10 +38,6 @@ Channel = Annotated[
         metavar="NAME",
         help="Channel of the interface; NAME@HOST:PORT for a hub on another machine.",
     ),
-]
-Seconds = Annotated[
-    float,
-    typer.Option("--for", min=0.0, metavar="SECONDS", help="Stop after SECONDS; 0 runs until interrupted."),
 ]
 
 
@@ -109,7 +106,7 @@ def hub(
         bool,
         typer.Option("--simulated-time", help="Exempt frames that carry simulated time from faults."),
     ] = False,
-    seconds: Seconds = 0.0,
+    seconds: Duration = 0.0,
 ) -> int:
     """Run a virtual CAN bus on this machine.
 
@@ -147,7 +144,7 @@ def monitor(
         list[str] | None,
         typer.Option("--only", metavar="MESSAGE", help="Show only this message. Repeatable."),
     ] = None,
-    seconds: Seconds = 0.0,
+    seconds: Duration = 0.0,
 ) -> int:
     """Decode and print a vehicle's CAN traffic.
 

@@ -11,7 +11,6 @@ from contextlib import nullcontext
 from dataclasses import dataclass
 from itertools import pairwise
 from math import dist, hypot, inf
-from types import FrameType
 
 import typer
 
@@ -42,14 +41,14 @@ class ScheduledFault:
         robot: empty: every robot.
         name: in `FAULTS`. values: of it.
         begin: seconds of the vehicle's time after it was first armed.
-        lasts: seconds; None: until it is cleared.
+        lasts: seconds; inf: until it is cleared.
     """
 
     robot: str
     name: str
     values: tuple[str, ...]
     begin: float = 0.0
-    lasts: float | None = None
+    lasts: float = inf
 
 
 def scheduled(text: str) -> ScheduledFault:
@@ -64,13 +63,13 @@ def scheduled(text: str) -> ScheduledFault:
     found = _PATTERN.fullmatch(text.strip())
     if found is None:
         raise ValueError(f"{text[:40]}: not [ROBOT:]FAULT[=VALUE,…][@SECONDS[+SECONDS]]")
-    if found["lasts"] and fault_named(found["name"]).clear is None:
+    if fault_named(found["name"]).clear is None and found["lasts"]:
         raise ValueError(f"{text}: {found['name']} is one-shot and cannot last")
-    fault_named(found["name"])
     values = tuple(found["values"].split(",")) if found["values"] else ()
     robot = "" if found["robot"] in (None, ALL_ROBOTS) else found["robot"]
-    lasts = float(found["lasts"]) if found["lasts"] else None
-    return ScheduledFault(robot, found["name"], values, float(found["begin"] or 0.0), lasts)
+    return ScheduledFault(
+        robot, found["name"], values, float(found["begin"] or 0.0), float(found["lasts"] or inf)
+    )
 
 
 def checked(text: str, vehicles: Vehicles) -> ScheduledFault:
@@ -111,26 +110,24 @@ class Schedule:
     """Injects and clears the faults of one vehicle on time."""
 
     def __init__(self, vehicle: SimulatedVehicle, faults: Iterable[ScheduledFault]) -> None:
-        self._vehicle, self._zero = vehicle, inf
-        self._due: list[tuple[float, str, tuple[str, ...] | None]] = []
+        self._vehicle, self._due = vehicle, list[tuple[float, str, tuple[str, ...] | None]]()
         for each in faults:
             self._due.append((each.begin, each.name, each.values))
-            if each.lasts is not None:
-                self._due.append((each.begin + each.lasts, each.name, None))
+            self._due.append((each.begin + each.lasts, each.name, None))
 
     def advance(self) -> tuple[str, ...]:
         """Inject and clear what is due; return what has happened, in words."""
         pilot, happened = self._vehicle.autopilot, list[str]()
-        if self._zero == inf and pilot.armed:
-            self._zero = pilot.time
-        for due in [each for each in self._due if pilot.time - self._zero >= each[0]]:
+        since_arming = pilot.time - pilot.track[0][0] if pilot.track else -inf
+        for due in [each for each in self._due if since_arming >= each[0]]:
             self._due.remove(due)
             _, name, values = due
             if values is None:
                 self._vehicle.faults.end(name)
+                happened.append(f"{name} ends")
             else:
                 self._vehicle.faults.begin(name, *values)
-            happened.append(f"{' '.join((name, *(values or ())))} {'ends' if values is None else 'begins'}")
+                happened.append(f"{' '.join((name, *values))} begins")
         return tuple(happened)
 
 
@@ -153,7 +150,6 @@ class Rehearsal:
             name: Schedule(vehicle, [fault for fault in plan if fault.robot in ("", name)])
             for name, vehicle in vehicles
         }
-        self._stopped = False
 
     def run(self, seconds: float, started: Callable[[], None]) -> int:
         """Run the vehicles; return the exit code.
@@ -162,17 +158,17 @@ class Rehearsal:
             seconds: real seconds to run; 0: until interrupted.
             started: called once the vehicles run.
         """
-        host = Host([vehicle for _, vehicle in self._vehicles])
-        lines = typed_lines()
-        before = {number: signal.signal(number, self._stop) for number in (signal.SIGINT, signal.SIGTERM)}
+        host, lines = Host([vehicle for _, vehicle in self._vehicles]), typed_lines()
+        for number in (signal.SIGINT, signal.SIGTERM):
+            signal.signal(number, signal.default_int_handler)
         host.start()
         try:
             started()
-            return self._watch(host, time.monotonic() + seconds if seconds else inf, lines)
+            return self._watch(host, time.monotonic() + (seconds or inf), lines)
+        except KeyboardInterrupt:
+            return INTERRUPTED
         finally:
             host.stop()
-            for number, handler in before.items():
-                signal.signal(number, handler)
             self._close()
 
     def summaries(self) -> dict[str, Mapping[str, object]]:
@@ -192,21 +188,16 @@ class Rehearsal:
         for _, vehicle in self._vehicles:
             vehicle.close()
 
-    def _stop(self, number: int, frame: FrameType | None) -> None:
-        self._stopped = True
-
     def _watch(self, host: Host, until: float, lines: queue.SimpleQueue[str]) -> int:
         """Inject faults until the end; return the exit code."""
-        while not self._stopped:
+        while time.monotonic() < until and not self._execute(lines):
             if host.failure is not None:
                 raise InternalError("the simulated vehicles fail") from host.failure
-            if time.monotonic() >= until or self._execute(lines):
-                return 0
             for name, schedule in self._schedules.items():
                 for event in schedule.advance():
                     tell(f"'{name}': {event}")
             time.sleep(POLL_SECONDS)
-        return INTERRUPTED
+        return 0
 
     def _execute(self, lines: queue.SimpleQueue[str]) -> bool:
         """Execute the lines that were typed; return whether one ends the rehearsal."""

@@ -10,6 +10,7 @@ import typer
 
 from mmrs_core.cli.completion import one_of
 from mmrs_core.cli.output import say, say_json
+from mmrs_core.cli.parameters import Duration
 from mmrs_core.cli.settings import Json, settings_of
 
 _Texts = list[str] | None
@@ -103,12 +104,7 @@ def sitl(
         Path | None,
         typer.Option("--surroundings", metavar="FILE", help="Objects that photos can show, as JSON."),
     ] = None,
-    seconds: Annotated[
-        float,
-        typer.Option(
-            "--for", min=0.0, metavar="SECONDS", help="Stop after SECONDS; 0 runs until interrupted."
-        ),
-    ] = 0.0,
+    seconds: Duration = 0.0,
     json: Json = False,
 ) -> int:
     """Start simulated MAVLink vehicles.
