@@ -6,11 +6,15 @@ import queue
 import signal
 import sys
 import threading
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from contextlib import suppress
+
+from mmrs_core.cli.output import tell
 
 ALL_ROBOTS = "all"
 """Addresses every robot, instead of a name."""
+
+QUIT = frozenset({"quit", "exit"})
 
 
 def typed_lines() -> queue.SimpleQueue[str]:
@@ -49,3 +53,35 @@ def addressed(text: str, names: Sequence[str]) -> tuple[tuple[str, ...], str, tu
     if robot is None:
         raise ValueError(f"{words[0]}: unknown robot; known are {', '.join(names)}, and all")
     return tuple(name for name in names if robot in (name, ALL_ROBOTS)), words[1], tuple(words[2:])
+
+
+def obeyed(
+    lines: queue.SimpleQueue[str],
+    names: Sequence[str],
+    obey: Callable[[str, tuple[str, ...]], None],
+    usual: str = "",
+) -> bool:
+    """Obey the lines typed so far, and print what was done; return whether one of them quits.
+
+    Args:
+        lines: typed.
+        names: of all robots.
+        obey: does what the words of a line say with a robot; raises ValueError where that makes no sense.
+        usual: word that all robots are addressed with by itself, or by an empty line.
+    """
+    while not lines.empty():
+        line = lines.get().strip()
+        if line in QUIT:
+            return True
+        if usual and line in ("", usual):
+            line = f"{ALL_ROBOTS} {usual}"
+        try:
+            robots, what, values = addressed(line, names)
+            for robot in robots:
+                obey(robot, (what, *values))
+        except ValueError as error:
+            tell(str(error))
+            continue
+        if what != usual:
+            tell(f"{', '.join(robots)}: {' '.join((what, *values))}")
+    return False

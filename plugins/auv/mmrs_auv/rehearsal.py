@@ -5,7 +5,7 @@ from __future__ import annotations
 import subprocess
 import sys
 import time
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from pathlib import Path
 from queue import SimpleQueue
@@ -16,11 +16,10 @@ from auv_vessel.body.surroundings import Surroundings
 from auv_vessel.body.surroundings import to_json as surroundings_json
 from auv_vessel.sheet import Sheet, to_json
 from auv_vessel.wire.hub import Troubles
-from mmrs_core.cli.typed import ALL_ROBOTS, addressed
+from mmrs_core.cli.typed import obeyed
 from mmrs_core.errors import LinkLostError
 
 PARTS = ("vehicle", "sensors", "actuators", "movement")
-QUIT = frozenset({"quit", "exit"})
 HUB_SECONDS, END_SECONDS = 30.0, 10.0
 """Real seconds that a hub has to begin, and that processes have to end."""
 BUS_FAULTS = "cut, loss SHARE, delay SECONDS, corruption SHARE, and clear bus"
@@ -165,11 +164,7 @@ def _begun(
 
 
 def keep(
-    fleet: Mapping[str, VehicleProcesses],
-    until: float,
-    stopped: list[int],
-    lines: SimpleQueue[str],
-    say: Callable[[str], None],
+    fleet: Mapping[str, VehicleProcesses], until: float, stopped: list[int], lines: SimpleQueue[str]
 ) -> None:
     """Return when the time has come, something was put into `stopped`, or a line says ``quit``.
 
@@ -178,7 +173,6 @@ def keep(
         until: by the monotonic clock.
         stopped: filled to end the rehearsal.
         lines: that are typed: ``ROBOT FAULT``, ``all FAULT``, ``ROBOT clear FAULT``, ``status``.
-        say: receives their answers.
 
     Raises:
         LinkLostError: a part has ended on its own.
@@ -188,10 +182,8 @@ def keep(
             for part, code in processes.ended().items():
                 if not stopped:
                     raise LinkLostError(f"'{robot}': {part} has ended with {code}")
-        while not lines.empty():
-            if (line := lines.get().strip()) in QUIT:
-                return
-            _obey(line, fleet, say)
+        if obeyed(lines, list(fleet), lambda robot, words: fleet[robot].befall(words), "status"):
+            return
         time.sleep(0.1)
 
 
@@ -200,17 +192,3 @@ def _number(text: str) -> float:
         return float(text)
     except ValueError:
         raise ValueError(f"{text} is not a number") from None
-
-
-def _obey(line: str, fleet: Mapping[str, VehicleProcesses], say: Callable[[str], None]) -> None:
-    if line in ("", "status"):
-        line = f"{ALL_ROBOTS} status"
-    try:
-        robots, what, values = addressed(line, list(fleet))
-        for robot in robots:
-            fleet[robot].befall((what, *values))
-    except ValueError as error:
-        say(str(error))
-        return
-    if what != "status":
-        say(f"{', '.join(robots)}: {' '.join((what, *values))}")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from mmrs_mavlink.commands.rehearsal import Schedule, ScheduledFault, inject, scheduled
+from mmrs_mavlink.commands.rehearsal import Schedule, ScheduledFault, obey, scheduled
 from mmrs_mavlink.sitl import Settings, SimulatedVehicle
 
 
@@ -57,32 +57,22 @@ def test_time_counts_from_the_first_arming_with_which_the_track_begins(vehicle):
     assert vehicle.autopilot.located
 
 
-def test_a_line_injects_and_clears_faults(vehicle):
-    assert inject("Drone1 obstacle 4 90", [("Drone1", vehicle)]) == ("Drone1",)
+def test_words_inject_and_clear_faults(vehicle):
+    obey(vehicle, ("obstacle", "4", "90"))
     assert vehicle.autopilot.obstacle == (4.0, 90.0)
-    assert inject("all clear obstacle", [("Drone1", vehicle)]) == ("Drone1",)
+    obey(vehicle, ("clear", "obstacle"))
     assert vehicle.autopilot.obstacle is None
 
 
-@pytest.mark.parametrize("line", ["Quad 1 battery 0.1", "  Quad 1   battery 0.1 "])
-def test_a_robot_name_can_contain_spaces(vehicle, line):
-    vehicles = [(name, vehicle) for name in ("Quad", "Quad 12", "Quad 1")]
-    assert inject(line, vehicles) == ("Quad 1",)
-    assert vehicle.autopilot.battery.level == pytest.approx(0.1)
+@pytest.mark.parametrize("words", [("gps",), ("clear", "gps"), ("clear",)])
+def test_an_unknown_fault_is_refused(vehicle, words):
+    with pytest.raises(ValueError, match="unknown fault"):
+        obey(vehicle, words)
 
 
-@pytest.mark.parametrize(
-    ("line", "complaint"),
-    [
-        ("Drone2 gps-lost", "unknown robot"),
-        ("gps-lost", "neither ROBOT"),
-        ("Drone1", "neither ROBOT"),
-        ("Drone1 gps", "unknown fault"),
-    ],
-)
-def test_a_malformed_line_is_refused(vehicle, line, complaint):
-    with pytest.raises(ValueError, match=complaint):
-        inject(line, [("Drone1", vehicle)])
+def test_a_fault_without_a_time_begins_at_once(vehicle):
+    assert Schedule(vehicle, [scheduled("wind=5,270")]).advance() == ("wind 5 270 begins",)
+    assert vehicle.autopilot.wind == (5.0, 270.0)
 
 
 def test_a_long_fault_is_refused_before_it_is_read():

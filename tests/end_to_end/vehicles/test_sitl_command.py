@@ -110,7 +110,7 @@ def test_typed_lines_inject_faults_and_report_errors():
         (["--fault", "Drone7:gps-lost@3"], "unknown robot 'Drone7'"),
         (["--fault", "battery=half@3"], "half"),
         (["--fault", "list"], "unknown fault; known are gps-lost"),
-        (["--wind", "strong"], "not two numbers"),
+        (["--fault", "wind=strong"], "'strong' is not a finite number"),
         (["--parameter", "RTL_ALT"], "not NAME=NUMBER"),
         (["--speedup", "0"], "speedup"),
         (["--host", "nowhere.invalid"], "nowhere.invalid: cannot be resolved"),

@@ -15,7 +15,7 @@ from typing import Annotated
 import typer
 
 from mmrs_core.cli.interruption import INTERRUPTED
-from mmrs_core.cli.output import say, tell
+from mmrs_core.cli.output import say
 from mmrs_core.cli.parameters import Duration
 from mmrs_core.cli.replacing import replace_files
 from mmrs_core.cli.typed import typed_lines
@@ -118,7 +118,7 @@ def sitl(
             words += ["--connect", f"{robot}={berth.channel}"]
         words += ["--speedup", f"{speedup:g}"] if speedup != 1.0 else []
         say(" ".join(map(quote, words)))
-        keep(berths, time.monotonic() + (seconds or inf), stopped, typed_lines(), tell)
+        keep(berths, time.monotonic() + (seconds or inf), stopped, typed_lines())
     return INTERRUPTED if stopped else 0
 
 

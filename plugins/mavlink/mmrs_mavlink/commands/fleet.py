@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
-from math import isfinite
+from dataclasses import replace
+from math import isfinite, nan
 from pathlib import Path
 from typing import Any
 
@@ -17,7 +17,6 @@ from mmrs_core.cli.session import Session
 from mmrs_core.cli.settings import Settings as CliSettings
 from mmrs_core.errors import UnsupportedError
 from mmrs_mavlink.plugin.vehicles import profile_of, uncarried
-from mmrs_mavlink.profiles import VehicleProfile
 from mmrs_mavlink.sitl.parameters import defaults
 from mmrs_mavlink.sitl.settings import Settings
 from mmrs_mavlink.sitl.vehicle import SimulatedVehicle
@@ -34,57 +33,6 @@ Members = Mapping[str, Settings]
 """Settings of vehicles, by robot."""
 
 
-@dataclass(frozen=True, slots=True)
-class SimulatedFleet:
-    """Options of all vehicles of a fleet, as on the command line.
-
-    Attributes:
-        settings: those that replace the settings of all robots.
-    """
-
-    port: int = 14_550
-    step: int = 10
-    host: str = "127.0.0.1"
-    speedup: float = 1.0
-    settings: Mapping[str, Any] = field(default_factory=dict)
-
-    def vehicles(self, members: Members) -> tuple[tuple[str, SimulatedVehicle], ...]:
-        """Return a vehicle for each robot, and print where it is.
-
-        Raises:
-            typer.BadParameter: an option is invalid.
-        """
-        last = self.port + self.step * (len(members) - 1)
-        if last > LAST_PORT:
-            raise typer.BadParameter(f"--port {self.port}: the last vehicle would need port {last}")
-        try:
-            made = tuple(
-                (robot, self._vehicle(number, settings))
-                for number, (robot, settings) in enumerate(members.items())
-            )
-        except ValueError as error:
-            raise typer.BadParameter(str(error)) from error
-        for number, (robot, each) in enumerate(members.items(), start=1):
-            tell(f"'{robot}': {each.kind}, system {number}, at {each.latitude:.7f}, {each.longitude:.7f}")
-        return made
-
-    def arguments(self, members: Members) -> list[str]:
-        """Return the arguments with which controllers and ``mmrs run`` connect to the vehicles."""
-        found = []
-        for number, robot in enumerate(members):
-            port = self.port + self.step * number
-            found += ["--connect", f"{robot}=udpin:{self.host}:{port}@{number + 1}"]
-        return found + (["--speedup", f"{self.speedup:g}"] if self.speedup != 1.0 else [])
-
-    def _vehicle(self, number: int, member: Settings) -> SimulatedVehicle:
-        settings = replace(member, system=number + 1, **self.settings)
-        if unknown := sorted(settings.parameters.keys() - defaults(replace(settings, parameters={})).keys()):
-            raise ValueError(f"parameter {unknown[0]}: unknown to the simulated vehicle")
-        return SimulatedVehicle(
-            self.port + self.step * number, settings, host=self.host, speedup=self.speedup
-        )
-
-
 def members_of(settings: CliSettings, path: Path, sights: Sequence[Sight] = ()) -> Members:
     """Return the robots of a behaviour or of a mission, with objects at metres from its origin.
 
@@ -97,9 +45,9 @@ def members_of(settings: CliSettings, path: Path, sights: Sequence[Sight] = ()) 
     kinds, moves, extensions = contributed.robot_kinds, contributed.move_kinds, contributed.extensions
     profiles = [profile_of(each.program, each.type, kinds, moves, extensions) for each in crew.members]
     unfit = [
-        why
+        uncarried(each.name, each.type, kinds, extensions) or f"robot '{each.name}': its profile has none"
         for each, profile in zip(crew.members, profiles, strict=True)
-        if (why := uncarried(each.name, each.type, kinds, extensions) or _unsimulated(each.name, profile))
+        if profile is None or not profile.rehearsed_as
     ]
     if unfit:
         raise UnsupportedError(f"{path}: no simulated vehicle for all of its robots", unfit)
@@ -113,14 +61,6 @@ def members_of(settings: CliSettings, path: Path, sights: Sequence[Sight] = ()) 
         assert profile is not None
         made[each.name] = _with_battery(Settings(profile.rehearsed_as, *place, sights=near), each)
     return made
-
-
-def _unsimulated(robot: str, profile: VehicleProfile | None) -> str:
-    """Return why no vehicle is simulated for a robot; empty where one is."""
-    if profile is not None and profile.rehearsed_as:
-        return ""
-    name = f" '{profile.name}'" if profile is not None else ""
-    return f"robot '{robot}': no vehicle is simulated for its profile{name}"
 
 
 def _with_battery(settings: Settings, robot: CrewMember) -> Settings:
@@ -139,17 +79,45 @@ def _with_battery(settings: Settings, robot: CrewMember) -> Settings:
     return replace(settings, recharge=recharge, capacity=capacity, cells=max(1, round(voltage / CELL_VOLTS)))
 
 
-def pair(text: str, option: str) -> tuple[float, float]:
-    """Return two numbers separated by a comma.
+def equipped(members: Members, options: Mapping[str, Any]) -> Members:
+    """Return settings with a system number each, and with options of all vehicles, where these are not None.
 
     Raises:
-        typer.BadParameter: they are not.
+        typer.BadParameter: a vehicle cannot have one of them.
     """
-    first, _, second = text.partition(",")
-    try:
-        return _finite(first), _finite(second)
-    except ValueError:
-        raise typer.BadParameter(f"{option} {text}: not two numbers with a comma") from None
+    found, given = {}, {name: value for name, value in options.items() if value is not None}
+    for number, (robot, each) in enumerate(members.items(), start=1):
+        try:
+            found[robot] = replace(each, system=number, **given)
+        except ValueError as error:
+            raise typer.BadParameter(str(error)) from error
+        known = defaults(replace(found[robot], parameters={}))
+        if unknown := sorted(found[robot].parameters.keys() - known.keys()):
+            raise typer.BadParameter(f"parameter {unknown[0]}: unknown to the simulated vehicle")
+    return found
+
+
+def connected(
+    members: Members, port: int, step: int, host: str, speedup: float
+) -> tuple[dict[str, SimulatedVehicle], list[str]]:
+    """Return a vehicle for each robot, at ascending ports, and the arguments that connect to them.
+
+    Raises:
+        typer.BadParameter: an option is invalid.
+    """
+    last = port + step * (len(members) - 1)
+    if last > LAST_PORT:
+        raise typer.BadParameter(f"--port {port}: the last vehicle would need port {last}")
+    vehicles, arguments = {}, list[str]()
+    for robot, each in members.items():
+        try:
+            vehicles[robot] = SimulatedVehicle(port, each, host=host, speedup=speedup)
+        except ValueError as error:
+            raise typer.BadParameter(str(error)) from error
+        arguments += ["--connect", f"{robot}=udpin:{host}:{port}@{each.system}"]
+        port += step
+        tell(f"'{robot}': {each.kind}, system {each.system}, at {each.latitude:.7f}, {each.longitude:.7f}")
+    return vehicles, arguments + (["--speedup", f"{speedup:g}"] if speedup != 1.0 else [])
 
 
 def parameter(text: str) -> tuple[str, float]:
@@ -160,15 +128,12 @@ def parameter(text: str) -> tuple[str, float]:
     """
     name, _, value = text.partition("=")
     try:
-        return name, _finite(value)
+        number = float(value)
     except ValueError:
-        raise typer.BadParameter(f"--parameter {text}: not NAME=NUMBER") from None
-
-
-def _finite(text: str) -> float:
-    if not isfinite(number := float(text)):
-        raise ValueError(f"{text}: not a finite number")
-    return number
+        number = nan
+    if not isfinite(number):
+        raise typer.BadParameter(f"--parameter {text}: not NAME=NUMBER")
+    return name, number
 
 
 def station(text: str) -> tuple[str, int]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import queue
 import re
 import signal
 import time
@@ -16,16 +15,17 @@ import typer
 
 from mmrs_core.cli.interruption import INTERRUPTED
 from mmrs_core.cli.output import say, tell
-from mmrs_core.cli.typed import ALL_ROBOTS, addressed, typed_lines
+from mmrs_core.cli.typed import ALL_ROBOTS, obeyed, typed_lines
 from mmrs_core.errors import InternalError
+from mmrs_mavlink.commands.fleet import Members
 from mmrs_mavlink.sitl.autopilot import SimulatedAutopilot
 from mmrs_mavlink.sitl.faults import Faults, fault_named
 from mmrs_mavlink.sitl.vehicle import Host, SimulatedVehicle
 
 POLL_SECONDS = 0.1
-QUIT = "quit"
 
-Vehicles = Sequence[tuple[str, SimulatedVehicle]]
+Vehicles = Mapping[str, SimulatedVehicle]
+"""Vehicles by robot."""
 
 _PATTERN = re.compile(
     r"(?:(?P<robot>.{1,100}?):)?(?P<name>[a-z-]+)(?:=(?P<values>[^@]+))?"
@@ -40,14 +40,14 @@ class ScheduledFault:
     Attributes:
         robot: empty: every robot.
         name: in `FAULTS`. values: of it.
-        begin: seconds of the vehicle's time after it was first armed.
+        begin: seconds of the vehicle's time after it was first armed; -inf: at once.
         lasts: seconds; inf: until it is cleared.
     """
 
     robot: str
     name: str
     values: tuple[str, ...]
-    begin: float = 0.0
+    begin: float = -inf
     lasts: float = inf
 
 
@@ -68,42 +68,38 @@ def scheduled(text: str) -> ScheduledFault:
     values = tuple(found["values"].split(",")) if found["values"] else ()
     robot = "" if found["robot"] in (None, ALL_ROBOTS) else found["robot"]
     return ScheduledFault(
-        robot, found["name"], values, float(found["begin"] or 0.0), float(found["lasts"] or inf)
+        robot, found["name"], values, float(found["begin"] or -inf), float(found["lasts"] or inf)
     )
 
 
-def checked(text: str, vehicles: Vehicles) -> ScheduledFault:
+def checked(text: str, members: Members) -> ScheduledFault:
     """Return a fault from a text, after a trial that its robots can have it.
 
     Raises:
-        ValueError: the text is malformed, or a robot cannot have the fault.
+        typer.BadParameter: the text is malformed, or a robot cannot have the fault.
     """
-    fault, names = scheduled(text), [name for name, _ in vehicles]
-    if fault.robot and fault.robot not in names:
-        raise ValueError(f"{text}: unknown robot '{fault.robot}'; known are {', '.join(names)}")
-    for name, vehicle in vehicles:
-        if fault.robot in ("", name):
-            pilot = SimulatedAutopilot(vehicle.autopilot.settings)
-            Faults(pilot, nullcontext()).begin(fault.name, *fault.values)
+    try:
+        fault = scheduled(text)
+        if fault.robot and fault.robot not in members:
+            raise ValueError(f"{text}: unknown robot '{fault.robot}'; known are {', '.join(members)}")
+        for name, settings in members.items():
+            if fault.robot in ("", name):
+                Faults(SimulatedAutopilot(settings), nullcontext()).begin(fault.name, *fault.values)
+    except ValueError as error:
+        raise typer.BadParameter(f"--fault {error}") from error
     return fault
 
 
-def inject(line: str, vehicles: Vehicles) -> tuple[str, ...]:
-    """Execute ``ROBOT FAULT [VALUE…]`` or ``ROBOT clear FAULT``, with ``all`` for every robot.
-
-    Returns:
-        The names of the robots.
+def obey(vehicle: SimulatedVehicle, words: tuple[str, ...]) -> None:
+    """Execute ``FAULT [VALUE…]`` or ``clear FAULT``.
 
     Raises:
-        ValueError: the line is malformed, or there is no such robot or fault.
+        ValueError: there is no such fault, or it does not take these values.
     """
-    wanted, what, values = addressed(line, [name for name, _ in vehicles])
-    for _, vehicle in [each for each in vehicles if each[0] in wanted]:
-        if what == "clear" and len(values) == 1:
-            vehicle.faults.end(values[0])
-        else:
-            vehicle.faults.begin(what, *values)
-    return wanted
+    if words[0] == "clear" and len(words) > 1:
+        vehicle.faults.end(words[1])
+    else:
+        vehicle.faults.begin(*words)
 
 
 class Schedule:
@@ -131,85 +127,54 @@ class Schedule:
         return tuple(happened)
 
 
-class Rehearsal:
-    """Simulated vehicles, their schedules of faults, and the lines that are typed."""
+def rehearse(
+    vehicles: Vehicles, faults: Sequence[ScheduledFault], seconds: float, started: Callable[[], None]
+) -> int:
+    """Run vehicles with their faults, and with those that are typed; return the exit code.
 
-    def __init__(self, vehicles: Vehicles, faults: Sequence[str]) -> None:
-        """Prepare these vehicles, and schedule these faults.
-
-        Raises:
-            typer.BadParameter: a fault is malformed, or no robot can have it.
-        """
-        self._vehicles = vehicles
-        try:
-            plan = [checked(text, vehicles) for text in faults]
-        except ValueError as error:
-            self._close()
-            raise typer.BadParameter(f"--fault {error}") from error
-        self._schedules = {
-            name: Schedule(vehicle, [fault for fault in plan if fault.robot in ("", name)])
-            for name, vehicle in vehicles
-        }
-
-    def run(self, seconds: float, started: Callable[[], None]) -> int:
-        """Run the vehicles; return the exit code.
-
-        Args:
-            seconds: real seconds to run; 0: until interrupted.
-            started: called once the vehicles run.
-        """
-        host, lines = Host([vehicle for _, vehicle in self._vehicles]), typed_lines()
-        for number in (signal.SIGINT, signal.SIGTERM):
-            signal.signal(number, signal.default_int_handler)
-        host.start()
-        try:
-            started()
-            return self._watch(host, time.monotonic() + (seconds or inf), lines)
-        except KeyboardInterrupt:
-            return INTERRUPTED
-        finally:
-            host.stop()
-            self._close()
-
-    def summaries(self) -> dict[str, Mapping[str, object]]:
-        """Return what each vehicle has done."""
-        return {name: summary_of(vehicle) for name, vehicle in self._vehicles}
-
-    def print_summaries(self) -> None:
-        """Print what each vehicle has done."""
-        for name, done in self.summaries().items():
-            say(
-                f"'{name}': {done['flown']:.1f} s in motion, {done['metres']:.1f} m,"
-                f" {done['photos']} photos, {done['battery']:.0%} battery remaining,"
-                f" {'still armed' if done['armed'] else 'disarmed'} {done['from_home']:.1f} m from home"
-            )
-
-    def _close(self) -> None:
-        for _, vehicle in self._vehicles:
-            vehicle.close()
-
-    def _watch(self, host: Host, until: float, lines: queue.SimpleQueue[str]) -> int:
-        """Inject faults until the end; return the exit code."""
-        while time.monotonic() < until and not self._execute(lines):
+    Args:
+        vehicles: by robot.
+        faults: their schedule.
+        seconds: real seconds to run; 0: until interrupted.
+        started: called once the vehicles run.
+    """
+    host, lines = Host(list(vehicles.values())), typed_lines()
+    schedules = {
+        name: Schedule(vehicle, [fault for fault in faults if fault.robot in ("", name)])
+        for name, vehicle in vehicles.items()
+    }
+    for number in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(number, signal.default_int_handler)
+    host.start()
+    try:
+        started()
+        until = time.monotonic() + (seconds or inf)
+        while time.monotonic() < until:
             if host.failure is not None:
                 raise InternalError("the simulated vehicles fail") from host.failure
-            for name, schedule in self._schedules.items():
+            if obeyed(lines, list(vehicles), lambda robot, words: obey(vehicles[robot], words)):
+                break
+            for name, schedule in schedules.items():
                 for event in schedule.advance():
                     tell(f"'{name}': {event}")
             time.sleep(POLL_SECONDS)
-        return 0
+    except KeyboardInterrupt:
+        return INTERRUPTED
+    finally:
+        host.stop()
+        for vehicle in vehicles.values():
+            vehicle.close()
+    return 0
 
-    def _execute(self, lines: queue.SimpleQueue[str]) -> bool:
-        """Execute the lines that were typed; return whether one ends the rehearsal."""
-        while not lines.empty():
-            line = lines.get().strip()
-            if line == QUIT:
-                return True
-            try:
-                tell(f"{', '.join(inject(line, self._vehicles))}: {line.partition(' ')[2]}")
-            except ValueError as error:
-                tell(str(error))
-        return False
+
+def print_summaries(summaries: Mapping[str, Mapping[str, object]]) -> None:
+    """Print what vehicles have done, by robot."""
+    for name, done in summaries.items():
+        say(
+            f"'{name}': {done['flown']:.1f} s in motion, {done['metres']:.1f} m,"
+            f" {done['photos']} photos, {done['battery']:.0%} battery remaining,"
+            f" {'still armed' if done['armed'] else 'disarmed'} {done['from_home']:.1f} m from home"
+        )
 
 
 def summary_of(vehicle: SimulatedVehicle) -> Mapping[str, object]:

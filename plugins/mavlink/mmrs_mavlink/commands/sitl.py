@@ -64,9 +64,6 @@ def sitl(
             "--speedup", metavar="FACTOR", min=0.1, max=100.0, help="Simulated seconds per real second."
         ),
     ] = 1.0,
-    wind: Annotated[
-        str, typer.Option("--wind", metavar="SPEED,FROM", help="Wind speed (m/s) and origin (degrees).")
-    ] = "0,0",
     energy: Annotated[
         float | None,
         typer.Option(
@@ -96,8 +93,8 @@ def sitl(
         typer.Option(
             "--fault",
             metavar="[ROBOT:]FAULT[=VALUE,…][@SECONDS[+SECONDS]]",
-            help="Fault to inject: into ROBOT (default: all robots), @SECONDS after arming (default: 0), for "
-            "+SECONDS (default: until cleared). Repeatable.",
+            help="Fault to inject: into ROBOT (default: all robots), @SECONDS after arming (default: at "
+            "once), for +SECONDS (default: until cleared). Repeatable.",
         ),
     ] = None,
     surroundings: Annotated[
@@ -116,27 +113,24 @@ def sitl(
     Example: mmrs sitl examples/carbon-dioxide --speedup 5 --fault 'Alba:gps-lost@60+20'
     """
     from mmrs_core.simulation.surroundings import sights_in
-    from mmrs_mavlink.commands.fleet import SimulatedFleet, members_of, pair, parameter, station
-    from mmrs_mavlink.commands.rehearsal import Rehearsal
+    from mmrs_mavlink.commands.fleet import connected, equipped, members_of, parameter, station
+    from mmrs_mavlink.commands.rehearsal import checked, print_summaries, rehearse, summary_of
 
-    batteries = {"energy": energy, "recharge": recharge}
-    fleet = SimulatedFleet(
-        port=port,
-        step=step,
-        host=host,
-        speedup=speedup,
-        settings={name: value for name, value in batteries.items() if value is not None}
-        | {"firmware": firmware, "wind": pair(wind, "--wind")}
-        | {"parameters": dict(map(parameter, parameters or ()))}
-        | {"ground": station(ground) if ground else None},
-    )
+    options = {
+        "firmware": firmware,
+        "energy": energy,
+        "recharge": recharge,
+        "ground": station(ground) if ground else None,
+        "parameters": dict(map(parameter, parameters or ())),
+    }
     sights = sights_in(surroundings) if surroundings is not None else ()
-    members = members_of(settings_of(call), behaviour, sights)
-    rehearsal = Rehearsal(fleet.vehicles(members), fault or [])
-    arguments = fleet.arguments(members)
-    code = rehearsal.run(seconds, started=lambda: None if json else say(shlex.join(arguments)))
+    members = equipped(members_of(settings_of(call), behaviour, sights), options)
+    faults = [checked(text, members) for text in fault or []]
+    vehicles, arguments = connected(members, port, step, host, speedup)
+    code = rehearse(vehicles, faults, seconds, lambda: None if json else say(shlex.join(arguments)))
+    summaries = {robot: summary_of(vehicle) for robot, vehicle in vehicles.items()}
     if json:
-        say_json({"vehicles": rehearsal.summaries(), "connect": arguments})
+        say_json({"vehicles": summaries, "connect": arguments})
     else:
-        rehearsal.print_summaries()
+        print_summaries(summaries)
     return code
