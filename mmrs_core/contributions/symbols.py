@@ -51,7 +51,7 @@ class MapSymbol:
     fields: tuple[str, ...] = ()
     outlines: Callable[[Part], tuple[Ring, ...]] | None = None
     usual_for: Literal["", "point", "line", "area"] = ""
-    initial: Mapping[str, Property] = field(default_factory=dict)
+    initial: Mapping[str, Property] = field(default_factory=dict, hash=False)
     alternatives: tuple[frozenset[str], ...] = ()
     height: str = ""
 
