@@ -67,7 +67,7 @@ def obeyed(
         lines: typed.
         names: of all robots.
         obey: does what the words of a line say with a robot; raises ValueError where that makes no sense.
-        usual: word that all robots are addressed with by itself, or by an empty line.
+        usual: word that addresses all robots without naming them, as does an empty line.
     """
     while not lines.empty():
         line = lines.get().strip()
