@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from pathlib import PurePath
 from typing import TYPE_CHECKING
+
+from mmrs_core.errors import UnreadableError
 
 if TYPE_CHECKING:
     from mmrs_core.drawings.drawing import Drawing, HeightReference
@@ -30,6 +33,26 @@ class DrawingReader:
     suffixes: tuple[str, ...]
     recognise: Callable[[bytes, str], bool]
     read: Callable[[bytes, str], Drawing]
+
+
+def reader_for(data: bytes, file: str, readers: Sequence[DrawingReader]) -> DrawingReader:
+    """Return the reader of a file: that of its suffix, or the one that recognises what it holds.
+
+    Raises:
+        UnreadableError: if none does, with the formats there are.
+    """
+    suffix = PurePath(file).suffix.lower()
+    named = [reader for reader in readers if suffix in reader.suffixes]
+    if len(named) == 1:
+        return named[0]
+    known = named or list(readers)
+    recognised = [reader for reader in known if reader.recognise(data, file)]
+    if len(recognised) == 1:
+        return recognised[0]
+    shown = ", ".join(f"{reader.name} ({', '.join(reader.suffixes)})" for reader in recognised or known)
+    if recognised:
+        raise UnreadableError.of("", f"may be of several formats: {shown}", file)
+    raise UnreadableError.of("", f"of no format that is known: {shown}", file)
 
 
 @dataclass(frozen=True, slots=True)
