@@ -24,6 +24,11 @@ _EPILOG = (
 _COMMANDS = (
     Command("demo", "Run an example end to end.", "mmrs_core.cli.demo:demo"),
     Command(
+        "import",
+        "Import drawings of map programs into a project.",
+        "mmrs_core.cli.importing:import_drawings",
+    ),
+    Command(
         "validate",
         "Validate the models of a mission.",
         "mmrs_core.cli.validate:validate",

@@ -18,6 +18,7 @@ CORE_COMMANDS = frozenset(
         "show",
         "convert",
         "diff",
+        "import",
         "bus",
         "report",
         "control",

@@ -51,21 +51,23 @@ def _uploaded(of: Callable[[Robot, Scene], Kinematics], robot: Robot, scene: Sce
 def _kinematics(
     of: Callable[[Robot, Scene], Kinematics], timing: VehicleTiming, robot: Robot, scene: Scene
 ) -> Kinematics:
-    plain, capability = of(robot, scene), _capability(robot)
-    autopilot = timing.of(robot.type).landed(
-        capability.landing_rate, capability.landing_height, capability.recovery
-    )
+    plain, autopilot = of(robot, scene), timing.of(robot.type)
+    capability = _capability(robot)
     step = capability.timing("STEP", autopilot.step)
     uploaded = autopilot.mission or (autopilot.step if capability.leg_timings.get("MISSION") else None)
     mission = None if uploaded is None else capability.timing("MISSION", uploaded)
+    landing_rate = autopilot.landing_rate if capability.landing_rate is None else capability.landing_rate
+    landing_height = (
+        autopilot.landing_height if capability.landing_height is None else capability.landing_height
+    )
     driven = replace(
         plain,
         climb=step.climb,
         descent=step.descent,
         launch=_first(capability.launch, autopilot.launch, plain.launch),
-        recovery=_first(autopilot.recovery, plain.recovery),
-        landing_rate=autopilot.landing_rate,
-        landing_height=autopilot.landing_height if autopilot.landing_rate < inf else 0.0,
+        recovery=_first(capability.recovery, autopilot.recovery, plain.recovery),
+        landing_rate=landing_rate,
+        landing_height=landing_height if landing_rate < inf else 0.0,
         rounds=autopilot.rounds,
         turn_rate=min(plain.turn_rate, autopilot.turn_rate),
         charging=autopilot.charging,

@@ -26,7 +26,7 @@ def drawn_values(
     for name, value in feature.properties.items():
         attribute = "maxHeight" if (name, kind.feature) == ("height", "obstacles") else name
         at = metaclass.by_name.get(attribute)
-        if at is None or at.is_reference or at.many or at.name == "name":
+        if at is None or at.is_reference or at.many or at.name == "name" or value == kind.name:
             continue
         try:
             found[at.name] = _parsed(at, str(value).lower() if isinstance(value, bool) else str(value))

@@ -119,9 +119,9 @@ class Builder:
         self._around = around
         shut = [each for name in _SHUT for each in children(context, name)]
         self._closed = [ring for each in shut if len(ring := np.array([*_positions(each)], float)) > 2]
-        self._known = {
-            _likeness(each): each for root in (mission, context) for each in descendants(root) if _drawn(each)
-        }
+        self._known: dict[tuple[object, ...], list[Element]] = {}
+        for each in (each for root in (mission, context) for each in descendants(root) if _drawn(each)):
+            self._known.setdefault(tuple(_positions(each)), []).append(each)
 
     def build(self, feature: MapFeature, decision: Decision) -> Outcome:
         """Add the element of a feature; return what became of it."""
@@ -145,12 +145,13 @@ class Builder:
         notes = [*decision.notes, *found.notes, *doubts]
         heights = self._heights(element, kind, found, given, notes)
         self._place(element, kind, found, heights, notes)
-        alike = self._known.get(_likeness(element))
-        if alike is not None:
-            return replace(
-                told, reason=f"the same is there already: {label_of(alike) or 'an element without a name'}"
-            )
-        self._known[_likeness(element)] = element
+        alike = self._known.setdefault(tuple(_positions(element)), [])
+        for other in alike:
+            called = label_of(other) or "an element without a name"
+            if metaclass_of(other) is kind.metaclass:
+                return replace(told, reason=f"the same is there already: {called}")
+            notes.append(f"drawn as {called} is, too")
+        alike.append(element)
         wanted = given.get("name")
         label = kind.symbol.label if kind.symbol is not None else kind.name
         name = self._names.unique(wanted if isinstance(wanted, str) else feature.name, label)
@@ -340,12 +341,8 @@ def _drawn(element: Element) -> bool:
     return any(is_kind(element, *key) for key in named)
 
 
-def _likeness(element: Element) -> tuple[object, ...]:
-    """Return what elements that were drawn alike have in common: their class and positions."""
-    return (metaclass_of(element).key, *_positions(element))
-
-
 def _positions(element: Element) -> Iterator[tuple[float | None, float | None]]:
+    """Yield latitude and longitude of everything in an element, except where robots begin."""
     for each in descendants(element):
         at = containing_feature(each)
         if is_kind(each, MISSION, "GeoCoordinate") and at is not None and at.name != "initialPosition":

@@ -31,6 +31,7 @@ _BY_WORDS = {
 }
 _LEFT = {
     Role.INCLUSION: "robots are kept out of areas, not inside them: draw what they must not enter",
+    Role.ELEMENT: "it is a context element of no type that is installed",
     Role.PATH: "it was planned already",
     Role.TRACK: "it is the track of a robot or a person",
     Role.PHOTO: "it is a photo that was taken",
@@ -93,8 +94,8 @@ class Decision:
     notes: tuple[str, ...] = ()
 
 
-def choice_of(text: str, source: str, strict: bool = True) -> Assignment:
-    r"""Return the choice that a text states: ``PATTERN=KIND[:NAME=VALUE,...]``; ``\,`` is a comma in a value.
+def assignment_of(text: str, source: str, strict: bool = True) -> Assignment:
+    r"""Return the choice that a text states: ``PATTERN=TYPE[:NAME=VALUE,...]``; ``\,`` is a comma in a value.
 
     Raises:
         UsageError: if it is written otherwise.
@@ -108,7 +109,7 @@ def choice_of(text: str, source: str, strict: bool = True) -> Assignment:
             raise UsageError(f"{source}: {each!r}: expected NAME=VALUE")
         attributes[name.strip()] = (*attributes.get(name.strip(), ()), value.replace("\\,", ",").strip())
     if not equals or not pattern or not kind.strip():
-        raise UsageError(f"{source}: expected PATTERN=KIND or PATTERN=KIND:NAME=VALUE,...")
+        raise UsageError(f"{source}: expected PATTERN=TYPE or PATTERN=TYPE:NAME=VALUE,...")
     return Assignment(pattern.strip(), kind.strip(), attributes, source, strict)
 
 
@@ -141,7 +142,7 @@ def read_mapping(file: Path) -> Mapped:
             if not isinstance(value, str):
                 raise UnreadableError(f"{file}: [{name}] {key}: expected a text in quotes")
     choices = (
-        choice_of(f"{pattern}={text}", f"{file}: {pattern!r}", strict=False)
+        assignment_of(f"{pattern}={text}", f"{file}: {pattern!r}", strict=False)
         for pattern, text in found.get("as", {}).items()
     )
     return Mapped(tuple(choices), found.get("robots", {}))
@@ -209,6 +210,10 @@ class Chooser:
         """Return what a feature becomes by what it says itself."""
         if feature.role in _BY_ROLE:
             return Decision(self._kinds.own(_BY_ROLE[feature.role]), f"it is a {feature.role.value}")
+        if feature.role in (Role.UNKNOWN, Role.TASK, Role.ELEMENT):
+            stated = self._kinds.stated(str(feature.properties.get("type", "")))
+            if stated is not None and _fits(stated, feature):
+                return Decision(stated, "its property type")
         if feature.role in _LEFT:
             words = f"{_LEFT[feature.role]}; --as {quoted(feature.name)}=task makes a task of it"
             return Decision(self._kinds.own("ignore"), feature.role.value, reason=words)

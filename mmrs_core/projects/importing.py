@@ -21,7 +21,7 @@ from mmrs_core.languages.xmi.events import read_bytes
 from mmrs_core.pipeline import check_models, read_models
 from mmrs_core.projects.building import Basis, Builder, Outcome, UniqueNames
 from mmrs_core.projects.choosing import Assignment, Chooser, Decision
-from mmrs_core.projects.heights import Levels, levels_at
+from mmrs_core.projects.heights import ALTITUDE, Levels, levels_at
 from mmrs_core.projects.kinds import CONTEXT, MISSION, ImportKinds
 from mmrs_core.projects.shapes import UnfitError, shape
 from mmrs_core.projects.team import Home, RobotWanted, TypeFile, flies, homes_for
@@ -34,7 +34,6 @@ if TYPE_CHECKING:
 
     _Create = Callable[..., Element]
 
-ALTITUDE = 30.0
 _MEMBER = re.compile(r"/\w+\[\d+\]")
 
 

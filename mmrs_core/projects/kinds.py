@@ -99,6 +99,11 @@ class ImportKinds:
             f"{name}: neither a type of tasks or context elements nor one of the usual words; {words}"
         )
 
+    def stated(self, name: str) -> Kind | None:
+        """Return the type that a drawing states; None if it is not installed, or two are."""
+        found = self._types.get(name, [])
+        return found[0] if len(found) == 1 else None
+
     def usual(self, geometry: Geometry) -> Kind | str:
         """Return what features of a geometry usually become, or why that is not known."""
         found = {

@@ -11,7 +11,7 @@ from mmrs_core.diagnostics import Place
 from mmrs_core.scene.primitives import Metaclasses, Part, Position, TravelMode
 from mmrs_core.scene.timing import MoveSeconds, Rates, bounded, noticing
 from mmrs_runtime.policies import Policy
-from mmrs_runtime.timing import IDEAL, LegTiming, last_part
+from mmrs_runtime.timing import IDEAL, LegTiming
 
 BACK_SECONDS = 3.5
 """In which a robot that has overshot is back, before or after its movement counts as over: in an autopilot's
@@ -275,9 +275,9 @@ class Kinematics:
 
     def landing(self, height: float) -> float:
         """Return the seconds of coming down to the ground from a height, metres, until it stands still."""
-        rates = self._upright()
-        metres, seconds = last_part(height, self.landing_rate, self.landing_height, rates.descent)
-        return rates.rise(metres - height) + seconds + self.recovery
+        slow = min(max(0.0, height), self.landing_height)
+        later = slow / self.landing_rate if self.landing_rate < inf else 0.0
+        return self._upright().rise(slow - height) + later + self.recovery
 
     def _upright(self) -> Rates:
         """Return how fast it launches and lands."""

@@ -5,7 +5,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from math import inf
 
 
@@ -100,25 +100,3 @@ class AutopilotTiming:
     rounds: bool = False
     turn_rate: float = inf
     charging: float = 1.0
-
-    def landed(self, rate: float | None, height: float | None, recovery: float | None) -> AutopilotTiming:
-        """Return how long it takes where the robot type states some of its landing; None: it does not."""
-        return replace(
-            self,
-            landing_rate=self.landing_rate if rate is None else rate,
-            landing_height=self.landing_height if height is None else height,
-            recovery=self.recovery if recovery is None else recovery,
-        )
-
-
-def last_part(height: float, rate: float, below: float, descent: float) -> tuple[float, float]:
-    """Return the metres of a landing that are slower than the descent before, and the seconds of these.
-
-    Args:
-        height: that is landed from, metres above the ground.
-        rate: of the last part, metres per second.
-        below: metres above the ground below which it begins.
-        descent: metres per second before that.
-    """
-    metres = min(max(0.0, height), below) if rate < descent else 0.0
-    return metres, metres / rate if metres > 0.0 else 0.0

@@ -134,8 +134,6 @@ class Robot(words.Robot):
         charge: what its batteries are to hold, and what its sorties take of that; None where unknown.
         fastest: its type's largest speed through air or water, metres per second; None where unknown.
         descent: speed of its descent, metres per second; None where unknown.
-        landing_rate, landing_height, recovery: of its landings, as in `AutopilotTiming`; None: as its
-            autopilot lands.
         fence: polygons to stay out of; rally: emergency positions.
         tight: what operators must know of these.
         straight: whether the vehicle may fly straight to the nearest rally point from anywhere on its path.
@@ -148,9 +146,6 @@ class Robot(words.Robot):
     charge: Charge | None = field(default=None, kw_only=True)
     fastest: float | None = field(default=None, kw_only=True)
     descent: float | None = field(default=None, kw_only=True)
-    landing_rate: float | None = field(default=None, kw_only=True)
-    landing_height: float | None = field(default=None, kw_only=True)
-    recovery: float | None = field(default=None, kw_only=True)
     runs: tuple[Run, ...] = field(default=(), kw_only=True)
     fence: tuple[tuple[Place, ...], ...] = field(default=(), kw_only=True)
     rally: tuple[Place, ...] = field(default=(), kw_only=True)

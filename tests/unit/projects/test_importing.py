@@ -11,7 +11,7 @@ from mmrs_core.drawings.drawing import Geometry, HeightReference, LeftOut, MapFe
 from mmrs_core.errors import UnreadableError, UsageError
 from mmrs_core.pipeline import expand, ground, plan, valid_models
 from mmrs_core.plugins import load_plugins
-from mmrs_core.projects.choosing import choice_of, read_mapping
+from mmrs_core.projects.choosing import assignment_of, read_mapping
 from mmrs_core.projects.importing import ImportOptions, imported
 from mmrs_core.projects.team import robot_wanted, types_for
 
@@ -44,7 +44,7 @@ OPTIONS = ImportOptions(robots=(ROBOT,), types=TYPES, title="farm")
 
 
 def choices(*texts):
-    return replace(OPTIONS, choices=tuple(choice_of(text, f"--as '{text}'") for text in texts))
+    return replace(OPTIONS, choices=tuple(assignment_of(text, f"--as '{text}'") for text in texts))
 
 
 def made(*features, options=OPTIONS, folder=Path("farm"), **more):
@@ -81,6 +81,13 @@ def models_of(result, folder):
         (square("home field"), "PhotoGridTask", "it is an area"),
         (square("x", role=Role.SURVEY), "PhotoGridTask", "it is a survey"),
         (square("x", role=Role.FORBIDDEN), "forbidden area", "it is a forbidden area"),
+        (
+            square("x", properties={"type": "MeasureTask", "actionName": "a"}),
+            "MeasureTask",
+            "its property type",
+        ),
+        (square("x", role=Role.ELEMENT, properties={"type": "Terrain"}), "Terrain", "its property type"),
+        (square("x", properties={"type": "Landmark"}), "PhotoGridTask", "it is an area"),
         (drawn("", (20, 0), role=Role.RALLY_POINT), "emergency area", "it is a rally point"),
     ],
     ids=lambda each: getattr(each, "name", each),
@@ -95,6 +102,7 @@ def test_features_become_what_their_role_words_and_shape_say(feature, became, by
     [
         (square("fence", role=Role.INCLUSION), "kept out of areas, not inside them"),
         (drawn("flown", (0, 0), (9, 9), role=Role.TRACK), "--as 'flown'=task makes a task of it"),
+        (square("x", role=Role.ELEMENT), "a context element of no type that is installed"),
         (drawn("obstacle", (20, 0)), "a point has no extent; --as 'obstacle=obstacle:radius=METRES'"),
         (drawn("home", (20, 0)), "no robot begins there; --robot NAME=TYPE adds one that does"),
         (
@@ -145,7 +153,7 @@ def test_a_choice_that_makes_a_task_of_what_is_to_be_kept_clear_is_noted():
         ("meadow=PhotoGridTask:groundResolution=fine", "groundResolution=fine: "),
         ("meadow=PhotoGridTask:groundResolution=nan", "groundResolution=nan: "),
         ("meadow=DepthHoldSurveyTask", "needs depth: Depth of the lines below the surface, in metres."),
-        ("meadow", "expected PATTERN=KIND"),
+        ("meadow", "expected PATTERN=TYPE"),
         ("meadow=task:3", "'3': expected NAME=VALUE"),
     ],
 )

@@ -251,20 +251,14 @@ def _escapes_alone(robot: RobotProgram, input: TargetInput) -> bool:
 
 
 def _endurance(context: VehicleContext) -> Iterator[tuple[str, object]]:
-    """Yield the robot type's endurance, largest speed, descent speed and landing."""
+    """Yield the robot type's endurance, largest speed and descent speed."""
     if context.type is None or (capability := capability_of(context.robot, context.type)) is None:
         return
     if capability.lifetime is not None:
         yield "endurance", capability.lifetime
     yield "fastest", metres(capability.speed[1])
-    if context.flies:
-        stated = {
-            "descent": capability.descent_rate,
-            "landing_rate": capability.landing_rate,
-            "landing_height": capability.landing_height,
-            "recovery": capability.recovery,
-        }
-        yield from ((name, value) for name, value in stated.items() if value is not None)
+    if context.flies and capability.descent_rate is not None:
+        yield "descent", capability.descent_rate
 
 
 def _run(run: MoveRun, robot: RobotProgram) -> Call:

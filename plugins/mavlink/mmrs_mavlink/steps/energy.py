@@ -9,7 +9,6 @@ from mmrs_runtime.controllers.geodesy import bearing, distance, offset
 from mmrs_runtime.controllers.return_paths import Track, way_back
 from mmrs_runtime.controllers.state import State
 from mmrs_runtime.policies import COMES_DOWN
-from mmrs_runtime.timing import last_part
 
 from ..program import Place, Robot
 
@@ -187,10 +186,11 @@ def seconds_back(robot: Robot, state: State, response: str, track: Track) -> flo
 
 def _landing_seconds(robot: Robot, height: float) -> float:
     """Return how long a robot takes to land from a height: vehicles come down slowly near the ground."""
-    pacing = robot.profile.pacing.landed(robot.landing_rate, robot.landing_height, robot.recovery)
+    pacing = robot.profile.pacing
     descent = min(robot.descent or USUAL_DESCENT, pacing.step.descent)
-    metres, seconds = last_part(height, pacing.landing_rate, pacing.landing_height, descent)
-    return (height - metres) / descent + seconds + (pacing.recovery or 0.0)
+    low = min(height, pacing.landing_height)
+    slowly = low / min(descent, pacing.landing_rate) if low else 0.0
+    return (height - low) / descent + slowly + (pacing.recovery or 0.0)
 
 
 def _seconds(robot: Robot, state: State, a: Place, b: Place) -> float:

@@ -38,16 +38,6 @@ def test_the_way_back_is_the_way_that_the_robot_came_with_its_corners_and_the_de
     assert seconds_back(robot(), state(0.5), "LAND", TRACK) == pytest.approx(LANDING)
 
 
-def test_a_landing_takes_as_long_as_the_robot_type_states():
-    given = robot(landing_rate=0.2, landing_height=5.0, recovery=4.0)
-    assert seconds_back(given, state(0.5), "LAND", TRACK) == pytest.approx(5.0 / 1.0 + 5.0 / 0.2 + 4.0)
-
-
-def test_the_last_part_of_a_landing_is_no_quicker_than_the_descent_before():
-    given = robot(landing_rate=2.0, landing_height=5.0)
-    assert seconds_back(given, state(0.5), "LAND", TRACK) == pytest.approx(10.0 / 1.0 + 3.0)
-
-
 def test_an_emergency_area_ends_the_way_back_where_it_is_left_for():
     given = robot(escapes=(("a", (Local(300.0, -50.0, 10.0),)),))
     assert list(way_back(given, "EMERGENCY_AREA", TRACK, TRACK[-1][1]))[-1] == Local(300.0, -50.0, 10.0)

@@ -17,7 +17,7 @@ from mmrs_core.generation.render import render
 from mmrs_core.generation.writing import write
 from mmrs_core.scene import Device, DeviceAction, Frame, Policy
 from mmrs_core.testing.programs import feedback, move, notify, photo, program
-from mmrs_mavlink.plugin.controllers import MAVLINK_PYTHON, robot_of
+from mmrs_mavlink.plugin.controllers import MAVLINK_PYTHON
 from mmrs_mavlink.plugin.plans.qgc import QGC_PLAN
 from mmrs_mavlink.wiring import DeviceWiring, Wired
 
@@ -197,14 +197,6 @@ def test_policies_are_the_waits_then_the_robots_then_the_types():
     assert 'Policy("BATTERY_LOW", "LAND")' in source
     assert 'Policy("LINK_LOST", "LAND"' not in source
     assert 'policies=(Policy("WAIT_TOO_LONG", "LAND", 9.0),)' in source
-
-
-def test_a_program_counts_on_landings_as_its_robot_type_states_them():
-    stated = {"landing_rate": 0.3, "landing_height": 6.0, "recovery": 4.0}
-    kind = replace(quad(), capabilities=(replace(quad().capabilities[0], **stated),))
-    behaviour = program(robot_program("alpha", [take_off("up", 5.0), LAND]))
-    made = robot_of(behaviour.robots[0], target_input(behaviour, [kind]))
-    assert {name: getattr(made, name) for name in stated} == stated
 
 
 def test_a_response_to_a_lost_link_that_the_vehicle_cannot_give_by_itself_is_refused():
