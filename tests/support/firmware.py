@@ -142,7 +142,7 @@ class Observer:
         self.parameters: dict[str, float] = {}
         self.requests: list[tuple[int, int]] = []
         self._sorts: dict[str, struct.Struct] = {}
-        self._is_px4 = False
+        self._is_px4: bool | None = None  # before its first heartbeat
         self.acks: list[tuple[int, int]] = []
         self.mission_acks: list[tuple[int, int]] = []
         self.system, self._peer = system, peer
@@ -210,13 +210,26 @@ class Observer:
                 if time.monotonic() > until:
                     raise TimeoutError(f"parameter {name}: the vehicle does not take {value:g}")
                 code, sort = name.encode("ascii"), self._sorts.get(name)
-                if sort is None:
+                if sort is None:  # parameters received before the first heartbeat are read again
                     self.send(mavlink.MAVLink_param_request_read_message(self.system, 1, code, -1))
                 else:
                     written = value if sort is FLOAT else FLOAT.unpack(sort.pack(round(value)))[0]
                     number = mavlink.MAV_PARAM_TYPE_REAL32 if sort is FLOAT else mavlink.MAV_PARAM_TYPE_INT32
                     self.send(mavlink.MAVLink_param_set_message(self.system, 1, code, written, number))
                 time.sleep(0.2)
+
+    def store(self, patience: float = 20.0) -> None:
+        """Wait until the vehicle has stored its parameters.
+
+        Raises:
+            TimeoutError: it does not within so many real seconds.
+        """
+        until, stored = time.monotonic() + patience, (mavlink.MAV_CMD_PREFLIGHT_STORAGE, 0)
+        while stored not in self.acks:
+            if time.monotonic() > until:
+                raise TimeoutError("the vehicle does not store its parameters")
+            self.command(stored[0], 1)
+            time.sleep(0.5)
 
     def stop(self) -> None:
         """Stop listening."""
@@ -263,7 +276,7 @@ class Observer:
             self._item = message.seq
         elif kind == "STATUSTEXT":
             self.texts.append((self._now, message.text))
-        elif kind == "PARAM_VALUE":
+        elif kind == "PARAM_VALUE" and self._is_px4 is not None:
             # PX4 copies the bytes of a whole number
             whole = self._is_px4 and message.param_type == mavlink.MAV_PARAM_TYPE_INT32
             sort = self._sorts[message.param_id] = WHOLE if whole else FLOAT
@@ -359,7 +372,11 @@ class InstalledVehicle:
         return f"udpin:127.0.0.1:{port}@{self.number + 1}"
 
     def __enter__(self) -> InstalledVehicle:
-        self.start()
+        try:
+            self.start()
+        except TimeoutError:
+            self.__exit__()
+            raise
         return self
 
     def __exit__(self, *_: object) -> None:
@@ -368,6 +385,16 @@ class InstalledVehicle:
 
     def start(self, *, wipe: bool = True) -> None:
         """Start the process; without `wipe`, as after a loss of power: what it has stored is kept."""
+        self._run(wipe=wipe)
+        if self.firmware is PX4:
+            self.observer.change(self._parameters)
+            if wipe and self._parameters:  # some are read when it starts, such as PD_GRIPPER_EN
+                self.observer.store()
+                self.kill()
+                self._run(wipe=False)
+                self.observer.change(self._parameters)
+
+    def _run(self, *, wipe: bool) -> None:
         command, environment = self._px4() if self.firmware is PX4 else self._ardupilot(wipe=wipe)
         with (self._folder / "output.txt").open("ab") as output:
             self._process = subprocess.Popen(
@@ -378,8 +405,6 @@ class InstalledVehicle:
                 stdout=output,
                 stderr=subprocess.STDOUT,
             )
-        if self.firmware is PX4:
-            self.observer.change(self._parameters)
 
     def sign(self) -> None:
         """Give it its key, once it runs: from then on, it signs and accepts only what is signed."""

@@ -31,10 +31,10 @@ def fly(*arguments, **binaries):
     )
 
 
-@pytest.fixture(scope="module")
-def stand_in(tmp_path_factory):
-    binary = tmp_path_factory.mktemp("binary") / "arducopter"
-    binary.write_text(f'#!/bin/sh\nexec "{sys.executable}" "{PEERS}/arducopter_stand_in.py" "$@"\n')
+def stand_in(folder, ends_after=1000):
+    binary = folder / "arducopter"
+    command = f'timeout {ends_after} "{sys.executable}" "{PEERS}/arducopter_stand_in.py"'
+    binary.write_text(f'#!/bin/sh\nexec {command} "$@"\n')
     binary.chmod(0o755)
     return {ARDUCOPTER.variable: str(binary)}
 
@@ -53,8 +53,9 @@ def test_an_unknown_flight_is_a_usage_error():
 
 @pytest.mark.thorough
 @pytest.mark.real_time("faults")
-def test_a_flight_as_declared_is_measured_and_kept(stand_in, tmp_path):
-    done = fly("copter: legs", "rover: legs", "--speedup", "8", "--keep", str(tmp_path / "kept"), **stand_in)
+def test_a_flight_as_declared_is_measured_and_kept(tmp_path):
+    kept = ("--speedup", "8", "--keep", str(tmp_path / "kept"))
+    done = fly("copter: legs", "rover: legs", *kept, **stand_in(tmp_path))
     assert done.returncode == 0, done.stdout + done.stderr
     assert "| copter: legs | run | " in done.stdout
     assert "not flown: rover: legs: set MMRS_ARDUROVER" in done.stdout
@@ -63,8 +64,8 @@ def test_a_flight_as_declared_is_measured_and_kept(stand_in, tmp_path):
 
 @pytest.mark.thorough
 @pytest.mark.real_time("faults")
-def test_a_flight_that_does_not_end_as_declared_is_told_by_the_exit_code(stand_in):
-    done = fly("copter: satellites lost", "--speedup", "8", **stand_in)
+def test_a_flight_that_does_not_end_as_declared_is_told_by_the_exit_code(tmp_path):
+    done = fly("copter: legs", "--speedup", "8", **stand_in(tmp_path, ends_after=8))
     assert done.returncode == 1
     assert "NO: " in done.stdout
 

@@ -11,6 +11,7 @@ import subprocess
 import sys
 import threading
 from collections.abc import Callable, Mapping, Sequence
+from contextlib import ExitStack
 from math import cos, radians, sin
 from pathlib import Path
 from typing import ClassVar
@@ -157,13 +158,15 @@ class Installed:
         self._homes = {home.robot: home for home in homes}
 
     def __enter__(self):
-        for vehicle in self._vehicles.values():
-            vehicle.start()
+        with ExitStack() as started:
+            for vehicle in self._vehicles.values():
+                started.enter_context(vehicle)
+            self._started = started.pop_all()
         return self
 
     def __exit__(self, *error):
+        self._started.close()
         for robot, vehicle in self._vehicles.items():
-            vehicle.__exit__(*error)
             self.tracks[robot] = _metres(self._homes[robot], vehicle.observer.track)
 
 
