@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import shlex
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from enum import StrEnum
 from pathlib import Path
@@ -19,7 +20,10 @@ from mmrs_core.errors import InvalidModelError, UnreadableError, UnsupportedErro
 from mmrs_core.languages.foreign import kept_places
 from mmrs_core.languages.metamodels.export import exported_names, schema_locations
 from mmrs_core.languages.metamodels.gathering import gathered
-from mmrs_core.languages.reading import Reading
+from mmrs_core.languages.reading import Reading, read_model
+from mmrs_core.languages.references.by_name import ReferenceNames
+from mmrs_core.languages.references.hrefs import real_path
+from mmrs_core.languages.references.project import files_beside, is_beside
 from mmrs_core.languages.writing import to_json, to_xmi
 
 if TYPE_CHECKING:
@@ -44,6 +48,7 @@ class Converted:
         target: the file that is to hold it.
         elements: how many it has.
         beside: files that it refers to and that are not converted with it.
+        names: what its references became, where they were to become names.
     """
 
     source: Path
@@ -52,6 +57,7 @@ class Converted:
     text: bytes
     elements: int
     beside: tuple[Path, ...] = ()
+    names: ReferenceNames | None = None
 
 
 def form_of(file: Path) -> Form:
@@ -140,9 +146,15 @@ def is_followed(file: Path, directory: Path) -> bool:
 
 
 def converted_together(
-    session: Session, targets: dict[Path, Path], metamodels: Sequence[Path], exported: Path | None
+    session: Session,
+    targets: dict[Path, Path],
+    metamodels: Sequence[Path],
+    exported: Path | None,
+    by_name: bool = False,
 ) -> tuple[tuple[Converted, ...], tuple[Diagnostic, ...]]:
     """Return models in their new form, which refer to each other where they will be, and what is wrong.
+
+    With ``by_name``, references become names where these lead to their elements.
 
     Raises:
         UnreadableError: if a file cannot be read as a model.
@@ -160,8 +172,8 @@ def converted_together(
     everything = next(iter(models.values()))
     faults = in_order((*faults, *(fault for other in everything.linked for fault in other.diagnostics)))
     if any(map(is_mistake, faults)):
-        names = ", ".join(str(file) for file in targets)
-        raise InvalidModelError(f"{names}: not converted, since something would be lost", faults)
+        listed = ", ".join(str(file) for file in targets)
+        raise InvalidModelError(f"{listed}: not converted, since something would be lost", faults)
     known = {file.resolve() for file in targets}
     linked = [each.file for each in everything.linked if isinstance(each.file, Path)]
     beside = [file for file in linked if file.resolve() not in known]
@@ -169,13 +181,37 @@ def converted_together(
     for file, target in targets.items():
         drafts[file].source.path = target.resolve()  # what refers to it says from now on where it will be
     made = []
+    everywhere = [models[file].roots for file in targets]
+    everywhere += [each.roots for each in everything.linked if each.file in beside]
     for file, target in targets.items():
         roots, form = models[file].roots, form_of(target)
-        text = text_of(roots, registry, file, target, form, exported)
-        made.append(
-            Converted(file, target, form, text, sum(1 for _ in models[file].elements()), tuple(beside))
-        )
+        names = names_for(target, roots, everywhere, registry) if by_name else None
+        text = text_of(roots, registry, file, target, form, exported, names)
+        count = sum(1 for _ in models[file].elements())
+        made.append(Converted(file, target, form, text, count, tuple(beside), names))
     return tuple(made), faults
+
+
+def names_for(
+    file: Path, roots: tuple[Element, ...], known: Sequence[tuple[Element, ...]], registry: Registry
+) -> ReferenceNames:
+    """Return the names by which a model may refer to elements once it stands in a file.
+
+    Args:
+        file: where it will be.
+        roots: its own.
+        known: the roots of all models that were read, which know where their files will be.
+        registry: the metamodels.
+    """
+    place = real_path(file)
+    sources = [root._mmrs_source for each in (roots, *known) for root in each]
+    read = {place, *(source.path for source in sources if source is not None)}
+    others = [each for each in known if each is not roots]
+    for other in files_beside(file):
+        if real_path(other) not in read:
+            with suppress(UnreadableError):  # then no name leads into it
+                others.append(read_model(other, registry).roots)
+    return ReferenceNames(roots, others, lambda other: is_beside(other, place))
 
 
 def _registry_for(session: Session, files: Sequence[Path], metamodels: Sequence[Path]) -> Registry:
@@ -195,6 +231,7 @@ def text_of(
     target: Path,
     form: Form,
     exported: Path | None,
+    names: ReferenceNames | None = None,
 ) -> bytes:
     """Return a model in a form, as it is to stand in a file.
 
@@ -205,6 +242,7 @@ def text_of(
         target: the file it is for.
         form: of the text.
         exported: the folder of metamodels that it is to point Eclipse to.
+        names: what its references become.
 
     Raises:
         UnsupportedError: if it cannot be written in that form.
@@ -212,7 +250,7 @@ def text_of(
     places = {**kept_places(source, target), **places_in(exported, registry, target)}
     write = to_json if form is Form.JSON else to_xmi
     try:
-        return write(roots, registry, schema_location=places, file=target)
+        return write(roots, registry, schema_location=places, file=target, names=names)
     except ValueError as fault:
         raise UnsupportedError(f"{source}: {fault}") from None
 

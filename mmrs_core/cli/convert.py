@@ -17,6 +17,7 @@ from mmrs_core.cli.conversion import (
     converted_together,
     form_of,
     is_followed,
+    names_for,
     other_form,
     refuse_existing,
     refuse_imported,
@@ -35,6 +36,7 @@ from mmrs_core.languages.writing import replace_file
 
 if TYPE_CHECKING:
     from mmrs_core.languages.foreign import ForeignModel
+    from mmrs_core.languages.references.by_name import ReferenceNames
 
 
 def convert(
@@ -64,17 +66,26 @@ def convert(
     ] = None,
     metamodel: Metamodels = None,
     schema_location: SchemaLocation = None,
+    names: Annotated[
+        bool,
+        typer.Option(
+            "--names",
+            help="Write references as names where these are unambiguous. Eclipse reads paths only.",
+        ),
+    ] = False,
     force: Annotated[bool, typer.Option("--force", help="Overwrite existing files.")] = False,
     json: Json = False,
 ) -> int:
     """Convert models between XMI and JSON.
 
     The conversion is lossless. Models converted together keep their references to each other; all of them are
-    written, or none.
+    written, or none. References by name become paths, which Eclipse reads, unless --names is given.
 
     Examples: mmrs convert field/mission.xmi mission.json; mmrs convert field -o field-json
     """
-    asked = _Asked(Session(settings_of(call)), to, tuple(metamodel or ()), schema_location, force, json)
+    asked = _Asked(
+        Session(settings_of(call)), to, tuple(metamodel or ()), schema_location, names, force, json
+    )
     if output is not None:
         return _together(asked, files, output)
     if len(files) > 2:
@@ -90,13 +101,14 @@ class _Asked:
     to: Form | None
     metamodels: tuple[Path, ...]
     exported: Path | None
+    by_name: bool
     force: bool
     json: bool
 
 
 def _together(asked: _Asked, given: Sequence[Path], directory: Path) -> int:
     targets = targets_in(directory, given, asked.to)
-    made, faults = converted_together(asked.session, targets, asked.metamodels, asked.exported)
+    made, faults = converted_together(asked.session, targets, asked.metamodels, asked.exported, asked.by_name)
     report(faults)
     refuse_existing(list(targets.values()), asked.force)
     replace_files({each.target: each.text for each in made})
@@ -105,6 +117,7 @@ def _together(asked: _Asked, given: Sequence[Path], directory: Path) -> int:
         return 0
     for each in made:
         say(f"written: {each.target} ({counted(each.elements, 'element')})")
+        _tell_of_names(each.names, each.target)
     for file in dict.fromkeys(file for each in made for file in each.beside):
         words = "referred to, and not converted: references lead to where it is"
         lost = (
@@ -121,6 +134,7 @@ def _as_json(made: Converted) -> dict[str, object]:
         "form": made.form.value,
         "elements": made.elements,
         "refers_to": made.beside,
+        **_names_as_json(made.names),
     }
 
 
@@ -137,18 +151,39 @@ def _alone(asked: _Asked, source: Path, target: Path | None) -> int:
         refuse_existing([target], asked.force)
         linked = [each.file for each in found.model.linked if isinstance(each.file, Path)]
         refuse_links_outside(source, target, linked)
-    text = text_of(found.model.roots, found.registry, source, target or source, form, asked.exported)
+    roots, registry, place = found.model.roots, found.registry, target or source
+    linked_roots = [each.roots for each in found.model.linked]
+    names = names_for(place, roots, [roots, *linked_roots], registry) if asked.by_name else None
+    text = text_of(roots, registry, source, place, form, asked.exported, names)
     count = sum(1 for _ in found.model.elements())
     if target is None:
         say_file(text)
+        _tell_of_names(names, source)
         return 0
     replace_file(target, text)
     if asked.json:
-        say_json({"file": target, "form": form.value, "elements": count, "diagnostics": faults})
+        said = {"file": target, "form": form.value, "elements": count, **_names_as_json(names)}
+        say_json({**said, "diagnostics": faults})
     else:
         say(f"written: {target} ({counted(count, 'element')})")
+        _tell_of_names(names, target)
     _tell_of_kept_links(found, source, target)
     return 0
+
+
+def _tell_of_names(names: ReferenceNames | None, file: Path) -> None:
+    """Report how many references became names, and why others did not."""
+    if names is None or not (names.named or names.left):
+        return
+    words = f"{file}: note: {counted(names.named, 'reference')} by name"
+    if names.left:
+        kinds = ", ".join(f"{kind} ({count})" for kind, count in sorted(names.left.items()))
+        words += f", {names.left.total()} by path, to elements {kinds}"
+    tell(words)
+
+
+def _names_as_json(names: ReferenceNames | None) -> dict[str, object]:
+    return {} if names is None else {"references": {"by_name": names.named, "by_path": dict(names.left)}}
 
 
 def _tell_of_kept_links(found: ForeignModel, source: Path, target: Path) -> None:

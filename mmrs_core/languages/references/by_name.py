@@ -13,10 +13,10 @@ from mmrs_core.languages.references.addresses import identifier_of
 from mmrs_core.languages.references.named import NamedElements
 from mmrs_core.languages.references.spelling import quoted, spelt
 
-NAMELESS = "the element has no name"
-SHARED = "other elements have the same name"
-FAR = "the element is in a file where no names are looked for"
-HIDDEN = "the element is of a language that is not installed"
+NAMELESS = "without a name"
+SHARED = "with a name that others have"
+FAR = "in files where names are not looked for"
+HIDDEN = "of languages that are not installed"
 
 
 class ReferenceNames:
@@ -24,7 +24,7 @@ class ReferenceNames:
 
     Attributes:
         named: how many references were asked for and are written as names.
-        left: how many are not, by the reason.
+        left: how many are not, by what their elements are.
     """
 
     def __init__(

@@ -145,3 +145,63 @@ def test_a_sound_metamodel_is_said_to_be_one(tmp_path, capsys):
     broken.write_text(ZOO.read_text(encoding="utf-8").replace("#//Mood", "#//Mod"), encoding="utf-8")
     assert run(["validate", str(broken)]) == 1
     assert "no type Mod" in capsys.readouterr().err
+
+
+SOLAR = ROOT / "examples" / "solar-park"
+
+
+@pytest.fixture
+def named(tmp_path, monkeypatch, capsys):
+    """Go to a folder with the solar park, and the same by name."""
+    monkeypatch.chdir(tmp_path)
+    shutil.copytree(SOLAR, "park")
+    assert run(["convert", "park", "-o", "named", "--to", "xmi", "--names"]) == 0
+    assert capsys.readouterr().err == "named/mission.xmi: note: 9 references by name\n"
+    return tmp_path
+
+
+def test_references_become_names_on_request(named, capsys):
+    mission = (named / "named" / "mission.xmi").read_text(encoding="utf-8")
+    assert 'group="south field"' in mission
+    assert 'from="overview complete" to="hot panels"' in mission
+    assert "//@" not in mission
+    assert run(["validate", "named"]) == 0
+    assert run(["diff", "park", "named"]) == 0
+
+
+def test_a_model_by_name_is_converted_to_paths_for_eclipse(named, capsys):
+    for source, target in (("named", "back"), ("park", "plain")):
+        assert run(["convert", source, "-o", target, "--to", "xmi"]) == 0
+    for file in ("mission.xmi", "context.xmi", "robots/thermal-drone.xmi"):
+        assert (named / "back" / file).read_bytes() == (named / "plain" / file).read_bytes()
+
+
+def test_a_model_alone_is_converted_by_the_names_beside_it(named, capsys):
+    assert run(["convert", "named/mission.xmi", "named/again.json", "--names", "--json"]) == 0
+    said = json.loads(capsys.readouterr().out)
+    assert said["references"] == {"by_name": 9, "by_path": {}}
+    assert '"group": "south field"' in (named / "named" / "again.json").read_text(encoding="utf-8")
+    assert run(["diff", "named/mission.xmi", "named/again.json"]) == 0
+
+
+def test_references_that_stay_paths_are_counted_with_the_reason(named, capsys):
+    context = named / "park" / "context.xmi"
+    context.write_text(context.read_text(encoding="utf-8").replace("east field", "south field"), "utf-8")
+    assert run(["convert", "park/mission.xmi", "--to", "xmi", "--names"]) == 0
+    said = capsys.readouterr()
+    assert said.err.endswith(
+        "6 references by name, 3 by path, to elements with a name that others have (3)\n"
+    )
+    assert said.out.count('href="context.xmi#//@elements.') == 3
+
+
+def test_a_name_of_two_elements_is_refused_with_both(named, capsys):
+    mission = named / "named" / "mission.xmi"
+    text = mission.read_text(encoding="utf-8").replace("rows of the east field", "rows of the south field")
+    mission.write_text(text, encoding="utf-8")
+    assert run(["convert", "named", "-o", "out"]) == 1
+    said = capsys.readouterr().err
+    assert (
+        "named/mission.xmi:19: error: from: 'rows of the south field' is the name of ThermalRowTask" in said
+    )
+    assert not (named / "out").exists()
