@@ -108,7 +108,7 @@ def import_drawings(
     options = _options(files, assignments or (), mapping, robots or (), types or (), contributions)
     options = replace(options, altitude=altitude, simplify=simplify)
     drawings = [_drawing(file, contributions) for file in files]
-    result = _imported(drawings, options, contributions, into or output or _NOWHERE, into is not None)
+    result = _imported(drawings, options, contributions, into or output or _NOWHERE, into is not None, json)
     team = bool(options.robots) or into is not None
     wrong = team and has_errors(result.diagnostics)
     if not json:
@@ -181,13 +181,19 @@ def _imported(
     contributions: Contributions,
     folder: Path,
     into: bool,
+    json: bool,
 ) -> ImportResult:
-    from mmrs_core.projects.importing import imported
+    from mmrs_core.projects.importing import ImportRefusedError, imported
 
     drawings = list(drawings)
     features = [feature for drawing in drawings for feature in drawing.features]
     left_out = [each for drawing in drawings for each in drawing.left_out]
-    return imported(features, left_out, options, contributions, folder, into=into)
+    try:
+        return imported(features, left_out, options, contributions, folder, into=into)
+    except ImportRefusedError as refused:
+        if not json:
+            _tell_all(refused.result)
+        raise
 
 
 def _tell_all(result: ImportResult) -> None:

@@ -23,7 +23,7 @@ from mmrs_core.languages.element import (
 from mmrs_core.languages.metaclass import Metaclass
 from mmrs_core.languages.naming import unreadable
 from mmrs_core.projects.attributes import asked_values, drawn_values, missing, set_values
-from mmrs_core.projects.choosing import Decision, shape_of
+from mmrs_core.projects.choosing import Decision, quoted, shape_of
 from mmrs_core.projects.heights import Levels
 from mmrs_core.projects.kinds import CONTEXT, MISSION, Kind
 from mmrs_core.projects.shapes import DECIMALS, DrawnShape, Floats, UnfitError, around, begin_of, shape
@@ -135,6 +135,11 @@ class Builder:
         try:
             found = self._shape(feature, kind, attributes)
         except UnfitError as unfit:
+            if kind.feature in _SHUT:
+                ways = f"--as {quoted(feature.name)}=ignore leaves it out"
+                self.faults[
+                    f"{feature.place}: {kind.name} {feature.name[:LONGEST_NAME]!r}: {unfit}; {ways}"
+                ] = None
             return replace(told, reason=str(unfit))
         element = self._registry.create(*kind.metaclass.key)
         given, doubts = drawn_values(feature, kind, kind.metaclass)
@@ -232,7 +237,7 @@ class Builder:
         emergency = kind.feature == "emergencyAreas"
         if not texts[-1] and not emergency:
             word = "obstacle" if kind.name == "obstacle" else "forbidden"
-            advice = f"--as '{feature.name or '*'}={word}:radius=METRES'"
+            advice = f"--as {quoted(feature.name)}={word}:radius=METRES"
             raise UnfitError(f"a {feature.geometry.value} has no extent; {advice} gives it one")
         try:
             radius = float(texts[-1]) if texts[-1] else RALLY_RADIUS

@@ -15,6 +15,8 @@ from mmrs_core.languages.naming import nearest
 from mmrs_core.projects.kinds import ImportKinds, Kind
 
 _COMMA = re.compile(r"(?<!\\),")
+_UNTYPED = re.compile(r"[^\w .,:;+/()-]")
+_LONGEST = 60
 _WORDS = re.compile(r"[^\W_]+")
 _BY_ROLE = {
     Role.HOME: "home",
@@ -240,8 +242,15 @@ def shape_of(feature: MapFeature) -> Geometry:
 
 
 def quoted(name: str) -> str:
-    """Return a name as a pattern that the shell passes on, if it is one that people can type."""
-    return f"'{name}'" if name and name.isprintable() and "'" not in name and len(name) <= 60 else "'*'"
+    """Return a pattern for a name, as it is typed into a shell.
+
+    >>> quoted("neighbour's [old] barn"), quoted("")
+    ("'neighbour?s ?old? barn'", "'NAME'")
+    """
+    pattern = _UNTYPED.sub("?", name.strip())
+    return (
+        f"'{pattern[:_LONGEST]}{'*' if len(pattern) > _LONGEST else ''}'" if pattern.strip("?") else "'NAME'"
+    )
 
 
 def _fits(kind: Kind, feature: MapFeature) -> bool:

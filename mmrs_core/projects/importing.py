@@ -77,6 +77,18 @@ class ImportResult:
     notes: tuple[str, ...]
 
 
+class ImportRefusedError(UsageError):
+    """Features that cannot be imported as they are to be.
+
+    Attributes:
+        result: what all features would become; without files.
+    """
+
+    def __init__(self, faults: tuple[str, ...], result: ImportResult) -> None:
+        super().__init__("not imported", faults)
+        self.result = result
+
+
 @dataclass(slots=True)
 class _Project:
     """A project in memory: a new one, or one with its files.
@@ -129,7 +141,8 @@ def imported(
         folder: of the project; with `into` an existing one, or its mission file.
 
     Raises:
-        UsageError: if choices or robots are wrong, or attributes are.
+        UsageError: if choices or robots are wrong.
+        ImportRefusedError: if attributes are missing or wrong, or an obstacle cannot be imported.
         InvalidModelError: if the project that is to be added to cannot be read, or has no place on the Earth.
     """
     kinds = ImportKinds(contributions)
@@ -147,15 +160,15 @@ def imported(
     builder = Builder(project.mission, project.context, languages, names, around)
     added_types = _add_robots(project, homes, options, builder, names, languages.create)
     outcomes = _built(builder, features, decisions, homes)
+    rest = tuple(Outcome(each.what, each.place, "", reason=each.reason) for each in left_out)
     if builder.faults:
-        raise UsageError("attributes are missing or wrong", tuple(builder.faults))
+        raise ImportRefusedError(tuple(builder.faults), ImportResult((*outcomes, *rest), {}, (), notes))
     ordered = _keep_order(builder, features, outcomes)
     texts = _texts(project, builder, options, languages) | added_types
     files = {file: data for file, data in texts.items() if project.texts.get(file) != data}
     found = _diagnosed(project, files, contributions)
     places = {each.path: each.place for each in outcomes if each.path}
     faults = [_at_source(each, places) for each in found if (each.code, each.message) not in project.known]
-    rest = tuple(Outcome(each.what, each.place, "", reason=each.reason) for each in left_out)
     return ImportResult(
         (*outcomes, *rest), files, in_order(faults), (*notes, *_notes(project, levels, features, ordered))
     )

@@ -103,7 +103,6 @@ def test_features_become_what_their_role_words_and_shape_say(feature, became, by
         (square("fence", role=Role.INCLUSION), "kept out of areas, not inside them"),
         (drawn("flown", (0, 0), (9, 9), role=Role.TRACK), "--as 'flown'=task makes a task of it"),
         (square("x", role=Role.ELEMENT), "a context element of no type that is installed"),
-        (drawn("obstacle", (20, 0)), "a point has no extent; --as 'obstacle=obstacle:radius=METRES'"),
         (drawn("home", (20, 0)), "no robot begins there; --robot NAME=TYPE adds one that does"),
         (
             replace(square("x"), rings=(np.array([(95.0, 0), (9, 0), (9, 9)]),)),
@@ -288,6 +287,14 @@ def test_names_of_any_kind_are_readable_unique_and_do_no_harm(tmp_path):
     ]
     assert names == shown == [each.called for each in result.outcomes[:-1]]
     assert all(file.resolve().is_relative_to(tmp_path.resolve()) for file in result.files)
+
+
+def test_an_obstacle_that_cannot_be_imported_is_refused_and_not_forgotten():
+    with pytest.raises(UsageError) as refused:
+        made(drawn("obstacle", (20, 0), line=3))
+    advice = "--as 'obstacle'=obstacle:radius=METRES gives it one; --as 'obstacle'=ignore leaves it out"
+    words = f"farm.kml:3: obstacle 'obstacle': a point has no extent; {advice}"
+    assert refused.value.elements == (words,)
 
 
 def test_areas_of_too_many_positions_are_left_until_they_are_simplified():
