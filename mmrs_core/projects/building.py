@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
+from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -29,6 +30,8 @@ from mmrs_core.projects.kinds import CONTEXT, MISSION, Kind
 from mmrs_core.projects.shapes import DECIMALS, DrawnShape, Floats, UnfitError, around, begin_of, shape
 
 if TYPE_CHECKING:
+    from pyproj import Transformer
+
     from mmrs_core.languages.registry import Registry
 
 LONGEST_NAME = 80
@@ -271,12 +274,16 @@ class Builder:
         name = kind.symbol.height if kind.symbol is not None else ""
         usual = self._around.altitude if self._around.flies else 0.0
         optional = not name or name in given or not metaclass_of(element).feature(name).required
-        if found.geometry is not Geometry.AREA and ups is not None and optional:
+        has_own = found.geometry is not Geometry.AREA
+        writable = self._around.levels.altitude(usual) is not None
+        if has_own and ups is not None and optional and writable:
             return ups
         if name and name not in given and getattr(element, name) is None:
             setattr(element, name, round(float(ups.max()), 3) if ups is not None else usual)
-        elif not name and ups is None and usual and found.geometry is not Geometry.AREA:
-            return np.full(len(found.rings[0]), usual)
+        elif not name and has_own and (usual or ups is not None):
+            if writable:
+                return np.full(len(found.rings[0]), usual)
+            notes.append("its height is left out: that of the origin is not known")
         return None
 
     def _settled(self, found: DrawnShape, notes: list[str]) -> Floats | None:
@@ -335,10 +342,15 @@ def in_crs(latitude: float, longitude: float, crs: str) -> tuple[float, float]:
     """Return a position of WGS84 in another crs."""
     if crs.casefold() in ("epsg:4326", "wgs84"):
         return latitude, longitude
+    east, north = _transformer(crs).transform(longitude, latitude)
+    return float(north), float(east)
+
+
+@cache
+def _transformer(crs: str) -> Transformer:
     from pyproj import Transformer
 
-    east, north = Transformer.from_crs("EPSG:4326", crs, always_xy=True).transform(longitude, latitude)
-    return float(north), float(east)
+    return Transformer.from_crs("EPSG:4326", crs, always_xy=True)
 
 
 def _drawn(element: Element) -> bool:

@@ -34,6 +34,7 @@ _BY_WORDS = {
 _LEFT = {
     Role.INCLUSION: "robots are kept out of areas, not inside them: draw what they must not enter",
     Role.ELEMENT: "it is a context element of no type that is installed",
+    Role.STRUCTURE: "no usual task goes round a structure",
     Role.PATH: "it was planned already",
     Role.TRACK: "it is the track of a robot or a person",
     Role.PHOTO: "it is a photo that was taken",

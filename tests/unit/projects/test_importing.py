@@ -9,7 +9,7 @@ import pytest
 from mmrs_core.diagnostics import Place, has_errors
 from mmrs_core.drawings.drawing import Geometry, HeightReference, LeftOut, MapFeature, Role
 from mmrs_core.errors import UnreadableError, UsageError
-from mmrs_core.pipeline import expand, ground, plan, valid_models
+from mmrs_core.pipeline import expand, ground, plan, read_models, valid_models
 from mmrs_core.plugins import load_plugins
 from mmrs_core.projects.choosing import assignment_of, read_mapping
 from mmrs_core.projects.importing import ImportOptions, imported
@@ -102,6 +102,7 @@ def test_features_become_what_their_role_words_and_shape_say(feature, became, by
     [
         (square("fence", role=Role.INCLUSION), "kept out of areas, not inside them"),
         (drawn("flown", (0, 0), (9, 9), role=Role.TRACK), "--as 'flown'=task makes a task of it"),
+        (square("x", role=Role.STRUCTURE), "no usual task goes round a structure; --as 'x'=task makes"),
         (square("x", role=Role.ELEMENT), "a context element of no type that is installed"),
         (drawn("home", (20, 0)), "no robot begins there; --robot NAME=TYPE adds one that does"),
         (
@@ -368,6 +369,29 @@ def test_a_project_is_added_to_and_what_people_wrote_stays(tmp_path):
     assert all(line in after for line in kept)  # in their order
     again = replace(choices("pit=Terrain"), robots=())
     assert not imported(more, (), again, CONTRIBUTIONS, tmp_path, into=True).files
+
+
+def test_heights_that_a_mission_cannot_state_are_its_tasks_own_or_left_out(tmp_path):
+    saved(made(square("Meadow"), folder=tmp_path))
+    mission = tmp_path / "mission.xmi"
+    mission.write_text(mission.read_text().replace(' altitudeReference="ORIGIN"', ""))
+    points = (drawn("a", (20, 0), heights=[12.0]), drawn("b", (30, 0), heights=[12.0]))
+    result = imported(
+        points, (), replace(choices("b=GoToTask"), robots=()), CONTRIBUTIONS, tmp_path, into=True
+    )
+    saved(result)
+    tasks = read_models(tmp_path, CONTRIBUTIONS)[0].mission.tasks
+    assert (tasks[1].altitude, tasks[1].point.altitude, tasks[2].point.altitude) == (12.0, None, None)
+    assert result.outcomes[1].notes == ("its height is left out: that of the origin is not known",)
+
+
+def test_positions_are_in_the_crs_of_the_mission(tmp_path):
+    saved(made(square("Meadow"), folder=tmp_path))
+    mission = tmp_path / "mission.xmi"
+    mission.write_text(mission.read_text().replace('name="farm"', 'name="farm" crs="EPSG:4230"'))
+    result = imported((drawn("a", (20, 0)),), (), ADDING, CONTRIBUTIONS, tmp_path, into=True)
+    point = models_of(result, tmp_path).mission.tasks[1].point
+    assert 50 < abs(point.latitude - at(20, 0)[0]) / METRE < 200  # ED50 and WGS84 differ by so many metres
 
 
 def test_a_mission_in_json_is_added_to(tmp_path):
