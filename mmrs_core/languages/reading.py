@@ -54,6 +54,7 @@ class Reading:
         self._unsaved = unsaved or {}
         self._root = real_path(root) if root is not None else None
         self._drafts: dict[Path, Draft] = {}
+        self._neighbours: dict[Path, dict[Path, Path]] = {}
         self._looked_through: dict[Path, Draft | None] = {}
         self._described: dict[str, Draft] = {}
         self._refused: dict[Path, tuple[str, str, str, int]] = {}
@@ -151,13 +152,15 @@ class Reading:
         path = draft.source.path
         if path is None or self._root is None or self._complete:
             return
-        for file in files_beside(Path(draft.source.file)):
-            real = real_path(file)
-            if real not in self._drafts and real != path and real.is_relative_to(self._root):
-                if real not in self._looked_through:
-                    self._looked_through[real] = self._look_through(file, real)
-                if (found := self._looked_through[real]) is not None:
-                    yield found
+        if path not in self._neighbours:
+            self._neighbours[path] = {real_path(file): file for file in files_beside(Path(draft.source.file))}
+        for real, file in self._neighbours[path].items():
+            if real in self._drafts or not real.is_relative_to(self._root):
+                continue
+            if real not in self._looked_through:
+                self._looked_through[real] = self._look_through(file, real)
+            if (found := self._looked_through[real]) is not None:
+                yield found
 
     def _look_through(self, file: Path, real: Path) -> Draft | None:
         """Read a file without following its references; None if it cannot be read."""
