@@ -6,8 +6,11 @@ from collections.abc import Callable, Iterable, Iterator
 
 from mmrs_core.contributions.fixes import Edit, Fix, Wrong, renamed, with_attribute, with_name, with_value
 from mmrs_core.grounding.features import children, text
-from mmrs_core.languages.element import Element, container_of, is_kind, metaclass_of
+from mmrs_core.languages.datatypes import shown
+from mmrs_core.languages.element import Element, container_of, is_kind, metaclass_of, root_of
 from mmrs_core.languages.metaclass import Feature, Metaclass
+from mmrs_core.languages.references.named import NamedElements
+from mmrs_core.languages.references.spelling import Name, is_address, references_in, spelt
 from mmrs_core.languages.xmi.markup import Tag
 
 _SHORT = 5
@@ -131,12 +134,12 @@ def _metamodels(wrong: Wrong) -> Iterator[Edit]:
             foreign = not attribute.name.startswith("xmlns:") or attribute.value.startswith("http://www.")
             if not foreign and not wrong.registry.has(attribute.value):
                 right = meant(attribute.value, known)
-                if right is not None and _same_version(attribute.value, right):
+                if right is not None and _same_numbers(attribute.value, right):
                     yield with_value(attribute, right)
 
 
-def _same_version(one: str, other: str) -> bool:
-    """Return whether two nsURIs differ in letters only: another version is another language."""
+def _same_numbers(one: str, other: str) -> bool:
+    """Return whether two names differ in letters only: another version or number is another thing."""
     return [c for c in one if c.isdigit()] == [c for c in other if c.isdigit()]
 
 
@@ -163,6 +166,32 @@ def _named(feature: str, known: Callable[[Wrong], Iterable[str]]) -> Callable[[W
                 yield with_value(attribute, right)
 
     return edits
+
+
+def _references(wrong: Wrong) -> Iterator[Edit]:
+    """Correct a name by which an element refers to one of the project, or of its own file."""
+    if wrong.element is None:
+        return
+    features, message = metaclass_of(wrong.element).by_name, wrong.fault.message
+    for attribute in wrong.tag.attributes:
+        feature = features.get(attribute.name)
+        if feature is None or feature.containment or not isinstance(feature.type, Metaclass):
+            continue
+        words = list(references_in(attribute.value, feature.many))
+        lost = next(
+            (word for word in words if message.startswith(f"{feature.name}: {shown(word)} leads")), ""
+        )
+        known = _names(wrong, wrong.element, feature.type)
+        right = meant(lost, known) if lost and not is_address(lost) else None
+        if right is not None and _same_numbers(lost, right):
+            words = [Name(right, right) if word == lost else word for word in words]
+            said = (spelt(each, feature.many) if isinstance(each, Name) else each for each in words)
+            yield with_value(attribute, " ".join(said))
+
+
+def _names(wrong: Wrong, element: Element, kind: Metaclass) -> Iterator[str]:
+    models = wrong.models.models if wrong.models is not None else ()
+    return NamedElements((root_of(element), *(root for each in models for root in each.roots))).names(kind)
 
 
 def _accepted(wrong: Wrong) -> Iterator[Edit]:
@@ -205,6 +234,7 @@ FIXES = (
     Fix("XMI001", "correct the nsURI", _metamodels),
     Fix("XMI002", "correct the name of the class", _classes),
     Fix("XMI004", "correct the name of the attribute or part", _features),
+    Fix("XMI006", "correct the name of the element", _references),
     Fix("XMI014", "declare the prefix", _prefixes),
     Fix("MML004", "correct the name of the robot type", _named("type", _types)),
     Fix("BL035", "correct the name of the robot type", _named("typeName", _types)),

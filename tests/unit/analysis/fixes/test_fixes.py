@@ -36,6 +36,8 @@ SPOILT = {
     "XMI005": (DAM, "mission.xmi", 'travelMode="SAFE"', 'travelMode="Safe"'),
     "XMI005 of a truth": (DAM, "mission.xmi", 'returnHome="true"', 'returnHome="yes"'),
     "XMI005 of a decimal comma": (DAM, "mission.xmi", 'latitude="42.538500"', 'latitude="42,538500"'),
+    "XMI006": (DAM, "mission.xmi", 'to="crest is free"', 'to="crest is fere"'),
+    "XMI006 of a list": (CLOCK, "behaviour.xmi", 'waitFor="ready down"', 'waitFor="redy down"'),
     "MML001": (DAM, "mission.xmi", 'crs="EPSG:4326"', 'crs="EPSG-4326"'),
     "CTX001": (DAM, "context.xmi", 'crs="EPSG:4326"', 'crs="EPSG 4326"'),
     "BL016": (CLOCK, "behaviour.xmi", 'crs="EPSG:4326" name="Clock', 'crs="GPS" name="Clock'),
@@ -69,6 +71,8 @@ SPOILT = {
     ),
 }
 ADDED = {
+    "XMI006": ('to="//@tasks.1"', 'to="crest is free"'),
+    "XMI006 of a list": ('waitFor="//@robots.0/@slots.0"', 'waitFor="ready down"'),
     "BL016": ('name="Clock', 'crs="EPSG:4326" name="Clock'),
     "MML012": ('name="Dam inspection"', 'acceptedUnknowns="clearance" name="Dam inspection"'),
     "CTX012": ('windDirection="310.0"', 'windDirection="310"'),
@@ -128,6 +132,13 @@ def test_a_spoilt_text_is_mended_to_what_it_was(session, name):
     assert name[:6].strip() in {each.fault.code for each in repair.applied}
     assert repair.texts[file].decode() == sound
     assert not repair.refused
+
+
+def test_a_name_with_another_number_is_not_taken_for_misspelt(session):
+    file = (DAM / "mission.xmi").resolve()
+    text = file.read_text(encoding="utf-8").replace('name="crest is free"', 'name="fork 1"')
+    spoilt = text.replace('to="//@tasks.1"', 'to="fork 2"', 1)
+    assert not mended(session, DAM, {file: spoilt.encode()}).applied
 
 
 def test_every_fix_of_the_core_is_tried():

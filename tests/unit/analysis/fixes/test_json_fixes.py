@@ -33,6 +33,7 @@ SPOILT = {
     "XMI005 of a truth": (PARK, "robots/quad-650.json", '"gyro": true', '"gyro": "yes"'),
     "XMI005 of a decimal comma": (DAM, MISSION, "42.538428", '"42,538428"'),
     "XMI005 of a name": (DAM, MISSION, '"name": "4"', '"name": 4'),
+    "XMI006": (DAM, MISSION, '"to": "crest is free"', '"to": "crest is fere"'),
     "MML001": (DAM, MISSION, '"crs": "EPSG:4326"', '"crs": "EPSG-4326"'),
     "CTX001": (DAM, CONTEXT, '"EPSG:4326"', '"EPSG 4326"'),
     "BL016": (CLOCK, BEHAVIOUR, '"crs": "EPSG:4326"', '"crs": "GPS"'),
@@ -61,6 +62,7 @@ SPOILT = {
     "RL017": (DAM, "robots/camera-drone.json", '{"min": -10, "max": 40}', '{"min": 40, "max": -10}'),
 }
 ADDED = {
+    "XMI006": ('"to": "//@tasks.1"', '"to": "crest is free"'),
     "XMI005 of a name": ('"name": "crest road"', '"name": "4"'),
     "MML001": ('  "name": "Dam', '  "crs": "EPSG:4326",\n  "name": "Dam'),
     "BL016": ('  "name": "Clock', '  "crs": "EPSG:4326",\n  "name": "Clock'),
