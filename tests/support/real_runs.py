@@ -14,8 +14,8 @@ PATIENCE = 60.0
 UNHURRIED = 15.0
 """Speed-up that leaves real time for orders on the way."""
 
-AT_HOME = 0.8
-"""Metres from home at which a vehicle may land: the radius in which places count as reached, and a little."""
+AT_HOME = 0.4
+"""Metres from home at which a vehicle may land: ArduCopter landed within 0.3 m (benchmarks/results)."""
 
 TAKE_OFF = 22
 HOLDING = 17

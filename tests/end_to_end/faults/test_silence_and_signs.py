@@ -117,3 +117,15 @@ def test_a_vehicle_that_does_nothing_about_its_link_is_told_the_response_once_it
     assert fleet.process.end(PATIENCE) == 5, fleet.process.said
     assert not vehicle.autopilot.armed, fleet.process.said
     assert vehicle.autopilot.mode_name == "land"
+
+
+def test_lost_telemetry_is_answered_as_soon_as_by_arducopter(fly):
+    """ArduCopter 4.7-dev retraced its path 20 s after its telemetry alone was lost, for a policy of 10 s."""
+    fleet, vehicle = fly(("LINK_LOST", "RETURN", 10.0), speedup=4.0)
+    assert wait_for(lambda: any(step["move"] == "stay" for step in fleet.steps("a")), PATIENCE)
+    began, modes = vehicle.autopilot.time, len(vehicle.autopilot.modes)
+    vehicle.radio.mute = True
+    assert wait_for(lambda: len(vehicle.autopilot.modes) > modes, PATIENCE), fleet.process.said
+    answered, _ = vehicle.autopilot.modes[modes]
+    assert vehicle.autopilot.mode_name == "smart_return"
+    assert answered - began == pytest.approx(20.0, abs=2.0)

@@ -64,15 +64,6 @@ def sitl(
             "--speedup", metavar="FACTOR", min=0.1, max=100.0, help="Simulated seconds per real second."
         ),
     ] = 1.0,
-    energy: Annotated[
-        float | None,
-        typer.Option(
-            "--energy",
-            metavar="SECONDS",
-            min=1.0,
-            help="Endurance of a full battery, in seconds. Default: by robot type.",
-        ),
-    ] = None,
     recharge: Annotated[
         float | None,
         typer.Option(
@@ -118,7 +109,6 @@ def sitl(
 
     options = {
         "firmware": firmware,
-        "energy": energy,
         "recharge": recharge,
         "ground": station(ground) if ground else None,
         "parameters": dict(map(parameter, parameters or ())),

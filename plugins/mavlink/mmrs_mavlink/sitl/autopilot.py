@@ -213,7 +213,9 @@ class SimulatedAutopilot:
         self.mode, self.mode_name = number, name
         if name not in NOT_TO_BE_ARMED_IN:
             self.armable_mode = name
-        self.body.target = self.body.onward = None
+        self.body.onward = None
+        if name != "land":
+            self.body.target = None
         self._set_up_body(name)
         self.aimed, self.held, self.return_path = False, 0.0, []
         return int(mavlink.MAV_RESULT_ACCEPTED)

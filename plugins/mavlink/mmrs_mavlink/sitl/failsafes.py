@@ -15,8 +15,6 @@ from mmrs_mavlink.sitl.autopilot import BLIND, SimulatedAutopilot
 from mmrs_mavlink.sitl.settings import ARDUPILOT, PX4
 
 DISARM = "disarm"
-PREFERRED = ("smart_return", "return", "loiter", "depth_hold", "surface", "hold", "land")
-"""Order in which the modes of a profile's failsafe are tried."""
 
 EKF_SECONDS = 3.3
 """Time from the loss of its satellites to the failsafe, as measured on ArduCopter 4.7-dev."""
@@ -27,19 +25,33 @@ FENCE_SECONDS = 1.0
 Answers = Mapping[int, str]
 """Modes of which the first possible one is entered, by the value of a parameter."""
 
-_COPTER = {2: "return land", 3: "smart_return return land", 4: "smart_return land"}
+_COPTER = {3: "smart_return return land", 4: "smart_return land"}
 _ROVER = {1: "return hold", 2: "hold", 3: "smart_return return hold", 4: "smart_return hold", 5: DISARM}
 ANSWERS: Mapping[str, Mapping[str, Answers]] = {
     "arducopter": {
-        "BATT_FS_LOW_ACT": {1: "land", **_COPTER, 5: DISARM},
+        "FS_GCS_ENABLE": {1: "return land", 2: "return land", **_COPTER, 5: "land", 7: "hold land"},
+        "BATT_FS_LOW_ACT": {1: "land", 2: "return land", **_COPTER, 5: DISARM},
         "FENCE_ACTION": {1: "return land", 2: "land", 3: _COPTER[3], 4: "hold land", 5: _COPTER[4]},
         "FS_EKF_ACTION": {1: "land", 2: "altitude_hold", 3: "land"},
     },
-    "ardurover": {"BATT_FS_LOW_ACT": _ROVER, "FENCE_ACTION": _ROVER, "FS_EKF_ACTION": {1: "hold"}},
-    "ardusub": {"BATT_FS_LOW_ACT": {2: DISARM, 3: "surface"}, "FS_EKF_ACTION": {2: DISARM}},
-    "px4-multicopter": {"COM_OBL_RC_ACT": {0: "position", 1: "altitude", 2: "stabilize"}},
+    "ardurover": {
+        "FS_ACTION": {**_ROVER, 6: "loiter"},
+        "BATT_FS_LOW_ACT": _ROVER,
+        "FENCE_ACTION": _ROVER,
+        "FS_EKF_ACTION": {1: "hold"},
+    },
+    "ardusub": {
+        "FS_GCS_ENABLE": {2: DISARM, 3: "depth_hold", 4: "surface"},
+        "BATT_FS_LOW_ACT": {2: DISARM, 3: "surface"},
+        "FS_EKF_ACTION": {2: DISARM},
+    },
+    "px4-multicopter": {
+        "NAV_DLL_ACT": {1: "hold", 2: "return land", 3: "land", 6: DISARM},
+        "COM_OBL_RC_ACT": {0: "position", 1: "altitude", 2: "stabilize", 3: "return land", 4: "land"}
+        | {5: "hold", 7: DISARM},
+    },
 }
-"""Answers by profile and parameter, where the profile's failsafe for a lost link does not know it."""
+"""Answers by profile and parameter; other values answer nothing."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -82,30 +94,16 @@ def watch(pilot: SimulatedAutopilot) -> None:
 
 def _answer(pilot: SimulatedAutopilot, failure: Failure) -> None:
     """Enter the mode of a failsafe, and announce it; an ArduRover announces no broken fence."""
-    names = _modes(pilot, failure.parameter)
+    profile = pilot.settings.profile
+    parameter = failure.parameter or next(iter(profile.lost_link.modes))
+    answers = ANSWERS[profile.name].get(parameter, {})
+    names = answers.get(int(pilot.parameters[parameter]), "").split()
     if names == [DISARM] or (names and pilot.flies and not pilot.airborne):
         pilot.disarm()
     else:
         pilot.enter(*names)
     if failure.parameter != "FENCE_ACTION" or pilot.settings.kind != "rover":
         pilot.say(mavlink.MAV_SEVERITY_CRITICAL, failure.text.format(mode=pilot.mode_name.upper()))
-
-
-def _modes(pilot: SimulatedAutopilot, parameter: str) -> list[str]:
-    """Return the modes with which a vehicle answers by the value of a parameter."""
-    profile, failsafe = pilot.settings.profile, pilot.settings.profile.lost_link
-    parameter = parameter or next(iter(failsafe.modes))
-    value = int(pilot.parameters[parameter])
-    if parameter == "FENCE_ACTION" and not pilot.parameters["FENCE_ENABLE"]:
-        return []
-    own = ANSWERS[profile.name].get(parameter, {}).get(value)
-    if own is not None:
-        return own.split()
-    if value and failsafe.answers.get("STOP_THRUST", {}).get(parameter) == value:
-        return [DISARM]
-    numbers = failsafe.modes.get(parameter, {}).get(value, frozenset())
-    found = [name for name in PREFERRED if pilot.numbers.get(name) in numbers]
-    return [name for name in found if name != "hold"] or found if pilot.px4 else found
 
 
 def _outside_fence(pilot: SimulatedAutopilot) -> bool:
@@ -117,6 +115,10 @@ def _outside_fence(pilot: SimulatedAutopilot) -> bool:
     return bool(values.get(fence.enabled_by, 1)) and any(
         0.0 < values[each.parameter] < extents[each.of] for each in limits
     )
+
+
+def _has_broken_fence(pilot: SimulatedAutopilot) -> bool:
+    return pilot.breached and bool(pilot.parameters["FENCE_ENABLE"])
 
 
 def _has_no_position(pilot: SimulatedAutopilot) -> bool:
@@ -151,7 +153,7 @@ FAILURES: Mapping[str, Mapping[str, Failure]] = {
         "position": Failure(
             _has_no_position, "EKF Failsafe: changed to {mode} Mode", "FS_EKF_ACTION", lasting=EKF_SECONDS
         ),
-        "fence": Failure(lambda pilot: pilot.breached, "Circle fence breached", "FENCE_ACTION"),
+        "fence": Failure(_has_broken_fence, "Circle fence breached", "FENCE_ACTION"),
         "link": Failure(_has_no_link, "GCS Failsafe", cleared="GCS Failsafe Cleared"),
         "low": Failure(_has_low_battery, "Battery 1 is low", "BATT_FS_LOW_ACT", lasting="BATT_LOW_TIMER"),
     },

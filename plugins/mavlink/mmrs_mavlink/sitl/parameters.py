@@ -20,13 +20,10 @@ LOW_CELL = 3.5
 """Volts of a cell at which a battery is low."""
 
 _COMMON: Mapping[str, float] = {
+    **dict.fromkeys(("FS_GCS_ENABLE", "BATT_FS_LOW_ACT", "BATT_LOW_MAH", "FENCE_ENABLE", "MIS_RESTART"), 0),
     "SYSID_MYGCS": 255,
-    "FS_GCS_ENABLE": 0,
     "FS_GCS_TIMEOUT": 5.0,
-    "BATT_LOW_MAH": 0.0,
     "BATT_LOW_TIMER": 10,
-    "BATT_FS_LOW_ACT": 0,
-    "FENCE_ENABLE": 0,
     "FENCE_ACTION": 1,
     "FENCE_TYPE": 7,
     "FENCE_ALT_MAX": 100.0,
@@ -34,20 +31,13 @@ _COMMON: Mapping[str, float] = {
     "FENCE_MARGIN": 2.0,
     "RALLY_LIMIT_KM": 0.3,
     "RALLY_INCL_HOME": 1,
-    "MIS_RESTART": 0,
     "SIM_GPS1_ENABLE": 1,
     **{f"RELAY{number}_FUNCTION": 1 for number in range(1, 7)},
     **{f"RELAY{number}_PIN": 49 + number for number in range(1, 7)},
     **{f"SERVO{number}_FUNCTION": 0 for number in range(5, 10)},
-    "CAM1_TYPE": 1,
+    **{"SERVO10_FUNCTION": 10, "SERVO11_FUNCTION": 28, "SERVO12_FUNCTION": 88},
+    **dict.fromkeys(("CAM1_TYPE", "GRIP_ENABLE", "GRIP_TYPE", "WINCH_TYPE", "MNT1_TYPE"), 1),
     "CAM2_TYPE": 6,
-    "SERVO10_FUNCTION": 10,
-    "GRIP_ENABLE": 1,
-    "GRIP_TYPE": 1,
-    "SERVO11_FUNCTION": 28,
-    "WINCH_TYPE": 1,
-    "SERVO12_FUNCTION": 88,
-    "MNT1_TYPE": 1,
 }
 """Every device that a program may use is set up: two cameras, of which the second records videos."""
 
@@ -80,28 +70,21 @@ _SUB: Mapping[str, float] = {
     "WPNAV_RADIUS": 200.0,
 }
 _PX4: Mapping[str, float] = {
-    "NAV_DLL_ACT": 0,
+    **dict.fromkeys(("NAV_DLL_ACT", "COM_DLL_EXCEPT", "COM_OBL_RC_ACT", "COM_LOW_BAT_ACT", "RTL_TYPE"), 0),
+    **dict.fromkeys(("GF_MAX_HOR_DIST", "GF_MAX_VER_DIST", "COM_TAKEOFF_ACT", "COM_OBS_AVOID"), 0),
+    "BAT1_SOURCE": 0,
     "COM_DL_LOSS_T": 10,
-    "COM_DLL_EXCEPT": 0,
-    "COM_LOW_BAT_ACT": 0,
     "GF_ACTION": 2,
-    "GF_MAX_HOR_DIST": 0.0,
-    "GF_MAX_VER_DIST": 0.0,
     "COM_OF_LOSS_T": 1.0,
-    "COM_OBL_RC_ACT": 0,
     "COM_FAIL_ACT_T": 5.0,
-    "COM_TAKEOFF_ACT": 0,
     "COM_DISARM_PRFLT": 10.0,
-    "COM_OBS_AVOID": 0,
     "COM_POS_FS_DELAY": 1,
     "NAV_ACC_RAD": 2.0,
     "MIS_DIST_1WP": 900.0,
     "RTL_RETURN_ALT": 15.0,
-    "RTL_TYPE": 0,
     "MPC_XY_CRUISE": 5.0,
     "TRIG_MODE": 1,
     "PD_GRIPPER_EN": 1,
-    "BAT1_SOURCE": 0,
 }
 _BY_KIND: Mapping[str, Mapping[str, float]] = {"copter": _COPTER, "rover": _ROVER, "sub": _SUB}
 

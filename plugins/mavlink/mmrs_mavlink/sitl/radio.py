@@ -30,12 +30,7 @@ class SimulatedRadio:
     """
 
     def __init__(self, addresses: Sequence[Address], system: int, key: bytes = b"") -> None:
-        """Open a socket.
-
-        Args:
-            addresses: hosts and UDP ports; names are resolved once.
-            system: MAVLink system of the vehicle.
-            key: signing key; empty: unsigned.
+        """Open a socket for a MAVLink system, and for hosts and UDP ports; an empty key signs nothing.
 
         Raises:
             ValueError: a host cannot be resolved.

@@ -8,7 +8,13 @@ from dataclasses import dataclass, field
 from mmrs_mavlink.profiles import PROFILES, VehicleProfile
 from mmrs_runtime.sights import Sight
 
-KINDS = ("copter", "sub", "rover")
+IMITATED = {
+    (each.rehearsed_as, each.rehearsed_with): each
+    for each in reversed(list(PROFILES.values()))
+    if each.rehearsed_as
+}
+"""Profiles of the vehicles that are imitated, by kind and firmware."""
+
 ARDUPILOT, PX4 = "ardupilot", "px4"
 USUAL_CAPACITY, USUAL_CELLS = 5000.0, 3
 
@@ -58,13 +64,10 @@ class Settings:
     parameters: Mapping[str, float] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
-        if self.kind not in KINDS:
-            raise ValueError(f"{self.kind}: unknown vehicle type; known are {', '.join(KINDS)}")
-        if self.firmware not in (ARDUPILOT, PX4) or (self.firmware == PX4 and self.kind != "copter"):
+        if (self.kind, self.firmware) not in IMITATED:
             raise ValueError(f"{self.firmware}: not a firmware for a {self.kind}")
 
     @property
     def profile(self) -> VehicleProfile:
         """Return the profile of the vehicle that it imitates."""
-        like = (self.kind, self.firmware)
-        return next(each for each in PROFILES.values() if (each.rehearsed_as, each.rehearsed_with) == like)
+        return IMITATED[self.kind, self.firmware]

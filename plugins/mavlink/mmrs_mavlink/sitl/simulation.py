@@ -134,13 +134,15 @@ def _take_off(pilot: SimulatedAutopilot) -> None:
 
 
 def _land(pilot: SimulatedAutopilot) -> None:
-    """Come down, slowly near the ground, and disarm when it has stood there."""
+    """Come down where it was to be, if that is near, and disarm when it has stood there."""
     body, pacing = pilot.body, pilot.settings.profile.pacing
     if not pilot.flies:
         _hold(pilot)
         return
-    north, east, up = body.position
-    body.target, body.onward, body.curved = (north, east, -1.0), None, False
+    place, up = body.target or body.position, body.position[2]
+    if dist(place[:2], body.position[:2]) > NEAR:
+        place = body.position
+    body.target, body.onward, body.curved = (*place[:2], -1.0), None, False
     body.descent = pacing.landing_rate if up < pacing.landing_height else inf
     if up > GROUND:
         pilot.grounded_since = pilot.time

@@ -7,7 +7,6 @@ import threading
 import time
 from collections.abc import Callable, Sequence
 from math import degrees, isnan
-from types import TracebackType
 from typing import Any
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
@@ -57,13 +56,7 @@ class SimulatedVehicle:
         host: str = "127.0.0.1",
         speedup: float = 1.0,
     ) -> None:
-        """Create a vehicle, which sends nothing before `start`.
-
-        Args:
-            port: UDP port of its controller or ground station.
-            settings: of the vehicle.
-            host: of the controller.
-            speedup: simulated seconds per real second.
+        """Create a vehicle, which sends nothing before `start`, for a controller at a UDP port.
 
         Raises:
             ValueError: a host cannot be resolved.
@@ -85,17 +78,15 @@ class SimulatedVehicle:
         self._parameters = ParameterService(pilot.parameters, like, self.radio.send)
         self.streams = Streams(pilot, self.radio.send)
         self._booted = pilot.booted
-        self._host: Host | None = None
+        self._host = Host([self])
 
     def start(self) -> None:
         """Start the vehicle in a thread of its own."""
-        self._host = Host([self])
         self._host.start()
 
     def stop(self) -> None:
         """Stop the vehicle."""
-        if self._host is not None:
-            self._host.stop()
+        self._host.stop()
         self.close()
 
     def close(self) -> None:
@@ -106,9 +97,7 @@ class SimulatedVehicle:
         self.start()
         return self
 
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
+    def __exit__(self, *error: object) -> None:
         self.stop()
 
     def receive(self) -> None:
