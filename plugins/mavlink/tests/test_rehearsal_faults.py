@@ -22,7 +22,7 @@ def vehicle():
         ("all:gps-lost@5", ScheduledFault("", "gps-lost", (), 5.0)),
         ("Drone1:gps-lost@60+20", ScheduledFault("Drone1", "gps-lost", (), 60.0, 20.0)),
         ("battery=0.2@7.5", ScheduledFault("", "battery", ("0.2",), 7.5)),
-        ("A:obstacle=3,90@1+2", ScheduledFault("A", "obstacle", ("3", "90"), 1.0, 2.0)),
+        ("A:position-shift=3,90@1+2", ScheduledFault("A", "position-shift", ("3", "90"), 1.0, 2.0)),
         ("west: A@1:gps-lost@5", ScheduledFault("west: A@1", "gps-lost", (), 5.0)),
     ],
 )
@@ -58,8 +58,8 @@ def test_time_counts_from_the_first_arming_with_which_the_track_begins(vehicle):
 
 
 def test_words_inject_and_clear_faults(vehicle):
-    obey(vehicle, ("obstacle", "4", "90"))
-    assert vehicle.autopilot.obstacle == (4.0, 90.0)
+    obey(vehicle, ("obstacle", "4"))
+    assert vehicle.autopilot.obstacle == 4.0
     obey(vehicle, ("clear", "obstacle"))
     assert vehicle.autopilot.obstacle is None
 

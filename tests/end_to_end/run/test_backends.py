@@ -104,7 +104,7 @@ def test_a_robot_without_a_take_off_is_watched_after_it_was_charged():
         driven.do("out", "back", "charge")
         driven.begin("far")
         until(lambda: driven.state.position[0] > 20.0)
-        driven.vehicle.faults.begin("obstacle", 3.0, 0.0)
+        driven.vehicle.faults.begin("obstacle", 3.0)
         until(lambda: driven.fault == "OBSTACLE")
 
 

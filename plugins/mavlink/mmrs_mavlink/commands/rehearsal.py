@@ -54,8 +54,8 @@ class ScheduledFault:
 def scheduled(text: str) -> ScheduledFault:
     """Return a fault from a text such as ``Drone1:gps-lost@60+20`` or ``battery=0.2@30``.
 
-    >>> scheduled("Drone1:obstacle=3,90@60+20")
-    ScheduledFault(robot='Drone1', name='obstacle', values=('3', '90'), begin=60.0, lasts=20.0)
+    >>> scheduled("Drone1:obstacle=3@60+20")
+    ScheduledFault(robot='Drone1', name='obstacle', values=('3',), begin=60.0, lasts=20.0)
 
     Raises:
         ValueError: the text is malformed, or there is no such fault.
@@ -181,7 +181,6 @@ def summary_of(vehicle: SimulatedVehicle) -> Mapping[str, object]:
     """Return what a vehicle has done: metres, seconds, fractions."""
     pilot = vehicle.autopilot
     steps = [(a, b) for a, b in pairwise(pilot.track) if b[0] - a[0] < 1.0]
-    names = {number: name.upper() for name, number in pilot.numbers.items()}
     return {
         "flown": round(sum(b[0] - a[0] for a, b in steps), 1),
         "metres": round(sum(dist(a[1:], b[1:]) for a, b in steps), 1),
@@ -190,6 +189,4 @@ def summary_of(vehicle: SimulatedVehicle) -> Mapping[str, object]:
         "armed": pilot.armed,
         "from_home": round(hypot(*pilot.body.place[:2]), 1),
         "sent": vehicle.radio.sent,
-        "modes": [names.get(number, str(number)) for _, number in pilot.modes],
-        "texts": [text for _, _, text in pilot.said],
     }

@@ -43,6 +43,8 @@ class SimulatedAutopilot:
     """The state of a vehicle; `control` moves it, `commands` executes its commands.
 
     Attributes:
+        px4: whether its firmware is PX4. flies: whether its kind takes off and lands.
+        first_item: number of a mission's first item: item 0 is home on ArduPilot.
         time: seconds since the simulation began. booted: time of the last boot.
         history: (seconds, command, parameters) of every executed command and mission item.
         visited: (seconds, item) of every completed mission item.
@@ -58,7 +60,7 @@ class SimulatedAutopilot:
         located: whether it has a position.
         motor_failed: whether a motor has failed, with which it cannot fly.
         wind: metres per second, and degrees that it comes from.
-        obstacle: metres, and degrees clockwise from its nose.
+        obstacle: metres to something ahead; None: there is nothing.
         breached: whether it is outside its fence. forced_breach: whether an injected fault says so.
         silent: commands that it does not answer. cut: numbers of the links that are cut.
         link_timeout: shortest timeout of its link, seconds, whatever its parameters say.
@@ -70,7 +72,8 @@ class SimulatedAutopilot:
 
     def __init__(self, settings: Settings) -> None:
         """Stand at home after boot."""
-        self.settings = settings
+        self.settings, self.px4, self.flies = settings, settings.firmware == PX4, settings.profile.flies
+        self.first_item = int(settings.profile.autopilot.missions.begins_with_home)
         self.body = Body(settings.profile.pacing.step)
         self.battery = Battery(settings.energy, settings.capacity, settings.cells)
         self.photos: list[Vector] = []
@@ -88,7 +91,7 @@ class SimulatedAutopilot:
         self.located = True
         self.wind = settings.wind
         self.motor_failed = False
-        self.obstacle: tuple[float, float] | None = None
+        self.obstacle: float | None = None
         self.silent, self.cut = set(settings.silent), set[int]()
         self._clear_memory()
 
@@ -110,11 +113,6 @@ class SimulatedAutopilot:
         self._set_up_body(self.mode_name)
 
     @property
-    def px4(self) -> bool:
-        """Return whether its firmware is PX4."""
-        return self.settings.firmware == PX4
-
-    @property
     def uptime(self) -> float:
         """Return the seconds since boot."""
         return self.time - self.booted
@@ -130,11 +128,6 @@ class SimulatedAutopilot:
         return self.uptime >= self.settings.ready
 
     @property
-    def first_item(self) -> int:
-        """Return the number of a mission's first item: item 0 is home on ArduPilot."""
-        return int(self.settings.profile.autopilot.missions.begins_with_home)
-
-    @property
     def current_item(self) -> int:
         """Return the item that it reports: ArduPilot that which it flies to, not one executed on the way."""
         items = self.stores[MISSION]
@@ -143,11 +136,6 @@ class SimulatedAutopilot:
         ahead = (seq for seq in range(self.item, len(items)) if items[seq].is_flown)
         behind = (seq for seq in range(self.item, 0, -1) if items[seq].is_flown)
         return next(ahead, next(behind, 0))
-
-    @property
-    def flies(self) -> bool:
-        """Return whether its kind takes off and lands."""
-        return self.settings.profile.flies
 
     @property
     def airborne(self) -> bool:

@@ -116,6 +116,11 @@ def _cut(pilot: SimulatedAutopilot, link: int) -> None:
     pilot.cut.add(link)
 
 
+def _attribute(name: str) -> Callable[..., None]:
+    """Return a function that sets an attribute to the value or the values of a fault."""
+    return lambda pilot, *values: setattr(pilot, name, values if len(values) > 1 else values[0])
+
+
 def _setting(name: str, value: object) -> Callable[[SimulatedAutopilot], None]:
     """Return a function that sets an attribute."""
     return lambda pilot: setattr(pilot, name, value)
@@ -126,9 +131,7 @@ FAULTS: Mapping[str, Fault] = {
     "position-shift": Fault(_shift, lambda pilot: _shift(pilot, 0.0, 0.0), (40.0, 0.0)),
     "restart": Fault(_restart, values=("",), read=str),
     "stick": Fault(_change_mode, values=("loiter",), read=str),
-    "obstacle": Fault(
-        lambda pilot, *place: setattr(pilot, "obstacle", place), _setting("obstacle", None), (3.0, 0.0)
-    ),
+    "obstacle": Fault(_attribute("obstacle"), _setting("obstacle", None), (3.0,)),
     "breach": Fault(_setting("forced_breach", True), _setting("forced_breach", False)),
     "battery": Fault(_change_battery, values=(None,)),
     "silent": Fault(
@@ -137,8 +140,6 @@ FAULTS: Mapping[str, Fault] = {
     "link-down": Fault(lambda pilot: _cut(pilot, CONTROLLER), lambda pilot: pilot.cut.discard(CONTROLLER)),
     "ground-down": Fault(lambda pilot: _cut(pilot, STATION), lambda pilot: pilot.cut.discard(STATION)),
     "motor-failed": Fault(_fail_motor, _setting("motor_failed", False)),
-    "wind": Fault(
-        lambda pilot, *wind: setattr(pilot, "wind", wind), _setting("wind", (0.0, 0.0)), (None, 0.0)
-    ),
+    "wind": Fault(_attribute("wind"), _setting("wind", (0.0, 0.0)), (None, 0.0)),
 }
 """All faults, by name."""

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Mapping, Sequence
-from functools import cache
-from inspect import signature
 from math import cos, radians, sin
 from typing import Any
 
@@ -40,14 +38,12 @@ TEXT_BYTES = 50
 
 
 def message(name: str, **fields: object) -> Message:
-    """Return a message by the name of its type in lower case; fields that are not given are zero."""
+    """Return a message by the name of its type in lower case; numbers that are not given are zero."""
     kind = getattr(mavlink, f"MAVLink_{name}_message")
-    return kind(**{**_zeros(kind), **fields})
-
-
-@cache
-def _zeros(kind: Callable[..., Message]) -> Mapping[str, int]:
-    return {each.name: 0 for each in signature(kind).parameters.values() if each.default is each.empty}
+    single = [
+        field for field, length in zip(kind.ordered_fieldnames, kind.array_lengths, strict=True) if not length
+    ]
+    return kind(**{**dict.fromkeys(single, 0), **fields})
 
 
 def milliseconds(pilot: SimulatedAutopilot) -> int:
@@ -200,16 +196,9 @@ def _wind_estimate(pilot: SimulatedAutopilot) -> Message:
 def _obstacle(pilot: SimulatedAutopilot) -> Message | None:
     if pilot.obstacle is None:
         return None
-    distance, towards = pilot.obstacle
-    sectors = [SECTOR_FREE] * 72
-    sectors[round(towards / 5.0) % 72] = round(distance * 100)
+    sectors = [round(pilot.obstacle * 100), *[SECTOR_FREE] * 71]
     return message(
-        "obstacle_distance",
-        distances=sectors,
-        min_distance=20,
-        max_distance=SECTOR_FREE - 1,
-        increment_f=5.0,
-        frame=mavlink.MAV_FRAME_BODY_FRD,
+        "obstacle_distance", distances=sectors, min_distance=20, max_distance=SECTOR_FREE - 1, increment_f=5.0
     )
 
 

@@ -79,9 +79,9 @@ def test_the_pilot_changes_the_mode(vehicle, ground):
 
 
 def test_an_obstacle_is_reported_until_it_is_gone(vehicle, ground):
-    vehicle.faults.begin("obstacle", 3.0, 90.0)
+    vehicle.faults.begin("obstacle", 3.0)
     report = ground.receive("OBSTACLE_DISTANCE")
-    assert (report.distances[18], min(report.distances)) == (300, 300)
+    assert (report.distances[0], min(report.distances)) == (300, 300)
     vehicle.faults.end("obstacle")
     assert ground.receive("OBSTACLE_DISTANCE", seconds=5.0) is None
 
@@ -121,7 +121,7 @@ def test_a_cut_link_carries_nothing_until_it_is_restored(vehicle, ground):
         (("battery",), "battery: takes 1 value"),
         (("battery", "half"), "'half' is not a finite number"),
         (("gps-lost", "3"), "gps-lost 3: takes 0 values"),
-        (("obstacle", "1", "2", "3"), "takes 2 values"),
+        (("obstacle", "1", "2"), "takes 1 value"),
         (("silent", "abc"), "'abc' is not a finite number"),
         (("restart", "disarmed"), "'disarmed' is not armed"),
         (("stick", "circle"), "this vehicle has"),
