@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+from resets import reset
+
 from fault_table import strikes
 from fault_table.row import AT, AUTO, LEG, Act, Row, policy
 
@@ -75,7 +77,7 @@ def event_rows() -> list[Row]:
         *_event_rows(
             "autopilot reset, motors on",
             "VEHICLE_RESTARTED",
-            strikes.reset,
+            reset,
             [(AT, "LAND", "here"), (LEG, "RETURN", "home")],
             "RETURN",
         ),

@@ -98,8 +98,8 @@ class Struck:
 def struck(vehicle: SimulatedVehicle) -> Struck:
     """Return where a vehicle is now."""
     pilot = vehicle.autopilot
-    body, falls = pilot.body, not pilot.armed and pilot.body.place[2] > MARGIN
-    return Struck(pilot.time, body.place, len(pilot.modes), len(pilot.history), falls)
+    body, falls = pilot.body, not pilot.armed and pilot.body.position[2] > MARGIN
+    return Struck(pilot.time, body.position, len(pilot.modes), len(pilot.history), falls)
 
 
 def answered(vehicle: SimulatedVehicle, since: Struck) -> float | None:
@@ -137,7 +137,7 @@ class Answer:
 def ending(vehicle: SimulatedVehicle, since: Struck) -> str:
     """Return where a vehicle has come to rest: home, meadow, here, elsewhere, holds; empty while it moves."""
     pilot = vehicle.autopilot
-    north, east, up = pilot.body.place
+    north, east, up = pilot.body.position
     if pilot.armed:
         return "holds" if pilot.body.pace < STILL and up > 0.5 else ""
     if up > 0.1:
@@ -159,7 +159,7 @@ def stops_short(vehicle: SimulatedVehicle, since: Struck) -> bool:
     room = pace * pace / (2.0 * pilot.body.figures.acceleration)
     if since.falls:
         room = pace * sqrt(2.0 * up / GRAVITY)
-    return hypot(pilot.body.place[0] - north, pilot.body.place[1] - east) <= room + MARGIN
+    return hypot(pilot.body.position[0] - north, pilot.body.position[1] - east) <= room + MARGIN
 
 
 def _then(vehicle: SimulatedVehicle, since: Struck) -> tuple[tuple[float, float, float], float]:
@@ -189,7 +189,7 @@ def story(vehicle: SimulatedVehicle, since: Struck) -> str:
         f"{NAMES.get(mode, mode)} {max(0.0, time - since.time):.1f} s"
         for time, mode in pilot.modes[since.modes :]
     ]
-    north, east, up = pilot.body.place
+    north, east, up = pilot.body.position
     found = ending(vehicle, since)
     where = "" if found == "home" else f" ({_short(north)} N, {_short(east)} E, {_short(up)} up)"
     return "; ".join([*modes[:6], f"{WORDS[found]}{where}"])

@@ -77,10 +77,6 @@ def breach(vehicle: SimulatedVehicle) -> None:
     vehicle.faults.begin("breach")
 
 
-def reset(vehicle: SimulatedVehicle) -> None:
-    vehicle.faults.begin("restart", "armed")
-
-
 def reboot(vehicle: SimulatedVehicle) -> None:
     vehicle.faults.begin("restart")
 

@@ -187,6 +187,6 @@ def summary_of(vehicle: SimulatedVehicle) -> Mapping[str, object]:
         "photos": len(pilot.photos),
         "battery": round(pilot.battery.level, 3),
         "armed": pilot.armed,
-        "from_home": round(hypot(*pilot.body.place[:2]), 1),
+        "from_home": round(hypot(*pilot.body.position[:2]), 1),
         "sent": vehicle.radio.sent,
     }

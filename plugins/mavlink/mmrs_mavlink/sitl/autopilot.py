@@ -11,7 +11,7 @@ from mmrs_mavlink.profiles import VehicleProfile
 from mmrs_mavlink.sitl import parameters
 from mmrs_mavlink.sitl.battery import Battery
 from mmrs_mavlink.sitl.body import Body, Vector
-from mmrs_mavlink.sitl.items import FENCE, MISSION, MOVING, RALLY, StoredItem
+from mmrs_mavlink.sitl.items import ABOVE_SEA, FENCE, MISSION, MOVING, RALLY, StoredItem
 from mmrs_mavlink.sitl.settings import PX4, Settings
 from mmrs_runtime.controllers.geodesy import metres_per_degree, wrapped
 
@@ -30,7 +30,7 @@ STREAM_SECONDS, STREAM_GAP = 1.0, 0.5
 """PX4 accepts set-points that have come for a second, with gaps of at most half a second."""
 
 MANUAL = frozenset({"stabilize", "acro", "altitude_hold", "depth_hold", "altitude", "manual", "steering"})
-"""Modes in which a pilot steers, and a copter drifts with the wind."""
+"""Modes in which a pilot steers."""
 
 CURVED = frozenset({"auto", "return", "smart_return"})
 """Modes in which a copter takes legs as S-curves; other vehicles always do."""
@@ -57,7 +57,7 @@ class SimulatedAutopilot:
         item: current mission item. held: seconds at its position. finished: whether the mission is over.
         climbs_at: time at which its motors have spun up for a take-off. driven_at: time of the last sticks.
         return_path: positions to pass on a return. breadcrumbs: positions for SmartRTL.
-        located: whether it has a position.
+        located: whether it has a position. shift: metres north and east by which it is wrong.
         motor_failed: whether a motor has failed, with which it cannot fly.
         wind: metres per second, and degrees that it comes from.
         obstacle: metres to something ahead; None: there is nothing.
@@ -88,7 +88,7 @@ class SimulatedAutopilot:
         self.track: list[tuple[float, float, float, float]] = []
         self.modes: list[tuple[float, int]] = []
         self.said: list[tuple[float, int, str]] = []
-        self.located = True
+        self.located, self.shift = True, (0.0, 0.0)
         self.wind = settings.wind
         self.motor_failed = False
         self.obstacle: float | None = None
@@ -166,14 +166,14 @@ class SimulatedAutopilot:
     def degrees_at(self, place: Vector) -> tuple[float, float]:
         """Return the latitude and longitude of a position."""
         of_latitude, of_longitude = metres_per_degree(self.settings.latitude)
-        longitude = wrapped(self.settings.longitude + place[1] / of_longitude)
-        return self.settings.latitude + place[0] / of_latitude, longitude
+        longitude = wrapped(self.settings.longitude + (place[1] + self.shift[1]) / of_longitude)
+        return self.settings.latitude + (place[0] + self.shift[0]) / of_latitude, longitude
 
     def local(self, latitude: float, longitude: float, up: float) -> Vector:
         """Return metres north, east and up of home."""
         of_latitude, of_longitude = metres_per_degree(self.settings.latitude)
-        north = (latitude - self.settings.latitude) * of_latitude
-        return (north, wrapped(longitude - self.settings.longitude) * of_longitude, up)
+        north = (latitude - self.settings.latitude) * of_latitude - self.shift[0]
+        return (north, wrapped(longitude - self.settings.longitude) * of_longitude - self.shift[1], up)
 
     def above_ground(self, height: float, *, above_sea: bool) -> float:
         """Return an altitude above sea level, or else above home, in metres above the ground; of rovers 0."""
@@ -183,7 +183,7 @@ class SimulatedAutopilot:
 
     def place_of(self, item: StoredItem) -> Vector:
         """Return the position of an item; without coordinates, that of the vehicle at the item's altitude."""
-        up = self.above_ground(item.z, above_sea=item.above_sea)
+        up = self.above_ground(item.z, above_sea=item.frame in ABOVE_SEA)
         if not (item.x or item.y):
             return (*self.body.position[:2], up)
         return self.local(item.x * 1e-7, item.y * 1e-7, up)
@@ -280,13 +280,10 @@ class SimulatedAutopilot:
         self.armed, self.item, self.finished = False, 0, False
         self.body.rest_at(self.body.position[2])
 
-    def restart(self, armed: bool = False) -> None:
-        """Reboot, and keep uploads and parameters only; `armed`: stay armed, as after a watchdog reset."""
-        stays_armed, home = self.armed and armed, self.home
+    def restart(self) -> None:
+        """Reboot, and keep uploads and parameters only."""
         self.booted = self.time
         self._clear_memory()
-        self.armed = stays_armed
-        self.home = home if self.armed else self.home
         self.modes.append((self.time, self.mode))
 
     def start_mode(self) -> None:

@@ -97,7 +97,6 @@ class Body:
     """A point in metres north, east and up of home, with a heading in degrees.
 
     Attributes:
-        position: estimated position. error: metres north and east by which the estimate is wrong.
         target: destination; None: it brakes.
         onward: destination after the target, which it passes without a stop; None: it stops at the target.
         driven: commanded speeds ahead, aside and up, and turn rate, degrees per second; None: none.
@@ -120,7 +119,6 @@ class Body:
     climb: float = inf
     descent: float = inf
     turn_rate: float = 90.0
-    error: tuple[float, float] = (0.0, 0.0)
     _acceleration: Vector = STILL
     _legs: list[CurvedLeg] = field(default_factory=list)
     _fastest: float = 0.0
@@ -143,18 +141,6 @@ class Body:
                 self._approach(None, step)
             if self.driven is None:
                 self._turn(step)
-
-    @property
-    def place(self) -> Vector:
-        """Return the true position."""
-        north, east, up = self.position
-        return (north - self.error[0], east - self.error[1], up)
-
-    def shift_estimate(self, north: float, east: float) -> None:
-        """Set the error of the position estimate, in metres."""
-        (true_north, true_east, up), self.error = self.place, (north, east)
-        self.position = (true_north + north, true_east + east, up)
-        self._legs.clear()
 
     def distance_to(self, place: Vector) -> float:
         """Return the distance to a place."""

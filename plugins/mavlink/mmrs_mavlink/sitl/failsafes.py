@@ -22,12 +22,9 @@ EKF_SECONDS = 3.3
 FENCE_SECONDS = 1.0
 """Time between two checks of the fence."""
 
-Answers = Mapping[int, str]
-"""Modes of which the first possible one is entered, by the value of a parameter."""
-
 _COPTER = {3: "smart_return return land", 4: "smart_return land"}
 _ROVER = {1: "return hold", 2: "hold", 3: "smart_return return hold", 4: "smart_return hold", 5: DISARM}
-ANSWERS: Mapping[str, Mapping[str, Answers]] = {
+ANSWERS: Mapping[str, Mapping[str, Mapping[int, str]]] = {
     "arducopter": {
         "FS_GCS_ENABLE": {1: "return land", 2: "return land", **_COPTER, 5: "land", 7: "hold land"},
         "BATT_FS_LOW_ACT": {1: "land", 2: "return land", **_COPTER, 5: DISARM},
@@ -51,7 +48,7 @@ ANSWERS: Mapping[str, Mapping[str, Answers]] = {
         | {5: "hold", 7: DISARM},
     },
 }
-"""Answers by profile and parameter; other values answer nothing."""
+"""Modes of which the first possible one is entered, by profile, parameter and value."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -117,10 +114,6 @@ def _outside_fence(pilot: SimulatedAutopilot) -> bool:
     )
 
 
-def _has_broken_fence(pilot: SimulatedAutopilot) -> bool:
-    return pilot.breached and bool(pilot.parameters["FENCE_ENABLE"])
-
-
 def _has_no_position(pilot: SimulatedAutopilot) -> bool:
     return not pilot.located and pilot.mode_name not in BLIND
 
@@ -153,7 +146,11 @@ FAILURES: Mapping[str, Mapping[str, Failure]] = {
         "position": Failure(
             _has_no_position, "EKF Failsafe: changed to {mode} Mode", "FS_EKF_ACTION", lasting=EKF_SECONDS
         ),
-        "fence": Failure(_has_broken_fence, "Circle fence breached", "FENCE_ACTION"),
+        "fence": Failure(
+            lambda pilot: pilot.breached and pilot.parameters["FENCE_ENABLE"] > 0.0,
+            "Circle fence breached",
+            "FENCE_ACTION",
+        ),
         "link": Failure(_has_no_link, "GCS Failsafe", cleared="GCS Failsafe Cleared"),
         "low": Failure(_has_low_battery, "Battery 1 is low", "BATT_FS_LOW_ACT", lasting="BATT_LOW_TIMER"),
     },

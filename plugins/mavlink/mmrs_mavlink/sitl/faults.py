@@ -83,13 +83,7 @@ def fault_named(name: str) -> Fault:
 
 
 def _shift(pilot: SimulatedAutopilot, metres: float, bearing: float) -> None:
-    pilot.body.shift_estimate(metres * cos(radians(bearing)), metres * sin(radians(bearing)))
-
-
-def _restart(pilot: SimulatedAutopilot, armed: str) -> None:
-    if armed not in ("", "armed"):
-        raise ValueError(f"'{armed}' is not armed")
-    pilot.restart(armed == "armed")
+    pilot.shift = (metres * cos(radians(bearing)), metres * sin(radians(bearing)))
 
 
 def _change_mode(pilot: SimulatedAutopilot, mode: str) -> None:
@@ -129,7 +123,7 @@ def _setting(name: str, value: object) -> Callable[[SimulatedAutopilot], None]:
 FAULTS: Mapping[str, Fault] = {
     "gps-lost": Fault(_setting("located", False), _setting("located", True)),
     "position-shift": Fault(_shift, lambda pilot: _shift(pilot, 0.0, 0.0), (40.0, 0.0)),
-    "restart": Fault(_restart, values=("",), read=str),
+    "restart": Fault(lambda pilot: pilot.restart()),
     "stick": Fault(_change_mode, values=("loiter",), read=str),
     "obstacle": Fault(_attribute("obstacle"), _setting("obstacle", None), (3.0,)),
     "breach": Fault(_setting("forced_breach", True), _setting("forced_breach", False)),

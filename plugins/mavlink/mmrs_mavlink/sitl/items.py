@@ -44,11 +44,6 @@ class StoredItem:
         """Return whether the vehicle moves, waits or returns for this item."""
         return self.command <= LAST_NAVIGATION
 
-    @property
-    def above_sea(self) -> bool:
-        """Return whether its altitude is above mean sea level."""
-        return self.frame in ABOVE_SEA
-
 
 def fault_of(item: StoredItem, kind: int, autopilot: Autopilot) -> int:
     """Return the MAV_MISSION_RESULT by which an item is refused; 0 if it is accepted."""

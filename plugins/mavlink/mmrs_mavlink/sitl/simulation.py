@@ -85,7 +85,7 @@ def _fall_or_stand(pilot: SimulatedAutopilot, seconds: float) -> None:
 def _record(pilot: SimulatedAutopilot) -> None:
     moves = pilot.armed or pilot.airborne
     if moves and (not pilot.track or pilot.time - pilot.track[-1][0] >= TRACK_SECONDS - 1e-6):
-        pilot.track.append((pilot.time, *pilot.body.place))
+        pilot.track.append((pilot.time, *pilot.body.position))
     position = pilot.body.position
     if pilot.armed and not pilot.return_path and dist(position, pilot.breadcrumbs[-1]) >= CRUMB_METRES:
         pilot.breadcrumbs.append(position)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 from flight_crew import SPEEDUP, manned, robot_of
 from patience import until
+from resets import reset
 
 from mmrs_mavlink.program import Policy
 from mmrs_mavlink.services.uploads import Uploads
@@ -20,7 +21,10 @@ def grow_old(made) -> None:
 
 def restart(made, *, armed: bool) -> None:
     grow_old(made)
-    made.simulated.faults.begin("restart", *["armed"] * armed)
+    if armed:
+        reset(made.simulated)
+    else:
+        made.simulated.faults.begin("restart")
 
 
 def test_a_vehicle_whose_motors_go_on_is_landed_since_it_has_forgotten_what_it_did(in_the_air):

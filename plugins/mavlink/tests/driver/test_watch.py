@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 from flight_crew import OVERHEAD, SPEEDUP, in_background, robot_of
 from patience import until
+from resets import reset
 
 from mmrs_mavlink.program import Policy
 from mmrs_mavlink.steps.watch import Watch
@@ -204,7 +205,7 @@ def grow_old(made):
 def test_a_restart_in_the_air_is_a_fault(in_the_air):
     made = in_the_air()
     grow_old(made)
-    made.simulated.faults.begin("restart", "armed")
+    reset(made.simulated)
     assert made.caught().event == "VEHICLE_RESTARTED"
 
 
