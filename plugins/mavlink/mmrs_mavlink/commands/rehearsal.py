@@ -24,9 +24,6 @@ from mmrs_mavlink.sitl.vehicle import Host, SimulatedVehicle
 
 POLL_SECONDS = 0.1
 
-Vehicles = Mapping[str, SimulatedVehicle]
-"""Vehicles by robot."""
-
 _PATTERN = re.compile(
     r"(?:(?P<robot>.{1,100}?):)?(?P<name>[a-z-]+)(?:=(?P<values>[^@]+))?"
     r"(?:@(?P<begin>[0-9]+(?:\.[0-9]*)?)(?:\+(?P<lasts>[0-9]+(?:\.[0-9]*)?))?)?"
@@ -128,7 +125,10 @@ class Schedule:
 
 
 def rehearse(
-    vehicles: Vehicles, faults: Sequence[ScheduledFault], seconds: float, started: Callable[[], None]
+    vehicles: Mapping[str, SimulatedVehicle],
+    faults: Sequence[ScheduledFault],
+    seconds: float,
+    started: Callable[[], None],
 ) -> int:
     """Run vehicles with their faults, and with those that are typed; return the exit code.
 

@@ -40,7 +40,7 @@ BLIND = MANUAL | {"land", "surface"}
 
 
 class SimulatedAutopilot:
-    """The state of a vehicle; `control` moves it, `commands` executes its commands.
+    """The state of a vehicle; `simulation` moves it, `commands` executes its commands.
 
     Attributes:
         px4: whether its firmware is PX4. flies: whether its kind takes off and lands.
@@ -80,7 +80,7 @@ class SimulatedAutopilot:
         self.takes_photos = True
         self.parameters = parameters.defaults(settings)
         self.stores: dict[int, list[StoredItem]] = {MISSION: [], FENCE: [], RALLY: []}
-        self.time = self.booted = self.fence_due = self.clock_error = self.link_timeout = 0.0
+        self.time = self.booted = self.clock_error = self.link_timeout = 0.0
         self.numbers = _numbers(settings.profile)
         self.mode, self.mode_name = 0, ""
         self.history: list[tuple[float, int, tuple[float, ...]]] = []

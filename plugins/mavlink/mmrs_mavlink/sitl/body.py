@@ -160,11 +160,8 @@ class Body:
 
     def passes_target(self) -> bool:
         """Return whether it has passed half of the turn to the next leg."""
-        return (
-            len(self._legs) > 1
-            and self._goal == self.onward
-            and self._legs[-1].elapsed >= self._legs[-2].left
-        )
+        turns = len(self._legs) > 1 and self._goal == self.onward
+        return turns and self._legs[-1].elapsed >= self._legs[-2].left
 
     def change_speed(self, speed: float) -> None:
         """Move at another speed, on a leg that it has begun, too, unless it slows down."""
@@ -204,11 +201,8 @@ class Body:
     def _leg(self, start: Vector, end: Vector) -> CurvedLeg:
         path = plus(end, start, -1.0)
         length = max(hypot(*path), CLOSE)
-        figures, speed, acceleration = (
-            self.figures,
-            min(self.speed, self.figures.speed),
-            self.figures.acceleration,
-        )
+        figures = self.figures
+        speed, acceleration = min(self.speed, figures.speed), figures.acceleration
         if path[2]:
             steep = length / abs(path[2])
             speed = min(speed, steep * self._rate(path[2]))

@@ -7,7 +7,7 @@ from typing import Any
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from mmrs_mavlink.sitl.autopilot import MANUAL, SimulatedAutopilot
+from mmrs_mavlink.sitl.autopilot import CURVED, MANUAL, SimulatedAutopilot
 from mmrs_mavlink.sitl.body import Vector
 from mmrs_mavlink.sitl.items import MISSION
 from mmrs_mavlink.sitl.simulation import jump
@@ -17,10 +17,7 @@ DENIED = int(mavlink.MAV_RESULT_DENIED)
 FAILED = int(mavlink.MAV_RESULT_FAILED)
 UNSUPPORTED = int(mavlink.MAV_RESULT_UNSUPPORTED)
 NOT_NOW = int(mavlink.MAV_RESULT_TEMPORARILY_REJECTED)
-"""A PX4's answer instead of FAILED (``Commander.cpp``)."""
-
 FORCE_DISARM = 21_196
-AUTONOMOUS = frozenset({"auto", "return", "smart_return"})
 DEVICES = frozenset(
     {181, 182, 183, 184, 195, 197, 203, 204, 205, 206, 211, 530, 531}
     | {1000, 1001, 2000, 2001, 2500, 2501, 42600}
@@ -30,14 +27,11 @@ DEVICES = frozenset(
 FULL_STICK = (1.0, 1.0, 0.5, 45.0)
 """Speeds of a submarine ahead, aside and up, metres per second, and turn rate, degrees per second."""
 
-DEAD = 0.05
-"""Dead zone of a stick, as a fraction of full stick."""
-
 Params = tuple[float, ...]
 
 
 def execute(pilot: SimulatedAutopilot, number: int, params: Params) -> int:
-    """Execute a command with its seven parameters; return its MAV_RESULT."""
+    """Execute a command with its seven parameters; return its MAV_RESULT: a PX4 fails by `NOT_NOW`."""
     handler = _HANDLERS.get(number)
     if handler is None and number not in DEVICES:
         return UNSUPPORTED
@@ -77,8 +71,7 @@ def take_sticks(pilot: SimulatedAutopilot, message: Any) -> None:
     """Move as the sticks of a MANUAL_CONTROL command; ArduSub's z ranges from 0 to 1000, neutral at 500."""
     if pilot.settings.kind == "sub" and pilot.mode_name in MANUAL:
         sticks = (message.x / 1000.0, message.y / 1000.0, (message.z - 500) / 500.0, message.r / 1000.0)
-        parts = (0.0 if abs(each) < DEAD else max(-1.0, min(1.0, each)) for each in sticks)
-        ahead, aside, up, turn = (part * full for part, full in zip(parts, FULL_STICK, strict=True))
+        ahead, aside, up, turn = (part * full for part, full in zip(sticks, FULL_STICK, strict=True))
         pilot.body.driven, pilot.driven_at = (ahead, aside, up, turn), pilot.time
 
 
@@ -127,7 +120,7 @@ def _enter(name: str) -> Callable[[SimulatedAutopilot, Params], int]:
 
 
 def _speed(pilot: SimulatedAutopilot, params: Params) -> int:
-    moves = pilot.aimed if pilot.mode_name == "guided" else pilot.mode_name in AUTONOMOUS
+    moves = pilot.aimed if pilot.mode_name == "guided" else pilot.mode_name in CURVED
     if params[1] <= 0.0 and not pilot.px4:
         return DENIED
     if pilot.settings.profile.drives and not moves:

@@ -1,7 +1,4 @@
-"""Failsafes of a simulated vehicle, as its parameters configure them.
-
-Its answers to a lost link are those of its profile. Of its fence it keeps the limits about its home.
-"""
+"""Failsafes of a simulated vehicle, as its parameters configure them; of its fence, limits about its home."""
 
 from __future__ import annotations
 
@@ -18,9 +15,6 @@ DISARM = "disarm"
 
 EKF_SECONDS = 3.3
 """Time from the loss of its satellites to the failsafe, as measured on ArduCopter 4.7-dev."""
-
-FENCE_SECONDS = 1.0
-"""Time between two checks of the fence."""
 
 _COPTER = {3: "smart_return return land", 4: "smart_return land"}
 _ROVER = {1: "return hold", 2: "hold", 3: "smart_return return hold", 4: "smart_return hold", 5: DISARM}
@@ -71,9 +65,7 @@ class Failure:
 
 def watch(pilot: SimulatedAutopilot) -> None:
     """Detect failures, and answer each once."""
-    if pilot.forced_breach or pilot.time >= pilot.fence_due:
-        pilot.fence_due = pilot.time + FENCE_SECONDS
-        pilot.breached = pilot.forced_breach or (pilot.located and _outside_fence(pilot))
+    pilot.breached = pilot.forced_breach or (pilot.located and _outside_fence(pilot))
     for name, failure in FAILURES[pilot.settings.firmware].items():
         if not (pilot.armed and failure.present(pilot)):
             pilot.failing.pop(name, None)
@@ -105,13 +97,13 @@ def _answer(pilot: SimulatedAutopilot, failure: Failure) -> None:
 
 def _outside_fence(pilot: SimulatedAutopilot) -> bool:
     fence, values = pilot.settings.profile.autopilot.fence, pilot.parameters
+    if not values.get(fence.enabled_by, 1):
+        return False
     enabled = int(values[fence.types]) if fence.types else -1
     north, east, up = pilot.body.position
     extents = {"radius": hypot(north, east), "height": up if pilot.flies else 0.0}
     limits = [each for each in fence.limits if not fence.types or enabled & each.bit]
-    return bool(values.get(fence.enabled_by, 1)) and any(
-        0.0 < values[each.parameter] < extents[each.of] for each in limits
-    )
+    return any(0.0 < values[each.parameter] < extents[each.of] for each in limits)
 
 
 def _has_no_position(pilot: SimulatedAutopilot) -> bool:
@@ -123,7 +115,7 @@ def _has_no_link(pilot: SimulatedAutopilot) -> bool:
     values, failsafe = pilot.parameters, pilot.settings.profile.lost_link
     if pilot.last_heartbeat is None or not values.get(failsafe.enabled_by, 1):
         return False
-    limit = sum(values.get(name, 0.0) for name in ("FS_GCS_TIMEOUT", "FS_TIMEOUT", "COM_DL_LOSS_T"))
+    limit = sum(values.get(name, 0.0) for name in ("FS_GCS_TIMEOUT", "COM_DL_LOSS_T"))
     return pilot.time - pilot.last_heartbeat >= max(limit, pilot.link_timeout)
 
 

@@ -24,9 +24,6 @@ PLACED = MOVING | FENCES | {5100, 201, 195, 179, 189}
 ONLY_ARDUPILOT = frozenset({115, 181, 182, 183, 184, 207})
 """Commands that an ArduPilot's mission can hold and a PX4's cannot."""
 
-LAST_NAVIGATION = 95
-"""Items with higher commands are executed during the flight to the next one."""
-
 
 @dataclass(frozen=True, slots=True)
 class StoredItem:
@@ -41,8 +38,8 @@ class StoredItem:
 
     @property
     def is_flown(self) -> bool:
-        """Return whether the vehicle moves, waits or returns for this item."""
-        return self.command <= LAST_NAVIGATION
+        """Return whether it is flown; others are executed during the flight to the next one."""
+        return self.command <= int(mavlink.MAV_CMD_NAV_LAST)
 
 
 def fault_of(item: StoredItem, kind: int, autopilot: Autopilot) -> int:

@@ -55,7 +55,6 @@ _COPTER: Mapping[str, float] = {
 _ROVER: Mapping[str, float] = {
     **_AVOIDING,
     "FS_ACTION": 2,
-    "FS_TIMEOUT": 1.5,
     "FS_OPTIONS": 0,
     "RALLY_LIMIT_KM": 0.5,
     "FS_EKF_ACTION": 1,
@@ -76,9 +75,7 @@ _PX4: Mapping[str, float] = {
     "COM_DL_LOSS_T": 10,
     "GF_ACTION": 2,
     "COM_OF_LOSS_T": 1.0,
-    "COM_FAIL_ACT_T": 5.0,
     "COM_DISARM_PRFLT": 10.0,
-    "COM_POS_FS_DELAY": 1,
     "NAV_ACC_RAD": 2.0,
     "MIS_DIST_1WP": 900.0,
     "RTL_RETURN_ALT": 15.0,
@@ -93,8 +90,7 @@ def defaults(settings: Settings) -> dict[str, float]:
     """Return the parameters of a vehicle: the defaults, and those of its settings."""
     if settings.firmware == PX4:
         return {**_PX4, "BAT1_CAPACITY": settings.capacity, **settings.parameters}
-    low = LOW_CELL * settings.cells
-    own = {"BATT_CAPACITY": settings.capacity, "BATT_LOW_VOLT": low}
+    own = {"BATT_CAPACITY": settings.capacity, "BATT_LOW_VOLT": LOW_CELL * settings.cells}
     return {**_COMMON, **_BY_KIND[settings.kind], **own, **settings.parameters}
 
 

@@ -16,7 +16,6 @@ IMITATED = {
 """Profiles of the vehicles that are imitated, by kind and firmware."""
 
 ARDUPILOT, PX4 = "ardupilot", "px4"
-USUAL_CAPACITY, USUAL_CELLS = 5000.0, 3
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,8 +49,8 @@ class Settings:
     boot: float = 1.0
     ready: float = 2.0
     energy: float = 1200.0
-    capacity: float = USUAL_CAPACITY
-    cells: int = USUAL_CELLS
+    capacity: float = 5000.0
+    cells: int = 3
     recharge: float = 0.0
     tells_battery: bool = True
     wind: tuple[float, float] = (0.0, 0.0)

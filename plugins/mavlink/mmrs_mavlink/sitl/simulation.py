@@ -24,9 +24,6 @@ NEAR, CLIMBED, GROUND = 1.0, 0.3, 0.05
 PILOT_TIMEOUT = 3.0
 """Seconds without MANUAL_CONTROL after which ArduSub disarms (FS_PILOT_INPUT)."""
 
-RALLY_POINT = 1
-"""RTL_TYPE of a PX4 that returns to a rally point rather than home."""
-
 CLOSE = 0.2
 STOPPING = frozenset({19, 20, 21, 22})
 """Items before which the vehicle stops."""
@@ -109,8 +106,8 @@ def _decide(pilot: SimulatedAutopilot, seconds: float) -> None:
 def _await_sticks(pilot: SimulatedAutopilot) -> None:
     """Disarm a submarine whose pilot has let go of the sticks."""
     _hold(pilot)
-    patience = max(PILOT_TIMEOUT, pilot.link_timeout)
-    if pilot.body.driven is not None and pilot.time - pilot.driven_at > patience:
+    released = pilot.time - pilot.driven_at > max(PILOT_TIMEOUT, pilot.link_timeout)
+    if pilot.body.driven is not None and released:
         pilot.say(mavlink.MAV_SEVERITY_CRITICAL, "Lost manual control")
         pilot.disarm()
 
@@ -174,14 +171,17 @@ def _return(pilot: SimulatedAutopilot) -> None:
 
 
 def _path_home(pilot: SimulatedAutopilot) -> list[Vector]:
-    """Return the path to the nearest of home and the rally points, at the height of returns."""
+    """Return the path to the nearest of home and the rally points, at the height of returns.
+
+    A PX4 whose RTL_TYPE is 1 returns to a rally point rather than home.
+    """
     here, values = pilot.body.position, pilot.parameters
     latitude, longitude, altitude = pilot.home
     home = pilot.local(latitude, longitude, altitude - pilot.settings.altitude)
     limit = values.get("RALLY_LIMIT_KM", 0.0) * 1000.0
     points = [pilot.place_of(item) for item in pilot.stores[RALLY]]
     points = [point for point in points if not limit or dist(point[:2], here[:2]) <= limit]
-    if not points or values.get("RALLY_INCL_HOME", values.get("RTL_TYPE") != RALLY_POINT):
+    if not points or values.get("RALLY_INCL_HOME", values.get("RTL_TYPE") != 1):
         points.append(home)
     goal = min(points, key=lambda point: dist(point[:2], here[:2]))
     above = values["RTL_RETURN_ALT"] if pilot.px4 else values.get("RTL_ALT", 0.0) / 100.0

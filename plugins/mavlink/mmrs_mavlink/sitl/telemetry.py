@@ -10,7 +10,7 @@ from typing import Any
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from mmrs_mavlink.profiles import ARDUPILOT, PX4
-from mmrs_mavlink.sitl.autopilot import SimulatedAutopilot
+from mmrs_mavlink.sitl.autopilot import CURVED, SimulatedAutopilot
 from mmrs_mavlink.sitl.body import Vector
 from mmrs_mavlink.sitl.commands import ACCEPTED, FAILED, arming_refusal
 from mmrs_mavlink.sitl.items import MISSION
@@ -22,9 +22,6 @@ Maker = Callable[[SimulatedAutopilot], Message | None]
 
 LOCATED, LOST = 0x33F, 0xA7
 """Flags of the position estimate."""
-
-STEERED = frozenset({"guided", "auto", "return", "smart_return"})
-"""Modes in which an ArduPilot reports its target."""
 
 TUMBLING = radians(60.0)
 """Lean of an ArduCopter 4.7-dev in simulation that falls with one of its four motors off."""
@@ -40,10 +37,8 @@ TEXT_BYTES = 50
 def message(name: str, **fields: object) -> Message:
     """Return a message by the name of its type in lower case; numbers that are not given are zero."""
     kind = getattr(mavlink, f"MAVLink_{name}_message")
-    single = [
-        field for field, length in zip(kind.ordered_fieldnames, kind.array_lengths, strict=True) if not length
-    ]
-    return kind(**{**dict.fromkeys(single, 0), **fields})
+    lengths = zip(kind.ordered_fieldnames, kind.array_lengths, strict=True)
+    return kind(**{**{name: 0 for name, length in lengths if not length}, **fields})
 
 
 def milliseconds(pilot: SimulatedAutopilot) -> int:
@@ -95,8 +90,9 @@ def _local_position(pilot: SimulatedAutopilot) -> Message | None:
 
 
 def _target(pilot: SimulatedAutopilot) -> Message | None:
+    """Return its target, which ArduPilot reports in the modes in which it flies to one."""
     target = pilot.body.target
-    if target is None or pilot.px4 or pilot.mode_name not in STEERED:
+    if target is None or pilot.px4 or pilot.mode_name not in CURVED | {"guided"}:
         return None
     return message(
         "position_target_global_int",
@@ -170,8 +166,8 @@ def _satellites(pilot: SimulatedAutopilot) -> Message:
 
 
 def _clocks(pilot: SimulatedAutopilot) -> Message:
-    now = round((time.time() + pilot.clock_error) * 1e6)
-    return mavlink.MAVLink_system_time_message(now, milliseconds(pilot))
+    microseconds = round((time.time() + pilot.clock_error) * 1e6)
+    return mavlink.MAVLink_system_time_message(microseconds, milliseconds(pilot))
 
 
 def _fence(pilot: SimulatedAutopilot) -> Message | None:
@@ -184,8 +180,7 @@ def _fence(pilot: SimulatedAutopilot) -> Message | None:
 
 
 def _wind(pilot: SimulatedAutopilot) -> Message:
-    speed, comes_from = pilot.wind
-    return mavlink.MAVLink_wind_message(comes_from, speed, 0.0)
+    return mavlink.MAVLink_wind_message(*reversed(pilot.wind), 0.0)
 
 
 def _wind_estimate(pilot: SimulatedAutopilot) -> Message:

@@ -15,9 +15,6 @@ Message = Any
 Address = tuple[int, int]
 """MAVLink system and component."""
 
-Stores = dict[int, list[StoredItem]]
-"""Items by mission type."""
-
 ACCEPTED, ERROR = int(mavlink.MAV_MISSION_ACCEPTED), int(mavlink.MAV_MISSION_ERROR)
 NO_SPACE, UNSUPPORTED = int(mavlink.MAV_MISSION_NO_SPACE), int(mavlink.MAV_MISSION_UNSUPPORTED)
 INVALID_SEQUENCE, DENIED = int(mavlink.MAV_MISSION_INVALID_SEQUENCE), int(mavlink.MAV_MISSION_DENIED)
@@ -52,7 +49,7 @@ class Transfers:
 
     def __init__(
         self,
-        stores: Stores,
+        stores: dict[int, list[StoredItem]],
         send: Callable[[Message], None],
         say: Callable[[int, str], None],
         autopilot: Autopilot,

@@ -27,9 +27,6 @@ Message = Any
 LINK_TIMEOUT = 2.0
 """Shortest timeout of its link in real seconds, whatever its speed-up."""
 
-GPS_SWITCH = "SIM_GPS1_ENABLE"
-"""Parameter with which ArduPilot's simulation switches its GPS receiver."""
-
 TICK_SECONDS, SHORTEST_TICK = 0.05, 0.01
 LONGEST_STEP = 0.25
 """Longest step in real seconds, so that vehicles do not jump when their process was suspended."""
@@ -49,12 +46,7 @@ class SimulatedVehicle:
     """
 
     def __init__(
-        self,
-        port: int,
-        settings: Settings | None = None,
-        *,
-        host: str = "127.0.0.1",
-        speedup: float = 1.0,
+        self, port: int, settings: Settings | None = None, *, host: str = "127.0.0.1", speedup: float = 1.0
     ) -> None:
         """Create a vehicle, which sends nothing before `start`, for a controller at a UDP port.
 
@@ -154,7 +146,7 @@ class SimulatedVehicle:
             case _:
                 self._parameters.take(message)
                 self._transfers.take(message)
-                if kind == "PARAM_SET" and message.param_id == GPS_SWITCH:
+                if kind == "PARAM_SET" and message.param_id == "SIM_GPS1_ENABLE":
                     pilot.located = bool(message.param_value)
 
     def _command(self, message: Message, params: tuple[float, ...]) -> None:
