@@ -11,6 +11,7 @@ from mmrs_core.hookspecs import hookimpl
 if TYPE_CHECKING:
     from mmrs_core.contributions.checks import Check
     from mmrs_core.contributions.constraints import Constraint
+    from mmrs_core.contributions.drawings import DrawingReader, Exporter
     from mmrs_core.contributions.fixes import Fix
     from mmrs_core.contributions.rules import MoveKind, RobotKind
     from mmrs_core.contributions.vehicles import VehicleFactory
@@ -68,3 +69,32 @@ def mmrs_vehicles() -> Iterable[VehicleFactory]:
 def mmrs_map_symbols() -> Iterable[MapSymbol]:
     """Contribute how the mission's control tasks look."""
     return CORE_SYMBOLS
+
+
+@hookimpl
+def mmrs_drawing_readers() -> Iterable[DrawingReader]:
+    """Contribute readers of the formats that map programs share."""
+    from mmrs_core.contributions.drawings import DrawingReader
+    from mmrs_core.drawings import geojson, kml
+
+    return (
+        DrawingReader("KML", (".kml", ".kmz"), kml.recognise, kml.read),
+        DrawingReader("GeoJSON", (".geojson", ".json"), geojson.recognise, geojson.read),
+    )
+
+
+@hookimpl
+def mmrs_exporters() -> Iterable[Exporter]:
+    """Contribute the formats that map programs share."""
+    from mmrs_core.contributions.drawings import Exporter
+    from mmrs_core.drawings import geojson, kml
+    from mmrs_core.drawings.drawing import HeightReference
+
+    level, ellipsoid = (HeightReference.SEA_LEVEL,), (HeightReference.ELLIPSOID,)
+    return (
+        Exporter(
+            "geojson", "GeoJSON, for QGIS and others", ".geojson", geojson.write, geojson.losses, ellipsoid
+        ),
+        Exporter("kml", "KML, for Google Earth, QGIS and others", ".kml", kml.write, kml.losses, level),
+        Exporter("kmz", "KML in an archive", ".kmz", kml.write_archive, kml.losses, level),
+    )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from enum import StrEnum
@@ -13,6 +14,20 @@ from numpy.typing import NDArray
 from mmrs_core.diagnostics import Place
 
 Property: TypeAlias = str | float | int | bool
+
+_UNPRINTABLE = re.compile("[\x00-\x1f\x7f-\x9f\u2028-\u202e\u2066-\u2069\ud800-\udfff\ufffe\uffff]")
+"""Controls of terminals, of lines and of the direction of writing, and what no encoding or XML can hold."""
+
+
+def printable(text: str, kept: str = "") -> str:
+    r"""Return a text with spaces for all controls but those kept, and without spaces around it.
+
+    >>> printable("north\x1b[31m\n meadow ")
+    'north [31m  meadow'
+    """
+    if text.isprintable():
+        return text.strip()
+    return _UNPRINTABLE.sub(lambda found: found[0] if found[0] in kept else " ", text).strip()
 
 
 class Geometry(StrEnum):
@@ -68,7 +83,8 @@ class MapFeature:
         times: array (n,) of seconds since 1970-01-01 UTC, of the first ring; None where not given.
         since_start: whether `times` count from the start of a mission, whose time of day is unknown.
         radius: metres, of a circle around a point; None for all others.
-        name: as in the file; may be empty, and need not be unique.
+        name: as in the file, without controls; may be empty, and need not be unique.
+        description: may have several lines.
         folders: names of the folders or layers that it is in, outermost first.
         properties: further values, by key.
         colour: as ``#rrggbb``; empty: that of the program that shows it.
@@ -103,6 +119,19 @@ class MapFeature:
             raise ValueError("every position has a height, or none has")
         if bool(self.heights) is (self.reference is HeightReference.NONE):
             raise ValueError("heights and what they are measured from are given together")
+        if self.times is not None and self.times.shape != (len(self.rings[0]),):
+            raise ValueError("every position of the first ring has a time, or none has")
+        for name, text in (
+            ("name", printable(self.name)),
+            ("description", printable(self.description.replace("\r\n", "\n"), "\n\t")),
+            ("folders", tuple(map(printable, self.folders))),
+            ("properties", {printable(key): _plain(value) for key, value in self.properties.items()}),
+        ):
+            object.__setattr__(self, name, text)
+
+
+def _plain(value: Property) -> Property:
+    return printable(value.replace("\r\n", "\n"), "\n\t") if isinstance(value, str) else value
 
 
 @dataclass(frozen=True, slots=True)
@@ -121,7 +150,14 @@ class LeftOut:
 
 @dataclass(frozen=True, slots=True)
 class Drawing:
-    """What a file holds: its features in their order, and everything that is none."""
+    """What a file holds.
+
+    Attributes:
+        features: in their order.
+        left_out: everything that is none.
+        title: of the whole; may be empty.
+    """
 
     features: tuple[MapFeature, ...]
     left_out: tuple[LeftOut, ...] = ()
+    title: str = ""

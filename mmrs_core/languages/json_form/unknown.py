@@ -114,7 +114,7 @@ def xml_of(xml: str, scope: Mapping[str, str]) -> str:
 
 
 def _no_doctype(*_: object) -> None:
-    raise ValueError(f"{XML}: DOCTYPE is not accepted in a model")
+    raise ValueError(f"{XML}: DOCTYPE is not accepted")
 
 
 def scope_of(node: Node) -> Mapping[str, str]:

@@ -199,7 +199,7 @@ class Document:
             self.encoding = encoding or self.encoding
 
     def _doctype(self, *_: object) -> None:
-        raise UnreadableError.of("FIL005", "DOCTYPE is not accepted in a model", self.file, self.line)
+        raise UnreadableError.of("FIL005", "DOCTYPE is not accepted", self.file, self.line)
 
 
 def _without_wide_characters(data: bytes, file: str) -> tuple[bytes, str | None]:
