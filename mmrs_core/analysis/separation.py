@@ -87,8 +87,8 @@ def _while_charging(program: Program) -> str:
     if not charging or len(program.robots) < 2:
         return ""
     return (
-        f"provided that {', '.join(charging)} charge{'s' * (len(charging) == 1)} for as long as declared:"
-        " a new battery that an operator confirms earlier makes what follows early"
+        f"provided that {', '.join(charging)} charge{'s' * (len(charging) == 1)} for no longer than checks"
+        " count: the log of a run reports it when a robot does"
     )
 
 

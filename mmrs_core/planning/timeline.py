@@ -131,7 +131,7 @@ class _Walk:
             self._upright(step)
         else:
             charging = self.kinematics.charging_time(step.end - step.begin)
-            self._stay(charging.shortest, charging.longest)
+            self._stay(charging.expected, charging.longest)
 
     def stay_to_the_end(self) -> None:
         self.by = inf

@@ -240,8 +240,11 @@ class Kinematics:
         return MoveSeconds(0.0, half.expected / 2.0, half.longest + noticing(self.timing))
 
     def charging_time(self, seconds: float) -> MoveSeconds:
-        """Return how long charging takes that is to take so long: until the batteries are full."""
-        return MoveSeconds(seconds, seconds, self.charging * seconds + self.timing.reporting)
+        """Return how long charging takes that is to take so long: until the batteries are full.
+
+        An operator who confirms new batteries ends it at once.
+        """
+        return MoveSeconds(0.0, seconds, self.charging * seconds + self.timing.reporting)
 
     def rates(self, speed: float | None = None) -> Rates:
         """Return how fast it goes along legs at a commanded speed, metres per second; None: at its cruise."""

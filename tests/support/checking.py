@@ -11,6 +11,7 @@ from mmrs_core.contributions.rules import MoveKind, RobotKind
 from mmrs_core.scene import Area, AreaUse, Kinematics
 from mmrs_core.scene.timing import MoveSeconds
 from mmrs_core.testing.small_programs import MOVE, ROBOT_TYPE, program, robot_type
+from mmrs_core.transformation.kinds import charging_time
 from mmrs_runtime.timing import LegTiming
 
 ROBOT = ("urn:mmrs:robot:1.0", "Robot")
@@ -99,7 +100,7 @@ MOVE_KINDS = move_kinds(
     MoveKind((BEHAVIOUR, "Start"), stays, nothing, ANY),
     MoveKind((BEHAVIOUR, "Stop"), stays, nothing, frozenset({"grounded", "moving"})),
     MoveKind((BEHAVIOUR, "HoldPosition"), stays, declared, ANY),
-    MoveKind((BEHAVIOUR, "Recharge"), stays, declared, frozenset({"grounded", "moving"})),
+    MoveKind((BEHAVIOUR, "Recharge"), stays, charging_time, frozenset({"grounded", "moving"})),
     MoveKind((BEHAVIOUR, "GoTo"), straight, travelled, frozenset({"airborne", "moving"})),
     MoveKind(TAKE_OFF, up, travelled, frozenset({"grounded"}), "airborne"),
     MoveKind(LAND, down, travelled, frozenset({"airborne"}), "grounded"),

@@ -133,12 +133,28 @@ def test_a_robot_is_beyond_the_first_of_two_legs_of_a_movement_before_that_is_ov
     assert Status.SAFE not in status[0.4]
 
 
-def test_robots_that_charge_are_safe_only_as_long_as_they_do_so_for_their_time():
+def charging_before_it_crosses(wait=None):
+    """Return two robots whose ways cross; the second charges first, and may wait for the other one."""
+    a, b = crossing(wait)
+    return a, replace(b, moves=(b.moves[0], recharge("before", 20.0), *b.moves[2:]))
+
+
+def test_a_robot_whose_charging_an_operator_may_end_at_once_is_not_kept_apart_by_that():
+    (verdict,) = separation(*charging_before_it_crosses())
+    assert (verdict.status, verdict.move) == (Status.UNKNOWN, "east")
+    assert "let one wait for the other" in verdict.message
+
+
+def test_a_robot_that_charges_and_waits_for_the_other_is_safe_whenever_its_charging_ends():
+    assert [verdict.status for verdict in separation(*charging_before_it_crosses("go"))] == [Status.SAFE]
+
+
+def test_robots_that_charge_are_safe_only_as_long_as_they_do_so_for_no_longer_than_counted():
     a = robot("a", [recharge("charge", 30.0)])
     b = robot("b", [go("east", (40.0, 9.0, 0.0))], home=(0.0, 9.0, 0.0))
     (verdict,) = separation(a, b)
     assert verdict.status is Status.SAFE
-    assert verdict.caveat.startswith("provided that a charges for as long as declared")
+    assert verdict.caveat.startswith("provided that a charges for no longer than checks count")
     (other,) = separation(b, robot("c", [hold("look", 30.0)]))
     assert other.caveat == ""
 
