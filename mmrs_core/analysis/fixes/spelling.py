@@ -9,7 +9,7 @@ from mmrs_core.grounding.features import children, text
 from mmrs_core.languages.datatypes import shown
 from mmrs_core.languages.element import Element, container_of, is_kind, metaclass_of, root_of
 from mmrs_core.languages.metaclass import Feature, Metaclass
-from mmrs_core.languages.references.named import NamedElements
+from mmrs_core.languages.references.named import LONGEST_COMPARED, NamedElements
 from mmrs_core.languages.references.spelling import Name, is_address, references_in, spelt
 from mmrs_core.languages.xmi.markup import Tag
 
@@ -182,7 +182,8 @@ def _references(wrong: Wrong) -> Iterator[Edit]:
             (word for word in words if message.startswith(f"{feature.name}: {shown(word)} leads")), ""
         )
         known = _names(wrong, wrong.element, feature.type)
-        right = meant(lost, known) if lost and not is_address(lost) else None
+        fit = 0 < len(lost) <= LONGEST_COMPARED and not is_address(lost)
+        right = meant(lost, known) if fit else None
         if right is not None and _same_numbers(lost, right):
             words = [Name(right, right) if word == lost else word for word in words]
             said = (spelt(each, feature.many) if isinstance(each, Name) else each for each in words)

@@ -10,6 +10,8 @@ from mmrs_core.languages.metaclass import Metaclass
 
 MOST_NAMED = 5
 """How many elements of one name a message lists."""
+LONGEST_COMPARED = 200
+"""Comparing two misspelt names takes the product of their lengths."""
 
 
 class NamedElements:

@@ -17,7 +17,7 @@ from mmrs_core.languages.naming import nearest
 from mmrs_core.languages.references.documents import Draft, Pending, Quick
 from mmrs_core.languages.references.hidden import hidden_in, note_links
 from mmrs_core.languages.references.hrefs import linked_file
-from mmrs_core.languages.references.named import MOST_NAMED
+from mmrs_core.languages.references.named import LONGEST_COMPARED, MOST_NAMED
 from mmrs_core.languages.references.spelling import Name, is_address, quoted, references_in, spelt
 from mmrs_core.languages.registry import Registry
 
@@ -185,7 +185,7 @@ def _misspelt(name: str, reference: Pending, draft: Draft, library: Library) -> 
     kind = reference.feature.type
     assert isinstance(kind, Metaclass)  # it is a reference
     hint = ""
-    if len(draft.diagnostics) < _HELPED_FAULTS:
+    if len(draft.diagnostics) < _HELPED_FAULTS and len(name) <= LONGEST_COMPARED:
         names = (each for other in (draft, *library.beside(draft)) for each in other.named().names(kind))
         known = list(islice(names, _COMPARED_NAMES))
         divided = [each for each in known if each != name and _is_divided(each, name, reference)]

@@ -172,3 +172,12 @@ def test_misspelt_names(zoo, zoo_text):
         assert len(read_text(zoo_text(herd), "a.xmi", zoo).diagnostics) == count // 4
 
     assert grows_evenly(read)
+
+
+def test_a_long_misspelt_name(zoo, zoo_text):
+    def read(length):
+        long = "".join(chr(0x4E00 + at % 300) for at in range(length))
+        lion = f'<animals xsi:type="zoo:Lion" name="{long}" mate="{long}c"/>'
+        assert len(read_text(zoo_text(lion), "a.xmi", zoo).diagnostics) == 1
+
+    assert grows_evenly(read, 5_000)
