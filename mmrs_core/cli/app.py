@@ -55,6 +55,11 @@ _COMMANDS = (
         "Draw a mission's map, timeline and altitude profile.",
         "mmrs_core.cli.preview:preview",
     ),
+    Command(
+        "export",
+        "Export to QGIS, Google Earth and other map programs.",
+        "mmrs_core.cli.export:export",
+    ),
     Command("show", "Print a model, or one element, as a tree.", "mmrs_core.cli.show:show"),
     Command(
         "convert",

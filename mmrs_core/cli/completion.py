@@ -58,6 +58,11 @@ def backend_names(context: typer.Context) -> list[str]:
     return sorted(name for name, each in found.items() if each.simulated or not simulates)
 
 
+def exporter_names(context: typer.Context) -> list[str]:
+    """Return the names of the formats for map programs."""
+    return sorted(settings_of(context).plugins().contributions.exporters)
+
+
 def one_of(*values: str) -> Callable[[], list[str]]:
     """Return what completes a value that has to be one of these."""
     return lambda: list(values)

@@ -17,6 +17,7 @@ CORE_COMMANDS = frozenset(
         "preview",
         "show",
         "convert",
+        "export",
         "diff",
         "import",
         "bus",

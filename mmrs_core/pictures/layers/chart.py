@@ -57,7 +57,7 @@ class Chart:
             tuple(np.split(degrees, np.cumsum([len(ring) for ring in laid])[:-1])),
             heights=tuple((ring[:, 2] + self.zero).round(3) + 0.0 for ring in laid) if high else (),
             reference=self.reference if high else HeightReference.NONE,
-            times=times if times is None or self.start is None else times + self.start,
+            times=None if times is None else (times + (self.start or 0.0)).round(3),
             since_start=times is not None and self.start is None,
         )
 
@@ -82,7 +82,12 @@ def chart_of(frame: Frame, heights: Iterable[HeightReference], start: float | No
 
 
 def drawing_of(drawn: Iterable[Drawn], only: Iterable[Layer] = ()) -> Drawing:
-    """Return a drawing of what is drawn and of what has no position, of these layers; of none: of all."""
+    """Return a drawing of what is drawn and of what has no position, layer by layer.
+
+    Args:
+        drawn: in any order of layers.
+        only: layers that are wanted; none: all.
+    """
     wanted = set(only) or set(Layer)
     features: list[MapFeature] = []
     left_out: list[LeftOut] = []
@@ -91,4 +96,15 @@ def drawing_of(drawn: Iterable[Drawn], only: Iterable[Layer] = ()) -> Drawing:
             left_out += [each[1]] if each[0] in wanted else []
         elif each.folders[0] in wanted:
             features.append(each)
-    return Drawing(tuple(features), tuple(left_out))
+    order = {layer: number for number, layer in enumerate(Layer)}
+    return Drawing(tuple(sorted(features, key=lambda each: order[Layer(each.folders[0])])), tuple(left_out))
+
+
+def lacking_for(frame: Frame, heights: Iterable[HeightReference]) -> str:
+    """Return what a mission lacks for heights above one of these references; empty: nothing."""
+    wanted = [each for each in heights if each in (HeightReference.ELLIPSOID, HeightReference.SEA_LEVEL)]
+    if not wanted or chart_of(frame, wanted).reference is not HeightReference.HOME:
+        return ""
+    if frame.altitude is None or frame.altitude_reference == "ORIGIN":
+        return "the altitude of its origin above mean sea level or the ellipsoid"
+    return "its geoidSeparation"

@@ -79,8 +79,8 @@ class Courses:
                     properties={
                         "robot": robot.id,
                         "type": robot.type_name,
-                        "begin": round(float(times[0]), 3),
-                        "end": round(float(times[-1]), 3),
+                        "beginSeconds": round(float(times[0]), 3),
+                        "endSeconds": round(float(times[-1]), 3),
                         "length": round(metres, 2),
                     },
                     colour=self._colours[robot.id],
@@ -106,8 +106,8 @@ class Courses:
                     more = {"move": move.id, "task": move.task, "device": action.device}
                     more["action"] = action.name
                     more |= {f"parameters.{key}": value for key, value in action.parameters}
-                    at = flown.track.at(time)
-                    yield self._point(Layer.ACTIONS, Role.ACTION, robot.id, action.name, at, time, more)
+                    name, at = action.name or action.metaclasses[0][1], flown.track.at(time)
+                    yield self._point(Layer.ACTIONS, Role.ACTION, robot.id, name, at, time, more)
             yield from self._measured(robot, flown)
             for event in events_of(flown):
                 more = {"kind": event.kind, "why": event.why}
@@ -153,7 +153,7 @@ class Courses:
             self.chart.point(at, time),
             name=name,
             role=role,
-            folders=(layer, robot),
+            folders=(layer,),
             properties={"robot": robot, "seconds": round(time, 3), **known},
             colour=self._colours[robot],
         )

@@ -5,28 +5,31 @@ import pytest
 from pyproj import Geod
 
 from mmrs_core.drawings.drawing import HeightReference, LeftOut
-from mmrs_core.pictures.layers.chart import chart_of, drawing_of
+from mmrs_core.pictures.layers.chart import chart_of, drawing_of, lacking_for
 from mmrs_core.pictures.layers.layer import Layer
 from mmrs_core.scene import Frame
 
 HOME, SEA, ELLIPSOID = HeightReference.HOME, HeightReference.SEA_LEVEL, HeightReference.ELLIPSOID
+ALTITUDE = "the altitude of its origin above mean sea level or the ellipsoid"
 BOTH = Frame("EPSG:4326", 42.37, 13.35, 770.0, "ELLIPSOID", 47.5)
 
 
 @pytest.mark.parametrize(
-    ("frame", "wanted", "reference", "height"),
+    ("frame", "wanted", "reference", "height", "lacking"),
     [
-        (BOTH, (ELLIPSOID,), ELLIPSOID, 765.0),
-        (BOTH, (SEA, ELLIPSOID), SEA, 717.5),
-        (Frame("EPSG:4326", 42.37, 13.35, 770.0), (SEA, ELLIPSOID), ELLIPSOID, 765.0),
-        (Frame("EPSG:4326", 42.37, 13.35, 770.0), (SEA,), HOME, -5.0),
-        (Frame("EPSG:4326", 42.37, 13.35, 0.0, "ORIGIN"), (SEA, ELLIPSOID), HOME, -5.0),
-        (BOTH, (), HOME, -5.0),
+        (BOTH, (ELLIPSOID,), ELLIPSOID, 765.0, ""),
+        (BOTH, (SEA, ELLIPSOID), SEA, 717.5, ""),
+        (Frame("EPSG:4326", 42.37, 13.35, 770.0), (SEA, ELLIPSOID), ELLIPSOID, 765.0, ""),
+        (Frame("EPSG:4326", 42.37, 13.35, 770.0), (SEA,), HOME, -5.0, "its geoidSeparation"),
+        (Frame("EPSG:4326", 42.37, 13.35, 0.0, "ORIGIN"), (SEA, ELLIPSOID), HOME, -5.0, ALTITUDE),
+        (Frame("EPSG:4326", 42.37, 13.35), (SEA,), HOME, -5.0, ALTITUDE),
+        (BOTH, (), HOME, -5.0, ""),
     ],
 )
-def test_heights_are_above_the_first_reference_that_is_known(frame, wanted, reference, height):
+def test_heights_are_above_the_first_reference_that_is_known(frame, wanted, reference, height, lacking):
     point = chart_of(frame, wanted).point((0.0, 0.0, -5.0))
     assert (point.reference, point.heights[0].tolist()) == (reference, [height])
+    assert lacking_for(frame, wanted) == lacking
 
 
 def test_what_has_no_height_gets_none():
