@@ -75,11 +75,13 @@ def mmrs_map_symbols() -> Iterable[MapSymbol]:
 def mmrs_drawing_readers() -> Iterable[DrawingReader]:
     """Contribute readers of the formats that map programs share."""
     from mmrs_core.contributions.drawings import DrawingReader
-    from mmrs_core.drawings import geojson, kml
+    from mmrs_core.drawings import geojson, gpx, kml, point_table
 
     return (
         DrawingReader("KML", (".kml", ".kmz"), kml.recognise, kml.read),
         DrawingReader("GeoJSON", (".geojson", ".json"), geojson.recognise, geojson.read),
+        DrawingReader("GPX", (".gpx",), gpx.recognise, gpx.read),
+        DrawingReader("CSV", (".csv", ".tsv", ".txt"), point_table.recognise, point_table.read),
     )
 
 
@@ -87,7 +89,7 @@ def mmrs_drawing_readers() -> Iterable[DrawingReader]:
 def mmrs_exporters() -> Iterable[Exporter]:
     """Contribute the formats that map programs share."""
     from mmrs_core.contributions.drawings import Exporter
-    from mmrs_core.drawings import geojson, kml
+    from mmrs_core.drawings import geojson, gpx, kml
     from mmrs_core.drawings.drawing import HeightReference
 
     level, ellipsoid = (HeightReference.SEA_LEVEL,), (HeightReference.ELLIPSOID,)
@@ -95,6 +97,7 @@ def mmrs_exporters() -> Iterable[Exporter]:
         Exporter(
             "geojson", "GeoJSON, for QGIS and others", ".geojson", geojson.write, geojson.losses, ellipsoid
         ),
+        Exporter("gpx", "GPX, for receivers and others", ".gpx", gpx.write, gpx.losses, level),
         Exporter("kml", "KML, for Google Earth, QGIS and others", ".kml", kml.write, kml.losses, level),
         Exporter("kmz", "KML in an archive", ".kmz", kml.write_archive, kml.losses, level),
     )

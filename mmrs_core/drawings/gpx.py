@@ -1,0 +1,223 @@
+"""GPX 1.0 and 1.1 (https://www.topografix.com/gpx.asp): waypoints, routes and tracks."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from lxml import etree
+from numpy.typing import NDArray
+
+from mmrs_core.diagnostics import Place
+from mmrs_core.drawings.drawing import (
+    Drawing,
+    Geometry,
+    HeightReference,
+    MapFeature,
+    Property,
+    Role,
+    printable,
+)
+from mmrs_core.drawings.extras import (
+    PREFIX,
+    REFERENCE,
+    ROLE,
+    degrees_text,
+    extras_of,
+    lost,
+    metres_text,
+    take_extras,
+    time_text,
+    times_of,
+)
+from mmrs_core.drawings.sheet import DrawnSubject, Sheet
+from mmrs_core.drawings.xml_text import XmlNode, read_tree, root_tag
+
+AXES = "GPX names them lat and lon"
+GPX, OWN = "http://www.topografix.com/GPX/1/1", "urn:mmrs:drawing:1.0"
+NAMESPACES: dict[str, str] = {None: GPX, "mmrs": OWN}  # type: ignore[dict-item]  # lxml's default namespace
+AREA = f"{PREFIX}area"
+"""Marks a track whose segments are the rings of an area."""
+POINTS = ("rtept", "trkpt")
+KINDS = {"wpt": Role.UNKNOWN, "rte": Role.PATH, "trk": Role.TRACK}
+TEXTS = ("cmt", "src", "type", "sym", "number", "geoidheight", "fix", "sat", "hdop", "vdop", "pdop")
+READ = ("name", "desc", "ele", "time", "trkseg", "link", "url", "urlname", "magvar")
+ROOT = ("metadata", "name", "desc", "author", "email", "url", "urlname", "time", "keywords", "bounds")
+
+
+def recognise(data: bytes, file: str) -> bool:
+    """Return whether it is GPX."""
+    return root_tag(data) == "gpx"
+
+
+def _fold(node: XmlNode, parent: XmlNode) -> None:
+    """Leave position, height and time of a point with its track; so a million points are no tree."""
+    row = (node.attributes.get("lat", ""), node.attributes.get("lon", ""), node.of("ele"), node.of("time"))
+    parent.gathered.setdefault(node.tag, []).append(row)
+
+
+def read(data: bytes, file: str) -> Drawing:
+    """Return waypoints as points, routes and the segments of tracks as lines.
+
+    Raises:
+        UnreadableError: with the line of the first fault.
+    """
+    sheet = Sheet(data, file, AXES)
+    root = read_tree(data, sheet, dict.fromkeys(POINTS, _fold))
+    if root.tag != "gpx":
+        sheet.refuse(f"'{root.tag}' is not the root of a GPX file", root.line)
+    reader = _GpxReader(sheet)
+    counts = dict.fromkeys(KINDS, 0)
+    for node in root.children:
+        if node.tag in KINDS:
+            counts[node.tag] += 1
+            reader.feature(node, f"/{node.tag}[{counts[node.tag]}]")
+        elif node.tag not in ROOT:
+            sheet.leave_out(node.tag, "not read in GPX", node.line)
+    metadata = root.child("metadata")
+    return sheet.drawing((metadata or root).of("name"))
+
+
+class _GpxReader:
+    def __init__(self, sheet: Sheet) -> None:
+        self._sheet = sheet
+
+    def feature(self, node: XmlNode, path: str) -> None:
+        """Add what a waypoint, a route or a track shows."""
+        name = node.of("name")
+        what = f"{node.tag} '{name[:60]}'" if name else path.lstrip("/")
+        properties = self._properties(node, what)
+        area = properties.pop(AREA, None) is not None
+        traits, reference = take_extras(properties)
+        traits |= {"name": name, "description": node.of("desc"), "properties": properties}
+        traits.setdefault("role", Role.UNKNOWN if area else KINDS[node.tag])
+        subject = DrawnSubject(what, Place(self._sheet.file, node.line, path), traits, reference)
+        if node.tag == "wpt":
+            _fold(node, node)
+        parts = [*node.all("trkseg")] if node.tag == "trk" else [node]
+        kind = {"wpt": "wpt", "rte": "rtept", "trk": "trkpt"}[node.tag]
+        segments = [self._segment(part, kind, subject) for part in parts if kind in part.gathered]
+        if not segments:
+            self._sheet.leave_out(what, "no positions", node.line)
+        elif area:
+            rings = [ring for ring, _ in segments]
+            self._sheet.add(Geometry.AREA, rings, subject, HeightReference.SEA_LEVEL)
+        else:
+            geometry = Geometry.POINT if node.tag == "wpt" else Geometry.LINE
+            for ring, times in segments:
+                self._sheet.add(geometry, [ring], replace(subject, times=times), HeightReference.SEA_LEVEL)
+
+    def _segment(
+        self, part: XmlNode, kind: str, subject: DrawnSubject
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64] | None]:
+        """Return latitude, longitude and height where all positions have one, and their times."""
+        what, line = subject.what, part.line
+        rows = [row for row in part.gathered[kind] if isinstance(row, tuple)]
+        latitudes, longitudes, heights, times = zip(*rows, strict=True)
+        try:
+            columns = [[float(each) for each in column] for column in (latitudes, longitudes)]
+            if all(heights):
+                columns.append([float(each) for each in heights])
+        except ValueError as fault:
+            self._sheet.refuse(f"{what}: coordinates: {fault}", line)
+        for word, given in (("heights", heights), ("times", times)):
+            if any(given) and not all(given):
+                self._sheet.leave_out(f"{word} of {what}", "some positions have none", line)
+        ring = np.column_stack(columns)
+        try:
+            return ring, times_of([*times]) if all(times) else None
+        except (ValueError, OverflowError) as fault:
+            self._sheet.leave_out(f"times of {what}", str(fault).lower(), line)
+            return ring, None
+
+    def _properties(self, node: XmlNode, what: str) -> dict[str, Property]:
+        properties: dict[str, Property] = {tag: text for tag in TEXTS if (text := node.of(tag))}
+        for child in node.children:
+            if child.tag == "extensions":
+                for each in child.children:
+                    properties[each.attributes.get("name", each.tag)] = each.text
+            elif child.tag not in (*TEXTS, *READ):
+                self._sheet.leave_out(f"{child.tag} of {what}", f"not read in a {node.tag}", child.line)
+        return properties
+
+
+def write(drawing: Drawing, title: str) -> bytes:
+    """Return a drawing as GPX 1.1; an area is a closed track with a segment for each ring."""
+    root = etree.Element(f"{{{GPX}}}gpx", {"version": "1.1", "creator": "MMRS"}, nsmap=NAMESPACES)
+    _added(_added(root, "metadata"), "name", printable(title))
+    written: dict[str, list[etree._Element]] = {tag: [] for tag in KINDS}
+    for feature in drawing.features:
+        tag = _tag_of(feature)
+        element = etree.Element(f"{{{GPX}}}{tag}")
+        written[tag].append(element)
+        if tag == "wpt":
+            _position(element, feature, 0, 0)
+        _describe(element, feature)
+        for ring in range(len(feature.rings)):
+            owner = _added(element, "trkseg") if tag == "trk" else element
+            indices = [*range(len(feature.rings[ring])), *([0] if feature.geometry is Geometry.AREA else [])]
+            for at in indices if tag != "wpt" else ():
+                _position(_added(owner, f"{tag}pt"), feature, ring, at)
+    for elements in written.values():
+        root.extend(elements)
+    return etree.tostring(root, encoding="UTF-8", xml_declaration=True, pretty_print=True)
+
+
+def _tag_of(feature: MapFeature) -> str:
+    if feature.geometry is Geometry.POINT:
+        return "wpt"
+    return "rte" if feature.geometry is Geometry.LINE and feature.times is None else "trk"
+
+
+def _position(point: etree._Element, feature: MapFeature, ring: int, at: int) -> None:
+    latitude, longitude = feature.rings[ring][at]
+    point.set("lat", degrees_text(latitude))
+    point.set("lon", degrees_text(longitude))
+    if feature.reference is HeightReference.SEA_LEVEL:
+        _added(point, "ele", metres_text(feature.heights[ring][at]))
+    if feature.times is not None and ring == 0:
+        _added(point, "time", time_text(feature.times[at]))
+
+
+def _describe(element: etree._Element, feature: MapFeature) -> None:
+    if feature.name:
+        _added(element, "name", feature.name)
+    if feature.description:
+        _added(element, "desc", feature.description)
+    native = KINDS[_tag_of(feature)] if feature.geometry is not Geometry.AREA else Role.UNKNOWN
+    data = {**feature.properties, **extras_of(feature, (REFERENCE,))}
+    if feature.role is native:
+        data.pop(ROLE, None)
+    elif not feature.role:
+        data[ROLE] = ""
+    if feature.geometry is Geometry.AREA:
+        data[AREA] = True
+    if data:
+        extensions = _added(element, "extensions")
+        for key, value in data.items():
+            text = str(value).lower() if isinstance(value, bool) else str(value)
+            etree.SubElement(extensions, f"{{{OWN}}}property", {"name": key}).text = text
+
+
+def _added(parent: etree._Element, tag: str, text: str | None = None) -> etree._Element:
+    child = etree.SubElement(parent, f"{{{GPX}}}{tag}")
+    child.text = text
+    return child
+
+
+def losses(drawing: Drawing) -> tuple[str, ...]:
+    """Return what GPX cannot hold, or what other programs read otherwise."""
+    others = set(HeightReference) - {HeightReference.NONE, HeightReference.SEA_LEVEL}
+    return lost(
+        drawing,
+        {
+            "heights above something else than mean sea level: not written": lambda each: (
+                each.reference in others
+            ),
+            "areas: written as closed tracks": lambda each: each.geometry is Geometry.AREA,
+            "circles: drawn as points": lambda each: each.radius is not None,
+            "times since the start: written as times on 1970-01-01": lambda each: (
+                each.since_start and each.times is not None
+            ),
+        },
+    )
