@@ -407,6 +407,8 @@ def _write_geometry(placemark: etree._Element, feature: MapFeature) -> None:
         return
     tag = {Geometry.POINT: "Point", Geometry.LINE: "LineString", Geometry.AREA: "Polygon"}[feature.geometry]
     shape = _added(placemark, tag)
+    if feature.role is Role.OBSTACLE and feature.heights:
+        _added(shape, "extrude", "1")
     if tag != "Point" and mode == "clampToGround":
         _added(shape, "tessellate", "1")
     _added(shape, "altitudeMode", mode)

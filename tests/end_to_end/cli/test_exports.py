@@ -120,3 +120,9 @@ def test_heights_above_the_origin_are_said_with_what_the_mission_lacks(mmrs, tmp
     assert (
         f"{project}: note: heights are above the origin; the mission does not give its geoidSeparation" in err
     )
+
+
+def test_an_obstacle_stands_on_the_ground_in_kml(mmrs, project, tmp_path):
+    file = tmp_path / "areas.kml"
+    assert mmrs("export", project, "-o", file, "--only", "areas")[0] == 0
+    assert [each.text for each in etree.parse(file).iterfind(".//{*}Polygon/{*}extrude")] == ["1"]
