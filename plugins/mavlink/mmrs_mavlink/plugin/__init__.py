@@ -11,6 +11,7 @@ from mmrs_core.hookspecs import hookimpl
 
 if TYPE_CHECKING:
     from mmrs_core.contributions.constraints import Constraint
+    from mmrs_core.contributions.drawings import DrawingReader
     from mmrs_core.contributions.targets import Target
     from mmrs_core.contributions.timing import VehicleTiming
     from mmrs_core.contributions.vehicles import VehicleFactory
@@ -26,6 +27,18 @@ def mmrs_targets() -> Iterable[Target]:
     from mmrs_mavlink.plugin.plans.wpl import WPL
 
     return (MAVLINK_PYTHON, QGC_PLAN, WPL)
+
+
+@hookimpl
+def mmrs_drawing_readers() -> Iterable[DrawingReader]:
+    """Contribute readers of missions of ground stations."""
+    from mmrs_core.contributions.drawings import DrawingReader
+    from mmrs_mavlink.plugin.plans import drawn_plans as plans
+
+    return (
+        DrawingReader("QGroundControl plan", (".plan",), plans.recognise_plan, plans.read_plan),
+        DrawingReader("waypoints", (".waypoints", ".wpl"), plans.recognise_list, plans.read_list),
+    )
 
 
 @hookimpl

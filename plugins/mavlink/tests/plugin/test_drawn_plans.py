@@ -1,0 +1,144 @@
+import json
+
+import pytest
+
+from mmrs_core.drawings.drawing import Geometry, HeightReference, Role
+from mmrs_core.errors import UnreadableError
+from mmrs_mavlink.plugin.plans.drawn_plans import read_list, read_plan, recognise_list, recognise_plan
+
+FIELD = [[47.0, 8.0], [47.0, 8.01], [47.01, 8.01]]
+
+
+def item(command: int, *params: float | None, frame: int = 3) -> dict:
+    return {
+        "type": "SimpleItem",
+        "command": command,
+        "frame": frame,
+        "params": [*params],
+        "autoContinue": True,
+    }
+
+
+def survey(kind: str, **shape: object) -> dict:
+    return {"type": "ComplexItem", "complexItemType": kind, "version": 5, "angle": 30, **shape}
+
+
+def plan(*items: dict, **more: object) -> bytes:
+    mission = {"version": 2, "plannedHomePosition": [47.0, 8.0, 400.0], "items": [*items]}
+    return json.dumps({"fileType": "Plan", "version": 1, "mission": mission, **more}, indent=1).encode()
+
+
+PLAN = plan(
+    item(22, 0, 0, 0, None, 47.0, 8.0, 20),
+    item(178, 1, 5, -1, 0, 0, 0, 0, frame=2),
+    item(16, 0, 0, 0, None, 47.001, 8.0, 30),
+    survey(
+        "survey", polygon=FIELD, TransectStyleComplexItem={"CameraCalc": {"SideOverlap": 60}, "version": 1}
+    ),
+    survey("CorridorScan", polyline=FIELD, CorridorWidth=50),
+    survey("StructureScan", polygon=FIELD, Layers=2),
+    survey("fwLandingPattern"),
+    geoFence={
+        "version": 2,
+        "polygons": [{"polygon": FIELD, "inclusion": False, "version": 1}],
+        "circles": [{"circle": {"center": [47.0, 8.0], "radius": 200.5}, "inclusion": True, "version": 1}],
+    },
+    rallyPoints={"version": 2, "points": [[47.0, 8.0, 50.0]]},
+)
+
+
+def test_a_plan_becomes_areas_paths_fences_and_points():
+    home, area, corridor, structure, path, fence, circle, rally = read_plan(PLAN, "a.plan").features
+    assert (home.role, home.rings[0].tolist(), home.heights[0].tolist()) == (
+        Role.HOME,
+        [[47.0, 8.0]],
+        [400.0],
+    )
+    assert (area.role, area.rings[0].tolist()) == (Role.SURVEY, FIELD)
+    assert (area.properties["angle"], area.properties["SideOverlap"]) == (30, 60)
+    assert (corridor.role, corridor.geometry, corridor.properties["CorridorWidth"]) == (
+        Role.CORRIDOR,
+        Geometry.LINE,
+        50,
+    )
+    assert structure.role is Role.STRUCTURE
+    assert (path.role, path.reference, path.heights[0].tolist()) == (
+        Role.PATH,
+        HeightReference.HOME,
+        [20, 30],
+    )
+    assert (fence.role, circle.role, circle.radius) == (Role.FORBIDDEN, Role.INCLUSION, 200.5)
+    assert (rally.role, rally.reference) == (Role.RALLY_POINT, HeightReference.HOME)
+
+
+def test_items_that_are_no_shape_are_left_out():
+    left_out = {each.what: each.reason for each in read_plan(PLAN, "a.plan").left_out}
+    assert left_out == {
+        "item 2": "command 178 goes to no place",
+        "item 7": "'fwLandingPattern' is no kind of item that is read",
+    }
+    assert all(each.place.line > 1 for each in read_plan(PLAN, "a.plan").left_out)
+
+
+@pytest.mark.parametrize(
+    ("data", "message"),
+    [
+        (b'{"fileType": "Fence"}', r"^a\.plan:1: no plan of QGroundControl"),
+        (b'{"fileType": "Plan", "version": 9}', r"^a\.plan:1: plans of version 9 are not read"),
+        (plan({"type": "SimpleItem"}), r"^a\.plan:\d+: item 1: a command and seven parameters are expected"),
+        (plan(survey("survey", polygon=7)), r"^a\.plan:\d+: 'polygon' is no array"),
+        (plan(survey("survey", polygon=[[None, 8]])), r"^a\.plan:\d+: .* 'None' of position 1 is no number"),
+        (plan(item(16, 0, 0, 0, 0, 100, 8, 5)), r"^a\.plan:\d+: waypoint 1: .* is not on the Earth"),
+        (
+            plan(geoFence={"circles": [{"circle": {"center": [47, 8], "radius": -1}}]}),
+            "its radius is no length",
+        ),
+    ],
+)
+def test_what_is_no_plan_is_refused_with_its_line(data, message):
+    with pytest.raises(UnreadableError, match=message):
+        read_plan(data, "a.plan")
+
+
+def listed(*rows: str) -> bytes:
+    return "\r\n".join(["QGC WPL 110", *(row.replace(" ", "\t") for row in rows)]).encode()
+
+
+HOME = "0 1 0 16 0 0 0 0 47.0 8.0 400 1"
+
+
+def test_a_list_of_waypoints_begins_with_home():
+    data = listed(
+        HOME, "1 0 3 22 0 0 0 0 0 0 20 1", "2 0 3 16 0 0 0 0 47.0 8.0 20 1", "3 0 3 16 0 0 0 0 47.1 8.0 30 1"
+    )
+    drawing = read_list(data, "a.waypoints")
+    home, path = drawing.features
+    assert (home.role, home.heights[0].tolist(), home.place.line) == (Role.HOME, [400], 2)
+    assert (path.role, path.rings[0].tolist()) == (Role.PATH, [[47.0, 8.0], [47.1, 8.0]])
+    assert [each.what for each in drawing.left_out] == ["item 1"]
+    assert recognise_list(data, "a.txt")
+    assert recognise_plan(PLAN, "a.json")
+
+
+def test_lists_of_fences_and_rally_points_are_shapes():
+    corners = [
+        f"{n} 0 0 5002 3 0 0 0 {latitude} {longitude} 0 1" for n, (latitude, longitude) in enumerate(FIELD)
+    ]
+    fence, rally = read_list(listed(*corners, "3 0 3 5100 0 0 0 0 47 8 50 1"), "a.waypoints").features
+    assert (fence.role, fence.rings[0].tolist()) == (Role.FORBIDDEN, FIELD)
+    assert (rally.role, rally.heights[0].tolist()) == (Role.RALLY_POINT, [50])
+
+
+@pytest.mark.parametrize(
+    ("data", "message"),
+    [
+        (b"QGC WPL 120\n", r"^a\.waypoints:1: the first line is not 'QGC WPL 110'"),
+        (listed("0 1 0 16"), r"^a\.waypoints:2: 4 values instead of 12"),
+        (listed("0 1 0 x 0 0 0 0 47 8 400 1"), r"^a\.waypoints:2: not a row of numbers"),
+        (listed(HOME, "1 0 3 16 0 0 0 0 8.0 47.0 20 1"), r"^a\.waypoints:3: .* seem to be swapped"),
+        (listed("0 0 0 5002 3 0 0 0 47 8 0 1"), r"^a\.waypoints:2: .* 3 corners of it are expected"),
+    ],
+)
+def test_what_is_no_list_is_refused_with_its_line(data, message):
+    with pytest.raises(UnreadableError, match=message):
+        read_list(data, "a.waypoints")
