@@ -73,7 +73,7 @@ def shape(feature: MapFeature, geometry: Geometry, tolerance: float | None) -> D
         indices = _distinct(ring, closed=geometry is Geometry.AREA)
         if len(indices) < len(ring):
             notes.append(f"{len(ring) - len(indices)} repeated positions removed")
-        if tolerance is not None and geometry is not Geometry.POINT:
+        if tolerance is not None and len(indices) > _LEAST[geometry]:
             before = len(indices)
             indices = indices[_simplified(ring[indices], geometry, tolerance)]
             if len(indices) < before:

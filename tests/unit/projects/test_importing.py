@@ -307,6 +307,12 @@ def test_areas_of_too_many_positions_are_left_until_they_are_simplified():
     assert found.notes[0].startswith("simplified from 20000 to ")
 
 
+def test_a_hole_of_one_position_is_removed_before_anything_is_simplified():
+    field, point = square("field"), np.array([at(70, 70)] * 3)
+    found = outcome(replace(field, rings=(*field.rings, point)), replace(OPTIONS, simplify=0.0))
+    assert found.notes == ("2 repeated positions removed", "a hole without extent removed")
+
+
 def test_faults_of_what_was_drawn_are_at_its_place():
     bow = drawn("bow", (60, 60), (90, 90), (90, 60), (60, 90), line=12)
     fault = made(bow).diagnostics[0]
