@@ -1,0 +1,100 @@
+"""Drawings of a farm become projects that are valid and planned."""
+
+import json
+import shutil
+from pathlib import Path
+
+import pytest
+
+from mmrs_core.cli import run
+
+DRAWINGS = Path(__file__).parents[2] / "fixtures" / "drawings"
+KITE = ("--robot", "Kite=Freefly Astro LR1")
+FARM = {
+    "farm.kml": (
+        (),
+        {
+            "North field": "PhotoGridTask",
+            "South field": "PhotoGridTask",
+            "Neighbour's stable": "forbidden area",
+            "Home": "home",
+            "Water trough": "ObserveTask",
+            "Obstacle: silo": "obstacle",
+            "Rally meadow": "emergency area",
+            "East fence": "RoadTask",
+        },
+    ),
+    "farm.geojson": (
+        ("--as", "power line=obstacle:radius=6"),
+        {
+            "orchard": "PhotoGridTask",
+            "obstacle mast": "obstacle",
+            "power line": "obstacle",
+            "home": "home",
+            "deep well": "ObserveTask",
+        },
+    ),
+}
+
+
+@pytest.fixture
+def drawing(request, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    shutil.copy(DRAWINGS / request.param, tmp_path)
+    return request.param
+
+
+def told(capsys):
+    return json.loads(capsys.readouterr().out)
+
+
+@pytest.mark.parametrize("drawing", FARM, indirect=True)
+def test_a_drawing_becomes_a_project_that_is_valid_and_planned(drawing, capsys):
+    options, expected = FARM[drawing]
+    assert run(["import", drawing, "-o", "farm", *KITE, *options, "--json"]) == 0
+    result = told(capsys)
+    assert {each["name"]: each["became"] for each in result["features"] if each["became"]} == expected
+    assert all(each["became"] or each["left_because"] for each in result["features"])
+    assert sorted(result["files"]) == [
+        "farm/context.xmi",
+        "farm/mission.xmi",
+        "farm/robots/freefly-astro-lr1.xmi",
+    ]
+    assert run(["validate", "farm"]) == 0
+    assert run(["plan", "farm"]) == 0
+    assert Path("farm/behaviour.xmi").is_file()
+
+
+@pytest.mark.parametrize("drawing", ["farm.kml"], indirect=True)
+def test_a_drawing_that_is_imported_again_adds_what_is_new(drawing, capsys):
+    assert run(["import", drawing, "-o", "farm", *KITE]) == 0
+    before = {file: file.read_bytes() for file in Path("farm").rglob("*.xmi")}
+    capsys.readouterr()
+    assert run(["import", drawing, "--into", "farm"]) == 0
+    out = capsys.readouterr().out
+    assert out.count("the same is there already") == 7
+    assert out.endswith("nothing written\n")
+    text = (
+        Path(drawing)
+        .read_text()
+        .replace(
+            "</Document>",
+            "<Placemark><name>Gate</name><Point><coordinates>11.34,44.4935</coordinates></Point></Placemark></Document>",
+        )
+    )
+    Path(drawing).write_text(text)
+    assert run(["import", drawing, "--into", "farm"]) == 0
+    changed = [file.name for file, data in before.items() if file.read_bytes() != data]
+    assert changed == ["mission.xmi"]
+    assert run(["validate", "farm"]) == 0
+
+
+@pytest.mark.parametrize("drawing", ["farm.kml"], indirect=True)
+def test_without_robots_the_report_comes_with_what_is_missing(drawing, capsys):
+    assert run(["import", drawing, "--dry-run"]) == 0
+    assert run(["import", drawing, "-o", "farm"]) == 2
+    printed = capsys.readouterr()
+    assert printed.out.count("Water trough") == 2
+    assert "no robots: a mission needs a team; --robot NAME=TYPE@HOME adds one" in printed.err
+    assert "points for homes: Home, Water trough, Rally meadow" in printed.err
+    assert not Path("farm").exists()
