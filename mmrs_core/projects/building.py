@@ -245,9 +245,7 @@ class Builder:
         try:
             radius = float(texts[-1]) if texts[-1] else RALLY_RADIUS
         except ValueError:
-            radius = 0.0
-        if not 0.0 < radius < 1e5:
-            raise UnfitError(f"radius {texts[-1]}: not a number of metres above 0")
+            raise UnfitError(f"radius {texts[-1][:20]}: not a number of metres") from None
         ring = around(feature, radius, covering=not emergency)
         top = feature.heights[0].max().repeat(len(ring)) if feature.heights else None
         return DrawnShape(Geometry.AREA, (ring,), top, feature.reference, (f"{radius:g} m around it",))

@@ -21,6 +21,7 @@ DECIMALS = 8
 """Decimals of degrees in models: a millimetre."""
 _QUARTER = 4
 """Segments of a quarter of a circle."""
+_LARGEST_RADIUS = 100_000.0
 _LEAST = {Geometry.POINT: 1, Geometry.LINE: 2, Geometry.AREA: 3}
 
 
@@ -99,7 +100,12 @@ def around(feature: MapFeature, radius: float, *, covering: bool) -> Floats:
 
     Args:
         covering: whether the border lies outside of the circle, or inside.
+
+    Raises:
+        UnfitError: if the radius is out of range.
     """
+    if not 0.0 < radius < _LARGEST_RADIUS:
+        raise UnfitError(f"radius {radius:g} m: expected one above 0 and below {_LARGEST_RADIUS:g} m")
     frame = LocalFrame(WGS84, *map(float, feature.rings[0][0]))
     local = frame.to_local(*feature.rings[0].T)
     centre = shapely.Point(local[0]) if len(local) == 1 else shapely.LineString(local)

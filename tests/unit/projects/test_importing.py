@@ -102,6 +102,8 @@ def test_features_become_what_their_role_words_and_shape_say(feature, became, by
     [
         (square("fence", role=Role.INCLUSION), "kept out of areas, not inside them"),
         (drawn("flown", (0, 0), (9, 9), role=Role.TRACK), "--as 'flown'=task makes a task of it"),
+        (drawn("x", (5, 5), radius=1e6), "radius 1e+06 m: expected one above 0 and below 100000 m"),
+        (drawn("x", (5, 5), radius=np.inf), "radius inf m: expected"),
         (square("x", role=Role.STRUCTURE), "no usual task goes round a structure; --as 'x'=task makes"),
         (square("x", role=Role.ELEMENT), "a context element of no type that is installed"),
         (drawn("home", (20, 0)), "no robot begins there; --robot NAME=TYPE adds one that does"),
