@@ -8,7 +8,7 @@ import zipfile
 import zlib
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
-from itertools import takewhile
+from itertools import chain, takewhile
 
 import numpy as np
 from lxml import etree
@@ -105,39 +105,39 @@ def recognise(data: bytes, file: str) -> bool:
 
 
 def read(data: bytes, file: str) -> Drawing:
-    """Return the placemarks of a KML file, or of the main one in a KMZ archive.
+    """Return the placemarks of a KML file, or of all KML files in a KMZ archive, ``doc.kml`` first.
 
     Raises:
         UnreadableError: with the line of the first fault.
     """
-    if data[:4] == b"PK\3\4":
-        archive = Sheet(data, file, AXES)
-        data, name = _main_entry(data, archive)
-        drawing = _KmlReader(data, f"{file}/{name}").read()
-        return Drawing(drawing.features, (*archive.left_out, *drawing.left_out), drawing.title)
-    return _KmlReader(data, file).read()
+    if data[:4] != b"PK\3\4":
+        return _KmlReader(data, file).read()
+    archive = Sheet(data, file, AXES)
+    drawn = [_KmlReader(content, f"{file}/{name}").read() for name, content in _entries(data, archive)]
+    features = tuple(chain.from_iterable(each.features for each in drawn))
+    return Drawing(
+        features, (*archive.left_out, *(out for each in drawn for out in each.left_out)), drawn[0].title
+    )
 
 
-def _main_entry(data: bytes, sheet: Sheet) -> tuple[bytes, str]:
-    """Return the main KML file of an archive, and its name; nothing is unpacked to the disk."""
+def _entries(data: bytes, sheet: Sheet) -> list[tuple[str, bytes]]:
+    """Return names and contents of the KML files of an archive; nothing is unpacked to the disk."""
     if data.count(b"PK\1\2") > MOST_ENTRIES:
         sheet.refuse(f"more than {MOST_ENTRIES} files in the archive")
+    contents, left = [], LARGEST_FILE
     try:
         with zipfile.ZipFile(io.BytesIO(data)) as archive:
             entries = [entry for entry in archive.infolist() if not entry.is_dir()]
             drawn = [entry for entry in entries if entry.filename.lower().endswith(".kml")]
-            if not drawn:
-                sheet.refuse("an archive without a .kml file")
-            main = next((entry for entry in drawn if entry.filename == "doc.kml"), drawn[0])
-            for entry in drawn:
-                if entry is not main:
-                    sheet.leave_out(f"file '{entry.filename}'", f"only '{main.filename}' is the drawing")
-            if len(entries) > len(drawn):
-                sheet.leave_out(f"other files in the archive: {len(entries) - len(drawn)}", "not KML")
-            if main.flag_bits & 1:
-                sheet.refuse(f"'{main.filename}' in the archive is encrypted")
-            with archive.open(main) as stream:
-                content = stream.read(LARGEST_FILE + 1)
+            for entry in sorted(drawn, key=lambda each: each.filename != "doc.kml"):
+                if entry.flag_bits & 1:
+                    sheet.refuse(f"'{printable(entry.filename)}' in the archive is encrypted")
+                with archive.open(entry) as stream:
+                    content = stream.read(left + 1)
+                left -= len(content)
+                if left < 0:
+                    sheet.refuse(f"more than {LARGEST_FILE // (1024 * 1024)} MB of KML in the archive")
+                contents.append((printable(entry.filename), content))
     except (
         zipfile.BadZipFile,
         zlib.error,
@@ -148,9 +148,11 @@ def _main_entry(data: bytes, sheet: Sheet) -> tuple[bytes, str]:
         RuntimeError,
     ) as fault:
         sheet.refuse(f"not readable as an archive: {fault}")
-    if len(content) > LARGEST_FILE:
-        sheet.refuse(f"'{main.filename}' in the archive is larger than {LARGEST_FILE // (1024 * 1024)} MB")
-    return content, main.filename
+    if not drawn:
+        sheet.refuse("an archive without a .kml file")
+    if len(entries) > len(drawn):
+        sheet.leave_out(f"other files in the archive: {len(entries) - len(drawn)}", "not KML")
+    return contents
 
 
 def _gather(node: XmlNode, parent: XmlNode) -> None:
