@@ -39,6 +39,9 @@ class MapSymbol:
         alternatives: sets of features of which one replaces the others; when one is given, the
             `initial` values of the others are not used.
         height: feature with the height of a task above the origin, in metres; empty: it has none.
+        variants: further values with which `mmrs new` begins a task that its robots cannot do with `initial`
+            alone; an empty text takes one of those away.
+        device, action: features with a device and its action, of those that the robot has; empty: none.
 
     Raises:
         ValueError: if the colour is none, or the icon is too long.
@@ -54,6 +57,9 @@ class MapSymbol:
     initial: Mapping[str, Property] = field(default_factory=dict, hash=False)
     alternatives: tuple[frozenset[str], ...] = ()
     height: str = ""
+    variants: tuple[Mapping[str, Property], ...] = field(default=(), hash=False)
+    device: str = ""
+    action: str = ""
 
     def __post_init__(self) -> None:
         """Refuse what no map can show."""

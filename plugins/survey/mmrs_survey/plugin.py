@@ -65,6 +65,9 @@ def mmrs_map_symbols() -> tuple[MapSymbol, ...]:
             initial={"groundResolution": 0.02, "frontOverlap": 0.7, "sideOverlap": 0.6},
             alternatives=(frozenset({"groundResolution", "gridResolution", "footprintWidth"}),),
             height="altitude",
+            variants=({"gridResolution": 20.0, "frontOverlap": "", "sideOverlap": ""},),
+            device="deviceId",
+            action="actionName",
         ),
         MapSymbol(names.GO_TO_TASK, "go to", "#5b3fa0", "➤", ("type",)),
         MapSymbol(
@@ -75,6 +78,8 @@ def mmrs_map_symbols() -> tuple[MapSymbol, ...]:
             ("altitude", "width", "inverted"),
             usual_for="line",
             height="altitude",
+            device="deviceId",
+            action="actionName",
         ),
         MapSymbol(
             names.OBSERVE_TASK,
@@ -93,7 +98,16 @@ def mmrs_map_symbols() -> tuple[MapSymbol, ...]:
             "✚",
             ("actionName", "spacing", "altitude"),
             height="altitude",
+            device="deviceId",
+            action="actionName",
         ),
-        MapSymbol(names.APPROACH_TASK, "approach", "#37474f", "⊕", ("object", "distance", "tolerance")),
+        MapSymbol(
+            names.APPROACH_TASK,
+            "approach",
+            "#37474f",
+            "⊕",
+            ("object", "distance", "tolerance"),
+            variants=({"object": "object", "distance": 3.0, "tolerance": 2.0},),
+        ),
         MapSymbol(names.LANDMARK, "landmark", "#0e7490", "⚑", ("description",)),
     )
