@@ -24,11 +24,12 @@ def in_text(value: str) -> str:
 
 
 def in_comment(value: str) -> str:
-    """Return a text as it can stand in a comment, whose end it cannot be.
+    """Return a text as it can stand in a comment, whose end it cannot be; its lines stay.
 
     >>> in_comment("a --> <b>-")
     'a - -> <b>- '
     """
-    words = NO_XML.sub("\N{REPLACEMENT CHARACTER}", " ".join(value.split()))
+    words = "\n".join(" ".join(line.split()) for line in value.strip().splitlines())
+    words = NO_XML.sub("\N{REPLACEMENT CHARACTER}", words)
     apart = re.sub("-(?=-)", "- ", words)
     return f"{apart} " if apart.endswith("-") else apart

@@ -105,7 +105,8 @@ class XmiWriter:
 
     def _comment(self, element: Element, indent: str) -> str:
         words = self._comments.get(element)
-        return f"{indent}<!-- {in_comment(words)} -->\n" if words else ""
+        lines = in_comment(words).replace("\n", f"\n{indent}     ") if words else ""
+        return f"{indent}<!-- {lines} -->\n" if lines else ""
 
     def _head(self, schema_location: Mapping[str, str]) -> _Attributes:
         head = [("xmi:version", "2.0"), ("xmlns:xmi", XMI)]
