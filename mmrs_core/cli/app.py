@@ -23,6 +23,7 @@ _EPILOG = (
 )
 _COMMANDS = (
     Command("demo", "Run an example end to end.", "mmrs_core.cli.demo:demo"),
+    Command("new", "Make a new mission that can be planned at once.", "mmrs_core.cli.new:new"),
     Command(
         "import",
         "Import drawings of map programs into a project.",

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 CORE_COMMANDS = frozenset(
     {
         "demo",
+        "new",
         "validate",
         "plan",
         "check",

@@ -330,7 +330,9 @@ class Builder:
 
 
 def comment_of(feature: MapFeature) -> str:
-    """Return where a feature stands, and what it is called there, for a comment."""
+    """Return where a feature stands, and its name, for a comment; its description if it stands in no file."""
+    if not feature.place.file:
+        return feature.description
     place = f"{Path(feature.place.file).name}, line {feature.place.line}" if feature.place.line else ""
     path = " / ".join((*feature.folders, feature.name)).strip(" /")
     return ": ".join(each for each in (place or Path(feature.place.file).name, path[:200]) if each)

@@ -49,6 +49,7 @@ class ImportOptions:
         simplify: metres by which simplified borders may be off; None: none is simplified.
         title: name of a new mission.
         note: comment at the top of a new mission.
+        complete: sets what else a new mission and its context begin with; returns comments on elements.
     """
 
     choices: tuple[Assignment, ...] = ()
@@ -58,6 +59,7 @@ class ImportOptions:
     simplify: float | None = None
     title: str = ""
     note: str = ""
+    complete: Callable[[Element, Element, Registry], Mapping[Element, str]] | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -158,6 +160,8 @@ def imported(
     languages = contributions.languages
     around = _surroundings(project, levels, homes, options, contributions)
     builder = Builder(project.mission, project.context, languages, names, around)
+    if not into and options.complete is not None:
+        builder.comments |= options.complete(project.mission, project.context, languages)
     added_types = _add_robots(project, homes, options, builder, names, languages.create)
     outcomes = _built(builder, features, decisions, homes)
     rest = tuple(Outcome(each.what, each.place, "", reason=each.reason) for each in left_out)

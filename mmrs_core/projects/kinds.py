@@ -104,6 +104,11 @@ class ImportKinds:
         found = self._types.get(name, [])
         return found[0] if len(found) == 1 else None
 
+    def tasks(self) -> tuple[Kind, ...]:
+        """Return the types of tasks, by name."""
+        found = (kind for name in self._short_names() for kind in self._types[name])
+        return tuple(kind for kind in found if kind.feature == "tasks")
+
     def usual(self, geometry: Geometry) -> Kind | str:
         """Return what features of a geometry usually become, or why that is not known."""
         found = {

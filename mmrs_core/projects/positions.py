@@ -78,7 +78,7 @@ def position_of(text: str, source: str = "position") -> tuple[float, float]:
     if pair is None or (
         ("," in pair["degrees1"]) is not ("," in pair["degrees2"]) and {".", ","} <= {*wanted}
     ):
-        raise UsageError(f"{source}: {_short(text)!r} is no position; expected one {FORMS}")
+        raise UsageError(f"{source}: {_short(text)!r} is not a position; expected one {FORMS}")
     one, other = (_angle(pair, number, source) for number in "12")
     axes = [_AXES.get((pair[f"axis{number}"] or "").upper()) for number in "12"]
     if axes[0] is not None and axes[0] == axes[1]:

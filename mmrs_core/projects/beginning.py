@@ -1,0 +1,378 @@
+"""New missions: robots at a place, and beside their homes tasks of a sensible size, to be moved."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from mmrs_core.contributions.rules import robot_kind_of
+from mmrs_core.diagnostics import has_errors
+from mmrs_core.drawings.drawing import Geometry, HeightReference, MapFeature
+from mmrs_core.errors import InfeasibleError, InvalidModelError, UsageError
+from mmrs_core.geometry.frames import LocalFrame
+from mmrs_core.grounding.robots import robot_type_of
+from mmrs_core.languages.naming import nearest
+from mmrs_core.pipeline import (
+    expand,
+    ground,
+    place_of_scene,
+    plan,
+    program_of,
+    read_models,
+    refusals,
+    transform,
+    verify,
+)
+from mmrs_core.projects.choosing import Assignment
+from mmrs_core.projects.importing import ImportOptions, ImportResult, imported
+from mmrs_core.projects.kinds import ImportKinds, Kind
+from mmrs_core.projects.notes import completed
+from mmrs_core.projects.shapes import WGS84
+from mmrs_core.projects.team import RobotWanted, TypeFile, types_for
+
+if TYPE_CHECKING:
+    from mmrs_core.contributions.registry import Contributions
+    from mmrs_core.contributions.rules import Medium
+    from mmrs_core.languages.element import Element
+    from mmrs_core.scene import Scene
+
+HOMES_APART = 10.0
+"""Least metres from home to home: more than they have to keep between them."""
+_NOWHERE = Path("new")
+_FARTHEST_NORTH = 85.0
+_NAMES = ("Alpha", "Bravo", "Charlie", "Delta", "Echo", "Foxtrot", "Golf", "Hotel", "India", "Juliett")
+_WIDTH: Mapping[Medium, float] = {"air": 60.0, "ground": 20.0, "water": 28.0}
+_DEPTH: Mapping[Medium, float] = {"air": 40.0, "ground": 12.0, "water": 12.0}
+_GAP: Mapping[Medium, float] = {"air": 20.0, "ground": 6.0, "water": 6.0}
+"""Metres of a task along and across its row, and between it, the homes and other tasks."""
+_IN_A_ROW: Mapping[Medium, int] = {"air": 3, "ground": 4, "water": 4}
+_HEIGHTS: Mapping[Medium, tuple[float, ...]] = {"air": (30.0,), "ground": (0.0,), "water": (-3.0, 0.0)}
+"""Heights above the homes at which a task is tried, metres."""
+_SHAPES = (Geometry.AREA, Geometry.LINE, Geometry.POINT)
+
+
+@dataclass(frozen=True, slots=True)
+class TaskWanted:
+    """A task that the user asks for.
+
+    Attributes:
+        type: name of a task type.
+        attributes: as the user gave them.
+        source: where it was asked for, for messages.
+    """
+
+    type: str
+    attributes: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    source: str = "--task"
+
+
+@dataclass(frozen=True, slots=True)
+class _Attempt:
+    """An attempt at a task: its shape, height and attributes; the lower its rank, the more usual."""
+
+    rank: int
+    type: str
+    kind: Kind
+    medium: Medium
+    shape: Geometry
+    height: float
+    attributes: Mapping[str, tuple[str, ...]]
+
+
+def names_for(count: int, taken: Iterable[str]) -> tuple[str, ...]:
+    """Return names of robots that are not taken."""
+    used = {name.casefold() for name in taken}
+    free = (name for name in _endless() if name.casefold() not in used)
+    return tuple(next(free) for _ in range(count))
+
+
+def _endless() -> Iterator[str]:
+    yield from _NAMES
+    number = 2
+    while True:
+        yield from (f"{name} {number}" for name in _NAMES)
+        number += 1
+
+
+class Beginning:
+    """Tries which robot types can do which tasks, and makes projects of them.
+
+    Args:
+        place: latitude and longitude of the first home, degrees.
+    """
+
+    def __init__(self, place: tuple[float, float], contributions: Contributions) -> None:
+        if abs(place[0]) > _FARTHEST_NORTH:
+            raise UsageError(f"latitude {place[0]:g}: new missions go to {_FARTHEST_NORTH:g} degrees")
+        self._place = place
+        self._contributions = contributions
+        self._kinds = ImportKinds(contributions)
+        self._tried: dict[object, _Attempt | str] = {}
+        self._unsafe: dict[int, str | None] = {}
+
+    def kind_of(self, task: TaskWanted) -> Kind:
+        """Return the kind of a task.
+
+        Raises:
+            UsageError: if no such task type is installed, or it cannot be drawn.
+        """
+        known = self.task_types()
+        if task.type in known or "." in task.type:
+            kind = self._kinds.named(task.type)
+            if kind.feature == "tasks":
+                return kind
+        if any(task.type == name for _, name in self._contributions.rules):
+            words = "refers to elements of the context, which have to be drawn first: write it in the model"
+            raise UsageError(f"{task.source}: {task.type} {words}")
+        words = nearest(task.type, known) or f"there are {', '.join(known)}"
+        raise UsageError(f"{task.source}: no task type {task.type!r}; {words}")
+
+    def task_types(self) -> tuple[str, ...]:
+        """Return the names of the task types that a new mission can have."""
+        return tuple(kind.name for kind in self._kinds.tasks())
+
+    def label_of(self, task_type: str) -> str:
+        """Return what people call tasks of a type."""
+        symbol = self.kind_of(TaskWanted(task_type)).symbol
+        return symbol.label if symbol is not None else task_type
+
+    def is_usual(self, task_type: str) -> bool:
+        """Return whether areas usually become such tasks."""
+        return self.kind_of(TaskWanted(task_type)).is_usual_for == Geometry.AREA
+
+    def require(self, task: TaskWanted, types: Iterable[str]) -> None:
+        """Raise UsageError if robots of none of the types can do a task; it names those that can."""
+        self._best(task, types)
+
+    def doers(self, task: TaskWanted, types: Iterable[str]) -> tuple[tuple[str, ...], dict[str, str]]:
+        """Return which robot types can do a task, and why the others cannot."""
+        found = {name: self._attempt(task, name) for name in types}
+        able = tuple(name for name, each in found.items() if isinstance(each, _Attempt))
+        return able, {name: each for name, each in found.items() if isinstance(each, str)}
+
+    def project(
+        self, folder: Path, title: str, robots: Sequence[RobotWanted], tasks: Sequence[TaskWanted]
+    ) -> ImportResult:
+        """Return a project with robots and tasks, each of which one of the robots can do.
+
+        Raises:
+            UsageError: if a type is unknown, or no robot can do a task; with the types that can.
+            InvalidModelError: if names or attributes make the project invalid.
+        """
+        types = types_for(robots, (), self._contributions)
+        attempts: list[_Attempt] = []
+        used = {each.type: 0 for each in robots}
+        for task in tasks:
+            attempts.append(self._best(task, sorted(used, key=used.__getitem__)))
+            used[attempts[-1].type] += 1
+        made = self._made(folder, title, robots, types, attempts)
+        if not has_errors(made.diagnostics):
+            _expanded(made, self._contributions)
+        return made
+
+    def _best(self, task: TaskWanted, types: Iterable[str]) -> _Attempt:
+        """Return the most usual attempt of one of the types at a task that a safe plan does."""
+        found = {name: self._attempt(task, name) for name in types}
+        possible = [each for each in found.values() if isinstance(each, _Attempt)]
+        for each in sorted(possible, key=lambda one: one.rank):
+            if id(each) not in self._unsafe:
+                self._unsafe[id(each)] = self._reason_against(each)
+            if (reason := self._unsafe[id(each)]) is None:
+                return each
+            found[each.type] = reason
+        others = [name for name in self._contributions.robot_types if name not in found]
+        able, _ = self.doers(task, others)
+        words = f"{', '.join(able)} can" if able else "no installed type can"
+        reasons = tuple(f"{name}: {reason}" for name, reason in found.items())
+        kind = self.kind_of(task)
+        raise UsageError(f"{task.source}: no robot of the team can do {kind.name}; {words}", reasons)
+
+    def _reason_against(self, attempt: _Attempt) -> str | None:
+        """Return why no plan of a task for one robot is safe; None if one is."""
+        robot = RobotWanted("trial", attempt.type)
+        types = types_for([robot], (), self._contributions)
+        scene = _expanded(self._made(_NOWHERE, "trial", [robot], types, [attempt]), self._contributions)
+        try:
+            behaviour, _ = transform(scene, plan(scene), self._contributions)
+        except InfeasibleError as error:
+            return _reason(error)
+        program = program_of(behaviour, self._contributions)
+        verdicts = verify(program, place_of_scene(scene), self._contributions)
+        refused = refusals(verdicts, program)
+        return "; ".join(f"{each.property}: {each.status.value}, {each.message}" for each in refused) or None
+
+    def _attempt(self, task: TaskWanted, type_name: str) -> _Attempt | str:
+        """Return how robots of a type can do a task, or why they cannot."""
+        key = (task.type, type_name, tuple(sorted(task.attributes.items())))
+        if key not in self._tried:
+            self._tried[key] = self._first_possible(task, type_name)
+        return self._tried[key]
+
+    def _first_possible(self, task: TaskWanted, type_name: str) -> _Attempt | str:
+        kind = self.kind_of(task)
+        robot = RobotWanted("trial", type_name)
+        types = types_for([robot], (), self._contributions)
+        reason = ""
+        for attempt in self._attempts(task, kind, types[type_name].element):
+            try:
+                made = self._made(_NOWHERE, "trial", [robot], types, [attempt])
+                _expanded(made, self._contributions)
+            except (InfeasibleError, InvalidModelError, UsageError) as error:
+                reason = reason or _reason(error)
+            else:
+                return attempt
+        return reason or f"{kind.name} cannot be drawn"
+
+    def _attempts(self, task: TaskWanted, kind: Kind, robot_type: Element) -> Iterator[_Attempt]:
+        """Yield attempts at a task: as its plug-in has it, then with devices and actions of the robot."""
+        described = robot_type_of(robot_type)
+        medium = self._medium(robot_type)
+        symbol = kind.symbol
+        variants: list[Mapping[str, tuple[str, ...]]] = [{}]
+        if symbol is not None:
+            pairs = [
+                (device.id, action) for device in described.devices.values() for action in device.actions
+            ]
+            asked = [
+                {name: value for name, value in ((symbol.device, device), (symbol.action, action)) if name}
+                for device, action in pairs
+            ]
+            begins: list[Mapping[str, object]] = [{}, *symbol.variants]
+            variants = [
+                {name: (str(value),) for name, value in {**begin, **wanted}.items()}
+                for begin in begins
+                for wanted in ([{}, *asked] if symbol.device or symbol.action else [{}])
+            ]
+        shapes = [each for each in _SHAPES if each in kind.shapes]
+        if symbol is not None and symbol.usual_for:
+            shapes.sort(key=lambda each: each != symbol.usual_for)
+        for rank, variant in enumerate(variants):
+            for shape in shapes:
+                for height in _HEIGHTS[medium]:
+                    yield _Attempt(
+                        rank, described.name, kind, medium, shape, height, {**variant, **task.attributes}
+                    )
+
+    def _medium(self, robot_type: Element) -> Medium:
+        kind = robot_kind_of(robot_type_of(robot_type), self._contributions.robot_kinds)
+        return kind.medium if kind is not None else "ground"
+
+    def _made(
+        self,
+        folder: Path,
+        title: str,
+        robots: Sequence[RobotWanted],
+        types: Mapping[str, TypeFile],
+        attempts: Sequence[_Attempt],
+    ) -> ImportResult:
+        features = tuple(self._features(attempts))
+        assignments = tuple(
+            Assignment(f"{feature.folders[0]}/*", each.kind.name, each.attributes, f"--task {each.kind.name}")
+            for feature, each in zip(features, attempts, strict=True)
+        )
+        homes = self._homes(robots)
+        in_water = any(self._medium(types[each.type].element) == "water" for each in robots)
+        options = ImportOptions(
+            choices=assignments,
+            robots=homes,
+            types=types,
+            altitude=0.0,
+            title=title,
+            complete=completed(title, homes, in_water=in_water),
+        )
+        made = imported(features, (), options, self._contributions, folder)
+        left = next((each for each in made.outcomes if not each.became), None)
+        if left is not None:
+            raise InvalidModelError(f"{left.by}: {left.reason}")
+        return made
+
+    def _homes(self, robots: Sequence[RobotWanted]) -> tuple[RobotWanted, ...]:
+        """Return the robots with their homes in a row to the east."""
+        positions = self._geographic([(number * HOMES_APART, 0.0) for number in range(len(robots))])
+        return tuple(
+            replace(each, position=(float(latitude), float(longitude)))
+            for each, (latitude, longitude) in zip(robots, positions, strict=True)
+        )
+
+    def _features(self, attempts: Sequence[_Attempt]) -> Iterator[MapFeature]:
+        """Yield the features of tasks: in the air north of the homes, in water south, on the ground west."""
+        count: dict[Medium, int] = {}
+        for number, each in enumerate(attempts):
+            columns = _IN_A_ROW[each.medium]
+            row, column = divmod(count.get(each.medium, 0), columns)
+            count[each.medium] = count.get(each.medium, 0) + 1
+            width, depth, gap = (by[each.medium] for by in (_WIDTH, _DEPTH, _GAP))
+            from_middle = sorted(
+                (number - columns / 2 for number in range(columns)), key=lambda at: abs(at + 0.5)
+            )
+            left = from_middle[column] * (width + gap) + gap / 2
+            near = gap + row * (depth + gap)
+            right, far, middle = left + width, near + depth, left + width / 2
+            corners = {
+                Geometry.AREA: [(left, near), (right, near), (right, far), (left, far)],
+                Geometry.LINE: [(left, near), (middle, near + depth / 3), (right, near)],
+                Geometry.POINT: [(middle, near + depth / 2)],
+            }[each.shape]
+            turned = {
+                "air": lambda x, y: (x, y),
+                "water": lambda x, y: (x, -y),
+                "ground": lambda x, y: (-y, x),
+            }
+            local = [turned[each.medium](x, y) for x, y in corners]
+            ring = self._geographic(local)
+            at = bool(each.height) and each.shape is not Geometry.AREA
+            label = each.kind.symbol.label if each.kind.symbol is not None else each.kind.name
+            yield MapFeature(
+                each.shape,
+                (ring,),
+                (np.full(len(ring), each.height),) if at else (),
+                HeightReference.HOME if at else HeightReference.NONE,
+                name=label,
+                description="laid beside the homes: move it to where it belongs",
+                folders=(f"task {number}",),
+                properties=_height_of(each),
+            )
+
+    def _geographic(
+        self, local: Sequence[tuple[float, float]]
+    ) -> np.ndarray[tuple[int, int], np.dtype[np.float64]]:
+        return LocalFrame(WGS84, *self._place).to_geographic(np.array(local, float))
+
+
+def _height_of(attempt: _Attempt) -> dict[str, float]:
+    """Return the height as the attribute that a task has for it."""
+    symbol = attempt.kind.symbol
+    name = symbol.height if symbol is not None else ""
+    return {name: attempt.height} if name and name not in attempt.attributes else {}
+
+
+def _expanded(made: ImportResult, contributions: Contributions) -> Scene:
+    """Return the expanded scene of a project that is not written yet.
+
+    Raises:
+        InvalidModelError: if it is invalid.
+        InfeasibleError: if a task can be done by no robot.
+    """
+    faults = made.diagnostics
+    if has_errors(faults):
+        raise InvalidModelError("not valid", faults)
+    by_name = {file.name: file for file in made.files}
+    robots = tuple(file for file in made.files if file.parent.name == "robots")
+    unsaved = {file.resolve(): data for file, data in made.files.items()}
+    models, _ = read_models(
+        by_name["mission.xmi"], contributions, context=by_name["context.xmi"], robots=robots, unsaved=unsaved
+    )
+    assert models is not None  # it is valid
+    return expand(ground(models), contributions)
+
+
+def _reason(error: InfeasibleError | InvalidModelError | UsageError) -> str:
+    if isinstance(error, InfeasibleError):
+        return "; ".join(error.reasons)
+    if isinstance(error, InvalidModelError):
+        return next((each.message for each in error.diagnostics), str(error))
+    return str(error)

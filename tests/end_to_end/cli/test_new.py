@@ -1,0 +1,196 @@
+"""`mmrs new` makes missions that validate and can be planned, by options and in a dialogue."""
+
+import os
+import pty
+import sys
+from itertools import combinations
+
+import pytest
+
+from mmrs_core.plugins import load_plugins
+from mmrs_core.projects.beginning import Beginning, TaskWanted
+
+PLACE = ("--at", "43.77,11.25")
+CONTRIBUTIONS = load_plugins().contributions
+TYPES = tuple(CONTRIBUTIONS.robot_types)
+TASKS = Beginning((0.0, 0.0), CONTRIBUTIONS).task_types()
+SAMPLE = [
+    ("PhotoGridTask", "Freefly Astro LR1"),
+    ("MeasureTask", "Amovlab P600 gas"),
+    ("ObserveTask", "Clearpath Husky A300"),
+    ("InspectObjectTask", "BlueROV2"),
+]
+
+
+def plans(mmrs, folder, robots, tasks):
+    """Make a mission and plan it; return what is wrong, if anything is."""
+    options = [word for number, each in enumerate(robots) for word in ("--robot", f"R{number}={each}")]
+    options += [word for each in tasks for word in ("--task", each)]
+    for arguments in (("new", folder, *PLACE, *options), ("validate", folder), ("plan", folder)):
+        code, _, err = mmrs(*arguments)
+        if code:
+            return f"{arguments[0]}: {err}"
+    return ""
+
+
+@pytest.mark.parametrize(("task", "robot"), SAMPLE)
+def test_a_new_mission_is_valid_and_can_be_planned(mmrs, tmp_path, task, robot):
+    assert plans(mmrs, tmp_path / "field", [robot], [task]) == ""
+
+
+@pytest.mark.thorough
+@pytest.mark.parametrize("robot", TYPES)
+@pytest.mark.parametrize("task", TASKS)
+def test_every_robot_plans_every_task_or_is_refused_with_a_reason(mmrs, tmp_path, task, robot):
+    found = plans(mmrs, tmp_path / "field", [robot], [task])
+    assert found == "" or f"no robot of the team can do {task}" in found
+
+
+@pytest.mark.thorough
+@pytest.mark.parametrize("team", [*combinations(TYPES, 2)], ids=" and ".join)
+def test_every_pair_of_robots_plans_all_tasks_that_one_of_them_can_do(mmrs, tmp_path, team):
+    beginning = Beginning((43.77, 11.25), CONTRIBUTIONS)
+    able = [task for task in TASKS if beginning.doers(TaskWanted(task), team)[0]]
+    assert plans(mmrs, tmp_path / "field", team, able) == ""
+
+
+def test_every_task_can_be_done_by_a_shipped_robot():
+    beginning = Beginning((43.77, 11.25), CONTRIBUTIONS)
+    assert [task for task in TASKS if not beginning.doers(TaskWanted(task), TYPES)[0]] == []
+
+
+def test_several_robots_have_names_of_their_own(mmrs, tmp_path):
+    several = ("--robot", "Alpha=Freefly Astro LR1", "--robots", "2xAmovlab P600 gas")
+    code, _, err = mmrs("new", tmp_path / "field", *PLACE, *several, "--task", "GoToTask")
+    text = (tmp_path / "field" / "mission.xmi").read_text()
+    assert (code, err) == (0, "")
+    assert [name in text for name in ('"Alpha"', '"Bravo"', '"Charlie"')] == [True] * 3
+
+
+def test_the_comments_say_what_to_check_before_a_flight(mmrs, tmp_path):
+    assert plans(mmrs, tmp_path / "field", ["Freefly Astro LR1"], ["PhotoGridTask"]) == ""
+    mission = (tmp_path / "field" / "mission.xmi").read_text()
+    for each in ("positionError", "minimumSeparation", "reserve", "altitudes", "move it to where it belongs"):
+        assert each in mission
+    assert "forbiddenAreas" in (tmp_path / "field" / "context.xmi").read_text()
+
+
+def test_an_empty_project_says_what_goes_where(mmrs, tmp_path):
+    code, out, _ = mmrs("new", tmp_path / "field", "--empty")
+    assert code == 0
+    assert "next: copy robot types" in out
+    assert "taskDependencies: from one task" in (tmp_path / "field" / "mission.xmi").read_text()
+    code, _, err = mmrs("validate", tmp_path / "field")
+    assert code == 1
+    assert "robots" in err
+
+
+@pytest.mark.parametrize(
+    ("options", "code", "words"),
+    [
+        ((*PLACE, "--robots", "2xFreefly Astro", "--task", "GoToTask"), 2, "Freefly Astro LR1: quadcopter"),
+        ((*PLACE, "--robot", "A=BlueROV2", "--task", "PhotoGrid"), 2, "did you mean PhotoGridTask"),
+        ((*PLACE, "--robot", "A=Freefly Astro LR1", "--task", "YoYoTask"), 2, "BlueROV2 can"),
+        (
+            (*PLACE, "--robot", "A=BlueROV2", "--task", "FollowPipelineTask"),
+            2,
+            "refers to elements of the context",
+        ),
+        ((*PLACE, "--robot", "A=BlueROV2", "--task", "YoYoTask:pitsch=3"), 2, "pitsch"),
+        ((*PLACE, "--robots", "99xBlueROV2", "--task", "GoToTask"), 2, "1 to 20 robots"),
+        (("--at", "1e300, 3", "--robot", "A=BlueROV2", "--task", "GoToTask"), 2, "not a position"),
+        (("--at", "90, 0", "--robot", "A=BlueROV2", "--task", "GoToTask"), 2, "go to 85 degrees"),
+        ((*PLACE, "--robot", "A=BlueROV2"), 2, "--task: missing"),
+        (("--empty", "--task", "GoToTask"), 2, "--empty goes without"),
+    ],
+)
+def test_what_cannot_be_is_refused_and_nothing_is_written(mmrs, tmp_path, options, code, words):
+    found, _, err = mmrs("new", tmp_path / "field", *options)
+    assert found == code
+    assert words in " ".join(err.split())
+    assert not (tmp_path / "field").exists()
+
+
+@pytest.mark.parametrize("name", ["../../etc", '"/><x>', "-->", "a\x1b[2J", "\u202egnp", "x" * 500])
+def test_names_can_break_no_file_out_of_the_project(mmrs, tmp_path, name):
+    folder = tmp_path / "within" / "field"
+    code, _, _ = mmrs("new", folder, *PLACE, "--robot", f"{name}=BlueROV2", "--task", "GoToTask")
+    written = {each.relative_to(tmp_path).as_posix() for each in tmp_path.rglob("*") if each.is_file()}
+    files = ("mission.xmi", "context.xmi", "robots/bluerov2.xmi")
+    assert written == ({f"within/field/{each}" for each in files} if code == 0 else set())
+    assert code or mmrs("validate", folder)[0] == 0
+
+
+def test_a_folder_with_content_is_left_alone(mmrs, tmp_path):
+    (tmp_path / "notes.txt").write_text("mine")
+    code, _, err = mmrs("new", tmp_path, "--empty")
+    assert code == 2
+    assert "exists and is not empty" in err
+    assert [each.name for each in tmp_path.iterdir()] == ["notes.txt"]
+
+
+def test_a_disk_that_is_full_leaves_no_project(mmrs, tmp_path, monkeypatch):
+    def full(file, text):
+        if file.name == "context.xmi":
+            raise OSError(28, "No space left on device", str(file))
+        file.write_bytes(text)
+
+    monkeypatch.setattr("mmrs_core.cli.replacing.replace_file", full)
+    code, _, err = mmrs("new", tmp_path / "field", "--empty")
+    assert code == 3
+    assert "no space left" in err
+    assert not (tmp_path / "field").exists()
+
+
+def in_a_terminal(folder, answers):
+    """Run `mmrs new` in a terminal of its own; answer each question; return exit code and what it showed."""
+    process, terminal = pty.fork()
+    if process == 0:
+        os.execv(sys.executable, [sys.executable, "-m", "mmrs_core", "new", str(folder)])
+    shown, left = b"", list(answers)
+    while True:
+        try:
+            got = os.read(terminal, 4096)
+        except OSError:
+            break
+        if not got:
+            break
+        shown += got
+        if left and shown.endswith(b": "):
+            os.write(terminal, left.pop(0))
+    os.close(terminal)
+    return os.waitstatus_to_exitcode(os.waitpid(process, 0)[1]), shown.decode()
+
+
+def test_the_dialogue_asks_again_until_an_answer_is_one(tmp_path):
+    answers = [
+        b"11.25E\n",
+        b"111, 43\n",
+        b"43.77, 11.25\n",
+        b"99\n",
+        b"Hawk=Freefly Astro LR1\n",
+        b"?\n",
+        b"\n",
+    ]
+    code, shown = in_a_terminal(tmp_path / "field", answers)
+    assert code == 0, shown
+    for each in (
+        "1/3",
+        "2/3",
+        "3/3",
+        "latitude comes first",
+        "numbers go from 1",
+        "no task type '?'",
+        "next:",
+    ):
+        assert each in shown
+    mission = (tmp_path / "field" / "mission.xmi").read_text()
+    assert 'name="Hawk"' in mission
+    assert "survey:PhotoGridTask" in mission
+
+
+@pytest.mark.parametrize(("key", "code"), [(b"\x03", 130), (b"\x04", 2)])
+def test_ending_the_dialogue_writes_nothing(tmp_path, key, code):
+    found, shown = in_a_terminal(tmp_path / "field", [b"43.77, 11.25\n", key])
+    assert found == code, shown
+    assert not (tmp_path / "field").exists()
