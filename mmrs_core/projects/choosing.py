@@ -186,7 +186,9 @@ class Chooser:
                 notes += _overruled(usual, wanted)
                 reason = "" if wanted.name else "ignored as asked"
                 return Decision(wanted, choice.source, choice.attributes, reason, tuple(notes))
-            notes.append(f"{choice.source} does not fit: {_article(feature)} cannot become {wanted.name}")
+            notes.append(
+                f"{choice.source} does not fit: {_a(feature.geometry.value)} cannot become {wanted.name}"
+            )
         return Decision(usual.kind, usual.by, usual.attributes, usual.reason, (*usual.notes, *notes))
 
     def unmatched(self) -> Iterator[tuple[Assignment, str]]:
@@ -212,7 +214,7 @@ class Chooser:
     def _usual(self, feature: MapFeature) -> Decision:
         """Return what a feature becomes by what it says itself."""
         if feature.role in _BY_ROLE:
-            return Decision(self._kinds.own(_BY_ROLE[feature.role]), f"it is a {feature.role.value}")
+            return Decision(self._kinds.own(_BY_ROLE[feature.role]), f"it is {_a(feature.role.value)}")
         if feature.role in (Role.UNKNOWN, Role.TASK, Role.ELEMENT):
             stated = self._kinds.stated(str(feature.properties.get("type", "")))
             if stated is not None and _fits(stated, feature):
@@ -233,8 +235,8 @@ class Chooser:
         if isinstance(usual, str):
             words = f"{usual}; --as {quoted(feature.name)}=TYPE says it"
             return Decision(self._kinds.own("ignore"), shape.value, reason=words)
-        what = feature.role or shape
-        return Decision(usual, f"it is {'an' if what is Geometry.AREA else 'a'} {what.value}")
+        what = (feature.role or shape).value
+        return Decision(usual, f"it is {_a(what)}")
 
 
 def shape_of(feature: MapFeature) -> Geometry:
@@ -260,8 +262,8 @@ def _fits(kind: Kind, feature: MapFeature) -> bool:
     return bool({feature.geometry, shape_of(feature)} & set(kind.shapes))
 
 
-def _article(feature: MapFeature) -> str:
-    return f"{'an' if feature.geometry is Geometry.AREA else 'a'} {feature.geometry.value}"
+def _a(noun: str) -> str:
+    return f"{'an' if noun[0] in 'aeio' else 'a'} {noun}"
 
 
 def _overruled(usual: Decision, wanted: Kind) -> list[str]:

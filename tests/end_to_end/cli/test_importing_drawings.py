@@ -24,6 +24,15 @@ FARM = {
             "East fence": "RoadTask",
         },
     ),
+    "farm.plan": (
+        (),
+        {
+            "survey 1": "PhotoGridTask",
+            "fence circle 1": "forbidden area",
+            "rally point 1": "emergency area",
+            "planned home": "home",
+        },
+    ),
     "farm.geojson": (
         ("--as", "power line=obstacle:radius=6"),
         {

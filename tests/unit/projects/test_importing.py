@@ -80,6 +80,7 @@ def models_of(result, folder):
         (square("homestead"), "PhotoGridTask", "it is an area"),
         (square("home field"), "PhotoGridTask", "it is an area"),
         (square("x", role=Role.SURVEY), "PhotoGridTask", "it is a survey"),
+        (square("x", role=Role.OBSTACLE), "obstacle", "it is an obstacle"),
         (square("x", role=Role.FORBIDDEN), "forbidden area", "it is a forbidden area"),
         (
             square("x", properties={"type": "MeasureTask", "actionName": "a"}),

@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from mmrs_core.diagnostics import Place
-from mmrs_core.drawings.drawing import Drawing, Geometry, HeightReference, Role
+from mmrs_core.drawings.drawing import Drawing, Geometry, HeightReference, Property, Role
 from mmrs_core.drawings.json_text import JsonObject, read_object
 from mmrs_core.drawings.sheet import DrawnSubject, FeatureTraits, Sheet, property_of
 from mmrs_mavlink.plugin.plans.items import (
@@ -39,6 +39,14 @@ FRAMES = {
     **dict.fromkeys((10, 11), HeightReference.GROUND),
 }
 WALKED = ("mission", "items", "geoFence", "polygons", "circles", "rallyPoints", "points")
+SETTINGS = {
+    "DistanceToSurface": ("altitude", 1.0),
+    "ImageDensity": ("groundResolution", 0.01),
+    "FrontalOverlap": ("frontOverlap", 0.01),
+    "SideOverlap": ("sideOverlap", 0.01),
+    "CorridorWidth": ("width", 1.0),
+}
+"""The attribute that a setting is, and what it is multiplied by."""
 COMPLEX = {
     "survey": (Geometry.AREA, Role.SURVEY, "polygon"),
     "CorridorScan": (Geometry.LINE, Role.CORRIDOR, "polyline"),
@@ -149,6 +157,7 @@ class _PlanReader:
             elif kind in COMPLEX:
                 geometry, role, key = COMPLEX[str(kind)]
                 properties = {k: property_of(v) for k, v in _flat(item) if k not in SHAPES and v is not None}
+                properties |= _attributes(properties)
                 ring = self._list(item, key)
                 self._add(geometry, [ring], f"{role.value} {number}", item.line, role, properties=properties)
             else:
@@ -205,6 +214,12 @@ def _flat(item: Mapping[str, object]) -> Iterator[tuple[str, object]]:
             yield from _flat(value)
         elif not isinstance(value, list | dict):
             yield key, value
+
+
+def _attributes(settings: Mapping[str, Property]) -> dict[str, Property]:
+    """Return settings of a survey or corridor as attributes of tasks, in SI units and fractions."""
+    numbers = {key: value for key in SETTINGS if isinstance(value := settings.get(key), int | float)}
+    return {SETTINGS[key][0]: round(value * SETTINGS[key][1], 6) for key, value in numbers.items()}
 
 
 def _side(fence: Mapping[str, object]) -> Role:
