@@ -43,7 +43,7 @@ PARTS = {
 }
 NAMES, DESCRIPTIONS = ("name", "title", "label"), ("description", "desc")
 COLOURS = {Geometry.POINT: "marker-color", Geometry.LINE: "stroke", Geometry.AREA: "stroke"}
-"""As https://github.com/mapbox/simplestyle-spec names them."""
+"""Names of https://github.com/mapbox/simplestyle-spec."""
 TIMES = "coordinateProperties"
 FEATURE_MEMBERS = {"type", "geometry", "properties", "id", "bbox", "crs"}
 Transform = Callable[[NDArray[np.float64], NDArray[np.float64]], Sequence[NDArray[np.float64]]]
@@ -80,7 +80,7 @@ class _GeoJsonReader:
             self.sheet.refuse("a FeatureCollection without an array 'features'", root.line)
         for number, feature in enumerate(features):
             if not isinstance(feature, JsonObject):
-                self.sheet.refuse(f"features[{number}] is no object", root.line)
+                self.sheet.refuse(f"features[{number}] is not an object", root.line)
             self._feature(feature, f"/features[{number}]")
         for member in sorted(root.keys() - {"type", "features", "crs", "bbox", "name"}):
             self.sheet.leave_out(f"member '{member}'", "not of GeoJSON", root.line)
@@ -95,7 +95,7 @@ class _GeoJsonReader:
             return
         given, geometry = feature.get("properties"), feature.get("geometry")
         if given is not None and not isinstance(given, dict):
-            self.sheet.refuse(f"{label}: 'properties' is no object", feature.line)
+            self.sheet.refuse(f"{label}: 'properties' is not an object", feature.line)
         values = {key: value for key, value in (given or {}).items() if value is not None}
         if (identifier := feature.get("id")) is not None:
             values.setdefault("id", identifier)
@@ -113,7 +113,7 @@ class _GeoJsonReader:
         if geometry is None:
             self.sheet.leave_out(what, "no geometry", feature.line)
         elif not isinstance(geometry, dict):
-            self.sheet.refuse(f"{what}: 'geometry' is no object", feature.line)
+            self.sheet.refuse(f"{what}: 'geometry' is not an object", feature.line)
         else:
             self._geometry(geometry, DrawnSubject(what, place, traits, reference, times))
 
@@ -122,7 +122,7 @@ class _GeoJsonReader:
         member = "geometries" if type == "GeometryCollection" else "coordinates"
         parts = geometry.get(member)
         if member == "coordinates" and type not in PARTS:
-            self.sheet.refuse(f"{what}: {str(type)[:40]!r} is no type of geometry", line)
+            self.sheet.refuse(f"{what}: {str(type)[:40]!r} is not a type of geometry", line)
         if not isinstance(parts, list) or depth > DEEPEST:
             self.sheet.refuse(
                 f"{what}: no array '{member}', or collections in more than {DEEPEST} others", line
@@ -132,7 +132,7 @@ class _GeoJsonReader:
         elif member == "geometries":
             for part in parts:
                 if not isinstance(part, dict):
-                    self.sheet.refuse(f"{what}: a geometry is no object", line)
+                    self.sheet.refuse(f"{what}: a geometry is not an object", line)
                 self._geometry(part, subject, depth + 1)
         else:
             shape, many = PARTS[str(type)]
@@ -142,7 +142,7 @@ class _GeoJsonReader:
     def _part(self, shape: Geometry, part: object, subject: DrawnSubject) -> None:
         rings = {Geometry.POINT: [[part]], Geometry.LINE: [part]}.get(shape, part)
         if not isinstance(rings, list):
-            self.sheet.refuse(f"{subject.what}: a polygon is no array of rings", subject.place.line)
+            self.sheet.refuse(f"{subject.what}: a polygon is not an array of rings", subject.place.line)
         arrays = [self._degrees(ring, subject) if ring != [] else np.empty((0, 2)) for ring in rings]
         self.sheet.add(shape, arrays, subject, HeightReference.ELLIPSOID)
 
@@ -243,7 +243,7 @@ def _feature_of(feature: MapFeature) -> dict[str, object]:
 def _ring_of(feature: MapFeature, number: int) -> list[list[float]]:
     """Return a ring with the longitude first: outer rings anticlockwise, holes clockwise.
 
-    Longitudes go on beyond 180 degrees, since most programs would draw a jump back around the Earth.
+    Longitudes continue beyond 180 degrees, since most programs would draw a jump back around the Earth.
     """
     ring = feature.rings[number]
     columns = [np.unwrap(ring[:, 1], period=360.0).round(8), ring[:, 0].round(8)]

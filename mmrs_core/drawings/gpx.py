@@ -51,7 +51,7 @@ def recognise(data: bytes, file: str) -> bool:
 
 
 def _fold(node: XmlNode, parent: XmlNode) -> None:
-    """Leave position, height and time of a point with its track; so a million points are no tree."""
+    """Leave position, height and time of a point with its track; a million of them would be a large tree."""
     row = (node.attributes.get("lat", ""), node.attributes.get("lon", ""), node.of("ele"), node.of("time"))
     parent.gathered.setdefault(node.tag, []).append(row)
 

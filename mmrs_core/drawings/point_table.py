@@ -131,5 +131,5 @@ class _TableReader:
         try:
             return float(plain) if "_" not in plain else float("x")
         except ValueError:
-            self._sheet.refuse(f"{name} {text[:40]!r} is no number in degrees or metres", line)
+            self._sheet.refuse(f"{name} {text[:40]!r} is not a number in degrees or metres", line)
         return inf

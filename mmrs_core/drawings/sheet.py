@@ -1,4 +1,4 @@
-"""A drawing while its file is read: positions are checked, and what is no feature is noted."""
+"""A drawing while its file is read: positions are checked, and what is not a feature is noted."""
 
 from __future__ import annotations
 
@@ -97,7 +97,7 @@ class Sheet:
         Further values are left out, and so are heights that only some positions have.
 
         Raises:
-            UnreadableError: if anything is no number, or a position has fewer than two.
+            UnreadableError: if anything is not a number, or a position has fewer than two.
         """
         try:
             array = np.array(values)
@@ -113,12 +113,12 @@ class Sheet:
         rows = values if isinstance(values, Sequence) and not isinstance(values, str) else ()
         for number, row in enumerate(rows, start=1):
             if not isinstance(row, Sequence) or isinstance(row, str):
-                self.refuse(f"{what}: position {number} is no position", line)
+                self.refuse(f"{what}: position {number} is not a position", line)
             if len(row) < 2:
                 self.refuse(f"{what}: position {number} has fewer than two coordinates", line)
             for value in row[:3]:
                 if not isinstance(value, int | float) or isinstance(value, bool):
-                    self.refuse(f"{what}: {str(value)[:40]!r} of position {number} is no number", line)
+                    self.refuse(f"{what}: {str(value)[:40]!r} of position {number} is not a number", line)
                 if isinstance(value, int) and abs(value) > 10**9:
                     self.refuse(f"{what}: {str(value)[:40]} of position {number} is too large", line)
         if not rows:

@@ -106,13 +106,13 @@ def test_degrees_stay_as_they_are(name):
         (b"[" * 5_000_001, r"^a\.json: more than 5000000 arrays and objects"),
         (
             collection(feature("Point", [8, 47]), feature("Point", ["8", 47])),
-            r"^a\.json:4: .* '8' of position 1 is no num",
+            r"^a\.json:4: .* '8' of position 1 is not a num",
         ),
         (
             collection('{"type": "Feature", "type": "Feature"}'),
             r"^a\.json:3: not JSON: 'type' is given twice",
         ),
-        (b'{"type": "Point", "coordinates": [8, NaN]}', r"^a\.json:1: not JSON: NaN is no number"),
+        (b'{"type": "Point", "coordinates": [8, NaN]}', r"^a\.json:1: not JSON: NaN is not a number"),
         (b'{"type": "Point", "coordinates": [8, 1e999]}', r"^a\.json:1: .* is not a finite number"),
         (
             b'{"type": "Point", "coordinates": [8, 1' + b"0" * 400 + b"]}",
@@ -122,8 +122,8 @@ def test_degrees_stay_as_they_are(name):
             b'{"type": "Point", "coordinates": [47, 95]}',
             r"are the axes swapped\? GeoJSON has the longitude first",
         ),
-        (b'{"type": "Circle", "coordinates": [47, 95]}', "'Circle' is no type of geometry"),
-        (collection("7"), r"features\[0\] is no object"),
+        (b'{"type": "Circle", "coordinates": [47, 95]}', "'Circle' is not a type of geometry"),
+        (collection("7"), r"features\[0\] is not an object"),
         (collection(crs={"type": "link"}), "not understood; save the file in WGS 84"),
         (collection(crs={"properties": {"name": "EPSG:999999"}}), "crs EPSG:999999: not known"),
     ],

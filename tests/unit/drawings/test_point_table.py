@@ -41,8 +41,8 @@ def test_rows_of_one_area_or_line_are_one_shape():
     ("text", "message"),
     [
         ("a,b\n1,2", r"^a\.csv:1: columns named latitude and longitude are expected"),
-        ("lat,lon\n47,x", r"^a\.csv:2: lon 'x' is no number"),
-        ("lat,lon\n47,", r"^a\.csv:2: lon '' is no number"),
+        ("lat,lon\n47,x", r"^a\.csv:2: lon 'x' is not a number"),
+        ("lat,lon\n47,", r"^a\.csv:2: lon '' is not a number"),
         ("lat,lon\n47,8,9", r"^a\.csv:2: 3 cells, but 2 columns"),
         ("lat,lon\n47,nan", r"^a\.csv:2: row: a coordinate of position 1 is not a finite number"),
         ('lat,lon\n47,"8', r"^a\.csv:2: not CSV"),

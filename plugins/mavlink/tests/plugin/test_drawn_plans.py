@@ -75,7 +75,7 @@ def test_items_that_are_no_shape_are_left_out():
     left_out = {each.what: each.reason for each in read_plan(PLAN, "a.plan").left_out}
     assert left_out == {
         "item 2": "command 178 goes to no place",
-        "item 7": "'fwLandingPattern' is no kind of item that is read",
+        "item 7": "'fwLandingPattern' is not a kind of item that is read",
     }
     assert all(each.place.line > 1 for each in read_plan(PLAN, "a.plan").left_out)
 
@@ -86,12 +86,15 @@ def test_items_that_are_no_shape_are_left_out():
         (b'{"fileType": "Fence"}', r"^a\.plan:1: no plan of QGroundControl"),
         (b'{"fileType": "Plan", "version": 9}', r"^a\.plan:1: plans of version 9 are not read"),
         (plan({"type": "SimpleItem"}), r"^a\.plan:\d+: item 1: a command and seven parameters are expected"),
-        (plan(survey("survey", polygon=7)), r"^a\.plan:\d+: 'polygon' is no array"),
-        (plan(survey("survey", polygon=[[None, 8]])), r"^a\.plan:\d+: .* 'None' of position 1 is no number"),
+        (plan(survey("survey", polygon=7)), r"^a\.plan:\d+: 'polygon' is not an array"),
+        (
+            plan(survey("survey", polygon=[[None, 8]])),
+            r"^a\.plan:\d+: .* 'None' of position 1 is not a number",
+        ),
         (plan(item(16, 0, 0, 0, 0, 100, 8, 5)), r"^a\.plan:\d+: waypoint 1: .* is not on the Earth"),
         (
             plan(geoFence={"circles": [{"circle": {"center": [47, 8], "radius": -1}}]}),
-            "its radius is no length",
+            "its radius is not a length",
         ),
     ],
 )

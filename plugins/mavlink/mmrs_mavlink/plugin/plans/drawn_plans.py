@@ -123,7 +123,7 @@ class _PlanReader:
     def _list(self, owner: Mapping[str, object], key: str) -> list[object]:
         found = owner.get(key, [])
         if not isinstance(found, list):
-            self.sheet.refuse(f"'{key}' is no array", owner.line if isinstance(owner, JsonObject) else 0)
+            self.sheet.refuse(f"'{key}' is not an array", owner.line if isinstance(owner, JsonObject) else 0)
         return found
 
     def _add(
@@ -150,7 +150,7 @@ class _PlanReader:
         rows: list[DrawnItem] = []
         for number, item in enumerate(self._list(mission, "items"), start=1):
             if not isinstance(item, JsonObject):
-                self.sheet.refuse(f"item {number} is no object", mission.line)
+                self.sheet.refuse(f"item {number} is not an object", mission.line)
             kind = item.get("complexItemType")
             if item.get("type") == "SimpleItem":
                 rows.append(self._simple(item, number))
@@ -163,7 +163,7 @@ class _PlanReader:
             else:
                 named = str(kind or item.get("type"))[:40]
                 self.sheet.leave_out(
-                    f"item {number}", f"'{named}' is no kind of item that is read", item.line
+                    f"item {number}", f"'{named}' is not a kind of item that is read", item.line
                 )
         _path(rows, self.sheet)
 
@@ -173,7 +173,7 @@ class _PlanReader:
             self.sheet.refuse(f"item {number}: a command and seven parameters are expected", item.line)
         place = [0.0 if each is None else each for each in params[4:]]
         if any(isinstance(each, bool) or not isinstance(each, int | float) for each in place):
-            self.sheet.refuse(f"item {number}: a parameter is no number", item.line)
+            self.sheet.refuse(f"item {number}: a parameter is not a number", item.line)
         return DrawnItem(command, frame if isinstance(frame, int) else -1, place, number, item.line)
 
     def _fence(self, fence: JsonObject) -> None:
@@ -184,10 +184,10 @@ class _PlanReader:
         for number, each in enumerate(self._list(fence, "circles"), start=1):
             circle = each.get("circle") if isinstance(each, JsonObject) else None
             if not isinstance(each, JsonObject) or not isinstance(circle, dict):
-                self.sheet.refuse(f"fence circle {number} is no object with a 'circle'", fence.line)
+                self.sheet.refuse(f"fence circle {number} is not an object with a 'circle'", fence.line)
             radius = circle.get("radius")
             if isinstance(radius, bool) or not isinstance(radius, int | float) or not 0 < radius < 1e6:
-                self.sheet.refuse(f"fence circle {number}: its radius is no length", each.line)
+                self.sheet.refuse(f"fence circle {number}: its radius is not a length", each.line)
             what = f"fence circle {number}"
             self._add(
                 Geometry.POINT, [[circle.get("center")]], what, each.line, _side(each), radius=float(radius)
