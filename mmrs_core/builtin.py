@@ -81,7 +81,7 @@ def mmrs_drawing_readers() -> Iterable[DrawingReader]:
         DrawingReader("KML", (".kml", ".kmz"), kml.recognise, kml.read),
         DrawingReader("GeoJSON", (".geojson", ".json"), geojson.recognise, geojson.read),
         DrawingReader("GPX", (".gpx",), gpx.recognise, gpx.read),
-        DrawingReader("CSV", (".csv", ".tsv", ".txt"), point_table.recognise, point_table.read),
+        DrawingReader("CSV", (".csv", ".tsv"), point_table.recognise, point_table.read),
     )
 
 
