@@ -40,7 +40,7 @@ if TYPE_CHECKING:
     from mmrs_core.languages.element import Element
     from mmrs_core.scene import Scene
 
-HOMES_APART = 10.0
+HOMES_APART = 20.0
 """Least metres from home to home: more than they have to keep between them."""
 _NOWHERE = Path("new")
 _FARTHEST_NORTH = 85.0
