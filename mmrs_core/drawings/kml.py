@@ -251,7 +251,7 @@ class _KmlReader:
         node = ring.child("coordinates")
         text = node.text if node is not None else ""
         if ", " in text or " ," in text:
-            text = re.sub(r"\s*,\s*", ",", text)
+            text = ",".join(map(str.strip, text.split(",")))
         rows = [part.rstrip(",").split(",") for part in text.split()]
         return self._degrees(rows, what, (node or ring).line)
 

@@ -35,7 +35,9 @@ def recognise(data: bytes, file: str) -> bool:
 
 def _columns(cells: list[str]) -> dict[str, int] | None:
     """Return the columns of a header by their plain names; None if no position is among them."""
-    plain = [re.sub(r"\s*[(\[].*", "", cell).strip(" \"'").lower().replace(" ", "_") for cell in cells]
+    plain = [
+        re.split(r"[(\[]", cell, maxsplit=1)[0].strip(" \"'").lower().replace(" ", "_") for cell in cells
+    ]
     columns = {name: at for at, name in reversed(list(enumerate(plain)))}
     position = [
         next((columns[name] for name in names if name in columns), None) for names in (LATITUDES, LONGITUDES)

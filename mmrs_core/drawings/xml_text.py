@@ -69,18 +69,21 @@ class _Builder:
     def __init__(self, document: Document, sheet: Sheet, folds: Mapping[str, Fold]) -> None:
         self.top = XmlNode("", {}, 0)
         self._open, self._count = [self.top], 0
+        self._counts: list[int] = []
         self._parser, self._sheet, self._folds = document.parser, sheet, folds
 
     def start(self, tag: str, attributes: list[str]) -> None:
+        self._counts.append(self._count)
         pairs = iter(attributes)
         named = {name.rpartition(" ")[2]: value for name, value in zip(pairs, pairs, strict=True)}
         self._open.append(XmlNode(tag.rpartition(" ")[2], named, self._parser.CurrentLineNumber))
 
     def end(self, tag: str) -> None:
-        node = self._open.pop()
+        node, before = self._open.pop(), self._counts.pop()
         fold = self._folds.get(node.tag)
         if fold is not None:
             fold(node, self._open[-1])
+            self._count = before
             return
         self._open[-1].children.append(node)
         self._count += 1
@@ -96,7 +99,8 @@ def root_tag(data: bytes) -> str:
     """Return the local name of a document's root from its first bytes; empty where they hold none."""
     wide = data[:2] in (b"\xff\xfe", b"\xfe\xff")
     text = data[:_BEGINNING].decode("utf-16" if wide else "utf-8", "replace")
-    if not text.lstrip("\ufeff \t\r\n").startswith("<"):
-        return ""
-    found = _ROOT.search(re.sub(r"<!--.*?-->|<\?.*?\?>", "", text, flags=re.DOTALL))
+    text = text.lstrip("\ufeff \t\r\n")
+    while text.startswith(("<?", "<!")):
+        text = text.partition("-->" if text.startswith("<!--") else ">")[2].lstrip()
+    found = _ROOT.match(text)
     return found[1] if found else ""
