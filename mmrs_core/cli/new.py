@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from mmrs_core.projects.team import RobotWanted
 
 MOST_ROBOTS = 20
-_SEVERAL = re.compile(r"(\d{1,3})\s*[x×]\s*(.+)")
+_SEVERAL = re.compile(r"(\d{1,3})\s*[x×]\s*(\S.*)")
 _Robots = Annotated[
     list[str] | None,
     typer.Option(

@@ -8,7 +8,7 @@ from urllib.parse import unquote
 from mmrs_core.errors import UsageError
 
 FORMS = "such as 43.77, 11.25 or 43°46'12\"N 11°15'0\"E, a geo: address, or a link of a map program"
-_LONGEST = 2000
+_LONGEST, _LONGEST_LINK = 200, 2000
 _SIXTY = 60
 _DECIMAL = r"([+-]?\d{1,4}(?:\.\d+)?)"
 _LINKS = tuple(
@@ -66,9 +66,10 @@ def position_of(text: str, source: str = "position") -> tuple[float, float]:
         UsageError: if it is none, or not on the Earth.
     """
     wanted = text.strip().strip("()[]").translate(_MARKS)
-    if len(wanted) > _LONGEST:
+    is_link = "://" in wanted or wanted.lower().startswith("geo:")
+    if len(wanted) > (_LONGEST_LINK if is_link else _LONGEST):
         raise UsageError(f"{source}: too long for a position; expected one {FORMS}")
-    if "://" in wanted or wanted.lower().startswith("geo:"):
+    if is_link:
         link = unquote(wanted)
         found = next((match for each in _LINKS if (match := each.search(link))), None)
         if found is None:

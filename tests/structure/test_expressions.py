@@ -15,7 +15,7 @@ from tests.structure.backtracking import superlinear
 ROOT = Path(__file__).parents[2]
 _METHODS = {"match", "fullmatch", "search", "sub", "subn", "split", "findall", "finditer", "scanner"}
 
-_BOUNDED = {"mmrs_mavlink.commands.rehearsal._PATTERN"}
+_BOUNDED = {"mmrs_mavlink.commands.rehearsal._PATTERN", "mmrs_core.projects.positions._PAIRS"}
 """Expressions whose text is refused beforehand where it is long."""
 
 
