@@ -15,6 +15,7 @@ from mmrs_core.drawings.drawing import Geometry, HeightReference, MapFeature
 from mmrs_core.grounding.features import child, children, number
 from mmrs_core.languages.element import (
     Element,
+    container_of,
     containing_feature,
     descendants,
     is_kind,
@@ -33,6 +34,8 @@ if TYPE_CHECKING:
     from pyproj import Transformer
 
     from mmrs_core.languages.registry import Registry
+
+Position = tuple[float | None, float | None]
 
 LONGEST_NAME = 80
 _SHUT = ("forbiddenAreas", "obstacles")
@@ -122,9 +125,9 @@ class Builder:
         self._around = around
         shut = [each for name in _SHUT for each in children(context, name)]
         self._closed = [ring for each in shut if len(ring := np.array([*_positions(each)], float)) > 2]
-        self._known: dict[tuple[object, ...], list[Element]] = {}
+        self._known: dict[frozenset[object], list[Element]] = {}
         for each in (each for root in (mission, context) for each in descendants(root) if _drawn(each)):
-            self._known.setdefault(tuple(_positions(each)), []).append(each)
+            self._known.setdefault(frozenset(_positions(each)), []).append(each)
 
     def build(self, feature: MapFeature, decision: Decision) -> Outcome:
         """Add the element of a feature; return what became of it."""
@@ -153,8 +156,9 @@ class Builder:
         notes = [*decision.notes, *found.notes, *doubts]
         heights = self._heights(element, kind, found, given, notes)
         self._place(element, kind, found, heights, notes)
-        alike = self._known.setdefault(tuple(_positions(element)), [])
-        for other in alike:
+        alike = self._known.setdefault(frozenset(_positions(element)), [])
+        drawing = _edges if found.geometry is Geometry.AREA else _course
+        for other in (each for each in alike if drawing(each) == drawing(element)):
             called = label_of(other) or "an element without a name"
             if metaclass_of(other) is kind.metaclass:
                 return replace(told, reason=f"the same is there already: {called}")
@@ -358,9 +362,31 @@ def _drawn(element: Element) -> bool:
     return any(is_kind(element, *key) for key in named)
 
 
-def _positions(element: Element) -> Iterator[tuple[float | None, float | None]]:
+def _positions(element: Element) -> Iterator[Position]:
     """Yield latitude and longitude of everything in an element, except where robots begin."""
+    for each in _coordinates(element):
+        yield number(each, "latitude"), number(each, "longitude")
+
+
+def _course(element: Element) -> list[Position]:
+    return list(_positions(element))
+
+
+def _edges(element: Element) -> set[frozenset[Position]]:
+    """Return the sides of rings; the same from whichever corner and whichever way round they are drawn."""
+    rings: dict[Element | None, list[Position]] = {}
+    for coordinate, position in zip(_coordinates(element), _positions(element), strict=True):
+        rings.setdefault(container_of(coordinate), []).append(position)
+    return {
+        frozenset(side)
+        for ring in rings.values()
+        for side in zip(ring, (*ring[1:], ring[0]), strict=True)
+        if side[0] != side[1]
+    }
+
+
+def _coordinates(element: Element) -> Iterator[Element]:
     for each in descendants(element):
         at = containing_feature(each)
         if is_kind(each, MISSION, "GeoCoordinate") and at is not None and at.name != "initialPosition":
-            yield number(each, "latitude"), number(each, "longitude")
+            yield each

@@ -380,6 +380,22 @@ def test_a_project_is_added_to_and_what_people_wrote_stays(tmp_path):
     assert not imported(more, (), again, CONTRIBUTIONS, tmp_path, into=True).files
 
 
+def test_an_area_is_the_same_from_any_corner_and_either_way_round_but_a_line_is_not(tmp_path):
+    corners, road = [(60, 60), (110, 60), (110, 110), (60, 110)], [(20, 0), (20, 40)]
+    saved(made(drawn("pit", *corners), drawn("Track", *road), folder=tmp_path))
+    again = replace(OPTIONS, robots=())
+    more = [
+        drawn("turned", *corners[::-1]),
+        drawn("begun elsewhere", *corners[2:], *corners[:2]),
+        drawn("crossed", *(corners[each] for each in (0, 2, 1, 3))),
+        drawn("Track back", *road[::-1]),
+    ]
+    outcomes = imported(more, (), again, CONTRIBUTIONS, tmp_path, into=True).outcomes
+    reasons = {each.name: each.reason for each in outcomes}
+    same = "the same is there already: pit"
+    assert reasons == {"turned": same, "begun elsewhere": same, "crossed": "", "Track back": ""}
+
+
 def test_heights_that_a_mission_cannot_state_are_its_tasks_own_or_left_out(tmp_path):
     saved(made(square("Meadow"), folder=tmp_path))
     mission = tmp_path / "mission.xmi"
