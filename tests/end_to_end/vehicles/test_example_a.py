@@ -17,7 +17,7 @@ pytestmark = pytest.mark.real_time("faults")
 def _needs(fleet: str) -> list[pytest.MarkDecorator]:
     firmware = getattr(FLEETS[fleet], "firmware", None)
     if firmware is None:
-        return []
+        return [pytest.mark.timeout(900)]
     reason = f"{firmware.variable} names no binary: the example was not flown on {fleet}"
     missing = pytest.mark.skipif(not firmware.binary, reason=reason)
     return [pytest.mark.peer, pytest.mark.timeout(3600), missing]
@@ -27,7 +27,6 @@ VEHICLES = [pytest.param(fleet, marks=_needs(fleet)) for fleet in FLEETS]
 
 
 @pytest.mark.thorough
-@pytest.mark.timeout(900)
 @pytest.mark.parametrize("way", WAYS)
 @pytest.mark.parametrize("fleet", VEHICLES)
 def test_three_vehicles_fly_it_and_stay_clear_of_every_area(tmp_path, fleet, way):
