@@ -87,7 +87,7 @@ def new(
     if listed:
         return _list(contributions, json)
     if folder is None:
-        raise typer.BadParameter("FOLDER is missing: where is the new project to be?")
+        raise typer.BadParameter("name the FOLDER of the new project")
     if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
         raise ProtectedError(f"{folder}: exists and is not empty; choose another folder")
     title = folder.resolve().name

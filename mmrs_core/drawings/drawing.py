@@ -54,6 +54,7 @@ class Role(StrEnum):
     UNKNOWN = ""
     HOME = "home"
     RALLY_POINT = "rally point"
+    CHOSEN_RALLY_POINT = "rally point chosen by a plan"
     EMERGENCY_AREA = "emergency area"
     INCLUSION = "inclusion fence"
     FORBIDDEN = "forbidden area"

@@ -36,6 +36,7 @@ _LEFT = {
     Role.ELEMENT: "it is a context element of no type that is installed",
     Role.STRUCTURE: "no usual task goes round a structure",
     Role.PATH: "it was planned already",
+    Role.CHOSEN_RALLY_POINT: "it was chosen from the emergency areas",
     Role.TRACK: "it is the track of a robot or a person",
     Role.PHOTO: "it is a photo that was taken",
     Role.ACTION: "it is an action that a robot did",

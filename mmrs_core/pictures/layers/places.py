@@ -88,7 +88,7 @@ def rally_points_on(
             yield replace(
                 chart.point(point),
                 name=robot.id,
-                role=Role.RALLY_POINT,
+                role=Role.CHOSEN_RALLY_POINT,
                 folders=(Layer.RALLY_POINTS,),
                 properties={"robot": robot.id},
                 colour=colour_of(index),

@@ -47,6 +47,12 @@ PLAN = plan(
 )
 
 
+def test_taking_off_and_landing_are_no_waypoints_of_their_own():
+    drawing = read_plan(plan(item(22, 0, 0, 0, None, 47.0, 8.0, 20), survey("survey", polygon=FIELD)), "a")
+    assert [feature.role for feature in drawing.features] == [Role.HOME, Role.SURVEY]
+    assert [left.reason for left in drawing.left_out] == ["robots take off and land without a task"]
+
+
 def test_a_plan_becomes_areas_paths_fences_and_points():
     home, area, corridor, structure, path, fence, circle, rally = read_plan(PLAN, "a.plan").features
     assert (home.role, home.rings[0].tolist(), home.heights[0].tolist()) == (

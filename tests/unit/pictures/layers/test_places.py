@@ -106,7 +106,7 @@ def test_every_robot_has_its_rally_points(scene, behaviour, types):
     meadow = [replace(scene.areas[2], safety_distance=0.0)]
     points = list(rally_points_on(CHART, behaviour, types, meadow))
     assert [(each.name, each.role) for each in points] == [
-        ("alpha", Role.RALLY_POINT),
-        ("beta", Role.RALLY_POINT),
+        ("alpha", Role.CHOSEN_RALLY_POINT),
+        ("beta", Role.CHOSEN_RALLY_POINT),
     ]
     assert points[0].rings[0].tolist() != points[1].rings[0].tolist()

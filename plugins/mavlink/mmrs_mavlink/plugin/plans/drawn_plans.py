@@ -246,6 +246,9 @@ def _add_path(part: Sequence[DrawnItem], sheet: Sheet) -> None:
     reference = FRAMES.get(first.frame, HeightReference.NONE)
     many = len({tuple(row.place[:2]) for row in part}) > 1
     what = "waypoints" if many else f"waypoint {first.number}"
+    if not many and all(row.command in (TAKE_OFF, LAND) for row in part):
+        sheet.leave_out(f"item {first.number}", "robots take off and land without a task", first.line)
+        return
     if reference is HeightReference.NONE:
         sheet.leave_out(f"heights of {what}", f"frame {first.frame} is not read", first.line)
     role, shape = (Role.PATH, Geometry.LINE) if many else (Role.WAYPOINT, Geometry.POINT)
