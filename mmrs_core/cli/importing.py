@@ -17,7 +17,7 @@ from mmrs_core.cli.session import Session
 from mmrs_core.cli.settings import Json, settings_of
 from mmrs_core.diagnostics import has_errors
 from mmrs_core.errors import InvalidModelError, UsageError
-from mmrs_core.projects.heights import ALTITUDE
+from mmrs_core.projects import ALTITUDE
 
 if TYPE_CHECKING:
     from mmrs_core.contributions.registry import Contributions

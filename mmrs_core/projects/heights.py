@@ -10,8 +10,6 @@ from mmrs_core.drawings.drawing import HeightReference
 if TYPE_CHECKING:
     from mmrs_core.scene import AltitudeReference
 
-ALTITUDE = 30.0
-"""Metres above the origin of tasks of flying robots that are drawn without a height."""
 MILLIMETRES = 3
 
 

@@ -19,9 +19,10 @@ from mmrs_core.languages.element import descendants, label_of, metaclass_of
 from mmrs_core.languages.modelset import project_files
 from mmrs_core.languages.xmi.events import read_bytes
 from mmrs_core.pipeline import check_models, read_models
+from mmrs_core.projects import ALTITUDE
 from mmrs_core.projects.building import Basis, Builder, Outcome, UniqueNames
 from mmrs_core.projects.choosing import Assignment, Chooser, Decision
-from mmrs_core.projects.heights import ALTITUDE, Levels, levels_at
+from mmrs_core.projects.heights import Levels, levels_at
 from mmrs_core.projects.kinds import CONTEXT, MISSION, ImportKinds
 from mmrs_core.projects.shapes import UnfitError, shape
 from mmrs_core.projects.team import Home, RobotWanted, TypeFile, flies, homes_for
