@@ -89,7 +89,7 @@ def mmrs_drawing_readers() -> Iterable[DrawingReader]:
 def mmrs_exporters() -> Iterable[Exporter]:
     """Contribute the formats that map programs share."""
     from mmrs_core.contributions.drawings import Exporter
-    from mmrs_core.drawings import geojson, gpx, kml
+    from mmrs_core.drawings import geojson, gpx_writer, kml_writer
     from mmrs_core.drawings.drawing import HeightReference
 
     level, ellipsoid = (HeightReference.SEA_LEVEL,), (HeightReference.ELLIPSOID,)
@@ -97,7 +97,14 @@ def mmrs_exporters() -> Iterable[Exporter]:
         Exporter(
             "geojson", "GeoJSON, for QGIS and others", ".geojson", geojson.write, geojson.losses, ellipsoid
         ),
-        Exporter("gpx", "GPX, for receivers and others", ".gpx", gpx.write, gpx.losses, level),
-        Exporter("kml", "KML, for Google Earth, QGIS and others", ".kml", kml.write, kml.losses, level),
-        Exporter("kmz", "KML in an archive", ".kmz", kml.write_archive, kml.losses, level),
+        Exporter("gpx", "GPX, for receivers and others", ".gpx", gpx_writer.write, gpx_writer.losses, level),
+        Exporter(
+            "kml",
+            "KML, for Google Earth, QGIS and others",
+            ".kml",
+            kml_writer.write,
+            kml_writer.losses,
+            level,
+        ),
+        Exporter("kmz", "KML in an archive", ".kmz", kml_writer.write_archive, kml_writer.losses, level),
     )

@@ -10,16 +10,16 @@ from drawn_features import assert_same, drawings
 from hypothesis import given
 from hypothesis import strategies as st
 
-from mmrs_core.drawings import geojson, gpx, kml
+from mmrs_core.drawings import geojson, gpx, gpx_writer, kml, kml_writer
 from mmrs_core.drawings.drawing import Drawing, Geometry, HeightReference, MapFeature
 from mmrs_core.errors import UnreadableError
 
 OF_GPX = (HeightReference.NONE, HeightReference.SEA_LEVEL)
 WRITERS = {
-    "gpx": (gpx.write, gpx.read),
+    "gpx": (gpx_writer.write, gpx.read),
     "geojson": (geojson.write, geojson.read),
-    "kml": (kml.write, kml.read),
-    "kmz": (kml.write_archive, kml.read),
+    "kml": (kml_writer.write, kml.read),
+    "kmz": (kml_writer.write_archive, kml.read),
 }
 
 
