@@ -11,8 +11,6 @@ from dataclasses import replace
 from functools import partial
 from math import inf
 
-from pymavlink.dialects.v20 import ardupilotmega as mavlink
-
 from mmrs_runtime.controllers.geodesy import at_height
 from mmrs_runtime.controllers.state import State
 from mmrs_runtime.faults import LINK_LOST, MOTORS_OFF, FaultError, RefusedError, UnansweredError
@@ -382,10 +380,7 @@ class MavlinkVehicle(Vehicle):
 
     def disarm(self) -> None:
         """Switch off propulsion, whatever happens then."""
-        command(self._link, mavlink.MAV_CMD_COMPONENT_ARM_DISARM, 0, FORCE_DISARM)
-        self._mode_control.until(
-            lambda: not self._telemetry.armed(), self._link.profile.timing.mode, "to stop its motors"
-        )
+        self._mode_control.disarm(FORCE_DISARM)
 
     def finish(self) -> None:
         """End the mission: a vehicle that does not fly is disarmed, one that does is not."""

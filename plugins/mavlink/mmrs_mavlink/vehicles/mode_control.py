@@ -288,7 +288,7 @@ class ModeControl:
     def _ask_to_arm(self) -> None:
         self._arming = True
         try:
-            command(self._link, mavlink.MAV_CMD_COMPONENT_ARM_DISARM, 1)
+            self._switch_motors(1)
         except RefusedError as error:
             self._arming = isinstance(error, UnansweredError)
             self._link.wait(lambda: None, WORDS_SECONDS)
@@ -323,14 +323,29 @@ class ModeControl:
                 if attempt >= max(TAKE_OFF_TRIES, lost):
                     raise
 
-    def disarm(self) -> None:
-        """Stop the motors of a vehicle that does not fly; one that does refuses.
+    def disarm(self, force: float = 0.0) -> None:
+        """Stop the motors; one that flies refuses, unless it is forced to.
+
+        Args:
+            force: second parameter of the command, by which the autopilot lets itself be forced.
 
         Raises:
             RefusedError: the vehicle does not disarm.
         """
-        command(self._link, mavlink.MAV_CMD_COMPONENT_ARM_DISARM, 0)
+        self._switch_motors(0, force)
         self.until(lambda: not self._telemetry.armed(), self._link.profile.timing.mode, "to disarm")
+
+    def _switch_motors(self, on: int, force: float = 0.0) -> None:
+        """Arm or disarm; a vehicle that reports that it has changed owes no answer."""
+        before = self._telemetry.armed()
+        try:
+            command(self._link, mavlink.MAV_CMD_COMPONENT_ARM_DISARM, on, force)
+        except UnansweredError:
+            patience = self._link.clock.patience(self._link.profile.timing.arming)
+            if before == bool(on) or not self._link.wait(
+                lambda: self._telemetry.armed() == bool(on), patience, while_received=True
+            ):
+                raise
 
     def motors_may_run(self) -> bool:
         """Return whether the vehicle is armed, or was commanded to arm, and may be by now."""

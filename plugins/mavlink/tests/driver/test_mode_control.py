@@ -158,6 +158,34 @@ def test_a_vehicle_that_disarms_itself_at_once_is_asked_to_arm_again(steered):
     assert asked == [1.0, 1.0]
 
 
+@pytest.mark.parametrize("obeyed", [True, False])
+def test_arming_without_an_answer_counts_where_the_heartbeat_reports_it(steered, obeyed):
+    mode_control, telemetry, vehicle, wire = steered()
+
+    def answers_lost(message):
+        answers = list(vehicle(message))
+        if message.get_type() != "COMMAND_LONG" or message.command != ARM:
+            yield from answers
+        elif not obeyed:
+            vehicle.armed = not message.param1
+            wire.beat(mode=vehicle.mode, armed=vehicle.armed)
+
+    def switch(change, armed):
+        vehicle.armed = not armed
+        wire.beat(mode=vehicle.mode, armed=vehicle.armed)
+        assert eventually(lambda: telemetry.armed() != armed)
+        if obeyed:
+            change()
+            assert telemetry.armed() == armed
+        else:
+            with pytest.raises(RefusedError, match="ARM_DISARM: no answer to"):
+                change()
+
+    wire.answer = answers_lost
+    switch(mode_control.start_motors, armed=True)
+    switch(mode_control.disarm, armed=False)
+
+
 def test_a_vehicle_that_never_stays_armed_is_told_with_what_it_has_said(steered):
     mode_control, _, vehicle, wire = steered()
 
