@@ -8,7 +8,7 @@ from pathlib import Path
 
 from mmrs_core.behaviour.program import RobotProgram
 from mmrs_core.cli.behaviours import is_behaviour, load_behaviour
-from mmrs_core.cli.session import Session, Stages
+from mmrs_core.cli.session import CommandStages, Session
 from mmrs_core.languages.modelset import model_in
 from mmrs_core.scene import Frame, Position, RobotType
 
@@ -54,6 +54,6 @@ def crew_in(session: Session, path: Path) -> Crew:
             for each in loaded.program.robots
         ]
         return Crew(tuple(members), loaded.program.frame, loaded.place.environment or {})
-    scene = Stages(session, path).grounded
+    scene = CommandStages(session, path).grounded
     members = [CrewMember(each.name, each.type, each.home, each.payload) for each in scene.robots]
     return Crew(tuple(members), scene.frame, scene.environment)

@@ -10,7 +10,7 @@ import typer
 from mmrs_core.cli.completion import example_names
 from mmrs_core.cli.examples import also_called, demo_settings_of, example_folder, examples
 from mmrs_core.cli.output import say, say_json
-from mmrs_core.cli.session import Session, Stages
+from mmrs_core.cli.session import CommandStages, Session
 from mmrs_core.cli.settings import Json, settings_of
 
 DEFAULT = "carbon-dioxide"
@@ -43,7 +43,7 @@ def demo(
         return _list_examples(json)
     folder = example_folder(example)
 
-    stages = Stages(Session(settings_of(call)), folder)
+    stages = CommandStages(Session(settings_of(call)), folder)
     made = demonstrate(stages, folder, out, demo_settings_of(folder), examples().values())
     if json:
         say_json(made.summary())

@@ -14,7 +14,7 @@ from mmrs_core.cli.output import counted
 from mmrs_core.cli.plan import require_sound, require_writable
 from mmrs_core.cli.plan_words import plan_lines, plan_summary
 from mmrs_core.cli.preview import drawn_on_failure, picture_of, write_pictures
-from mmrs_core.cli.session import Stages
+from mmrs_core.cli.session import CommandStages
 from mmrs_core.cli.simulation import Chosen, fly, run_lines, succeeded, write_logs
 from mmrs_core.cli.verdict_words import verdict_table
 from mmrs_core.contributions.targets import GeneratedFile
@@ -38,7 +38,7 @@ class Demonstration:
         backend: of the robots.
     """
 
-    stages: Stages
+    stages: CommandStages
     run: SimulatedRun
     replayed: ReplayResult
     folder: Path
@@ -88,7 +88,7 @@ class Demonstration:
 
 
 def demonstrate(
-    stages: Stages,
+    stages: CommandStages,
     example: Path,
     folder: Path,
     settings: DemoSettings,
@@ -144,7 +144,7 @@ def demonstrate(
     return Demonstration(stages, run, replayed, folder, tuple(files), left_out, backends)
 
 
-def _rendered(stages: Stages, target: str) -> tuple[tuple[GeneratedFile, ...], tuple[str, ...]]:
+def _rendered(stages: CommandStages, target: str) -> tuple[tuple[GeneratedFile, ...], tuple[str, ...]]:
     """Return the files of a target, and what had to be left out; no files where nothing is left."""
     contributions = stages.session.contributions
 

@@ -14,7 +14,7 @@ from mmrs_core.cli.behaviours import Loaded, is_behaviour, load_behaviour
 from mmrs_core.cli.output import tell
 from mmrs_core.cli.parameters import behaviour_file, without_mission
 from mmrs_core.cli.plan import folder_of
-from mmrs_core.cli.session import Session, Stages
+from mmrs_core.cli.session import CommandStages, Session
 from mmrs_core.errors import UnreadableError, UnsupportedError
 from mmrs_core.languages.modelset import model_in
 from mmrs_core.pictures.layers.layer import Layer
@@ -72,7 +72,7 @@ def given_by(
     elif is_behaviour(session, alone := without_mission(source)):
         file = alone
     else:
-        mission = Stages(session, source, context=context, robots=robots).grounded
+        mission = CommandStages(session, source, context=context, robots=robots).grounded
         _refuse_local(mission.frame, source)
         file = model_in(folder_of(source), "behaviour")
         idle = bool(only) and _OF_MISSIONS.issuperset(only)

@@ -14,7 +14,7 @@ from mmrs_core.cli.output import say, say_json, tell
 from mmrs_core.cli.parameters import Context, Project, Robots, Seed, robot_files
 from mmrs_core.cli.plan_words import plan_lines, plan_summary
 from mmrs_core.cli.protection import files_of, refuse_handwritten, refuse_inputs, refuse_inside
-from mmrs_core.cli.session import Session, Stages, require_safe
+from mmrs_core.cli.session import CommandStages, Session, require_safe
 from mmrs_core.cli.settings import Json, settings_of
 from mmrs_core.diagnostics import has_errors, in_order
 from mmrs_core.errors import InvalidModelError, MmrsError
@@ -34,7 +34,7 @@ class Stage(StrEnum):
     VERIFY = "verify"
 
 
-_VALUES: Mapping[Stage, Callable[[Stages], object]] = {
+_VALUES: Mapping[Stage, Callable[[CommandStages], object]] = {
     Stage.READ: lambda stages: _models(stages),
     Stage.CHECK: lambda stages: stages.warnings,
     Stage.GROUND: lambda stages: stages.grounded,
@@ -72,7 +72,7 @@ def plan(
     Example: mmrs plan field
     """
     session = Session(settings_of(call))
-    stages = Stages(session, project, context=context, robots=robot_files(robots), seed=seed)
+    stages = CommandStages(session, project, context=context, robots=robot_files(robots), seed=seed)
     if stop_after is not None:
         say_json({"stage": stop_after.value, "value": _VALUES[stop_after](stages)})
         return 0
@@ -102,17 +102,17 @@ def folder_of(project: Path) -> Path:
     return project if project.is_dir() else project.parent
 
 
-def _models(stages: Stages) -> object:
+def _models(stages: CommandStages) -> object:
     models = stages.models
     return {"mission": models.mission, "context": models.context, "robots": models.robots}
 
 
-def _behaviour(stages: Stages) -> object:
+def _behaviour(stages: CommandStages) -> object:
     behaviour, trace = stages.transformed
     return {"behaviour": behaviour, "trace": trace}
 
 
-def require_writable(stages: Stages, file: Path, way_out: str = "") -> None:
+def require_writable(stages: CommandStages, file: Path, way_out: str = "") -> None:
     """Require that the behaviour of a mission may be written to a file.
 
     Args:
@@ -132,7 +132,7 @@ def require_writable(stages: Stages, file: Path, way_out: str = "") -> None:
         refuse_handwritten(file, stages.session.contributions.languages, way_out)
 
 
-def require_sound(stages: Stages, name: str) -> None:
+def require_sound(stages: CommandStages, name: str) -> None:
     """Require that the behaviour of a mission is safe to execute, and valid.
 
     Args:

@@ -24,7 +24,7 @@ from mmrs_core.cli.parameters import (
 from mmrs_core.cli.plan import folder_of
 from mmrs_core.cli.protection import files_of, refuse_inputs
 from mmrs_core.cli.replacing import replace_files
-from mmrs_core.cli.session import Session, Stages
+from mmrs_core.cli.session import CommandStages, Session
 from mmrs_core.cli.settings import Json, settings_of
 from mmrs_core.cli.verdict_words import verdict_rows
 from mmrs_core.diagnostics import Diagnostic
@@ -82,7 +82,7 @@ def preview(
             "--assume goes with a behaviour, or with --logs; a mission is drawn as planned"
         )
     else:
-        stages = Stages(session, project, context=context, robots=types, seed=seed)
+        stages = CommandStages(session, project, context=context, robots=types, seed=seed)
         with drawn_on_failure(stages, folder):
             picture = picture_of(stages)
     refuse_inputs((folder / PAGE, folder / MAP), session.inputs)
@@ -95,7 +95,7 @@ def preview(
     return 0
 
 
-def picture_of(stages: Stages) -> Picture:
+def picture_of(stages: CommandStages) -> Picture:
     """Return the picture of a planned mission, with the moves that carry it out."""
     from mmrs_core.pictures.preview.from_models import with_problems
     from mmrs_core.pictures.preview.from_plan import picture_of_plan
@@ -108,7 +108,7 @@ def picture_of(stages: Stages) -> Picture:
 
 
 @contextmanager
-def drawn_on_failure(stages: Stages, folder: Path) -> Iterator[None]:
+def drawn_on_failure(stages: CommandStages, folder: Path) -> Iterator[None]:
     """Draw a mission that turns out not to be valid, or to have no plan, with its problems into a folder.
 
     Raises:

@@ -14,33 +14,28 @@ from mmrs_core.cli.output import progress, report, tell
 from mmrs_core.cli.protection import files_of
 from mmrs_core.cli.settings import Settings
 from mmrs_core.contributions.checks import Status, Verdict
-from mmrs_core.pipeline import (
-    BehaviourContext,
-    expand,
-    ground,
-    place_of_scene,
-    plan,
-    program_of,
-    read_models,
-    refusals,
-    transform,
-    valid_models,
-    verify,
-)
+from mmrs_core.pipeline import BehaviourContext, read_models, refusals, valid_models, verify
+from mmrs_core.stages import Stages
 
 if TYPE_CHECKING:
     from mmrs_core.behaviour.program import Program
     from mmrs_core.contributions.registry import Contributions
     from mmrs_core.diagnostics import Diagnostic
-    from mmrs_core.languages.behaviour import Behaviour
     from mmrs_core.languages.model import Model
     from mmrs_core.languages.modelset import ModelSet
     from mmrs_core.plugins import Plugins
-    from mmrs_core.scene import Plan, Scene
-    from mmrs_core.transformation.engine import Trace
 
 Result = TypeVar("Result")
 
+_DOING = {
+    "check": "checking the models",
+    "ground": "grounding the mission",
+    "expand": "finding the work of every task",
+    "plan": "planning",
+    "transform": "writing the behaviour",
+    "verify": "checking the behaviour",
+}
+"""What stages do, as it is shown while they do it."""
 _UNKNOWN = "known to be safe: give what is missing, or name the property in the mission's acceptedUnknowns"
 NO_CONTEXT = "no context: nothing is known of obstacles and forbidden areas"
 
@@ -92,8 +87,8 @@ class Session:
         return result
 
 
-class Stages:
-    """One mission from its models to its verdicts."""
+class CommandStages(Stages):
+    """The stages of a command's mission: shown, and observed."""
 
     def __init__(
         self,
@@ -104,19 +99,22 @@ class Stages:
         robots: Sequence[Path] = (),
         seed: int = 0,
     ) -> None:
+        super().__init__(lambda: self._valid[0], session.contributions, seed=seed)
         self.session = session
         self._mission = mission
         self._context = context
         self._robots = robots
-        self._seed = seed
+
+    def stage(self, name: str, make: Callable[[], Result]) -> Result:
+        """Return what a stage makes, after telling the observers of it."""
+        return self.session.stage(name, _DOING[name], make)
 
     @cached_property
     def _valid(self) -> tuple[ModelSet, tuple[Diagnostic, ...]]:
-        models, warnings = self.session.stage(
+        models, warnings = self.stage(
             "check",
-            "checking the models",
             lambda: valid_models(
-                self._mission, self.session.contributions, context=self._context, robots=self._robots
+                self._mission, self._contributions, context=self._context, robots=self._robots
             ),
         )
         self.session.have_read(models.models, models.context)
@@ -126,71 +124,19 @@ class Stages:
     def readable(self) -> ModelSet | None:
         """Return the models as far as they can be read, valid or not; None where there is no mission."""
         models, _ = read_models(
-            self._mission, self.session.contributions, context=self._context, robots=self._robots
+            self._mission, self._contributions, context=self._context, robots=self._robots
         )
         return models
-
-    @property
-    def models(self) -> ModelSet:
-        """Return the valid models; warnings are printed when they are first asked for."""
-        return self._valid[0]
 
     @property
     def warnings(self) -> tuple[Diagnostic, ...]:
         """Return what is doubtful about the models."""
         return self._valid[1]
 
-    @cached_property
-    def grounded(self) -> Scene:
-        """Return the mission in its local frame."""
-        models = self.models
-        return self.session.stage("ground", "grounding the mission", lambda: ground(models))
-
-    @cached_property
-    def scene(self) -> Scene:
-        """Return the scene with the work of every task."""
-        scene = self.grounded
-        return self.session.stage(
-            "expand", "finding the work of every task", lambda: expand(scene, self.session.contributions)
-        )
-
-    @cached_property
-    def plan(self) -> Plan:
-        """Return who does what, when and by which way."""
-        scene = self.scene
-        return self.session.stage("plan", "planning", lambda: plan(scene, seed=self._seed))
-
-    @cached_property
-    def transformed(self) -> tuple[Behaviour, Trace]:
-        """Return the behaviour, and what each of its moves is for."""
-        scene, plan = self.scene, self.plan
-        return self.session.stage(
-            "transform",
-            "writing the behaviour",
-            lambda: transform(scene, plan, self.session.contributions),
-        )
-
-    @cached_property
-    def program(self) -> Program:
-        """Return the behaviour as engines use it."""
-        return program_of(self.transformed[0], self.session.contributions)
-
-    @property
-    def place(self) -> BehaviourContext:
-        """Return what the behaviour is checked against."""
-        return place_of_scene(self.scene)
-
-    @cached_property
-    def verdicts(self) -> tuple[Verdict, ...]:
-        """Return what is known of the behaviour's safety."""
-        return verdicts_of(self.session, self.program, self.place)
-
 
 def verdicts_of(session: Session, program: Program, place: BehaviourContext) -> tuple[Verdict, ...]:
     """Return what is known of every property of a behaviour."""
-    return session.stage(
-        "verify", "checking the behaviour", lambda: verify(program, place, session.contributions)
-    )
+    return session.stage("verify", _DOING["verify"], lambda: verify(program, place, session.contributions))
 
 
 def require_safe(program: Program, verdicts: Sequence[Verdict], name: str) -> None:

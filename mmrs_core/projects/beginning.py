@@ -16,29 +16,19 @@ from mmrs_core.errors import InfeasibleError, InvalidModelError, UsageError
 from mmrs_core.geometry.frames import LocalFrame
 from mmrs_core.grounding.robots import robot_type_of
 from mmrs_core.languages.naming import nearest
-from mmrs_core.pipeline import (
-    expand,
-    ground,
-    place_of_scene,
-    plan,
-    program_of,
-    read_models,
-    refusals,
-    transform,
-    verify,
-)
+from mmrs_core.pipeline import refusals
 from mmrs_core.projects.choosing import Assignment
 from mmrs_core.projects.importing import ImportOptions, ImportResult, imported
 from mmrs_core.projects.kinds import ImportKinds, Kind
 from mmrs_core.projects.notes import completed
 from mmrs_core.projects.shapes import WGS84
 from mmrs_core.projects.team import RobotWanted, TypeFile, types_for
+from mmrs_core.stages import Stages
 
 if TYPE_CHECKING:
     from mmrs_core.contributions.registry import Contributions
     from mmrs_core.contributions.rules import Medium
     from mmrs_core.languages.element import Element
-    from mmrs_core.scene import Scene
 
 HOMES_APART = 20.0
 """Least metres from home to home: more than they have to keep between them."""
@@ -171,7 +161,7 @@ class Beginning:
             used[attempts[-1].type] += 1
         made = self._made(folder, title, robots, types, attempts)
         if not has_errors(made.diagnostics):
-            _expanded(made, self._contributions)
+            _ = _stages(made, self._contributions).scene
         return made
 
     def _best(self, task: TaskWanted, types: Iterable[str]) -> _Attempt:
@@ -195,14 +185,11 @@ class Beginning:
         """Return why no plan of a task for one robot is safe; None if one is."""
         robot = RobotWanted("trial", attempt.type)
         types = types_for([robot], (), self._contributions)
-        scene = _expanded(self._made(_NOWHERE, "trial", [robot], types, [attempt]), self._contributions)
+        stages = _stages(self._made(_NOWHERE, "trial", [robot], types, [attempt]), self._contributions)
         try:
-            behaviour, _ = transform(scene, plan(scene), self._contributions)
+            refused = refusals(stages.verdicts, stages.program)
         except InfeasibleError as error:
             return _reason(error)
-        program = program_of(behaviour, self._contributions)
-        verdicts = verify(program, place_of_scene(scene), self._contributions)
-        refused = refusals(verdicts, program)
         return "; ".join(f"{each.property}: {each.status.value}, {each.message}" for each in refused) or None
 
     def _attempt(self, task: TaskWanted, type_name: str) -> _Attempt | str:
@@ -220,7 +207,7 @@ class Beginning:
         for attempt in self._attempts(task, kind, types[type_name].element):
             try:
                 made = self._made(_NOWHERE, "trial", [robot], types, [attempt])
-                _expanded(made, self._contributions)
+                _ = _stages(made, self._contributions).scene
             except (InfeasibleError, InvalidModelError, UsageError) as error:
                 reason = reason or _reason(error)
             else:
@@ -350,24 +337,16 @@ def _height_of(attempt: _Attempt) -> dict[str, float]:
     return {name: attempt.height} if name and name not in attempt.attributes else {}
 
 
-def _expanded(made: ImportResult, contributions: Contributions) -> Scene:
-    """Return the expanded scene of a project that is not written yet.
+def _stages(made: ImportResult, contributions: Contributions) -> Stages:
+    """Return the stages of a project that is not written yet.
 
     Raises:
         InvalidModelError: if it is invalid.
-        InfeasibleError: if a task can be done by no robot.
     """
-    faults = made.diagnostics
-    if has_errors(faults):
-        raise InvalidModelError("not valid", faults)
-    by_name = {file.name: file for file in made.files}
-    robots = tuple(file for file in made.files if file.parent.name == "robots")
-    unsaved = {file.resolve(): data for file, data in made.files.items()}
-    models, _ = read_models(
-        by_name["mission.xmi"], contributions, context=by_name["context.xmi"], robots=robots, unsaved=unsaved
-    )
-    assert models is not None  # it is valid
-    return expand(ground(models), contributions)
+    models = made.models
+    if models is None or has_errors(made.diagnostics):
+        raise InvalidModelError("not valid", made.diagnostics)
+    return Stages(lambda: models, contributions)
 
 
 def _reason(error: InfeasibleError | InvalidModelError | UsageError) -> str:

@@ -31,6 +31,7 @@ from mmrs_core.projects.texts import text_of, with_added
 if TYPE_CHECKING:
     from mmrs_core.contributions.registry import Contributions
     from mmrs_core.languages.element import Element
+    from mmrs_core.languages.modelset import ModelSet
     from mmrs_core.languages.registry import Registry
 
     _Create = Callable[..., Element]
@@ -72,12 +73,14 @@ class ImportResult:
         files: the whole content of each file that is to be written.
         diagnostics: of the project; those of imported elements have the lines of features.
         notes: on the whole.
+        models: as the files will hold them; None where no mission can be read.
     """
 
     outcomes: tuple[Outcome, ...]
     files: Mapping[Path, bytes]
     diagnostics: tuple[Diagnostic, ...]
     notes: tuple[str, ...]
+    models: ModelSet | None = None
 
 
 class ImportRefusedError(UsageError):
@@ -171,12 +174,11 @@ def imported(
     ordered = _keep_order(builder, features, outcomes)
     texts = _texts(project, builder, options, languages) | added_types
     files = {file: data for file, data in texts.items() if project.texts.get(file) != data}
-    found = _diagnosed(project, files, contributions)
+    models, found = _diagnosed(project, files, contributions)
     places = {each.path: each.place for each in outcomes if each.path}
     faults = [_at_source(each, places) for each in found if (each.code, each.message) not in project.known]
-    return ImportResult(
-        (*outcomes, *rest), files, in_order(faults), (*notes, *_notes(project, levels, features, ordered))
-    )
+    notes = (*notes, *_notes(project, levels, features, ordered))
+    return ImportResult((*outcomes, *rest), files, in_order(faults), notes, models)
 
 
 def _unfit(feature: MapFeature) -> str:
@@ -340,8 +342,8 @@ def _texts(
 
 def _diagnosed(
     project: _Project, files: Mapping[Path, bytes], contributions: Contributions
-) -> tuple[Diagnostic, ...]:
-    """Return the faults of the project as it will be."""
+) -> tuple[ModelSet | None, tuple[Diagnostic, ...]]:
+    """Return the project as it will be, and its faults."""
     robots = dict.fromkeys((*project.robots, *(file for file in files if file.parent.name == "robots")))
     context = project.files["context"]
     there = context in files or context in project.texts
@@ -352,7 +354,7 @@ def _diagnosed(
         robots=tuple(robots),
         unsaved={file.resolve(): data for file, data in files.items()},
     )
-    return faults if models is None else (*faults, *check_models(models, contributions))
+    return models, faults if models is None else (*faults, *check_models(models, contributions))
 
 
 def _at_source(fault: Diagnostic, places: Mapping[str, Place]) -> Diagnostic:

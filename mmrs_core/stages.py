@@ -1,0 +1,94 @@
+"""A mission from its models to what is known of its safety, each stage when it is first asked for."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import cached_property
+from typing import TYPE_CHECKING, TypeVar
+
+from mmrs_core.pipeline import (
+    BehaviourContext,
+    expand,
+    ground,
+    place_of_scene,
+    plan,
+    program_of,
+    transform,
+    verify,
+)
+
+if TYPE_CHECKING:
+    from mmrs_core.behaviour.program import Program
+    from mmrs_core.contributions.checks import Verdict
+    from mmrs_core.contributions.registry import Contributions
+    from mmrs_core.languages.behaviour import Behaviour
+    from mmrs_core.languages.modelset import ModelSet
+    from mmrs_core.scene import Plan, Scene
+    from mmrs_core.transformation.engine import Trace
+
+Result = TypeVar("Result")
+
+
+class Stages:
+    """One mission from its models to its verdicts.
+
+    Args:
+        models: return the valid models.
+        seed: of the planner's search.
+    """
+
+    def __init__(
+        self, models: Callable[[], ModelSet], contributions: Contributions, *, seed: int = 0
+    ) -> None:
+        self._models = models
+        self._contributions = contributions
+        self._seed = seed
+
+    def stage(self, name: str, make: Callable[[], Result]) -> Result:
+        """Return what a stage makes."""
+        return make()
+
+    @cached_property
+    def models(self) -> ModelSet:
+        """Return the valid models."""
+        return self._models()
+
+    @cached_property
+    def grounded(self) -> Scene:
+        """Return the mission in its local frame."""
+        models = self.models
+        return self.stage("ground", lambda: ground(models))
+
+    @cached_property
+    def scene(self) -> Scene:
+        """Return the scene with the work of every task."""
+        scene = self.grounded
+        return self.stage("expand", lambda: expand(scene, self._contributions))
+
+    @cached_property
+    def plan(self) -> Plan:
+        """Return who does what, when and along which path."""
+        scene = self.scene
+        return self.stage("plan", lambda: plan(scene, seed=self._seed))
+
+    @cached_property
+    def transformed(self) -> tuple[Behaviour, Trace]:
+        """Return the behaviour, and what each of its moves is for."""
+        scene, plan = self.scene, self.plan
+        return self.stage("transform", lambda: transform(scene, plan, self._contributions))
+
+    @cached_property
+    def program(self) -> Program:
+        """Return the behaviour as engines use it."""
+        return program_of(self.transformed[0], self._contributions)
+
+    @property
+    def place(self) -> BehaviourContext:
+        """Return what the behaviour is checked against."""
+        return place_of_scene(self.scene)
+
+    @cached_property
+    def verdicts(self) -> tuple[Verdict, ...]:
+        """Return what is known of the behaviour's safety."""
+        program, place = self.program, self.place
+        return self.stage("verify", lambda: verify(program, place, self._contributions))
