@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import partial
 from math import inf
@@ -219,9 +219,10 @@ class _Scheduling:
         times = [self._tasks[name].earliest for name in job.tasks()]
         return max((time for time in times if time is not None), default=None)
 
-    def _allowed(self, job: Job) -> Sequence[str]:
+    def _allowed(self, job: Job) -> Collection[str]:
+        """Return the robots that may do a job: those that were decided on, or all."""
         group = self._decisions.groups.get(job.name)
-        return group if isinstance(group, tuple) else tuple(self._team.pilots)
+        return group if isinstance(group, tuple) else self._team.pilots
 
     def _sharings(self, job: Job) -> Iterator[Sharing]:
         task = self._tasks[job.name]
@@ -240,9 +241,12 @@ class _Scheduling:
                     yield found
 
     def _candidates(self, job: Job, task: Task, group: Sequence[str]) -> list[ShareCandidate]:
-        """Return the robots of a group, those first that are first back from the first portion."""
+        """Return the allowed robots of a group, those first that are first back from the first portion."""
+        allowed = self._allowed(job)
         found = []
         for name in group:
+            if name not in allowed:
+                continue
             forwards = self._team.forwards(job.name, name)
             if forwards is None:
                 continue
@@ -259,9 +263,8 @@ class _Scheduling:
         """Yield the groups to be tried, and whether each robot in them must have a share."""
         decided = self._decisions.groups.get(task.name)
         if isinstance(decided, tuple):
-            chosen = [each for each in candidates if each.pilot.robot.name in decided]
-            if chosen and (task.wanted is None or len(chosen) == task.wanted):
-                yield chosen, task.wanted is not None
+            if candidates and (task.wanted is None or len(candidates) == task.wanted):
+                yield candidates, task.wanted is not None
             return
         if task.wanted is not None:
             if task.wanted <= len(candidates):
@@ -282,9 +285,8 @@ class _Scheduling:
         """Yield, by sort, the robots to be tried together, of two sorts at least."""
         decided = self._decisions.groups.get(task.name)
         if isinstance(decided, tuple):
-            chosen = [[each for each in group if each.pilot.robot.name in decided] for group in groups]
-            if sum(map(bool, chosen)) > 1 and task.wanted in (None, sum(map(len, chosen))):
-                yield chosen
+            if sum(map(bool, groups)) > 1 and task.wanted in (None, sum(map(len, groups))):
+                yield groups
             return
         robots = sum(map(len, groups))
         size = task.wanted or min(decided or robots, robots)

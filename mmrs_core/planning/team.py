@@ -84,10 +84,13 @@ class Team:
             )
             for robot in scene.robots
         }
+        self._kinds = _kinds_of(scene, self.pilots)
         self.starts = dict[tuple[str, float], State]()
         self.done = dict[tuple[object, ...], tuple[tuple[State, ...], JobResult | None]]()
         self._coarsest = _seconds_of_all(scene) / (_PORTIONS_PER_ROBOT * max(1, len(scene.robots)))
         self.refusals: dict[tuple[str, str], str] = dict(scene.refusals)
+        self._faults: dict[tuple[str, str], str] = {}
+        self._able_robots: dict[str, tuple[str, ...]] = {}
         self._layouts: dict[tuple[str, str], Layout] = {}
         self._materials: dict[tuple[str, str, Direction], Material | None] = {}
         self.groups: dict[str, tuple[tuple[str, ...], ...]] = {}
@@ -106,6 +109,8 @@ class Team:
             if len(able := [each for each in sorts if each.robots]) > 1:
                 mixtures.append(Mixture(task.name, able, self.pilots, partial(self._layout, robots=robots)))
         self.groups[task.name], self.mixtures[task.name] = tuple(groups), tuple(mixtures)
+        found = {name for group in groups for name in group}
+        self._able_robots[task.name] = tuple(name for name in self.pilots if name in found)
 
     def _sorts(self, task: Task) -> list[tuple[Work, list[str]]]:
         """Return the robots whose work of a task is sound, by work."""
@@ -128,9 +133,11 @@ class Team:
         if work is None:
             self.refusals.setdefault(key, "has no work for it")
             return None
-        found = list(faults(work, pilot))
-        if found:
-            self.refusals[key] = "; ".join(found)
+        alike = (task.name, self._kinds[pilot.robot.name])
+        if alike not in self._faults:
+            self._faults[alike] = "; ".join(faults(work, pilot))
+        if self._faults[alike]:
+            self.refusals[key] = self._faults[alike]
             return None
         return work
 
@@ -140,14 +147,19 @@ class Team:
     def _able(self, task: str, work: Work, group: Sequence[str], robots: int) -> WorkGroup:
         """Lay the work out for each robot of a group; return those that can follow it."""
         layout = self._layout(work, group, robots)
-        able = []
+        able, reasons = [], dict[str, str]()
         for name in group:
-            self._layouts[task, name] = layout
-            try:
-                self._materials[task, name, False] = lay_out(task, work, layout, self.pilots[name])
+            kind = self._kinds[name]
+            if (task, kind) not in self._layouts:
+                self._layouts[task, kind] = layout
+                try:
+                    self._materials[task, kind, False] = lay_out(task, work, layout, self.pilots[name])
+                except UnreachableError as error:
+                    reasons[kind] = str(error)
+            if kind in reasons:
+                self.refusals[task, name] = reasons[kind]
+            else:
                 able.append(name)
-            except UnreachableError as error:
-                self.refusals[task, name] = str(error)
         return WorkGroup(work, tuple(able), layout)
 
     def wanting(self, wanted: Mapping[str, int]) -> Team:
@@ -159,13 +171,14 @@ class Team:
 
     def forwards(self, task: str, robot: str) -> Material | None:
         """Return the material of a task for a robot; None if it cannot do the task."""
-        return self._materials.get((task, robot, False))
+        return self._materials.get((task, self._kinds[robot], False))
 
     def backwards(self, task: str, robot: str) -> Material | None:
         """Return the material in the other direction; None if it has only one."""
-        key = (task, robot, True)
+        kind = self._kinds[robot]
+        key = (task, kind, True)
         if key not in self._materials:
-            layout = self._layouts[task, robot]
+            layout = self._layouts[task, kind]
             made = None
             if layout.can_turn:
                 work = self.scene.works[task, robot]
@@ -178,8 +191,7 @@ class Team:
 
     def able(self, task: str) -> tuple[str, ...]:
         """Return all robots that can do a task, in the scene's order."""
-        found = {name for group in self.groups[task] for name in group}
-        return tuple(name for name in self.pilots if name in found)
+        return self._able_robots[task]
 
     def sharers(self, task: str) -> int:
         """Return how many robots may share a task at most; 1 where it is indivisible."""
@@ -250,6 +262,18 @@ class Team:
             material = self.forwards(task, name)
             for fault in charge_faults(material, self.pilots[name]) if material is not None else ():
                 yield f"{name}: {fault}"
+
+
+def _kinds_of(scene: Scene, pilots: Mapping[str, Pilot]) -> dict[str, str]:
+    """Return, by robot, the first that does every work as it does: what is laid out once serves both."""
+    tasks = [task.name for task in scene.tasks]
+    first: dict[tuple[object, ...], str] = {}
+    kinds = {}
+    for name, pilot in pilots.items():
+        works = tuple(id(scene.works.get((task, name))) for task in tasks)
+        key = (id(pilot.robot.type), pilot.kinematics, id(pilot.travel.space), works)
+        kinds[name] = first.setdefault(key, name)
+    return kinds
 
 
 def _families(sorts: Sequence[tuple[Work, list[str]]]) -> list[list[tuple[Work, list[str]]]]:
