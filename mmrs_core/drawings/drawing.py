@@ -142,11 +142,13 @@ class LeftOut:
     Attributes:
         what: such as ``ground overlay 'orchard'``.
         reason: why it was left out.
+        lost: stands for a feature whose shape is none: its name, folders, role and properties; at no place.
     """
 
     what: str
     reason: str
     place: Place = Place()
+    lost: MapFeature | None = None
 
 
 @dataclass(frozen=True, slots=True)

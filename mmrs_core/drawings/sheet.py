@@ -68,10 +68,15 @@ class Sheet:
         left_out: so far.
     """
 
-    def __init__(self, data: bytes, file: str, axes: str) -> None:
-        """Refuse what is too large, or empty; `axes`: how the format orders coordinates, for messages."""
+    def __init__(self, data: bytes, file: str, axes: str, *, lenient: bool = False) -> None:
+        """Refuse what is too large, or empty.
+
+        Args:
+            axes: how the format orders coordinates, for messages.
+            lenient: whether a feature that is not on the Earth is left out, and does not refuse the file.
+        """
         self.file = file
-        self._axes = axes
+        self._axes, self._lenient = axes, lenient
         self.features: list[MapFeature] = []
         self.left_out: list[LeftOut] = []
         if len(data) > LARGEST_FILE:
@@ -83,9 +88,12 @@ class Sheet:
         """Raise the error for a fault of the file."""
         raise UnreadableError.of("", reason, self.file, line)
 
-    def leave_out(self, what: str, reason: str, line: int = 0) -> None:
-        """Note something that no feature stands for."""
-        self.left_out.append(LeftOut(printable(what), printable(reason), Place(self.file, line)))
+    def leave_out(self, what: str, reason: str, line: int = 0, subject: DrawnSubject | None = None) -> None:
+        """Note something that no feature stands for; `subject`: of a feature whose shape is none."""
+        lost = None
+        if subject is not None:
+            lost = MapFeature(Geometry.POINT, (np.zeros((1, 2)),), place=subject.place, **subject.traits)
+        self.left_out.append(LeftOut(printable(what), printable(reason), Place(self.file, line), lost))
 
     def drawing(self, title: str = "") -> Drawing:
         """Return what was collected."""
@@ -142,7 +150,13 @@ class Sheet:
             usual: what heights are measured from where their subject does not say.
         """
         what, line = subject.what, subject.place.line
-        rings = [self._checked(ring, what, line) for ring in rings]
+        for ring in rings:
+            if fault := self._fault_of(ring):
+                if not self._lenient:
+                    self.refuse(f"{what}: {fault}", line)
+                self.leave_out(what, fault, line, subject)
+                return
+        rings = [_around(ring) for ring in rings]
         least = {Geometry.POINT: 1, Geometry.LINE: 2, Geometry.AREA: 3}[geometry]
         times = (
             subject.times
@@ -154,7 +168,7 @@ class Sheet:
         whole = [ring for ring in rings if _has_distinct(ring, least)]
         if not rings or not _has_distinct(rings[0], least):
             reason = f"fewer than {least} different positions" if least > 1 else "no position"
-            self.leave_out(f"{geometry.value} of {what}", reason, line)
+            self.leave_out(f"{geometry.value} of {what}", reason, line, subject)
             return
         if len(whole) < len(rings):
             count = len(rings) - len(whole)
@@ -177,26 +191,31 @@ class Sheet:
         )
         self.features.append(feature)
 
-    def _checked(self, ring: NDArray[np.float64], what: str, line: int) -> NDArray[np.float64]:
-        """Return a ring with longitudes between -180 and 180 degrees, if it is on the Earth."""
-        if not np.isfinite(ring).all():
-            number = int(np.flatnonzero(~np.isfinite(ring).all(axis=1))[0]) + 1
-            self.refuse(f"{what}: a coordinate of position {number} is not a finite number", line)
+    def _fault_of(self, ring: NDArray[np.float64]) -> str:
+        """Return why a ring is not on the Earth; empty if it is."""
+        finite = np.isfinite(ring).all(axis=1)
+        if not finite.all():
+            return f"a coordinate of position {int(np.argmin(finite)) + 1} is not a finite number"
         latitudes, longitudes = np.abs(ring[:, 0]), np.abs(ring[:, 1])
         beyond = (latitudes > 90.0) | (longitudes > 360.0)
         if beyond.any():
-            at = int(np.flatnonzero(beyond)[0])
+            at = int(np.argmax(beyond))
             swapped = bool((latitudes <= 180.0).all() and (longitudes <= 90.0).all())
             why = f"are the axes swapped? {self._axes}" if swapped else "give degrees in WGS 84, not metres"
             position = f"latitude {ring[at, 0]:g}, longitude {ring[at, 1]:g}"
-            self.refuse(f"{what}: position {at + 1} ({position}) is not on the Earth; {why}", line)
+            return f"position {at + 1} ({position}) is not on the Earth; {why}"
         if ring.shape[1] == 3 and (np.abs(ring[:, 2]) > HIGHEST).any():
-            self.refuse(f"{what}: a height of more than {HIGHEST / 1000:g} km", line)
-        if (longitudes > 180.0).any():
-            ring = ring.copy()
-            far = longitudes > 180.0
-            ring[far, 1] = (ring[far, 1] + 180.0) % 360.0 - 180.0
-        return ring
+            return f"a height of more than {HIGHEST / 1000:g} km"
+        return ""
+
+
+def _around(ring: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return a ring with longitudes between -180 and 180 degrees."""
+    far = np.abs(ring[:, 1]) > 180.0
+    if far.any():
+        ring = ring.copy()
+        ring[far, 1] = (ring[far, 1] + 180.0) % 360.0 - 180.0
+    return ring
 
 
 def property_of(value: object) -> Property:

@@ -141,11 +141,7 @@ class Builder:
         try:
             found = self._shape(feature, kind, attributes)
         except UnfitError as unfit:
-            if kind.feature in _SHUT:
-                ways = f"--as {quoted(feature.name)}=ignore leaves it out"
-                self.faults[
-                    f"{feature.place}: {kind.name} {feature.name[:LONGEST_NAME]!r}: {unfit}; {ways}"
-                ] = None
+            self.refuse_open(kind, feature.place, repr(feature.name[:LONGEST_NAME]), str(unfit), feature.name)
             return replace(told, reason=str(unfit))
         element = self._registry.create(*kind.metaclass.key)
         given, doubts = drawn_values(feature, kind, kind.metaclass)
@@ -172,6 +168,12 @@ class Builder:
         self.comments[element] = comment_of(feature)
         path = self._append(element, kind, found.rings[0])
         return replace(told, became=kind.name, called=name, notes=tuple(notes), path=path)
+
+    def refuse_open(self, kind: Kind, place: Place, what: str, reason: str, name: str) -> None:
+        """Note the fault of something to keep clear of that robots would enter, since it is left out."""
+        if kind.feature in _SHUT:
+            ways = f"--as {quoted(name)}=ignore leaves it out"
+            self.faults[f"{place}: {kind.name} {what}: {reason}; {ways}"] = None
 
     def add_robot(self, robot: Element, position: tuple[float, float], feature: MapFeature | None) -> None:
         """Add a robot to the team; the home of the first one has the altitude of the origin."""

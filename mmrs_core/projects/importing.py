@@ -152,7 +152,9 @@ def imported(
         InvalidModelError: if the project that is to be added to cannot be read, or has no place on the Earth.
     """
     kinds = ImportKinds(contributions)
-    decisions, notes = decided(features, options, kinds)
+    lost = [each for each in left_out if each.lost is not None]
+    decisions, notes = decided((*features, *(each.lost for each in lost if each.lost)), options, kinds)
+    decisions, meant = decisions[: len(features)], decisions[len(features) :]
     drawn = [each for each, decision in zip(features, decisions, strict=True) if decision.kind.name == "home"]
     fine = [each for each in drawn if not _unfit(each)]
     homes = homes_for(options.robots, fine)
@@ -169,6 +171,10 @@ def imported(
     added_types = _add_robots(project, homes, options, builder, names, languages.create)
     outcomes = _built(builder, features, decisions, homes)
     rest = tuple(Outcome(each.what, each.place, "", reason=each.reason) for each in left_out)
+    for each, decision in zip(lost, meant, strict=True):
+        builder.refuse_open(
+            decision.kind, each.place, each.what, each.reason, each.lost.name if each.lost else ""
+        )
     if builder.faults:
         raise ImportRefusedError(tuple(builder.faults), ImportResult((*outcomes, *rest), {}, (), notes))
     ordered = _keep_order(builder, features, outcomes)

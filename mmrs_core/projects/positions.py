@@ -5,11 +5,11 @@ from __future__ import annotations
 import re
 from urllib.parse import unquote
 
+from mmrs_core.drawings.angles import MARKS, SIXTY
 from mmrs_core.errors import UsageError
 
 FORMS = "such as 43.77, 11.25 or 43°46'12\"N 11°15'0\"E, a geo: address, or a link of a map program"
 _LONGEST, _LONGEST_LINK = 200, 2000
-_SIXTY = 60
 _DECIMAL = r"([+-]?\d{1,4}(?:\.\d+)?)"
 _LINKS = tuple(
     re.compile(each)
@@ -34,20 +34,6 @@ _PAIRS = tuple(
     )
 )
 _AXES = {"N": "latitude", "S": "latitude", "E": "longitude", "W": "longitude"}
-_MARKS = str.maketrans(
-    {
-        "′": "'",
-        "’": "'",
-        "‘": "'",
-        "´": "'",
-        "″": '"',
-        "”": '"',
-        "“": '"',
-        "º": "°",
-        "−": "-",
-        "\N{NO-BREAK SPACE}": " ",
-    }
-)
 
 
 def position_of(text: str, source: str = "position") -> tuple[float, float]:
@@ -65,7 +51,7 @@ def position_of(text: str, source: str = "position") -> tuple[float, float]:
     Raises:
         UsageError: if it is none, or not on the Earth.
     """
-    wanted = text.strip().strip("()[]").translate(_MARKS)
+    wanted = text.strip().strip("()[]").translate(MARKS)
     is_link = "://" in wanted or wanted.lower().startswith("geo:")
     if len(wanted) > (_LONGEST_LINK if is_link else _LONGEST):
         raise UsageError(f"{source}: too long for a position; expected one {FORMS}")
@@ -92,10 +78,10 @@ def position_of(text: str, source: str = "position") -> tuple[float, float]:
 def _angle(pair: re.Match[str], number: str, source: str) -> float:
     parts = (pair[f"{name}{number}"] or "0" for name in ("degrees", "minutes", "seconds"))
     degrees, minutes, seconds = (float(each.replace(",", ".")) for each in parts)
-    if minutes >= _SIXTY or seconds >= _SIXTY:
-        raise UsageError(f"{source}: minutes and seconds are below {_SIXTY}")
+    if minutes >= SIXTY or seconds >= SIXTY:
+        raise UsageError(f"{source}: minutes and seconds are below {SIXTY}")
     letter = (pair[f"axis{number}"] or "").upper()
-    size = round(degrees + minutes / _SIXTY + seconds / _SIXTY**2, 9)
+    size = round(degrees + minutes / SIXTY + seconds / SIXTY**2, 9)
     return -size if pair[f"sign{number}"] == "-" or letter in ("S", "W") else size
 
 

@@ -302,6 +302,17 @@ def test_an_obstacle_that_cannot_be_imported_is_refused_and_not_forgotten():
     assert refused.value.elements == (words,)
 
 
+def test_an_obstacle_whose_shape_could_not_be_read_is_not_forgotten_either():
+    mast = LeftOut("row 'mast'", "latitude 'x'", Place("a.csv", 4), drawn("mast", (0, 0)))
+    options = choices("mast=obstacle:radius=5")
+    with pytest.raises(UsageError) as refused:
+        imported((HOME,), (mast,), options, CONTRIBUTIONS, Path("x"))
+    assert refused.value.elements == (
+        "a.csv:4: obstacle row 'mast': latitude 'x'; --as 'mast'=ignore leaves it out",
+    )
+    assert imported((HOME,), (mast,), choices("mast=ignore"), CONTRIBUTIONS, Path("x")).files
+
+
 def test_areas_of_too_many_positions_are_left_until_they_are_simplified():
     angles = np.linspace(0, 2 * np.pi, 20_000, endpoint=False)
     circle = drawn("c", *zip(200 + 100 * np.cos(angles), 200 + 100 * np.sin(angles), strict=True))
