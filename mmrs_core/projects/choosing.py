@@ -178,7 +178,7 @@ class Chooser:
                 choice.is_for_all and (usual.kind.surrounds or usual.kind.name == "home")
             ):
                 continue
-            wanted = kind or self._kinds.usual(shape_of(feature))
+            wanted = kind or self._usual_task(feature)
             if isinstance(wanted, str):
                 return Decision(nothing, choice.source, reason=wanted)
             fits = _fits(wanted, feature)
@@ -232,12 +232,17 @@ class Chooser:
                 if kind is not None and _fits(kind, feature):
                     return Decision(kind, by)
         shape = shape_of(feature)
-        usual = self._kinds.usual(shape)
+        usual = self._usual_task(feature)
         if isinstance(usual, str):
             words = f"{usual}; --as {quoted(feature.name)}=TYPE says it"
             return Decision(self._kinds.own("ignore"), shape.value, reason=words)
-        what = (feature.role or shape).value
-        return Decision(usual, f"it is {_a(what)}")
+        waypoints = feature.role is Role.WAYPOINT and shape is Geometry.LINE
+        return Decision(
+            usual, "they are waypoints" if waypoints else f"it is {_a((feature.role or shape).value)}"
+        )
+
+    def _usual_task(self, feature: MapFeature) -> Kind | str:
+        return self._kinds.usual(shape_of(feature), waypoint=feature.role is Role.WAYPOINT)
 
 
 def shape_of(feature: MapFeature) -> Geometry:

@@ -46,7 +46,7 @@ class Kind:
 
     @property
     def is_usual_for(self) -> str:
-        """Return the geometry that usually becomes this; the types below it do not inherit that."""
+        """Return what usually becomes this, such as a shape; the types below it do not inherit that."""
         own = (
             self.symbol is not None
             and self.metaclass is not None
@@ -109,15 +109,14 @@ class ImportKinds:
         found = (kind for name in self._short_names() for kind in self._types[name])
         return tuple(kind for kind in found if kind.feature == "tasks")
 
-    def usual(self, geometry: Geometry) -> Kind | str:
+    def usual(self, geometry: Geometry, *, waypoint: bool = False) -> Kind | str:
         """Return what features of a geometry usually become, or why that is not known."""
-        found = {
-            id(kind): kind
-            for kinds in self._types.values()
-            for kind in kinds
-            if kind.is_usual_for == geometry
-        }
-        kinds = list(found.values())
+        wanted = "waypoint" if waypoint and geometry is Geometry.POINT else geometry.value
+        kinds = [
+            kind for name in self._short_names() for kind in self._types[name] if kind.is_usual_for == wanted
+        ]
+        if not kinds and wanted == "waypoint":
+            return self.usual(geometry)
         if len(kinds) == 1:
             return kinds[0]
         if kinds:

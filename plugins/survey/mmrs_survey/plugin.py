@@ -69,7 +69,7 @@ def mmrs_map_symbols() -> tuple[MapSymbol, ...]:
             device="deviceId",
             action="actionName",
         ),
-        MapSymbol(names.GO_TO_TASK, "go to", "#5b3fa0", "➤", ("type",)),
+        MapSymbol(names.GO_TO_TASK, "go to", "#5b3fa0", "➤", ("type",), usual_for="waypoint"),
         MapSymbol(
             names.ROAD_TASK,
             "road",

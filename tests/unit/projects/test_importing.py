@@ -90,6 +90,8 @@ def models_of(result, folder):
         (square("x", role=Role.ELEMENT, properties={"type": "Terrain"}), "Terrain", "its property type"),
         (square("x", properties={"type": "Landmark"}), "PhotoGridTask", "it is an area"),
         (drawn("", (20, 0), role=Role.RALLY_POINT), "emergency area", "it is a rally point"),
+        (drawn("", (20, 0), heights=[9], role=Role.WAYPOINT), "GoToTask", "it is a waypoint"),
+        (drawn("", (20, 0), (40, 0), role=Role.WAYPOINT), "RoadTask", "they are waypoints"),
     ],
     ids=lambda each: getattr(each, "name", each),
 )

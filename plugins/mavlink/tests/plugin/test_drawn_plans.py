@@ -32,6 +32,8 @@ PLAN = plan(
     item(22, 0, 0, 0, None, 47.0, 8.0, 20),
     item(178, 1, 5, -1, 0, 0, 0, 0, frame=2),
     item(16, 0, 0, 0, None, 47.001, 8.0, 30),
+    item(201, 0, 0, 0, 0, 47.5, 8.0, 0),
+    item(16, 5, 0, 0, None, 47.002, 8.0, 40),
     survey(
         "survey", polygon=FIELD, TransectStyleComplexItem={"CameraCalc": {"SideOverlap": 60}, "version": 1}
     ),
@@ -50,11 +52,11 @@ PLAN = plan(
 def test_taking_off_and_landing_are_no_waypoints_of_their_own():
     drawing = read_plan(plan(item(22, 0, 0, 0, None, 47.0, 8.0, 20), survey("survey", polygon=FIELD)), "a")
     assert [feature.role for feature in drawing.features] == [Role.HOME, Role.SURVEY]
-    assert [left.reason for left in drawing.left_out] == ["robots take off and land without a task"]
+    assert [left.reason for left in drawing.left_out] == ["robots take off, return and land without a task"]
 
 
 def test_a_plan_becomes_areas_paths_fences_and_points():
-    home, area, corridor, structure, path, fence, circle, rally = read_plan(PLAN, "a.plan").features
+    home, path, area, corridor, structure, fence, circle, rally = read_plan(PLAN, "a.plan").features
     assert (home.role, home.rings[0].tolist(), home.heights[0].tolist()) == (
         Role.HOME,
         [[47.0, 8.0]],
@@ -69,9 +71,9 @@ def test_a_plan_becomes_areas_paths_fences_and_points():
     )
     assert structure.role is Role.STRUCTURE
     assert (path.role, path.reference, path.heights[0].tolist()) == (
-        Role.PATH,
+        Role.WAYPOINT,
         HeightReference.HOME,
-        [20, 30],
+        [30, 40],
     )
     assert (fence.role, circle.role, circle.radius) == (Role.FORBIDDEN, Role.INCLUSION, 200.5)
     assert (rally.role, rally.reference) == (Role.RALLY_POINT, HeightReference.HOME)
@@ -80,10 +82,37 @@ def test_a_plan_becomes_areas_paths_fences_and_points():
 def test_items_that_are_no_shape_are_left_out():
     left_out = {each.what: each.reason for each in read_plan(PLAN, "a.plan").left_out}
     assert left_out == {
-        "item 2": "command 178 goes to no place",
-        "item 7": "'fwLandingPattern' is not a kind of item that is read",
+        "item 1": "robots take off, return and land without a task",
+        "item 2": "command 178 (DO_CHANGE_SPEED) does not move a vehicle to a place",
+        "item 4": "command 201 (DO_SET_ROI) does not move a vehicle to a place",
+        "waiting at item 5": "what a robot does there is a task of its own",
+        "item 9": "'fwLandingPattern' is not a kind of item that is read",
     }
     assert all(each.place.line > 1 for each in read_plan(PLAN, "a.plan").left_out)
+
+
+def test_waypoints_are_a_path_between_surveys_and_a_point_where_there_is_one():
+    first, second = item(16, 0, 0, 0, 0, 47, 8, 9), item(16, 0, 0, 0, 0, 47, 8.1, 9)
+    data = plan(first, second, survey("survey", polygon=FIELD), second, second)
+    drawing = read_plan(data, "a.plan")
+    assert [(each.geometry, each.name) for each in drawing.features[1:]] == [
+        (Geometry.LINE, "waypoints 1 to 2"),
+        (Geometry.AREA, "survey 3"),
+        (Geometry.POINT, "waypoint 4"),
+    ]
+    assert [each.reason for each in drawing.left_out] == ["at the same position as waypoint 4"]
+
+
+def test_waypoints_that_mmrs_planned_are_no_tasks():
+    data = plan(item(16, 0, 0, 0, 0, 47, 8, 9), item(16, 0, 0, 0, 0, 47, 8.1, 9), groundStation="MMRS")
+    assert read_plan(data, "a.plan").features[1].role is Role.PATH
+
+
+@pytest.mark.parametrize("key", ["mission", "geoFence", "rallyPoints"])
+def test_a_part_that_is_no_object_is_refused(key):
+    data = json.dumps({"fileType": "Plan", "version": 1, key: [1]}).encode()
+    with pytest.raises(UnreadableError, match=f"^a:1: '{key}' is not an object"):
+        read_plan(data, "a")
 
 
 @pytest.mark.parametrize(
@@ -123,7 +152,11 @@ def test_a_list_of_waypoints_begins_with_home():
     drawing = read_list(data, "a.waypoints")
     home, path = drawing.features
     assert (home.role, home.heights[0].tolist(), home.place.line) == (Role.HOME, [400], 2)
-    assert (path.role, path.rings[0].tolist()) == (Role.PATH, [[47.0, 8.0], [47.1, 8.0]])
+    assert (path.role, path.name, path.rings[0].tolist()) == (
+        Role.WAYPOINT,
+        "waypoints 2 to 3",
+        [[47.0, 8.0], [47.1, 8.0]],
+    )
     assert [each.what for each in drawing.left_out] == ["item 1"]
     assert recognise_list(data, "a.txt")
     assert recognise_plan(PLAN, "a.json")

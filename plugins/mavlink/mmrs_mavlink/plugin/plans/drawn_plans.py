@@ -29,9 +29,17 @@ from mmrs_mavlink.plugin.plans.items import (
 )
 
 AXES = "missions have the latitude first"
-SPLINE, LOITER_TURNS = 82, 18
-PASSED = frozenset((WAYPOINT, SPLINE, LOITER_UNLIMITED, LOITER_TURNS, LOITER_TIME, LAND, TAKE_OFF))
+SPLINE, LOITER_TURNS, LOITER_TO_ALTITUDE, ARC, PLACE_PAYLOAD = 82, 18, 31, 36, 94
+PASSED = frozenset(
+    (
+        *(WAYPOINT, SPLINE, ARC, LOITER_UNLIMITED, LOITER_TURNS, LOITER_TIME, LOITER_TO_ALTITUDE),
+        PLACE_PAYLOAD,
+    )
+)
 """Commands whose place a vehicle goes to; one at latitude and longitude 0 is where it is."""
+WAITED = (LOITER_UNLIMITED, LOITER_TURNS, LOITER_TIME, PLACE_PAYLOAD)
+LAUNCHED = frozenset((TAKE_OFF, LAND, 84, 85, 20))
+"""Commands to take off, to land, and to return; the first two as multicopters and as VTOL do it."""
 FENCE_INCLUSION, CIRCLE_INCLUSION, CIRCLE_EXCLUSION = 5001, 5003, 5004
 FRAMES = {
     **dict.fromkeys((ABSOLUTE, 5), HeightReference.SEA_LEVEL),
@@ -63,6 +71,8 @@ AROUND = {
     RALLY_POINT: (Geometry.POINT, Role.RALLY_POINT),
 }
 HEADER = "QGC WPL 110"
+OURSELVES = "MMRS"
+"""The ground station of plans that MMRS writes."""
 MAIN = {"fileType", "version", "groundStation", "mission", "geoFence", "rallyPoints"}
 
 
@@ -100,31 +110,28 @@ class _PlanReader:
             self.sheet.refuse(
                 f"plans of version {str(plan.get('version'))[:20]} are not read, but of 1", plan.line
             )
-        mission = plan.get("mission")
-        if isinstance(mission, JsonObject):
-            self._mission(mission)
-        fence, rally = plan.get("geoFence"), plan.get("rallyPoints")
-        if isinstance(fence, JsonObject):
-            self._fence(fence)
-        if isinstance(rally, JsonObject):
-            for number, point in enumerate(self._list(rally, "points"), start=1):
-                self._add(
-                    Geometry.POINT,
-                    [[point]],
-                    f"rally point {number}",
-                    rally.line,
-                    Role.RALLY_POINT,
-                    HeightReference.HOME,
-                )
+        own = plan.get("groundStation") == OURSELVES
+        self._mission(self._part(plan, "mission"), Role.PATH if own else Role.WAYPOINT)
+        self._fence(self._part(plan, "geoFence"))
+        rally = self._part(plan, "rallyPoints")
+        for number, point in enumerate(self._list(rally, "points"), start=1):
+            what = f"rally point {number}"
+            self._add(Geometry.POINT, [[point]], what, rally.line, Role.RALLY_POINT, HeightReference.HOME)
         for member in sorted(plan.keys() - MAIN):
             self.sheet.leave_out(f"member '{member}'", "not of a plan", plan.line)
         return self.sheet.drawing()
 
-    def _list(self, owner: Mapping[str, object], key: str) -> list[object]:
+    def _part(self, plan: JsonObject, key: str) -> JsonObject:
+        found = plan.get(key, JsonObject())
+        return (
+            found
+            if isinstance(found, JsonObject)
+            else self.sheet.refuse(f"'{key}' is not an object", plan.line)
+        )
+
+    def _list(self, owner: JsonObject, key: str) -> list[object]:
         found = owner.get(key, [])
-        if not isinstance(found, list):
-            self.sheet.refuse(f"'{key}' is not an array", owner.line if isinstance(owner, JsonObject) else 0)
-        return found
+        return found if isinstance(found, list) else self.sheet.refuse(f"'{key}' is not an array", owner.line)
 
     def _add(
         self,
@@ -141,31 +148,33 @@ class _PlanReader:
         traits |= more  # type: ignore[typeddict-item]
         self.sheet.add(geometry, arrays, DrawnSubject(what, Place(self.sheet.file, line), traits), reference)
 
-    def _mission(self, mission: JsonObject) -> None:
+    def _mission(self, mission: JsonObject, role: Role) -> None:
         home = mission.get("plannedHomePosition")
         if isinstance(home, list) and None not in home:
             self._add(
                 Geometry.POINT, [[home]], "planned home", mission.line, Role.HOME, HeightReference.SEA_LEVEL
             )
-        rows: list[DrawnItem] = []
+        elif home is not None:
+            self.sheet.leave_out("planned home", "it is without a position", mission.line)
+        path = WaypointPath(self.sheet, role)
         for number, item in enumerate(self._list(mission, "items"), start=1):
             if not isinstance(item, JsonObject):
                 self.sheet.refuse(f"item {number} is not an object", mission.line)
             kind = item.get("complexItemType")
             if item.get("type") == "SimpleItem":
-                rows.append(self._simple(item, number))
-            elif kind in COMPLEX:
-                geometry, role, key = COMPLEX[str(kind)]
+                path.add(self._simple(item, number))
+                continue
+            path.end()
+            if kind in COMPLEX:
+                geometry, complex_role, key = COMPLEX[str(kind)]
                 properties = {k: property_of(v) for k, v in _flat(item) if k not in SHAPES and v is not None}
                 properties |= _attributes(properties)
-                ring = self._list(item, key)
-                self._add(geometry, [ring], f"{role.value} {number}", item.line, role, properties=properties)
+                ring, what = self._list(item, key), f"{complex_role.value} {number}"
+                self._add(geometry, [ring], what, item.line, complex_role, properties=properties)
             else:
-                named = str(kind or item.get("type"))[:40]
-                self.sheet.leave_out(
-                    f"item {number}", f"'{named}' is not a kind of item that is read", item.line
-                )
-        _path(rows, self.sheet)
+                reason = f"'{str(kind or item.get('type'))[:40]}' is not a kind of item that is read"
+                self.sheet.leave_out(f"item {number}", reason, item.line)
+        path.end()
 
     def _simple(self, item: JsonObject, number: int) -> DrawnItem:
         params, command, frame = item.get("params"), item.get("command"), item.get("frame")
@@ -174,13 +183,15 @@ class _PlanReader:
         place = [0.0 if each is None else each for each in params[4:]]
         if any(isinstance(each, bool) or not isinstance(each, int | float) for each in place):
             self.sheet.refuse(f"item {number}: a parameter is not a number", item.line)
-        return DrawnItem(command, frame if isinstance(frame, int) else -1, place, number, item.line)
+        first = params[0] if isinstance(params[0], int | float) else 0.0
+        return DrawnItem(command, frame if isinstance(frame, int) else -1, place, number, item.line, first)
 
     def _fence(self, fence: JsonObject) -> None:
         for number, polygon in enumerate(self._list(fence, "polygons"), start=1):
-            if isinstance(polygon, JsonObject):
-                ring = self._list(polygon, "polygon")
-                self._add(Geometry.AREA, [ring], f"fence {number}", polygon.line, _side(polygon))
+            if not isinstance(polygon, JsonObject):
+                self.sheet.refuse(f"fence {number} is not an object", fence.line)
+            ring = self._list(polygon, "polygon")
+            self._add(Geometry.AREA, [ring], f"fence {number}", polygon.line, _side(polygon))
         for number, each in enumerate(self._list(fence, "circles"), start=1):
             circle = each.get("circle") if isinstance(each, JsonObject) else None
             if not isinstance(each, JsonObject) or not isinstance(circle, dict):
@@ -226,34 +237,56 @@ def _side(fence: Mapping[str, object]) -> Role:
     return Role.INCLUSION if fence.get("inclusion") else Role.FORBIDDEN
 
 
-def _path(rows: Sequence[DrawnItem], sheet: Sheet) -> None:
-    """Add the places that a vehicle goes to, as one path; another height reference begins another."""
-    part: list[DrawnItem] = []
-    for row in rows:
-        if row.command not in PASSED or row.place[:2] == [0.0, 0.0]:
-            sheet.leave_out(f"item {row.number}", f"command {row.command} goes to no place", row.line)
-            continue
-        if part and FRAMES.get(part[-1].frame) is not FRAMES.get(row.frame):
-            _add_path(part, sheet)
-            part = []
-        part.append(row)
-    if part:
-        _add_path(part, sheet)
+class WaypointPath:
+    """Adds the places that a vehicle goes to one after the other; another height reference begins a path.
+
+    Args:
+        role: of the paths: those that MMRS planned, or waypoints that people drew.
+    """
+
+    def __init__(self, sheet: Sheet, role: Role) -> None:
+        self._sheet, self._role = sheet, role
+        self._part: list[DrawnItem] = []
+
+    def add(self, row: DrawnItem) -> None:
+        """Continue the path, or note why an item is no part of one."""
+        if row.command in LAUNCHED:
+            reason = "robots take off, return and land without a task"
+            self._sheet.leave_out(f"item {row.number}", reason, row.line)
+        elif row.command not in PASSED or row.place[:2] == [0.0, 0.0]:
+            what = "states no position" if row.command in PASSED else "does not move a vehicle to a place"
+            self._sheet.leave_out(f"item {row.number}", f"{_command(row.command)} {what}", row.line)
+        else:
+            if self._part and FRAMES.get(self._part[-1].frame) is not FRAMES.get(row.frame):
+                self.end()
+            self._part.append(row)
+            if row.command in WAITED or (row.command in (WAYPOINT, SPLINE) and row.first > 0.0):
+                reason = "what a robot does there is a task of its own"
+                self._sheet.leave_out(f"waiting at item {row.number}", reason, row.line)
+
+    def end(self) -> None:
+        """Add the path so far; one in the same place throughout is a point."""
+        part, self._part = self._part, []
+        if not part:
+            return
+        first = part[0]
+        reference = FRAMES.get(first.frame, HeightReference.NONE)
+        many = len({tuple(row.place[:2]) for row in part}) > 1
+        what = f"waypoints {first.number} to {part[-1].number}" if many else f"waypoint {first.number}"
+        if reference is HeightReference.NONE:
+            self._sheet.leave_out(f"heights of {what}", f"frame {first.frame} is not read", first.line)
+        shape = Geometry.LINE if many else Geometry.POINT
+        _add(self._sheet, shape, part if many else part[:1], what, self._role, reference)
+        if not many and len(part) > 1:
+            where = f"items {part[1].number} to {part[-1].number}"
+            self._sheet.leave_out(where, f"at the same position as {what}", part[1].line)
 
 
-def _add_path(part: Sequence[DrawnItem], sheet: Sheet) -> None:
-    first = part[0]
-    reference = FRAMES.get(first.frame, HeightReference.NONE)
-    many = len({tuple(row.place[:2]) for row in part}) > 1
-    what = "waypoints" if many else f"waypoint {first.number}"
-    if not many and all(row.command in (TAKE_OFF, LAND) for row in part):
-        sheet.leave_out(f"item {first.number}", "robots take off and land without a task", first.line)
-        return
-    if reference is HeightReference.NONE:
-        sheet.leave_out(f"heights of {what}", f"frame {first.frame} is not read", first.line)
-    role, shape = (Role.PATH, Geometry.LINE) if many else (Role.WAYPOINT, Geometry.POINT)
-    for rows in [part] if many else [[row] for row in part]:
-        _add(sheet, shape, rows, what, role, reference)
+def _command(number: int) -> str:
+    from mmrs_mavlink.services.commands import name_of
+
+    name = name_of(number)
+    return name if str(number) in name else f"command {number} ({name})"
 
 
 def _add(
@@ -286,7 +319,11 @@ def read_list(data: bytes, file: str) -> Drawing:
         home = rows.pop(0)
         _refuse_swapped(home, rows, sheet)
         _add(sheet, Geometry.POINT, [home], "home", Role.HOME, HeightReference.SEA_LEVEL)
-    _path([row for row in rows if row.command not in AROUND], sheet)
+    path = WaypointPath(sheet, Role.WAYPOINT)
+    for row in rows:
+        if row.command not in AROUND:
+            path.add(row)
+    path.end()
     around = [row for row in rows if row.command in AROUND]
     while around:
         row = around[0]
