@@ -66,18 +66,18 @@ def main() -> None:
     print(
         "swept: metres of strokes and hops / (area / width); photos: the same, and photos / (area / cell)\n"
     )
-    print(f"{'field':26}{'cells':>7}{'swept':>8}{'s':>7}{'photos: way':>13}{'count':>8}{'s':>7}")
+    print(f"{'field':32}{'cells':>7}{'swept':>8}{'s':>7}{'photos: way':>13}{'count':>8}{'s':>7}")
     rows = []
     for field in fields(seed):
         swept, photos = ratios(field, 0.0), ratios(field, field.width)
         cells = shapely.Polygon(field.shell).area / field.width**2
         print(
-            f"{field.name:26}{cells:7.0f}{swept.length:8.3f}{swept.seconds:7.2f}"
+            f"{field.name:32}{cells:7.0f}{swept.length:8.3f}{swept.seconds:7.2f}"
             f"{photos.length:13.3f}{photos.actions:8.3f}{photos.seconds:7.2f}"
         )
         rows.append((swept.length, swept.seconds, photos.length, photos.actions, photos.seconds))
     means = np.mean(rows, axis=0)
-    print(f"{'mean':33}{means[0]:8.3f}{means[1]:7.2f}{means[2]:13.3f}{means[3]:8.3f}{means[4]:7.2f}")
+    print(f"{'mean':39}{means[0]:8.3f}{means[1]:7.2f}{means[2]:13.3f}{means[3]:8.3f}{means[4]:7.2f}")
 
 
 def fields(seed: int) -> Iterator[Field]:
@@ -93,6 +93,12 @@ def fields(seed: int) -> Iterator[Field]:
         yield Field(f"{corners} corners, small", _star(rng, corners, 150.0), 12.0)
     for corners in (4, 6, 8, 10, 100, 1000):
         yield Field(f"{corners} corners, large", _star(rng, corners, 700.0), 20.0)
+    yield Field("rectangle, 1 by 1 km", _rectangle(1000.0, 1000.0, 0.0), 20.0)
+    yield Field("rectangle, 2 by 0.5 km, turned", _rectangle(2000.0, 500.0, 0.7), 20.0)
+    yield Field("convex, 10 corners, 1 km²", _convex(rng, 10), 20.0)
+    yield Field("convex, 5 round obstacles", _convex(rng, 10), 20.0, _rounds(rng, 5))
+    yield Field("wavy, 1000 corners, 1.1 km²", _wavy(rng, 1000), 20.0)
+    yield Field("wavy, 20 round obstacles", _wavy(rng, 1000), 20.0, _rounds(rng, 20))
     for count in (5, 20):
         boxes = tuple(_box(rng, 400.0) for _ in range(count))
         yield Field(f"10 corners, {count} obstacles", _star(rng, 10, 700.0, 0.7), 20.0, boxes)
@@ -143,6 +149,33 @@ def _star(rng: np.random.Generator, corners: int, radius: float, smallest: float
 
 def _ring(angles: np.ndarray, radii: np.ndarray) -> Ring:
     return tuple(zip((radii * np.cos(angles)).tolist(), (radii * np.sin(angles)).tolist(), strict=True))
+
+
+def _rectangle(along: float, across: float, angle: float) -> Ring:
+    turned = np.array([[0.0, 0.0], [along, 0.0], [along, across], [0.0, across]])
+    c, s = np.cos(angle), np.sin(angle)
+    return tuple(map(tuple, (turned @ np.array([[c, s], [-s, c]])).tolist()))
+
+
+def _convex(rng: np.random.Generator, corners: int) -> Ring:
+    return _ring(np.sort(rng.uniform(0.0, 2 * pi, corners)), np.full(corners, 620.0))
+
+
+def _wavy(rng: np.random.Generator, corners: int) -> Ring:
+    """Return a ring whose radius swings by some waves, and by up to 3 m from corner to corner."""
+    angles = np.linspace(0.0, 2 * pi, corners, endpoint=False)
+    waves = sum(rng.uniform(-0.12, 0.12) * np.cos(k * angles + rng.uniform(0.0, 6.0)) for k in range(2, 7))
+    return _ring(angles, 600.0 * (1.0 + waves) + rng.uniform(-3.0, 3.0, corners))
+
+
+def _rounds(rng: np.random.Generator, count: int) -> tuple[Ring, ...]:
+    """Return round obstacles of 15 to 60 m about the middle, 30 m apart at least."""
+    found: list[shapely.Polygon] = []
+    while len(found) < count:
+        other = shapely.Point(rng.uniform(-350.0, 350.0, 2)).buffer(rng.uniform(15.0, 60.0), quad_segs=3)
+        if all(other.distance(each) > 30.0 for each in found):
+            found.append(other)
+    return tuple(tuple(map(tuple, shapely.get_coordinates(each)[:-1].tolist())) for each in found)
 
 
 def _comb(teeth: int, tooth: float, gap: float, depth: float) -> Ring:

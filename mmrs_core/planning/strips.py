@@ -18,10 +18,13 @@ from shapely.geometry.base import BaseGeometry
 
 from mmrs_core.planning.levels import legs_over
 from mmrs_core.planning.lines import Place, Swath, swath_over
-from mmrs_core.planning.slabs import TINY, Cell, cells
+from mmrs_core.planning.slabs import Cell, cells
 
 _GAP = 1.5
 """Widths of a gap that a swath crosses: over a wider one, two swaths and their turns are shorter."""
+
+_ROUNDING = 1e-6
+"""Strips by which polygons may reach beyond whole ones, as turned and overlaid rings are rounded."""
 
 _SHAVED = 5e-4
 """Metres that what is closed is shrunk by before it is asked whether a line is clear of it: less than
@@ -95,7 +98,7 @@ def _chains_of(
 
 def _levels(bottom: float, top: float, width: float, shift: float | None) -> Iterator[tuple[float, float]]:
     """Yield the strips' (low, high): of one height, not over `width`, as few as can be."""
-    count = max(1, ceil((top - bottom) / width - TINY))
+    count = max(1, ceil((top - bottom) / width - _ROUNDING))
     if shift is not None:
         bottom -= shift * (count * width - (top - bottom))
         top = bottom + count * width

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 import shapely
+import shapely.affinity
 
 from mmrs_core.planning.footprints import uncovered_by
 from mmrs_core.planning.levels import legs_over
@@ -86,6 +87,14 @@ def test_teeth_with_narrow_gaps_are_crossed_by_straight_swaths():
     assert len(lines) == 6
     assert all(len(line.points) == 2 for line in lines)
     assert uncovered_by([field], lines, 12.0, 12.0).area < 1e-6
+
+
+@pytest.mark.parametrize("angle", [0.0, 0.3, 0.7, 2.0])
+def test_a_rectangle_of_whole_strips_takes_no_more_of_them_when_turned(angle):
+    field = shapely.affinity.rotate(shapely.box(0, 0, 600, 200), angle, (9.0, 7.0), use_radians=True)
+    lines = swaths([shapely.set_precision(field, 1e-6)], 20.0)
+    assert len(lines) == 10
+    assert uncovered_by([field], lines, 20.0, 0.0).area < 1e-5 * field.area
 
 
 def test_a_gap_much_wider_than_a_strip_is_not_crossed():
