@@ -26,7 +26,7 @@ from mmrs_core.drawings.xml_text import XmlNode, read_tree, root_tag
 AXES = "GPX names them lat and lon"
 AREA = f"{PREFIX}area"
 """Marks a track whose segments are the rings of an area."""
-POINTS = ("rtept", "trkpt")
+POINT = ("@lat", "@lon", "ele", "time")
 KINDS = {"wpt": Role.UNKNOWN, "rte": Role.PATH, "trk": Role.TRACK}
 TEXTS = ("cmt", "src", "type", "sym", "number", "geoidheight", "fix", "sat", "hdop", "vdop", "pdop")
 READ = ("name", "desc", "ele", "time", "trkseg", "link", "url", "urlname", "magvar")
@@ -38,12 +38,6 @@ def recognise(data: bytes, file: str) -> bool:
     return root_tag(data) == "gpx"
 
 
-def _fold(node: XmlNode, parent: XmlNode) -> None:
-    """Leave position, height and time of a point with its track; a million of them would be a large tree."""
-    row = (node.attributes.get("lat", ""), node.attributes.get("lon", ""), node.of("ele"), node.of("time"))
-    parent.gathered.setdefault(node.tag, []).append(row)
-
-
 def read(data: bytes, file: str) -> Drawing:
     """Return waypoints as points, routes and the segments of tracks as lines.
 
@@ -51,7 +45,7 @@ def read(data: bytes, file: str) -> Drawing:
         UnreadableError: with the line of the first fault.
     """
     sheet = Sheet(data, file, AXES)
-    root = read_tree(data, sheet, dict.fromkeys(POINTS, _fold))
+    root = read_tree(data, sheet, dict.fromkeys(("rtept", "trkpt"), POINT))
     if root.tag != "gpx":
         sheet.refuse(f"'{root.tag}' is not the root of a GPX file", root.line)
     reader = _GpxReader(sheet)
@@ -81,7 +75,8 @@ class _GpxReader:
         traits.setdefault("role", Role.UNKNOWN if area else KINDS[node.tag])
         subject = DrawnSubject(what, Place(self._sheet.file, node.line, path), traits, reference)
         if node.tag == "wpt":
-            _fold(node, node)
+            position = (node.attributes.get(each, "") for each in ("lat", "lon"))
+            node.gathered["wpt"] = [[each] for each in (*position, node.of("ele"), node.of("time"))]
         parts = [*node.all("trkseg")] if node.tag == "trk" else [node]
         kind = {"wpt": "wpt", "rte": "rtept", "trk": "trkpt"}[node.tag]
         segments = [self._segment(part, kind, subject) for part in parts if kind in part.gathered]
@@ -100,12 +95,9 @@ class _GpxReader:
     ) -> tuple[NDArray[np.float64], NDArray[np.float64] | None]:
         """Return latitude, longitude and height where all positions have one, and their times."""
         what, line = subject.what, part.line
-        rows = [row for row in part.gathered[kind] if isinstance(row, tuple)]
-        latitudes, longitudes, heights, times = zip(*rows, strict=True)
+        latitudes, longitudes, heights, times = part.gathered[kind]
         try:
-            columns = [[float(each) for each in column] for column in (latitudes, longitudes)]
-            if all(heights):
-                columns.append([float(each) for each in heights])
+            columns = [[*map(float, each)] for each in (latitudes, longitudes, *([heights] * all(heights)))]
         except ValueError as fault:
             self._sheet.refuse(f"{what}: coordinates: {fault}", line)
         for word, given in (("heights", heights), ("times", times)):
@@ -113,7 +105,7 @@ class _GpxReader:
                 self._sheet.leave_out(f"{word} of {what}", "some positions have none", line)
         ring = np.column_stack(columns)
         try:
-            return ring, times_of([*times]) if all(times) else None
+            return ring, times_of(times) if all(times) else None
         except (ValueError, OverflowError) as fault:
             self._sheet.leave_out(f"times of {what}", str(fault).lower(), line)
             return ring, None

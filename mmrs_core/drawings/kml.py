@@ -118,7 +118,8 @@ def _entries(data: bytes, sheet: Sheet) -> list[tuple[str, bytes]]:
                 left -= len(content)
                 if left < 0:
                     sheet.refuse(f"more than {LARGEST_FILE // (1024 * 1024)} MB of KML in the archive")
-                contents.append((printable(entry.filename), content))
+                parts = re.split(r"[\\/:]", printable(entry.filename))
+                contents.append(("/".join(part for part in parts if part.strip(". ")), content))
     except (
         zipfile.BadZipFile,
         zlib.error,
@@ -136,10 +137,6 @@ def _entries(data: bytes, sheet: Sheet) -> list[tuple[str, bytes]]:
     return contents
 
 
-def _gather(node: XmlNode, parent: XmlNode) -> None:
-    parent.gathered.setdefault(node.tag, []).append(node.text)
-
-
 class _KmlReader:
     def __init__(self, data: bytes, file: str) -> None:
         self._sheet, self._data = Sheet(data, file, AXES), data
@@ -147,8 +144,7 @@ class _KmlReader:
         self._count = 0
 
     def read(self) -> Drawing:
-        folds = {"when": _gather, "coord": _gather, "angles": _gather}
-        root = read_tree(self._data, self._sheet, folds)
+        root = read_tree(self._data, self._sheet, dict.fromkeys(("when", "coord", "angles"), ("",)))
         if root.tag != "kml":
             self._sheet.refuse(f"'{root.tag}' is not the root of a KML file", root.line)
         top = root.child("Document")
@@ -216,8 +212,8 @@ class _KmlReader:
             self._sheet.add(kind, rings, subject, self._mode(node, rings, subject))
 
     def _track(self, node: XmlNode, what: str) -> tuple[NDArray[np.float64], NDArray[np.float64] | None]:
-        places, times = node.gathered.get("coord", []), node.gathered.get("when", [])
-        rows = [str(each).split() for each in places]
+        ((places,), (times,)) = (node.gathered.get(tag, [[]]) for tag in ("coord", "when"))
+        rows = [*map(str.split, places)]
         if "angles" in node.gathered or node.child("Model") is not None:
             self._sheet.leave_out(
                 f"attitude of {what}", "only positions and times of a track are read", node.line
@@ -226,7 +222,7 @@ class _KmlReader:
         if len(times) != len(places):
             self._sheet.leave_out(f"times of {what}", "as many times as positions are needed", node.line)
             return ring, None
-        return ring, self._times([str(each) for each in times], what, node.line)
+        return ring, self._times(times, what, node.line)
 
     def _coordinates(self, ring: XmlNode, what: str) -> NDArray[np.float64]:
         node = ring.child("coordinates")
@@ -264,7 +260,7 @@ class _KmlReader:
             properties |= {end: text for end in ("begin", "end") if (text := span.of(end))}
         if stamp is None:
             return None
-        return self._times([str(each) for each in stamp.gathered.get("when", [])], what, stamp.line)
+        return self._times(stamp.gathered.get("when", [[]])[0], what, stamp.line)
 
     def _times(self, texts: list[str], what: str, line: int) -> NDArray[np.float64] | None:
         try:

@@ -44,6 +44,11 @@ def test_what_is_none_is_left_out():
             r"^a\.gpx:2: wpt\[1\]: .* are the axes swapped\? GPX names them",
         ),
         (b'<gpx>\n<wpt lat="47"/></gpx>', r"^a\.gpx:2: wpt\[1\]: coordinates"),
+        (b"<trkpt/>", r"^a\.gpx:1: 'trkpt' is not the root of a GPX file"),
+        (
+            b"<gpx><trk><trkseg>\n<trkpt><trkpt/></trkpt></trkseg></trk></gpx>",
+            r"^a\.gpx:2: 'trkpt' in another",
+        ),
         (b'<gpx>\n<wpt lat="nan" lon="8"/></gpx>', r"^a\.gpx:2: wpt\[1\]: .* is not a finite number"),
     ],
 )
@@ -56,3 +61,12 @@ def test_a_track_of_a_hundred_thousand_positions_is_an_array():
     points = "".join(f'<trkpt lat="47" lon="{n * 1e-5:.5f}"><ele>1</ele></trkpt>' for n in range(10**5))
     (track,) = read(f"<gpx><trk><trkseg>{points}</trkseg></trk></gpx>".encode(), "a.gpx").features
     assert track.rings[0].shape == (10**5, 2)
+
+
+def test_of_a_point_of_a_track_its_own_height_counts():
+    extra = "<extensions><x:ele xmlns:x='y'>7</x:ele><z><ele>8</ele></z></extensions>"
+    points = "".join(f'<trkpt lon="8" lat="4{n}"><ele>{n}</ele>{extra}</trkpt>' for n in range(3))
+    data = f"<gpx><trk><trkseg>\n{points}\n</trkseg></trk></gpx>".encode()
+    (track,) = read(data, "a.gpx").features
+    assert track.heights[0].tolist() == [0, 1, 2]
+    assert track.rings[0].tolist() == [[40, 8], [41, 8], [42, 8]]
