@@ -15,7 +15,7 @@ from mmrs_core.cli.output import tell
 from mmrs_core.cli.parameters import behaviour_file, without_mission
 from mmrs_core.cli.plan import folder_of
 from mmrs_core.cli.session import CommandStages, Session
-from mmrs_core.errors import UnreadableError, UnsupportedError
+from mmrs_core.errors import UnreadableError, UnsupportedError, UsageError
 from mmrs_core.languages.modelset import model_in
 from mmrs_core.pictures.layers.layer import Layer
 
@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from mmrs_core.scene import Frame, Scene
 
 _OF_MISSIONS = frozenset({Layer.AREAS, Layer.ELEMENTS, Layer.TASKS, Layer.HOMES})
+_OF_FLIGHTS = frozenset({Layer.TRACKS, Layer.MEASUREMENTS, Layer.EVENTS})
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,6 +65,7 @@ def given_by(
         UnreadableError: if there is nothing of these, or no behaviour for the logs.
         InvalidModelError: if models are not valid.
         UnsupportedError: if it has no place on the Earth.
+        UsageError: if a wanted layer can't be in it.
     """
     mission: Scene | None = None
     file = _behaviour_of_logs(source)
@@ -71,12 +73,16 @@ def given_by(
         logs = (source, *logs)
     elif is_behaviour(session, alone := without_mission(source)):
         file = alone
-    else:
+    if not logs and (flown := sorted(_OF_FLIGHTS.intersection(only))):
+        raise UsageError(f"--only {flown[0]}: needs the logs of a run; add --logs DIR")
+    if file is not None and Layer.TASKS in only:
+        raise UsageError(f"--only tasks: {source} has no mission; export the project instead")
+    if file is None:
         mission = CommandStages(session, source, context=context, robots=robots).grounded
         _refuse_local(mission.frame, source)
         file = model_in(folder_of(source), "behaviour")
-        idle = bool(only) and _OF_MISSIONS.issuperset(only)
-        if idle or (file is None and not (logs or assume)):
+        beyond = set(only) - _OF_MISSIONS
+        if (only and not beyond) or (file is None and not (beyond or logs or assume)):
             return Exported(source, mission.name, mission.frame, mission)
     loaded = load_behaviour(
         session, file or behaviour_file(folder_of(source)), context=context, robots=robots

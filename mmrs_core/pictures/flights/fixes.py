@@ -5,23 +5,18 @@ from __future__ import annotations
 from array import array
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
-from functools import lru_cache
 from math import isfinite, nan
 from types import MappingProxyType
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from mmrs_core.behaviour.earth import WGS84
+from mmrs_core.behaviour.earth import from_wgs84
 from mmrs_core.behaviour.program import Program, RobotProgram
 from mmrs_core.contributions.rules import RobotKind, robot_kind_of
 from mmrs_core.geometry.frames import Floats, LocalFrame
 from mmrs_core.pictures.flights.tracks import Flags, Track
 from mmrs_core.scene import Frame, Name, Position, RobotType
 from mmrs_runtime.records.entries import Entry, number_of
-
-if TYPE_CHECKING:
-    from pyproj import Transformer
 
 SHORTEST_GAP = 3.0
 """Shortest gap: seconds without a fix."""
@@ -161,7 +156,7 @@ def _on_ground(degrees: Floats, frame: Frame) -> Floats:
     sound = (np.abs(degrees[:, 0]) < 90) & (np.abs(degrees[:, 1]) <= 360)
     if not sound.any():
         return metres
-    longitudes, latitudes = _from_wgs84(frame.crs).transform(degrees[sound, 1], degrees[sound, 0])
+    longitudes, latitudes = from_wgs84(frame.crs).transform(degrees[sound, 1], degrees[sound, 0])
     assert frame.latitude is not None
     assert frame.longitude is not None
     try:
@@ -183,11 +178,3 @@ def _one_by_one(latitudes: Floats, longitudes: Floats, frame: Frame) -> Iterator
             yield nan, nan
         else:
             yield east, north
-
-
-@lru_cache(maxsize=16)
-def _from_wgs84(crs: str) -> Transformer:
-    from pyproj import Transformer
-
-    known = WGS84 if crs.strip().lower() in ("wgs84", "wgs 84", "wgs-84") else crs
-    return Transformer.from_crs(WGS84, known, always_xy=True)

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from mmrs_core.behaviour.earth import wgs84_of
 from mmrs_core.behaviour.program import Program
-from mmrs_core.geometry.frames import LocalFrame
 from mmrs_core.pictures.flights.flight import Flight
 from mmrs_core.scene import Frame, Position
 from mmrs_runtime.records.steps import merge
@@ -13,7 +13,7 @@ from mmrs_runtime.records.steps import merge
 
 @dataclass(frozen=True, slots=True)
 class GeoPosition:
-    """A position: metres in the frame of the behaviour, and degrees where that lies on the Earth."""
+    """A position: metres in the frame of the behaviour, and degrees of WGS 84 where that lies on the Earth."""
 
     position: Position
     latitude: float | None = None
@@ -21,18 +21,16 @@ class GeoPosition:
 
 
 class Locator:
-    """Converts positions of a frame to degrees, where it lies on the Earth."""
+    """Converts positions of a frame to degrees of WGS 84, where it lies on the Earth."""
 
     def __init__(self, frame: Frame) -> None:
-        self._laid: LocalFrame | None = None
-        if frame.latitude is not None and frame.longitude is not None:
-            self._laid = LocalFrame(frame.crs, frame.latitude, frame.longitude)
+        self._frame = frame
 
     def of(self, position: Position) -> GeoPosition:
         """Return a position with its degrees."""
-        if self._laid is None:
+        if self._frame.is_local:
             return GeoPosition(position)
-        latitude, longitude = self._laid.to_geographic([position[:2]])[0].tolist()
+        latitude, longitude = wgs84_of([position[:2]], self._frame)[0].tolist()
         return GeoPosition(position, latitude, longitude)
 
 

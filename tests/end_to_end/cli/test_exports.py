@@ -78,11 +78,21 @@ def test_a_start_without_date_or_time_zone_is_refused(mmrs, project, start):
         (("--format", "shp"), "--format shp: unknown; known are: geojson, "),
         ((), "--format: missing"),
         (("-o", "map.txt"), "--format: missing"),
+        (("--only", "roads"), "invalid value for '--only': 'roads' is not one of 'areas', "),
+        (("-o", "map.kml", "--only", "tracks"), "--only tracks: needs the logs of a run; add --logs DIR"),
     ],
 )
-def test_a_format_that_there_is_not_is_refused_with_those_there_are(mmrs, project, arguments, reason):
+def test_what_there_is_not_is_refused_with_what_there_is(mmrs, project, arguments, reason):
     code, _, err = mmrs("export", project, *arguments)
     assert (code, reason in err) == (2, True)
+
+
+def test_wanted_layers_need_the_mission_or_the_behaviour_that_has_them(mmrs, project, tmp_path):
+    file = tmp_path / "map.kml"
+    code, _, err = mmrs("export", project / "behaviour.xmi", "-o", file, "--only", "tasks")
+    assert (code, "has no mission; export the project instead" in err) == (2, True)
+    code, _, err = mmrs("export", shipped("examples") / "outfall", "-o", file, "--only", "paths")
+    assert (code, "no behaviour.xmi in this folder" in err, file.exists()) == (3, True, False)
 
 
 def test_a_local_mission_is_refused_with_what_it_lacks(mmrs, tmp_path):
