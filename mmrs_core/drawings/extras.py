@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from datetime import UTC, datetime, timedelta
+from datetime import UTC, datetime
 from math import isfinite
 
 import numpy as np
@@ -17,7 +17,8 @@ PREFIX = "mmrs:"
 ROLE, RADIUS, FOLDERS, REFERENCE, SINCE_START, COLOUR = (
     f"{PREFIX}{name}" for name in ("role", "radius", "folders", "heightReference", "sinceStart", "colour")
 )
-EPOCH = datetime(1970, 1, 1, tzinfo=UTC)
+DEGREES, METRES = 8, 3
+"""Decimals: a millimetre."""
 
 
 def extras_of(feature: MapFeature, native: Iterable[str] = ()) -> dict[str, Property]:
@@ -80,15 +81,14 @@ def seconds_of(text: str) -> float:
     return (time if time.tzinfo else time.replace(tzinfo=UTC)).timestamp()
 
 
-def time_text(seconds: float) -> str:
-    """Return a time as ISO 8601, in UTC and to the millisecond.
+def time_texts(seconds: NDArray[np.float64]) -> list[str]:
+    """Return seconds since 1970 as ISO 8601, in UTC and to the millisecond.
 
-    >>> time_text(60.5)
-    '1970-01-01T00:01:00.500Z'
+    >>> time_texts(np.array([60.5]))
+    ['1970-01-01T00:01:00.500Z']
     """
-    return (EPOCH + timedelta(milliseconds=round(seconds * 1000.0))).isoformat(timespec="milliseconds")[
-        :-6
-    ] + "Z"
+    milliseconds = (seconds * 1000.0).round().astype(np.int64).astype("datetime64[ms]")
+    return [f"{text}Z" for text in np.datetime_as_string(milliseconds)]
 
 
 def times_of(texts: object) -> NDArray[np.float64]:
@@ -98,18 +98,19 @@ def times_of(texts: object) -> NDArray[np.float64]:
     return np.fromiter(map(seconds_of, texts), dtype=np.float64)
 
 
-def degrees_text(value: float) -> str:
-    """Return degrees to a millimetre, without an exponent.
+def decimal_texts(values: NDArray[np.float64], decimals: int) -> list[str]:
+    """Return rounded numbers without an exponent.
 
-    >>> degrees_text(8.5), degrees_text(-1e-9)
-    ('8.5', '0')
+    >>> decimal_texts(np.array([8.5, -1e-9]), DEGREES)
+    ['8.5', '0']
     """
-    return f"{round(value, 8) + 0.0:.8f}".rstrip("0").rstrip(".")
+    rounded = (values.round(decimals) + 0.0).tolist()
+    return [f"{value:.{decimals}f}".rstrip("0").rstrip(".") for value in rounded]
 
 
-def metres_text(value: float) -> str:
-    """Return metres to a millimetre."""
-    return f"{round(value, 3) + 0.0:.3f}".rstrip("0").rstrip(".")
+def property_text(value: Property) -> str:
+    """Return a property as XML has it."""
+    return str(value).lower() if isinstance(value, bool) else str(value)
 
 
 def lost(drawing: Drawing, cases: Mapping[str, Callable[[MapFeature], bool]]) -> tuple[str, ...]:

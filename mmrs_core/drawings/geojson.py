@@ -19,7 +19,7 @@ from mmrs_core.drawings.extras import (
     extras_of,
     lost,
     take_extras,
-    time_text,
+    time_texts,
     times_of,
 )
 from mmrs_core.drawings.json_text import JsonObject, read_object
@@ -221,8 +221,7 @@ def _feature_of(feature: MapFeature) -> dict[str, object]:
     if feature.colour:
         properties[COLOURS[feature.geometry]] = feature.colour
     if feature.times is not None:
-        seconds = feature.times.tolist()
-        times = seconds if feature.since_start else list(map(time_text, seconds))
+        times = feature.times.tolist() if feature.since_start else time_texts(feature.times)
         one = feature.geometry is Geometry.POINT
         properties |= {"time": times[0]} if one else {TIMES: {"times": times}}
     native = (COLOUR, REFERENCE) if feature.reference is HeightReference.ELLIPSOID else (COLOUR,)

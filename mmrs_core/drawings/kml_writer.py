@@ -4,27 +4,27 @@ from __future__ import annotations
 
 import io
 import zipfile
+from collections.abc import Iterator
+from html import escape
 from itertools import takewhile
-
-import numpy as np
-from lxml import etree
-from numpy.typing import NDArray
 
 from mmrs_core.drawings.drawing import Drawing, Geometry, HeightReference, MapFeature, Role, printable
 from mmrs_core.drawings.extras import (
     COLOUR,
+    DEGREES,
     FOLDERS,
+    METRES,
     REFERENCE,
     above,
-    degrees_text,
+    decimal_texts,
     extras_of,
     lost,
-    metres_text,
-    time_text,
+    property_text,
+    time_texts,
 )
+from mmrs_core.drawings.xml_text import XML, tagged
 
-KML, GX = "http://www.opengis.net/kml/2.2", "http://www.google.com/kml/ext/2.2"
-NAMESPACES: dict[str, str] = {None: KML, "gx": GX}  # type: ignore[dict-item]  # lxml's default namespace
+_ROOT = """<kml xmlns="http://www.opengis.net/kml/2.2" xmlns:gx="http://www.google.com/kml/ext/2.2">"""
 MODE_OF = {
     HeightReference.GROUND: "relativeToGround",
     HeightReference.HOME: "relativeToGround",
@@ -35,87 +35,78 @@ MODE_OF = {
 
 def write(drawing: Drawing, title: str) -> bytes:
     """Return a drawing as KML: a placemark for each feature, in folders; lines with times are tracks."""
-    root = etree.Element(f"{{{KML}}}kml", nsmap=NAMESPACES)
-    document = _added(root, "Document")
-    _added(document, "name", printable(title))
-    opened: list[tuple[str, etree._Element]] = [("", document)]
+    lines = [XML, _ROOT, "<Document>", tagged("name", printable(title))]
+    opened: tuple[str, ...] = ()
     for feature in drawing.features:
-        pairs = zip(opened[1:], feature.folders, strict=False)
-        same = sum(1 for _ in takewhile(lambda pair: pair[0][0] == pair[1], pairs))
-        del opened[1 + same :]
-        for name in feature.folders[len(opened) - 1 :]:
-            folder = _added(opened[-1][1], "Folder")
-            _added(folder, "name", name)
-            opened.append((name, folder))
-        _write_placemark(_added(opened[-1][1], "Placemark"), feature)
-    return etree.tostring(root, encoding="UTF-8", xml_declaration=True, pretty_print=True)
+        pairs = zip(opened, feature.folders, strict=False)
+        same = sum(1 for _ in takewhile(lambda pair: pair[0] == pair[1], pairs))
+        lines += ["</Folder>"] * (len(opened) - same)
+        lines += [f"<Folder>{tagged('name', name)}" for name in feature.folders[same:]]
+        opened = feature.folders
+        lines += _placemark(feature)
+    return "\n".join([*lines, *["</Folder>"] * len(opened), "</Document>", "</kml>\n"]).encode()
 
 
-def _write_placemark(placemark: etree._Element, feature: MapFeature) -> None:
+def _placemark(feature: MapFeature) -> Iterator[str]:
+    yield "<Placemark>"
     if feature.name:
-        _added(placemark, "name", feature.name)
+        yield tagged("name", feature.name)
     if feature.description:
-        _added(placemark, "description", feature.description)
+        yield tagged("description", feature.description)
     if feature.times is not None and feature.geometry is Geometry.POINT:
-        _added(_added(placemark, "TimeStamp"), "when", time_text(feature.times[0]))
+        yield f"<TimeStamp>{tagged('when', time_texts(feature.times)[0])}</TimeStamp>"
     if feature.colour:
         red, green, blue = (feature.colour[at : at + 2] for at in (1, 3, 5))
-        style = _added(placemark, "Style")
         kinds = {Geometry.POINT: ("IconStyle",), Geometry.LINE: ("LineStyle",)}
+        yield "<Style>"
         for kind in kinds.get(feature.geometry, ("LineStyle", "PolyStyle")):
             opacity = "60" if kind == "PolyStyle" else "ff"
-            _added(_added(style, kind), "color", f"{opacity}{blue}{green}{red}")
+            yield f"<{kind}>{tagged('color', opacity + blue + green + red)}</{kind}>"
+        yield "</Style>"
     native = {FOLDERS, COLOUR}
     if feature.reference in (HeightReference.GROUND, HeightReference.SEA_LEVEL):
         native.add(REFERENCE)
     data = {**feature.properties, **extras_of(feature, native)}
     if data:
-        extended = _added(placemark, "ExtendedData")
+        yield "<ExtendedData>"
         for key, value in data.items():
-            text = str(value).lower() if isinstance(value, bool) else str(value)
-            _added(_added(extended, "Data", name=key), "value", text)
-    _write_geometry(placemark, feature)
+            yield f'<Data name="{escape(key)}">{tagged("value", property_text(value))}</Data>'
+        yield "</ExtendedData>"
+    yield from _shape(feature)
+    yield "</Placemark>"
 
 
-def _write_geometry(placemark: etree._Element, feature: MapFeature) -> None:
-    mode = MODE_OF.get(feature.reference, "clampToGround")
-    heights = feature.heights or tuple(np.full(len(ring), np.nan) for ring in feature.rings)
+def _shape(feature: MapFeature) -> Iterator[str]:
+    mode = tagged("altitudeMode", MODE_OF.get(feature.reference, "clampToGround"))
     if feature.geometry is Geometry.LINE and feature.times is not None:
-        track = etree.SubElement(placemark, f"{{{GX}}}Track")
-        _added(track, "altitudeMode", mode)
-        for time in feature.times:
-            _added(track, "when", time_text(time))
-        for each in _tuples(feature.rings[0], heights[0], " "):
-            etree.SubElement(track, f"{{{GX}}}coord").text = each
+        yield f"<gx:Track>{mode}"
+        yield from (f"<when>{time}</when>" for time in time_texts(feature.times))
+        yield from (f"<gx:coord>{each}</gx:coord>" for each in _tuples(feature, 0, " "))
+        yield "</gx:Track>"
         return
     tag = {Geometry.POINT: "Point", Geometry.LINE: "LineString", Geometry.AREA: "Polygon"}[feature.geometry]
-    shape = _added(placemark, tag)
+    yield f"<{tag}>"
     if feature.role is Role.OBSTACLE and feature.heights:
-        _added(shape, "extrude", "1")
-    if tag != "Point" and mode == "clampToGround":
-        _added(shape, "tessellate", "1")
-    _added(shape, "altitudeMode", mode)
-    for number, (ring, height) in enumerate(zip(feature.rings, heights, strict=True)):
-        owner, tuples = shape, _tuples(ring, height, ",")
+        yield "<extrude>1</extrude>"
+    if tag != "Point" and "clampToGround" in mode:
+        yield "<tessellate>1</tessellate>"
+    yield mode
+    for number in range(len(feature.rings)):
+        tuples = _tuples(feature, number, ",")
         if tag == "Polygon":
-            owner = _added(_added(shape, "innerBoundaryIs" if number else "outerBoundaryIs"), "LinearRing")
-            tuples.append(tuples[0])
-        _added(owner, "coordinates", " ".join(tuples))
+            side, tuples = "innerBoundaryIs" if number else "outerBoundaryIs", [*tuples, tuples[0]]
+            yield f"<{side}><LinearRing>{tagged('coordinates', ' '.join(tuples))}</LinearRing></{side}>"
+        else:
+            yield tagged("coordinates", " ".join(tuples))
+    yield f"</{tag}>"
 
 
-def _tuples(ring: NDArray[np.float64], heights: NDArray[np.float64], comma: str) -> list[str]:
-    return [
-        comma.join(
-            (degrees_text(longitude), degrees_text(latitude), *(() if np.isnan(h) else (metres_text(h),)))
-        )
-        for (latitude, longitude), h in zip(ring.tolist(), heights.tolist(), strict=True)
-    ]
-
-
-def _added(parent: etree._Element, tag: str, text: str | None = None, **attributes: str) -> etree._Element:
-    child = etree.SubElement(parent, f"{{{KML}}}{tag}", attributes)
-    child.text = text
-    return child
+def _tuples(feature: MapFeature, number: int, comma: str) -> list[str]:
+    """Return the positions of a ring, longitude first."""
+    columns = [decimal_texts(column, DEGREES) for column in feature.rings[number].T[::-1]]
+    if feature.heights:
+        columns.append(decimal_texts(feature.heights[number], METRES))
+    return [comma.join(each) for each in zip(*columns, strict=True)]
 
 
 def write_archive(drawing: Drawing, title: str) -> bytes:

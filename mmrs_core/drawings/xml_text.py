@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterator, Mapping
+from html import escape
 
 from mmrs_core.drawings.sheet import Sheet
 from mmrs_core.errors import UnreadableError
@@ -11,6 +12,7 @@ from mmrs_core.languages.xmi.events import DEEPEST_NESTING, Document, Start
 
 MOST_ELEMENTS = 2_000_000
 _BEGINNING = 4096
+XML = '<?xml version="1.0" encoding="UTF-8"?>'
 _ROOT = re.compile(r"<(?:[\w.-]+:)?([A-Za-z][\w.-]*)")
 
 
@@ -143,6 +145,16 @@ def _row_start(builder: _Builder, document: Document, row: Row) -> Start:
             document.tell(builder.start, builder.end, builder.text)
 
     return begin
+
+
+def tagged(tag: str, text: str, **attributes: str) -> str:
+    """Return an element that holds a text.
+
+    >>> tagged("value", "a < b", name="c")
+    '<value name="c">a &lt; b</value>'
+    """
+    stated = "".join(f' {name}="{escape(value)}"' for name, value in attributes.items())
+    return f"<{tag}{stated}>{escape(text)}</{tag}>"
 
 
 def root_tag(data: bytes) -> str:
