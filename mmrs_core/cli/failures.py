@@ -119,7 +119,9 @@ def _without_list(error: MmrsError, listed: Sequence[str]) -> str:
 def _usage(error: typer.TyperException) -> str:
     if error.format_message().startswith(_HELP):
         return error.format_message()
-    message = error.format_message().rstrip(".").removeprefix("Invalid value: ").replace(": Value error,", ":")
+    message = (
+        error.format_message().rstrip(".").removeprefix("Invalid value: ").replace(": Value error,", ":")
+    )
     command = getattr(getattr(error, "ctx", None), "command_path", "")
     where = f"{'' if message.endswith('?') else ';'} try '{command} --help'" if command else ""
     return message[:1].lower() + message[1:] + where

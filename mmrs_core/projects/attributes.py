@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Mapping
 from math import isfinite
 from typing import TYPE_CHECKING
@@ -24,12 +25,19 @@ def drawn_values(
     found: dict[str, object] = {}
     notes = []
     for name, value in feature.properties.items():
-        attribute = "maxHeight" if (name, kind.feature) == ("height", "obstacles") else name
+        attribute = name.removeprefix(f"{kind.name}.")
+        if (name, kind.feature) == ("height", "obstacles"):
+            attribute = "maxHeight"
         at = metaclass.by_name.get(attribute)
-        if at is None or at.is_reference or at.many or at.name == "name" or value == kind.name:
+        if at is None or at.is_reference or at.name == "name" or value == kind.name:
             continue
+        text = str(value).lower() if isinstance(value, bool) else str(value)
         try:
-            found[at.name] = _parsed(at, str(value).lower() if isinstance(value, bool) else str(value))
+            if at.many:
+                parts = re.split(r"(?<!\\), *", text)
+                found[at.name] = [_parsed(at, part.replace("\\,", ",")) for part in parts]
+            else:
+                found[at.name] = _parsed(at, text)
         except ValueError:
             notes.append(f"its property {name} does not fit {at.name}")
     return found, notes
@@ -51,15 +59,20 @@ def asked_values(
     return found, faults
 
 
+def decided(kind: Kind, given: Mapping[str, object]) -> set[str]:
+    """Return the attributes that are given, and those that these exclude."""
+    names = set(given)
+    for group in kind.symbol.alternatives if kind.symbol is not None else ():
+        if any(given.get(name) is not None for name in group):
+            names |= group
+    return names
+
+
 def set_values(element: Element, kind: Kind, given: Mapping[str, object]) -> None:
     """Set the attributes of a new element: those given, and initial ones that these do not replace."""
-    symbol, metaclass = kind.symbol, metaclass_of(element)
-    replaced = set(given)
-    for group in symbol.alternatives if symbol is not None else ():
-        if any(given.get(name) is not None for name in group):
-            replaced |= group
-    initial = symbol.initial.items() if symbol is not None else ()
-    for name, value in (*((name, value) for name, value in initial if name not in replaced), *given.items()):
+    metaclass, names = metaclass_of(element), decided(kind, given)
+    initial = kind.symbol.initial.items() if kind.symbol is not None else ()
+    for name, value in (*((name, value) for name, value in initial if name not in names), *given.items()):
         if value is not None:
             setattr(element, metaclass.feature(name).attribute, value)
 

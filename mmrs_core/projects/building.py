@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from mmrs_core.diagnostics import Place
-from mmrs_core.drawings.drawing import Geometry, HeightReference, MapFeature
+from mmrs_core.drawings.drawing import Geometry, HeightReference, MapFeature, Role
 from mmrs_core.grounding.features import child, children, number
 from mmrs_core.languages.element import (
     Element,
@@ -24,7 +24,7 @@ from mmrs_core.languages.element import (
 )
 from mmrs_core.languages.metaclass import Metaclass
 from mmrs_core.languages.naming import unreadable
-from mmrs_core.projects.attributes import asked_values, drawn_values, missing, set_values
+from mmrs_core.projects.attributes import asked_values, decided, drawn_values, missing, set_values
 from mmrs_core.projects.choosing import Decision, quoted, shape_of
 from mmrs_core.projects.heights import Levels
 from mmrs_core.projects.kinds import CONTEXT, MISSION, Kind
@@ -150,13 +150,16 @@ class Builder:
         given |= asked
         set_values(element, kind, given)
         notes = [*decision.notes, *found.notes, *doubts]
-        heights = self._heights(element, kind, found, given, notes)
+        exported = feature.role is Role.TASK and feature.properties.get("type") == kind.name
+        heights = self._heights(element, kind, found, given, notes, usual=not exported)
         self._place(element, kind, found, heights, notes)
         alike = self._known.setdefault(frozenset(_positions(element)), [])
         drawing = _edges if found.geometry is Geometry.AREA else _course
         for other in (each for each in alike if drawing(each) == drawing(element)):
             called = label_of(other) or "an element without a name"
-            if metaclass_of(other) is kind.metaclass:
+            # one drawing may have a shape twice, for different tasks
+            twice = other not in self.comments or called == feature.name
+            if metaclass_of(other) is kind.metaclass and twice:
                 return replace(told, reason=f"the same is there already: {called}")
             notes.append(f"drawn as {called} is, too")
         alike.append(element)
@@ -257,9 +260,20 @@ class Builder:
         return DrawnShape(Geometry.AREA, (ring,), top, feature.reference, (f"{radius:g} m around it",))
 
     def _heights(
-        self, element: Element, kind: Kind, found: DrawnShape, given: Mapping[str, object], notes: list[str]
+        self,
+        element: Element,
+        kind: Kind,
+        found: DrawnShape,
+        given: Mapping[str, object],
+        notes: list[str],
+        *,
+        usual: bool,
     ) -> Floats | None:
-        """Set the height of an element; return the heights of its coordinates, if they have any."""
+        """Set the height of an element; return the heights of its coordinates, if they have any.
+
+        Args:
+            usual: whether it has the usual height where it has none.
+        """
         ups = self._settled(found, notes)
         if kind.feature == "obstacles":
             if ups is not None and "maxHeight" not in given:
@@ -276,17 +290,18 @@ class Builder:
                 )
             return None if kind.surrounds else ups
         name = kind.symbol.height if kind.symbol is not None else ""
-        usual = self._around.altitude if self._around.flies else 0.0
-        optional = not name or name in given or not metaclass_of(element).feature(name).required
+        height = self._around.altitude if self._around.flies and usual else 0.0
+        settled = name in decided(kind, given) or (ups is None and not usual)
+        optional = not name or settled or not metaclass_of(element).feature(name).required
         has_own = found.geometry is not Geometry.AREA
-        writable = self._around.levels.altitude(usual) is not None
+        writable = self._around.levels.altitude(height) is not None
         if has_own and ups is not None and optional and writable:
             return ups
-        if name and name not in given and getattr(element, name) is None:
-            setattr(element, name, round(float(ups.max()), 3) if ups is not None else usual)
-        elif not name and has_own and (usual or ups is not None):
+        if name and not settled and getattr(element, name) is None:
+            setattr(element, name, round(float(ups.max()), 3) if ups is not None else height)
+        elif not name and has_own and (height or ups is not None):
             if writable:
-                return np.full(len(found.rings[0]), usual)
+                return np.full(len(found.rings[0]), height)
             notes.append("its height is left out: that of the origin is not known")
         return None
 

@@ -13,7 +13,7 @@ from mmrs_runtime.records.steps import merge
 
 @dataclass(frozen=True, slots=True)
 class GeoPosition:
-    """A position: metres in the frame of the behaviour, and degrees of WGS 84 where that lies on the Earth."""
+    """A position: metres in the frame of the behaviour, and degrees of WGS 84 where it is on the Earth."""
 
     position: Position
     latitude: float | None = None

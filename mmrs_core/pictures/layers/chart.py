@@ -8,7 +8,7 @@ from typing import TypeAlias
 
 import numpy as np
 
-from mmrs_core.behaviour.earth import origin_above_ellipsoid, origin_above_sea, wgs84_of
+from mmrs_core.behaviour.earth import degrees_of, origin_above_ellipsoid, origin_above_sea, wgs84_of
 from mmrs_core.drawings.drawing import Drawing, Geometry, HeightReference, LeftOut, MapFeature
 from mmrs_core.geometry.frames import Floats
 from mmrs_core.pictures.layers.layer import Layer
@@ -47,6 +47,11 @@ class Chart:
     def area(self, rings: Sequence[Shape]) -> MapFeature:
         """Return an area of an outline and holes."""
         return self._laid(Geometry.AREA, rings)
+
+    def words(self, at: Point) -> str:
+        """Return the latitude and the longitude of a position."""
+        ((latitude, longitude),) = degrees_of([at], self.frame)
+        return f"{latitude:.7f}, {longitude:.7f}"
 
     def _laid(self, geometry: Geometry, rings: Sequence[Shape], times: Floats | None = None) -> MapFeature:
         laid = [np.asarray(ring, float) for ring in rings]

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
 from math import isfinite
+from types import MappingProxyType
 
 from mmrs_core.behaviour.program import Program
 from mmrs_core.behaviour.rally_points import rally_points_of
@@ -22,6 +23,7 @@ _ROLES = {
     AreaUse.OBSTACLE: Role.OBSTACLE,
     AreaUse.EMERGENCY: Role.EMERGENCY_AREA,
 }
+_OF_FEATURES = ("description", "type")
 
 
 def areas_on(chart: Chart, areas: Iterable[Area]) -> Iterator[MapFeature]:
@@ -61,7 +63,12 @@ def tasks_on(chart: Chart, scene: Scene, symbols: Mapping[Name, MapSymbol]) -> I
             *(chart.line(_raised(line, ups)) for line in each.lines),
             *([chart.line(_raised([each.point], ups))] if each.point is not None else ()),
         )
-        yield from _described(each, shapes, Role.TASK, Layer.TASKS)
+        entry = each.model.attributes.get("initialPosition") if each.model is not None else None
+        more: dict[str, Property] = {}
+        match entry:
+            case (float() as east, float() as north, float()):
+                more["initialPosition"] = chart.words((east, north))
+        yield from _described(each, shapes, Role.TASK, Layer.TASKS, more)
 
 
 def homes_on(chart: Chart, robots: Iterable[tuple[str, str, Position | None]]) -> Iterator[MapFeature]:
@@ -103,16 +110,24 @@ def colour_of(index: int) -> str:
 def properties_of(part: Part) -> dict[str, Property]:
     """Return what an element is and what is known of it but its name and shape, by feature name.
 
-    What belongs to an element inside of it is called ``outer.inner``; one with a shape has its own.
+    What belongs to an element inside of it is called ``outer.inner``; one with a shape has its own. ``type``
+    is its class; an attribute with the name of what every feature has is called ``Class.attribute``.
     """
-    attributes = ((name, value) for name, value in part.attributes.items() if name != "name")
-    found = (pair for name, value in attributes for pair in _properties(name, value))
-    kind = [("type", name) for _, name in part.metaclasses[:1]]
-    return dict((*kind, *found))
+    known: dict[str, Property] = {}
+    for _, kind in part.metaclasses[:1]:
+        known["type"] = kind
+        for name, value in part.attributes.items():
+            if name != "name":
+                known.update(_properties(f"{kind}.{name}" if name in _OF_FEATURES else name, value))
+    return known
 
 
 def _described(
-    picture: TaskPicture | ElementPicture, shapes: Iterable[MapFeature], role: Role, layer: Layer
+    picture: TaskPicture | ElementPicture,
+    shapes: Iterable[MapFeature],
+    role: Role,
+    layer: Layer,
+    more: Mapping[str, Property] = MappingProxyType({}),
 ) -> Iterator[Drawn]:
     part, drawn = picture.model, False
     for shape in shapes:
@@ -123,7 +138,7 @@ def _described(
             description=picture.symbol.label,
             role=role,
             folders=(layer,),
-            properties=properties_of(part) if part is not None else {},
+            properties={**(properties_of(part) if part is not None else {}), **more},
             colour=picture.symbol.colour,
         )
     if not drawn:
@@ -140,7 +155,7 @@ def _properties(name: str, value: Value) -> Iterator[tuple[str, Property]]:
             for index, each in enumerate(value):
                 yield from _properties(f"{name}[{index}]", each)
         elif value:
-            yield name, ", ".join(map(str, value))
+            yield name, ", ".join(str(each).replace(",", "\\,") for each in value)
     elif isinstance(value, bool | int | float) or (isinstance(value, str) and value):
         yield name, value
 

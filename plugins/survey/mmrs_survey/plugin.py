@@ -97,6 +97,7 @@ def mmrs_map_symbols() -> tuple[MapSymbol, ...]:
             "#2d7a3a",
             "✚",
             ("actionName", "spacing", "altitude"),
+            alternatives=(frozenset({"altitude", "depth"}),),
             height="altitude",
             device="deviceId",
             action="actionName",

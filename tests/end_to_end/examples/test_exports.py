@@ -19,6 +19,9 @@ from mmrs_core.cli import run
 from mmrs_core.cli.plan import save
 from mmrs_core.contributions.drawings import reader_for
 from mmrs_core.drawings.drawing import HeightReference, Role
+from mmrs_core.languages.element import metaclass_of
+from mmrs_core.languages.modelset import read_project
+from mmrs_core.resources import shipped
 
 pytestmark = pytest.mark.together("examples")
 
@@ -138,3 +141,35 @@ def test_gdal_reads_every_feature(exported, form, need_program):
         assert {layer: int(counts[layer]) for layer in asked} == asked
     else:
         assert sum(map(int, counts.values())) == asked.total()
+
+
+def attributes_of(project, contributions):
+    """Return the class and all attributes of each task with a shape, by name."""
+    models, faults = read_project(project, registry=contributions.languages)
+    assert not faults
+    return {
+        task.name: (
+            kind.name,
+            {
+                each.name: str(getattr(task, each.attribute))
+                for each in kind.features
+                if not each.is_reference
+            },
+        )
+        for task in models.mission.tasks
+        if (kind := metaclass_of(task)).name not in ("Fork", "Join")
+    }
+
+
+@pytest.mark.parametrize("form", [*FORMATS, "gpx"])
+def test_tasks_are_imported_with_their_types_and_all_attributes(form, contributions, tmp_path):
+    project, again = (
+        Path(shutil.copytree(shipped("examples") / "mixed-team", tmp_path / "dam")),
+        tmp_path / "again",
+    )
+    assert run(["export", str(project), "--format", form, "--only", "tasks", "--only", "homes"]) == 0
+    robots = {"Rover": "Crawler", "Hawk": "Camera drone", "Kite": "Camera drone", "Otter": "Inspection AUV"}
+    options = [part for name, kind in robots.items() for part in ("--robot", f"{name}={kind}")]
+    options += [part for file in (project / "robots").iterdir() for part in ("--types", str(file))]
+    assert run(["import", str(project / f"export.{form}"), "-o", str(again), *options]) == 0
+    assert attributes_of(again, contributions) == attributes_of(project, contributions)

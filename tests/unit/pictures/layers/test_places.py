@@ -77,6 +77,7 @@ def test_of_two_positions_above_each_other_neither_height_is_chosen():
         ),
         ({"parameters": (part(key="k", value="v"),)}, {"parameters[0].key": "k", "parameters[0].value": "v"}),
         ({"sheet": part(size=2.0)}, {"sheet.size": 2.0}),
+        ({"type": "QUICK", "description": "red"}, {"Buoy.type": "QUICK", "Buoy.description": "red"}),
         (
             {
                 "position": (1.0, 2.0, 3.0),
