@@ -249,7 +249,7 @@ class WaypointPath:
         self._part: list[DrawnItem] = []
 
     def add(self, row: DrawnItem) -> None:
-        """Continue the path, or note why an item is no part of one."""
+        """Continue the path, or note why an item does not belong to one."""
         if row.command in LAUNCHED:
             reason = "robots take off, return and land without a task"
             self._sheet.leave_out(f"item {row.number}", reason, row.line)
