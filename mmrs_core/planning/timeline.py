@@ -58,7 +58,7 @@ class Ride:
         points: at least one; several: straight legs between them.
         early: seconds at which it may begin, -inf where the robot is from the start; late: by which it
             has ended, inf where it stays to the end.
-        least: seconds of each leg at even speed, which the robot does not exceed.
+        least: seconds that each leg takes at least.
         radius: metres from the path within which the robot may be.
         relation: whether it is at or over the robot's own home.
     """
@@ -120,6 +120,7 @@ class _Walk:
         if isinstance(step, Await):
             self._await(step, given)
         elif isinstance(step, Signal):
+            self._pause()
             given[step.signal] = (self.now, self.by)
         elif isinstance(step, Branch):
             self._branch(step, given)
@@ -131,7 +132,7 @@ class _Walk:
             self._upright(step)
         else:
             charging = self.kinematics.charging_time(step.end - step.begin)
-            self._stay(charging.expected, charging.longest)
+            self._stay(charging.shortest, charging.longest)
 
     def stay_to_the_end(self) -> None:
         self.by = inf
@@ -146,17 +147,21 @@ class _Walk:
 
     def _await(self, step: Await, given: Mapping[str, _Given]) -> None:
         waits = 0.0 if step.until is None else max(0.0, step.until - step.begin)
-        early, late = self.now + waits, max(self.by + waits, step.end)
+        noticed = 0.0 if step.until is None else noticing(self.kinematics.timing)
+        early, late = self.now + waits, max(self.by + waits, step.end) + noticed
         self.by = max([late, *(given[signal][1] for signal in step.signals)])
         self._stay(max([early, *(given[signal][0] for signal in step.signals)]) - self.now, 0.0)
 
     def _branch(self, step: Branch, given: dict[str, _Given]) -> None:
         """Take every arm; continue as soon as the quickest one may."""
+        self._pause()
         begin, ends, latest = (self.now, self.by, self.here, self.radius), [], step.end
         for _, arm in step.arms:
             self.now, self.by, self.here, self.radius = begin
             for inner in arm:
                 self.add(inner, given)
+            if not arm:
+                self._pause()
             latest = max(latest, self.by)
             ends.append((self.now, self.here, self.radius))
         for self.now, self.here, self.radius in ends:
@@ -173,6 +178,8 @@ class _Walk:
     def _serve(self, step: Serve) -> None:
         rates, timing = self.kinematics.rates(step.speed), self.kinematics.timing
         todo, done, planned = list(step.stroke.actions), 0.0, 0.0
+        if step.stroke.object is not None:
+            self.radius = step.stroke.object_tolerance or 0.0
         for place in stops_of(step.stroke):
             done += dist(self.here, place)
             planned += rates.from_stop_to_stop(self.here, place)
@@ -182,19 +189,21 @@ class _Walk:
                 found = acting(action_seconds(self.robot.type, todo.pop(0)), timing)
                 planned += found.expected
                 self._stay(found.shortest, found.longest)
-        if step.stroke.object is not None:
-            self.radius = step.stroke.object_tolerance or 0.0
         left = step.end - step.begin - planned
         uncertain = uncertain_seconds(step.stroke, self.kinematics)
-        late = timing.spread * uncertain + (noticing(timing) if step.stroke.hold > 0.0 else 0.0)
+        holds = step.stroke.hold > 0.0 or len(step.stroke.points) == 1 or step.stroke.object is not None
+        late = timing.spread * uncertain + (noticing(timing) if holds else 0.0)
         self._stay(max(0.0, left - uncertain), max(0.0, left) + late)
 
     def _go(self, points: tuple[Position, ...], rates: Rates, speed: float | None) -> None:
         soonest, latest = rates.soonest(), rates.latest()
         legs = list(pairwise(points))
         least = sum(soonest.from_stop_to_stop(*leg) for leg in legs)
+        most = sum(latest.from_stop_to_stop(*leg) for leg in legs)
+        slowest = min(rates.cruise, rates.climb, rates.descent)
+        search = (self.radius / slowest if slowest > 0.0 else inf) if self.radius else 0.0
         early = self.now
-        self._ride(points, least, sum(latest.from_stop_to_stop(*leg) for leg in legs), rates)
+        self._ride(points, max(0.0, least - search), most + search, rates)
         if self.kinematics.timing.overshoot > 0.0:
             self._overshoot(legs, early, speed or self.kinematics.cruise)
 
@@ -219,10 +228,16 @@ class _Walk:
         relation: HomeRelation = HomeRelation.ELSEWHERE,
     ) -> None:
         """Go along points for so long at least, and at most."""
-        least = tuple(rates.even(one, two) for one, two in pairwise(points))
+        even = [rates.even(one, two) for one, two in pairwise(points)]
+        share = min(1.0, seconds / sum(even)) if sum(even) else 1.0
+        least = tuple(share * each for each in even)
         self.by += longest
         self.rides.append(Ride(points, self.now, self.by, least, self.radius, relation))
         self.now, self.here, self.gone = self.now + seconds, points[-1], True
+
+    def _pause(self) -> None:
+        """Stop on the spot, as behaviours may have to between two waits."""
+        self._stay(0.0, noticing(self.kinematics.timing))
 
     def _stay(self, seconds: float, longest: float | None = None) -> None:
         """Stay for so long at least, and at most."""
