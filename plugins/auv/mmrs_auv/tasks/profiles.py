@@ -129,9 +129,15 @@ YO_YO_RULE = Rule("yo_yo", YO_YO_TASK, yo_yo_work)
 
 
 def surface_work(task: Task, robot: Robot, scene: Scene) -> Work:
-    """Return the position at the surface above the point, and how long to stay there."""
+    """Return the position at the surface above the point, and how long to stay there.
+
+    Raises:
+        InfeasibleError: the robot is never below the surface, or cannot get there.
+    """
     east, north, _ = position(task.part, "point")
     place = (east, north, scene.frame.surface)
+    if robot.kinematics is not None and robot.kinematics.floor >= scene.frame.surface:
+        raise InfeasibleError("does not dive, so that it cannot surface")
     refuse_heights(robot, (place,))
     refuse_blocked(robot, scene, (place,), "the position at the surface")
     return Work(
