@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from math import hypot, isqrt
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -12,7 +13,7 @@ import numpy as np
 from mmrs_core.contributions.rules import robot_kind_of
 from mmrs_core.diagnostics import has_errors
 from mmrs_core.drawings.drawing import Geometry, HeightReference, MapFeature
-from mmrs_core.errors import InfeasibleError, InvalidModelError, UsageError
+from mmrs_core.errors import InfeasibleError, UsageError
 from mmrs_core.geometry.frames import LocalFrame
 from mmrs_core.grounding.robots import robot_type_of
 from mmrs_core.languages.naming import nearest
@@ -38,8 +39,9 @@ _NAMES = ("Alpha", "Bravo", "Charlie", "Delta", "Echo", "Foxtrot", "Golf", "Hote
 _WIDTH: Mapping[Medium, float] = {"air": 60.0, "ground": 20.0, "water": 28.0}
 _DEPTH: Mapping[Medium, float] = {"air": 40.0, "ground": 12.0, "water": 12.0}
 _GAP: Mapping[Medium, float] = {"air": 20.0, "ground": 6.0, "water": 6.0}
-"""Metres of a task along and across its row, and between it, the homes and other tasks."""
-_IN_A_ROW: Mapping[Medium, int] = {"air": 3, "ground": 4, "water": 4}
+"""Metres of a task along and across its row, and between tasks."""
+_FROM_HOMES = 10.0
+"""Least metres between a task and the row of homes: more than robots keep between them."""
 _HEIGHTS: Mapping[Medium, tuple[float, ...]] = {"air": (30.0,), "ground": (0.0,), "water": (-3.0, 0.0)}
 """Heights above the homes at which a task is tried, metres."""
 _SHAPES = (Geometry.AREA, Geometry.LINE, Geometry.POINT)
@@ -102,7 +104,6 @@ class Beginning:
         self._contributions = contributions
         self._kinds = ImportKinds(contributions)
         self._tried: dict[object, _Attempt | str] = {}
-        self._unsafe: dict[int, str | None] = {}
 
     def kind_of(self, task: TaskWanted) -> Kind:
         """Return the kind of a task.
@@ -147,11 +148,11 @@ class Beginning:
     def project(
         self, folder: Path, title: str, robots: Sequence[RobotWanted], tasks: Sequence[TaskWanted]
     ) -> ImportResult:
-        """Return a project with robots and tasks, each of which one of the robots can do.
+        """Return a project with robots and tasks, of which there is a safe plan unless it is invalid.
 
         Raises:
-            UsageError: if a type is unknown, or no robot can do a task; with the types that can.
-            InvalidModelError: if names or attributes make the project invalid.
+            UsageError: if a type is unknown, no robot can do a task, or no plan of all is safe; with what to
+                choose instead.
         """
         types = types_for(robots, (), self._contributions)
         attempts: list[_Attempt] = []
@@ -160,37 +161,22 @@ class Beginning:
             attempts.append(self._best(task, sorted(used, key=used.__getitem__)))
             used[attempts[-1].type] += 1
         made = self._made(folder, title, robots, types, attempts)
-        if not has_errors(made.diagnostics):
-            _ = _stages(made, self._contributions).scene
+        if not has_errors(made.diagnostics) and (reasons := self._reasons_against(made)):
+            words = "no safe plan of all these robots and tasks: choose fewer of one or the other"
+            raise UsageError(words, reasons)
         return made
 
     def _best(self, task: TaskWanted, types: Iterable[str]) -> _Attempt:
-        """Return the most usual attempt of one of the types at a task that a safe plan does."""
+        """Return the most usual attempt of one of the types at a task."""
         found = {name: self._attempt(task, name) for name in types}
         possible = [each for each in found.values() if isinstance(each, _Attempt)]
-        for each in sorted(possible, key=lambda one: one.rank):
-            if id(each) not in self._unsafe:
-                self._unsafe[id(each)] = self._reason_against(each)
-            if (reason := self._unsafe[id(each)]) is None:
-                return each
-            found[each.type] = reason
-        others = [name for name in self._contributions.robot_types if name not in found]
-        able, _ = self.doers(task, others)
+        if possible:
+            return min(possible, key=lambda each: each.rank)
+        able, _ = self.doers(task, [name for name in self._contributions.robot_types if name not in found])
         words = f"{', '.join(able)} can" if able else "no installed type can"
         reasons = tuple(f"{name}: {reason}" for name, reason in found.items())
         kind = self.kind_of(task)
         raise UsageError(f"{task.source}: no robot of the team can do {kind.name}; {words}", reasons)
-
-    def _reason_against(self, attempt: _Attempt) -> str | None:
-        """Return why no plan of a task for one robot is safe; None if one is."""
-        robot = RobotWanted("trial", attempt.type)
-        types = types_for([robot], (), self._contributions)
-        stages = _stages(self._made(_NOWHERE, "trial", [robot], types, [attempt]), self._contributions)
-        try:
-            refused = refusals(stages.verdicts, stages.program)
-        except InfeasibleError as error:
-            return _reason(error)
-        return "; ".join(f"{each.property}: {each.status.value}, {each.message}" for each in refused) or None
 
     def _attempt(self, task: TaskWanted, type_name: str) -> _Attempt | str:
         """Return how robots of a type can do a task, or why they cannot."""
@@ -200,19 +186,33 @@ class Beginning:
         return self._tried[key]
 
     def _first_possible(self, task: TaskWanted, type_name: str) -> _Attempt | str:
+        """Return the first attempt at a task of which there is a safe plan for one robot, or why none is."""
         kind = self.kind_of(task)
         robot = RobotWanted("trial", type_name)
         types = types_for([robot], (), self._contributions)
-        reason = ""
+        reasons: list[str] = []
         for attempt in self._attempts(task, kind, types[type_name].element):
             try:
                 made = self._made(_NOWHERE, "trial", [robot], types, [attempt])
-                _ = _stages(made, self._contributions).scene
-            except (InfeasibleError, InvalidModelError, UsageError) as error:
-                reason = reason or _reason(error)
-            else:
+                against = self._reasons_against(made)
+            except UsageError as error:
+                against = (str(error), *error.elements)
+            if not against:
                 return attempt
-        return reason or f"{kind.name} cannot be drawn"
+            reasons.append("; ".join(against))
+        return reasons[0] if reasons else f"{kind.name} cannot be drawn"
+
+    def _reasons_against(self, made: ImportResult) -> tuple[str, ...]:
+        """Return why there is no safe plan of a project that is not written yet; empty if there is one."""
+        models = made.models
+        if models is None or has_errors(made.diagnostics):
+            return tuple(each.message for each in made.diagnostics[:1])
+        stages = Stages(lambda: models, self._contributions)
+        try:
+            refused = refusals(stages.verdicts, stages.program)
+        except InfeasibleError as error:
+            return tuple(error.reasons)
+        return tuple(f"{each.property}: {each.status.value}, {each.message}" for each in refused)
 
     def _attempts(self, task: TaskWanted, kind: Kind, robot_type: Element) -> Iterator[_Attempt]:
         """Yield attempts at a task: as its plug-in has it, then with devices and actions of the robot."""
@@ -274,7 +274,7 @@ class Beginning:
         made = imported(features, (), options, self._contributions, folder)
         left = next((each for each in made.outcomes if not each.became), None)
         if left is not None:
-            raise InvalidModelError(f"{left.by}: {left.reason}")
+            raise UsageError(f"{left.by}: {left.reason}")
         return made
 
     def _homes(self, robots: Sequence[RobotWanted]) -> tuple[RobotWanted, ...]:
@@ -286,18 +286,11 @@ class Beginning:
         )
 
     def _features(self, attempts: Sequence[_Attempt]) -> Iterator[MapFeature]:
-        """Yield the features of tasks: in the air north of the homes, in water south, on the ground west."""
-        count: dict[Medium, int] = {}
+        """Yield the features of tasks: in the air north, in water south, on the ground north-west."""
+        cells = {medium: _cells(medium, len(attempts)) for medium in _GAP}
         for number, each in enumerate(attempts):
-            columns = _IN_A_ROW[each.medium]
-            row, column = divmod(count.get(each.medium, 0), columns)
-            count[each.medium] = count.get(each.medium, 0) + 1
-            width, depth, gap = (by[each.medium] for by in (_WIDTH, _DEPTH, _GAP))
-            from_middle = sorted(
-                (number - columns / 2 for number in range(columns)), key=lambda at: abs(at + 0.5)
-            )
-            left = from_middle[column] * (width + gap) + gap / 2
-            near = gap + row * (depth + gap)
+            width, depth = _WIDTH[each.medium], _DEPTH[each.medium]
+            left, near = next(cells[each.medium])
             right, far, middle = left + width, near + depth, left + width / 2
             corners = {
                 Geometry.AREA: [(left, near), (right, near), (right, far), (left, far)],
@@ -330,28 +323,21 @@ class Beginning:
         return LocalFrame(WGS84, *self._place).to_geographic(np.array(local, float))
 
 
+def _cells(medium: Medium, count: int) -> Iterator[tuple[float, float]]:
+    """Yield the left near corners of places for so many tasks, those nearest to the homes first."""
+    width, depth, gap = (by[medium] for by in (_WIDTH, _DEPTH, _GAP))
+    side = 2 * isqrt(count) + 2
+    aside = range(0 if medium == "ground" else -side, side)  # tasks on the ground keep off those in water
+    corners = [
+        (column * (width + gap) + gap / 2, row * (depth + gap) + max(gap, _FROM_HOMES))
+        for row in range(side)
+        for column in aside
+    ]
+    yield from sorted(corners, key=lambda at: hypot(at[0] + width / 2, at[1] + depth / 2))
+
+
 def _height_of(attempt: _Attempt) -> dict[str, float]:
     """Return the height as the attribute that a task has for it."""
     symbol = attempt.kind.symbol
     name = symbol.height if symbol is not None else ""
     return {name: attempt.height} if name and name not in attempt.attributes else {}
-
-
-def _stages(made: ImportResult, contributions: Contributions) -> Stages:
-    """Return the stages of a project that is not written yet.
-
-    Raises:
-        InvalidModelError: if it is invalid.
-    """
-    models = made.models
-    if models is None or has_errors(made.diagnostics):
-        raise InvalidModelError("not valid", made.diagnostics)
-    return Stages(lambda: models, contributions)
-
-
-def _reason(error: InfeasibleError | InvalidModelError | UsageError) -> str:
-    if isinstance(error, InfeasibleError):
-        return "; ".join(error.reasons)
-    if isinstance(error, InvalidModelError):
-        return next((each.message for each in error.diagnostics), str(error))
-    return str(error)

@@ -3,23 +3,46 @@
 import os
 import pty
 import sys
-from itertools import combinations
+from itertools import combinations, cycle
+from pathlib import Path
 
 import pytest
 
+from mmrs_core.errors import UsageError
+from mmrs_core.pipeline import refusals
 from mmrs_core.plugins import load_plugins
 from mmrs_core.projects.beginning import Beginning, TaskWanted
+from mmrs_core.projects.team import RobotWanted
+from mmrs_core.stages import Stages
 
 PLACE = ("--at", "43.77,11.25")
 CONTRIBUTIONS = load_plugins().contributions
 TYPES = tuple(CONTRIBUTIONS.robot_types)
-TASKS = Beginning((0.0, 0.0), CONTRIBUTIONS).task_types()
+BEGINNING = Beginning((0.0, 0.0), CONTRIBUTIONS)
+TASKS = BEGINNING.task_types()
+PLACES = [(60.0, 10.0), (-60.5, -70.0), (0.0, 180.0), (-17.0, -179.9999), (36.5, -25.0), (46.55, 7.98)]
+"""In the north and south, at the antimeridian, at sea and in hills."""
+TEAMS = [
+    *(([robot] * count, [task]) for robot in TYPES for task in TASKS for count in (1, 3)),
+    *((pair, TASKS) for pair in combinations(TYPES, 2)),
+    *(([robot] * 3, TASKS) for robot in TYPES),
+    (TYPES, TASKS),
+]
+MISSIONS = [(place, *team) for place, team in zip(cycle(PLACES), TEAMS, strict=False)]
 SAMPLE = [
     ("PhotoGridTask", "Freefly Astro LR1"),
     ("MeasureTask", "Amovlab P600 gas"),
     ("ObserveTask", "Clearpath Husky A300"),
     ("InspectObjectTask", "BlueROV2"),
 ]
+
+
+def tenth(missions):
+    """Mark all missions but every tenth one as thorough."""
+    return [
+        pytest.param(*each, marks=() if number % 10 == 8 else pytest.mark.thorough)
+        for number, each in enumerate(missions)
+    ]
 
 
 def plans(mmrs, folder, robots, tasks):
@@ -38,28 +61,34 @@ def test_a_new_mission_is_valid_and_can_be_planned(mmrs, tmp_path, task, robot):
     assert plans(mmrs, tmp_path / "field", [robot], [task]) == ""
 
 
-@pytest.mark.thorough
-@pytest.mark.parametrize("robot", TYPES)
-@pytest.mark.parametrize("task", TASKS)
-def test_every_robot_plans_every_task_or_is_refused_with_a_reason(mmrs, tmp_path, task, robot):
-    found = plans(mmrs, tmp_path / "field", [robot], [task])
-    assert found == "" or f"no robot of the team can do {task}" in found
+@pytest.mark.parametrize(("place", "robots", "tasks"), tenth(MISSIONS))
+def test_a_new_mission_has_a_safe_plan_or_no_robot_of_it_can_do_the_task(place, robots, tasks):
+    beginning = Beginning(place, CONTRIBUTIONS)
+    able = [TaskWanted(task) for task in tasks if beginning.doers(TaskWanted(task), robots)[0]]
+    team = [RobotWanted(f"R{number}", robot) for number, robot in enumerate(robots)]
+    if not able:
+        with pytest.raises(UsageError, match=f"no robot of the team can do {tasks[0]}"):
+            beginning.project(Path("new"), "new", team, [TaskWanted(tasks[0])])
+        return
+    made = beginning.project(Path("new"), "new", team, able)
+    stages = Stages(lambda: made.models, CONTRIBUTIONS)
+    assert list(refusals(stages.verdicts, stages.program)) == []
+    assert len(stages.scene.tasks) == len(able)
 
 
-@pytest.mark.thorough
-@pytest.mark.parametrize("team", [*combinations(TYPES, 2)], ids=" and ".join)
-def test_every_pair_of_robots_plans_all_tasks_or_meets_on_its_routes(mmrs, tmp_path, team):
-    beginning = Beginning((43.77, 11.25), CONTRIBUTIONS)
-    able = [task for task in TASKS if beginning.doers(TaskWanted(task), team)[0]]
-    found = plans(mmrs, tmp_path / "field", team, able)
-    assert (
-        found == "" or "separation: unknown" in found
-    )  # robots with ten tasks each may meet on their routes
+def test_what_no_plan_can_do_safely_is_refused_before_it_is_written(mmrs, tmp_path):
+    far = ("--robot", "A=BlueROV2", *["--task", "GoToTask"] * 90)
+    code, _, err = mmrs("new", tmp_path / "field", *PLACE, *far)
+    assert code == 2
+    assert "no safe plan of all these robots and tasks: choose fewer" in " ".join(err.split())
+    assert "its radio reaches 100 m" in err
+    assert not (tmp_path / "field").exists()
 
 
-def test_every_task_can_be_done_by_a_shipped_robot():
-    beginning = Beginning((43.77, 11.25), CONTRIBUTIONS)
-    assert [task for task in TASKS if not beginning.doers(TaskWanted(task), TYPES)[0]] == []
+def test_every_task_can_be_done_by_a_shipped_robot_and_only_what_dives_surfaces():
+    able = {task: BEGINNING.doers(TaskWanted(task), TYPES)[0] for task in TASKS}
+    assert [task for task in TASKS if not able[task]] == []
+    assert able["SurfaceTask"] == ("BlueROV2",)
 
 
 def test_several_robots_have_names_of_their_own(mmrs, tmp_path):
