@@ -16,7 +16,8 @@ A caller's mistake is a `ValueError`, never one of these.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from types import MappingProxyType
 from typing import TYPE_CHECKING, ClassVar
 
 from mmrs_runtime.vehicle import LinkLost
@@ -32,9 +33,11 @@ class MmrsError(Exception):
 
     Attributes:
         exit_code: what a command that ends with this error returns to the shell.
+        found: what the command found before, for ``--json``.
     """
 
     exit_code: ClassVar[int] = 1
+    found: Mapping[str, object] = MappingProxyType({})
 
 
 class InternalError(MmrsError):

@@ -76,7 +76,7 @@ def ended_by(error: Exception, settings: Settings) -> int:
     for detail in failure.details:
         tell(f"  - {one_line(detail)}")
     if settings.json:
-        say_json({"error": failure})
+        say_json({**error.found, "error": failure} if isinstance(error, MmrsError) else {"error": failure})
     return failure.exit_code
 
 

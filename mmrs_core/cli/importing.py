@@ -16,7 +16,7 @@ from mmrs_core.cli.replacing import replace_files
 from mmrs_core.cli.session import Session
 from mmrs_core.cli.settings import Json, settings_of
 from mmrs_core.diagnostics import has_errors
-from mmrs_core.errors import InvalidModelError, UsageError
+from mmrs_core.errors import InvalidModelError, MmrsError, UsageError
 from mmrs_core.projects import ALTITUDE
 
 if TYPE_CHECKING:
@@ -108,18 +108,19 @@ def import_drawings(
     options = _options(files, assignments or (), mapping, robots or (), types or (), contributions)
     options = replace(options, altitude=altitude, simplify=simplify)
     drawings = [_drawing(file, contributions) for file in files]
-    result = _imported(drawings, options, contributions, into or output or _NOWHERE, into is not None, json)
     team = bool(options.robots) or into is not None
-    wrong = team and has_errors(result.diagnostics)
+    result, error = _imported(drawings, options, contributions, into or output or _NOWHERE, into is not None)
+    if error is None and not (team or dry_run):
+        error = _without_robots(result, contributions)
+    if error is None and team and has_errors(result.diagnostics):
+        hint = "correct the drawing, or leave features out with --as NAME=ignore"
+        words = f"nothing written: the project would not be valid; {hint}"
+        error = InvalidModelError(words, result.diagnostics)
     if not json:
         _tell_all(result)
-    if not (team or dry_run):
-        raise _without_robots(result, contributions)
-    if wrong:
-        hint = "correct the drawing, or leave features out with --as NAME=ignore"
-        raise InvalidModelError(
-            f"nothing written: the project would not be valid; {hint}", result.diagnostics
-        )
+    if error is not None:
+        error.found = _as_json(replace(result, files={}), team, dry_run)
+        raise error
     report(result.diagnostics if team else ())
     if not dry_run:
         replace_files(result.files)
@@ -146,7 +147,8 @@ def _options(
 ) -> ImportOptions:
     from mmrs_core.projects.choosing import Mapped, assignment_of, read_mapping
     from mmrs_core.projects.importing import ImportOptions
-    from mmrs_core.projects.team import robot_wanted, types_for
+    from mmrs_core.projects.notes import completed
+    from mmrs_core.projects.team import medium_of, robot_wanted, types_for
 
     kept = read_mapping(mapping) if mapping is not None else Mapped()
     team = {
@@ -158,12 +160,15 @@ def _options(
         for each in (robot_wanted(text, source),)
     }
     wanted = tuple(team.values())
+    used = types_for(wanted, types, contributions)
+    names = ", ".join(file.name for file in files)
+    in_water = any(medium_of(used[each.type].element, contributions) == "water" for each in wanted)
     return ImportOptions(
         choices=(*kept.choices, *(assignment_of(text, f"--as '{text}'") for text in assignments)),
         robots=wanted,
-        types=types_for(wanted, types, contributions),
+        types=used,
         title=files[0].stem,
-        note=f"Imported from {', '.join(file.name for file in files)}.",
+        complete=completed(files[0].stem, wanted, in_water=in_water, made=f"imported from {names}"),
     )
 
 
@@ -181,19 +186,17 @@ def _imported(
     contributions: Contributions,
     folder: Path,
     into: bool,
-    json: bool,
-) -> ImportResult:
+) -> tuple[ImportResult, MmrsError | None]:
+    """Return what an import makes, and why it is refused."""
     from mmrs_core.projects.importing import ImportRefusedError, imported
 
     drawings = list(drawings)
     features = [feature for drawing in drawings for feature in drawing.features]
     left_out = [each for drawing in drawings for each in drawing.left_out]
     try:
-        return imported(features, left_out, options, contributions, folder, into=into)
+        return imported(features, left_out, options, contributions, folder, into=into), None
     except ImportRefusedError as refused:
-        if not json:
-            _tell_all(refused.result)
-        raise
+        return refused.result, refused
 
 
 def _tell_all(result: ImportResult) -> None:

@@ -240,10 +240,11 @@ def _asked_robots(contributions: Contributions) -> tuple[RobotWanted, ...]:
 
 def _usual(types: Sequence[str], contributions: Contributions) -> str:
     """Return the number of the first type that flies, else of the first one."""
-    from mmrs_core.projects.team import RobotWanted, flies, types_for
+    from mmrs_core.projects.team import RobotWanted, medium_of, types_for
 
     for number, name in enumerate(types, 1):
-        if flies(types_for([RobotWanted("", name)], (), contributions)[name].element, contributions):
+        element = types_for([RobotWanted("", name)], (), contributions)[name].element
+        if medium_of(element, contributions) == "air":
             return str(number)
     return "1"
 

@@ -13,6 +13,19 @@ if TYPE_CHECKING:
     from mmrs_core.drawings.drawing import Drawing, HeightReference
 
 
+_ADVICE = {
+    **dict.fromkeys(
+        (".shp", ".shx", ".dbf", ".gpkg", ".gdb", ".gml", ".fgb", ".tab", ".mif", ".dgn", ".sqlite", ".zip"),
+        "save it as GeoJSON in WGS 84: in QGIS with Export > Save Features As, or with "
+        "ogr2ogr -f GeoJSON -t_srs EPSG:4326 field.geojson FILE",
+    ),
+    ".dxf": "give it its coordinate system and save it as GeoJSON in WGS 84 in QGIS: Layer > Save As",
+    ".dwg": "save it as DXF, and that as GeoJSON in WGS 84 in QGIS",
+    **dict.fromkeys((".xls", ".xlsx", ".ods"), "save the sheet as CSV in UTF-8"),
+}
+"""What to do with files that other programs convert, by suffix."""
+
+
 def _nothing_lost(drawing: Drawing) -> tuple[str, ...]:
     return ()
 
@@ -49,6 +62,8 @@ def reader_for(data: bytes, file: str, readers: Sequence[DrawingReader]) -> Draw
     recognised = [reader for reader in known if reader.recognise(data, file)]
     if len(recognised) == 1:
         return recognised[0]
+    if (advice := _ADVICE.get(suffix)) and not recognised:
+        raise UnreadableError.of("", f"{suffix} is not read; {advice}", file)
     shown = ", ".join(f"{reader.name} ({', '.join(reader.suffixes)})" for reader in recognised or known)
     if recognised:
         raise UnreadableError.of("", f"may be of several formats: {shown}", file)

@@ -380,9 +380,15 @@ def _drawn(element: Element) -> bool:
 
 
 def _positions(element: Element) -> Iterator[Position]:
-    """Yield latitude and longitude of everything in an element, except where robots begin."""
-    for each in _coordinates(element):
-        yield number(each, "latitude"), number(each, "longitude")
+    """Return latitude and longitude of everything in an element, except where robots begin."""
+    return map(position_of, _coordinates(element))
+
+
+def position_of(coordinate: Element | None) -> Position:
+    """Return latitude and longitude of a coordinate, as far as it has them."""
+    if coordinate is None or not is_kind(coordinate, MISSION, "GeoCoordinate"):
+        return None, None
+    return number(coordinate, "latitude"), number(coordinate, "longitude")
 
 
 def _course(element: Element) -> list[Position]:

@@ -20,12 +20,12 @@ from mmrs_core.languages.modelset import project_files
 from mmrs_core.languages.xmi.events import read_bytes
 from mmrs_core.pipeline import check_models, read_models
 from mmrs_core.projects import ALTITUDE
-from mmrs_core.projects.building import Basis, Builder, Outcome, UniqueNames
+from mmrs_core.projects.building import Basis, Builder, Outcome, UniqueNames, position_of
 from mmrs_core.projects.choosing import Assignment, Chooser, Decision
 from mmrs_core.projects.heights import Levels, levels_at
 from mmrs_core.projects.kinds import CONTEXT, MISSION, ImportKinds
 from mmrs_core.projects.shapes import UnfitError, shape
-from mmrs_core.projects.team import Home, RobotWanted, TypeFile, flies, homes_for
+from mmrs_core.projects.team import Home, RobotWanted, TypeFile, homes_for, medium_of
 from mmrs_core.projects.texts import text_of, with_added
 
 if TYPE_CHECKING:
@@ -50,7 +50,6 @@ class ImportOptions:
         altitude: height above the origin of tasks that are drawn without one, for robots that fly; metres.
         simplify: metres by which simplified borders may be off; None: none is simplified.
         title: name of a new mission.
-        note: comment at the top of a new mission.
         complete: sets what else a new mission and its context begin with; returns comments on elements.
     """
 
@@ -60,7 +59,6 @@ class ImportOptions:
     altitude: float = ALTITUDE
     simplify: float | None = None
     title: str = ""
-    note: str = ""
     complete: Callable[[Element, Element, Registry], Mapping[Element, str]] | None = None
 
 
@@ -168,8 +166,10 @@ def imported(
     builder = Builder(project.mission, project.context, languages, names, around)
     if not into and options.complete is not None:
         builder.comments |= options.complete(project.mission, project.context, languages)
+    team = project.mission.team  # type: ignore[attr-defined]  # a mission
+    old = len(team.robots)
     added_types = _add_robots(project, homes, options, builder, names, languages.create)
-    outcomes = _built(builder, features, decisions, homes)
+    outcomes = _built(builder, features, decisions, team, old)
     rest = tuple(Outcome(each.what, each.place, "", reason=each.reason) for each in left_out)
     for each, decision in zip(lost, meant, strict=True):
         builder.refuse_open(
@@ -247,7 +247,7 @@ def _surroundings(
     return Basis(
         levels,
         options.altitude,
-        any(flies(each, contributions) for each in types) if types else True,
+        any(medium_of(each, contributions) == "air" for each in types) if types else True,
         options.simplify,
         None if latitude is None or longitude is None else np.array([latitude, longitude]),
         {"tasks": frame.crs, "context": getattr(project.context, "crs", None) or frame.crs},
@@ -286,16 +286,16 @@ def _add_robots(
 
 
 def _built(
-    builder: Builder,
-    features: Sequence[MapFeature],
-    decisions: Sequence[Decision],
-    homes: Sequence[Home],
+    builder: Builder, features: Sequence[MapFeature], decisions: Sequence[Decision], team: Element, old: int
 ) -> list[Outcome]:
-    """Return what became of each feature; areas come first, since tasks begin off those that are closed."""
-    robots: dict[int, list[str]] = {}
-    for home in homes:
-        if home.feature is not None:
-            robots.setdefault(id(home.feature), []).append(home.robot.name)
+    """Return what became of each feature; areas come first, since tasks begin off those that are closed.
+
+    Args:
+        team: with the added robots behind the first `old` ones.
+    """
+    begin: dict[object, list[int]] = {}
+    for at, robot in enumerate(team.robots):  # type: ignore[attr-defined]  # a team
+        begin.setdefault(position_of(robot.home), []).append(at)
     outcomes: dict[int, Outcome] = {}
     pairs = [*zip(features, decisions, strict=True)]
     for number, (feature, decision) in sorted(
@@ -303,13 +303,17 @@ def _built(
     ):
         outcome = builder.build(feature, decision)
         if decision.kind.name == "home":
-            owners = robots.get(id(feature))
-            unused = "no robot begins there; --robot NAME=TYPE adds one that does"
-            outcome = (
-                replace(outcome, became="home", called=", ".join(owners), reason="")
-                if owners
-                else replace(outcome, reason=_unfit(feature) or unused)
-            )
+            unfit, (latitude, longitude) = _unfit(feature), map(float, feature.rings[0][0])
+            owners = begin.get(position_of(builder.coordinate(latitude, longitude)), []) if not unfit else []
+            named = [at for at in owners if at >= old] or owners
+            called = ", ".join(team.robots[at].name for at in named)  # type: ignore[attr-defined]
+            if named and named[0] >= old:
+                outcome = replace(outcome, became="home", called=called, reason="")
+            elif owners:
+                outcome = replace(outcome, reason=f"it is the home of {called} already")
+            else:
+                unused = "no robot begins there; --robot NAME=TYPE adds one that does"
+                outcome = replace(outcome, reason=unfit or unused)
         outcomes[number] = outcome
     return [outcomes[number] for number in range(len(pairs))]
 
@@ -341,8 +345,7 @@ def _texts(
         if file in project.texts:
             texts[file] = with_added(project.texts[file], root, added, file, registry, builder.comments)
         elif name == "mission" or added or not project.texts:
-            comments = {root: options.note, **builder.comments} if options.note else builder.comments
-            texts[file] = text_of(root, file, registry, comments)
+            texts[file] = text_of(root, file, registry, builder.comments)
     return texts
 
 

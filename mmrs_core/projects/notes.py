@@ -19,7 +19,7 @@ SEPARATION = 5.0
 SEA_WATER = 1025.0
 """Kilograms per cubic metre: pressures are the higher ones, in fresh water too."""
 
-_NOTE = """{title}: made by `mmrs new`.
+_NOTE = """{title}: {made}.
 Heights count from the home of {first}; the ground is taken to be level at its height.
 Before a real flight, check:
 positionError, here {error:g} m: how far off the robots' positions are; 0.05 suits RTK, 3 a single receiver.
@@ -28,8 +28,8 @@ reserve, here {reserve:.0%} of the energy, kept beyond the return home.
 altitudes of tasks: above trees, wires and buildings, and below what the law allows.
 the files in robots/: weigh your machines, and measure their flight time.
 the map, with `mmrs preview`, and after each change the models, with `mmrs validate`."""
-_CONTEXT_NOTE = """What robots keep clear of, and where they land in an emergency: empty so far.
-Draw it in a map program and add it to this project with `mmrs import`, or write, in this order:
+_CONTEXT_NOTE = """What robots keep clear of, and where they land in an emergency.
+Draw more in a map program and add it to this project with `mmrs import`, or write, in this order:
 forbiddenAreas: areas that no robot enters, at any height.
 emergencyAreas: areas for emergency landings, kept free of people.
 obstacles: trees, masts, wires; maxHeight in metres above the first home.
@@ -55,7 +55,7 @@ def empty_project(folder: Path, title: str, contributions: Contributions) -> Imp
 
 
 def completed(
-    title: str, robots: Sequence[RobotWanted], *, in_water: bool
+    title: str, robots: Sequence[RobotWanted], *, in_water: bool, made: str = "made by `mmrs new`"
 ) -> Callable[[Element, Element, Registry], Mapping[Element, str]]:
     """Return what completes a new mission: margins, a policy and comments."""
     error, reserve = 1.0, 0.25
@@ -70,7 +70,9 @@ def completed(
         if in_water:
             context.environment = registry.create(CONTEXT, "Environment", waterDensity=SEA_WATER)  # type: ignore[attr-defined]
         first = robots[0].name if robots else ""
-        note = _NOTE.format(title=title, first=first, error=error, separation=SEPARATION, reserve=reserve)
+        note = _NOTE.format(
+            title=title, made=made, first=first, error=error, separation=SEPARATION, reserve=reserve
+        )
         return {mission: note, context: _CONTEXT_NOTE, policy: _LINK_NOTE}
 
     return complete

@@ -17,6 +17,7 @@ from mmrs_core.languages.reading import read_model
 
 if TYPE_CHECKING:
     from mmrs_core.contributions.registry import Contributions
+    from mmrs_core.contributions.rules import Medium
     from mmrs_core.languages.element import Element
 
 
@@ -103,13 +104,13 @@ def _types_in(file: Path, contributions: Contributions) -> list[TypeFile]:
     return found
 
 
-def flies(element: Element, contributions: Contributions) -> bool:
-    """Return whether robots of a type do; so it is taken where the type is too incomplete to say it."""
+def medium_of(element: Element, contributions: Contributions) -> Medium:
+    """Return where robots of a type move; in the air where the type is too incomplete to say it."""
     try:
         kind = robot_kind_of(robot_type_of(element), contributions.robot_kinds)
     except InvalidModelError:
-        return True
-    return kind is not None and kind.medium == "air"
+        return "air"
+    return kind.medium if kind is not None else "ground"
 
 
 @dataclass(frozen=True, slots=True)

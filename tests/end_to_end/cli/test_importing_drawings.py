@@ -69,6 +69,10 @@ def test_a_drawing_becomes_a_project_that_is_valid_and_planned(drawing, capsys):
         "farm/mission.xmi",
         "farm/robots/freefly-astro-lr1.xmi",
     ]
+    mission = Path("farm/mission.xmi").read_text()
+    assert f"imported from {drawing}." in mission
+    assert "minimumSeparation=" in mission
+    assert '<policies response="RETURN" after="10.0"/>' in mission
     assert run(["validate", "farm"]) == 0
     assert run(["plan", "farm"]) == 0
     assert Path("farm/behaviour.xmi").is_file()
@@ -82,6 +86,7 @@ def test_a_drawing_that_is_imported_again_adds_what_is_new(drawing, capsys):
     assert run(["import", drawing, "--into", "farm"]) == 0
     out = capsys.readouterr().out
     assert out.count("the same is there already") == 7
+    assert "it is the home of Kite already" in out
     assert out.endswith("nothing written\n")
     text = (
         Path(drawing)
@@ -107,3 +112,13 @@ def test_without_robots_the_report_comes_with_what_is_missing(drawing, capsys):
     assert "no robots: a mission needs a team; --robot NAME=TYPE@HOME adds one" in printed.err
     assert "points for homes: Home, Water trough, Rally meadow" in printed.err
     assert not Path("farm").exists()
+
+
+@pytest.mark.parametrize("drawing", ["farm.kml"], indirect=True)
+def test_a_refused_import_reports_its_features_too(drawing, capsys):
+    for options in ((), (*KITE, "--as", "Water trough=obstacle")):
+        assert run(["import", drawing, "-o", "farm", *options, "--json"]) == 2
+        result = told(capsys)
+        assert result["error"]["message"]
+        assert "Water trough" in {each["name"] for each in result["features"]}
+        assert (result["written"], Path("farm").exists()) == (False, False)

@@ -161,8 +161,10 @@ def test_the_suffix_or_else_the_content_tells_the_format(data, file, name, contr
 
 
 def test_an_unknown_format_is_refused_with_those_that_are_known(contributions):
-    with pytest.raises(UnreadableError, match=r"^a\.dxf: of no format that is known: .*KML \(\.kml, \.kmz\)"):
-        reader_for(b"0\nSECTION", "a.dxf", contributions.drawing_readers)
+    with pytest.raises(UnreadableError, match=r"^a\.xyz: of no format that is known: .*KML \(\.kml, \.kmz\)"):
+        reader_for(b"0\nSECTION", "a.xyz", contributions.drawing_readers)
+    with pytest.raises(UnreadableError, match=r"^a\.SHP: \.shp is not read; save it as GeoJSON in WGS 84"):
+        reader_for(b"\0\0\x27\x0a", "a.SHP", contributions.drawing_readers)
 
 
 def test_nothing_drawn_is_a_file_without_features():
