@@ -12,7 +12,7 @@ import typer
 
 from mmrs_core.cli.output import counted, report, say, say_json, table, tell
 from mmrs_core.cli.protection import ProtectedError
-from mmrs_core.cli.replacing import replace_files
+from mmrs_core.cli.replacing import make_folder, replace_files
 from mmrs_core.cli.session import Session
 from mmrs_core.cli.settings import Json, settings_of
 from mmrs_core.diagnostics import has_errors
@@ -123,7 +123,7 @@ def import_drawings(
         raise error
     report(result.diagnostics if team else ())
     if not dry_run:
-        replace_files(result.files)
+        make_folder(output, result.files) if output is not None else replace_files(result.files)
     if json:
         say_json(_as_json(result, team, dry_run))
         return 0

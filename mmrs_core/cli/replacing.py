@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import os
+import shutil
 from collections.abc import Iterator, Mapping
 from errno import EEXIST, ENOTEMPTY
 from pathlib import Path
 
-from mmrs_core.languages.writing import replace_file
+from mmrs_core.languages.writing import part_of, replace_file
 
 
 def replace_files(texts: Mapping[Path, bytes]) -> None:
@@ -19,15 +21,41 @@ def replace_files(texts: Mapping[Path, bytes]) -> None:
     """
     before: dict[Path, bytes | None] = {}
     folders: list[Path] = []
+    parts: dict[Path, Path] = {}
     try:
         for file, text in texts.items():
             _make_for(file, folders)
             before[file] = file.read_bytes() if file.exists() else None
-            replace_file(file, text)
+            parts[file] = part_of(file, text)
+        for file, part in parts.items():
+            part.replace(file.resolve())
     except BaseException as error:
+        for part in parts.values():
+            part.unlink(missing_ok=True)
         if lost := [*_put_back(before), *_take_away(folders)]:
             why = str(error) or type(error).__name__
             raise OSError(f"{why}; and not as before: {', '.join(map(str, lost))}") from error
+        raise
+
+
+def make_folder(folder: Path, texts: Mapping[Path, bytes]) -> None:
+    """Make a folder with files in it, in one step that a crash cannot divide.
+
+    Raises:
+        OSError: if it cannot be made; nothing is there then.
+    """
+    if folder.exists():
+        replace_files(texts)
+        return
+    made: list[Path] = []
+    part = folder.with_name(f".{folder.name}.{os.getpid()}.part")
+    try:
+        _make_for(part, made)
+        replace_files({part / file.relative_to(folder): text for file, text in texts.items()})
+        part.rename(folder)
+    except BaseException:
+        shutil.rmtree(part, ignore_errors=True)
+        list(_take_away(made))
         raise
 
 

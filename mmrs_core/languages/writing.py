@@ -85,6 +85,20 @@ def replace_file(path: Path, data: bytes) -> None:
     Raises:
         OSError: if the folder cannot be written to; the file is as it was before.
     """
+    part = part_of(path, data)
+    try:
+        part.replace(path.resolve())
+    except BaseException:
+        part.unlink(missing_ok=True)
+        raise
+
+
+def part_of(path: Path, data: bytes) -> Path:
+    """Return a file beside another with the content that is to replace it, which is on the disk.
+
+    Raises:
+        OSError: if the folder cannot be written to; there is no such file then.
+    """
     real = path.resolve()  # a symbolic link stays one
     try:
         handle, name = tempfile.mkstemp(prefix=f".{real.name}.", suffix=".part", dir=real.parent)
@@ -97,10 +111,10 @@ def replace_file(path: Path, data: bytes) -> None:
             stream.flush()
             os.fsync(stream.fileno())
         part.chmod(real.stat().st_mode & 0o777 if real.exists() else 0o666 & ~_umask())
-        part.replace(real)
     except BaseException:
         part.unlink(missing_ok=True)
         raise
+    return part
 
 
 def _umask() -> int:

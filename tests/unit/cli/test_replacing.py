@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import errno
 import os
+import signal
 from pathlib import Path
 
 import pytest
 
-from mmrs_core.cli.replacing import replace_files
+from mmrs_core.cli.replacing import make_folder, replace_files
 
 
 def all_in(folder):
@@ -131,3 +132,25 @@ def test_a_folder_that_may_not_be_written_to_leaves_all_as_it_was(tmp_path, text
     with pytest.raises(PermissionError):
         replace_files({**texts, locked / "in" / "it": b"no"})
     assert all_in(tmp_path) == {**before, "locked": None}
+
+
+def killed_at(owner, name, monkeypatch, write, *given):
+    """Call a function in a process that is killed when another is called."""
+    child = os.fork()
+    if not child:
+        monkeypatch.setattr(owner, name, lambda *_: os.kill(os.getpid(), signal.SIGKILL))
+        write(*given)
+        os._exit(0)
+    assert os.waitpid(child, 0)[1] == signal.SIGKILL
+
+
+@pytest.mark.parametrize(("owner", "name"), [(os, "fsync"), (Path, "replace"), (Path, "rename")])
+def test_a_new_folder_is_whole_or_not_there(owner, name, tmp_path, monkeypatch):
+    folder = tmp_path / "farm"
+    killed_at(owner, name, monkeypatch, make_folder, folder, {folder / "a": b"a", folder / "in" / "b": b"b"})
+    assert not folder.exists()
+
+
+def test_no_file_is_replaced_before_all_are_on_the_disk(tmp_path, texts, before, monkeypatch):
+    killed_at(Path, "replace", monkeypatch, replace_files, texts)
+    assert {path.exists() and path.read_bytes() for path in texts} == {b"old", False}
