@@ -5,8 +5,8 @@ The entry point for rules is `work_over`.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from itertools import pairwise
 from math import floor
@@ -20,11 +20,12 @@ from mmrs_core.errors import InfeasibleError
 from mmrs_core.geometry.clearance import grow
 from mmrs_core.geometry.polygons import parts, polygon, rings
 from mmrs_core.planning.footprints import GRID
+from mmrs_core.planning.in_passing import trigger_distance
 from mmrs_core.planning.limits import MOST
-from mmrs_core.planning.lines import Swath
+from mmrs_core.planning.lines import APART, Swath
 from mmrs_core.planning.pockets import pockets_of
 from mmrs_core.planning.swaths import swaths
-from mmrs_core.scene import ActionAt, Area, Coverage, Point, Ring, Robot, Scene, Stroke, Work
+from mmrs_core.scene import ActionAt, Area, Coverage, Point, Repetition, Ring, Robot, Scene, Stroke, Work
 
 _SMALLEST = 1e-6
 """Square metres under which a part of a target is rounding."""
@@ -54,6 +55,7 @@ class Sweep:
         speed: largest speed on the strokes, metres per second; None: see `Stroke`.
         slow_down: see `Stroke`.
         angle: direction of the strokes, radians from east to north; None: the best one.
+        passing: name of the device's action that does the same in passing; None: the robot stops for each.
         start: where the first stroke should be near, such as the task's initial position; None: anywhere.
     """
 
@@ -67,6 +69,7 @@ class Sweep:
     speed: float | None = None
     slow_down: float | None = None
     angle: float | None = None
+    passing: str | None = None
     start: Point | None = None
 
     @property
@@ -121,7 +124,7 @@ def work_over(scene: Scene, robot: Robot, shell: Ring, sweep: Sweep, holes: Sequ
         width=width,
         length=sweep.along,
     )
-    strokes = tuple(_stroke(line, sweep) for line in lines)
+    strokes = tuple(stroke for line in lines for stroke in _strokes(line, sweep))
     return Work(strokes=strokes, divisible=True, rule=sweep.rule, ordered=False, coverage=covered)
 
 
@@ -193,6 +196,34 @@ def _stroke(line: Swath, sweep: Sweep) -> Stroke:
         cuts=_between(at) if action is not None else _even(line.length, sweep.width),
         reversible=True,
     )
+
+
+def _strokes(line: Swath, sweep: Sweep) -> Iterator[Stroke]:
+    """Yield the stroke along a swath; without stops one along each leg, from its first action to its last."""
+    if sweep.passing is None or len(line.spots) < 2:
+        yield _stroke(line, sweep)
+        return
+    for leg in _legs(line):
+        stroke = _stroke(leg, sweep)
+        if len(leg.spots) > 1:
+            every = trigger_distance(leg.length, sweep.length, sweep.speed or 0.0)
+            stroke = replace(stroke, actions=(), repetition=Repetition(every, sweep.passing, sweep.device))
+        yield stroke
+
+
+def _legs(line: Swath) -> Iterator[Swath]:
+    """Yield the part of each leg from its first to its last spot, or the leg with its only spot."""
+    for (begin, end), spots in line.by_leg():
+        first, last = spots[0], spots[-1]
+        ahead = (end - begin) / np.hypot(*(end - begin))
+        if last - first > APART:
+            yield Swath(
+                np.array([begin + first * ahead, begin + last * ahead]), tuple(x - first for x in spots)
+            )
+        elif first > APART:
+            yield Swath(np.array([begin, begin + first * ahead]), (first,))
+        else:
+            yield Swath(np.array([begin, end]), (0.0,))
 
 
 def _between(at: Sequence[float]) -> tuple[float, ...]:

@@ -50,10 +50,8 @@ def _about(line: Swath, width: float, length: float) -> NDArray[np.object_]:
         return np.array([Point(line.points[0]).buffer(min(width, length) / 2)], dtype=object)
     direction = np.diff(line.points, axis=0)
     far = np.hypot(direction[:, 0], direction[:, 1])
-    done = np.concatenate([[0.0], np.cumsum(far)])
-    spots = np.array(line.spots)
-    leg = np.clip(np.searchsorted(done, spots - 1e-9) - 1, 0, len(direction) - 1)
-    centres = line.points[leg] + direction[leg] * ((spots - done[leg]) / far[leg])[:, None]
+    leg, spots = line.legs_of_spots, np.array(line.spots)
+    centres = line.points[leg] + direction[leg] * ((spots - line.arcs[leg]) / far[leg])[:, None]
     return _rectangles(centres, direction[leg], np.full(len(spots), length), width)
 
 

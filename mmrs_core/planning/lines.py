@@ -52,7 +52,24 @@ class Swath:
     @property
     def length(self) -> float:
         """Metres along all legs."""
-        return float(np.hypot(*np.diff(self.points, axis=0).T).sum())
+        return float(self.arcs[-1])
+
+    @property
+    def legs_of_spots(self) -> NDArray[np.int_]:
+        """Return the index of each spot's leg; a spot at a bend belongs to the leg before."""
+        done = self.arcs
+        return np.clip(np.searchsorted(done, np.array(self.spots) - 1e-9) - 1, 0, len(done) - 2)
+
+    def by_leg(self) -> Iterator[tuple[Floats, tuple[float, ...]]]:
+        """Yield the two ends of each leg that has spots, and the metres along it at which these are."""
+        legs, spots, arcs = self.legs_of_spots, np.array(self.spots), self.arcs
+        for leg in np.unique(legs):
+            yield self.points[leg : leg + 2], tuple((spots[legs == leg] - arcs[leg]).tolist())
+
+    @property
+    def arcs(self) -> Floats:
+        """Return the metres along the legs at each point."""
+        return np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(self.points, axis=0).T))])
 
 
 @dataclass(frozen=True, slots=True)

@@ -203,7 +203,7 @@ def faults(work: Work, pilot: Pilot) -> Iterator[str]:
             yield f"its route is within the clearance of {near}"
             break
     lacking = {
-        missing_action(pilot.robot.type, action) for stroke in work.strokes for action in stroke.actions
+        missing_action(pilot.robot.type, action) for stroke in work.strokes for action in stroke.commands
     }
     yield from sorted(reason for reason in lacking if reason is not None)
     slow = list(_speed_faults(work.strokes, pilot))

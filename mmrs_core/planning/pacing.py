@@ -84,7 +84,7 @@ class _Line:
         self._rates = rates.soonest() if soonest else rates
         self._eased = soonest and pilot.travel.fluid
         self._stops = stops_of(stroke)
-        todo = list(stroke.actions)
+        todo = list(stroke.commands)
         due = list(_due(todo, 0.0))
         stands = bool(due)
         self._arcs, self._arrivals, self._departures = [0.0], [0.0], [self._acting(due)]
@@ -111,7 +111,7 @@ class _Line:
         stop = bisect_left(self._arcs, arc - NEAR)
         if self._arcs[stop] <= arc + NEAR:
             length = length_of(part.points)
-            time = self._arrivals[stop] + self._acting(a for a in part.actions if a.at > length - NEAR)
+            time = self._arrivals[stop] + self._acting(a for a in part.commands if a.at > length - NEAR)
             return time, time
         place = part.points[-1]
         end = self._departures[stop - 1] + self._leg(self._stops[stop - 1], place)

@@ -145,7 +145,7 @@ def _uncovered(ground: BaseGeometry, covered: Sequence[BaseGeometry]) -> bool:
 
 def _ground(part: Stroke, coverage: Coverage) -> BaseGeometry:
     points = np.array([point[:2] for point in part.points])
-    spots = tuple(action.at for action in part.actions)
+    spots = part.spots
     if coverage.length > 0.0 and not spots:
         return shapely.Polygon()
     return footprint([Swath(points, spots)], coverage.width, coverage.length)

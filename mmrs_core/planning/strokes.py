@@ -11,6 +11,9 @@ from mmrs_core.scene import ActionAt, Kinematics, Position, Robot, RobotType, St
 
 _SAME = 1e-9
 
+_OF_A_WHOLE = ("look", "speed", "slow_down", "reversible", "repetition")
+"""What the parts of a stroke have in common."""
+
 NEAR = 1e-6
 """Metres within which a robot is at the same place."""
 
@@ -52,7 +55,7 @@ def serve_seconds(stroke: Stroke, robot: Robot, kinematics: Kinematics) -> float
     """
     rates = kinematics.rates(commanded_speed(stroke, kinematics))
     moving = sum(rates.from_stop_to_stop(one, two) for one, two in pairwise(stops_of(stroke)))
-    acting = sum(action_seconds(robot.type, action) for action in stroke.actions)
+    acting = sum(action_seconds(robot.type, action) for action in stroke.commands)
     return moving + acting + stroke.hold + uncertain_seconds(stroke, kinematics)
 
 
@@ -208,12 +211,7 @@ def joined(parts: Iterable[Stroke]) -> tuple[Stroke, ...]:
 def continues(one: Stroke, two: Stroke) -> bool:
     """Return whether one stroke continues another, so that both may be one."""
     plain = one.hold == 0.0 and one.object is None
-    alike = (one.look, one.speed, one.slow_down, one.reversible) == (
-        two.look,
-        two.speed,
-        two.slow_down,
-        two.reversible,
-    )
+    alike = all(getattr(one, name) == getattr(two, name) for name in _OF_A_WHOLE)
     return plain and alike and one.points[-1] == two.points[0] and len(one.points) > 1 < len(two.points)
 
 

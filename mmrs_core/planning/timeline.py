@@ -177,7 +177,7 @@ class _Walk:
 
     def _serve(self, step: Serve) -> None:
         rates, timing = self.kinematics.rates(step.speed), self.kinematics.timing
-        todo, done, planned = list(step.stroke.actions), 0.0, 0.0
+        todo, done, planned = list(step.stroke.commands), 0.0, 0.0
         if step.stroke.object is not None:
             self.radius = step.stroke.object_tolerance or 0.0
         for place in stops_of(step.stroke):

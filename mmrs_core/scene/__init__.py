@@ -30,7 +30,7 @@ from mmrs_core.scene.robots import (
     Robot,
     RobotType,
 )
-from mmrs_core.scene.works import ActionAt, Coverage, Gap, Look, Stroke, Work
+from mmrs_core.scene.works import DISTANCE, ActionAt, Coverage, Gap, Look, Repetition, Stroke, Work
 from mmrs_runtime.policies import Policy, PolicyEvent, PolicyResponse
 
 if TYPE_CHECKING:
@@ -50,6 +50,7 @@ if TYPE_CHECKING:
     )
 
 __all__ = [
+    "DISTANCE",
     "ActionAt",
     "AltitudeReference",
     "Area",
@@ -79,6 +80,7 @@ __all__ = [
     "Position",
     "Recharge",
     "Recover",
+    "Repetition",
     "Ring",
     "Robot",
     "RobotPlan",

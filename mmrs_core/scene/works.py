@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
+from math import ceil, dist
 
 from mmrs_core.scene.primitives import Position, Ring
 
@@ -23,6 +25,32 @@ class ActionAt:
     parameters: tuple[tuple[str, str], ...] = ()
 
 
+DISTANCE = "distance"
+"""Parameter of an action that is repeated while the robot moves, at once and whenever it has gone these
+metres; 0 ends this, with a last time."""
+
+
+@dataclass(frozen=True, slots=True)
+class Repetition:
+    """A device action that is repeated along a whole stroke, which the robot moves along without a stop.
+
+    It is done at the stroke's first point, after each `every` metres, and at its last point.
+
+    Attributes:
+        every: metres.
+        action: that takes the parameter ``distance``.
+        device: identifier of the device.
+    """
+
+    every: float
+    action: str
+    device: str
+
+    def times(self, length: float) -> int:
+        """Return how often it is done along a length, metres."""
+        return ceil(length / self.every - 1e-6) + 1
+
+
 @dataclass(frozen=True, slots=True)
 class Look:
     """What a device points at during a stroke: a position, with the angle of BL's Heading in degrees."""
@@ -38,7 +66,8 @@ class Stroke:
 
     Attributes:
         points: (east, north, up), at least one; consecutive points are joined by straight lines.
-        actions: ordered by arc length.
+        actions: ordered by arc length; the robot stops for each.
+        repetition: what is done along all of it without a stop; None: nothing.
         look: orientation during the stroke and while holding; None: the direction of travel.
         speed: largest speed on it, metres per second; None: the robot's cruise.
         slow_down: factor on the robot's cruise speed, 0 to 1; None: 1. QUICK work has speed=inf.
@@ -66,6 +95,32 @@ class Stroke:
     object_tolerance: float | None = None
     part: str = ""
     stretch: tuple[float, float] = (0.0, 1.0)
+    repetition: Repetition | None = None
+
+    @property
+    def length(self) -> float:
+        """Return the metres along its points."""
+        return sum(dist(one, two) for one, two in pairwise(self.points))
+
+    @property
+    def commands(self) -> tuple[ActionAt, ...]:
+        """Return its actions, and those that begin and end its repetition."""
+        if self.repetition is None:
+            return self.actions
+        each = self.repetition
+        begin = ActionAt(0.0, each.action, each.device, ((DISTANCE, f"{each.every:.3f}"),))
+        end = ActionAt(self.length, each.action, each.device, ((DISTANCE, "0"),))
+        return (begin, *self.actions, end)
+
+    @property
+    def spots(self) -> tuple[float, ...]:
+        """Return the arc lengths at which actions are done, once or repeatedly."""
+        own = tuple(action.at for action in self.actions)
+        if self.repetition is None:
+            return own
+        length, every = self.length, self.repetition.every
+        repeated = (index * every for index in range(self.repetition.times(length) - 1))
+        return tuple(sorted((*own, *repeated, length)))
 
 
 @dataclass(frozen=True, slots=True)

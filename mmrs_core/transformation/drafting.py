@@ -203,7 +203,7 @@ def _approach(stroke: Stroke, here: Position) -> MoveSpec:
 
 def _stops(stroke: Stroke) -> Iterator[tuple[Position, tuple[ActionAt, ...]]]:
     """Yield each vertex and each place of an action, in order, with the actions due there."""
-    todo = list(stroke.actions)
+    todo = list(stroke.commands)
     yield stroke.points[0], _due(todo, 0.0)
     travelled = 0.0
     for start, end in pairwise(stroke.points):

@@ -187,7 +187,7 @@ def _stroke_faults(stroke: Stroke) -> Iterator[str]:
         yield "has a point that is not finite"
         return
     length = sum(dist(a, b) for a, b in pairwise(stroke.points))
-    places = [action.at for action in stroke.actions]
+    places = [action.at for action in stroke.commands]
     if not all(-BEYOND <= at <= length + BEYOND for at in places):
         yield f"has an action beyond its {length:g} m"
     if any(a > b for a, b in pairwise(places)):
@@ -196,5 +196,7 @@ def _stroke_faults(stroke: Stroke) -> Iterator[str]:
         yield f"has cuts that are not in order, or not within its {length:g} m"
     if not (isfinite(stroke.hold) and stroke.hold >= 0.0):
         yield f"holds for {stroke.hold} s"
+    if stroke.repetition is not None and not (stroke.repetition.every > 0.0 and length > 0.0):
+        yield f"repeats an action each {stroke.repetition.every:g} m along {length:g} m"
     if stroke.speed is not None and not stroke.speed > 0.0:
         yield f"has a speed of {stroke.speed} m/s"

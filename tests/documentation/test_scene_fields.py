@@ -38,6 +38,7 @@ TOLD = {
         scene.Work,
         scene.Stroke,
         scene.ActionAt,
+        scene.Repetition,
         scene.Look,
         scene.Coverage,
         scene.Gap,

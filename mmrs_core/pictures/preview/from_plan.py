@@ -158,8 +158,10 @@ def _work_leg(scene: Scene, robot: str, step: Serve) -> Leg:
     work = scene.works.get((step.task, robot))
     coverage = work.coverage if work else None
     hold = f"holds for {clock(stroke.hold)}" if stroke.hold > 0 else ""
-    actions = f"{len(stroke.actions)} actions" if len(stroke.actions) > 1 else ""
+    done, each = len(stroke.spots), stroke.repetition
+    actions = f"{done} actions" if done > 1 else ""
     only = stroke.actions[0].action if len(stroke.actions) == 1 else ""
+    passing = f"in passing, each {each.every:.1f} m" if each is not None else ""
     return Leg(
         "work",
         stroke.points,
@@ -167,8 +169,8 @@ def _work_leg(scene: Scene, robot: str, step: Serve) -> Leg:
         step.end,
         step.task,
         covered=tuple(footprints(stroke, coverage)) if coverage else (),
-        actions=tuple(along(stroke.points, action.at)[0] for action in stroke.actions),
-        note=", ".join(filter(None, (actions, only, hold, stroke.object or ""))),
+        actions=tuple(along(stroke.points, at)[0] for at in stroke.spots),
+        note=", ".join(filter(None, (actions, passing, only, hold, stroke.object or ""))),
     )
 
 
@@ -226,9 +228,9 @@ def footprints(stroke: Stroke, coverage: Coverage) -> Iterator[Ring]:
     Where one action covers a length of ground, these are the footprints of the actions; elsewhere
     they are strips along the legs.
     """
-    if coverage.length > 0 and stroke.actions:
-        for action in stroke.actions:
-            at, heading = along(stroke.points, action.at)
+    if coverage.length > 0 and stroke.spots:
+        for spot in stroke.spots:
+            at, heading = along(stroke.points, spot)
             yield _rectangle(at, heading, coverage.length / 2, coverage.width / 2)
         return
     for start, end in pairwise(stroke.points):

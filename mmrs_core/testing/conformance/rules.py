@@ -65,7 +65,7 @@ class RuleConformance(Conformance):
         """Actions may be at the ends, cuts lie between them."""
         for stroke in self._work(rule).strokes:
             length = sum(dist(a, b) for a, b in pairwise(stroke.points))
-            at = [action.at for action in stroke.actions]
+            at = [action.at for action in stroke.commands]
             assert at == sorted(at)
             assert all(-SMALL <= each <= length + SMALL for each in at)
             assert list(stroke.cuts) == sorted(set(stroke.cuts))
@@ -75,7 +75,7 @@ class RuleConformance(Conformance):
         """Their device is one that the robot carries, and supports the action."""
         devices = self.robot.type.devices
         for stroke in self._work(rule).strokes:
-            for each in stroke.actions:
+            for each in stroke.commands:
                 able = [devices[each.device]] if each.device else devices.values()
                 assert any(each.action in device.actions for device in able)
 

@@ -15,10 +15,11 @@ from dataclasses import dataclass
 
 from mmrs_core.errors import InfeasibleError
 from mmrs_core.planning.devices import figure
+from mmrs_core.planning.in_passing import EXPOSURE_KEY, INTERVAL_KEY
 from mmrs_core.scene import Device
 
 OPTICS_KEYS = ("sensor.width", "sensor.height", "focal.length", "image.width", "image.height")
-RECORDING_KEYS = ("exposure.time", "capture.interval")
+RECORDING_KEYS = (EXPOSURE_KEY, INTERVAL_KEY)
 LOWEST_KEY, HIGHEST_KEY, FIXED_KEY = "gimbal.pitch.min", "gimbal.pitch.max", "mount.pitch"
 PITCH_KEYS = (LOWEST_KEY, HIGHEST_KEY, FIXED_KEY)
 DOWN = -90.0

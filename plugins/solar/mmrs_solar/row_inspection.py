@@ -10,6 +10,7 @@ from math import ceil, dist
 from mmrs_core.contributions.rules import Rule
 from mmrs_core.errors import InfeasibleError
 from mmrs_core.geometry.stretches import LEAST
+from mmrs_core.planning.in_passing import passing_speed
 from mmrs_core.planning.open_lines import open_lines
 from mmrs_core.planning.positions import refuse_heights
 from mmrs_core.scene import Device, Look, Part, Position, Robot, Scene, Stroke, Task, Work
@@ -93,24 +94,13 @@ def _pass_of(part: Part, group: Group, robot: Robot) -> Pass:
     optics = optics_of(camera)
     view = view_of(group.azimuth, group.tilt, optics.lowest, optics.highest)
     distance = distance_for(part, camera.id, optics, view)
-    exposure, interval = figures(camera, RECORDING_KEYS)
-    pixel, seen = distance * optics.pixel * view.stretch, distance * optics.width
-    sharp = (number(part, "blur") or 0.0) * pixel / exposure
-    overlapping = seen * (1.0 - (number(part, "frontOverlap") or 0.0)) / interval
-    speed = _possible(min(sharp, overlapping, number(part, "speed") or 0.0), robot)
+    figures(camera, RECORDING_KEYS)
+    spacing = distance * optics.width * (1.0 - (number(part, "frontOverlap") or 0.0))
+    pixel, blur = distance * optics.pixel * view.stretch, number(part, "blur") or 0.0
+    speed = passing_speed(camera, robot, spacing, pixel, blur, number(part, "speed") or 0.0)
     strip = distance * optics.height * view.stretch
     offsets = passes_over(group.width, strip, number(part, "sideOverlap") or 0.0)
     return Pass(camera, view, distance, speed, _turning(robot, speed), offsets)
-
-
-def _possible(speed: float, robot: Robot) -> float:
-    slowest = robot.kinematics.slowest if robot.kinematics is not None else 0.0
-    if not speed > 0.0 or speed < slowest:
-        raise InfeasibleError(
-            f"images along the rows are sharp and overlap up to {speed:.2f} m/s, "
-            f"the robot's smallest speed is {slowest:.2f} m/s"
-        )
-    return speed
 
 
 def _turning(robot: Robot, speed: float) -> float:

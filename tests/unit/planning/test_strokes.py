@@ -15,7 +15,7 @@ from mmrs_core.planning.strokes import (
     turned,
     uncertain_seconds,
 )
-from mmrs_core.scene import ActionAt, Device, DeviceAction, Look, Stroke
+from mmrs_core.scene import ActionAt, Device, DeviceAction, Look, Repetition, Stroke
 
 BENT = Stroke(
     ((0.0, 0.0, 10.0), (100.0, 0.0, 10.0), (100.0, 50.0, 10.0)),
@@ -101,3 +101,34 @@ def test_what_is_missing_for_an_action_is_told():
     assert missing_action(TYPE, ActionAt(0.0, "photo", "lidar")) == "has no device 'lidar'"
     assert "does not support" in missing_action(TYPE, ActionAt(0.0, "scan", "camera"))
     assert "camera, other" in missing_action(two, ActionAt(0.0, "photo"))
+
+
+PASSING = Stroke(
+    ((0.0, 0.0, 10.0), (100.0, 0.0, 10.0)),
+    cuts=(45.0,),
+    reversible=True,
+    repetition=Repetition(30.0, "Trigger", "camera"),
+)
+
+
+def test_what_is_repeated_in_passing_is_done_at_both_ends_too():
+    assert PASSING.spots == (0.0, 30.0, 60.0, 90.0, 100.0)
+    assert PASSING.repetition.times(100.0) == 5
+    assert PASSING.repetition.times(90.0) == 4
+
+
+def test_a_repetition_is_commanded_at_the_first_point_and_ended_at_the_last():
+    begin, end = PASSING.commands
+    assert (begin.at, begin.device, begin.parameters) == (0.0, "camera", (("distance", "30.000"),))
+    assert (end.at, end.device, end.parameters) == (100.0, "camera", (("distance", "0"),))
+
+
+def test_every_part_of_a_stroke_repeats_on_its_own():
+    assert [part.spots for part in parts_of(PASSING)] == [(0.0, 30.0, 45.0), (0.0, 30.0, 55.0)]
+    assert joined(parts_of(PASSING)) == (PASSING,)
+
+
+def test_a_robot_that_acts_in_passing_does_not_stop_on_the_way():
+    stops = replace(PASSING, repetition=None, actions=tuple(photo(at) for at in PASSING.spots))
+    assert serve_seconds(PASSING, robot(), DRONE) == pytest.approx(10.0)
+    assert serve_seconds(stops, robot(), DRONE) == pytest.approx(10.0 + 5 * 1.0)
