@@ -6,7 +6,7 @@ import re
 from collections.abc import Mapping
 
 from mmrs_core.behaviour.program import Action
-from mmrs_core.scene import Device
+from mmrs_core.scene import DISTANCE, Device
 from mmrs_mavlink.wiring import DeviceWiring, Sampled, Unwired, Wired, Wiring, Wirings
 
 IMAGE_START_CAPTURE, DIGICAM_CONTROL = 2000, 203
@@ -65,6 +65,11 @@ def _camera(action: Action, device: Device) -> Wiring | None:
     if (number := _number_in(device, "mavlink.camera")) is None:
         return _no_number(device, "mavlink.camera")
     confirmed = device.properties.get("mavlink.camera.confirms", "no") == "yes"
+    if (word := dict(action.parameters).get(DISTANCE)) is not None:
+        metres = _number(word)
+        if metres is None or not metres >= 0.0:
+            return Unwired(f"device {device.id!r}: {action.name!r} is given a distance of {word!r}")
+        return Wired(TRIGGER_DISTANCE, (metres, 0.0, 1.0), confirmed=confirmed)
     if device.properties.get("mavlink.camera.command", "image") == "digicam":
         return Wired(DIGICAM_CONTROL, (0.0, 0.0, 0.0, 0.0, 1.0), confirmed=confirmed)
     return Wired(IMAGE_START_CAPTURE, (number, 0.0, 1.0), confirmed=confirmed)
@@ -182,7 +187,7 @@ def _unknown(action: Action, device: Device, key: str, expected: str) -> Unwired
 _BUILT_IN = (
     DeviceWiring("mavlink.command", "the command that mavlink.command.ACTION holds", _explicit),
     DeviceWiring("mavlink.value", "records the next value that the vehicle publishes by name", _sampled),
-    DeviceWiring("mavlink.camera", "takes one image", _camera),
+    DeviceWiring("mavlink.camera", "takes one image, or one whenever a distance has been gone", _camera),
     DeviceWiring("mavlink.servo", "sets a servo output", _servo),
     DeviceWiring("mavlink.relay", "switches a relay", _relay),
     DeviceWiring("mavlink.gripper", "moves a gripper", _gripper),

@@ -9,7 +9,13 @@ from math import inf
 from mmrs_core.behaviour.program import Action
 from mmrs_core.errors import PluginError
 from mmrs_core.scene import Device, RobotType
-from mmrs_mavlink.plugin.devices import DIGICAM_CONTROL, IMAGE_START_CAPTURE, WIRINGS, is_value_name
+from mmrs_mavlink.plugin.devices import (
+    DIGICAM_CONTROL,
+    IMAGE_START_CAPTURE,
+    TRIGGER_DISTANCE,
+    WIRINGS,
+    is_value_name,
+)
 from mmrs_mavlink.wiring import DeviceWiring, Sampled, Unwired, Wired, Wiring, Wirings
 
 LAST_COMMAND = 65_535
@@ -123,8 +129,9 @@ def _commands(wiring: Wired | Sampled) -> Iterator[tuple[int, tuple[float, ...]]
 
 
 def takes_photo(action: Action, type: RobotType) -> bool | None:
-    """Return whether a device action takes one photo; None where the type does not state how it is wired."""
+    """Return whether a device action takes photos; None where the type does not state how it is wired."""
     wiring = wiring_of(action, type)
     if isinstance(wiring, Unwired):
         return None
-    return isinstance(wiring, Wired) and wiring.command in (IMAGE_START_CAPTURE, DIGICAM_CONTROL)
+    triggered = (TRIGGER_DISTANCE, IMAGE_START_CAPTURE, DIGICAM_CONTROL)
+    return isinstance(wiring, Wired) and wiring.command in triggered

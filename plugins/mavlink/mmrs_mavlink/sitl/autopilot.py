@@ -22,8 +22,9 @@ NOT_TO_BE_ARMED_IN = frozenset({"land", "return"})
 SPEEDS: Mapping[str, float] = {"WPNAV_SPEED": 100.0, "WP_SPEED": 1.0, "MPC_XY_CRUISE": 1.0}
 """Parameters of the default speed, with their units in a metre per second."""
 
-PHOTOS = frozenset({203, 2000})
-"""Commands that take a photo: DO_DIGICAM_CONTROL and IMAGE_START_CAPTURE."""
+DIGICAM, TRIGGER_DISTANCE, IMAGE = 203, 206, 2000
+SHUTTER = {DIGICAM: 4, TRIGGER_DISTANCE: 2}
+"""Index of the parameter that is 1 where a command takes a photo at once; IMAGE_START_CAPTURE always does."""
 
 CHANGE_SPEED = int(mavlink.MAV_CMD_DO_CHANGE_SPEED)
 STREAM_SECONDS, STREAM_GAP = 1.0, 0.5
@@ -53,6 +54,7 @@ class SimulatedAutopilot:
         armable_mode: the last mode that a PX4 may be armed in.
         said: (seconds, severity, text) of every STATUSTEXT.
         photos: position at each photo. takes_photos: whether its camera works.
+        trigger_distance: metres after which it takes the next; 0: none. triggered_at: where it took the last.
         stores: items by mission type.
         item: current mission item. held: seconds at its position. finished: whether the mission is over.
         climbs_at: time at which its motors have spun up for a take-off. driven_at: time of the last sticks.
@@ -78,6 +80,7 @@ class SimulatedAutopilot:
         self.battery = Battery(settings.energy, settings.capacity, settings.cells)
         self.photos: list[Vector] = []
         self.takes_photos = True
+        self.trigger_distance, self.triggered_at = 0.0, (0.0, 0.0, 0.0)
         self.parameters = parameters.defaults(settings)
         self.stores: dict[int, list[StoredItem]] = {MISSION: [], FENCE: [], RALLY: []}
         self.time = self.booted = self.clock_error = self.link_timeout = 0.0
@@ -248,7 +251,16 @@ class SimulatedAutopilot:
         """Record an executed command, and take a photo if it says so."""
         values = tuple(params)
         self.history.append((self.time, number, values))
-        if self.takes_photos and number in PHOTOS and (number != min(PHOTOS) or values[4:5] == (1.0,)):
+        if number == TRIGGER_DISTANCE:
+            self.trigger_distance = values[0]
+            self.triggered_at = self.body.position
+        if number == IMAGE or (number in SHUTTER and values[SHUTTER[number] :][:1] == (1.0,)):
+            self.take_photo()
+
+    def take_photo(self) -> None:
+        """Take a photo, if its camera works."""
+        self.triggered_at = self.body.position
+        if self.takes_photos:
             self.photos.append(self.body.position)
 
     def arm(self) -> None:

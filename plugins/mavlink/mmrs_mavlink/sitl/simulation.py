@@ -84,6 +84,8 @@ def _record(pilot: SimulatedAutopilot) -> None:
     if moves and (not pilot.track or pilot.time - pilot.track[-1][0] >= TRACK_SECONDS - 1e-6):
         pilot.track.append((pilot.time, *pilot.body.position))
     position = pilot.body.position
+    if 0.0 < pilot.trigger_distance <= dist(position[:2], pilot.triggered_at[:2]):
+        pilot.take_photo()
     if pilot.armed and not pilot.return_path and dist(position, pilot.breadcrumbs[-1]) >= CRUMB_METRES:
         pilot.breadcrumbs.append(position)
 

@@ -113,6 +113,22 @@ def test_a_camera_is_triggered_by_distance(name, more, metres):
     assert (found.command, found.params[0]) == (206, metres)
 
 
+def triggered(distance: str):
+    device = Device("d", {"trigger": DeviceAction("trigger", 0.0)}, {"mavlink.camera": "1"})
+    action = replace(photo("d", "trigger"), parameters=(("distance", distance),))
+    return wiring_of(action, replace(quad(), devices={"d": device}))
+
+
+@pytest.mark.parametrize(("distance", "metres"), [("7.25", 7.25), ("0", 0.0)])
+def test_a_camera_takes_images_in_passing_where_its_action_is_given_a_distance(distance, metres):
+    assert triggered(distance) == Wired(206, (metres, 0.0, 1.0), 0.0)
+
+
+@pytest.mark.parametrize("distance", ["-1", "nan", "far"])
+def test_a_distance_that_is_none_is_not_wired(distance):
+    assert f"distance of '{distance}'" in triggered(distance).reason
+
+
 @pytest.mark.parametrize("metres", ["-3", "0", "nan", "wide"])
 def test_a_trigger_by_no_distance_is_not_wired(metres):
     assert isinstance(wired("on", **{"mavlink.trigger": "2", "mavlink.trigger.on": metres}), Unwired)

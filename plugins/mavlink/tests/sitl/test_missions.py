@@ -12,7 +12,7 @@ from mmrs_mavlink.sitl.telemetry import mission_current
 
 CORNER = (0.0, 60.0, 20.0)
 LEGS = ((0.0, 10.0, 20.0), CORNER, (60.0, 60.0, 20.0), (60.0, 100.0, 20.0))
-LOITER, LAND, SPEED, PHOTO = 17, 21, 178, 203
+LOITER, LAND, SPEED, PHOTO, TRIGGER = 17, 21, 178, 203, 206
 SET_CURRENT = 224
 
 
@@ -84,6 +84,16 @@ def test_a_photo_is_taken_in_sequence(bench):
     flown(bench, *first, plain(PHOTO, x=1), bench.item(LOITER, (0.0, 40.0, 20.0)), until=3)
     (photo,) = bench.pilot.photos
     assert hypot(photo[0], photo[1] - 20.0) < 0.5
+
+
+def test_photos_by_distance_are_taken_in_passing_and_once_more_at_their_end(bench):
+    begin, end = plain(TRIGGER, 10.0, 0.0, 1.0), plain(TRIGGER, 0.0, 0.0, 1.0)
+    first, last = bench.go_to((0.0, 20.0, 20.0), hold=1.0), bench.go_to((0.0, 55.0, 20.0), hold=1.0)
+    flown(bench, *first, begin, *last, end, bench.item(LOITER, (0.0, 90.0, 20.0)), until=5)
+    bench.wait_for(lambda: bench.pilot.body.position[1] > 85.0)
+    assert [photo[1] for photo in bench.pilot.photos] == pytest.approx(
+        [20.0, 30.0, 40.0, 50.0, 55.0], abs=1.0
+    )
 
 
 def test_a_mission_without_a_take_off_is_accepted_and_never_leaves_the_ground(bench):
