@@ -82,7 +82,7 @@ class VehicleFactory:
             OSError where a file that they name cannot be read.
         default: whether ``mmrs run`` uses it where no backend is named; two such are an error.
         signs: whether ``--signing-key`` is for its links.
-        takes_photo: whether an action of a device takes one photo, by what the robot's type states; None
+        takes_photo: whether an action of a device takes photos, by what the robot's type states; None
             where the type does not state it for these vehicles.
     """
 

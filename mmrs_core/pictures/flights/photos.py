@@ -3,19 +3,24 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from typing import TypeAlias
 
 from mmrs_core.behaviour.program import Action, Move, Program, RobotProgram
 from mmrs_core.contributions.registry import Contributions
 from mmrs_core.contributions.vehicles import VehicleFactory
 from mmrs_core.pictures.flights.fixes import Datum, datum_of
 from mmrs_core.pictures.flights.flight import Flight, Flown
-from mmrs_core.scene import Position, RobotType
+from mmrs_core.planning.devices import figure
+from mmrs_core.scene import DISTANCE, Position, RobotType
 from mmrs_runtime.records.entries import number_of
 
 TAKEN, UNCONFIRMED, SIMULATED = "taken", "not confirmed", "simulated"
-_LIKE_PHOTO = re.compile(r"photo|picture|image|snap|capture", re.IGNORECASE)
+_LIKE_PHOTO = re.compile(r"photo|picture|image|snap|capture|trigger", re.IGNORECASE)
+Act: TypeAlias = tuple[float, Move, Action]
+"""When an action was carried out, for which move, and which."""
+
 _MATCHING = 10.0
 """Seconds between the step that commanded a photo and its confirmation, at most."""
 
@@ -29,7 +34,7 @@ class Shot:
         at: the position that the vehicle reported, else that of the robot; None where unknown.
         state: ``taken``, ``not confirmed``, or ``simulated``.
         index: the vehicle's own; None where it has none.
-        move, task: that it was commanded for; empty for others, such as those triggered by distance.
+        move, task: that it was commanded for; empty for others.
         action: that commanded it; None for those others.
     """
 
@@ -73,9 +78,8 @@ def shots_of(
     taken = [*_taken(flown, datum)]
     shots: list[Shot] = []
     known = tuple(vehicles)
-    for time, move, action in acts_of(robot, flown):
-        if not takes_photo(action, robot_type, known):
-            continue
+    acts = [act for act in acts_of(robot, flown) if takes_photo(act[2], robot_type, known)]
+    for time, move, action in _each_photo(acts, flown, [shot.time for shot in taken]):
         near = min(taken, key=lambda shot: abs(shot.time - time), default=None)
         if near is not None and abs(near.time - time) <= _MATCHING:
             taken.remove(near)
@@ -87,12 +91,32 @@ def shots_of(
 
 
 def takes_photo(action: Action, robot_type: RobotType | None, vehicles: Iterable[VehicleFactory]) -> bool:
-    """Return whether an action takes one photo: by its device on these vehicles, else by its name."""
+    """Return whether an action takes photos: by its device on these vehicles, else by its name."""
     if not action.device:
         return False
     found = (each.takes_photo(action, robot_type) for each in vehicles) if robot_type is not None else ()
     known = [taken for taken in found if taken is not None]
     return any(known) if known else bool(_LIKE_PHOTO.search(action.name))
+
+
+def _each_photo(acts: Iterable[Act], flown: Flown, taken: Sequence[float]) -> Iterator[Act]:
+    """Yield the acts that take a photo, and after those by distance, when the next ones were due.
+
+    Args:
+        taken: when the vehicle has confirmed photos.
+    """
+    repeated: dict[str, tuple[Act, float]] = {}
+    for act in acts:
+        device = act[2].device
+        if device in repeated:
+            begun, every = repeated.pop(device)
+            yield from ((at, *begun[1:]) for at in flown.track.times_at_each(every, begun[0], act[0], taken))
+        yield act
+        distance = figure(dict(act[2].parameters), DISTANCE)
+        if distance is not None:
+            repeated[device] = act, distance
+    for begun, every in repeated.values():
+        yield from ((at, *begun[1:]) for at in flown.track.times_at_each(every, begun[0], flown.end, taken))
 
 
 def _devices_confirm(flown: Flown) -> bool:
@@ -111,7 +135,7 @@ def _taken(flown: Flown, datum: Datum) -> Iterator[Shot]:
         yield Shot(entry.time, at, TAKEN, None if index is None else int(index))
 
 
-def acts_of(robot: RobotProgram, flown: Flown) -> Iterator[tuple[float, Move, Action]]:
+def acts_of(robot: RobotProgram, flown: Flown) -> Iterator[Act]:
     """Yield the device actions that a robot carried out by its log: when, for which move, and which."""
     moves = {move.id: move for move in robot.moves}
     for record in flown.records:

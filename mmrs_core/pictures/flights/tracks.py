@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from math import inf, sqrt
@@ -63,6 +63,35 @@ class Track:
         part = (time - since) / (until - since) if until > since else 1.0
         east, north, up = self.positions[before] * (1 - part) + self.positions[after] * part
         return float(east), float(north), float(up)
+
+    def times_at_each(
+        self, every: float, begin: float, end: float, marked: Sequence[float] = ()
+    ) -> list[float]:
+        """Return when it had gone a distance over ground since one time, and again and again until another.
+
+        Args:
+            every: metres; less than a twentieth of them before the end is the end.
+            marked: the nearest of these times stands for its own, and the next distance counts from there.
+        """
+        inside = self.times[(begin < self.times) & (self.times < end)].tolist()
+        known = [(time, at) for time in (begin, *inside, end) if (at := self.at(time)) is not None]
+        if len(known) < 2:
+            return []
+        level = np.array([at[:2] for _, at in known])
+        gone = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(level, axis=0).T))])
+        times = [time for time, _ in known]
+        places = {float(np.interp(each, times, gone)): each for each in marked if begin < each < end}
+        found: list[float] = []
+        mark = every
+        while mark < gone[-1] - every / 20.0:
+            near = min(places, key=lambda place: abs(place - mark), default=inf)
+            if abs(near - mark) <= every / 2.0:
+                found.append(places.pop(near))
+                mark = near
+            else:
+                found.append(float(np.interp(mark, gone, times)))
+            mark += every
+        return found
 
 
 NOWHERE = Track(np.empty(0), np.empty((0, 3)), np.empty(0), np.empty(0, dtype=bool))

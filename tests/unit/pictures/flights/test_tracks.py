@@ -132,3 +132,22 @@ def test_heights_of_a_robot_whose_box_is_silent_count_as_its_kind_says():
     behaviour = program(robot_program("Ann", UP, home=HOME), frame=replace(L_AQUILA, surface=2.0))
     ray = replace(quad(), metaclasses=(DIVER.metaclass, PLAIN_ROBOT.metaclass))
     assert datum_of(behaviour.robots[0], behaviour, ray, kinds={DIVER.metaclass: DIVER}).up == 2.0
+
+
+@pytest.mark.parametrize(
+    ("marked", "expected"),
+    [
+        ((), [3.0, 6.0, 9.0]),
+        ((3.2, 6.5), [3.2, 6.5, 9.5]),
+        ((3.2, 6.1, 6.3), [3.2, 6.1, 9.1]),
+        ((0.1,), [3.0, 6.0, 9.0]),
+    ],
+)
+def test_a_distance_is_gone_again_from_where_it_was_marked_to_be(marked, expected):
+    _, track = track_of([fix(float(t), local(10.0 * t, 0.0, 20.0)) for t in range(11)])
+    assert track.times_at_each(30.0, 0.0, 10.0, marked) == pytest.approx(expected)
+
+
+def test_a_distance_that_ends_with_the_way_is_left_to_its_end():
+    _, track = track_of([fix(float(t), local(10.0 * t, 0.0, 20.0)) for t in range(10)])
+    assert track.times_at_each(30.0, 0.0, 9.0) == pytest.approx([3.0, 6.0])
