@@ -2,8 +2,9 @@
 
 Keys of device properties, as text: ``sensor.width`` and ``sensor.height`` in millimetres (width is
 across the direction of travel), ``focal.length`` in millimetres, ``image.width`` and
-``image.height`` in pixels. A pinhole camera that looks straight down on level ground sees
-``sensor · distance / focal length``; the ground resolution is that over the pixels.
+``image.height`` in pixels, and those of `mmrs_core.planning.in_passing`. A pinhole camera that looks
+straight down on level ground sees ``sensor · distance / focal length``; the ground resolution is that
+over the pixels.
 """
 
 from __future__ import annotations
@@ -13,11 +14,12 @@ from dataclasses import dataclass
 
 from mmrs_core.errors import InfeasibleError
 from mmrs_core.planning.devices import figure
+from mmrs_core.planning.in_passing import EXPOSURE_KEY, INTERVAL_KEY
 
 SENSOR_KEYS = ("sensor.width", "sensor.height")
 IMAGE_KEYS = ("image.width", "image.height")
 FOCAL_KEY = "focal.length"
-CAMERA_KEYS = (*SENSOR_KEYS, FOCAL_KEY, *IMAGE_KEYS)
+CAMERA_KEYS = (*SENSOR_KEYS, FOCAL_KEY, *IMAGE_KEYS, EXPOSURE_KEY, INTERVAL_KEY)
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,6 +43,20 @@ def footprint_at(properties: Mapping[str, str], distance: float) -> Footprint | 
     return Footprint(width * distance / focal, height * distance / focal)
 
 
+def pixel_at(properties: Mapping[str, str], distance: float) -> float | None:
+    """Return the longer side of a pixel on the ground, metres; None where the camera is not described.
+
+    >>> optics = {"sensor.width": "17.6", "sensor.height": "8.8", "focal.length": "8.8"}
+    >>> pixel_at({**optics, "image.width": "4000", "image.height": "2000"}, 40.0)
+    0.02
+    """
+    seen = footprint_at(properties, distance)
+    across, along = (figure(properties, key) for key in IMAGE_KEYS)
+    if seen is None or across is None or along is None:
+        return None
+    return max(seen.width / across, seen.length / along)
+
+
 def footprint_of(properties: Mapping[str, str], distance: float, resolution: float, device: str) -> Footprint:
     """Return what a photo covers if a pixel may be at most `resolution` metres large.
 
@@ -53,11 +69,10 @@ def footprint_of(properties: Mapping[str, str], distance: float, resolution: flo
     pixels = [figure(properties, key) for key in IMAGE_KEYS]
     if None in pixels:
         raise InfeasibleError(f"device '{device}' does not state {' and '.join(IMAGE_KEYS)}")
-    across, along = (each or 0.0 for each in pixels)
-    seen = footprint_at(properties, distance)
-    if seen is None:
+    seen, reached = footprint_at(properties, distance), pixel_at(properties, distance)
+    if seen is None or reached is None:
+        across, along = (each or 0.0 for each in pixels)
         return Footprint(resolution * across, resolution * along)
-    reached = max(seen.width / across, seen.length / along)
     if reached > resolution * (1 + 1e-9):
         raise InfeasibleError(
             f"device '{device}' resolves {reached:.4g} m on the ground from {distance:g} m, "

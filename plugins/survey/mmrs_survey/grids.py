@@ -13,6 +13,7 @@ from mmrs_core.scene import Device, Part, Robot, Scene, Task, Work
 from mmrs_core.scene.attributes import holes, number, position, ring, text
 from mmrs_survey.camera import CAMERA_KEYS, Footprint, footprint_at, footprint_of
 from mmrs_survey.names import PHOTO_GRID_TASK
+from mmrs_survey.passing import trigger_of
 
 RULE = "photo_grid"
 
@@ -29,7 +30,9 @@ def photo_grid_work(task: Task, robot: Robot, scene: Scene) -> Work:
     refuse_blocked(robot, scene, (entry,), "the initial position")
     action = text(part, "actionName")
     device = device_for(robot.type, action, text(part, "deviceId"))
-    spacing, speed = spacing_of(part, device, altitude), number(part, "speed")
+    spacing = spacing_of(part, device, altitude)
+    trigger = trigger_of(part, robot, device, spacing.length, altitude)
+    speed = number(part, "speed") if trigger is None else trigger.speed
     work = work_over(
         scene,
         robot,
@@ -43,6 +46,7 @@ def photo_grid_work(task: Task, robot: Robot, scene: Scene) -> Work:
             device=device.id,
             speed=speed,
             slow_down=None if speed is None else 1.0,
+            passing=None if trigger is None else trigger.action,
             start=(entry[0], entry[1]),
         ),
         holes(part),

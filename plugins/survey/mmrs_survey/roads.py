@@ -9,7 +9,7 @@ from mmrs_core.errors import InfeasibleError
 from mmrs_core.planning.devices import device_for
 from mmrs_core.planning.open_lines import open_lines
 from mmrs_core.planning.positions import refuse_blocked, refuse_heights
-from mmrs_core.scene import ActionAt, Part, Position, Robot, Scene, Stroke, Task, Work
+from mmrs_core.scene import ActionAt, Part, Position, Repetition, Robot, Scene, Stroke, Task, Work
 from mmrs_core.scene.attributes import flag, number, position, positions, text
 from mmrs_survey.lines import (
     at_altitude,
@@ -20,6 +20,7 @@ from mmrs_survey.lines import (
     without_repeats,
 )
 from mmrs_survey.names import ROAD_TASK
+from mmrs_survey.passing import trigger_of
 
 
 def road_work(task: Task, robot: Robot, scene: Scene) -> Work:
@@ -55,10 +56,14 @@ def _stroke(part: Part, robot: Robot, line: tuple[Position, ...], *, free: bool)
     if every is None:
         return Stroke(line, cuts=cuts_between(line, ()), reversible=free)
     action = text(part, "actionName")
-    device = device_for(robot.type, action, text(part, "deviceId")).id
+    device = device_for(robot.type, action, text(part, "deviceId"))
     at = even_distances(length_of(line), every)
-    actions = tuple(ActionAt(where, action, device) for where in at)
-    return Stroke(line, actions, cuts=cuts_between(line, at), reversible=free)
+    stroke = Stroke(line, cuts=cuts_between(line, at), reversible=free)
+    trigger = trigger_of(part, robot, device, every, min(up for _, _, up in line)) if len(at) > 1 else None
+    if trigger is None:
+        return replace(stroke, actions=tuple(ActionAt(where, action, device.id) for where in at))
+    repetition = Repetition(every, trigger.action, device.id)
+    return replace(stroke, repetition=repetition, speed=trigger.speed, slow_down=1.0)
 
 
 ROAD_RULE = Rule("road", ROAD_TASK, road_work)

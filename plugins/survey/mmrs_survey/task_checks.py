@@ -17,8 +17,9 @@ ABOVE_ZERO = {
         "footprintLength",
         "groundResolution",
         "speed",
+        "blur",
     ),
-    names.ROAD_TASK: ("footprintWidth", "photoDistance"),
+    names.ROAD_TASK: ("footprintWidth", "photoDistance", "blur"),
     names.OBSERVE_TASK: ("duration",),
     names.MEASURE_TASK: ("spacing",),
 }

@@ -8,7 +8,7 @@ from mmrs_survey import plugin
 from mmrs_survey.names import SURVEY
 
 from mmrs_core.languages.registry import Registry, registry_with
-from mmrs_core.scene import Device, Robot, Scene, Task
+from mmrs_core.scene import Device, DeviceAction, Robot, Scene, Task
 from mmrs_core.testing.scenes import (
     FLYER,
     sample_device,
@@ -41,6 +41,21 @@ def robot() -> Callable[..., Robot]:
         carried = {"camera": camera, "probe": probe, **(devices or {})}
         limits = replace(FLYER, slowest=slowest)
         return sample_robot(sample_type(devices=carried, speed=(slowest, 10.0)), kinematics=limits)
+
+    return make
+
+
+@pytest.fixture(scope="session")
+def snapper(robot: Callable[..., Robot]) -> Callable[..., Robot]:
+    """Make a robot whose camera takes a photo each second in passing; more of its properties may be given."""
+
+    def make(slowest: float = 0.0, **properties: str) -> Robot:
+        stated = {**CAMERA, "capture.interval": "1.0", **properties}
+        actions = {
+            "TakePicture": DeviceAction("TakePicture", 1.0),
+            "TriggerByDistance": DeviceAction("TriggerByDistance", 0.0, ("distance",)),
+        }
+        return robot(devices={"camera": Device("camera", actions, stated)}, slowest=slowest)
 
     return make
 

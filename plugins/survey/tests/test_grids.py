@@ -1,5 +1,7 @@
 from __future__ import annotations
 
+from itertools import pairwise
+
 import pytest
 import shapely
 from mmrs_survey.grids import photo_grid_work, spacing_of
@@ -8,6 +10,9 @@ from mmrs_core.errors import InfeasibleError
 
 SHELL = ((0.0, 0.0, 0.0), (90.0, 0.0, 0.0), (90.0, 60.0, 0.0), (45.0, 30.0, 0.0), (0.0, 60.0, 0.0))
 PIXELS = {"image.width": "1200", "image.height": "800"}
+
+
+IN_PASSING = {"capture": "IN_PASSING", "triggerAction": "TriggerByDistance", "blur": 0.5}
 
 
 def grid(task, **more):
@@ -25,9 +30,9 @@ def squares(work):
     width, length = work.coverage.width, work.coverage.length
     for stroke in work.strokes:
         line = shapely.LineString([point[:2] for point in stroke.points])
-        for action in stroke.actions:
-            a = line.interpolate(max(action.at - 1e-3, 0.0))
-            b = line.interpolate(action.at + 1e-3)
+        for at in stroke.spots:
+            a = line.interpolate(max(at - 1e-3, 0.0))
+            b = line.interpolate(at + 1e-3)
             angle = shapely.LineString([a, b])
             (ax, ay), (bx, by) = angle.coords
             east, north = (bx - ax) / angle.length, (by - ay) / angle.length
@@ -43,9 +48,11 @@ def squares(work):
             )
 
 
-@pytest.mark.parametrize("obstacles", [(), ((45.0, 15.0, 6.0, 90.0),)])
-def test_photos_cover_all_of_the_area_that_can_be_covered(robot, scene, task, obstacles):
-    work = photo_grid_work(grid(task, gridResolution=12.0), robot(), scene(*obstacles))
+@pytest.mark.parametrize("asked", [{}, IN_PASSING])
+@pytest.mark.parametrize("obstacles", [(), ((45.0, 15.0, 6.0, 90.0),), ((20.0, 12.0, 3.0, 90.0),)])
+def test_photos_cover_all_of_the_area_that_can_be_covered(snapper, scene, task, obstacles, asked):
+    work = photo_grid_work(grid(task, gridResolution=12.0, **asked), snapper(), scene(*obstacles))
+    assert any(stroke.repetition for stroke in work.strokes) == bool(asked)
     target = shapely.union_all([shapely.Polygon(shell, holes) for shell, holes in work.coverage.target])
     seen = shapely.union_all(list(squares(work)), grid_size=1e-6)
     assert shapely.intersection(seen, target).area >= 0.999 * target.area
@@ -137,3 +144,54 @@ def test_what_areas_close_in_is_no_part_of_the_target(robot, scene, task):
     target = shapely.union_all([shapely.Polygon(*rings) for rings in work.coverage.target])
     assert target.distance(shapely.Point(50.0, 30.0)) > 10.0
     assert target.covers(shapely.Point(5.0, 30.0))
+
+
+def in_passing(task, **more):
+    return grid(task, **{"gridResolution": 12.0, **IN_PASSING, **more})
+
+
+def test_photos_in_passing_are_never_farther_apart_than_the_grid(snapper, scene, task):
+    strokes = photo_grid_work(in_passing(task), snapper(), scene()).strokes
+    along = [stroke for stroke in strokes if stroke.repetition]
+    assert along
+    assert all(stroke.actions == () and stroke.repetition.every <= 12.0 for stroke in along)
+    assert all(b - a <= 12.0 + 1e-9 for stroke in along for a, b in pairwise(stroke.spots))
+
+
+@pytest.mark.parametrize(
+    ("more", "properties", "expected"),
+    [
+        ({}, {}, 12.0),
+        ({"speed": 2.5}, {}, 2.5),
+        ({}, {"capture.interval": "4"}, 3.0),
+        ({}, {"exposure.time": "0.01", "image.width": "3000", "image.height": "2000"}, 0.5),
+    ],
+)
+def test_the_camera_limits_the_speed_in_passing(snapper, scene, task, more, properties, expected):
+    strokes = photo_grid_work(in_passing(task, **more), snapper(**properties), scene()).strokes
+    assert {round(stroke.speed, 9) for stroke in strokes} == {expected}
+
+
+@pytest.mark.parametrize("capture", ["AUTOMATIC", "AT_STOPS"])
+def test_a_robot_stops_for_photos_where_its_camera_or_the_task_wants_it(robot, snapper, scene, task, capture):
+    asked, able = in_passing(task, capture=capture), snapper() if capture == "AT_STOPS" else robot()
+    work = photo_grid_work(asked, able, scene())
+    assert not any(stroke.repetition for stroke in work.strokes)
+
+
+def test_a_camera_that_can_takes_photos_in_passing_unless_it_must_not(snapper, scene, task):
+    work = photo_grid_work(in_passing(task, capture="AUTOMATIC"), snapper(), scene())
+    assert all(stroke.repetition or len(stroke.actions) == 1 for stroke in work.strokes)
+
+
+@pytest.mark.parametrize(
+    ("able", "reason"),
+    [
+        (lambda robot, snapper: robot(), "has no action 'TriggerByDistance' with a parameter 'distance'"),
+        (lambda robot, snapper: snapper(**{"capture.interval": "often"}), r"not state capture\.interval"),
+        (lambda robot, snapper: snapper(slowest=20.0), r"smallest speed is 20\.00 m/s"),
+    ],
+)
+def test_photos_in_passing_are_refused_where_they_are_impossible(robot, snapper, scene, task, able, reason):
+    with pytest.raises(InfeasibleError, match=reason):
+        photo_grid_work(in_passing(task), able(robot, snapper), scene())

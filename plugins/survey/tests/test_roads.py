@@ -200,3 +200,10 @@ def test_passes_cover_all_of_a_corridor(steps, width, strip):
 def test_more_than_can_be_planned_is_refused_at_once(robot, scene, task, features, reason):
     with pytest.raises(InfeasibleError, match=reason):
         road_work(road(task, **features), robot(), scene())
+
+
+def test_photos_along_a_line_are_taken_in_passing_by_a_camera_that_can(snapper, scene, task):
+    given = {"photoDistance": 50.0, "capture": "AUTOMATIC", "triggerAction": "TriggerByDistance", "blur": 0.5}
+    (stroke,) = road_work(road(task, **given), snapper(), scene()).strokes
+    assert stroke.spots == (0.0, 50.0, 100.0, 150.0, 180.0)
+    assert (stroke.actions, stroke.repetition.device, stroke.speed) == ((), "camera", 50.0)

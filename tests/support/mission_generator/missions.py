@@ -222,12 +222,15 @@ class Maker:
         short = not self.solvable and self.random.random() < 0.4
         self.lifetime = 150.0 if short else self.random.choice([1200.0, 1800.0])
         for name, fastest in (("steady", 10.0), ("quick", 16.0)):
-            camera = self.make(
-                ROBOT,
-                "Device",
-                id="camera",
-                supportedActions=[self.make(ROBOT, "SupportedAction", name="TakePicture", duration=1.0)],
-            )
+            actions = [self.make(ROBOT, "SupportedAction", name="TakePicture", duration=1.0)]
+            properties = []
+            if self.random.random() < 0.5:
+                distance = self.make(ROBOT, "Parameter", key="distance")
+                actions += [
+                    self.make(ROBOT, "SupportedAction", name="TriggerByDistance", parameters=[distance])
+                ]
+                properties = [self.make(ROBOT, "Property", name="capture.interval", value="1.5")]
+            camera = self.make(ROBOT, "Device", id="camera", supportedActions=actions, properties=properties)
             yield self.make(
                 DRONE,
                 "Drone",

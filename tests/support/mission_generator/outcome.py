@@ -185,18 +185,36 @@ def _target(scene, task, robots):
 
 def _footprints(scene, robot):
     """Yield the task and the ground rectangle of each photo, laid along the way the robot flies."""
-    home = robot.home
-    places = [home]
+    here, every = robot.home, 0.0
     for move in robot.moves:
-        here = places[-1]
         end = move.target.position if move.target and move.target.position else here
-        photos = [*((a, here) for a in move.before), *((a, end) for a in move.after)]
-        for action, at in photos:
-            if action.is_a((BEHAVIOUR, "DeviceAction")) and action.name == "TakePicture":
-                shape = _rectangle(scene.task(move.task).part.attributes, at, here, end)
-                if shape is not None:
-                    yield move.task, shape
-        places.append(end)
+        photos = [here for action in move.before if _photographs(action)]
+        every = _distance(move.before, every)
+        photos += _each(every, here, end)
+        photos += [end for action in move.after if _photographs(action)]
+        every = _distance(move.after, every)
+        for at in photos:
+            shape = _rectangle(scene.task(move.task).part.attributes, at, here, end)
+            if shape is not None:
+                yield move.task, shape
+        here = end
+
+
+def _photographs(action):
+    return action.is_a((BEHAVIOUR, "DeviceAction")) and action.name in ("TakePicture", "TriggerByDistance")
+
+
+def _distance(actions, before):
+    """Return the metres between photos in passing after some actions; 0 where there are none."""
+    given = [dict(action.parameters)["distance"] for action in actions if action.name == "TriggerByDistance"]
+    return float(given[-1]) if given else before
+
+
+def _each(every, here, end):
+    """Return the places between two others at which a camera is triggered that was so at the first one."""
+    length = np.hypot(*np.subtract(end[:2], here[:2]))
+    count = int(length / every) if every > 0.0 else 0
+    return [np.add(here, np.subtract(end, here) * n * every / length) for n in range(1, count + 1)]
 
 
 def _rectangle(attributes, at, here, end):
