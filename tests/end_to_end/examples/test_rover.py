@@ -48,7 +48,7 @@ def test_the_rover_wades_through_water_that_is_shallow_enough(yard, run_of):
 def test_only_the_rover_samples_and_only_the_drone_photographs(yard):
     done = {(action.name, robot.id) for robot in yard.program.robots for move in robot.moves
             for action in (*move.before, *move.after) if action.device}  # fmt: skip
-    assert done == {("TakePicture", "Kestrel"), ("SampleGas", "Badger")}
+    assert done == {("TakePicture", "Kestrel"), ("TriggerByDistance", "Kestrel"), ("SampleGas", "Badger")}
 
 
 def test_a_task_in_the_air_is_refused_by_the_rover_with_the_reason(yard):
