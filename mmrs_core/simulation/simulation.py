@@ -13,7 +13,7 @@ from __future__ import annotations
 
 from bisect import bisect_right
 from itertools import pairwise
-from math import hypot, inf
+from math import dist, hypot, inf
 from operator import attrgetter
 from pathlib import Path
 
@@ -24,7 +24,8 @@ from mmrs_core.contributions.passages import Passages
 from mmrs_core.contributions.rules import MoveKind, robot_kind_of
 from mmrs_core.contributions.vehicles import VehicleFactory, VehicleInput
 from mmrs_core.errors import InternalError, UsageError
-from mmrs_core.scene import Position
+from mmrs_core.planning.devices import figure
+from mmrs_core.scene import DISTANCE, Position
 from mmrs_core.scene.timing import MoveSeconds
 from mmrs_core.simulation.battery import SLACK, SimulatedBattery
 from mmrs_core.simulation.escape import Escapes
@@ -86,6 +87,7 @@ class SimulatedRobot(Vehicle):
         self._grounded, self._stopped, self._halted = True, False, False
         self._rolling = 0.0
         self._bears = False
+        self._repeats: dict[str, tuple[float, float]] = {}
         self._move: Move | None = None
         self._fault: Fault | None = None
         home = self._robot.home
@@ -128,7 +130,8 @@ class SimulatedRobot(Vehicle):
                 self._fault = Fault("DEVICE_SILENT", f"'{action.device}' does not do '{action.name}'")
                 return
             seconds = supported.duration
-            self._look(now)
+            self._look(self._leg(now).position(now))
+            self._repeat(action, now)
         self._stay(now, seconds)
 
     def wait(self, now: float) -> None:
@@ -206,9 +209,23 @@ class SimulatedRobot(Vehicle):
                     samples.append(sample)
         return tuple(samples)
 
-    def _look(self, now: float) -> None:
-        """Detect what lies below."""
-        east, north, up = self._leg(now).position(now)
+    def _repeat(self, action: Action, now: float) -> None:
+        """Begin to repeat an action in passing, or look at once at what it has shown since it began."""
+        if action.device in self._repeats:
+            since, every = self._repeats.pop(action.device)
+            for leg in self._legs:
+                if since < leg.end and leg.begin < now:
+                    way = dist(leg.start, leg.finish)
+                    for index in range(1, int(way / every) + 1):
+                        share = index * every / way
+                        self._look(leg.position(leg.begin + share * (leg.end - leg.begin)))
+        every = figure(dict(action.parameters), DISTANCE) or 0.0
+        if every > 0.0:
+            self._repeats[action.device] = now, every
+
+    def _look(self, place: Position) -> None:
+        """Detect what lies below a place."""
+        east, north, up = place
         surface = self._given.program.frame.surface
         for each in seen(self._sights, north, east, up - surface) if self._state == "airborne" else ():
             self._places[each.name] = (each.east, each.north, surface - each.depth)

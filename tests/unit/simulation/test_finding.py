@@ -86,7 +86,21 @@ def rising(height):
 def search(height, condition="found:float"):
     """Return two robots: one photographs a place from a height, and notifies one that then chooses."""
     photo = (use("camera", "TakePicture"), notify("b.s"))
-    looks = robot("a", [rising(height), go("there", (10.0, 0.0, height), after=photo)])
+    return searched([rising(height), go("there", (10.0, 0.0, height), after=photo)], condition)
+
+
+def passing(every, height=10.0):
+    """Return two robots: one passes the place and takes photos from 20 m before it to 20 m behind it."""
+    begin, end = (
+        replace(use("camera", "TakePicture"), parameters=(("distance", far),)) for far in (every, "0")
+    )
+    there = go("there", (-10.0, 0.0, height))
+    back = go("back", (30.0, 0.0, height), before=(begin,), after=(end, notify("b.s")))
+    return searched([rising(height), there, back], "found:float")
+
+
+def searched(moves, condition):
+    looks = robot("a", moves)
     chooses = robot(
         "b",
         [rising(1.0), hold("yes"), hold("no")],
@@ -95,6 +109,11 @@ def search(height, condition="found:float"):
         jumps={"yes": "stop"},
     )
     return program(looks, chooses)
+
+
+@pytest.mark.parametrize(("every", "decided"), [("20", "true"), ("40", "false")])
+def test_each_photo_in_passing_shows_what_lies_below_it(chosen, every, decided):
+    assert chosen(passing(every)) == [decided]
 
 
 @pytest.fixture

@@ -9,7 +9,8 @@ from mmrs_runtime.records.steps import StepRecord
 from ..program import Operate, Robot
 from ..vehicles.vehicle import Vehicle
 
-STATES = {206: 206, 2500: 2500, 2501: 2500}
+TRIGGER_DISTANCE = 206
+STATES = {TRIGGER_DISTANCE: TRIGGER_DISTANCE, 2500: 2500, 2501: 2500}
 """Commands after which a camera continues on its own, and which of them concern the same function."""
 
 
@@ -28,6 +29,8 @@ class Cameras:
         """Take note of an action that was carried out."""
         if isinstance(action, Operate) and action.command in STATES:
             self._last[action.device, STATES[action.command]] = action
+            if action.command == TRIGGER_DISTANCE and action.params[0] == 0.0:
+                del self._last[action.device, TRIGGER_DISTANCE]
 
     def restore(self, vehicle: Vehicle) -> None:
         """Send all cameras their last continuous commands again.
