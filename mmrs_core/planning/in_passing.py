@@ -16,7 +16,7 @@ EXPOSURE_KEY, INTERVAL_KEY = "exposure.time", "capture.interval"
 
 
 NOTICING = 0.05
-"""Seconds by which an autopilot triggers late, at most: ArduCopter in simulation by 0.1 m at 4.8 m/s."""
+"""Seconds by which an autopilot triggers late, at most; in a simulation of one, 0.1 m late at 4.8 m/s."""
 
 
 def trigger_distance(length: float, spacing: float, speed: float) -> float:
@@ -43,7 +43,7 @@ def passing_speed(
         camera: that takes them. Without an exposure time its images count as sharp.
         robot: that carries it.
         spacing: metres between two images, at most.
-        pixel: size of a pixel on what is seen, metres; None: unknown, so that blur is no limit.
+        pixel: size of a pixel on what is seen, metres; None: unknown, so that blur does not count.
         blur: pixels by which an image may be smeared during an exposure.
         most: speed that is not exceeded anyway, metres per second.
 
