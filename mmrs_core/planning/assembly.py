@@ -31,7 +31,7 @@ def assemble(team: Team, jobs: Sequence[Job], schedule: Schedule) -> Plan:
         signal_name(job.name, robot): (job.name, robot) for job in jobs for robot in schedule.ends[job.name]
     }
     steps = _with_signals(steps, signals)
-    spans = _spans(team.scene, steps, schedule)
+    spans = spans_of(team.scene, steps)
     return Plan(
         robots=tuple(_robot_plan(team, name, steps, finished) for name in team.pilots),
         makespan=max((state.time for state in finished.values()), default=0.0),
@@ -102,17 +102,17 @@ def _inserted(steps: Sequence[Step], signals: Iterable[tuple[int, Signal]]) -> t
     return tuple(each for i, step in enumerate(steps) for each in (step, *after.get(i, ())))
 
 
-def _spans(
-    scene: Scene, steps: Mapping[str, tuple[Step, ...]], schedule: Schedule
-) -> dict[str, tuple[float, float]]:
+def spans_of(scene: Scene, steps: Mapping[str, tuple[Step, ...]]) -> dict[str, tuple[float, float]]:
+    """Return when each task of a plan begins and ends."""
     spans: dict[str, tuple[float, float]] = {}
     for mine in steps.values():
         for serve in _serves(mine):
             begin, end = spans.get(serve.task, (serve.begin, serve.end))
             spans[serve.task] = (min(begin, serve.begin), max(end, serve.end))
+        spans |= {step.task: (step.begin, step.begin) for step in mine if isinstance(step, Branch)}
     for task in scene.tasks:
-        if is_control(task):
-            time = _control_time(scene, task.name, spans, schedule)
+        if is_control(task) and task.name not in spans:
+            time = _control_time(scene, task.name, spans)
             spans[task.name] = (time, time)
     return {task.name: spans[task.name] for task in scene.tasks if task.name in spans}
 
@@ -126,17 +126,13 @@ def _serves(steps: Iterable[Step]) -> Iterator[Serve]:
                 yield from _serves(arm)
 
 
-def _control_time(
-    scene: Scene, name: str, spans: Mapping[str, tuple[float, float]], schedule: Schedule
-) -> float:
+def _control_time(scene: Scene, name: str, spans: Mapping[str, tuple[float, float]]) -> float:
     """Return when a Fork or Join ends: when all before it have."""
-    if name in schedule.spans:
-        return schedule.spans[name][0]
     before = [edge.before for edge in scene.dependencies if edge.after == name]
     times = [
-        _control_time(scene, each, spans, schedule) if is_control(scene.task(each)) else spans[each][1]
+        spans[each][1] if each in spans else _control_time(scene, each, spans)
         for each in before
-        if is_control(scene.task(each)) or each in spans
+        if each in spans or is_control(scene.task(each))
     ]
     return max(times, default=0.0)
 

@@ -8,7 +8,7 @@ from dataclasses import replace
 from mmrs_core.errors import InfeasibleError
 from mmrs_core.planning.assembly import assemble
 from mmrs_core.planning.jobs import Job, jobs_of
-from mmrs_core.planning.schedule import Decisions, Shortfall, schedule
+from mmrs_core.planning.schedule import Shortfall, schedule
 from mmrs_core.planning.search import broken_times, find_decisions, robot_counts
 from mmrs_core.planning.separation import TooNearError, distance_to_keep, separated, stacked_altitudes
 from mmrs_core.planning.team import Team
@@ -144,7 +144,10 @@ def _plan_of(team: Team, jobs: Sequence[Job], seed: int, *, in_turns: bool = Fal
         reasons = _reasons(team, jobs, found)
         raise _ShortError(_words("no plan", reasons), reasons)
     _refuse([reason for reason, _ in broken_times(team, found.spans)], "no plan keeps all times")
-    made = separated(team.scene, decisions, lambda decided: _planned(team, jobs, decided))
+    recorded = schedule(team, jobs, decisions, record=True)
+    if isinstance(recorded, Shortfall):
+        raise InfeasibleError("no plan: the decisions found cannot be carried out")
+    made = separated(team, assemble(team, jobs, recorded))
     spans = {name: (begin, made.ends[name]) for name, begin in made.begins.items()}
     _refuse([reason for reason, _ in broken_times(team, spans)], "no plan keeps all times")
     return made
@@ -159,13 +162,6 @@ def _shared_choices(scene: Scene, jobs: Sequence[Job]) -> list[str]:
         for task in job.tasks()
         if wanted[task] > 1
     ]
-
-
-def _planned(team: Team, jobs: Sequence[Job], decisions: Decisions) -> Plan | None:
-    found = schedule(team, jobs, decisions, record=True)
-    if isinstance(found, Shortfall) or broken_times(team, found.spans):
-        return None
-    return assemble(team, jobs, found)
 
 
 def _refuse(reasons: Sequence[str], what: str) -> None:

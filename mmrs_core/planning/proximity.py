@@ -1,22 +1,28 @@
-"""Where the rides of two robots come close to each other, and when each robot may be there."""
+"""Where robots come close to each other, and by how much later one must be so that they do not.
+
+A robot on a straight piece is, at a share s of it, no earlier than the least time allows, and no later than
+it must be to arrive in time. Two robots at shares s and t of their pieces may be there at one time where
+s·L₁ − t·L₂ lies between two bounds, L being the least times; and a delay of one of them moves these. The
+shares at which they are too near are a convex set, part of an ellipse, over which s·L₁ − t·L₂ has a
+least and a greatest value. So whether they meet, and which delays do not help, is found without cutting
+pieces, exact but for rounding.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
-from math import dist
 from typing import TypeAlias
 
 import numpy as np
-import shapely
-from numpy.typing import NDArray
 
+from mmrs_core.planning.sweep import Flags, Floats, Indices, overlapping
 from mmrs_core.planning.timeline import HomeRelation, Ride
 from mmrs_core.scene import Position
 
-Floats: TypeAlias = NDArray[np.float64]
-Indices: TypeAlias = NDArray[np.intp]
+Spans: TypeAlias = tuple[Floats, Floats]
+"""Lower and upper bounds (n,); a lower one that exceeds the upper one: none."""
 
 _SLOPE = 0.05
 """Metres by which robots over neighbouring homes may be nearer than the homes: these differ in height."""
@@ -26,195 +32,223 @@ _ONE_PLACE = 0.15
 
 
 @dataclass(frozen=True, slots=True)
-class TimedTrack:
-    """All that a robot may take up: straight pieces, each within a span of time.
+class Pieces:
+    """All that robots may take up: straight pieces, each within a span of time.
 
     Attributes:
+        owners: (n,) number of the robot.
+        steps: (n,) of its plan; over: (n,) the step with whose begin the piece is over for certain.
         times: (n, 2) seconds between which the robot may be on each piece.
         places: (n, 2, 3) ends of each piece, equal for a stay.
         least: (n,) seconds that it takes along the piece at least.
         radii: (n,) metres from the piece within which it may be.
         relations: (n,) where each piece is, seen from the robot's home (see `HomeRelation`).
-        home: of the robot.
     """
 
+    owners: Indices
+    steps: Indices
+    over: Indices
     times: Floats
     places: Floats
     least: Floats
     radii: Floats
     relations: Indices
-    home: Position
 
-    def pick(self, pieces: Indices) -> TimedTrack:
-        """Return some pieces only."""
-        kept = self.times[pieces], self.places[pieces], self.least[pieces], self.radii[pieces]
-        return TimedTrack(*kept, self.relations[pieces], self.home)
-
-    def box(self) -> Floats:
-        """Return the lowest and the highest coordinates (2, 3) at which the robot may be."""
-        radii = self.radii[:, None, None]
-        low, high = (self.places - radii).min(axis=(0, 1)), (self.places + radii).max(axis=(0, 1))
-        return np.stack([low, high])
-
-    def cut(self, longest: float) -> TimedTrack:
-        """Return the same in pieces of at most `longest` metres, each within its own span of time."""
-        length = np.linalg.norm(self.places[:, 1] - self.places[:, 0], axis=1)
-        parts = np.maximum(1, np.ceil(length / longest)).astype(np.intp)
-        of = np.repeat(np.arange(len(parts)), parts)
-        number = np.arange(len(of)) - np.repeat(np.cumsum(parts) - parts, parts)
-        low, high = number / parts[of], (number + 1) / parts[of]
-        start, offset = self.places[of, 0], (self.places[:, 1] - self.places[:, 0])[of]
-        ends = [start + share[:, None] * offset for share in (low, high)]
-        times = [self.times[of, 0] + self.least[of] * low, self.times[of, 1] - self.least[of] * (1.0 - high)]
-        least = self.least[of] / parts[of]
-        times_of_each, places = np.stack(times, axis=1), np.stack(ends, axis=1)
-        return TimedTrack(times_of_each, places, least, self.radii[of], self.relations[of], self.home)
+    def __len__(self) -> int:
+        """Return how many there are."""
+        return len(self.owners)
 
 
-def track_of(rides: Sequence[Ride], home: Position) -> TimedTrack:
+def pieces_of(rides: Iterable[Ride], owner: int = 0) -> Pieces:
     """Return the rides of a robot as pieces, one for each leg or stay."""
-    times, places, least, radii, relations = [], [], [], [], []
+    rows, places = [], []
     for ride in rides:
         points = ride.points if len(ride.points) > 1 else ride.points * 2
         seconds = ride.least or (0.0,)
         before, whole = 0.0, sum(seconds)
         for leg, each in zip(pairwise(points), seconds, strict=True):
-            times.append((ride.early + before, ride.late - (whole - before - each)))
+            late = ride.late - (whole - before - each)
+            rows.append((ride.step, ride.over, ride.relation, ride.early + before, late, each, ride.radius))
             places.append(leg)
-            least.append(each)
-            radii.append(ride.radius)
-            relations.append(ride.relation)
             before += each
-    return TimedTrack(
-        np.array(times, dtype=np.float64).reshape(-1, 2),
-        np.array(places, dtype=np.float64).reshape(-1, 2, 3),
-        np.array(least, dtype=np.float64),
-        np.array(radii, dtype=np.float64),
-        np.array(relations, dtype=np.intp),
-        home,
-    )
+    table = np.array(rows, dtype=np.float64).reshape(-1, 7)
+    steps, over, relations = table[:, :3].T.astype(np.intp)
+    ends = np.array(places, dtype=np.float64).reshape(-1, 2, 3)
+    owners = np.full(len(rows), owner, np.intp)
+    return Pieces(owners, steps, over, table[:, 3:5], ends, table[:, 5], table[:, 6], relations)
 
 
-@dataclass(frozen=True, slots=True)
-class ClosePairs:
-    """Pairs of pieces of two tracks that are nearer to each other than allowed.
-
-    Attributes:
-        one, two: (n, 2) seconds between which each robot may be on its piece.
-        distance: (n,) metres at the nearest.
-        at_home: (n,) whether one of the robots then stands at its home.
-    """
-
-    one: Floats
-    two: Floats
-    distance: Floats
-    at_home: NDArray[np.bool_]
+def joined(parts: Sequence[Pieces]) -> Pieces:
+    """Return the pieces of several robots."""
+    fields = Pieces.__slots__
+    return Pieces(*(np.concatenate([getattr(part, each) for part in parts]) for each in fields))
 
 
-def near_pairs(
-    one: TimedTrack, two: TimedTrack, least: float, *, finest: float, spare: float | None = None
-) -> ClosePairs:
-    """Return the pairs of pieces that come within a distance of each other, in space.
+class Proximity:
+    """Pieces of robots with the distances to keep between them.
 
     Homes that are nearer to each other are the operator's choice: a robot that stands at such a home is
     no hindrance to the other one at its own, nor in the column over it, while their distance is at least
     that of their homes.
+    """
+
+    def __init__(self, pieces: Pieces, homes: Sequence[Position], least: float) -> None:
+        """Make it.
+
+        Args:
+            pieces: of all robots.
+            homes: of the robots, by their number.
+            least: metres to keep.
+        """
+        self.pieces, self._least = pieces, least
+        self._homes = np.array(homes, dtype=np.float64).reshape(-1, 3)
+
+    def meetings(self, spare: float, moved: Flags | None = None) -> tuple[Indices, Indices]:
+        """Return the pairs of pieces, each once and in order, on which two robots may come too near at once.
+
+        Args:
+            spare: seconds by which their times are apart at least.
+            moved: (n,) only pairs of which one has moved; None: all.
+        """
+        pieces = self.pieces
+        times = pieces.times + np.array([0.0, spare])
+        reach = pieces.radii + self._least / 2.0 + 1e-6
+        chosen = np.ones(len(pieces), np.bool_) if moved is None else moved
+        i, j = overlapping(pieces.owners, times, pieces.least, pieces.places, reach, chosen)
+        begin, end = self.delays(i, j, spare)
+        near = (begin < 0.0) & (end > 0.0)
+        return i[near], j[near]
+
+    def paths(self, i: Indices, others: Indices) -> tuple[Indices, Indices]:
+        """Return pairs of some pieces and others, of which the paths may be too near whatever the times."""
+        low, high = self.pieces.places.min(axis=1), self.pieces.places.max(axis=1)
+        reach = (self.pieces.radii + self._least / 2.0)[:, None]
+        low, high = low - reach, high + reach
+        near = np.ones((len(i), len(others)), np.bool_)
+        for axis in range(3):
+            near &= low[i, None, axis] < high[others, axis]
+            near &= low[others, axis] < high[i, None, axis]
+        first, second = np.nonzero(near)
+        return i[first], others[second]
+
+    def delays(self, i: Indices, j: Indices, spare: float, needed: Floats | None = None) -> Spans:
+        """Return between which further delays of the second of two pieces robots may come too near.
+
+        Args:
+            spare: seconds by which their times are apart at least.
+            needed: (n,) metres that paths must be apart; None: as much as is to be kept.
+        """
+        pieces = self.pieces
+        low, high = self._spans(i, j, pieces.least[i], pieces.least[j], needed)
+        never = low > high
+        low[never] = high[never] = 0.0
+        begin = low - (pieces.times[j, 1] - pieces.least[j] - pieces.times[i, 0]) - spare
+        end = high + (pieces.times[i, 1] - pieces.least[i] - pieces.times[j, 0]) + spare
+        begin[never], end[never] = np.inf, -np.inf
+        return begin, end
+
+    def soonest(self, i: Indices, j: Indices) -> Floats:
+        """Return (n,): seconds before which two robots are certainly not too near."""
+        none = np.zeros(len(i))
+        one, two = (
+            self._spans(a, b, self.pieces.least[a], none)[0] + self.pieces.times[a, 0]
+            for a, b in ((i, j), (j, i))
+        )
+        later: Floats = np.maximum(one, two)
+        return later
+
+    def nearest(self, i: Indices, j: Indices, spare: float) -> Floats:
+        """Return (n,): how many metres robots are apart at the least on pieces where they meet."""
+        none, full = np.zeros(len(i)), self._needed(i, j)
+        for _ in range(30):
+            middle = (none + full) / 2.0
+            begin, end = self.delays(i, j, spare, middle)
+            near = (begin < 0.0) & (end > 0.0)
+            none, full = np.where(near, none, middle), np.where(near, middle, full)
+        apart: Floats = np.maximum(full - self.pieces.radii[i] - self.pieces.radii[j], 0.0)
+        return apart
+
+    def _spans(self, i: Indices, j: Indices, p: Floats, q: Floats, needed: Floats | None = None) -> Spans:
+        places = self.pieces.places
+        return spans_where_near(places[i], places[j], self._needed(i, j) if needed is None else needed, p, q)
+
+    def at_home(self, i: Indices, j: Indices) -> Flags:
+        """Return (n,): whether one of two robots then stands at its home."""
+        relations = self.pieces.relations
+        flags: Flags = (relations[i] == HomeRelation.HOME) | (relations[j] == HomeRelation.HOME)
+        return flags
+
+    def _needed(self, i: Indices, j: Indices) -> Floats:
+        """Return (n,): the metres that two paths must be apart."""
+        pieces = self.pieces
+        gap = np.linalg.norm(self._homes[pieces.owners[i]] - self._homes[pieces.owners[j]], axis=1)
+        relations = np.sort(np.stack([pieces.relations[i], pieces.relations[j]]), axis=0)
+        excused = (relations[0] > HomeRelation.ELSEWHERE) & (relations[1] == HomeRelation.HOME)
+        at_homes = np.maximum(gap - _SLOPE, _ONE_PLACE)
+        apart = self._least + pieces.radii[i] + pieces.radii[j]
+        needed: Floats = np.where(excused & (gap < self._least), at_homes, apart)
+        return needed
+
+
+def spans_where_near(one: Floats, two: Floats, needed: Floats, p: Floats, q: Floats) -> Spans:
+    """Return the least and the greatest p·s − q·t of shares s and t at which legs are nearer than needed.
+
+    They are on a side of the square of shares, or where the ellipse's tangent is parallel to the lines of
+    one value.
 
     Args:
-        one: track of a robot.
-        two: of another.
-        least: metres to keep.
-        finest: length in metres of the pieces that are distinguished.
-        spare: None: whenever the robots are there; a number: only where their times come within
-            that many seconds of overlapping.
+        one, two: (n, 2, 3) ends of legs.
+        needed: (n,) metres.
+        p, q: (n,)
     """
-    i, j = _pairs(one, two, least)
-    counts = ~_excused(one, two, least, i, j)
-    if spare is not None:
-        counts &= _overlap(one.times[i], two.times[j], spare)
-    i, j = i[counts], j[counts]
-    first, second = one.pick(np.unique(i)).cut(finest), two.pick(np.unique(j)).cut(finest)
-    i, j = _pairs(first, second, least)
-    counts = ~_excused(first, second, least, i, j)
-    if spare is not None:
-        counts &= _overlap(first.times[i], second.times[j], spare)
-    i, j = i[counts], j[counts]
-    apart = legs_apart(first.places[i], second.places[j]) - first.radii[i] - second.radii[j]
-    near = apart < least
-    i, j = i[near], j[near]
-    at_home = (first.relations[i] == HomeRelation.HOME) | (second.relations[j] == HomeRelation.HOME)
-    return ClosePairs(first.times[i], second.times[j], apart[near], at_home)
-
-
-def _excused(one: TimedTrack, two: TimedTrack, least: float, i: Indices, j: Indices) -> NDArray[np.bool_]:
-    """Return (n,): which pairs of pieces are one at a home and one at or over a neighbouring home.
-
-    Only those at least as far from each other as the homes.
-    """
-    if dist(one.home, two.home) >= least:
-        return np.zeros(len(i), dtype=np.bool_)
-    relations = np.stack([one.relations[i], two.relations[j]])
-    found: NDArray[np.bool_] = (relations.min(axis=0) > HomeRelation.ELSEWHERE) & (
-        relations.max(axis=0) == HomeRelation.HOME
-    )
-    nearest = max(dist(one.home, two.home) - _SLOPE, _ONE_PLACE)
-    found[found] = legs_apart(one.places[i[found]], two.places[j[found]]) >= nearest
-    return found
-
-
-def _overlap(one: Floats, two: Floats, spare: float) -> NDArray[np.bool_]:
-    found: NDArray[np.bool_] = np.maximum(one[:, 0], two[:, 0]) < np.minimum(one[:, 1], two[:, 1]) + spare
-    return found
-
-
-def _pairs(one: TimedTrack, two: TimedTrack, least: float) -> tuple[Indices, Indices]:
-    reach = least + max(one.radii.max(initial=0.0) + two.radii.max(initial=0.0), 0.0)
-    tree = shapely.STRtree(_boxes(two, 0.0))
-    i, j = tree.query(_boxes(one, reach))
-    low, high = one.places[i, :, 2].min(axis=1) - reach, one.places[i, :, 2].max(axis=1) + reach
-    other = two.places[j, :, 2]
-    level = (other.max(axis=1) > low) & (other.min(axis=1) < high)
-    return i[level], j[level]
-
-
-def _boxes(track: TimedTrack, more: float) -> NDArray[np.object_]:
-    low, high = track.places[:, :, :2].min(axis=1) - more, track.places[:, :, :2].max(axis=1) + more
-    found: NDArray[np.object_] = shapely.box(low[:, 0], low[:, 1], high[:, 0], high[:, 1])
-    return found
-
-
-def legs_apart(one: Floats, two: Floats) -> Floats:
-    """Return the distances (n,) between straight legs (n, 2, 3), exact but for rounding.
-
-    The least distance is at an end of one of them, or where both are nearest to each other inside.
-    """
-    ends = [
-        _to_leg(one[:, 0], two),
-        _to_leg(one[:, 1], two),
-        _to_leg(two[:, 0], one),
-        _to_leg(two[:, 1], one),
-        _inside(one, two),
-    ]
-    nearest: Floats = np.min(ends, axis=0)
-    return nearest
-
-
-def _to_leg(points: Floats, legs: Floats) -> Floats:
-    offset, gap = legs[:, 1] - legs[:, 0], points - legs[:, 0]
-    length2 = (offset**2).sum(axis=1)
-    share = np.clip((gap * offset).sum(axis=1) / np.where(length2 > 0.0, length2, 1.0), 0.0, 1.0)
-    found: Floats = np.linalg.norm(gap - share[:, None] * offset, axis=1)
-    return found
-
-
-def _inside(one: Floats, two: Floats) -> Floats:
-    """Return the distances where the legs' lines are nearest, taken back into both legs."""
     u, v, w = one[:, 1] - one[:, 0], two[:, 1] - two[:, 0], one[:, 0] - two[:, 0]
-    a, b, c = (u * u).sum(axis=1), (u * v).sum(axis=1), (v * v).sum(axis=1)
-    d, e = (u * w).sum(axis=1), (v * w).sum(axis=1)
-    across = a * c - b * b
-    safe = np.where(across > 0.0, across, 1.0)
-    s = np.clip((b * e - c * d) / safe, 0.0, 1.0)[:, None]
-    t = np.clip((a * e - b * d) / safe, 0.0, 1.0)[:, None]
-    found: Floats = np.linalg.norm(w + s * u - t * v, axis=1)
-    return found
+    uu, uv, vv = _dot(u, u), _dot(u, v), _dot(v, v)
+    square = needed**2
+    low, high = np.full(len(w), np.inf), np.full(len(w), -np.inf)
+    for along, length, gap, shift, factor in (
+        (-v, vv, w, 0.0, -q),
+        (-v, vv, w + u, p, -q),
+        (u, uu, w, 0.0, p),
+        (u, uu, w - v, -q, p),
+    ):
+        begin, end = _shares_within(along, length, gap, square)
+        near = begin < end
+        for share in (begin, end):
+            value = shift + factor * share
+            low = np.where(near, np.minimum(low, value), low)
+            high = np.where(near, np.maximum(high, value), high)
+    uw, vw = _dot(u, w), _dot(v, w)
+    across = uu * vv - uv * uv
+    slanted = across > 1e-12 * uu * vv
+    across = np.where(slanted, across, 1.0)
+    s, t = (uv * vw - vv * uw) / across, (uu * vw - uv * uw) / across
+    apart = w + s[:, None] * u - t[:, None] * v
+    left = square - _dot(apart, apart)
+    ds, dt = (vv * p - uv * q) / across, (uv * p - uu * q) / across
+    steepness = p * ds - q * dt
+    with np.errstate(divide="ignore", invalid="ignore"):
+        step = np.where(steepness > 0.0, np.sqrt(np.maximum(left, 0.0) / steepness), 0.0)
+    for sign in (-step, step):
+        a, b = s + sign * ds, t + sign * dt
+        inside = slanted & (left > 0.0) & (a >= 0.0) & (a <= 1.0) & (b >= 0.0) & (b <= 1.0)
+        value = p * a - q * b
+        low = np.where(inside, np.minimum(low, value), low)
+        high = np.where(inside, np.maximum(high, value), high)
+    return low, high
+
+
+def _shares_within(along: Floats, length: Floats, gap: Floats, square: Floats) -> Spans:
+    """Return between which shares, from 0 to 1, |gap + share · along|² is less than a square."""
+    middle, rest = _dot(gap, along), _dot(gap, gap) - square
+    moves = length > 0.0
+    root = middle**2 - length * rest
+    some = np.where(moves, root > 0.0, rest < 0.0)
+    half, safe = np.sqrt(np.maximum(root, 0.0)), np.where(moves, length, 1.0)
+    begin = np.where(moves, np.maximum((-middle - half) / safe, 0.0), 0.0)
+    end = np.where(moves, np.minimum((-middle + half) / safe, 1.0), 1.0)
+    return begin, np.where(some, end, begin)
+
+
+def _dot(a: Floats, b: Floats) -> Floats:
+    product: Floats = np.einsum("nk,nk->n", a, b)
+    return product

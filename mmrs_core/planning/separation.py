@@ -1,21 +1,35 @@
-"""Keeps robots apart: finds when planned robots may come too near to each other, and delays one of them."""
+"""Keeps robots apart: where planned robots may come too near to each other, one of them waits."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import dataclass, replace
+from collections.abc import Iterator, Mapping, Sequence
+from copy import copy
+from dataclasses import dataclass
 from math import dist
 
 import numpy as np
 
 from mmrs_core.errors import InfeasibleError
-from mmrs_core.planning.proximity import ClosePairs, Floats, TimedTrack, near_pairs, track_of
-from mmrs_core.planning.schedule import Decisions
-from mmrs_core.planning.timeline import rides_of
-from mmrs_core.scene import Plan, Position, Scene
-
-_ROUNDS = 60
-_LONGEST_DELAY = 36_000.0
+from mmrs_core.planning.delaying import delayed
+from mmrs_core.planning.proximity import Pieces, Proximity, joined, pieces_of
+from mmrs_core.planning.search import broken_times
+from mmrs_core.planning.sweep import Flags, Floats, Indices
+from mmrs_core.planning.team import Team
+from mmrs_core.planning.timeline import HomeRelation, Timeline, timelines_of
+from mmrs_core.planning.waiting import DelayedStep, Span, waits_before
+from mmrs_core.scene import (
+    Await,
+    Launch,
+    Plan,
+    Position,
+    Recharge,
+    Recover,
+    RobotPlan,
+    Scene,
+    Serve,
+    Signal,
+    Transit,
+)
 
 _ROUNDING = 1e-3
 """Metres that robots keep apart beyond what is required, since files round coordinates."""
@@ -23,22 +37,19 @@ _ROUNDING = 1e-3
 _SPARE = 0.05
 """Seconds that robots are apart in time at one place, since times follow from rounded coordinates."""
 
-_PARTS = 8
-"""Pieces as long as the distance to keep are distinguished in so many parts, but none shorter than 0.5 m."""
-
 
 class TooNearError(InfeasibleError):
     """Robots cannot be kept apart.
 
     Attributes:
         at_home: whether one of those that come too near first stands at its home.
-        robots: names of those two; empty where they are unknown.
+        robots: names of those two.
     """
 
-    def __init__(self, conflict: Conflict | None, least: float, homes: Mapping[str, Position]) -> None:
+    def __init__(self, conflict: Conflict, least: float, homes: Mapping[str, Position]) -> None:
         super().__init__(_words(conflict, least, homes))
-        self.at_home = conflict is not None and conflict.at_home
-        self.robots = frozenset() if conflict is None else frozenset((conflict.first, conflict.second))
+        self.at_home = conflict.at_home
+        self.robots = frozenset((conflict.first, conflict.second))
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,138 +74,214 @@ def distance_to_keep(scene: Scene) -> float | None:
     return scene.minimum_separation + 2.0 * scene.position_error + sum(radii[-2:]) + _ROUNDING
 
 
-def separated(scene: Scene, decisions: Decisions, planned: Callable[[Decisions], Plan | None]) -> Plan:
-    """Return the plan of decisions, with robots' starts delayed until all keep apart.
+def separated(team: Team, plan: Plan) -> Plan:
+    """Return the plan in which robots wait where they must so that all keep apart; itself if they do.
 
-    Robots on the ground and at home count as all others do, but for neighbouring homes (see `near_pairs`).
+    Of the two robots that come too near to each other first, that one waits with which the mission ends
+    sooner, wherever along its path it keeps apart from all others. Robots on the ground and at home count
+    as all others do, but for neighbouring homes (see `Proximity`).
 
     Args:
-        scene: with or without a minimum separation.
-        decisions: to begin with.
-        planned: makes the plan of decisions; None where they lead to none.
+        team: of the scene.
+        plan: of the team.
 
     Raises:
-        TooNearError: delays do not help, or lead to no plan.
+        TooNearError: waiting does not help.
     """
-    found = planned(decisions)
-    if found is None:
-        raise InfeasibleError("no plan: the decisions found cannot be carried out")
-    least = distance_to_keep(scene)
+    least = distance_to_keep(team.scene)
     if least is None:
-        return found
-    for _ in range(_ROUNDS):
-        tracks = tracks_of(scene, found)
-        conflict = earliest_conflict(tracks, least)
-        if conflict is None:
-            return found
-        better = _resolved(scene, tracks, decisions, planned, conflict, least)
-        if better is None:
-            break
-        decisions, found = better
-    homes = {robot.name: robot.home for robot in scene.robots}
-    raise TooNearError(first_conflict(scene, found, least), least, homes)
+        return plan
+    traffic = Traffic(team.scene, plan, least)
+    while traffic.conflicts:
+        first = traffic.earliest()
+        options = [each for name in (first.first, first.second) for each in _waiting(team, traffic, name)]
+        better = [each for each in options if len(each.conflicts) < len(traffic.conflicts)]
+        if not better:
+            homes = {robot.name: robot.home for robot in team.scene.robots}
+            raise TooNearError(first, least, homes)
+        traffic = min(better, key=lambda each: each.cost)
+    return traffic.plan
 
 
-def _resolved(
-    scene: Scene,
-    tracks: Mapping[str, TimedTrack],
-    decisions: Decisions,
-    planned: Callable[[Decisions], Plan | None],
-    conflict: Conflict,
-    least: float,
-) -> tuple[Decisions, Plan] | None:
-    """Return decisions, with their plan, in which an conflict is gone or comes later; None if none are.
-
-    One of the two robots starts later, by as little as would do if all else stayed; where it waits for
-    the other anyway, that changes nothing, and the other one is tried.
-    """
-    pairs = near_pairs(tracks[conflict.first], tracks[conflict.second], least, finest=_finest(least))
-    shifts = [(_shift(pairs.one, pairs.two), conflict.second), (_shift(pairs.two, pairs.one), conflict.first)]
-    for shift, name in sorted(shifts):
-        delays = {**decisions.delays, name: decisions.delays.get(name, 0.0) + shift}
-        later = replace(decisions, delays=delays)
-        plan = planned(later) if shift < _LONGEST_DELAY else None
-        left = None if plan is None else first_conflict(scene, plan, least)
-        if plan is not None and (left is None or _is_progress(conflict, left)):
-            return later, plan
-    return None
+def _waiting(team: Team, traffic: Traffic, name: str) -> Iterator[Traffic]:
+    """Yield what becomes of the traffic if a robot waits so that it keeps apart, wherever or at home only."""
+    for at_home in (False, True):
+        waits = traffic.waits(name, at_home=at_home)
+        if waits is None:
+            return
+        plan = delayed(team.scene, traffic.plan, name, waits)
+        spans = {task: (begin, plan.ends[task]) for task, begin in plan.begins.items()}
+        other = traffic.with_plan(plan)
+        if not broken_times(team, spans) and not other.overdrawn(team, traffic.plan):
+            yield other
+            return
 
 
-def _is_progress(before: Conflict, after: Conflict) -> bool:
-    alike = (before.first, before.second) == (after.first, after.second)
-    return not alike or after.time > before.time + 0.5
+class Traffic:
+    """A plan with what its robots take up, and where they come too near to each other."""
+
+    def __init__(self, scene: Scene, plan: Plan, least: float) -> None:
+        self.plan, self._scene, self._least = plan, scene, least
+        self._robots = {robot.name: robot for robot in scene.robots}
+        self._names = tuple(each.robot for each in plan.robots)
+        self._timelines: Mapping[str, Timeline] = {}
+        self._pieces: Mapping[str, Pieces] = {}
+        self.conflicts: Mapping[tuple[str, str], Conflict] = {}
+        self._update(frozenset(self._names))
+
+    def with_plan(self, plan: Plan) -> Traffic:
+        """Return the traffic of a plan in which some robots do the same at other times."""
+        before = {each.robot: each.steps for each in self.plan.robots}
+        other = copy(self)
+        other.plan = plan
+        other._update(frozenset(each.robot for each in plan.robots if each.steps != before[each.robot]))
+        return other
+
+    def _update(self, changed: frozenset[str]) -> None:
+        """Find where those who have changed come too near to others."""
+        self._timelines = timelines_of(self.plan, self._robots)
+        fresh = {
+            name: pieces_of(self._timelines[name].rides, number)
+            for number, name in enumerate(self._names)
+            if name in changed
+        }
+        self._pieces = {**self._pieces, **fresh}
+        proximity = self._proximity([self._pieces[name] for name in self._names])
+        moved = np.array([name in changed for name in self._names])[proximity.pieces.owners]
+        i, j = self._unordered(proximity.pieces, *proximity.meetings(_SPARE, moved))
+        kept = {pair: each for pair, each in self.conflicts.items() if changed.isdisjoint(pair)}
+        self.conflicts = {**kept, **dict(self._conflicts(proximity, i, j))}
+
+    def _proximity(self, parts: Sequence[Pieces]) -> Proximity:
+        return Proximity(joined(parts), [self._robots[name].home for name in self._names], self._least)
+
+    def _unordered(self, pieces: Pieces, i: Indices, j: Indices) -> tuple[Indices, Indices]:
+        """Return those pairs of which neither piece is over for certain before the other one begins."""
+        known = [self._timelines[name].known for name in self._names]
+        if not any(each[-1] for each in known):
+            return i, j
+        owners, steps, over = pieces.owners.tolist(), pieces.steps.tolist(), pieces.over.tolist()
+
+        def is_over(one: int, two: int) -> bool:
+            begun = known[owners[two]][steps[two]].get(self._names[owners[one]], -1)
+            return bool(begun >= over[one])
+
+        left = [
+            not is_over(one, two) and not is_over(two, one)
+            for one, two in zip(i.tolist(), j.tolist(), strict=True)
+        ]
+        chosen = np.array(left, dtype=np.bool_)
+        return i[chosen], j[chosen]
+
+    def _conflicts(
+        self, proximity: Proximity, i: Indices, j: Indices
+    ) -> Iterator[tuple[tuple[str, str], Conflict]]:
+        """Yield the earliest conflict of each two robots."""
+        times = np.maximum(proximity.soonest(i, j), 0.0)
+        distances, at_home = proximity.nearest(i, j, _SPARE), proximity.at_home(i, j)
+        for k in np.argsort(-times, kind="stable").tolist():
+            one, two = (self._names[proximity.pieces.owners[each[k]]] for each in (i, j))
+            yield (one, two), Conflict(one, two, float(times[k]), float(distances[k]), bool(at_home[k]))
+
+    def earliest(self) -> Conflict:
+        """Return the earliest conflict."""
+        return min(self.conflicts.values(), key=lambda each: each.time)
+
+    @property
+    def cost(self) -> tuple[float, float, int]:
+        """Return (makespan, seconds until each robot is back, conflicts); less is better."""
+        backs = [each.steps[-1].end for each in self.plan.robots if each.steps]
+        return round(self.plan.makespan, 3), sum(backs), len(self.conflicts)
+
+    def overdrawn(self, team: Team, before: Plan) -> list[str]:
+        """Return the robots that wait longer than before and then take more than a charge allows."""
+        old = {each.robot: each.steps for each in before.robots}
+        return [
+            each.robot
+            for each in self.plan.robots
+            if each.steps != old[each.robot]
+            and self._used(each, launches=team.pilots[each.robot].kinematics.launches)
+            > team.pilots[each.robot].limit + 1e-6
+        ]
+
+    def _used(self, plan: RobotPlan, *, launches: bool) -> float:
+        """Return the most seconds that a robot takes on one charge; see `Pilot`."""
+        most = used = 0.0
+        away = not launches
+        for stop, step in zip(self._timelines[plan.robot].stops, plan.steps, strict=False):
+            if isinstance(step, Recharge):
+                used = 0.0
+            elif isinstance(step, Await):
+                begin = max(0.0, stop.early) if step.signals else step.begin
+                used += step.end - begin if away else 0.0
+            else:
+                away = not launches or not isinstance(step, Recover | Signal)
+                used += step.end - step.begin
+            most = max(most, used)
+        return most
+
+    def waits(self, name: str, *, at_home: bool) -> dict[int, float] | None:
+        """Return how long a robot must wait before its steps to keep apart from all others; None: in vain.
+
+        Args:
+            name: of the robot.
+            at_home: whether it can wait at home only.
+        """
+        number, timeline = self._names.index(name), self._timelines[name]
+        stops = pieces_of(timeline.stops, number)
+        parts = [self._pieces[other] for other in self._names if other != name]
+        proximity = self._proximity([*parts, self._pieces[name], stops])
+        count, own = len(proximity.pieces), len(self._pieces[name]) + len(stops)
+        i, j = proximity.paths(np.arange(count - own), np.arange(count - own, count))
+        i, j = self._unordered(proximity.pieces, i, j)
+        begins, ends = proximity.delays(i, j, _SPARE)
+        standing = j >= count - len(stops)
+        steps = proximity.pieces.steps[j]
+        plan = next(each.steps for each in self.plan.robots if each.robot == name)
+        found = []
+        for index, stop in enumerate(timeline.stops):
+            step = plan[index] if index < len(plan) else None
+            here = steps == index
+            found.append(
+                DelayedStep(
+                    _united(begins, ends, here & ~standing),
+                    _united(begins, ends, here & standing),
+                    isinstance(step, Launch | Transit | Serve | Recover)
+                    and (not at_home or stop.relation is HomeRelation.HOME),
+                    step.end - step.begin if isinstance(step, Await) and step.signals else 0.0,
+                )
+            )
+        return waits_before(found)
 
 
-def _shift(fixed: Floats, late: Floats) -> float:
-    """Return by how many whole seconds a robot must come later to keep apart from another; inf: never.
-
-    Args:
-        fixed: (n, 2): when the other one begins and ends each piece that is near to one of it.
-        late: (n, 2): the same of those pieces of its own.
-    """
-    begins, ends = fixed[:, 0] - late[:, 1] - _SPARE, fixed[:, 1] - late[:, 0] + _SPARE
-    shift = 1.0
-    for i in np.argsort(begins).tolist():
-        if begins[i] < shift < ends[i]:
-            shift = float(np.ceil(ends[i]))
-    return shift
+def _united(begins: Floats, ends: Floats, chosen: Flags) -> list[Span]:
+    """Return the union of some open intervals, ordered and apart."""
+    found: list[Span] = []
+    for begin, end in sorted(zip(begins[chosen].tolist(), ends[chosen].tolist(), strict=True)):
+        if end <= max(begin, 0.0):
+            continue
+        if found and begin < found[-1][1]:
+            found[-1] = (found[-1][0], max(end, found[-1][1]))
+        else:
+            found.append((begin, end))
+    return found
 
 
-def _finest(least: float) -> float:
-    return max(0.5, least / _PARTS)
+def first_conflict(scene: Scene, plan: Plan, least: float) -> Conflict | None:
+    """Return the earliest conflict nearer than `least` metres; None if there is none."""
+    traffic = Traffic(scene, plan, least)
+    return traffic.earliest() if traffic.conflicts else None
 
 
-def _words(conflict: Conflict | None, least: float, homes: Mapping[str, Position]) -> str:
-    if conflict is None:
-        return "no plan keeps robots apart"
+def _words(conflict: Conflict, least: float, homes: Mapping[str, Position]) -> str:
     at_home = ", one of them at its home" if conflict.at_home else ""
     apart = dist(homes[conflict.first], homes[conflict.second])
     near = f" (their homes are {apart:.1f} m apart)" if apart < least else ""
     return (
         f"robots '{conflict.first}' and '{conflict.second}' come within {conflict.distance:.1f} m"
         f" after {conflict.time:.0f} s{at_home}{near}, {least:g} m are required:"
-        f" {least - conflict.distance:.1f} m short; starting later does not help"
+        f" {least - conflict.distance:.1f} m short; waiting does not help"
     )
-
-
-def tracks_of(scene: Scene, plan: Plan) -> dict[str, TimedTrack]:
-    """Return the tracks of all robots, those without work included."""
-    robots = {robot.name: robot for robot in scene.robots}
-    return {name: track_of(rides, robots[name].home) for name, rides in rides_of(plan, robots).items()}
-
-
-def first_conflict(scene: Scene, plan: Plan, least: float) -> Conflict | None:
-    """Return the earliest conflict nearer than `least` metres; None if there is none."""
-    return earliest_conflict(tracks_of(scene, plan), least)
-
-
-def earliest_conflict(tracks: Mapping[str, TimedTrack], least: float) -> Conflict | None:
-    """Return the same of tracks."""
-    found: Iterable[Conflict | None] = (
-        _met(one, two, near_pairs(tracks[one], tracks[two], least, finest=_finest(least), spare=_SPARE))
-        for one, two in _neighbours(tracks, least)
-    )
-    return min((each for each in found if each is not None), key=lambda each: each.time, default=None)
-
-
-def _neighbours(tracks: Mapping[str, TimedTrack], least: float) -> Iterator[tuple[str, str]]:
-    names = [name for name, track in tracks.items() if len(track.times)]
-    boxes = np.array([tracks[name].box() for name in names]).reshape(-1, 2, 3)
-    low, high = boxes[:, 0], boxes[:, 1]
-    for i, name in enumerate(names):
-        near = (low[i] < high[i + 1 :] + least).all(axis=1) & (low[i + 1 :] < high[i] + least).all(axis=1)
-        for j in np.flatnonzero(near).tolist():
-            yield name, names[i + 1 + j]
-
-
-def _met(one: str, two: str, pairs: ClosePairs) -> Conflict | None:
-    if not len(pairs.distance):
-        return None
-    times = np.maximum(pairs.one[:, 0], pairs.two[:, 0])
-    time = max(0.0, float(times.min()))
-    soon = times <= time + 1.0
-    nearest, at_home = float(pairs.distance[soon].min()), bool(pairs.at_home[soon].any())
-    return Conflict(one, two, time, max(0.0, nearest), at_home)
 
 
 def stacked_altitudes(scene: Scene) -> dict[str, float]:

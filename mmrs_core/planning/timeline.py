@@ -36,8 +36,8 @@ from mmrs_core.scene import (
 from mmrs_core.scene.robots import BACK_SECONDS
 from mmrs_core.scene.timing import Rates, acting, bounded, noticing
 
-_Given: TypeAlias = tuple[float, float]
-"""Seconds at which a signal is given at the earliest, and at the latest."""
+_Given: TypeAlias = tuple[float, float, Mapping[str, int]]
+"""Seconds at which a signal is given at the earliest, and at the latest, and what is then known."""
 
 
 class HomeRelation(IntEnum):
@@ -61,6 +61,8 @@ class Ride:
         least: seconds that each leg takes at least.
         radius: metres from the path within which the robot may be.
         relation: whether it is at or over the robot's own home.
+        step: index of the plan's step that it belongs to; after the last step, their number.
+        over: index of the step with whose begin it is over for certain.
     """
 
     points: tuple[Position, ...]
@@ -69,13 +71,27 @@ class Ride:
     least: tuple[float, ...] = ()
     radius: float = 0.0
     relation: HomeRelation = HomeRelation.ELSEWHERE
+    step: int = 0
+    over: int = 1
 
 
-def rides_of(plan: Plan, robots: Mapping[str, Robot]) -> dict[str, tuple[Ride, ...]]:
-    """Return the rides of every robot, all arms of choices included.
+@dataclass(frozen=True, slots=True)
+class Timeline:
+    """Where one robot may be, and what it waits for.
 
-    Whatever a robot does last, it then stays where it is; robots without steps stay at home.
+    Attributes:
+        rides: in order; whatever it does last, it then stays where it is.
+        stops: where it stands when each step begins, and after the last one.
+        known: for each step, by other robot: the step that this one has begun at least by then.
     """
+
+    rides: tuple[Ride, ...]
+    stops: tuple[Ride, ...]
+    known: tuple[Mapping[str, int], ...]
+
+
+def timelines_of(plan: Plan, robots: Mapping[str, Robot]) -> dict[str, Timeline]:
+    """Return the timeline of every robot, all arms of choices included; robots without steps stay at home."""
     walks = {each.robot: _Walk(robots[each.robot], kinematics_of(robots[each.robot])) for each in plan.robots}
     left = {each.robot: list(each.steps) for each in plan.robots}
     given: dict[str, _Given] = {}
@@ -83,12 +99,10 @@ def rides_of(plan: Plan, robots: Mapping[str, Robot]) -> dict[str, tuple[Ride, .
         before = sum(map(len, left.values()))
         for name, steps in left.items():
             while steps and walks[name].may_begin(steps[0], given):
-                walks[name].add(steps.pop(0), given)
+                walks[name].begin(steps.pop(0), given)
         if sum(map(len, left.values())) == before:
             raise InternalError("robots of a plan wait for each other")
-    for walk in walks.values():
-        walk.stay_to_the_end()
-    return {name: tuple(walk.rides) for name, walk in walks.items()}
+    return {name: walk.ended() for name, walk in walks.items()}
 
 
 @dataclass(slots=True)
@@ -99,6 +113,7 @@ class _Walk:
         now: seconds at which it is there at the earliest; by: at the latest.
         here: where it is; radius: how far from there it may be.
         gone: whether it has gone anywhere yet.
+        stops, known: see `Timeline`.
     """
 
     robot: Robot
@@ -109,6 +124,8 @@ class _Walk:
     here: Position = (0.0, 0.0, 0.0)
     radius: float = 0.0
     gone: bool = False
+    stops: list[Ride] = field(default_factory=list)
+    known: list[Mapping[str, int]] = field(default_factory=lambda: [{}])
 
     def __post_init__(self) -> None:
         self.here, self.by = self.robot.home, noticing(self.kinematics.timing)
@@ -116,12 +133,24 @@ class _Walk:
     def may_begin(self, step: Step, given: Mapping[str, _Given]) -> bool:
         return not isinstance(step, Await) or all(signal in given for signal in step.signals)
 
+    def begin(self, step: Step, given: dict[str, _Given]) -> None:
+        self.stops.append(self._standing(len(self.stops)))
+        self.add(step, given)
+        self._learn(step.signals if isinstance(step, Await) else (), given)
+
+    def ended(self) -> Timeline:
+        self.stops.append(self._standing(len(self.stops)))
+        self.by = inf
+        self._stay(0.0)
+        return Timeline(tuple(self.rides), tuple(self.stops), tuple(self.known))
+
     def add(self, step: Step, given: dict[str, _Given]) -> None:
         if isinstance(step, Await):
             self._await(step, given)
         elif isinstance(step, Signal):
             self._pause()
-            given[step.signal] = (self.now, self.by)
+            place = len(self.stops) - 1
+            given[step.signal] = (self.now, self.by, {**self.known[place], self.robot.name: place})
         elif isinstance(step, Branch):
             self._branch(step, given)
         elif isinstance(step, Serve):
@@ -133,10 +162,6 @@ class _Walk:
         else:
             charging = self.kinematics.charging_time(step.end - step.begin)
             self._stay(charging.shortest, charging.longest)
-
-    def stay_to_the_end(self) -> None:
-        self.by = inf
-        self._stay(0.0)
 
     def _upright(self, step: Launch | Recover) -> None:
         column = self.here, (step.at[0], step.at[1], step.up)
@@ -151,6 +176,14 @@ class _Walk:
         early, late = self.now + waits, max(self.by + waits, step.end) + noticed
         self.by = max([late, *(given[signal][1] for signal in step.signals)])
         self._stay(max([early, *(given[signal][0] for signal in step.signals)]) - self.now, 0.0)
+
+    def _learn(self, signals: Sequence[str], given: Mapping[str, _Given]) -> None:
+        """Know from the next step on how far others have come that have given signals."""
+        known = dict(self.known[-1])
+        for signal in signals:
+            for name, step in given[signal][2].items():
+                known[name] = max(step, known.get(name, 0))
+        self.known.append(known)
 
     def _branch(self, step: Branch, given: dict[str, _Given]) -> None:
         """Take every arm; continue as soon as the quickest one may."""
@@ -216,7 +249,8 @@ class _Walk:
             if not _upright(one, two):
                 beyond = (two, self.kinematics.beyond(one, two, speed))
                 since, until = max(begin, early - BACK_SECONDS), self.by + BACK_SECONDS
-                self.rides.append(Ride(beyond, since, until, (0.0,), self.radius))
+                place = self._place()
+                self.rides.append(Ride(beyond, since, until, (0.0,), self.radius, step=place, over=place + 2))
 
     def _ride(
         self,
@@ -232,7 +266,8 @@ class _Walk:
         share = min(1.0, seconds / sum(even)) if sum(even) else 1.0
         least = tuple(share * each for each in even)
         self.by += longest
-        self.rides.append(Ride(points, self.now, self.by, least, self.radius, relation))
+        place = self._place()
+        self.rides.append(Ride(points, self.now, self.by, least, self.radius, relation, place, place + 1))
         self.now, self.here, self.gone = self.now + seconds, points[-1], True
 
     def _pause(self) -> None:
@@ -243,12 +278,16 @@ class _Walk:
         """Stay for so long at least, and at most."""
         self.by += seconds if longest is None else longest
         if self.by > self.now:
-            relation = (
-                HomeRelation.HOME if dist(self.here, self.robot.home) <= NEAR else HomeRelation.ELSEWHERE
-            )
-            early = self.now if self.gone else -inf
-            self.rides.append(Ride((self.here,), early, self.by, (), self.radius, relation))
+            self.rides.append(self._standing(self._place()))
         self.now += seconds
+
+    def _standing(self, place: int) -> Ride:
+        relation = HomeRelation.HOME if dist(self.here, self.robot.home) <= NEAR else HomeRelation.ELSEWHERE
+        early = self.now if self.gone else -inf
+        return Ride((self.here,), early, self.by, (), self.radius, relation, place, place + 1)
+
+    def _place(self) -> int:
+        return len(self.stops) - 1
 
 
 def _moves_along(legs: Sequence[tuple[Position, Position]]) -> Iterator[tuple[Position, ...]]:

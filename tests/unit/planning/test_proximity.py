@@ -6,7 +6,7 @@ from math import inf
 import numpy as np
 import pytest
 
-from mmrs_core.planning.proximity import legs_apart, near_pairs, track_of
+from mmrs_core.planning.proximity import Proximity, joined, pieces_of
 from mmrs_core.planning.timeline import HomeRelation, Ride
 
 WEST, EAST = (0.0, 0.0, 20.0), (100.0, 0.0, 20.0)
@@ -20,77 +20,82 @@ def ride(*points, early=0.0, slow=0.0, radius=0.0):
     return Ride(points, early, early + sum(least) + slow, least, radius)
 
 
-def track(*rides, home=FAR_HOME):
-    return track_of(rides, home)
+def proximity(*rides, homes=(FAR_HOME, FAR_HOME), least=5.0):
+    return Proximity(joined([pieces_of([each], i) for i, each in enumerate(rides)]), homes, least)
 
 
-def near(one, two, least=5.0, **features):
-    return near_pairs(track(one), track(two), least, finest=0.5, **features)
+def meet(*rides, **features):
+    return len(proximity(*rides, **features).meetings(0.0)[0]) > 0
 
 
-def apart(one, two):
-    return float(legs_apart(np.array([one], float), np.array([two], float))[0])
+def apart(*rides, **features):
+    found = proximity(*rides, **features)
+    return float(found.nearest(*found.meetings(0.0), 0.0).min())
+
+
+def blocked(*rides, **features):
+    """Return between which delays of the second robot the two meet."""
+    (begin,), (end,) = proximity(*rides, **features).delays(np.array([0]), np.array([1]), 0.0)
+    return float(begin), float(end)
 
 
 @pytest.mark.parametrize(
-    ("one", "two", "metres"),
+    ("points", "metres"),
     [
-        ((WEST, EAST), (SOUTH, NORTH), 0.0),
-        ((WEST, EAST), ((50.0, -50.0, 27.0), (50.0, 50.0, 27.0)), 7.0),
-        ((WEST, EAST), ((0.0, 3.0, 20.0), (100.0, 3.0, 20.0)), 3.0),
-        ((WEST, EAST), ((103.0, 4.0, 20.0), (200.0, 4.0, 20.0)), 5.0),
-        ((WEST, WEST), ((3.0, 4.0, 20.0), (3.0, 4.0, 20.0)), 5.0),
-        ((WEST, EAST), ((30.0, 0.0, 30.0), (30.0, 0.0, 90.0)), 10.0),
+        ((SOUTH, NORTH), 0.0),
+        (((50.0, -50.0, 23.0), (50.0, 50.0, 23.0)), 3.0),
+        (((0.0, 3.0, 20.0), (100.0, 3.0, 20.0)), 3.0),
+        (((103.0, 4.0, 20.0), (3.0, 4.0, 20.0)), 4.0),
+        (((101.0, 0.0, 20.0), (201.0, 0.0, 20.0)), 1.0),
+        (((30.0, 0.0, 22.0), (30.0, 0.0, 90.0)), 2.0),
     ],
 )
-def test_the_distance_between_legs_is_exact(one, two, metres):
-    assert apart(one, two) == pytest.approx(metres)
-    assert apart(two, one) == pytest.approx(metres)
+def test_robots_that_may_be_late_are_as_near_as_their_paths(points, metres):
+    assert apart(ride(WEST, EAST, slow=99.0), ride(*points, slow=99.0)) == pytest.approx(metres, abs=1e-6)
 
 
-def test_the_distance_between_legs_is_never_more_than_between_any_of_their_points():
-    rng = np.random.default_rng(4)
-    one, two = rng.uniform(-9, 9, (300, 2, 3)), rng.uniform(-9, 9, (300, 2, 3))
-    found = legs_apart(one, two)
-    shares = np.linspace(0.0, 1.0, 41)
-    p = one[:, None, 0] + shares[:, None] * (one[:, 1] - one[:, 0])[:, None]
-    q = two[:, None, 0] + shares[:, None] * (two[:, 1] - two[:, 0])[:, None]
-    sampled = np.linalg.norm(p[:, :, None] - q[:, None], axis=3).min(axis=(1, 2))
-    assert (found <= sampled + 1e-9).all()
-    assert (found >= sampled - 0.6).all()
+def test_robots_in_a_row_stay_as_far_apart_as_they_begin():
+    behind = ride((-4.0, 0.0, 20.0), (96.0, 0.0, 20.0))
+    assert apart(ride(WEST, EAST), behind) == pytest.approx(4.0, abs=1e-6)
+
+
+def test_a_crossing_is_blocked_for_as_long_as_both_take_to_clear_it():
+    begin, end = blocked(ride(WEST, EAST), ride(SOUTH, NORTH))
+    assert (begin, end) == pytest.approx((-0.5 * 2**0.5, 0.5 * 2**0.5))
+
+
+def test_a_robot_that_may_be_slower_blocks_later_delays_for_longer():
+    late = ride(WEST, EAST, slow=2.0)
+    assert blocked(late, ride(SOUTH, NORTH)) == pytest.approx((-0.5 * 2**0.5, 2.0 + 0.5 * 2**0.5))
+
+
+def test_no_delay_is_blocked_where_paths_are_apart():
+    begin, end = blocked(ride(WEST, EAST), ride((0.0, 5.0, 20.0), (100.0, 5.0, 20.0)))
+    assert begin > end
+
+
+def test_a_robot_that_stays_for_ever_blocks_every_later_delay():
+    begin, end = blocked(Ride((EAST,), 10.0, inf), ride(SOUTH, EAST))
+    assert (begin, end) == (pytest.approx(-((50.0**2 * 2) ** 0.5) / 10.0 + 10.0), inf)
 
 
 def test_robots_that_cross_at_one_time_are_near():
-    assert near(ride(WEST, EAST), ride(SOUTH, NORTH), spare=0.0).distance.min() == pytest.approx(0.0)
+    assert apart(ride(WEST, EAST), ride(SOUTH, NORTH)) == pytest.approx(0.0, abs=1e-6)
 
 
 def test_robots_that_cross_one_after_the_other_are_apart():
-    assert len(near(ride(WEST, EAST), ride(SOUTH, NORTH, early=3.0), spare=0.0).distance) == 0
+    assert not meet(ride(WEST, EAST), ride(SOUTH, NORTH, early=3.0))
 
 
 def test_robots_that_may_be_slower_need_more_time_between_them():
     late = ride(SOUTH, NORTH, early=3.0)
-    assert len(near(ride(WEST, EAST, slow=2.5), late, spare=0.0).distance) > 0
-    assert len(near(ride(WEST, EAST, slow=0.5), late, spare=0.0).distance) == 0
-
-
-def test_without_regard_to_time_ways_that_cross_are_near():
-    assert len(near(ride(WEST, EAST), ride(SOUTH, NORTH, early=1000.0)).distance) > 0
-
-
-def test_each_piece_has_its_own_span_of_time():
-    pieces = track(ride(WEST, EAST, slow=2.0)).cut(10.0)
-    assert pieces.times[:, 0].tolist() == pytest.approx([float(k) for k in range(10)])
-    assert pieces.times[:, 1].tolist() == pytest.approx([float(k + 3) for k in range(10)])
+    assert meet(ride(WEST, EAST, slow=2.5), late)
+    assert not meet(ride(WEST, EAST, slow=0.5), late)
 
 
 def test_a_place_that_is_not_certain_is_near_from_further_away():
     stay = Ride(((0.0, 8.0, 20.0),), 0.0, 9.0, (), radius=4.0)
-    assert near(ride(WEST, EAST), stay, spare=0.0).distance.min() == pytest.approx(4.0)
-
-
-def test_a_robot_that_goes_nowhere_is_near_nobody():
-    assert len(near_pairs(track(), track(ride(WEST, EAST)), 5.0, finest=0.5, spare=0.0).distance) == 0
+    assert apart(ride(WEST, EAST), stay) == pytest.approx(4.0, abs=1e-6)
 
 
 def stands(home, *, early=-inf, late=inf):
@@ -113,8 +118,7 @@ def column(home, early):
 )
 def test_only_a_robot_at_home_and_one_at_or_over_a_neighbouring_home_are_excused(one, two, metres, counted):
     here, there = (0.0, 0.0, 0.0), (metres, 0.0, 0.0)
-    first, second = track(one(here), home=here), track(two(there), home=there)
-    assert bool(len(near_pairs(first, second, 5.0, finest=0.5, spare=0.0).distance)) == counted
+    assert meet(one(here), two(there), homes=(here, there)) == counted
 
 
 @pytest.mark.parametrize(
@@ -123,12 +127,11 @@ def test_only_a_robot_at_home_and_one_at_or_over_a_neighbouring_home_are_excused
 )
 def test_a_robot_over_its_home_is_excused_only_as_far_from_another_as_their_homes_are(there, counted):
     here = (0.0, 0.0, 0.0)
-    over, parked = track(column(here, early=9.0), home=here), track(stands(there), home=there)
-    for one, two in ((over, parked), (parked, over)):
-        assert bool(len(near_pairs(one, two, 3.0, finest=0.5, spare=0.0).distance)) == counted
+    over, parked = column(here, early=9.0), stands(there)
+    assert meet(over, parked, homes=(here, there), least=3.0) == counted
+    assert meet(parked, over, homes=(there, here), least=3.0) == counted
 
 
 def test_a_robot_that_stands_at_home_for_ever_is_near_at_any_time():
     home = (50.0, 3.0, 19.0)
-    idle = track(stands(home), home=home)
-    assert len(near_pairs(idle, track(ride(WEST, EAST, early=1e6)), 5.0, finest=0.5, spare=0.0).distance) > 0
+    assert meet(stands(home), ride(WEST, EAST, early=1e6), homes=(home, FAR_HOME))

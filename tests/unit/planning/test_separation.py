@@ -7,9 +7,9 @@ import pytest
 from plain_scenes import CRAWLER, control, road, robot, scene, task, visit
 from plan_replay import complaints
 
+from mmrs_core.analysis.distance import paired_distances
 from mmrs_core.errors import InfeasibleError
 from mmrs_core.planning.planner import plan
-from mmrs_core.planning.proximity import legs_apart
 from mmrs_core.planning.separation import distance_to_keep, first_conflict, stacked_altitudes
 from mmrs_core.scene import Policy, Transit
 
@@ -79,7 +79,8 @@ def nearest(whole, found, name, place):
     """Return how near a planned robot comes to a place."""
     steps = next(each.steps for each in found.robots if each.robot == name)
     legs = [leg for step in steps if isinstance(step, Transit) for leg in pairwise(step.route)]
-    return float(legs_apart(np.array(legs), np.array([(place, place)] * len(legs))).min())
+    begins, ends = np.array(legs).swapaxes(0, 1)
+    return float(paired_distances(begins, ends, np.array(place), np.array(place)).min())
 
 
 def test_no_robot_lands_beside_one_that_has_landed():

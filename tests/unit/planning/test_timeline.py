@@ -7,7 +7,7 @@ from plain_scenes import CRAWLER, control, photo, road, robot, scene, visit, wit
 
 from mmrs_core.errors import InternalError
 from mmrs_core.planning.planner import plan
-from mmrs_core.planning.timeline import HomeRelation, rides_of
+from mmrs_core.planning.timeline import HomeRelation, timelines_of
 from mmrs_core.scene import Await, Look, Policy
 from mmrs_core.scene.robots import BACK_SECONDS
 from mmrs_runtime.timing import LegTiming
@@ -16,7 +16,7 @@ SWIFT = with_kinematics(robot(), timing=LegTiming(2.0))
 
 
 def rides_in(whole, name="r1"):
-    return rides_of(plan(whole), {each.name: each for each in whole.robots})[name]
+    return timelines_of(plan(whole), {each.name: each for each in whole.robots})[name].rides
 
 
 def stays(rides):
@@ -78,7 +78,7 @@ def test_a_wait_for_a_robot_that_may_be_early_may_end_early():
     works = {"a": {"r1": looking}, "b": {"r2": visit((30.0, 0.0, 20.0))}}
     whole = scene(team, works, after=[("a", "b")])
     found = plan(whole)
-    waiting, launch, *_ = rides_of(found, {each.name: each for each in team})["r2"]
+    waiting, launch, *_ = timelines_of(found, {each.name: each for each in team})["r2"].rides
     assert waiting.relation is HomeRelation.HOME
     assert launch.early == pytest.approx(found.ends["a"] - 2.0)
 
@@ -116,7 +116,7 @@ def test_a_robot_stands_at_home_from_before_the_start_until_it_leaves():
     works = {"a": {"r2": visit((300.0, 0.0, 20.0))}, "b": {"r1": visit((30.0, 0.0, 0.0))}}
     whole = scene(team, works, after=[("a", "b")])
     found = plan(whole)
-    waiting, leaving, *_ = rides_of(found, {each.name: each for each in team})["r1"]
+    waiting, leaving, *_ = timelines_of(found, {each.name: each for each in team})["r1"].rides
     assert (waiting.points, waiting.early, waiting.relation) == ((rover.home,), -inf, HomeRelation.HOME)
     assert waiting.late == leaving.early == pytest.approx(found.ends["a"])
 
@@ -163,4 +163,4 @@ def test_robots_that_wait_for_nobody_in_the_plan_are_an_error():
     found = plan(whole)
     waiting = replace(found.robots[0], steps=(Await(0.0, 0.0, "a", ("never",)), *found.robots[0].steps))
     with pytest.raises(InternalError, match="wait for each other"):
-        rides_of(replace(found, robots=(waiting,)), {"r1": whole.robots[0]})
+        timelines_of(replace(found, robots=(waiting,)), {"r1": whole.robots[0]})
