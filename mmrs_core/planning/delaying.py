@@ -11,9 +11,13 @@ from mmrs_core.scene import Await, Branch, Plan, Recharge, Recover, RobotPlan, S
 
 
 def delayed(scene: Scene, plan: Plan, robot: str, waits: Mapping[int, float]) -> Plan:
-    """Return the plan in which a robot waits before some of its steps, by index, for so many seconds more."""
+    """Return the plan in which a robot waits longer before some of its steps: seconds, by index."""
     steps = {each.robot: each.steps for each in plan.robots}
     steps[robot] = tuple(_with_waits(steps[robot], waits))
+    return _with_steps(scene, plan, steps)
+
+
+def _with_steps(scene: Scene, plan: Plan, steps: Mapping[str, tuple[Step, ...]]) -> Plan:
     timed = _timed(steps)
     robots = tuple(_changed(each, timed[each.robot]) for each in plan.robots)
     spans = spans_of(scene, timed)

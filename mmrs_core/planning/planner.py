@@ -4,13 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
+from functools import partial
 
 from mmrs_core.errors import InfeasibleError
 from mmrs_core.planning.assembly import assemble
 from mmrs_core.planning.jobs import Job, jobs_of
-from mmrs_core.planning.schedule import Shortfall, schedule
+from mmrs_core.planning.schedule import Decisions, Shortfall, schedule
 from mmrs_core.planning.search import broken_times, find_decisions, robot_counts
-from mmrs_core.planning.separation import TooNearError, distance_to_keep, separated, stacked_altitudes
+from mmrs_core.planning.separation import (
+    TooNearError,
+    distance_to_keep,
+    separated,
+    stacked_altitudes,
+    starting_later,
+)
 from mmrs_core.planning.team import Team
 from mmrs_core.scene import Plan, Scene
 
@@ -94,18 +101,33 @@ def _teams(team: Team) -> Iterator[Team]:
     yield from (Team(team.scene, homebound=each, fine=True) for each in (*others, team.homebound))
 
 
+_DEAR = 1.01
+"""Times the mission time without separation from which on it is worth to try other means than waiting."""
+
+
 def _plan_with(team: Team, jobs: Sequence[Job], seed: int) -> Plan:
-    """Return a plan of a team, or of one like it whose robots keep apart where these come too near."""
+    """Return a plan of a team, or of one like it where robots that come too near are kept apart for less."""
+    best: Plan | None = None
+    refusal: TooNearError | None = None
     try:
-        return _plan_of(team, jobs, seed)
+        found, best = _plan_of(team, jobs, seed)
+        if best.makespan <= _DEAR * found.makespan:
+            return best
     except TooNearError as error:
-        for other, in_turns in _alternatives(team, error):
-            try:
-                made = _plan_of(other, jobs, seed, in_turns=in_turns)
-            except InfeasibleError:
-                continue
-            return replace(made, notes=(*_unasked_returns(team, other, made), *made.notes))
-        raise InfeasibleError(str(error), error.reasons) from error
+        refusal = error
+    for other, in_turns in _alternatives(team, refusal):
+        try:
+            _, made = _plan_of(other, jobs, seed, in_turns=in_turns)
+        except InfeasibleError:
+            continue
+        made = replace(made, notes=(*_unasked_returns(team, other, made), *made.notes))
+        if refusal is not None:
+            return made
+        if best is None or _cost(made) < _cost(best):
+            best = made
+    if best is None:
+        raise InfeasibleError(str(refusal), refusal.reasons if refusal else ()) from refusal
+    return best
 
 
 def _unasked_returns(team: Team, other: Team, made: Plan) -> Iterator[str]:
@@ -117,7 +139,7 @@ def _unasked_returns(team: Team, other: Team, made: Plan) -> Iterator[str]:
         yield f"{', '.join(names)} {ends}, so that robots on the ground keep apart"
 
 
-def _alternatives(team: Team, error: TooNearError) -> Iterator[tuple[Team, bool]]:
+def _alternatives(team: Team, error: TooNearError | None) -> Iterator[tuple[Team, bool]]:
     """Yield (team, whether its robots fly one after the other) that may help where robots come too near.
 
     Robots may transit one above the other, keep away from where others stand at home, end at home where
@@ -126,6 +148,8 @@ def _alternatives(team: Team, error: TooNearError) -> Iterator[tuple[Team, bool]
     altitudes, least = stacked_altitudes(team.scene), distance_to_keep(team.scene)
     if altitudes:
         yield Team(team.scene, fine=team.fine, homebound=team.homebound, altitudes=altitudes), False
+    if error is None:
+        return
     if error.at_home:
         yield Team(team.scene, fine=team.fine, homebound=team.homebound, from_homes=least), False
     before = team.scene.robots
@@ -138,7 +162,8 @@ def _alternatives(team: Team, error: TooNearError) -> Iterator[tuple[Team, bool]
     yield Team(team.scene, fine=team.fine, homebound=everyone, from_homes=least), True
 
 
-def _plan_of(team: Team, jobs: Sequence[Job], seed: int, *, in_turns: bool = False) -> Plan:
+def _plan_of(team: Team, jobs: Sequence[Job], seed: int, *, in_turns: bool = False) -> tuple[Plan, Plan]:
+    """Return a plan as it was found, and as its robots keep apart."""
     decisions, found = find_decisions(team, jobs, seed, in_turns=in_turns)
     if isinstance(found, Shortfall):
         reasons = _reasons(team, jobs, found)
@@ -147,10 +172,11 @@ def _plan_of(team: Team, jobs: Sequence[Job], seed: int, *, in_turns: bool = Fal
     recorded = schedule(team, jobs, decisions, record=True)
     if isinstance(recorded, Shortfall):
         raise InfeasibleError("no plan: the decisions found cannot be carried out")
-    made = separated(team, assemble(team, jobs, recorded))
+    first = assemble(team, jobs, recorded)
+    made = _kept_apart(team, jobs, decisions, first)
     spans = {name: (begin, made.ends[name]) for name, begin in made.begins.items()}
     _refuse([reason for reason, _ in broken_times(team, spans)], "no plan keeps all times")
-    return made
+    return first, made
 
 
 def _shared_choices(scene: Scene, jobs: Sequence[Job]) -> list[str]:
@@ -162,6 +188,28 @@ def _shared_choices(scene: Scene, jobs: Sequence[Job]) -> list[str]:
         for task in job.tasks()
         if wanted[task] > 1
     ]
+
+
+def _kept_apart(team: Team, jobs: Sequence[Job], decisions: Decisions, found: Plan) -> Plan:
+    """Return a plan as its robots keep apart: waiting on their paths or starting later, as costs less."""
+    try:
+        waiting = separated(team, found)
+        if waiting.makespan <= _DEAR * found.makespan:
+            return waiting
+    except TooNearError as error:
+        later = starting_later(team, decisions, partial(_planned, team, jobs))
+        if later is None:
+            raise error from None
+        return later
+    later = starting_later(team, decisions, partial(_planned, team, jobs))
+    return waiting if later is None else min(waiting, later, key=_cost)
+
+
+def _planned(team: Team, jobs: Sequence[Job], decisions: Decisions) -> Plan | None:
+    found = schedule(team, jobs, decisions, record=True)
+    if isinstance(found, Shortfall) or broken_times(team, found.spans):
+        return None
+    return assemble(team, jobs, found)
 
 
 def _refuse(reasons: Sequence[str], what: str) -> None:

@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from copy import copy
-from dataclasses import dataclass
-from math import dist
+from dataclasses import dataclass, replace
+from itertools import pairwise
+from math import dist, inf
 
 import numpy as np
 
 from mmrs_core.errors import InfeasibleError
 from mmrs_core.planning.delaying import delayed
 from mmrs_core.planning.proximity import Pieces, Proximity, joined, pieces_of
+from mmrs_core.planning.schedule import Decisions
 from mmrs_core.planning.search import broken_times
 from mmrs_core.planning.sweep import Flags, Floats, Indices
 from mmrs_core.planning.team import Team
@@ -28,6 +30,7 @@ from mmrs_core.scene import (
     Scene,
     Serve,
     Signal,
+    Step,
     Transit,
 )
 
@@ -36,6 +39,10 @@ _ROUNDING = 1e-3
 
 _SPARE = 0.05
 """Seconds that robots are apart in time at one place, since times follow from rounded coordinates."""
+
+
+_ROUNDS = 60
+"""Later starts that are tried."""
 
 
 class TooNearError(InfeasibleError):
@@ -94,7 +101,7 @@ def separated(team: Team, plan: Plan) -> Plan:
     traffic = Traffic(team.scene, plan, least)
     while traffic.conflicts:
         first = traffic.earliest()
-        options = [each for name in (first.first, first.second) for each in _waiting(team, traffic, name)]
+        options = list(_waiting(team, traffic, first))
         better = [each for each in options if len(each.conflicts) < len(traffic.conflicts)]
         if not better:
             homes = {robot.name: robot.home for robot in team.scene.robots}
@@ -103,18 +110,61 @@ def separated(team: Team, plan: Plan) -> Plan:
     return traffic.plan
 
 
-def _waiting(team: Team, traffic: Traffic, name: str) -> Iterator[Traffic]:
-    """Yield what becomes of the traffic if a robot waits so that it keeps apart, wherever or at home only."""
-    for at_home in (False, True):
-        waits = traffic.waits(name, at_home=at_home)
-        if waits is None:
-            return
-        plan = delayed(team.scene, traffic.plan, name, waits)
-        spans = {task: (begin, plan.ends[task]) for task, begin in plan.begins.items()}
-        other = traffic.with_plan(plan)
-        if not broken_times(team, spans) and not other.overdrawn(team, traffic.plan):
-            yield other
-            return
+def starting_later(
+    team: Team, decisions: Decisions, planned: Callable[[Decisions], Plan | None]
+) -> Plan | None:
+    """Return a plan in which robots keep apart since some start later; None if none is found.
+
+    The whole schedule is made anew, so that others may take over.
+
+    Args:
+        team: of the scene, with a minimum separation.
+        decisions: to begin with.
+        planned: makes the plan of decisions; None where they lead to none.
+    """
+    found, least = planned(decisions), distance_to_keep(team.scene) or 0.0
+    traffic = None if found is None else Traffic(team.scene, found, least)
+    for _ in range(_ROUNDS):
+        if traffic is None or not traffic.conflicts:
+            break
+        first, better = traffic.earliest(), None
+        shifts = [
+            (traffic.shift(one, two), two)
+            for one, two in ((first.first, first.second), (first.second, first.first))
+        ]
+        for shift, name in sorted(shifts):
+            later = replace(
+                decisions, delays={**decisions.delays, name: decisions.delays.get(name, 0.0) + shift}
+            )
+            plan = planned(later) if shift < inf else None
+            other = None if plan is None else Traffic(team.scene, plan, least)
+            if other is not None and other.is_ahead_of(first):
+                decisions, better = later, other
+                break
+        traffic = better
+    return None if traffic is None or traffic.conflicts else traffic.plan
+
+
+def _waiting(team: Team, traffic: Traffic, conflict: Conflict) -> Iterator[Traffic]:
+    """Yield what becomes of the traffic if a robot waits so that it keeps apart from all others."""
+    for name in (conflict.first, conflict.second):
+        for at_home in (False, True):
+            waits = traffic.waits(name, at_home=at_home)
+            if waits is None:
+                break
+            other = _allowed(team, traffic, delayed(team.scene, traffic.plan, name, waits))
+            if other is not None:
+                yield other
+                break
+
+
+def _allowed(team: Team, before: Traffic, plan: Plan) -> Traffic | None:
+    """Return the traffic of a plan that keeps times and charges; None if it does not."""
+    spans = {task: (begin, plan.ends[task]) for task, begin in plan.begins.items()}
+    if broken_times(team, spans):
+        return None
+    other = before.with_plan(plan)
+    return None if other.overdrawn(team, before.plan) else other
 
 
 class Traffic:
@@ -181,7 +231,8 @@ class Traffic:
         distances, at_home = proximity.nearest(i, j, _SPARE), proximity.at_home(i, j)
         for k in np.argsort(-times, kind="stable").tolist():
             one, two = (self._names[proximity.pieces.owners[each[k]]] for each in (i, j))
-            yield (one, two), Conflict(one, two, float(times[k]), float(distances[k]), bool(at_home[k]))
+            found = Conflict(one, two, float(times[k]), float(distances[k]), bool(at_home[k]))
+            yield (one, two), found
 
     def earliest(self) -> Conflict:
         """Return the earliest conflict."""
@@ -191,7 +242,11 @@ class Traffic:
     def cost(self) -> tuple[float, float, int]:
         """Return (makespan, seconds until each robot is back, conflicts); less is better."""
         backs = [each.steps[-1].end for each in self.plan.robots if each.steps]
-        return round(self.plan.makespan, 3), sum(backs), len(self.conflicts)
+        return round(self.plan.makespan, 3), round(sum(backs), 3), len(self.conflicts)
+
+    def steps(self, name: str) -> tuple[Step, ...]:
+        """Return what a robot does."""
+        return next(each.steps for each in self.plan.robots if each.robot == name)
 
     def overdrawn(self, team: Team, before: Plan) -> list[str]:
         """Return the robots that wait longer than before and then take more than a charge allows."""
@@ -208,20 +263,41 @@ class Traffic:
         """Return the most seconds that a robot takes on one charge; see `Pilot`."""
         most = used = 0.0
         away = not launches
-        for stop, step in zip(self._timelines[plan.robot].stops, plan.steps, strict=False):
+        stops = self._timelines[plan.robot].stops
+        for (stop, after), step in zip(pairwise(stops), plan.steps, strict=True):
             if isinstance(step, Recharge):
                 used = 0.0
             elif isinstance(step, Await):
-                begin = max(0.0, stop.early) if step.signals else step.begin
-                used += step.end - begin if away else 0.0
+                longest = after.late - max(0.0, stop.early) if step.signals else step.end - step.begin
+                used += longest if away else 0.0
             else:
                 away = not launches or not isinstance(step, Recover | Signal)
                 used += step.end - step.begin
             most = max(most, used)
         return most
 
+    def is_ahead_of(self, conflict: Conflict) -> bool:
+        """Return whether a conflict is gone, or comes later."""
+        if not self.conflicts:
+            return True
+        first = self.earliest()
+        alike = (first.first, first.second) == (conflict.first, conflict.second)
+        return not alike or first.time > conflict.time + 0.5
+
+    def shift(self, fixed: str, late: str) -> float:
+        """Return by how many whole seconds a robot must start later for one other; inf: never."""
+        proximity = self._proximity([self._pieces[fixed], self._pieces[late]])
+        count = len(self._pieces[fixed])
+        i, j = proximity.paths(np.arange(count), np.arange(count, len(proximity.pieces)))
+        begins, ends = proximity.delays(i, j, _SPARE)
+        shift = 1.0
+        for begin, end in _united(begins, ends, np.ones(len(i), np.bool_)):
+            if begin < shift < end:
+                shift = float(np.ceil(end))
+        return shift
+
     def waits(self, name: str, *, at_home: bool) -> dict[int, float] | None:
-        """Return how long a robot must wait before its steps to keep apart from all others; None: in vain.
+        """Return how long a robot must wait before its steps to keep apart from others; None: in no case.
 
         Args:
             name: of the robot.
@@ -237,7 +313,7 @@ class Traffic:
         begins, ends = proximity.delays(i, j, _SPARE)
         standing = j >= count - len(stops)
         steps = proximity.pieces.steps[j]
-        plan = next(each.steps for each in self.plan.robots if each.robot == name)
+        plan = self.steps(name)
         found = []
         for index, stop in enumerate(timeline.stops):
             step = plan[index] if index < len(plan) else None
@@ -246,12 +322,15 @@ class Traffic:
                 DelayedStep(
                     _united(begins, ends, here & ~standing),
                     _united(begins, ends, here & standing),
-                    isinstance(step, Launch | Transit | Serve | Recover)
-                    and (not at_home or stop.relation is HomeRelation.HOME),
+                    _may_wait(step) and (not at_home or stop.relation is HomeRelation.HOME),
                     step.end - step.begin if isinstance(step, Await) and step.signals else 0.0,
                 )
             )
         return waits_before(found)
+
+
+def _may_wait(step: Step | None) -> bool:
+    return isinstance(step, Launch | Transit | Serve | Recover)
 
 
 def _united(begins: Floats, ends: Floats, chosen: Flags) -> list[Span]:

@@ -104,7 +104,7 @@ def _boxes(
 ) -> Floats:
     """Return (m, 2, 3): lowest and highest coordinates of what pieces may take up within slots.
 
-    That is no further than they can have come by the slot's end, and far enough to come to the end in time.
+    That is at most as far as they can have come by the slot's end, and far enough to come to the end in time.
     """
     whole = np.where(least > 0.0, least, 1.0)[of]
     ahead = np.clip((begin + slot - times[of, 0]) / whole, 0.0, 1.0)

@@ -178,7 +178,7 @@ class _Walk:
         self._stay(max([early, *(given[signal][0] for signal in step.signals)]) - self.now, 0.0)
 
     def _learn(self, signals: Sequence[str], given: Mapping[str, _Given]) -> None:
-        """Know from the next step on how far others have come that have given signals."""
+        """Record what signals tell from the next step on: how far others have come."""
         known = dict(self.known[-1])
         for signal in signals:
             for name, step in given[signal][2].items():

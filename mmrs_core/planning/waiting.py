@@ -3,7 +3,7 @@
 The path stays; what is found is how much later than planned each step begins. Safe intervals (Phillips and
 Likhachev 2011), of delays rather than of times: those with which the robot can go through a step, and those
 through which it can stand where the step begins. The last step begins with the least delay that waiting
-can bring about, and of the ways to that, one that waits as early as it can, at home before all.
+can bring about, and of all that bring it about, waits as early as it can, at home before all.
 """
 
 from __future__ import annotations
