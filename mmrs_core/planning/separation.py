@@ -115,7 +115,7 @@ def starting_later(
 ) -> Plan | None:
     """Return a plan in which robots keep apart since some start later; None if none is found.
 
-    The whole schedule is made anew, so that others may take over.
+    The whole schedule is made again, so that others may take over.
 
     Args:
         team: of the scene, with a minimum separation.
