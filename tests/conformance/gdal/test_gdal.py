@@ -3,10 +3,14 @@
 from __future__ import annotations
 
 import json
+import os
 import subprocess
+from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
+from lxml import etree
 
 from mmrs_core.contributions.drawings import reader_for
 from mmrs_core.drawings.drawing import Drawing, Geometry, HeightReference, MapFeature, Role
@@ -62,6 +66,43 @@ def test_gdal_opens_what_is_written(name, contributions, gdal, tmp_path):
     assert all(feature.name in shown for feature in DRAWING.features)
     assert all(shape in shown for shape in ("POINT", "LINESTRING"))
     assert name == "gpx" or "POLYGON" in shown
+
+
+@pytest.mark.parametrize("name", ["geojson", "kml", "kmz", "gpx"])
+def test_gdal_shows_names_as_they_are_whatever_they_hold(name, contributions, gdal, tmp_path):
+    names = [
+        "<b>bold</b>",
+        "]]>",
+        "\"1\" '2'",
+        "a\u202eb",
+        "\x00\x1b[31mred",
+        "&amp;<",
+        "-->",
+        "\ud800!",
+        "日本語 🚁",
+    ]
+    features = [
+        replace(DRAWING.features[0], name=each, description=each, folders=(each,), properties={each: each})
+        for each in names
+    ]
+    exporter = contributions.exporters[name]
+    (tmp_path / f"names{exporter.suffix}").write_bytes(exporter.write(Drawing(tuple(features)), "]]><x>"))
+    shown = gdal("ogrinfo", "-ro", "-al", f"names{exporter.suffix}")
+    assert all(feature.name in shown for feature in features)
+
+
+@pytest.mark.parametrize(("name", "schema"), [("kml", "kml22gx.xsd"), ("gpx", "gpx.xsd")])
+def test_what_is_written_is_valid_against_the_schema_of_its_format(name, schema, contributions):
+    folder = os.environ.get("MMRS_SCHEMAS")
+    if folder is None:
+        pytest.skip(
+            "MMRS_SCHEMAS is not set: the folder with the schemas of KML 2.2, its gx extension, and GPX 1.1"
+        )
+    far = replace(
+        DRAWING.features[1], rings=(np.array([[-17.0, 179.999], [-17.0, 180.0], [-17.001, -179.999]]),)
+    )
+    written = contributions.exporters[name].write(Drawing((*DRAWING.features, far)), "farm")
+    etree.XMLSchema(etree.parse(Path(folder) / schema)).assertValid(etree.fromstring(written))
 
 
 @pytest.mark.parametrize(
